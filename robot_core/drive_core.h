@@ -164,6 +164,7 @@ struct Input {
   float ambient_C = kNoSample;                                              ///< air at the motors
   PerWheel stator_C = {kNoSample, kNoSample, kNoSample, kNoSample};
   Vector3 pose{kNoSample, kNoSample, kNoSample};  ///< field frame; for pose targets
+  float pose_age_s = 0.0F;                        ///< since the camera or another sensor saw the robot at `pose`
   float elapsed_s = kNoSample;                    ///< since the last call, by the caller's timer; without a timer Config::period_s
   float command_age_s = 0.0F;                     ///< since `command` was received
   Command command;
@@ -221,8 +222,10 @@ struct alignas(8) ComparisonState {
   std::uint8_t is_checked = 0;         ///< no pair of wheel sensors is swapped: each has kConfirmations
   std::uint8_t confirmations[6] = {};  ///< per pair of wheels: comparisons that showed it not to be swapped
   std::uint8_t unused[4] = {};
-  float standing_s =
-      0.0F;  ///< time without any change of a speed sample, while the voltage would drive more than the limp current through blocked motors
+  /// Time without any change of a speed sample, while the voltage would drive more than the limp current through blocked motors.
+  float standing_s = 0.0F;
+  float runaway_s = 0.0F;        ///< time in which the wheels turn without slowing down although the robot should stand, up to kRunaway_s
+  float runaway_m_per_s = 0.0F;  ///< sum of the rim speeds at the beginning of that time
 };
 
 /// What evolves. Only start() and step() write it; a copy can be logged. The check sum covers what follows it up to `comparison`;
@@ -274,6 +277,9 @@ inline constexpr float kLongestGap_periods = 3.0F;
 inline constexpr float kSteadyAgain_s = 0.25F;
 /// Wheels that are driven for so long without any sample changing: their sensors are dead, or the robot is held.
 inline constexpr float kStanding_s = 0.3F;
+
+/// Wheels that turn for so long without slowing down although the robot should stand: the bridges are opened.
+inline constexpr float kRunaway_s = 1.0F;
 
 /// Comparisons, one in 16 periods, in which the currents of a pair of wheels clearly accelerate the difference of their speeds, after which
 /// its sensors count as not swapped.

@@ -71,13 +71,17 @@ bool has_finite_values(const Config& config, const Command& command) {
   return false;
 }
 
+/// False if the age is not a number or negative.
+bool is_fresh(const Config& config, float age_s) { return age_s >= 0.0F && age_s <= config.command_timeout_s; }
+
 void validate_command(const Config& config, const Input& input, Validated& validated) {
   validated.mode = input.command.mode;
   if (!has_finite_values(config, input.command)) {
     validated.command_fault = Reason::command_invalid;
-  } else if (!(input.command_age_s >= 0.0F && input.command_age_s <= config.command_timeout_s)) {
+  } else if (!is_fresh(config, input.command_age_s)) {
     validated.command_fault = Reason::command_stale;
-  } else if (input.command.mode == Mode::pose_target && (config.plan_step == nullptr || !(sum(input.pose) <= kMostCommand))) {
+  } else if (input.command.mode == Mode::pose_target &&
+             (config.plan_step == nullptr || !(sum(input.pose) <= kMostCommand) || !is_fresh(config, input.pose_age_s))) {
     validated.command_fault = Reason::pose_invalid;
   }
   if (validated.command_fault != Reason::none && validated.mode != Mode::coast) {
@@ -392,6 +396,9 @@ Validated validate_input(const Config& config, State& state, const Input& input)
     check_redundancy(config, state, validated);
   }
   compare_sensors(config, state, input, validated);
+  if (state.comparison.runaway_s >= kRunaway_s && validated.robot_fault == Reason::none) {
+    validated.robot_fault = Reason::runaway;
+  }
   validate_currents(config, state, input, validated);
   return validated;
 }

@@ -17,18 +17,23 @@
 // | 104 R  | command with a value that is not finite, or unknown mode    | brake to a stand, then open                       | next valid command              |
 // | 105 R  | Input::command_age_s above Config::command_timeout_s, or    | brake to a stand, then open                       | next fresh command              |
 // |        | not a number, or negative                                   |                                                   |                                 |
-// | 106 R  | pose not finite, or no planner, in a pose target            | brake to a stand, then open                       | next valid pose                 |
+// | 106 R  | pose target without a planner, or with a pose that is not   | brake to a stand, then open                       | next valid pose                 |
+// |        | finite or whose age (Input::pose_age_s) is not a number,    |                                                   |                                 |
+// |        | negative or above Config::command_timeout_s                 |                                                   |                                 |
 // | 110 W  | wheel speed not finite or beyond what the motor reaches     | speed from the other wheels and the gyro,         | kSteadyAgain_s of agreement     |
 // |        |                                                             | current at most Config::limp_current_A            |                                 |
 // | 111 W  | wheel speed jumps by more than the motor can accelerate     | as 110                                            | as 110                          |
 // | 112 W  | wheel speed stays at one value against all other evidence   | as 110                                            | as 110                          |
 // | 113 W  | speed of one wheel changes with the current of another      | as 110, both wheels                               | start()                         |
-// |        | (swapped)                                                   |                                                   |                                 |
+// |        | (swapped), while the robot is asked to move                 |                                                   |                                 |
 // | 114 W  | speed unknown: too few other wheels to estimate it          | voltage of at most limp_current_A times the       | as 110                          |
 // |        |                                                             | resistance; open where current is not sensed      |                                 |
 // | 115 W  | no wheel speed changes for kStanding_s while more than      | every current at most Config::limp_current_A, as  | a wheel speed changes           |
 // |        | limp_current_A would flow through standing motors: all      | of standing motors: the robot does not run away   |                                 |
 // |        | sensors dead, or the robot is held                          |                                                   |                                 |
+// | 116 R  | the wheels turn for kRunaway_s without slowing down, by     | all bridges open                                  | the wheels stand                |
+// |        | more than 0.1 m/s each, although the robot should stand:    |                                                   |                                 |
+// |        | swapped sensors, or somebody pushes it                      |                                                   |                                 |
 // | 120 W  | motor current not finite or beyond what the battery drives  | current from voltage, speed and guard temperature | next valid sample               |
 // | 121 W  | motor current contradicts voltage and speed (stuck sensor)  | as 120; the guard takes the larger of both        | kSteadyAgain_s of agreement     |
 // | 130 R  | battery voltage not finite, below half of the lowest or     | PWM as for a full battery, limits as for an empty | next valid sample               |
@@ -40,7 +45,7 @@
 // | 160 W  | guard state unknown: power returned, rest unknown, bit flip | guard as hot as its limit                         | the guard cools down            |
 // clang-format on
 //
-// A robot fault hides those below it: 102, 101, 103, 130, 140 or 141, 150, then the command's. 160 comes with 101.
+// A robot fault hides those below it: 102, 101, 103, 130, 140 or 141, 150, 116, then the command's. 160 comes with 101.
 //
 // Without a code:
 //   - A low battery sample is no fault: a kicker may be charging. Limits use the sample. The PWM ratio uses the last voltage without load.
@@ -61,11 +66,11 @@
 //     each other. Sliding wheels look the same. A slipping wheel with a wrong speed sensor and no current sensor may exceed its limit.
 //   - More wrong speed sensors than are to spare: the current may exceed its limit for some periods. If all wheel sensors show 0 the robot
 //     accelerates for kStanding_s before it is held to the limp current (115).
-//   - Pushes on a standing robot before swapped sensors are ruled out can look like swapped sensors: two wheels then keep the limp current
+//   - Pushes on a moving robot before swapped sensors are ruled out can look like swapped sensors: two wheels then keep the limp current
 //     until start().
 //   - All wheel sensors dead with noise: they agree with each other, so the robot is not held to the limp current.
 //   - A gyro with a wrong sign, scale or offset: the robot turns wrongly.
-//   - A pose that is stuck or jumps: a pose target then leads anywhere. The caller has to send the age of the pose as that of the command.
+//   - A pose that jumps, or one that is wrong with a valid age: a pose target then leads anywhere.
 //   - An air temperature that is too low since the start: the guard is too cold by as much.
 //   - A timer that is invalid (102) and hides a gap: the heat of that gap is not counted. The watchdog of the firmware bounds it.
 //   - A battery sensor that is wrong by the same factor since the start or since a fault, that sinks more slowly than 0.4 % of the full
@@ -104,6 +109,7 @@ enum class Reason : std::uint8_t {
   wheel_speed_swapped = 113,
   wheel_speed_unknown = 114,
   wheel_speeds_dead = 115,
+  runaway = 116,
   current_missing = 120,
   current_implausible = 121,
   battery_voltage_missing = 130,

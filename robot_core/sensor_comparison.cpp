@@ -27,6 +27,12 @@ constexpr float kMuchMore_ratio = 4.0F;
 constexpr float kClear_share = 0.1F;
 // Of the least contradiction, as a confirmation while wheels are driven one by one: they slide for a while after it.
 constexpr float kWheelwise_ratio = 10.0F;
+// Sums of the sizes of the rim speeds: of a robot that runs away, of one that stands again, and the decrease of one that slows down.
+constexpr float kRuns_m_per_s = 0.5F;
+constexpr float kStands_m_per_s = 0.1F;
+constexpr float kSlows_m_per_s = 0.05F;
+// Reference velocity from which currents are compared with what they do.
+constexpr float kDriven_m_per_s = 0.1F;
 // A wheel that changes its speed faster than this multiple of the limits of acceleration slides.
 constexpr float kGripping_ratio = 2.0F;
 // Speeds of four wheels that do not slide contradict each other by less.
@@ -131,6 +137,15 @@ void compare_heat(const Config& config, State& state, const Validated& validated
   state.has_yaw_spoken_wrongly = 0;
 }
 
+bool is_controlled(Mode mode) { return mode == Mode::body_velocity || mode == Mode::pose_target; }
+
+/// False while the robot should stand, and if the body is not controlled.
+bool is_asked_to_move(const Config& config, const State& state, const Validated& validated) {
+  const Vector3& asked = state.velocity_reference;
+  return is_controlled(validated.mode) &&
+         absolute(asked.x) + absolute(asked.y) + config.contact_radius_m * absolute(asked.yaw) > kDriven_m_per_s;
+}
+
 /// All speeds at once: sensors that are dead together agree with each other.
 [[gnu::cold]] void compare_standing(const Config& config, State& state, const Validated& validated, float since_s) {
   bool is_driven = false;
@@ -148,6 +163,27 @@ void compare_heat(const Config& config, State& state, const Validated& validated
   // Up to twice the threshold is counted: limited to the limp current, a wheel stays below it.
   float& standing_s = state.comparison.standing_s;
   standing_s = is_driven ? smaller(standing_s + since_s, 2.0F * kStanding_s) : standing_s;
+}
+
+/// Swapped wheel sensors make the control drive a standing robot, once it is pushed, instead of holding it.
+[[gnu::cold]] void compare_runaway(const Config& config, State& state, const Validated& validated, float since_s) {
+  ComparisonState& comparison = state.comparison;
+  float rim_m_per_s = 0.0F;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    rim_m_per_s += absolute(rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s));
+  }
+  const bool is_away = comparison.runaway_s >= kRunaway_s;
+  const bool should_stand = (is_controlled(validated.mode) || validated.mode == Mode::brake) &&
+                            !is_asked_to_move(config, state, validated) && comparison.is_checked == 0;
+  if (!should_stand || !(rim_m_per_s > (is_away ? kStands_m_per_s : kRuns_m_per_s))) {
+    comparison.runaway_s = 0.0F;
+  } else if (!is_away) {
+    comparison.runaway_s += since_s;
+    if (rim_m_per_s < comparison.runaway_m_per_s - kSlows_m_per_s || comparison.runaway_s == since_s) {
+      comparison.runaway_s = since_s;
+      comparison.runaway_m_per_s = rim_m_per_s;
+    }
+  }
 }
 
 /// What the currents do to one wheel: (V − K·n·ω), and the speed that it has gained since the last comparison.
@@ -206,6 +242,8 @@ void compare_pairs(const Config& config, State& state, const Validated& validate
   // Where wheels and gyro contradict each other, one of them lies about the turning.
   const bool is_turning_known =
       state.yaw_fault == 0 && absolute(yaw_rate_of_wheels(config, validated) - validated.yaw_rate_rad_per_s) < kYawDisagreement_rad_per_s;
+  // Pushes on a standing robot look like swapped sensors.
+  const bool is_driven = is_asked_to_move(config, state, validated);
   const bool is_wheelwise = validated.mode == Mode::wheel_speed || validated.mode == Mode::wheel_torque;
   const float fastest_rad_per_s = config.fastest_wheel_rad_per_s;
   float most = kLeastContradiction_share * config.derived.geared_constant_V_s_per_rad * fastest_rad_per_s * fastest_rad_per_s;
@@ -221,7 +259,7 @@ void compare_pairs(const Config& config, State& state, const Validated& validate
   int pair = 0;
   for (int i = 0; i < config.wheel_count; ++i) {
     for (int j = i + 1; j < config.wheel_count; ++j, ++pair) {
-      const bool is_usable = is_turning_known && response[i].is_usable && response[j].is_usable;
+      const bool is_usable = is_turning_known && is_driven && response[i].is_usable && response[j].is_usable;
       const float gained_rad_per_s = response[i].gained_rad_per_s - response[j].gained_rad_per_s;
       const float product = is_usable ? (response[i].driving_V - response[j].driving_V) * gained_rad_per_s : 0.0F;
       // Friction slows down against the drive; a difference that grows against the drive is none of its making.
@@ -327,6 +365,7 @@ void compare_sensors(const Config& config, State& state, const Input& input, Val
     }
     if (turn == 8) {
       compare_standing(config, state, validated, since_s);
+      compare_runaway(config, state, validated, since_s);
       compare_yaw_rate(config, state, validated, since_s);
     }
   }

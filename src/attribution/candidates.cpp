@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "attribution/extended_model.h"
-#include "identify/log_rows.h"
+#include "estimation/log_rows.h"
 
 namespace heatsoak {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "attribution/run_deviation.h"
-#include "identify/linearised_run.h"
-#include "identify/model.h"
+#include "estimation/linearised_run.h"
+#include "estimation/model.h"
 #include "motor/sensor_effect.h"
 
 namespace heatsoak {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/measured_run.h"
+#include "estimation/measured_run.h"
 
 namespace heatsoak {
 

@@ -9,7 +9,7 @@
 
 #include "attribution/diagnosis.h"
 #include "base/quantity.h"
-#include "identify/calibration/unlogged_speed.h"
+#include "calibration/unlogged_speed.h"
 
 namespace heatsoak {
 namespace {

@@ -3,8 +3,8 @@
 #include <Eigen/Dense>
 
 #include "base/parallel.h"
-#include "identify/averaged_run.h"
-#include "identify/open_loop.h"
+#include "estimation/averaged_run.h"
+#include "estimation/open_loop.h"
 
 namespace heatsoak {
 

@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "attribution/extended_model.h"
-#include "identify/evidence.h"
+#include "estimation/evidence.h"
 
 namespace heatsoak {
 
 /// One run. The columns are: one per coordinate of the model (per unit of θ), then those of candidates (per typical size).
 struct DesignRun {
-  LinearisedRun run;  ///< averaged, see identify/averaged_run.h; without by_parameter
+  LinearisedRun run;  ///< averaged, see estimation/averaged_run.h; without by_parameter
   SensorNoise noise;
   StartPrior start;
   Columns columns;

@@ -16,10 +16,10 @@
 #include "attribution/unexplained_heat.h"
 #include "base/parallel.h"
 #include "base/quantity.h"
-#include "identify/calibration/unlogged_speed.h"
-#include "identify/interval.h"
-#include "identify/log_columns.h"
-#include "identify/turning_rows.h"
+#include "calibration/unlogged_speed.h"
+#include "estimation/interval.h"
+#include "estimation/log_columns.h"
+#include "estimation/turning_rows.h"
 
 namespace heatsoak {
 namespace {

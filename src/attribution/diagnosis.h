@@ -8,7 +8,7 @@
 #include "attribution/found_effects.h"
 #include "attribution/open_loop.h"
 #include "attribution/residual_tests.h"
-#include "identify/forecast/prediction.h"
+#include "calibration/forecast/prediction.h"
 
 namespace heatsoak {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "attribution/candidates.h"
-#include "identify/evidence.h"
+#include "estimation/evidence.h"
 
 namespace heatsoak {
 

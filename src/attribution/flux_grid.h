@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "identify/whitening.h"
+#include "estimation/whitening.h"
 
 namespace heatsoak {
 

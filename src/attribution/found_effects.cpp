@@ -6,7 +6,7 @@
 
 #include "attribution/mean_heat.h"
 #include "attribution/terms.h"
-#include "identify/interval.h"
+#include "estimation/interval.h"
 
 namespace heatsoak {
 namespace {

@@ -9,14 +9,14 @@
 
 #include "base/diagnostic.h"
 #include "base/quantity.h"
-#include "identify/admission.h"
-#include "identify/calibration/error_before_after.h"
-#include "identify/calibration/unlogged_speed.h"
-#include "identify/interval.h"
-#include "identify/log_columns.h"
-#include "identify/log_rows.h"
-#include "identify/measurement/fingerprint.h"
-#include "identify/training_range.h"
+#include "calibration/admission.h"
+#include "calibration/error_before_after.h"
+#include "calibration/unlogged_speed.h"
+#include "estimation/interval.h"
+#include "estimation/log_columns.h"
+#include "estimation/log_rows.h"
+#include "recording/fingerprint.h"
+#include "calibration/training_range.h"
 
 namespace heatsoak {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "attribution/diagnosis.h"
-#include "identify/calibration/motor_model.h"
+#include "calibration/motor_model.h"
 #include "motor/motor.h"
 
 namespace heatsoak {

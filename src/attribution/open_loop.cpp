@@ -1,4 +1,4 @@
-#include "identify/open_loop.h"
+#include "estimation/open_loop.h"
 
 #include <algorithm>
 #include <cmath>

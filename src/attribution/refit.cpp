@@ -9,8 +9,8 @@
 #include "attribution/uneven_bodies.h"
 #include "base/diagnostic.h"
 #include "base/parallel.h"
-#include "identify/averaged_run.h"
-#include "identify/open_loop.h"
+#include "estimation/averaged_run.h"
+#include "estimation/open_loop.h"
 
 namespace heatsoak {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "identify/linearised_run.h"
-#include "identify/model.h"
+#include "estimation/linearised_run.h"
+#include "estimation/model.h"
 
 namespace heatsoak {
 

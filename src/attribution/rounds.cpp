@@ -12,10 +12,10 @@
 #include "attribution/mean_heat.h"
 #include "attribution/open_loop.h"
 #include "base/parallel.h"
-#include "identify/averaged_run.h"
-#include "identify/calibration/motor_model.h"
-#include "identify/calibration/unlogged_speed.h"
-#include "identify/model_screening.h"
+#include "estimation/averaged_run.h"
+#include "calibration/motor_model.h"
+#include "calibration/unlogged_speed.h"
+#include "estimation/model_screening.h"
 
 namespace heatsoak {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/parameter.h"
-#include "identify/measured_run.h"
+#include "estimation/measured_run.h"
 #include "thermal/network.h"
 
 namespace heatsoak {

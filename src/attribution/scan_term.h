@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "identify/linearised_run.h"
-#include "identify/model.h"
+#include "estimation/linearised_run.h"
+#include "estimation/model.h"
 
 namespace heatsoak {
 

@@ -12,9 +12,9 @@
 
 #include "attribution/open_loop.h"
 #include "attribution/rounds.h"
-#include "identify/calibration/motor_model.h"
-#include "identify/log_columns.h"
-#include "identify/smoothed_path.h"
+#include "calibration/motor_model.h"
+#include "estimation/log_columns.h"
+#include "estimation/smoothed_path.h"
 
 namespace heatsoak {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "identify/linearised_run.h"
+#include "estimation/linearised_run.h"
 
 namespace heatsoak {
 

@@ -7,7 +7,7 @@
 
 #include "attribution/curve.h"
 #include "attribution/terms.h"
-#include "identify/calibration/unlogged_speed.h"
+#include "calibration/unlogged_speed.h"
 
 namespace heatsoak {
 namespace {

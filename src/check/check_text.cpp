@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "base/xml_text.h"
 #include "check/limit.h"
 
 namespace heatsoak {
@@ -100,46 +101,6 @@ std::string explanation(const Outcome& outcome) {
                                                              : fmt::format("{}: {}", outcome.reason, outcome.measured.detail);
 }
 
-/// Escapes text for XML. Drops characters that XML does not allow; replaces invalid UTF-8 by a question mark.
-std::string escaped_xml(std::string_view text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto c = static_cast<unsigned char>(text[i]);
-    const std::size_t length = c < 0x80 ? 1 : c >= 0xF0 ? 4 : c >= 0xE0 ? 3 : c >= 0xC2 ? 2 : 0;
-    const std::string_view rest = text.substr(std::min(i + 1, text.size()), length > 0 ? length - 1 : 0);
-    const bool is_whole = length > 0 && c < 0xF5 && rest.size() == length - 1 &&
-                          std::ranges::all_of(rest, [](char each) { return (static_cast<unsigned char>(each) & 0xC0U) == 0x80U; });
-    if (c < 0x20 && c != '\n' && c != '\t') {
-      continue;
-    }
-    if (!is_whole) {
-      result += '?';
-      continue;
-    }
-    switch (text[i]) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\n':
-        result += "&#10;";
-        break;
-      default:
-        result += text.substr(i, length);
-        i += length - 1;
-    }
-  }
-  return result;
-}
-
 struct Counts {
   std::size_t all = 0;
   std::size_t exceeded = 0;
@@ -176,16 +137,16 @@ std::string count_attributes(const Counts& counts) {
 
 std::string test_case(const Outcome& each) {
   std::string text = fmt::format(R"(    <testcase name="{}" classname="{}" file="{}" line="{}")", each.limit.type->name,
-                                 escaped_xml(each.check->name), escaped_xml(each.limit.at.file), each.limit.at.line);
+                                 xml_attribute(each.check->name), xml_attribute(each.limit.at.file), each.limit.at.line);
   const std::string facts = fmt::format("value {}, limit {}, margin {}\n{}", shown(each.measured.value, *each.limit.type), limit_text(each),
                                         margin_text(each), each.measured.detail);
   if (each.passed) {
-    return text + fmt::format(">\n      <system-out>{}</system-out>\n    </testcase>\n", escaped_xml(facts));
+    return text + fmt::format(">\n      <system-out>{}</system-out>\n    </testcase>\n", xml_attribute(facts));
   }
   const std::string_view element = each.is_evaluated ? "failure" : "error";
   return text + fmt::format(">\n      <{0} type=\"{1}\" message=\"{2}\">{3}:{4}: {5}</{0}>\n    </testcase>\n", element,
-                            each.is_evaluated ? "limit_exceeded" : "not_evaluated", escaped_xml(each.reason),
-                            escaped_xml(each.limit.at.file), each.limit.at.line, escaped_xml(facts));
+                            each.is_evaluated ? "limit_exceeded" : "not_evaluated", xml_attribute(each.reason),
+                            xml_attribute(each.limit.at.file), each.limit.at.line, xml_attribute(facts));
 }
 
 /// Escapes text for a cell of a Markdown table.
@@ -238,7 +199,7 @@ std::string junit_xml(std::span<const Outcome> outcomes, std::string_view versio
   for (const std::span<const Outcome> group : by_check(outcomes)) {
     text +=
         fmt::format("  <testsuite name=\"{}\" {}>\n    <properties>\n      <property name=\"heatsoak\" value=\"{}\"/>\n    </properties>\n",
-                    escaped_xml(group.front().check->name), count_attributes(counts_of(group)), escaped_xml(version));
+                    xml_attribute(group.front().check->name), count_attributes(counts_of(group)), xml_attribute(version));
     for (const Outcome& each : group) {
       text += test_case(each);
     }

@@ -12,7 +12,7 @@
 #include "motor/default_spread.h"
 #include "robot/assumed_friction.h"
 #include "robot/driver.h"
-#include "thermal/copper.h"
+#include "base/copper.h"
 
 namespace heatsoak {
 namespace {

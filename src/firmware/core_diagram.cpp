@@ -7,6 +7,8 @@
 #include <iterator>
 #include <map>
 
+#include "base/xml_text.h"
+
 namespace heatsoak {
 namespace {
 
@@ -79,14 +81,6 @@ double Lane::bottom_px() const {
 
 std::size_t letters(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    result += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-  }
-  return result;
 }
 
 bool is_side(Block block) { return block == Block::run_guards || block == Block::plan_to_pose; }
@@ -242,7 +236,7 @@ class Picture {
   }
   void write(double x_px, double y_px, std::string_view kind, std::string_view words, std::string_view style = {}) {
     text_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"{}\"{}{}>{}</text>\n", x_px, y_px, kind, style.empty() ? "" : " ", style,
-                         escaped(words));
+                         xml_text(words));
   }
   /// On a white ground, so that it passes over what it crosses.
   void line(double from_x_px, double from_y_px, double to_x_px, double to_y_px, std::string_view color) {

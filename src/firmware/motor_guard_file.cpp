@@ -18,9 +18,9 @@ std::string operand_literal(double value) {
   return text.front() == '-' ? fmt::format("({})", text) : text;
 }
 
-const LineStyle kStyle{.literal = operand_literal,
-                       .signal = [](firmware::Signal signal) { return fmt::format("signal[robot_core::guard_{}]", name_of(signal)); },
-                       .square_root = "robot_core::square_root"};
+const LineStyle kGuardStyle{.literal = operand_literal,
+                            .signal = [](firmware::Signal signal) { return fmt::format("signal[robot_core::guard_{}]", name_of(signal)); },
+                            .square_root = "robot_core::square_root"};
 
 std::string array(std::string_view name, const float* values, int count) {
   std::string text = fmt::format("constexpr float {}[{}] = {{", name, count);
@@ -67,11 +67,10 @@ std::string plausible_ranges(const robot_core::GuardModel& guard) {
   for (int i = 0; i < robot_core::kGuardSignals; ++i) {
     const robot_core::PlausibleRange& plausible_range = guard.plausible_range[i];
     const std::string_view name = name_of(static_cast<firmware::Signal>(i));
-    text += plausible_range.is_used
-                ? fmt::format("            {{true, {}, {}, kPossible_{}, {}}},  // {}: accepted range\n",
-                              float_literal(plausible_range.least), float_literal(plausible_range.most), name,
-                              plausible_range.possible_count, name)
-                : fmt::format("            {{}},  // {}: no law depends on it\n", name);
+    text += plausible_range.is_used ? fmt::format("            {{true, {}, {}, kPossible_{}, {}}},  // {}: accepted range\n",
+                                                  float_literal(plausible_range.least), float_literal(plausible_range.most), name,
+                                                  plausible_range.possible_count, name)
+                                    : fmt::format("            {{}},  // {}: no law depends on it\n", name);
   }
   return text;
 }
@@ -119,7 +118,7 @@ std::string motor_guard_header(const CoreSource& source) {
 std::string motor_guard_source(const CoreSource& source) {
   const robot_core::GuardModel& guard = source.guard;
   const Observer& observer = source.derating.observer;
-  const RateLines lines(observer, observer.rate_steps(), kStyle);
+  const RateLines lines(observer, observer.rate_steps(), kGuardStyle);
   std::string nodes;
   for (const std::string& name : source.derating.observer.state_names()) {
     nodes += fmt::format("{}{}", nodes.empty() ? "" : ", ", in_one_line(name));

@@ -9,7 +9,7 @@
 
 #include "base/quantity.h"
 #include "motor/lint_checks.h"
-#include "thermal/copper.h"
+#include "base/copper.h"
 
 namespace heatsoak {
 namespace lint_checks {

@@ -10,7 +10,7 @@
 #include "input/document.h"
 #include "motor/motor_effects.h"
 #include "motor/read_motor.h"
-#include "thermal/copper.h"
+#include "base/copper.h"
 
 namespace heatsoak {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "motor/motor.h"
 #include "robot/wheels.h"
-#include "thermal/copper.h"
+#include "base/copper.h"
 
 namespace heatsoak {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "motor/datasheet_network.h"
-#include "thermal/copper.h"
+#include "base/copper.h"
 
 namespace heatsoak {
 namespace {

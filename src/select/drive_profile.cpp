@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "motor/datasheet_network.h"
-#include "thermal/copper.h"
+#include "base/copper.h"
 
 namespace heatsoak {
 

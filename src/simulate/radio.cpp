@@ -14,7 +14,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// Far below a period of the plant, far above the rounding of a time.
 constexpr double kInstant_s = 1e-9;
 
-constexpr DeclaredNumber<RadioConfig> kNumbers[] = {
+constexpr DeclaredNumber<RadioConfig> kRadioNumbers[] = {
     {{"packet_rate", "Hz", Range{1.0, kInfinite}, "commands to one robot"},
      &RadioConfig::packet_rate_Hz,
      Origin::estimated,
@@ -81,7 +81,7 @@ bool is_due(double time_s, double rate_Hz, std::int64_t count) {
 
 }  // namespace
 
-std::span<const DeclaredNumber<RadioConfig>> radio_numbers() { return kNumbers; }
+std::span<const DeclaredNumber<RadioConfig>> radio_numbers() { return kRadioNumbers; }
 
 RadioConfig radio_of(const Robot& robot) {
   RadioConfig config;

@@ -10,7 +10,7 @@ constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 /// The bias walks in steps of so many samples: a draw per sample would cost time and change nothing.
 constexpr int kSamplesPerDriftStep = 100;
 
-constexpr DeclaredNumber<SensingConfig> kNumbers[] = {
+constexpr DeclaredNumber<SensingConfig> kSensingNumbers[] = {
     {{"encoder_turn", "1", Range::between(0.0, 1e6), "counts per turn of the motor's shaft; 0: the true speed"},
      &SensingConfig::encoder_turn_count,
      Origin::third_party,
@@ -71,7 +71,7 @@ double rounded_to(double value, double step) { return step > 0.0 ? step * std::r
 
 }  // namespace
 
-std::span<const DeclaredNumber<SensingConfig>> sensing_numbers() { return kNumbers; }
+std::span<const DeclaredNumber<SensingConfig>> sensing_numbers() { return kSensingNumbers; }
 
 SensingConfig sensing_of(const Robot& robot) {
   SensingConfig config;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "thermal/copper.h"
+#include "base/copper.h"
 
 namespace heatsoak {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/diagnostic.h"
-#include "thermal/copper.h"
+#include "base/copper.h"
 
 namespace heatsoak {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "attribution/flux_grid.h"
-#include "identify/smoothed_path.h"
+#include "estimation/smoothed_path.h"
 #include "runs_for_tests.h"
 
 namespace heatsoak {

@@ -8,8 +8,8 @@
 
 #include "base/unknown.h"
 #include "drive_rows.h"
-#include "identify/log_columns.h"
-#include "identify/measured_run.h"
+#include "estimation/log_columns.h"
+#include "estimation/measured_run.h"
 
 namespace heatsoak::truth {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "attribution/diagnosis.h"
-#include "identify/fit.h"
+#include "estimation/fit.h"
 #include "missing_effects.h"
 #include "truth_motor.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/measurement/recording.h"
+#include "recording/recording.h"
 
 namespace heatsoak::truth {
 

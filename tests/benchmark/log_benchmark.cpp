@@ -9,9 +9,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "identify/measurement/quality.h"
-#include "identify/measurement/read_recording.h"
-#include "identify/measurement/recording_stream.h"
+#include "recording/quality.h"
+#include "recording/read_recording.h"
+#include "recording/recording_stream.h"
 #include "input/csv.h"
 #include "input/number_table.h"
 

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "base/diagnostic.h"
-#include "identify/admission.h"
+#include "calibration/admission.h"
 #include "motor/write_motor.h"
 #include "study.h"
 

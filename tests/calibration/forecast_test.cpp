@@ -1,5 +1,5 @@
 // Forecasts: the fit to whole runs against what is known of it, the choice of a network, the band, and a motor file run along a log.
-#include "identify/forecast/forecast.h"
+#include "calibration/forecast/forecast.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "identify/forecast/prediction.h"
+#include "calibration/forecast/prediction.h"
 #include "motor/write_motor.h"
 #include "study.h"
 

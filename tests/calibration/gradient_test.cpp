@@ -4,7 +4,7 @@
 
 #include <complex>
 
-#include "identify/linearised_run.h"
+#include "estimation/linearised_run.h"
 #include "runs_for_tests.h"
 
 namespace heatsoak {

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "base/diagnostic.h"
-#include "identify/calibration/profile.h"
+#include "calibration/profile.h"
 #include "motor/write_motor.h"
 #include "study.h"
 

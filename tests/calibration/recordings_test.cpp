@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "../support/measured_data.h"
-#include "identify/calibration/calibrate.h"
-#include "identify/measurement/read_recording.h"
+#include "calibration/calibrate.h"
+#include "recording/read_recording.h"
 #include "support/source_folder.h"
 
 namespace heatsoak {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "identify/admission.h"
-#include "identify/linearised_run.h"
-#include "identify/open_loop.h"
+#include "calibration/admission.h"
+#include "estimation/linearised_run.h"
+#include "estimation/open_loop.h"
 #include "study.h"
 #include "synthetic_log.h"
 

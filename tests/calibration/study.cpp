@@ -8,7 +8,7 @@
 #include <fstream>
 #include <mutex>
 
-#include "identify/measurement/read_recording.h"
+#include "recording/read_recording.h"
 
 namespace heatsoak::study {
 namespace {

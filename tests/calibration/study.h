@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "identify/calibration/calibrate.h"
+#include "calibration/calibrate.h"
 #include "runs_for_tests.h"
 
 namespace heatsoak::study {

@@ -87,7 +87,7 @@ struct Carrier {
   std::string variable;
   std::string per_wheel;
 };
-const std::vector<Carrier> kCarriers{{"Believed", "believed", "BelievedWheel"},
+const std::vector<Carrier> kCarriers{{"Validated", "validated", "ValidatedWheel"},
                                      {"BodyReference", "body", ""},
                                      {"WheelReferences", "wheels", "WheelReference"},
                                      {"WheelVoltages", "voltage", "WheelVoltage"},
@@ -150,6 +150,8 @@ Names split(const std::string& numbers) {
 
 std::string unit_in_name(const std::string& name) {
   static const std::vector<std::pair<std::string, std::string>> kUnits{{"_A_per_V", "A/V"},
+                                                                       {"_V2", "V2"},
+                                                                       {"_A2", "A2"},
                                                                        {"_rad_per_s2", "rad/s2"},
                                                                        {"_rad_per_s", "rad/s"},
                                                                        {"_Nm", "N m"},
@@ -349,7 +351,8 @@ std::vector<std::string> unique_state_members() {
     }
   }
   std::vector<std::string> unique;
-  for (const auto& [name, prefix] : std::map<std::string, std::string>{{"State", ""}, {"WheelState", "wheel."}, {"GuardState", "guard."}}) {
+  for (const auto& [name, prefix] : std::map<std::string, std::string>{
+           {"State", ""}, {"WheelState", "wheel."}, {"ComparisonState", "comparison."}, {"GuardState", "guard."}}) {
     for (const std::string& member : code().structs.at(name)) {
       if (times[member] == 1) {
         unique.push_back(prefix + member);

@@ -19,7 +19,7 @@ const HiddenLibrary kHidden[] = {
     {"toml(\\+\\+|plusplus)", "src/input/"},
     {"csv\\.h", "src/input/"},
     {"udunits", "src/base/"},
-    {"muParser", "src/identify/measurement/"},
+    {"muParser", "src/recording/"},
     {"CLI/", "src/cli/"},
     {"zlib\\.h", "src/duty/"},
     {"(google/protobuf/|[a-z_]+\\.pb\\.h)", "src/duty/logs/"},

@@ -34,9 +34,15 @@ class Drive {
       until_command_ = 200 + random_.below(600);
     }
     Input input = plant_.sense(random_, 0.3F, are_currents_fitted_);
+    if (--until_push_ <= 0) {
+      until_push_ = 100 + random_.below(900);
+      const bool is_pushed = is_pushed_ && random_.happens(0.5F);
+      const auto force_N = [&](float most_N) { return is_pushed ? static_cast<double>(random_.between(-most_N, most_N)) : 0.0; };
+      plant_.set_push(force_N(15.0F), force_N(15.0F), force_N(0.5F));
+    }
     std::swap(input.wheel_speed_rad_per_s[a], input.wheel_speed_rad_per_s[b]);
     input.command.mode = Mode::body_velocity;
-    input.command.velocity = velocity_;
+    input.command.velocity = is_standing_ ? robot_core::Vector3{} : velocity_;
     output_ = robot_core::step(config_, state_, input);
     for (int i = 0; i < config_.wheel_count; ++i) {
       largest_A_ = std::max(largest_A_, std::abs(plant_.coldest_current_A(output_, i)));
@@ -44,8 +50,23 @@ class Drive {
     plant_.move(output_);
     return output_;
   }
+  /// Random forces and moments on the body.
+  void push(bool is_pushed) { is_pushed_ = is_pushed; }
+  void stand(bool is_standing) { is_standing_ = is_standing; }
+  bool is_any_swap_reported() const {
+    return std::ranges::any_of(state_.wheel, [](const robot_core::WheelState& each) {
+      return each.speed_fault == static_cast<std::uint8_t>(Reason::wheel_speed_swapped);
+    });
+  }
   bool is_swap_reported(int i) const { return output_.reason[i] == Reason::wheel_speed_swapped; }
   double largest_A() const { return largest_A_; }
+  double fastest_rim_m_per_s() const {
+    double fastest_rad_per_s = 0.0;
+    for (int i = 0; i < config_.wheel_count; ++i) {
+      fastest_rad_per_s = std::max(fastest_rad_per_s, std::abs(plant_.wheel_speed_rad_per_s(i)));
+    }
+    return fastest_rad_per_s * static_cast<double>(config_.wheel_radius_m);
+  }
 
  private:
   const Config& config_;
@@ -56,6 +77,9 @@ class Drive {
   Output output_;
   robot_core::Vector3 velocity_;
   int until_command_ = 0;
+  int until_push_ = 0;
+  bool is_pushed_ = false;
+  bool is_standing_ = false;
   double largest_A_ = 0.0;
 };
 
@@ -135,6 +159,73 @@ TEST(SwappedSensors, AreNotReportedWhereNoneAreSwapped) {
       const Times times = find_times(config, are_currents_fitted, 0, 0, kRuns, 10000);
       EXPECT_EQ(times.never, kRuns);
     }
+  }
+}
+
+// A robot that is pushed before it has driven is not taken for one with swapped sensors. It may open its bridges meanwhile, but not any
+// more once it has driven.
+TEST(SwappedSensors, AreNotReportedOfAPushedRobotThatShouldStand) {
+  int reported = 0;
+  int open_before = 0;
+  int open_after = 0;
+  for (const int wheels : {4, 3}) {
+    const Config config = make_config(wheels);
+    for (const bool are_currents_fitted : {true, false}) {
+      for (unsigned seed = 0; seed < 100; ++seed) {
+        Drive drive(config, are_currents_fitted, kFirstSeed + seed);
+        const auto pushed = [&](int& open) {
+          drive.stand(true);
+          drive.push(true);
+          for (int k = 0; k < 4000; ++k) {
+            open += drive.period(0, 0).robot_reason == Reason::runaway ? 1 : 0;
+          }
+          drive.push(false);
+          for (int k = 0; k < 2000; ++k) {
+            drive.period(0, 0);
+          }
+          drive.stand(false);
+          reported += drive.is_any_swap_reported() ? 1 : 0;
+        };
+        pushed(open_before);
+        for (int k = 0; k < 20000; ++k) {
+          drive.period(0, 0);
+        }
+        pushed(open_after);
+      }
+    }
+  }
+  std::printf(
+      "pushed for 4 s: %d of 400 robots report swapped sensors; bridges open for %.1f %% of the time before driving, %.1f %% after\n",
+      reported, open_before / 16000.0, open_after / 16000.0);
+  EXPECT_EQ(reported, 0);
+  EXPECT_EQ(open_after, 0);
+}
+
+// Swapped sensors of a robot that should stand: a short push makes it run away, until the bridges open and it rolls out.
+TEST(SwappedSensors, DoNotLetARobotRunAwayThatShouldStand) {
+  for (const int wheels : {4, 3}) {
+    const Config config = make_config(wheels);
+    int open = 0;
+    int running = 0;
+    for (int a = 0; a < wheels; ++a) {
+      for (int b = a + 1; b < wheels; ++b) {
+        for (unsigned seed = 0; seed < 20; ++seed) {
+          Drive drive(config, true, kFirstSeed + seed);
+          drive.stand(true);
+          int periods_at_speed = 0;
+          for (int k = 0; k < 10000; ++k) {
+            drive.push(k > 100 && k < 400);
+            open += drive.period(a, b).robot_reason == Reason::runaway ? 1 : 0;
+            periods_at_speed = drive.fastest_rim_m_per_s() > 0.3 ? periods_at_speed + 1 : 0;
+            running = std::max(running, periods_at_speed);
+          }
+        }
+      }
+    }
+    std::printf("%d wheels: bridges open for %d periods; wheels turn faster than 0.3 m/s for %.1f s at a time\n", wheels, open,
+                1e-3 * running);
+    EXPECT_GT(open, 0);
+    EXPECT_LT(running, 4000);
   }
 }
 

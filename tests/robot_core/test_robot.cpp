@@ -274,7 +274,7 @@ void Plant::move(const robot_core::Output& output) {
     double force_N[kMostWheels] = {};
     const double before_A[kMostWheels] = {current_A_[0], current_A_[1], current_A_[2], current_A_[3]};
     turn_wheels(output, period_s, force_N);
-    double x_N = 0.0, y_N = 0.0, moment_Nm = 0.0, battery_A = 0.0;
+    double x_N = push_[0], y_N = push_[1], moment_Nm = push_[2], battery_A = 0.0;
     for (int i = 0; i < config_.wheel_count; ++i) {
       x_N += static_cast<double>(config_.wheel[i].rolling_x_share) * force_N[i];
       y_N += static_cast<double>(config_.wheel[i].rolling_y_share) * force_N[i];

@@ -3,6 +3,7 @@
 // an inner resistance, and the two-node thermal network of each motor.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "robot_core/drive_core.h"
@@ -77,6 +78,8 @@ class Plant {
   /// Open circuit; a load that the core does not know lowers it.
   void set_battery_V(double battery_V) { truth_.battery_V = battery_V; }
   void set_velocity(double x_m_per_s, double y_m_per_s, double yaw_rad_per_s);
+  /// External force on the body and moment about its axis, local frame; stays until it is set again.
+  void set_push(double x_N, double y_N, double moment_Nm) { push_ = {x_N, y_N, moment_Nm}; }
   double wheel_speed_rad_per_s(int i) const { return speed_[i]; }
   double rolling_speed_rad_per_s(int i) const;             ///< of a wheel that does not slip
   double current_A(int i) const { return current_A_[i]; }  ///< mean of the last period
@@ -101,6 +104,7 @@ class Plant {
 
   const robot_core::Config& config_;
   Truth truth_;
+  std::array<double, 3> push_{};
   double velocity_[3] = {};  ///< local frame
   double pose_[3] = {};
   double speed_[kMostWheels] = {};

@@ -1,7 +1,7 @@
 // Chart of a calibration: measured temperatures, and the free-running model before and after the fit.
 #pragma once
 
-#include "identify/calibration/calibrate.h"
+#include "calibration/calibrate.h"
 #include "report/chart.h"
 
 namespace heatsoak {

@@ -9,25 +9,18 @@
 #include <string>
 
 #include "base/quantity.h"
+#include "base/xml_text.h"
 #include "cli/measured/diagnosis_answer.h"
 
 namespace heatsoak {
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-  }
-  return out;
-}
 
 /// Returns a table row. Long names may be broken after underscores.
 std::string row(const std::vector<std::string>& cells, std::string_view tag = "td") {
   std::string text = "<tr>";
   for (const std::string& cell : cells) {
     text += fmt::format("<{}>", tag);
-    for (const char c : escaped(cell)) {
+    for (const char c : xml_text(cell)) {
       text += c == '_' ? "_<wbr>" : std::string(1, c);
     }
     text += fmt::format("</{}>", tag);
@@ -91,7 +84,7 @@ std::string effect_table(const Diagnosis& diagnosis) {
   std::set<std::string> told;
   for (const FoundEffect& effect : diagnosis.effects) {
     if (!effect.confounded_with.empty() && effect.is_from_catalogue && told.insert(effect.id).second) {
-      text += fmt::format("<p>{} in general: {}</p>\n", escaped(effect.id), escaped(effect.confounded_with));
+      text += fmt::format("<p>{} in general: {}</p>\n", xml_text(effect.id), xml_text(effect.confounded_with));
     }
   }
   return text;
@@ -130,7 +123,7 @@ std::string ladder_table(const Diagnosis& diagnosis) {
                                each.term.other.empty() ? "" : "→" + each.term.other),
                    fmt::format("{:.1f}", each.gain_nats), fmt::format("{} W mean", significant(each.mean_W, 2)), "", ""});
     }
-    text += "</table>\n" + fmt::format("<p>{}</p>\n", escaped(outcome_of(round)));
+    text += "</table>\n" + fmt::format("<p>{}</p>\n", xml_text(outcome_of(round)));
   }
   return text;
 }
@@ -247,13 +240,13 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Diagnosis</title><style>{}</style></head><body>\n", kStyle);
   text += fmt::format("<h1>Diagnosis: {}</h1>\n<div class=\"words\">\n", heading_of(diagnosis.verdict));
   for (const std::string& each : diagnosis.words) {
-    text += fmt::format("<p>{}</p>\n", escaped(each));
+    text += fmt::format("<p>{}</p>\n", xml_text(each));
   }
   text += "</div>\n";
   const std::vector<std::string> train = names_of(input.train, score.runs);
   const std::vector<std::string> holdout = names_of(score.runs, input.train);
-  text += fmt::format("<p>Fitted to {}. Never seen by the fit: {}.</p>\n", escaped(fmt::format("{}", fmt::join(train, ", "))),
-                      holdout.empty() ? "none" : escaped(fmt::format("{}", fmt::join(holdout, ", "))));
+  text += fmt::format("<p>Fitted to {}. Never seen by the fit: {}.</p>\n", xml_text(fmt::format("{}", fmt::join(train, ", "))),
+                      holdout.empty() ? "none" : xml_text(fmt::format("{}", fmt::join(holdout, ", "))));
   text +=
       "<h2>Error before and after</h2><p>The model runs freely from the first measured temperatures.</p>" + error_table(diagnosis, score);
   if (!diagnosis.effects.empty()) {
@@ -262,7 +255,8 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
   for (const auto& [name, picture] : svg) {
     const std::size_t begin = picture.find("<svg");
     // Removes the XML header; each picture has its own title.
-    text += fmt::format("<figure id=\"{}\">\n{}\n</figure>\n", escaped(name), begin == std::string::npos ? picture : picture.substr(begin));
+    text +=
+        fmt::format("<figure id=\"{}\">\n{}\n</figure>\n", xml_text(name), begin == std::string::npos ? picture : picture.substr(begin));
   }
   text += fmt::format(
               "<h2>Evidence ladder</h2><p>Each candidate alone: its gain in evidence over the model without any, the mean taken over "
@@ -276,7 +270,7 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
   if (!diagnosis.experiments.empty()) {
     text += "<h2>Next experiment</h2><ul>";
     for (const Experiment& each : diagnosis.experiments) {
-      text += fmt::format("<li>To tell {}: {}{}</li>", escaped(each.rivals), escaped(each.what),
+      text += fmt::format("<li>To tell {}: {}{}</li>", xml_text(each.rivals), xml_text(each.what),
                           each.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats)", each.expected_nats) : "");
     }
     text += "</ul>\n";
@@ -290,7 +284,7 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
   std::ranges::move(by_reason(diagnosis.selection.not_judged), std::back_inserter(remarks));
   text += "<h2>Effects not tested, and assumptions</h2><ul>";
   for (const std::string& remark : remarks) {
-    text += "<li>" + escaped(remark) + "</li>";
+    text += "<li>" + xml_text(remark) + "</li>";
   }
   return text + "</ul></body></html>\n";
 }

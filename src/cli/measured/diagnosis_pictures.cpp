@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "cli/measured/diagnosis_answer.h"
-#include "identify/interval.h"
+#include "estimation/interval.h"
 
 namespace heatsoak {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "identify/friction/friction_fit.h"
-#include "identify/friction/steady_parts.h"
+#include "friction/friction_fit.h"
+#include "friction/steady_parts.h"
 #include "report/chart.h"
 
 namespace heatsoak {

@@ -1,9 +1,9 @@
 // Chart of `log inspect`: every channel over time, with rejected samples marked.
 #pragma once
 
-#include "identify/measurement/condensed_recording.h"
-#include "identify/measurement/quality.h"
-#include "identify/measurement/recording_report.h"
+#include "recording/condensed_recording.h"
+#include "recording/quality.h"
+#include "recording/recording_report.h"
 #include "report/chart.h"
 
 namespace heatsoak {

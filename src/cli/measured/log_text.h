@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "identify/measurement/quality.h"
-#include "identify/measurement/recording.h"
-#include "identify/measurement/recording_report.h"
+#include "recording/quality.h"
+#include "recording/recording.h"
+#include "recording/recording_report.h"
 
 namespace heatsoak {
 

@@ -11,9 +11,9 @@
 #include "base/diagnostic.h"
 #include "cli/measured/log_text.h"
 #include "cli/quantity_option.h"
-#include "identify/measurement/mapping.h"
-#include "identify/measurement/quality.h"
-#include "identify/measurement/read_recording.h"
+#include "recording/mapping.h"
+#include "recording/quality.h"
+#include "recording/read_recording.h"
 
 namespace heatsoak {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "identify/measured_run.h"
-#include "identify/measurement/recording.h"
+#include "estimation/measured_run.h"
+#include "recording/recording.h"
 #include "input/data_folders.h"
 
 namespace heatsoak {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "identify/forecast/prediction.h"
+#include "calibration/forecast/prediction.h"
 #include "present/document.h"
 #include "report/chart.h"
 

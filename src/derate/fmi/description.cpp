@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/version.h"
+#include "base/xml_text.h"
 #include "derate/export_text.h"
 
 namespace heatsoak {
@@ -23,29 +24,6 @@ constexpr std::array kUnits{FmuUnit{"_rad_per_s2", "rad/s2", R"(rad="1" s="-2")"
                             FmuUnit{"_C", "degC", R"(K="1" offset="273.15")"},
                             FmuUnit{"_h", "h", R"(s="1" factor="3600")"},
                             FmuUnit{"_s", "s", R"(s="1")"}};
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\n':
-        result += ' ';
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 std::string number(double value) { return fmt::format("{}", rounded_to_12_digits(value)); }
 
@@ -67,7 +45,7 @@ std::string items(const FmuModel& model) {
   std::string text;
   for (std::size_t i = 0; i < model.items.size(); ++i) {
     text += fmt::format("        <Item name=\"{}\" value=\"{}\" description=\"{}\"/>\n", model.items[i].name, i,
-                        escaped(model.items[i].description));
+                        xml_attribute(model.items[i].description));
   }
   return text;
 }
@@ -101,7 +79,7 @@ bool has_start(const FmuVariable& variable) {
 std::string attributes(const FmuVariable& variable, std::size_t reference) {
   const Words of = words(variable);
   return fmt::format("name=\"{}\" valueReference=\"{}\" description=\"{}\" causality=\"{}\" variability=\"{}\"{}", variable.name, reference,
-                     escaped(variable.description), of.causality, of.variability,
+                     xml_attribute(variable.description), of.causality, of.variability,
                      of.initial.empty() ? "" : fmt::format(" initial=\"{}\"", of.initial));
 }
 
@@ -148,7 +126,7 @@ std::string description_fmi2(const FmuModel& model, std::span<const std::string>
       "variableNamingConvention=\"flat\">\n"
       "  <CoSimulation modelIdentifier=\"{0}\" canHandleVariableCommunicationStepSize=\"true\" "
       "canNotUseMemoryManagementFunctions=\"true\" canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\">\n    <SourceFiles>\n",
-      model.identifier, escaped(model.token), escaped(model.description), escaped(tool()));
+      model.identifier, xml_attribute(model.token), xml_attribute(model.description), xml_attribute(tool()));
   for (const std::string& name : compiled) {
     text += fmt::format("      <File name=\"{}\"/>\n", name);
   }
@@ -181,7 +159,7 @@ std::string description_fmi3(const FmuModel& model) {
       "variableNamingConvention=\"flat\">\n"
       "  <CoSimulation modelIdentifier=\"{0}\" canHandleVariableCommunicationStepSize=\"true\"{4} canGetAndSetFMUState=\"true\" "
       "canSerializeFMUState=\"true\"/>\n",
-      model.identifier, escaped(model.token), escaped(model.description), escaped(tool()),
+      model.identifier, xml_attribute(model.token), xml_attribute(model.description), xml_attribute(tool()),
       model.fixed_step_s ? fmt::format(" fixedInternalStepSize=\"{}\"", number(*model.fixed_step_s)) : "");
   text += units(model);
   if (!model.items.empty()) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 
+#include "base/xml_text.h"
 #include "derate/export_text.h"
 #include "derate/fmi/description.h"
 #include "derate/fmi/fmu.h"
@@ -25,21 +26,13 @@ bool belongs(std::string_view name, const FmuModel& model, FmiVersion version) {
   return name != (is_motor(model) ? "guard.c" : "motor.c");
 }
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  }
-  return result;
-}
-
 std::string documentation(const FmuModel& model) {
   std::string text = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{0}</title></head>\n<body>\n<h1>{0}</h1>\n<p>{1}</p>\n"
       "<pre>\n{2}</pre>\n<table>\n<tr><th>variable</th><th>unit</th><th>meaning</th></tr>\n",
-      escaped(model.identifier), escaped(model.description), escaped(model.provenance));
+      xml_text(model.identifier), xml_text(model.description), xml_text(model.provenance));
   for (const FmuVariable& each : model.variables) {
-    text += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", each.name, each.unit, escaped(each.description));
+    text += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", each.name, each.unit, xml_text(each.description));
   }
   return text + "</table>\n<p>Inputs are held over a communication step. Temperatures are in degrees Celsius.</p>\n</body>\n</html>\n";
 }

@@ -66,6 +66,7 @@ typedef struct heatsoak_core_input {
   float ambient_C;                                        /* air at the motors */
   float stator_C[HEATSOAK_CORE_MOST_WHEELS];
   heatsoak_core_vector pose; /* field frame; for pose targets */
+  float pose_age_s;          /* since the camera or another sensor saw the robot at `pose` */
   float elapsed_s;           /* since the last call, by the firmware's timer; no sample is a fault */
   float command_age_s;       /* since `command` was received */
   heatsoak_core_command command;

@@ -1,4 +1,4 @@
-#include "thermal/copper.h"
+#include "base/copper.h"
 #include "thermal/effect.h"
 
 namespace heatsoak::effects {

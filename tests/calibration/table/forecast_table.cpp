@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "../../support/measured_data.h"
-#include "identify/fit.h"
-#include "identify/forecast/forecast.h"
-#include "identify/forecast/prediction.h"
-#include "identify/measurement/mapping.h"
-#include "identify/measurement/read_recording.h"
+#include "estimation/fit.h"
+#include "calibration/forecast/forecast.h"
+#include "calibration/forecast/prediction.h"
+#include "recording/mapping.h"
+#include "recording/read_recording.h"
 #include "support/source_folder.h"
 
 namespace heatsoak {

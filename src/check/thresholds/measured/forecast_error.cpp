@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "check/computations.h"
-#include "identify/forecast/prediction.h"
-#include "identify/measurement/read_recording.h"
+#include "calibration/forecast/prediction.h"
+#include "recording/read_recording.h"
 
 namespace heatsoak::thresholds {
 namespace {

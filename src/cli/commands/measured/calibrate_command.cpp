@@ -15,8 +15,8 @@
 #include "cli/measured/prediction_answer.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
-#include "identify/admission.h"
-#include "identify/calibration/calibrate.h"
+#include "calibration/admission.h"
+#include "calibration/calibrate.h"
 #include "motor/motor.h"
 #include "motor/write_motor.h"
 

@@ -14,9 +14,9 @@
 #include "cli/measured/effect_topics.h"
 #include "cli/measured/logs_option.h"
 #include "cli/named_files.h"
-#include "identify/admission.h"
-#include "identify/log_columns.h"
-#include "identify/open_loop.h"
+#include "calibration/admission.h"
+#include "estimation/log_columns.h"
+#include "estimation/open_loop.h"
 #include "motor/write_motor.h"
 
 namespace heatsoak::commands {

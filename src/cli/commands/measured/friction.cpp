@@ -13,13 +13,13 @@
 #include "cli/measured/friction_chart.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
-#include "identify/friction/expected_voltage.h"
-#include "identify/friction/friction_suspicions.h"
-#include "identify/friction/read_friction_log.h"
-#include "identify/friction/robot_file.h"
-#include "identify/friction/roll_out.h"
-#include "identify/measurement/quality.h"
-#include "identify/measurement/read_recording.h"
+#include "friction/expected_voltage.h"
+#include "friction/friction_suspicions.h"
+#include "friction/read_friction_log.h"
+#include "friction/robot_file.h"
+#include "friction/roll_out.h"
+#include "recording/quality.h"
+#include "recording/read_recording.h"
 
 namespace heatsoak::commands {
 namespace {

@@ -8,10 +8,10 @@
 #include "cli/measured/log_chart.h"
 #include "cli/measured/log_text.h"
 #include "cli/quantity_option.h"
-#include "identify/measurement/quality.h"
-#include "identify/measurement/read_recording.h"
-#include "identify/measurement/recording_stream.h"
-#include "identify/measurement/write_recording.h"
+#include "recording/quality.h"
+#include "recording/read_recording.h"
+#include "recording/recording_stream.h"
+#include "recording/write_recording.h"
 
 namespace heatsoak::commands {
 namespace {

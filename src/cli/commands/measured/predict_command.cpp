@@ -10,8 +10,8 @@
 #include "cli/measured/prediction_answer.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
-#include "identify/admission.h"
-#include "identify/training_range.h"
+#include "calibration/admission.h"
+#include "calibration/training_range.h"
 
 namespace heatsoak::commands {
 namespace {

@@ -1,0 +1,276 @@
+#include "calibration/admission.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/diagnostic.h"
+#include "base/quantity.h"
+#include "recording/clock_offset.h"
+#include "recording/fingerprint.h"
+#include "recording/quality.h"
+#include "recording/spread.h"
+#include "base/copper.h"
+
+namespace heatsoak {
+namespace {
+
+/// Ratio to the value that the nominal voltage can produce. A larger current or speed is probably in another unit.
+constexpr double kMost_ratio = 3.0;
+
+/// Throws Failure (bad_input) if two logs share rows. A run that counts twice makes the confidence intervals too narrow; a fitted run
+/// cannot serve as hold-out run.
+void refuse_repeated(std::span<const Recording> fitted, std::span<const Recording> held_out) {
+  std::vector<std::pair<std::string, const Recording*>> seen;
+  std::vector<Diagnostic> repeated;
+  for (const auto& recordings : {fitted, held_out}) {
+    for (const Recording& recording : recordings) {
+      std::string fingerprint = fingerprint_of(recording);
+      const auto found = std::ranges::find_if(seen, [&](const auto& other) {
+        return share_rows(other.first, fingerprint) || is_cut_from(recording, *other.second) || is_cut_from(*other.second, recording);
+      });
+      if (found != seen.end()) {
+        repeated.push_back({{recording.file.string()}, {}, fmt::format("holds the same rows as {}", found->second->file.string())});
+      }
+      seen.emplace_back(std::move(fingerprint), &recording);
+    }
+  }
+  if (!repeated.empty()) {
+    throw Failure(ExitCode::bad_input, "rows of a log are given twice", std::move(repeated));
+  }
+}
+
+struct Reached {
+  double usual = 0.0;    ///< top_of_sizes()
+  double largest = 0.0;  ///< largest magnitude of all rows
+  int line = 0;          ///< line of that row in the file
+};
+
+Reached reached(const Recording& recording, std::string_view key) {
+  Reached found;
+  const Channel* const channel = recording.find(key);
+  if (channel == nullptr) {
+    return found;
+  }
+  found.usual = top_of_sizes(channel->values);
+  for (std::size_t row = 0; row < recording.rows(); ++row) {
+    if (std::abs(channel->values[row]) > found.largest) {
+      found.largest = std::abs(channel->values[row]);
+      found.line = recording.line[row];
+    }
+  }
+  return found;
+}
+
+/// Reports single outlying rows. The unit is right if the usual magnitude is possible and only the largest one is not.
+void single_rows_beyond(const char* key, const char* unit, const char* other_unit, const Reached& reached, double most,
+                        std::vector<std::string>& wrong) {
+  if (reached.largest > most && !(reached.usual > most)) {
+    wrong.push_back(fmt::format(
+        "{} reaches {} {} in line {}; at three times the nominal voltage this motor reaches {} {}, which less than 2 % of the rows are "
+        "beyond: leave wild samples out by valid = \"…\" in a mapping, or is it in {}?",
+        key, significant(reached.largest, 3), unit, reached.line, significant(most, 3), unit, other_unit));
+  }
+}
+
+/// Reports currents and speeds that this motor cannot reach at three times its nominal voltage.
+void beyond_the_motor(const Motor& motor, const Recording& recording, std::vector<std::string>& wrong) {
+  const MotorValues& nominal = motor.nominal;
+  const double most_A = kMost_ratio * nominal.nominal_voltage_V / nominal.terminal_resistance_ohm;
+  const Reached current_A = reached(recording, "current_A");
+  single_rows_beyond("current_A", "A", "milliamperes", current_A, most_A, wrong);
+  if (const double reached_A = current_A.usual; reached_A > most_A) {
+    wrong.push_back(
+        fmt::format("current_A reaches {} A; through {} ohm at three times the nominal voltage flow {} A: is it in "
+                    "milliamperes, or is it another motor?",
+                    significant(reached_A, 3), significant(nominal.terminal_resistance_ohm, 3), significant(most_A, 3)));
+  }
+  const double most_rad_per_s = kMost_ratio * nominal.nominal_voltage_V / nominal.torque_constant_Nm_per_A;
+  const Reached speed_rad_per_s = reached(recording, "speed_rad_per_s");
+  single_rows_beyond("speed_rad_per_s", "rad/s", "rpm", speed_rad_per_s, most_rad_per_s, wrong);
+  if (const double reached_rad_per_s = speed_rad_per_s.usual; reached_rad_per_s > most_rad_per_s) {
+    wrong.push_back(fmt::format(
+        "speed_rad_per_s reaches {} rad/s; at three times the nominal voltage this motor turns at {} rad/s: is it in rpm "
+        "({} rad/s), or is it another motor?",
+        significant(reached_rad_per_s, 3), significant(most_rad_per_s, 3), significant(convert(reached_rad_per_s, "rpm", "rad/s"), 3)));
+  }
+}
+
+/// Upper estimate of the heat of a row's interval in W: copper loss plus twice the no-load loss of the data sheet, or the input power if
+/// that is larger. NaN if neither is known.
+double generous_heat_W(const MotorValues& nominal, const Recording& recording, std::size_t row) {
+  constexpr double kSpeedLoss_ratio = 2.0;
+  const auto value = [&](std::string_view key) {
+    const Channel* const channel = recording.find(key);
+    return channel != nullptr ? channel->values[row] : std::numeric_limits<double>::quiet_NaN();
+  };
+  const auto known_or = [](double known, double otherwise) { return std::isnan(known) ? otherwise : known; };
+  const double power_W = std::abs(value("power_in_W"));
+  const double hot_ratio = resistance_ratio(nominal.temperature_coefficient_per_K, known_or(value("winding_C"), kSheetTemperature_C));
+  const double speed_rad_per_s = known_or(std::abs(value("speed_rad_per_s")), nominal.no_load_speed_rad_per_s);
+  const double copper_W = std::pow(value("current_A"), 2) * nominal.terminal_resistance_ohm * std::max(1.0, hot_ratio);
+  const double turning_W = nominal.torque_constant_Nm_per_A * nominal.no_load_current_A * speed_rad_per_s;
+  const double of_current_W = copper_W + kSpeedLoss_ratio * known_or(turning_W, 0.0);
+  return std::isnan(of_current_W) ? power_W : std::max(of_current_W, known_or(power_W, 0.0));
+}
+
+/// Returns the heat that the observed temperature rises need, divided by the heat supplied: the median over rises of 10 K or more with at
+/// least a quarter of the largest mean heat. 0 if there is no such rise.
+double heat_ratio_of_rises(const Recording& recording, const Channel& channel, double capacity_J_per_K, std::span<const double> heat_W) {
+  constexpr double kRise_K = 10.0;
+  constexpr double kMuchHeat_share = 0.25;
+  struct Rise {
+    double heat_ratio = 0.0;
+    double mean_W = 0.0;
+  };
+  std::vector<Rise> rises;
+  for (const auto& [begin, end] : recording.runs()) {
+    double from_C = std::numeric_limits<double>::infinity();
+    double from_s = 0.0;
+    double heat_J = 0.0;
+    for (std::size_t row = begin; row < end; ++row) {
+      const double now_C = channel.values[row];
+      if (row > begin) {
+        heat_J += heat_W[row - 1] * (recording.time_s[row] - recording.time_s[row - 1]);
+      }
+      const bool is_risen = now_C - from_C >= kRise_K;
+      if (is_risen && heat_J > 0.0) {
+        rises.push_back({(now_C - from_C) * capacity_J_per_K / heat_J, heat_J / (recording.time_s[row] - from_s)});
+      }
+      if (is_risen || now_C < from_C || (std::isnan(heat_J) && !std::isnan(now_C))) {
+        from_C = now_C;
+        from_s = recording.time_s[row];
+        heat_J = 0.0;
+      }
+    }
+  }
+  double most_W = 0.0;
+  std::ranges::for_each(rises, [&most_W](const Rise& each) { most_W = std::max(most_W, each.mean_W); });
+  std::vector<double> ratios;
+  for (const Rise& each : rises) {
+    if (each.mean_W >= kMuchHeat_share * most_W) {
+      ratios.push_back(each.heat_ratio);
+    }
+  }
+  return ratios.empty() ? 0.0 : middle_of(ratios);
+}
+
+/// Reports temperatures that rise faster than possible even if all losses heated this one body and none of the heat flowed away.
+void faster_than_the_motor(const Motor& motor, const Recording& recording, std::vector<std::string>& wrong) {
+  constexpr double kTooFast_ratio =
+      8.0;  // more than errors of the data sheet's heat capacities and another convention for the current explain
+  constexpr double kHours_ratio = 300.0;
+  const MotorValues& nominal = motor.nominal;
+  std::vector<double> heat_W;
+  for (const auto& [key, capacity_J_per_K] :
+       {std::pair("winding_C", nominal.thermal_time_constant_winding_s / nominal.thermal_resistance_winding_stator_K_per_W),
+        std::pair("stator_C", nominal.thermal_time_constant_stator_s / nominal.thermal_resistance_stator_ambient_K_per_W)}) {
+    const Channel* const channel = recording.find(key);
+    if (channel == nullptr || !(capacity_J_per_K > 0.0)) {
+      continue;
+    }
+    for (std::size_t row = heat_W.size(); row < recording.rows(); ++row) {
+      heat_W.push_back(generous_heat_W(nominal, recording, row));
+    }
+    const double ratio = heat_ratio_of_rises(recording, *channel, capacity_J_per_K, heat_W);
+    if (ratio > kTooFast_ratio) {
+      wrong.push_back(fmt::format(
+          "{} rises some {} times as fast as the losses of this motor can heat it: is the time in {}, is a heat input in another "
+          "unit, or is it another motor?",
+          key, significant(ratio, 1), ratio > kHours_ratio ? "hours" : "minutes"));
+      return;
+    }
+  }
+}
+
+/// Adds a note for each temperature that lags, unless the motor file states the lag. It is not an error: real sensors lag, and a fit can
+/// still use them.
+void late_answers(const Motor& motor, const Recording& recording, const DataQuality& quality, Admission& admission) {
+  for (const ClockOffset& offset : quality.clock_offsets) {
+    const std::string late = late_answer(offset, quality.sampling.usual_period_s);
+    const bool is_stated = std::ranges::any_of(faults_of(motor, offset.temperature), [](const SensorFault& fault) {
+      return fault.type->law.after != nullptr && fault.size > 0.0;
+    });
+    if (late.empty() || is_stated) {
+      continue;
+    }
+    admission.notes.push_back(fmt::format("{}: {}", recording.name, late));
+    const std::string next = fmt::format(
+        "{} answers late: let both loggers see one event, such as a step of the current; a clock's offset goes into a mapping "
+        "(clock_offset), for a sensor's lag take one in better contact",
+        offset.temperature);
+    if (std::ranges::find(admission.next_steps, next) == admission.next_steps.end()) {
+      admission.next_steps.push_back(next);
+    }
+  }
+}
+
+}  // namespace
+
+Admission admit(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out, bool takes_logs_as_they_are,
+                double ambient_C) {
+  refuse_repeated(fitted, held_out);
+  Admission admission;
+  std::vector<std::string>& notes = admission.notes;
+  std::vector<Diagnostic> wrong;
+  const auto look = [&](const Recording& recording, const DataQuality& quality) {
+    if (!recording.motor.empty() && recording.motor != motor.id && !(motor.fit && recording.motor == motor.fit->motor)) {
+      notes.push_back(fmt::format("{} says that it is of the motor {}, not of {}", recording.name, recording.motor, motor.id));
+    }
+    std::vector<std::string> blocking = recording.blocking_of_whole.value_or(quality.blocking);
+    for (const std::string& each : quality.suspicions) {
+      const bool is_of_part =
+          std::ranges::find(quality.blocking, each) != quality.blocking.end() && std::ranges::find(blocking, each) == blocking.end();
+      if (is_of_part) {
+        continue;
+      }
+      notes.push_back(fmt::format("{}: {}", recording.name, each));
+    }
+    late_answers(motor, recording, quality, admission);
+    if (blocking.empty()) {
+      beyond_the_motor(motor, recording, blocking);
+      faster_than_the_motor(motor, recording, blocking);
+    }
+    for (const std::string& each : blocking) {
+      wrong.push_back({{recording.file.string()}, {}, each});
+    }
+  };
+  for (const Recording& recording : fitted) {
+    const DataQuality quality = assess(recording, {}, ambient_C);
+    require_thermal(recording, quality);
+    look(recording, quality);
+  }
+  for (const Recording& recording : held_out) {
+    look(recording, assess(recording, {}, ambient_C));
+  }
+  if (!wrong.empty() && !takes_logs_as_they_are) {
+    throw Failure(ExitCode::bad_input,
+                  "units or sensors of the logs look wrong; correct them in a mapping (--map), or if they are right go on with --as-is",
+                  std::move(wrong));
+  }
+  return admission;
+}
+
+bool was_fitted_to(const MotorFit& fit, const Recording& recording) {
+  return std::ranges::any_of(fit.runs, [&recording](const std::string& run) { return is_of_run(recording, run); });
+}
+
+void refuse_runs_of_the_file(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out) {
+  std::vector<Diagnostic> known;
+  for (const auto& recordings : {fitted, held_out}) {
+    for (const Recording& recording : recordings) {
+      if (motor.fit && was_fitted_to(*motor.fit, recording)) {
+        known.push_back({{recording.file.string()}, {}, fmt::format("{} was fitted to these rows (fit.runs)", motor.id)});
+      }
+    }
+  }
+  if (!known.empty()) {
+    throw Failure(ExitCode::bad_input,
+                  "a run would count twice; start from the file as it was before that fit, or if it is another run go on with --as-is",
+                  std::move(known));
+  }
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,499 @@
+#include "calibration/calibrate.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/diagnostic.h"
+#include "base/quantity.h"
+#include "calibration/identifiability.h"
+#include "calibration/profile.h"
+#include "calibration/unlogged_speed.h"
+#include "calibration/written_forecast.h"
+#include "estimation/interval.h"
+#include "estimation/log_columns.h"
+#include "recording/fingerprint.h"
+#include "recording/quality.h"
+#include "calibration/training_range.h"
+#include "estimation/turning_rows.h"
+#include "base/copper.h"
+
+namespace heatsoak {
+namespace {
+
+/// Largest standard deviation of a logarithm for which the curvature at the optimum describes the likelihood well.
+constexpr double kCurvatureHolds_sd = 0.1;
+
+bool has_speed(const Recording& recording) {
+  const std::vector<Signal> signals = signals_of(recording);
+  return std::ranges::find(signals, Signal::speed) != signals.end();
+}
+
+/// Reads the runs of all recordings. If the heat follows from the current, a log with a speed column needs a speed in every row; a log
+/// without that column is accepted.
+std::vector<MeasuredRun> runs_of(std::span<const Recording> recordings, const MeasuredRunOptions& options,
+                                 std::vector<std::string>& notes) {
+  std::vector<MeasuredRun> all;
+  for (const Recording& recording : recordings) {
+    MeasuredRunOptions here = options;
+    const auto needs = [&](Signal signal) { return std::ranges::find(here.needed, signal) != here.needed.end(); };
+    if (needs(Signal::current) && has_speed(recording) && !needs(Signal::speed)) {
+      here.needed.push_back(Signal::speed);
+    } else if (!has_speed(recording)) {
+      std::erase(here.needed, Signal::speed);
+    }
+    MeasuredRuns found = measured_runs(recording, here);
+    std::ranges::move(found.runs, std::back_inserter(all));
+    std::ranges::move(found.notes, std::back_inserter(notes));
+  }
+  return all;
+}
+
+class Calibrating {
+ public:
+  Calibrating(std::span<const Recording> recordings, std::span<const Recording> holdout, const CalibrationOptions& options)
+      : recordings_(recordings), holdout_(holdout), options_(options) {}
+
+  Calibration run(const Motor& motor) {
+    setup_ = forecast_setup(motor, recordings_);
+    all_.effects = setup_.motor.effects;
+    all_.motor_model = motor_model(setup_.motor, setup_.heat, setup_.has_speed);
+    const double most_loss_W = all_.motor_model.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
+    std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.notes));
+    std::ranges::move(held_sensors(motor, recordings_), std::back_inserter(all_.notes));
+    MeasuredRunOptions how = how_to_read(motor, setup_.heat);
+    if (std::string lacking = column_lacking(how.column, recordings_); !lacking.empty()) {
+      all_.notes.push_back(std::move(lacking));
+    }
+    how.needed = all_.motor_model.needed;
+    how.ambient_C = options_.ambient_C;
+    all_.runs = runs_of(recordings_, how, all_.notes);
+    std::ranges::transform(recordings_, std::back_inserter(all_.fitted), name_and_fingerprint);
+    all_.training = motor.fit ? motor.fit->training : TrainingRange{};
+    widen(all_.training, recordings_);
+    if (most_loss_W > 0.0 && std::ranges::any_of(all_.runs, turns_unseen)) {
+      open_loss_at_speed(all_.motor_model, motor);
+      setup_.opens_loss_at_speed = true;
+      all_.notes.push_back(
+          fmt::format("where a log has a current but no speed, the loss at speed is taken as unknown, from none to the {} W at no-load "
+                      "speed; a motor that "
+                      "stood still is told by speed_rad_per_s = 0",
+                      significant(most_loss_W, 2)));
+    }
+    all_.fit = fit(all_.motor_model.model, all_.runs, options_.fit);
+    settle_turning_rows();
+    warn();
+    widen_by_rows();
+    figures();
+    all_.open = open_directions(all_.motor_model, all_.fit, all_.runs, all_.figures);
+    all_.next_experiment = next_experiment(all_.open);
+    forecast();
+    report_large_changes();
+    all_.fit_error = errors();
+    refuse_where_nothing_is_explained();
+    std::ranges::move(outside_declared_ranges(motor, all_.figures), std::back_inserter(all_.notes));
+    report_common_factor();
+    report_terminal_resistance(motor);
+    report_grown_errors("the runs that were fitted", all_.fit_error);
+    refuse_where_nothing_was_learned();
+    report_implausible_values();
+    score_holdout(motor);
+    return std::move(all_);
+  }
+
+ private:
+  /// Runs the forecast fit to whole runs, and writes its parameters if asked for.
+  void forecast() {
+    const ForecastModel base = setup_.model();
+    all_.forecast = forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads);
+    if (options_.is_for_forecasts) {
+      write_forecast(all_);
+      all_.effects = all_.forecast->setup.motor.effects;
+      widen_by_rows();
+      // The forecast fit assumes no unknown heat; parameters that are not identifiable beside such heat stay so.
+      const std::vector<CalibratedParameter> before = std::exchange(all_.figures, {});
+      figures();
+      keep_unidentifiable(before, all_.figures);
+    }
+    std::ranges::move(forecast_in_words(all_), std::back_inserter(all_.notes));
+  }
+
+  /// Errors of the original and of the written file over the fitted runs.
+  std::vector<ErrorBeforeAfter> errors() {
+    const ForecastModel base = setup_.model();
+    const ForecastModel model = all_.is_forecast_written ? all_.forecast->model() : base;
+    const Eigen::VectorXd& theta = all_.is_forecast_written ? all_.forecast->fit.theta : all_.fit.theta;
+    for (const MeasuredRun& run : all_.runs) {
+      all_.fitted_before.push_back(
+          predict(base, base.start(), Eigen::MatrixXd::Zero(base.count(), base.count()), all_.forecast->band, run));
+      all_.fitted_after.push_back(predict(model, theta, Eigen::MatrixXd::Zero(model.count(), model.count()), all_.forecast->band, run));
+    }
+    return errors_over_runs(all_.fitted_before, all_.fitted_after);
+  }
+
+  /// Predicts the hold-out runs. The calibration does not depend on the result.
+  void score_holdout(const Motor& motor) {
+    if (holdout_.empty()) {
+      return;
+    }
+    all_.holdout_before = predict(motor, holdout_, {options_.ambient_C, false}).runs;
+    Prediction after = predict(calibrated_motor(motor, all_), holdout_, {options_.ambient_C, rows_turn_});
+    std::ranges::move(after.notes, std::back_inserter(all_.notes));
+    all_.holdout_after = std::move(after.runs);
+    all_.holdout_error = worst_errors(all_.holdout_before, all_.holdout_after);
+    report_grown_errors("the runs held out", all_.holdout_error);
+  }
+
+  /// If the motor may have reversed within rows, refits with interpolated speeds and keeps that fit if its evidence is larger.
+  void settle_turning_rows() {
+    if (std::ranges::none_of(all_.runs, may_turn_within_rows)) {
+      return;
+    }
+    std::vector<MeasuredRun> turning;
+    std::ranges::transform(all_.runs, std::back_inserter(turning), turning_within_rows);
+    Model near = all_.motor_model.model;
+    near.values = near.values_at(all_.fit.theta);
+    FitOptions options = options_.fit;
+    options.starts = 0;
+    Fit other = fit(near, turning, options);
+    if (other.log_evidence <= all_.fit.log_evidence) {
+      return;
+    }
+    all_.fit = std::move(other);
+    all_.runs = std::move(turning);
+    rows_turn_ = true;
+    all_.notes.emplace_back(kTurningRowsReason);
+  }
+
+  /// Adds warnings about the fit to the notes.
+  void warn() {
+    const Fit& fit = all_.fit;
+    // Unknown heat that is certain to exist is reported elsewhere.
+    double most_W = 0.0;
+    const std::vector<double>& certain_W = all_.motor_model.model.least_flux_W;
+    for (std::size_t i = 0; i < fit.flux.rms_W.size(); ++i) {
+      most_W = certain_W.empty() || certain_W[i] == 0.0 ? std::max(most_W, fit.flux.rms_W[i]) : most_W;
+    }
+    constexpr double kAlmost = 0.95;
+    constexpr double kMuch_share = 0.1;
+    if (most_W > kAlmost * kMostFlux_share * fit.usual_heat_W) {
+      all_.notes.push_back(fmt::format(
+          "the model lacks something large: it would take more unknown heat than {} % of the {} W that pass through on average; "
+          "`heatsoak diagnose` looks for what it is",
+          significant(100.0 * kMostFlux_share, 2), significant(fit.usual_heat_W, 2)));
+    } else if (most_W > kMuch_share * fit.usual_heat_W) {
+      all_.notes.push_back(
+          fmt::format("the model lacks something: unknown heat is {} % of the {} W that pass through on average; `heatsoak diagnose` "
+                      "looks for what it is",
+                      significant(100.0 * most_W / fit.usual_heat_W, 2), significant(fit.usual_heat_W, 2)));
+    }
+    for (std::size_t kind = 0; kind < fit.drift_K.size(); ++kind) {
+      all_.notes.push_back(
+          fmt::format("the sensor at the {} seems to wander by {} K (standard deviation) over some {} s: errors of its own, or "
+                      "of a model with two temperatures",
+                      fit.sensor_nodes[kind], significant(fit.drift_K[kind], 2), significant(fit.drift_time_scale_s, 1)));
+    }
+    if (std::ranges::find(fit.sensor_nodes, "winding") == fit.sensor_nodes.end()) {
+      all_.notes.emplace_back(
+          "only the stator is sensed: heat that follows the current but reaches the stator directly (iron loss, driver, connections) would "
+          "pass for a faster winding, beyond what the intervals say");
+    }
+    if (fit.free_run_error_K > 0.0) {
+      all_.notes.emplace_back(
+          "the figures are those that follow the whole runs best: what follows the load within seconds asks for others, as in a motor of "
+          "more parts than a winding and a stator, or where an effect is missing in all of these runs");
+    }
+    if (!fit.has_converged) {
+      all_.notes.emplace_back("the fit still moved a little when it was stopped: figures are good to some tenths of their intervals");
+    }
+  }
+
+  /// Adds the uncertainty from load changes within a row (length h): they make τ_w appear smaller by a fraction of up to h²/(12·τ_w²).
+  void widen_by_rows() {
+    double time_s = 0.0;
+    double cubes_s3 = 0.0;
+    for (const MeasuredRun& run : all_.runs) {
+      for (std::size_t k = 0; k + 1 < run.time_s.size(); ++k) {
+        const double step_s = run.time_s[k + 1] - run.time_s[k];
+        time_s += step_s;
+        cubes_s3 += step_s * step_s * step_s;
+      }
+    }
+    const Eigen::VectorXd& capacity =
+        std::ranges::find(all_.motor_model.figures, "winding_heat_capacity", &CalibratedValue::name)->exponents;
+    const auto& constant = *std::ranges::find(all_.motor_model.figures, "thermal_time_constant_winding", &CalibratedValue::name);
+    const double winding_s = constant.before * std::exp(constant.exponents.dot(all_.fit.theta - all_.motor_model.model.theta()));
+    const double sd_share = cubes_s3 / time_s / (12.0 * winding_s * winding_s);
+    all_.fit.covariance += sd_share * sd_share * capacity * capacity.transpose();
+  }
+
+  /// Adds a note if all parameters moved by one common factor, which is the effect of wrong heat: it changes no temperature.
+  void report_common_factor() {
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (const auto& [name, sign] :
+         {std::pair("winding_heat_capacity", 1.0), std::pair("stator_heat_capacity", 1.0),
+          std::pair("thermal_resistance_winding_stator", -1.0), std::pair("thermal_resistance_stator_ambient", -1.0)}) {
+      const auto found = std::ranges::find(all_.figures, name, &CalibratedParameter::name);
+      const double moved = sign * std::log(found->value / found->before);
+      least = std::min(least, moved);
+      most = std::max(most, moved);
+    }
+    // Clearly more than the prior makes plausible.
+    const auto across = std::ranges::find(all_.motor_model.figures, "thermal_resistance_winding_stator", &CalibratedValue::name);
+    const double plain = std::max(0.22, 1.5 * across->prior_sd);
+    if (least > plain || most < -plain) {
+      const bool is_much = least > 0.0;
+      all_.notes.push_back(
+          fmt::format("all heat capacities are {1} and all resistances {2} than the file's by a factor of {0} or more: the heat of the "
+                      "logs seems too {3} for "
+                      "this motor; is a current a peak value or an amplitude ({4}), the resistance another one, or is it another motor?",
+                      significant(std::exp(is_much ? least : -most), 2), is_much ? "larger" : "smaller", is_much ? "smaller" : "larger",
+                      is_much ? "large" : "small", is_much ? "its heat counts double" : "or that of one phase of several"));
+    }
+  }
+
+  /// Adds a note if V = R·I + K·ω gives another terminal resistance than the file. Needs logs with all three signals that follow this law.
+  void report_terminal_resistance(const Motor& motor) {
+    Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d with_voltage = Eigen::Vector2d::Zero();
+    double squares_V2 = 0.0;
+    for (const Recording& recording : recordings_) {
+      const Channel* const voltage = recording.find("motor_V");
+      const Channel* const current = recording.find("current_A");
+      const Channel* const speed = recording.find("speed_rad_per_s");
+      const Channel* const winding = recording.find("winding_C");
+      for (std::size_t row = 0; voltage && current && speed && row < recording.rows(); ++row) {
+        const double winding_C = winding && !std::isnan(winding->values[row]) ? winding->values[row] : kSheetTemperature_C;
+        const double hot_ratio = resistance_ratio(motor.nominal.temperature_coefficient_per_K, winding_C);
+        const Eigen::Vector2d x(hot_ratio * current->values[row], speed->values[row]);
+        const double voltage_V = voltage->values[row];
+        if (std::isnan(x.sum() + voltage_V)) {
+          continue;
+        }
+        products += x * x.transpose();
+        with_voltage += voltage_V * x;
+        squares_V2 += voltage_V * voltage_V;
+      }
+    }
+    const Eigen::Vector2d found = products.completeOrthogonalDecomposition().solve(with_voltage);
+    const double stated_ohm = motor.nominal.terminal_resistance_ohm;
+    // Means over rows with load steps do not follow the law, so require residuals that are small against R·I.
+    constexpr double kFollows_share = 0.02;
+    if (!(squares_V2 - found.dot(with_voltage) < kFollows_share * stated_ohm * stated_ohm * products(0, 0)) || !(found[0] > 0.0)) {
+      return;
+    }
+    const double ratio = found[0] / stated_ohm;
+    constexpr double kFar_ratio = 1.15;
+    if (std::max(ratio, 1.0 / ratio) > kFar_ratio) {
+      all_.notes.push_back(fmt::format(
+          "motor_V, current_A and speed of these logs go with a terminal resistance of {} ohm at 25 °C, the file says {} ohm: every "
+          "figure scales with it; is it this motor? If so, state the measured resistance in its file",
+          significant(found[0], 3), significant(stated_ohm, 3)));
+    }
+  }
+
+  /// Lists signals that are predicted worse than before: with an incomplete model, parameters of the fast response may predict whole runs
+  /// worse.
+  void report_grown_errors(const char* runs, const std::vector<ErrorBeforeAfter>& errors) {
+    for (const ErrorBeforeAfter& each : errors) {
+      constexpr double kWorse_ratio = 1.1;
+      constexpr double kLeast_K = 0.1;
+      if (each.after.rmse_K > kWorse_ratio * each.before.rmse_K + kLeast_K) {
+        all_.worse.push_back(fmt::format(
+            "do not forecast such runs with this model: {} of {} is predicted worse than with the values of the file, {} K rms instead of "
+            "{} "
+            "K; {}{} (`heatsoak diagnose` looks for what is missing)",
+            each.signal, runs, significant(each.after.rmse_K, 3), significant(each.before.rmse_K, 3),
+            &errors == &all_.holdout_error ? "they show something that the fitted ones do not, or " : "", what_does_not_describe(all_)));
+      }
+    }
+  }
+
+  void report_large_changes() {
+    constexpr double kUnlikely_sd = 3.0;
+    for (const CalibratedValue& each : all_.motor_model.figures) {
+      const double moved = each.exponents.dot(all_.fit.theta - all_.motor_model.model.theta());
+      const double sd = std::sqrt(each.exponents.dot(all_.fit.covariance * each.exponents));
+      if (each.is_of_file && std::abs(moved) > kUnlikely_sd * std::hypot(each.prior_sd, sd)) {
+        all_.notes.push_back(
+            fmt::format("{} becomes {} times what the file says, {} times as far off as the file lets expect: is a unit of the "
+                        "logs wrong, or is it another motor?",
+                        each.name, significant(std::exp(moved), 2), significant(std::abs(moved) / each.prior_sd, 2)));
+      }
+    }
+  }
+
+  void figures() {
+    const MotorModel& motor = all_.motor_model;
+    const Model& model = motor.model;
+    const Fit& fit = all_.fit;
+    std::vector<std::optional<std::pair<double, double>>> profiles(static_cast<std::size_t>(model.free_count()));
+    Eigen::Index of_file = 0;
+    for (const CalibratedValue& each : motor.figures) {
+      of_file += each.is_of_file ? 1 : 0;
+      const double moved = each.exponents.dot(fit.theta - model.theta());
+      const double sd = std::sqrt(each.exponents.dot(fit.covariance * each.exponents));
+      CalibratedParameter figure{.name = each.name, .unit = each.unit, .is_of_file = each.is_of_file, .before = each.before};
+      figure.value = each.before * std::exp(moved);
+      double below = kInterval_sd * sd;
+      double above = kInterval_sd * sd;
+      Eigen::Index only = 0;
+      if (fit.free_run_error_K == 0.0 && sd > kCurvatureHolds_sd && each.exponents.cwiseAbs().maxCoeff(&only) == 1.0 &&
+          each.exponents.cwiseAbs().sum() == 1.0) {
+        const auto [low, high] = profile_interval(model, all_.runs, fit, static_cast<int>(only), options_.fit.threads);
+        // The profile keeps the flux fixed; widen it for the uncertainty of the flux by the same factor as the curvature.
+        const double widened = sd / std::max(1e-9, std::sqrt(fit.hypotheses.front().covariance(only, only)));
+        below = (fit.theta[only] - low) * std::max(1.0, widened);
+        above = (high - fit.theta[only]) * std::max(1.0, widened);
+        figure.by_profile = true;
+      }
+      figure.low = figure.value * std::exp(-below);
+      figure.high = figure.value * std::exp(above);
+      // Without heat in the runs, values in watts rest on the file, however well the data determine the time constants.
+      const bool has_watts = each.origin == Origin::measured || !rests_on_watts(motor, each) || is_heated(motor, all_.runs);
+      figure.is_identifiable = has_watts && is_identifiable(sd, each);
+      all_.figures.push_back(std::move(figure));
+    }
+    Eigen::MatrixXd exponents(of_file, model.free_count());
+    for (Eigen::Index i = 0; i < of_file; ++i) {
+      exponents.row(i) = motor.figures[static_cast<std::size_t>(i)].exponents.transpose();
+    }
+    const Eigen::MatrixXd covariance = exponents * fit.covariance * exponents.transpose();
+    const Eigen::VectorXd inverse_sd = covariance.diagonal().cwiseSqrt().cwiseInverse();
+    all_.correlation = inverse_sd.asDiagonal() * covariance * inverse_sd.asDiagonal();
+  }
+
+  void refuse_where_nothing_was_learned() const {
+    const bool is_file_kept = all_.is_forecast_written && all_.forecast->source == ForecastSource::file;
+    if (is_file_kept || std::ranges::any_of(all_.figures, &CalibratedParameter::is_identifiable)) {
+      return;
+    }
+    std::string why = "nothing can be learned about this motor from these logs";
+    for (const OpenDirection& each : all_.open) {
+      why += fmt::format("\n  open: {}: {}\n  cheapest experiment: {}", each.what, each.why, each.experiment);
+    }
+    // A current in the wrong unit, such as kiloamperes, looks like no current.
+    if (std::ranges::any_of(recordings_, [](const Recording& each) { return heat_input_of(each) != nullptr; })) {
+      why += "\n  or is a heat input in another unit (kiloamperes, kilowatts)? `heatsoak log inspect` shows each channel";
+    }
+    throw Failure(ExitCode::cannot_answer, why);
+  }
+
+  /// Throws Failure (cannot_answer) if the model does not follow the runs: its parameters would mean nothing.
+  void refuse_where_nothing_is_explained() const {
+    constexpr double kFar_K = 20.0;
+    constexpr double kFar_share = 0.4;
+    std::string why;
+    for (const ErrorBeforeAfter& each : all_.fit_error) {
+      const double moves_K = standard_deviation_K(all_.runs, each.signal);
+      if (each.after.rmse_K > moves_K || each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
+        why += fmt::format("\n  {} is {} K rms off, {} it moves (standard deviation {} K)", each.signal, significant(each.after.rmse_K, 2),
+                           each.after.rmse_K > moves_K ? "more than" : "much of what", significant(moves_K, 2));
+      }
+    }
+    if (!why.empty()) {
+      throw Failure(
+          ExitCode::cannot_answer,
+          fmt::format(
+              "no figures of this motor make the model follow these logs{}{}\n  is it another motor, a wrong unit (degrees Fahrenheit, "
+              "minutes, milliamperes), a sensor elsewhere, or heat that no column tells of? `heatsoak log inspect` shows each channel",
+              why,
+              all_.motor_model.nuisances.empty() ? ""
+                                                 : "\n  no log has the speed (speed_rad_per_s), so that the loss at speed is not known"));
+    }
+  }
+
+  void report_implausible_values() {
+    constexpr double kFar_K = 15.0;
+    constexpr double kFar_share = 0.2;
+    for (const ErrorBeforeAfter& each : all_.fit_error) {
+      const double moves_K = standard_deviation_K(all_.runs, each.signal);
+      if (each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
+        all_.notes.push_back(fmt::format(
+            "the fitted model is {} K rms off {}, which moves by {} K (standard deviation): do not rely on its parameters; is it another "
+            "motor, or a unit wrong (degrees Fahrenheit, minutes, milliamperes)?",
+            significant(each.after.rmse_K, 2), each.signal, significant(moves_K, 2)));
+      }
+    }
+  }
+
+  std::span<const Recording> recordings_;
+  std::span<const Recording> holdout_;
+  const CalibrationOptions& options_;
+  ForecastSetup setup_;
+  bool rows_turn_ = false;
+  Calibration all_;
+};
+
+std::vector<std::string> names_of(std::span<const MeasuredRun> runs) {
+  std::vector<std::string> names;
+  for (const MeasuredRun& run : runs) {
+    const std::string name = run.name.substr(0, run.name.find('#'));
+    if (std::ranges::find(names, name) == names.end()) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+Calibration calibrate(const Motor& motor, std::span<const Recording> recordings, std::span<const Recording> holdout,
+                      const CalibrationOptions& options) {
+  return Calibrating(recordings, holdout, options).run(motor);
+}
+
+Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
+  constexpr const char* kSource = "calibration";
+  Motor result = motor;
+  add_extensions(calibration, kSource, result);
+  MotorFit& fit = result.fit.emplace();
+  fit.motor = motor.id;
+  // The runs of earlier fits still count.
+  fit.runs = motor.fit ? motor.fit->runs : std::vector<std::string>{};
+  std::ranges::copy(calibration.fitted, std::back_inserter(fit.runs));
+  fit.training = calibration.training;
+  result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(names_of(calibration.runs), ", "));
+  for (const CalibratedParameter& each : calibration.figures) {
+    if (!each.is_of_file) {
+      continue;
+    }
+    fit.figures.push_back(each.name);
+    ParameterValue* const figure = find_parameter(result, each.name);
+    figure->value = each.value;
+    figure->printed.clear();
+    if (each.is_identifiable) {
+      figure->origin = Origin::measured;
+      figure->source = kSource;
+      figure->derivation = "fit to measured temperatures";
+    } else {
+      // The value changed together with the others, but its origin is still the earlier one.
+      figure->source += figure->source.empty() ? kSource : fmt::format(", {}", kSource);
+      figure->derivation +=
+          fmt::format("{}fit to measured temperatures, which do not tell it alone", figure->derivation.empty() ? "" : "; ");
+    }
+    const Range declared = declared_range(result, each.name);
+    figure->spread = Spread{Spread::Kind::range, std::max(each.low, declared.low), std::min(each.high, declared.high), true};
+  }
+  fit.correlation = calibration.correlation;
+  fit.latent_flux_W = calibration.fit.flux.rms_W;
+  fit.free_run_error_K = calibration.fit.free_run_error_K;
+  fit.latent_flux_time_scale_s = calibration.fit.flux.time_scale_s;
+  for (std::size_t i = 0; i < calibration.fit.sensor_nodes.size(); ++i) {
+    const std::string& node = calibration.fit.sensor_nodes[i];
+    const MeasuredRun& run = *std::ranges::find_if(calibration.runs, [&](const MeasuredRun& r) { return r.sensor_at(node) >= 0; });
+    const double noise_K = run.sensors[static_cast<std::size_t>(run.sensor_at(node))].noise_K * calibration.fit.noise_ratio[i];
+    fit.noise_K.emplace_back(node, noise_K);
+  }
+  fit.band = calibration.forecast->band;
+  refresh_values(result);
+  return result;
+}
+
+}  // namespace heatsoak

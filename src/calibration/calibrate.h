@@ -1,0 +1,80 @@
+// Calibrates a motor from measured runs: parameter values with intervals, what the data do not determine, and which experiment would.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calibration/error_before_after.h"
+#include "calibration/motor_model.h"
+#include "estimation/fit.h"
+#include "calibration/forecast/forecast.h"
+#include "calibration/forecast/prediction.h"
+#include "recording/recording.h"
+#include "motor/motor.h"
+
+namespace heatsoak {
+
+struct CalibrationOptions {
+  FitOptions fit;
+  double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< ambient temperature of logs without one
+  /// true: writes the parameters of the forecast fit, which predicts left-out pieces best; false: those of the innovations fit.
+  bool is_for_forecasts = false;
+};
+
+struct CalibratedParameter {
+  std::string name;  ///< key in the motor file, or the name of a heat capacity
+  std::string unit;
+  bool is_of_file = true;
+  double before = 0.0;
+  double value = 0.0;
+  double low = 0.0;  ///< limits of the 95 % interval
+  double high = 0.0;
+  bool is_identifiable = false;  ///< the data, not only the prior, determine it to a factor of two or better
+  bool by_profile = false;       ///< true: interval from the profile likelihood; false: from the curvature
+};
+
+/// Combination of parameters that the data do not determine.
+struct OpenDirection {
+  std::string what;             ///< names of the parameters, in words
+  std::string why;              ///< reason, in words
+  std::string experiment;       ///< cheapest experiment that would determine it
+  double experiment_min = 0.0;  ///< approximate working time in minutes
+  double left_sd = 0.0;         ///< remaining standard deviation along the direction, in logarithms
+};
+
+struct Calibration {
+  Fit fit;
+  MotorModel motor_model;
+  std::vector<MeasuredRun> runs;
+  std::vector<std::string> fitted;  ///< name_and_fingerprint() of each recording
+  TrainingRange training;           ///< their conditions and input ranges
+  std::vector<CalibratedParameter> figures;
+  Eigen::MatrixXd correlation;  ///< of the logarithms of the motor file's parameters, in the order of `figures`
+  std::vector<OpenDirection> open;
+  std::string next_experiment;  ///< empty if nothing is open
+  std::vector<ErrorBeforeAfter> fit_error;
+  std::optional<Forecast> forecast;  ///< forecast fit, its rivals and its error band
+  bool is_forecast_written = false;  ///< true: `figures` are from the forecast fit; false: from the innovations fit
+  std::vector<MotorEffect> effects;  ///< effects of the written file
+  std::vector<PredictedRun> fitted_before,
+      fitted_after;  ///< fitted runs, predicted by the original and by the written file; bands not valid
+  /// Hold-out runs, predicted by the original and by the written file. Computed last, so that they influence nothing.
+  std::vector<PredictedRun> holdout_before, holdout_after;
+  std::vector<ErrorBeforeAfter> holdout_error;  ///< per signal: errors in the hold-out run with the largest error after the fit
+  std::vector<std::string> worse;               ///< sentences: signals that the fit predicts worse than the original file
+  std::vector<std::string> notes;               ///< sentences: assumptions and omitted data
+};
+
+/// Calibrates the motor. The logs must have passed admit() (calibration/admission.h). Throws Failure: bad_input if the logs lack a needed
+/// column; cannot_answer (with the reason) if the logs determine nothing or no fit succeeds.
+Calibration calibrate(const Motor& motor, std::span<const Recording> recordings, std::span<const Recording> holdout,
+                      const CalibrationOptions& options);
+
+/// Returns the motor with the calibrated values and intervals. Identifiable parameters get the origin "measured"; the others keep their
+/// origin. The source "calibration" names the runs.
+Motor calibrated_motor(const Motor& motor, const Calibration& calibration);
+
+}  // namespace heatsoak

@@ -1,0 +1,238 @@
+#include "calibration/forecast/forecast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "base/parallel.h"
+#include "base/random.h"
+
+namespace heatsoak {
+namespace {
+
+/// Required decrease of the score per parameter of an extension.
+constexpr double kLeastGain_nats = 0.05;
+constexpr std::size_t kRefitted = 4;
+constexpr int kMostExtensions = 4;
+constexpr int kScreeningSteps = 8;
+constexpr int kPieceSteps = 12;
+/// Largest ratio by which the perturbed starting point differs from the file.
+constexpr double kPerturbed_ratio = 1.5;
+
+struct Candidate {
+  const Extension* extension = nullptr;
+  ForecastSetup setup;
+  std::optional<ForecastModel> model;
+  ForecastFit fit;
+  double gain_nats = -std::numeric_limits<double>::infinity();
+};
+
+class Search {
+ public:
+  Search(ForecastSetup setup, std::span<const MeasuredRun> runs, int threads) : runs_(runs), threads_(threads) {
+    base_setup_ = std::move(setup);
+    out_.setup = base_setup_;
+    model_.emplace(out_.setup.model());
+  }
+
+  Forecast run(std::span<const Eigen::VectorXd> hints) {
+    out_.fit = best_of_starts(hints);
+    if (!std::isfinite(out_.fit.cost_nats)) {
+      out_.source = ForecastSource::file;
+      out_.band = usual_band(runs_.front().time_s.back() - runs_.front().time_s.front());
+      return std::move(out_);
+    }
+    base_.emplace(*model_);
+    pieces_ = pieces_of(*model_, out_.fit, runs_);
+    out_.pieces = pieces_.size();
+    const ForecastRules rules = of_piece();
+    score_ = score_pieces(*model_, runs_, pieces_, out_.fit.theta, &rules);
+    if (pieces_.size() >= kLeastPieces) {
+      for (int round = 0; round < kMostExtensions && could_gain() && extend(); ++round) {
+      }
+      choose();
+    }
+    set_band();
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] ForecastRules rules() const { return {.threads = threads_}; }
+  /// Fewer steps: a fit to the other pieces starts near its optimum.
+  [[nodiscard]] ForecastRules of_piece() const { return {.rounds = 2, .steps = kPieceSteps, .threads = threads_}; }
+
+  [[nodiscard]] ForecastFit best_of_starts(std::span<const Eigen::VectorXd> hints) const {
+    std::vector<Eigen::VectorXd> starts{model_->start()};
+    starts.insert(starts.end(), hints.begin(), hints.end());
+    Random random(1, 0);
+    Eigen::VectorXd perturbed = model_->start();
+    for (double& each : perturbed) {
+      each += std::log(kPerturbed_ratio) * (2.0 * random.uniform() - 1.0);
+    }
+    starts.push_back(std::move(perturbed));
+    ForecastFit best;
+    best.cost_nats = std::numeric_limits<double>::infinity();
+    for (const Eigen::VectorXd& start : starts) {
+      ForecastFit fit = fit_forecast(*model_, runs_, {}, start, rules());
+      if (!std::isfinite(best.cost_nats) || (std::isfinite(fit.cost_nats) && cost_at_error_of(best, fit) < best.cost_nats)) {
+        best = std::move(fit);
+      }
+    }
+    return best;
+  }
+
+  /// Cost of `fit` in nats, recomputed with the error and weight of `other`.
+  static double cost_at_error_of(const ForecastFit& other, const ForecastFit& fit) {
+    double squares_K2 = 0.0;
+    for (const Eigen::VectorXd& each : fit.residual_K) {
+      squares_K2 += each.array().isNaN().select(0.0, each).matrix().squaredNorm();
+    }
+    const double scale = other.weight / (other.error_K * other.error_K) - fit.weight / (fit.error_K * fit.error_K);
+    return fit.cost_nats + 0.5 * squares_K2 * scale;
+  }
+
+  /// False if the score is already as good as that of a network whose error is the sensors' noise.
+  [[nodiscard]] bool could_gain() const {
+    double least_nats = 0.0;
+    double count = 0.0;
+    for (const Piece& piece : pieces_) {
+      for (const Sensor& sensor : runs_[piece.run].sensors) {
+        least_nats += 0.5 * std::log(2.0 * sensor.noise_K * sensor.noise_K);
+        count += 1.0;
+      }
+    }
+    return score_.score_nats > least_nats / count + kLeastGain_nats;
+  }
+
+  /// Accepts the extension that predicts the left-out pieces best, if the gain exceeds the penalty for its parameters.
+  bool extend() {
+    const std::vector<Extension> all = extensions_for(out_.setup, *model_, out_.fit.theta, runs_);
+    std::vector<Candidate> candidates = screened(all);
+    Candidate* best = nullptr;
+    std::optional<PieceScore> best_score;
+    for (std::size_t i = 0; i < std::min(kRefitted, candidates.size()); ++i) {
+      Candidate& each = candidates[i];
+      each.fit = fit_forecast(*each.model, runs_, {}, each.fit.theta, rules());
+      const ForecastRules rules = of_piece();
+      PieceScore score = score_pieces(*each.model, runs_, pieces_, each.fit.theta, &rules);
+      const double gain_nats = score_.score_nats - score.score_nats - kLeastGain_nats * each.extension->free_count;
+      const double best_nats = best ? score_.score_nats - best_score->score_nats - kLeastGain_nats * best->extension->free_count : 0.0;
+      if (gain_nats > best_nats) {
+        best = &each;
+        best_score = std::move(score);
+      }
+    }
+    if (!best) {
+      return false;
+    }
+    out_.accepted.push_back({best->extension->name, score_.score_nats - best_score->score_nats});
+    out_.setup = std::move(best->setup);
+    out_.fit = std::move(best->fit);
+    model_ = std::move(best->model);
+    score_ = std::move(*best_score);
+    return true;
+  }
+
+  /// Makes one short fit of each extension with the error and weight of the present fit. Returns the candidates, best first.
+  std::vector<Candidate> screened(const std::vector<Extension>& all) const {
+    std::vector<Candidate> candidates(all.size());
+    ForecastRules rules{
+        .rounds = 1, .steps = kScreeningSteps, .held_error_K = out_.fit.error_K, .held_weight = out_.fit.weight, .threads = 1};
+    in_parallel(all.size(), threads_, [&](std::size_t i) {
+      Candidate& each = candidates[i];
+      each.extension = &all[i];
+      each.setup = with_extension(out_.setup, all[i]);
+      each.model.emplace(each.setup.model());
+      each.fit = fit_forecast(*each.model, runs_, {}, carried_over(*model_, out_.fit.theta, *each.model, all[i]), rules);
+      each.gain_nats = out_.fit.cost_nats - each.fit.cost_nats - 0.5 * all[i].free_count;
+    });
+    std::ranges::stable_sort(candidates, std::ranges::greater(), &Candidate::gain_nats);
+    return candidates;
+  }
+
+  /// Selects among file, ordinary least squares and tempered fit the one that predicts the left-out pieces best.
+  void choose() {
+    const ForecastRules ordinary{
+        .is_tempered = false, .has_heat_factors = false, .rounds = 2, .steps = 2 * kPieceSteps, .threads = threads_};
+    const ForecastFit plain = fit_forecast(*base_, runs_, {}, base_->start(), ordinary);
+    const ForecastFit near = fit_forecast(*base_, runs_, {}, carried_over(*model_, out_.fit.theta, *base_), ordinary);
+    const ForecastFit& best_plain = near.error_K < plain.error_K ? near : plain;
+    const PieceScore of_plain = score_pieces(*base_, runs_, pieces_, best_plain.theta, &ordinary);
+    const PieceScore of_file = score_pieces(*base_, runs_, pieces_, base_->start(), nullptr);
+    add_rival(ForecastSource::tempered, score_);
+    add_rival(ForecastSource::ordinary, of_plain);
+    add_rival(ForecastSource::file, of_file);
+    // A fit uses more information than the file, so the file must be clearly better.
+    const auto handicapped = [](const RivalScore& rival) {
+      return rival.score_nats + (rival.source == ForecastSource::file ? kLeastGain_nats : 0.0);
+    };
+    out_.source = std::ranges::min_element(out_.rivals, {}, handicapped)->source;
+    if (out_.source == ForecastSource::tempered) {
+      return;
+    }
+    out_.accepted.clear();
+    model_.emplace(*base_);
+    out_.setup = base_setup_;
+    score_ = out_.source == ForecastSource::ordinary ? of_plain : of_file;
+    if (out_.source == ForecastSource::ordinary) {
+      out_.fit = best_plain;
+    } else {
+      out_.fit.theta = base_->start();
+      out_.fit.covariance = base_->prior().precision.inverse();
+    }
+  }
+
+  void add_rival(ForecastSource source, const PieceScore& score) {
+    RivalScore rival{source, score.score_nats, {}};
+    std::map<std::string, std::pair<double, double>> sums;
+    for (const PredictedPiece& piece : score.pieces) {
+      const MeasuredRun& run = runs_[piece.run];
+      for (Eigen::Index row = 0; row < piece.path.residual_K.size(); ++row) {
+        if (const double error_K = piece.path.residual_K[row]; !std::isnan(error_K)) {
+          auto& [squares_K2, count] = sums[run.sensors[static_cast<std::size_t>(row % piece.path.sensors())].signal];
+          squares_K2 += error_K * error_K;
+          count += 1.0;
+        }
+      }
+    }
+    for (const auto& [signal, sum] : sums) {
+      rival.rmse_K.emplace_back(signal, std::sqrt(sum.first / sum.second));
+    }
+    out_.rivals.push_back(std::move(rival));
+  }
+
+  /// Fits the band. Without left-out pieces it uses the fitted runs, with one degree of freedom, and does not narrow the band.
+  void set_band() {
+    if (score_.pieces.empty()) {
+      PredictedPiece own;
+      for (std::size_t r = 0; r < runs_.size(); ++r) {
+        const Eigen::VectorXd& start_C = out_.fit.starts[r].state_C;
+        own.run = r;
+        own.path = model_->along(runs_[r], out_.fit.theta, 0.0, {start_C.data(), static_cast<std::size_t>(start_C.size())});
+        own.covariance = out_.fit.covariance;
+        own.values = model_->values_in(runs_[r], out_.fit.theta, 0.0);
+        score_.pieces.push_back(own);
+      }
+    }
+    out_.band = fit_band(*model_, runs_, score_.pieces, std::max<std::size_t>(1, pieces_.size()));
+    out_.band.width_ratio = pieces_.empty() ? std::max(1.0, out_.band.width_ratio) : out_.band.width_ratio;
+  }
+
+  std::span<const MeasuredRun> runs_;
+  int threads_;
+  std::optional<ForecastModel> model_, base_;
+  ForecastSetup base_setup_;
+  std::vector<Piece> pieces_;
+  PieceScore score_;
+  Forecast out_;
+};
+
+}  // namespace
+
+Forecast forecast_of(ForecastSetup setup, std::span<const MeasuredRun> runs, std::span<const Eigen::VectorXd> hints, int threads) {
+  return Search(std::move(setup), runs, threads).run(hints);
+}
+
+}  // namespace heatsoak

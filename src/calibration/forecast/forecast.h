@@ -1,0 +1,42 @@
+// Finds the model that forecasts other runs of a motor best: parameters from free runs, network selected by left-out pieces, error band.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calibration/forecast/band.h"
+#include "calibration/forecast/forecast_setup.h"
+
+namespace heatsoak {
+
+/// Origin of a forecast's parameters. `ordinary` is the simple alternative: least squares of free runs without extensions.
+enum class ForecastSource { file, ordinary, tempered };
+
+struct AcceptedExtension {
+  std::string name;
+  double gain_nats = 0.0;  ///< decrease of the score of the left-out pieces
+};
+
+/// Score of one alternative on the left-out pieces.
+struct RivalScore {
+  ForecastSource source = ForecastSource::file;
+  double score_nats = 0.0;                             ///< smaller is better
+  std::vector<std::pair<std::string, double>> rmse_K;  ///< per signal, root of the mean square over the pieces
+};
+
+struct Forecast {
+  ForecastSetup setup;  ///< includes the accepted extensions
+  ForecastSource source = ForecastSource::tempered;
+  ForecastFit fit;
+  std::vector<AcceptedExtension> accepted;
+  std::size_t pieces = 0;          ///< number of left-out pieces; with fewer than kLeastPieces nothing is selected
+  std::vector<RivalScore> rivals;  ///< empty if there are too few pieces
+  ForecastBand band;
+
+  [[nodiscard]] ForecastModel model() const { return setup.model(); }
+};
+
+/// Finds the best forecast model. `hints` are additional starting points in θ of the setup's model. Deterministic.
+Forecast forecast_of(ForecastSetup setup, std::span<const MeasuredRun> runs, std::span<const Eigen::VectorXd> hints, int threads);
+
+}  // namespace heatsoak

@@ -1,0 +1,51 @@
+// Output-error fit: finds parameters with which a free-running model follows whole runs, with priors and a tempered likelihood.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "calibration/forecast/forecast_model.h"
+#include "estimation/open_loop.h"
+
+namespace heatsoak {
+
+/// Rows of a run that a fit uses: nonzero if row (sample · sensors + sensor) counts. Empty: all rows.
+using RowMask = std::vector<char>;
+
+struct ForecastRules {
+  /// true: since the errors of a run are correlated, N samples count as the number of independent ones (initial positive sequence of Geyer
+  /// 1992, about zero). false: ordinary least squares, in which the priors are negligible.
+  bool is_tempered = true;
+  bool has_heat_factors = true;  ///< fits one heat factor per run if there are two runs or more
+  int rounds = 3;                ///< number of fits, each followed by an update of error and weight
+  int steps = 25;                ///< Levenberg-Marquardt steps per round
+  double held_error_K = 0.0;     ///< if above 0, error and weight are fixed, so that costs can be compared
+  double held_weight = 1.0;
+  int threads = 0;  ///< 0: all cores; the result does not depend on it
+};
+
+struct ForecastFit {
+  Eigen::VectorXd theta;
+  Eigen::VectorXd heat_log;      ///< logarithm of the heat factor, per run
+  std::vector<RunStart> starts;  ///< per run
+  // The following values are those of the tempered cost at θ, for ordinary fits too.
+  Eigen::MatrixXd covariance;               ///< of θ: inverse curvature of the cost, with heat factors and starts free
+  double error_K = 0.0;                     ///< RMS error of the rows that count, at least the sensors' noise
+  double weight = 1.0;                      ///< independent samples per sample
+  double cost_nats = 0.0;                   ///< with the error and weight of the last round
+  std::vector<Eigen::VectorXd> residual_K;  ///< per run, row = sample · sensors + sensor; NaN: not measured
+};
+
+/// Fits the model, starting at `theta`. `masks` has one entry per run, or none. The cost is infinite if the simulation fails at `theta`.
+ForecastFit fit_forecast(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const RowMask> masks,
+                         const Eigen::VectorXd& theta, const ForecastRules& rules);
+
+/// Returns the cost in nats of other parameters `theta` at the error and weight of `fit`, minimised over heat factors and starts.
+double cost_at(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const RowMask> masks, const ForecastFit& fit,
+               const Eigen::VectorXd& theta, int threads);
+
+/// Returns the number of independent samples. The correlation is computed about zero, not about the mean of the errors. NaN are skipped.
+double independent_samples(const Eigen::VectorXd& error_K);
+
+}  // namespace heatsoak

@@ -1,0 +1,75 @@
+// Network of a motor for forecasts. Free parameters, sensor lags included, are logarithms; each run has a heat factor.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calibration/motor_model.h"
+#include "estimation/linearised_run.h"
+#include "estimation/measured_run.h"
+#include "estimation/open_loop.h"
+
+namespace heatsoak {
+
+/// Prior standard deviation of the logarithm of a run's heat factor (about 5 %).
+inline constexpr double kHeatFactor_sd = 0.05;
+
+/// Sensor fault whose size is fitted as a logarithm.
+struct FreeFault {
+  const SensorEffectType* type = nullptr;
+  double size = 0.0;      ///< prior median, in the unit of the type's size
+  double prior_sd = 1.0;  ///< of the logarithm of the size
+};
+
+/// Model with coordinates θ: those of the network, then the logarithms of the fault sizes.
+class ForecastModel {
+ public:
+  /// `model` must be built from `motor`.
+  ForecastModel(MotorModel model, const Motor& motor, std::vector<FreeFault> faults);
+
+  [[nodiscard]] const MotorModel& motor() const { return motor_; }
+  [[nodiscard]] const Network& network() const { return motor_.model.network; }
+  [[nodiscard]] std::span<const FreeFault> faults() const { return faults_; }
+  [[nodiscard]] Eigen::Index count() const { return prior_.mean.size(); }
+  [[nodiscard]] const Prior& prior() const { return prior_; }
+  /// θ at the values of the file.
+  [[nodiscard]] Eigen::VectorXd start() const;
+  /// Clamps θ to the bounds of all parameters.
+  [[nodiscard]] Eigen::VectorXd within_bounds(Eigen::VectorXd theta) const;
+  /// Returns the network's parameters for a run. All heat that the inputs generate is multiplied by exp(log_heat_ratio).
+  [[nodiscard]] std::vector<double> values_in(const MeasuredRun& run, const Eigen::VectorXd& theta, double log_heat_ratio) const;
+  /// Simulates the run from start temperatures (°C) of all state nodes. The columns of by_parameter are θ, then log_heat_ratio. Throws
+  /// Failure (numerics_failed) if the temperatures diverge.
+  [[nodiscard]] LinearisedRun along(const MeasuredRun& run, const Eigen::VectorXd& theta, double log_heat_ratio,
+                                    std::span<const double> start_C) const;
+  /// Start temperatures estimated from the beginning of the run (open_loop.h).
+  [[nodiscard]] DecidedStart decided_start(const MeasuredRun& run, const Eigen::VectorXd& theta) const;
+
+ private:
+  /// Parameter `place` is 1 minus parameter `of`.
+  struct Tie {
+    int place = 0;
+    int of = 0;
+  };
+  /// Parameter that is 0 in runs without the condition.
+  struct Conditional {
+    int place = 0;
+    std::map<std::string, std::string> condition;
+  };
+  void find_ties();
+  void find_heat();
+  void find_conditions(const Motor& motor);
+
+  MotorModel motor_;
+  std::vector<FreeFault> faults_;
+  Prior prior_;
+  std::vector<Tie> ties_;
+  std::vector<Conditional> conditional_;
+  std::vector<int> heat_places_;  ///< parameters to which the heat of the inputs is proportional
+  std::vector<int> wanted_;       ///< indices of the free parameters, then of the ties, then heat_places_
+};
+
+}  // namespace heatsoak

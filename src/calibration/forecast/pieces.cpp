@@ -1,0 +1,138 @@
+#include "calibration/forecast/pieces.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/diagnostic.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr std::size_t kBlocks = 4;
+constexpr double kExcited_share = 0.25;
+
+/// Index of the winding's sensor, or 0 if there is none.
+Eigen::Index watched_sensor(const MeasuredRun& run) { return std::max<Eigen::Index>(0, run.sensor_at("winding")); }
+
+/// Range of the predicted readings of samples [from, to). Predicted readings have no missing samples.
+std::pair<double, double> range_of(const Eigen::MatrixXd& sensor_C, Eigen::Index sensor, Eigen::Index from, Eigen::Index to) {
+  const auto part = sensor_C.col(sensor).segment(from, to - from);
+  return {part.minCoeff(), part.maxCoeff()};
+}
+
+Piece block_of(const MeasuredRun& run, Eigen::Index from, Eigen::Index to) {
+  const auto sensors = static_cast<Eigen::Index>(run.sensors.size());
+  Piece piece;
+  piece.seen.assign(static_cast<std::size_t>(run.samples() * sensors), 1);
+  piece.scored.assign(piece.seen.size(), 0);
+  for (Eigen::Index row = from * sensors; row < to * sensors; ++row) {
+    piece.seen[static_cast<std::size_t>(row)] = 0;
+    piece.scored[static_cast<std::size_t>(row)] = 1;
+  }
+  return piece;
+}
+
+/// Predicts the piece with a fit to everything else (or with `theta` if `rules` is null).
+PredictedPiece predicted(const ForecastModel& model, std::span<const MeasuredRun> runs, const Piece& piece, const Eigen::VectorXd& theta,
+                         const ForecastRules* rules) {
+  const MeasuredRun& run = runs[piece.run];
+  PredictedPiece out{piece.run, {}, {}, {}};
+  ForecastFit fit;
+  fit.theta = theta;
+  fit.covariance = model.prior().precision.ldlt().solve(Eigen::MatrixXd::Identity(theta.size(), theta.size()));
+  const bool is_block = !piece.seen.empty();
+  if (rules != nullptr && is_block) {
+    fit = fit_forecast(model, runs, std::vector<RowMask>{piece.seen}, theta, *rules);
+  } else if (rules != nullptr) {
+    std::vector<MeasuredRun> others(runs.begin(), runs.end());
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(piece.run));
+    fit = fit_forecast(model, others, {}, theta, *rules);
+  }
+  if (!std::isfinite(fit.cost_nats)) {
+    throw Failure(ExitCode::numerics_failed, "the model cannot be run along the other pieces");
+  }
+  const Eigen::VectorXd start_C =
+      is_block && !fit.starts.empty() ? fit.starts.front().state_C : model.decided_start(run, fit.theta).state_C;
+  out.path = model.along(run, fit.theta, 0.0, {start_C.data(), static_cast<std::size_t>(start_C.size())});
+  out.covariance = fit.covariance;
+  out.values = model.values_in(run, fit.theta, 0.0);
+  for (Eigen::Index row = 0; is_block && row < out.path.residual_K.size(); ++row) {
+    if (piece.scored[static_cast<std::size_t>(row)] == 0) {
+      out.path.residual_K[row] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Piece> pieces_of(const ForecastModel& model, const ForecastFit& base, std::span<const MeasuredRun> runs) {
+  std::vector<Eigen::MatrixXd> sensor_C;
+  double low_C = std::numeric_limits<double>::infinity();
+  double high_C = -low_C;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const Eigen::VectorXd& start_C = base.starts[r].state_C;
+    sensor_C.push_back(model
+                           .along(runs[r], base.theta, base.heat_log[static_cast<Eigen::Index>(r)],
+                                  {start_C.data(), static_cast<std::size_t>(start_C.size())})
+                           .sensor_C);
+    const auto [low, high] = range_of(sensor_C.back(), watched_sensor(runs[r]), 0, runs[r].samples());
+    low_C = std::min(low_C, low);
+    high_C = std::max(high_C, high);
+  }
+  std::vector<Piece> pieces;
+  const auto add = [&](std::size_t r, Eigen::Index from, Eigen::Index to, Piece piece) {
+    const auto [low, high] = range_of(sensor_C[r], watched_sensor(runs[r]), from, to);
+    piece.run = r;
+    if (high - low >= kExcited_share * (high_C - low_C)) {
+      pieces.push_back(std::move(piece));
+    }
+  };
+  if (runs.size() > 1) {
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+      add(r, 0, runs[r].samples(), {});
+    }
+    return pieces;
+  }
+  const MeasuredRun& run = runs.front();
+  for (std::size_t b = 0; b < kBlocks; ++b) {
+    const auto edge = [&](std::size_t block) { return static_cast<Eigen::Index>(block * run.time_s.size() / kBlocks); };
+    add(0, edge(b), edge(b + 1), block_of(run, edge(b), edge(b + 1)));
+  }
+  return pieces;
+}
+
+PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const Piece> pieces,
+                        const Eigen::VectorXd& theta, const ForecastRules* rules) {
+  PieceScore score;
+  double count = 0.0;
+  for (const Piece& piece : pieces) {
+    try {
+      score.pieces.push_back(predicted(model, runs, piece, theta, rules));
+    } catch (const Failure& failure) {
+      if (failure.code() != ExitCode::numerics_failed) {
+        throw;
+      }
+      score.score_nats = std::numeric_limits<double>::infinity();
+      return score;
+    }
+    const LinearisedRun& path = score.pieces.back().path;
+    for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
+      double squares_K2 = 0.0;
+      double rows = 0.0;
+      for (Eigen::Index row = sensor; row < path.residual_K.size(); row += path.sensors()) {
+        squares_K2 += std::isnan(path.residual_K[row]) ? 0.0 : path.residual_K[row] * path.residual_K[row];
+        rows += std::isnan(path.residual_K[row]) ? 0.0 : 1.0;
+      }
+      const double noise_K = runs[piece.run].sensors[static_cast<std::size_t>(sensor)].noise_K;
+      score.score_nats += rows > 0.0 ? 0.5 * std::log(squares_K2 / rows + noise_K * noise_K) : 0.0;
+      count += rows > 0.0 ? 1.0 : 0.0;
+    }
+  }
+  score.score_nats /= std::max(1.0, count);
+  return score;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,42 @@
+// Cross-validation: networks are scored on left-out pieces, each predicted by a fit to the other data.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calibration/forecast/forecast_fit.h"
+
+namespace heatsoak {
+
+/// Left-out piece: a run, or a block of a single run. The fit uses the rest.
+struct Piece {
+  std::size_t run = 0;
+  RowMask seen;    ///< rows of its run that the fit uses; empty: the whole run is left out
+  RowMask scored;  ///< rows of its run that are predicted
+};
+
+/// Returns the pieces: all runs, or four blocks of a single run. A piece counts only if the predicted winding temperature varies in it by
+/// at least a quarter of its range over all runs.
+std::vector<Piece> pieces_of(const ForecastModel& model, const ForecastFit& base, std::span<const MeasuredRun> runs);
+/// Fewer pieces do not suffice to select a network.
+inline constexpr std::size_t kLeastPieces = 3;
+
+/// Prediction of a piece by a fit that did not use it.
+struct PredictedPiece {
+  std::size_t run = 0;
+  LinearisedRun path;          ///< with logarithm 0 of the heat factor; residual_K is NaN in rows that are not scored
+  Eigen::MatrixXd covariance;  ///< of θ
+  std::vector<double> values;  ///< the network's parameters
+};
+
+struct PieceScore {
+  double score_nats = 0.0;  ///< mean over pieces and sensors of ½·ln(mean square error + noise²)
+  std::vector<PredictedPiece> pieces;
+};
+
+/// Fits without each piece, starting at `theta`, and scores its prediction. If `rules` is null, nothing is fitted and the parameters are
+/// `theta`. The score is infinite if a simulation fails.
+PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const Piece> pieces,
+                        const Eigen::VectorXd& theta, const ForecastRules* rules);
+
+}  // namespace heatsoak

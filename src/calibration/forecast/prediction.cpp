@@ -1,0 +1,153 @@
+#include "calibration/forecast/prediction.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "base/quantity.h"
+#include "calibration/unlogged_speed.h"
+#include "estimation/log_columns.h"
+#include "estimation/turning_rows.h"
+#include "motor/conditions.h"
+#include "motor/datasheet_network.h"
+
+namespace heatsoak {
+namespace {
+
+PredictedSignal signal_of(const MeasuredRun& run, const LinearisedRun& path, const Eigen::VectorXd& sd_K, Eigen::Index sensor) {
+  PredictedSignal out;
+  out.signal = run.sensors[static_cast<std::size_t>(sensor)].signal;
+  double squares_K2 = 0.0;
+  double within = 0.0;
+  for (Eigen::Index k = 0; k < run.samples(); ++k) {
+    const double sensor_C = path.sensor_C(k, sensor);
+    const double measured_C = run.measured_C(k, sensor);
+    const double reach_K = kBand_sd * sd_K[k * path.sensors() + sensor];
+    out.measured_C.push_back(measured_C);
+    out.predicted_C.push_back(sensor_C);
+    out.low_C.push_back(sensor_C - reach_K);
+    out.high_C.push_back(sensor_C + reach_K);
+    if (!std::isnan(measured_C)) {
+      const double error_K = std::abs(measured_C - sensor_C);
+      squares_K2 += error_K * error_K;
+      out.max_abs_K = std::max(out.max_abs_K, error_K);
+      within += error_K <= reach_K ? 1.0 : 0.0;
+      ++out.samples;
+    }
+  }
+  if (out.samples > 0) {
+    out.rmse_K = std::sqrt(squares_K2 / static_cast<double>(out.samples));
+    out.coverage_share = within / static_cast<double>(out.samples);
+  }
+  return out;
+}
+
+bool has_speed(const Recording& recording) {
+  const std::vector<Signal> signals = signals_of(recording);
+  return std::ranges::find(signals, Signal::speed) != signals.end();
+}
+
+double longest_s(std::span<const MeasuredRun> runs) {
+  double longest_s = 0.0;
+  for (const MeasuredRun& run : runs) {
+    longest_s = std::max(longest_s, run.time_s.back() - run.time_s.front());
+  }
+  return longest_s;
+}
+
+/// Returns the motor under the conditions that a recording states. The recording's name is its condition "run".
+Motor as_in(const Recording& recording, const Motor& motor) {
+  std::map<std::string, std::string> stated = recording.conditions;
+  stated.emplace("run", recording.name);
+  std::map<std::string, std::string> of_motor;
+  for (const MotorEffect& effect : motor.effects) {
+    for (const auto& [key, value] : effect.condition) {
+      if (const auto found = stated.find(key); found != stated.end()) {
+        of_motor.insert(*found);
+      }
+    }
+  }
+  return of_motor.empty() ? motor : under(motor, of_motor);
+}
+
+void predict_one(const Motor& motor, const Recording& recording, const PredictionOptions& options, Prediction& all) {
+  const std::span<const Recording> own(&recording, 1);
+  ForecastSetup setup = forecast_setup(motor, own);
+  std::vector<MeasuredRun> runs = forecast_runs(setup, own, options.ambient_C, all.notes);
+  if (options.turns_within_rows) {
+    std::ranges::transform(runs, runs.begin(), turning_within_rows);
+  }
+  const double most_loss_W = setup.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
+  if (most_loss_W > 0.0 && std::ranges::any_of(runs, turns_unseen)) {
+    setup.opens_loss_at_speed = true;
+    all.notes.push_back(fmt::format(
+        "{} has a current but no speed: the loss at speed may be anything up to {} W, and the band is wider for it; if the motor stood "
+        "still, add speed_rad_per_s = 0",
+        recording.name, significant(most_loss_W, 2)));
+  }
+  const ForecastModel model = setup.model();
+  const Eigen::MatrixXd& precision = model.prior().precision;
+  const Eigen::MatrixXd covariance = precision.ldlt().solve(Eigen::MatrixXd::Identity(precision.rows(), precision.cols()));
+  const ForecastBand band = motor.fit && motor.fit->band ? *motor.fit->band : usual_band(longest_s(runs));
+  for (const MeasuredRun& run : runs) {
+    all.runs.push_back(predict(model, model.start(), covariance, band, run));
+  }
+}
+
+}  // namespace
+
+PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance, const ForecastBand& band,
+                     const MeasuredRun& run) {
+  DecidedStart start = model.decided_start(run, theta);
+  const LinearisedRun path = model.along(run, theta, 0.0, {start.state_C.data(), static_cast<std::size_t>(start.state_C.size())});
+  const double heat_W = rms_heat_W(model.network(), model.values_in(run, theta, 0.0), run, path.state_C);
+  const Eigen::VectorXd sd_K = forecast_sd_K(path, run, covariance, start.covariance_K2, heat_W, band);
+  PredictedRun out{run.name, run.time_s, {}};
+  for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
+    out.signals.push_back(signal_of(run, path, sd_K, sensor));
+  }
+  return out;
+}
+
+std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const Recording> recordings, double ambient_C,
+                                       std::vector<std::string>& notes) {
+  MeasuredRunOptions how = how_to_read(setup.motor, setup.heat);
+  how.needed = setup.model().motor().needed;
+  how.ambient_C = ambient_C;
+  std::vector<MeasuredRun> all;
+  for (const Recording& recording : recordings) {
+    MeasuredRunOptions here = how;
+    // If a log has a speed column, only rows with a speed are used.
+    std::erase(here.needed, Signal::speed);
+    if (setup.heat != HeatInput::input_power && has_speed(recording)) {
+      here.needed.push_back(Signal::speed);
+    }
+    MeasuredRuns found = measured_runs(recording, here);
+    std::ranges::move(found.runs, std::back_inserter(all));
+    std::ranges::move(found.notes, std::back_inserter(notes));
+  }
+  return all;
+}
+
+Prediction predict(const Motor& motor, std::span<const Recording> recordings, const PredictionOptions& options) {
+  Prediction all;
+  if (std::string lacking = column_lacking(how_to_read(motor, HeatInput::current).column, recordings); !lacking.empty()) {
+    all.notes.push_back(std::move(lacking));
+  }
+  for (const Recording& recording : recordings) {
+    predict_one(as_in(recording, motor), recording, options, all);
+  }
+  if (!motor.fit || !motor.fit->band) {
+    all.notes.push_back(fmt::format(
+        "{} has no band of its own: it is that of its declared uncertainties and of what forecasts are usually off; `heatsoak calibrate` "
+        "finds one",
+        motor.id));
+  }
+  return all;
+}
+
+}  // namespace heatsoak

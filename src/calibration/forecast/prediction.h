@@ -1,0 +1,56 @@
+// Predicts logs with a motor file: temperatures, their 90 % band, and their errors.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calibration/forecast/band.h"
+#include "calibration/forecast/forecast_setup.h"
+#include "recording/recording.h"
+
+namespace heatsoak {
+
+/// Prediction of one sensor in one run; all vectors have one value per sample.
+struct PredictedSignal {
+  std::string signal;              ///< key, for example "winding_C"
+  std::vector<double> measured_C;  ///< NaN: not measured
+  std::vector<double> predicted_C;
+  std::vector<double> low_C, high_C;  ///< limits of the 90 % band of the measured samples
+  double rmse_K = 0.0;
+  double max_abs_K = 0.0;
+  double coverage_share = 0.0;  ///< share of the samples within the band
+  std::size_t samples = 0;      ///< number of measured samples
+};
+
+struct PredictedRun {
+  std::string name;
+  std::vector<double> time_s;
+  std::vector<PredictedSignal> signals;
+};
+
+/// Predictions of several runs. They are not pooled, because errors under different conditions have different distributions.
+struct Prediction {
+  std::vector<PredictedRun> runs;
+  std::vector<std::string> notes;  ///< sentences: assumptions
+};
+
+/// Predicts a run from its first temperatures and measured inputs. `covariance` is that of θ.
+PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance, const ForecastBand& band,
+                     const MeasuredRun& run);
+
+/// Reads the runs of the recordings with the signals that the setup's model needs. Appends to `notes`. Throws Failure as measured_runs().
+std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const Recording> recordings, double ambient_C,
+                                       std::vector<std::string>& notes);
+
+struct PredictionOptions {
+  double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< for logs without an ambient temperature
+  bool turns_within_rows = false;                       ///< interpolates speeds whose sign changes from row to row (turning_rows.h)
+};
+
+/// Predicts each recording separately with the heat input that it has: power balance, current, torque or input power. Without a fit in the
+/// motor file, the parameters have their prior uncertainty. Throws Failure: bad_input if a log has no heat input or no temperature,
+/// numerics_failed if the temperatures diverge.
+Prediction predict(const Motor& motor, std::span<const Recording> recordings, const PredictionOptions& options);
+
+}  // namespace heatsoak

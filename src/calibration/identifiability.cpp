@@ -1,0 +1,332 @@
+#include "calibration/identifiability.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/quantity.h"
+#include "calibration/loss_at_stator.h"
+
+namespace heatsoak {
+namespace {
+
+/// A direction is open if the data leave more than this fraction of its prior variance.
+constexpr double kIdentifiableShare = 0.5;
+
+struct Look {
+  bool winding_is_sensed = false;
+  bool stator_is_sensed = false;
+  bool has_heat = false;
+  bool is_ever_at_speed = false;
+  double longest_s = 0.0;
+};
+
+Look look(const MotorModel& motor, std::span<const MeasuredRun> runs) {
+  Look seen;
+  seen.has_heat = is_heated(motor, runs);
+  for (const MeasuredRun& run : runs) {
+    seen.longest_s = std::max(seen.longest_s, run.time_s.back() - run.time_s.front());
+    seen.winding_is_sensed = seen.winding_is_sensed || run.sensor_at("winding") >= 0;
+    seen.stator_is_sensed = seen.stator_is_sensed || run.sensor_at("stator") >= 0;
+    for (const OperatingPoint<double>& at : run.at) {
+      seen.is_ever_at_speed = seen.is_ever_at_speed || at.speed_mean_rad_per_s > 1.0;
+    }
+  }
+  return seen;
+}
+
+/// Indices of the free parameters by role; −1 if not free.
+struct Roles {
+  int winding_capacity = -1;
+  int winding_stator = -1;
+  int stator_capacity = -1;
+  int stator_ambient = -1;
+  int resistance = -1;
+  int drag = -1;
+};
+
+Roles roles_of(const Model& model) {
+  const auto find = [&](std::string_view name) {
+    for (Eigen::Index i = 0; i < model.free_count(); ++i) {
+      if (model.name(i) == name) {
+        return static_cast<int>(i);
+      }
+    }
+    return -1;
+  };
+  return {find("winding.heat_capacity"),
+          find("winding_stator.thermal_resistance"),
+          find("stator.heat_capacity"),
+          find("stator_ambient.thermal_resistance"),
+          find("copper_loss.terminal_resistance"),
+          std::max(find("no_load_loss.drag_torque"), find(kDragAtStator))};
+}
+
+/// Reason why something is open, and the cheapest experiment that would determine it.
+struct Answer {
+  std::string why;
+  std::string experiment;
+  double experiment_min = 0.0;
+};
+
+Answer no_heat() {
+  return {"no heat goes in during these runs: cooling tells time constants, never watts",
+          "one run with a constant current at standstill, 10 minutes, current and terminal voltage measured", 20.0};
+}
+Answer scale_open() {
+  return {
+      "a common factor on all heat, all heat capacities and all conductances changes no temperature: the scale rests on the stated "
+      "terminal resistance",
+      "measure the terminal resistance at a known temperature with four wires (minutes, no run needed)", 5.0};
+}
+Answer winding_unseen() {
+  return {
+      "only the stator is sensed: a larger winding behind a smaller resistance to the stator looks the same from there",
+      "a thermocouple at the winding, or the winding's resistance from voltage and current right after switching off, during one warm-up",
+      45.0};
+}
+Answer stator_unseen() {
+  return {"only the winding is sensed and the runs are short against the stator's time constant, or never cool down",
+          "a thermocouple on the housing, or one long warm-up with its cool-down to ambient", 60.0};
+}
+Answer loss_hidden(const Look& seen) {
+  return {seen.is_ever_at_speed ? "the loss at speed hardly shows beside the copper loss" : "the motor hardly turns in these runs",
+          "10 minutes at no load and full speed", 15.0};
+}
+Answer not_excited() {
+  return {"the runs do not excite it: what they measure hardly changes when these parameters move together",
+          "one run from cold with a constant current until the temperatures level out, then the cool-down", 90.0};
+}
+Answer speed_unlogged() {
+  return {
+      "the runs do not say whether the motor turned: the loss at speed may be none or that at no-load speed, and the stator's figures go "
+      "with it",
+      "the same runs with the speed logged (speed_rad_per_s; 0 throughout where the motor stood still)", 0.0};
+}
+
+OpenDirection open_direction(std::string what, Answer answer) {
+  return {.what = std::move(what),
+          .why = std::move(answer.why),
+          .experiment = std::move(answer.experiment),
+          .experiment_min = answer.experiment_min};
+}
+
+double component(const Eigen::VectorXd& direction, int place) { return place >= 0 ? direction[place] : 0.0; }
+
+/// Returns |cos| of the angle between `direction` and the scale direction: one factor on all heat and heat capacities, its inverse on all
+/// thermal resistances. Along the scale direction no temperature changes.
+double likeness_to_scale(const Eigen::VectorXd& direction, const Roles& roles) {
+  Eigen::VectorXd scale = Eigen::VectorXd::Zero(direction.size());
+  for (const auto& [place, sign] :
+       {std::pair(roles.winding_capacity, 1.0), std::pair(roles.winding_stator, -1.0), std::pair(roles.stator_capacity, 1.0),
+        std::pair(roles.stator_ambient, -1.0), std::pair(roles.resistance, 1.0), std::pair(roles.drag, 1.0)}) {
+    if (place >= 0) {
+      scale[place] = sign;
+    }
+  }
+  return std::abs(direction.dot(scale.normalized()));
+}
+
+std::string movement(const Model& model, const Eigen::VectorXd& direction) {
+  std::vector<std::string> parts;
+  const double largest = direction.cwiseAbs().maxCoeff();
+  Eigen::Index first = 0;
+  direction.cwiseAbs().maxCoeff(&first);
+  const double sign = direction[first] > 0.0 ? 1.0 : -1.0;
+  for (Eigen::Index i = 0; i < direction.size(); ++i) {
+    if (std::abs(direction[i]) > 0.3 * largest) {
+      parts.push_back(fmt::format("{} {}", model.name(i), sign * direction[i] > 0.0 ? "up" : "down"));
+    }
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+Answer answer_to(const MotorModel& motor, const Eigen::VectorXd& direction, const Look& seen) {
+  const Roles roles = roles_of(motor.model);
+  constexpr double kAlike = 0.9;
+  if (seen.has_heat && likeness_to_scale(direction, roles) > kAlike) {
+    return scale_open();
+  }
+  const double in_winding = std::hypot(component(direction, roles.winding_capacity), component(direction, roles.winding_stator));
+  const double in_stator = std::hypot(component(direction, roles.stator_capacity), component(direction, roles.stator_ambient));
+  constexpr double kMostly = 0.7;
+  // If capacities and resistances change oppositely, at constant time constants, the runs lack heat.
+  constexpr double kSame = 0.3;
+  const double winding_moves = component(direction, roles.winding_capacity) + component(direction, roles.winding_stator);
+  const double stator_moves = component(direction, roles.stator_capacity) + component(direction, roles.stator_ambient);
+  if (!seen.has_heat && std::hypot(winding_moves, stator_moves) < kSame) {
+    return no_heat();
+  }
+  if (!seen.winding_is_sensed && in_winding > kMostly) {
+    return winding_unseen();
+  }
+  if (!seen.stator_is_sensed && in_stator > kMostly) {
+    return stator_unseen();
+  }
+  return std::abs(component(direction, roles.drag)) > kMostly ? loss_hidden(seen) : not_excited();
+}
+
+bool is_of_stator(const MotorModel& motor, const CalibratedValue& figure) {
+  const Roles roles = roles_of(motor.model);
+  return component(figure.exponents, roles.stator_capacity) != 0.0 || component(figure.exponents, roles.stator_ambient) != 0.0;
+}
+
+/// Reason why a single parameter is not identifiable although no open direction contains it.
+Answer answer_to(const MotorModel& motor, const CalibratedValue& figure, const Fit& fit, const Look& seen) {
+  const Roles roles = roles_of(motor.model);
+  const auto holds = [&](int place) { return component(figure.exponents, place) != 0.0; };
+  if (!seen.has_heat && (holds(roles.resistance) || holds(roles.drag) || rests_on_watts(motor, figure))) {
+    return no_heat();
+  }
+  if (holds(roles.resistance)) {
+    return scale_open();
+  }
+  if (holds(roles.drag)) {
+    return loss_hidden(seen);
+  }
+  if (is_of_stator(motor, figure) && !seen.stator_is_sensed) {
+    return stator_unseen();
+  }
+  if (is_of_stator(motor, figure)) {
+    const double stator_s = std::exp(fit.theta[roles.stator_capacity] + fit.theta[roles.stator_ambient]);
+    return {fmt::format("the runs neither reach a steady state nor cool down far enough: the longest lasts {} min, the stator's time "
+                        "constant is some {} min",
+                        significant(seen.longest_s / 60.0, 2), significant(stator_s / 60.0, 1)),
+            "one run from cold with a constant current until the temperatures level out, then the cool-down", 90.0};
+  }
+  if ((holds(roles.winding_capacity) || holds(roles.winding_stator)) && !seen.winding_is_sensed) {
+    return winding_unseen();
+  }
+  if (holds(roles.winding_capacity) || holds(roles.winding_stator)) {
+    return {"the winding's temperature hardly leaves the stator's in these runs, or never in steps",
+            "some steps of current at standstill, on and off for two of the winding's time constants each", 20.0};
+  }
+  return not_excited();
+}
+
+/// Adds a reason for every parameter that is not identifiable and that the open directions do not explain. `told` has these directions as
+/// columns.
+void name_the_rest(const MotorModel& motor, const Fit& fit, const Look& seen, std::span<const CalibratedParameter> figures,
+                   const Eigen::MatrixXd& told, std::vector<OpenDirection>& open) {
+  const bool has_unlogged_speed = !motor.nuisances.empty();
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const CalibratedValue& figure = motor.figures[i];
+    const double variance = figure.exponents.dot(fit.covariance * figure.exponents);
+    constexpr double kMostly = 0.5;
+    if (figures[i].is_identifiable || (told.transpose() * figure.exponents).squaredNorm() > kMostly * variance) {
+      continue;
+    }
+    const Answer answer = has_unlogged_speed && is_of_stator(motor, figure) ? speed_unlogged() : answer_to(motor, figure, fit, seen);
+    const auto same = std::ranges::find_if(
+        open, [&](const OpenDirection& each) { return each.why == answer.why && each.experiment == answer.experiment; });
+    if (same != open.end()) {
+      same->what += fmt::format(", {}", figure.name);
+      same->left_sd = std::max(same->left_sd, std::sqrt(variance));
+    } else {
+      open.push_back(open_direction(figure.name, answer));
+      open.back().left_sd = std::sqrt(variance);
+    }
+  }
+}
+
+}  // namespace
+
+bool is_heated(const MotorModel& motor, std::span<const MeasuredRun> runs) {
+  // The offset of a current sensor must not count as heat.
+  constexpr double kNothing_K = 1.0;
+  const auto value = [&](std::string_view name) {
+    const auto parameters = motor.model.network.parameters();
+    return motor.model.values[static_cast<std::size_t>(std::ranges::find(parameters, name, &NetworkParameter::name) - parameters.begin())];
+  };
+  const double across_K_per_W = value("winding_stator.thermal_resistance") + value("stator_ambient.thermal_resistance");
+  const double slowest_s = across_K_per_W * value("winding.heat_capacity");
+  const double by_current_ohm = motor.heat != HeatInput::input_power ? value("copper_loss.terminal_resistance") : 0.0;
+  // Upper bound of the temperature rise: the winding alone, with the whole resistance to ambient.
+  return std::ranges::any_of(runs, [&](const MeasuredRun& run) {
+    double rise_K = 0.0;
+    for (std::size_t k = 0; k < run.at.size() && rise_K < kNothing_K; ++k) {
+      const OperatingPoint<double>& at = run.at[k];
+      const double heat_W = motor.heat != HeatInput::input_power ? at.current_rms_A * at.current_rms_A * by_current_ohm : at.input_power_W;
+      const double stays_share = std::exp(-(run.time_s[k + 1] - run.time_s[k]) / slowest_s);
+      rise_K = stays_share * rise_K + (1.0 - stays_share) * heat_W * across_K_per_W;
+    }
+    return rise_K >= kNothing_K;
+  });
+}
+
+bool rests_on_watts(const MotorModel& motor, const CalibratedValue& figure) {
+  const Roles roles = roles_of(motor.model);
+  const double by_scale = component(figure.exponents, roles.winding_capacity) - component(figure.exponents, roles.winding_stator) +
+                          component(figure.exponents, roles.stator_capacity) - component(figure.exponents, roles.stator_ambient);
+  return std::abs(by_scale) > 0.5;
+}
+
+std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& fit, std::span<const MeasuredRun> runs,
+                                           std::span<const CalibratedParameter> figures) {
+  const Eigen::Index count = motor.model.free_count();
+  const Eigen::MatrixXd triangle = fit.data_triangle.topLeftCorner(count, count);
+  Eigen::MatrixXd data = triangle.transpose() * triangle;
+  const Eigen::MatrixXd known = motor.model.prior.precision.inverse();
+  std::vector<Eigen::Index> asked;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    // A parameter without any sensitivity would mix arbitrarily with the other undetermined directions.
+    constexpr double kNothing = 1e-9;
+    const bool is_nuisance = std::ranges::find(motor.nuisances, static_cast<int>(i)) != motor.nuisances.end();
+    if (is_nuisance) {
+      data(i, i) += motor.model.prior.precision(i, i);
+      data -= data.col(i).eval() * data.row(i).eval() / data(i, i);
+    } else if (data(i, i) * known(i, i) > kNothing) {
+      asked.push_back(i);
+    }
+  }
+  const Eigen::MatrixXd prior_covariance = known(asked, asked);
+  const Eigen::MatrixXd root = prior_covariance.llt().matrixL();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(root.transpose() * data(asked, asked) * root);
+  const Look seen = look(motor, runs);
+  const bool was_fitted = std::ranges::find(motor.figures, Origin::measured, &CalibratedValue::origin) != motor.figures.end();
+  std::vector<OpenDirection> open;
+  if (!motor.nuisances.empty()) {
+    open.push_back(open_direction(std::string(kLossAtUnloggedSpeed), speed_unlogged()));
+    // Rank this first, because the information in the other runs depends on it.
+    open.back().left_sd = std::numeric_limits<double>::infinity();
+  }
+  Eigen::MatrixXd told(count, 0);
+  for (Eigen::Index i = 0; i < solver.eigenvalues().size(); ++i) {
+    const double information = std::max(0.0, solver.eigenvalues()[i]);
+    // Remaining uncertainty along this direction. An earlier fit may have determined what these runs do not.
+    Eigen::VectorXd left = Eigen::VectorXd::Zero(count);
+    left(asked) = root * solver.eigenvectors().col(i) / std::sqrt(1.0 + information);
+    constexpr double kWellKnown = 0.03;
+    const bool is_known = was_fitted && left.cwiseAbs().maxCoeff() < kWellKnown;
+    if (1.0 / (1.0 + information) > kIdentifiableShare && !is_known) {
+      open.push_back(open_direction(movement(motor.model, left.normalized()), answer_to(motor, left.normalized(), seen)));
+      open.back().left_sd = left.norm();
+      told.conservativeResize(Eigen::NoChange, told.cols() + 1);
+      told.rightCols(1) = left;
+    }
+  }
+  name_the_rest(motor, fit, seen, figures, told, open);
+  return open;
+}
+
+std::string next_experiment(std::span<const OpenDirection> open) {
+  // Ignore directions that are open by much less than the most uncertain one.
+  constexpr double kWeighs_share = 0.5;
+  double most_sd = 0.0;
+  for (const OpenDirection& each : open) {
+    most_sd = std::max(most_sd, each.left_sd);
+  }
+  const OpenDirection* best = nullptr;
+  for (const OpenDirection& each : open) {
+    if (each.left_sd >= kWeighs_share * most_sd && (!best || each.experiment_min < best->experiment_min)) {
+      best = &each;
+    }
+  }
+  return best ? best->experiment : "";
+}
+
+}  // namespace heatsoak

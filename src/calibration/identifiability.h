@@ -1,0 +1,26 @@
+// Identifiability: which parameter combinations the data do not determine, in words, and the cheapest experiment that would.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calibration/calibrate.h"
+
+namespace heatsoak {
+
+/// Returns true if the logged heat inputs of any run can warm the winding by at least 1 K.
+bool is_heated(const MotorModel& motor, std::span<const MeasuredRun> runs);
+
+/// Returns true if the parameter scales with a common factor on all heat. True for K/W and J/K, false for time constants.
+bool rests_on_watts(const MotorModel& motor, const CalibratedValue& figure);
+
+/// Returns the combinations of parameters that the data determine less well than the prior, and parameters that are not identifiable for
+/// another reason. `figures` must be in the order of motor.figures.
+std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& fit, std::span<const MeasuredRun> runs,
+                                           std::span<const CalibratedParameter> figures);
+
+/// Returns the cheapest experiment for the most uncertain directions; empty if nothing is open.
+std::string next_experiment(std::span<const OpenDirection> open);
+
+}  // namespace heatsoak

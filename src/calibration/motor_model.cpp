@@ -1,0 +1,374 @@
+#include "calibration/motor_model.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/diagnostic.h"
+#include "base/quantity.h"
+#include "calibration/loss_at_stator.h"
+#include "calibration/unlogged_speed.h"
+#include "estimation/log_rows.h"
+#include "motor/datasheet_network.h"
+
+namespace heatsoak {
+namespace {
+
+/// Prior standard deviation of a logarithm by origin, if the file states no spread, and the factor that widens a stated spread. Data sheet
+/// values hold only for the mounting in which they were measured; estimates are less certain still.
+struct Trust {
+  Origin origin;
+  double unstated_sd;
+  double widening;
+};
+constexpr std::array kTrust{Trust{Origin::measured, 0.1, 1.0}, Trust{Origin::datasheet, kSheet_sd, 1.5},
+                            Trust{Origin::third_party, 0.5, 1.5}, Trust{Origin::derived, 0.5, 1.5}, Trust{Origin::estimated, 0.9, 2.0}};
+
+/// Mean specific heat of motor materials (copper 385, steel 460, magnets 450, aluminium 900 J/(kg K)), and the standard deviation of the
+/// logarithm of the heat capacity that follows from the mass: part of the mass is only weakly coupled to the stator.
+constexpr double kSpecificHeat_J_per_kg_K = 440.0;
+constexpr double kMassPrior_sd = 0.25;
+
+int place_of(const Network& network, std::string_view parameter) {
+  const auto all = network.parameters();
+  const auto found = std::ranges::find(all, parameter, &NetworkParameter::name);
+  return found == all.end() ? -1 : static_cast<int>(found - all.begin());
+}
+
+/// Share of the input power that heats the winding: 1 minus the shares of the file's input_power_loss effects, at least 0.
+double implicit_power_share(const Motor& motor) {
+  double share = 1.0;
+  for (const MotorEffect& effect : motor.effects) {
+    share -= effect.type->name == std::string_view("input_power_loss") ? effect.parameters.front().value : 0.0;
+  }
+  return std::max(0.0, share);
+}
+
+bool all_have(std::span<const Recording> recordings, Signal signal, const ShaftTorque& torque = {}) {
+  return std::ranges::all_of(recordings, [&](const Recording& each) {
+    const std::vector<Signal> signals = signals_of(each, torque);
+    return std::ranges::find(signals, signal) != signals.end();
+  });
+}
+
+class ModelBuilder {
+ public:
+  ModelBuilder(const Motor& motor, HeatInput heat, bool with_speed) : motor_(motor), with_speed_(with_speed) {
+    all_.heat = heat;
+    all_.model.network = datasheet_network(motor, nominal_sample(motor));
+    if (heat == HeatInput::input_power) {
+      // This is the only loss: the copper loss is 0 without a current, and the no-load loss is set to 0 below.
+      all_.model.network.add_effect(std::string(kImplicitPowerLoss), *find_effect("input_power_loss"), std::vector<std::string>{"winding"},
+                                    std::vector<double>{implicit_power_share(motor)});
+      // An estimated no-load current is too uncertain for this split.
+      if (with_speed && motor.nominal.no_load_current_A > 0.0 &&
+          motor.figures.find("no_load_current")->second.origin != Origin::estimated) {
+        add_loss_at_stator(all_.model.network, drag_torque_Nm(motor.nominal));
+      }
+    }
+    all_.model.values = all_.model.network.values();
+    if (heat != HeatInput::current) {
+      all_.model.values[static_cast<std::size_t>(place_of(all_.model.network, "no_load_loss.drag_torque"))] = 0.0;
+    }
+    all_.model.flux_nodes = {all_.model.network.find_node("winding"), all_.model.network.find_node("stator")};
+    all_.needed = {heat == HeatInput::input_power ? Signal::input_power : Signal::current};
+    if (heat == HeatInput::power_balance) {
+      all_.needed.insert(all_.needed.end(), {Signal::input_power, Signal::shaft_power, Signal::speed});
+    }
+  }
+
+  MotorModel build() {
+    const int winding = free("winding.heat_capacity");
+    const int across = free("winding_stator.thermal_resistance");
+    const int stator = free("stator.heat_capacity");
+    const int out = free("stator_ambient.thermal_resistance");
+    figure("thermal_resistance_winding_stator", {{across, 1.0}});
+    figure("thermal_resistance_stator_ambient", {{out, 1.0}});
+    figure("thermal_time_constant_winding", {{winding, 1.0}, {across, 1.0}});
+    figure("thermal_time_constant_stator", {{stator, 1.0}, {out, 1.0}});
+    if (all_.heat == HeatInput::input_power) {
+      heat_of_power();
+    } else {
+      heat_of_current();
+    }
+    effects();
+    const auto file_parameters = all_.figures.size();
+    capacity("winding_heat_capacity", winding);
+    capacity("stator_heat_capacity", stator);
+    set_prior(file_parameters, winding, stator);
+    return std::move(all_);
+  }
+
+ private:
+  /// Frees a parameter within a factor of 30 of its value. Returns its index among the free ones.
+  int free(const std::string& parameter) {
+    const int place = place_of(all_.model.network, parameter);
+    const double value = all_.model.values[static_cast<std::size_t>(place)];
+    constexpr double kFar = 30.0;
+    all_.model.free.push_back({.place = place, .by_log = true, .scale = 1.0, .low = value / kFar, .high = value * kFar});
+    return static_cast<int>(all_.model.free.size()) - 1;
+  }
+
+  void figure(std::string_view key, const std::vector<std::pair<int, double>>& exponents) {
+    const ParameterValue& figure = motor_.figures.find(key)->second;
+    const auto specs = motor_parameter_specs();
+    const auto spec = std::ranges::find(specs, key, [](const MotorParameterSpec& each) { return each.spec.key; });
+    add(std::string(key), std::string(spec->spec.unit), figure, exponents);
+  }
+  void add(std::string name, std::string unit, const ParameterValue& figure, const std::vector<std::pair<int, double>>& exponents) {
+    // A result of an earlier fit holds for this mounting, so it is not widened.
+    const double prior_sd = is_of_fit(name) && figure.spread ? prior_sd_of_spread(figure) : prior_sd_of(figure);
+    CalibratedValue fitted{std::move(name), std::move(unit), true, Eigen::VectorXd::Zero(kMostFree), figure.value, prior_sd, figure.origin};
+    for (const auto& [place, exponent] : exponents) {
+      fitted.exponents[place] = exponent;
+    }
+    all_.figures.push_back(std::move(fitted));
+  }
+
+  void heat_of_current() {
+    const ParameterValue& resistance = motor_.figures.find("terminal_resistance")->second;
+    // A published or measured resistance sets the scale of all heat and is held; an estimate is fitted.
+    if (resistance.spread || resistance.origin == Origin::estimated) {
+      figure("terminal_resistance", {{free("copper_loss.terminal_resistance"), 1.0}});
+      // A resistance does not depend on the mounting, so its spread is not widened.
+      if (resistance.spread) {
+        all_.figures.back().prior_sd = std::min(all_.figures.back().prior_sd, prior_sd_of_spread(resistance));
+      }
+    } else {
+      all_.held.emplace_back("terminal_resistance is held at its stated value: all heat capacities and resistances scale with it");
+    }
+    if (all_.heat == HeatInput::power_balance) {
+      all_.held.emplace_back("no_load_current does not enter: the loss beside the copper loss is the measured power balance");
+    } else if (!with_speed_) {
+      all_.held.emplace_back("no_load_current is held: not every log has the speed that the loss it stands for goes with");
+    } else if (motor_.nominal.no_load_current_A > 0.0) {
+      all_.needed.push_back(Signal::speed);
+      figure("no_load_current", {{free("no_load_loss.drag_torque"), 1.0}});
+    }
+  }
+
+  void heat_of_power() {
+    const bool has_loss_at_stator = place_of(all_.model.network, kDragAtStator) >= 0;
+    all_.held.push_back(fmt::format(
+        "the share of the stated power that becomes heat is held at 1: all heat capacities and resistances scale with it; {} to "
+        "arise at the winding, and iron loss, friction or a driver's heat at the stator {}would shift "
+        "thermal_resistance_winding_stator and winding_heat_capacity",
+        has_loss_at_stator ? "what no_load_current makes of it is taken to arise at the stator and all else" : "all of it is taken",
+        has_loss_at_stator ? "beyond that " : ""));
+    if (has_loss_at_stator) {
+      all_.needed.push_back(Signal::speed);
+      figure("no_load_current", {{free(std::string(kDragAtStator)), 1.0}});
+    }
+  }
+
+  void effects() {
+    for (const MotorEffect& effect : motor_.effects) {
+      const std::vector<double> values = effect.values();
+      std::vector<std::string_view> held;
+      for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+        const ParameterSpec& spec = effect.type->parameters[i];
+        const std::string name = fmt::format("{}.{}", effect.name, spec.key);
+        // An effect whose condition does not hold is not in the network.
+        if (place_of(all_.model.network, name) < 0) {
+          continue;
+        }
+        if (!spec.choices.empty() || !effect.parameters[i].spread || !(effect.parameters[i].value > 0.0)) {
+          if (spec.choices.empty()) {
+            held.push_back(spec.key);
+          }
+          continue;
+        }
+        add("effects." + name, std::string(unit_of(effect.type->parameters, i, values)), effect.parameters[i], {{free(name), 1.0}});
+        FreeParameter& bounded = all_.model.free.back();
+        bounded.low = std::max(bounded.low, spec.range.low);
+        bounded.high = std::min(bounded.high, spec.range.high);
+      }
+      if (!held.empty()) {
+        all_.held.push_back(fmt::format("effects.{}: {} {} held: the file states no spread", effect.name, fmt::join(held, ", "),
+                                        held.size() == 1 ? "is" : "are"));
+      }
+    }
+  }
+
+  void capacity(const std::string& name, int place) {
+    const double before = all_.model.values[static_cast<std::size_t>(all_.model.free[static_cast<std::size_t>(place)].place)];
+    all_.figures.push_back(
+        {name, "J/K", false, Eigen::VectorXd::Zero(kMostFree), before, 0.0, motor_.fit ? Origin::measured : Origin::derived});
+    all_.figures.back().exponents[place] = 1.0;
+  }
+
+  static double prior_sd_of_spread(const ParameterValue& figure) { return 0.25 * std::log(figure.spread->high / figure.spread->low); }
+
+  [[nodiscard]] bool is_of_fit(const std::string& name) const {
+    return motor_.fit && std::ranges::find(motor_.fit->figures, name) != motor_.fit->figures.end();
+  }
+
+  /// Prior precision of the logarithms of the file's parameters. They are independent, except for those from one earlier fit, which have
+  /// its correlation.
+  [[nodiscard]] Eigen::MatrixXd precision_of_parameters(Eigen::Index count) const {
+    Eigen::VectorXd inverse_sd(count);
+    Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(count, count);
+    std::vector<Eigen::Index> in_fit(static_cast<std::size_t>(count), -1);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const CalibratedValue& each = all_.figures[static_cast<std::size_t>(i)];
+      inverse_sd[i] = 1.0 / each.prior_sd;
+      if (is_of_fit(each.name)) {
+        in_fit[static_cast<std::size_t>(i)] = std::ranges::find(motor_.fit->figures, each.name) - motor_.fit->figures.begin();
+      }
+    }
+    for (Eigen::Index i = 0; i < count; ++i) {
+      for (Eigen::Index j = 0; j < i; ++j) {
+        const Eigen::Index a = in_fit[static_cast<std::size_t>(i)];
+        const Eigen::Index b = in_fit[static_cast<std::size_t>(j)];
+        correlation(i, j) = correlation(j, i) = a >= 0 && b >= 0 ? motor_.fit->correlation(a, b) : 0.0;
+      }
+    }
+    // The file has five digits, so smaller eigenvalues are rounding errors.
+    constexpr double kRounding = 5e-5;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
+    const Eigen::MatrixXd inverse =
+        solver.eigenvectors() * solver.eigenvalues().cwiseMax(kRounding).cwiseInverse().asDiagonal() * solver.eigenvectors().transpose();
+    return inverse_sd.asDiagonal() * inverse * inverse_sd.asDiagonal();
+  }
+
+  /// Converts the prior of the file's parameters to the parameters of the model.
+  void set_prior(std::size_t file_parameters, int winding, int stator) {
+    Model& model = all_.model;
+    const Eigen::Index count = model.free_count();
+    for (CalibratedValue& each : all_.figures) {
+      each.exponents.conservativeResize(count);
+    }
+    model.prior.mean = model.theta();
+    Eigen::MatrixXd exponents(static_cast<Eigen::Index>(file_parameters), count);
+    for (std::size_t i = 0; i < file_parameters; ++i) {
+      exponents.row(static_cast<Eigen::Index>(i)) = all_.figures[i].exponents.transpose();
+    }
+    model.prior.precision = exponents.transpose() * precision_of_parameters(exponents.rows()) * exponents;
+    // An earlier fit has already used the mass.
+    if (const double mass_kg = motor_.nominal.mass_kg; !std::isnan(mass_kg) && !motor_.fit) {
+      const double winding_J_per_K = std::exp(model.prior.mean[winding]);
+      const double stator_J_per_K = std::exp(model.prior.mean[stator]);
+      const double sum_J_per_K = winding_J_per_K + stator_J_per_K;
+      Eigen::VectorXd share = Eigen::VectorXd::Zero(count);
+      share[winding] = winding_J_per_K / sum_J_per_K;
+      share[stator] = stator_J_per_K / sum_J_per_K;
+      const double off = std::log(kSpecificHeat_J_per_kg_K * mass_kg / sum_J_per_K);
+      const Eigen::MatrixXd before = model.prior.precision;
+      model.prior.precision += share * share.transpose() / (kMassPrior_sd * kMassPrior_sd);
+      model.prior.mean += model.prior.precision.ldlt().solve(share) * off / (kMassPrior_sd * kMassPrior_sd);
+    }
+    const Eigen::MatrixXd covariance = model.prior.precision.inverse();
+    for (CalibratedValue& each : all_.figures) {
+      if (!each.is_of_file) {
+        each.prior_sd = std::sqrt(each.exponents.dot(covariance * each.exponents));
+      }
+    }
+  }
+
+  static constexpr Eigen::Index kMostFree = 64;
+  const Motor& motor_;
+  bool with_speed_;
+  MotorModel all_;
+};
+
+}  // namespace
+
+bool is_identifiable(double sd_share, const CalibratedValue& figure) {
+  // Not identifiable: an interval of a factor of two to each side, or less than 30 % reduction of the prior standard deviation.
+  constexpr double kIdentifiable_sd = 0.35;
+  constexpr double kNews_share = 0.7;
+  return sd_share < kIdentifiable_sd && (figure.origin == Origin::measured || sd_share < kNews_share * figure.prior_sd);
+}
+
+double prior_sd_of(const ParameterValue& figure) {
+  const auto* const trust = std::ranges::find(kTrust, figure.origin, &Trust::origin);
+  if (!figure.spread || !(figure.spread->low > 0.0) || !(figure.spread->high > figure.spread->low)) {
+    return trust->unstated_sd;
+  }
+  // Both kinds of spread are taken as 95 % intervals, ±2 standard deviations.
+  return trust->widening * 0.25 * std::log(figure.spread->high / figure.spread->low);
+}
+
+static ShaftTorque shaft_torque_of(const Motor& motor) {
+  const auto known = [](double value) { return value > 0.0 ? value : 0.0; };
+  return {known(motor.nominal.torque_constant_Nm_per_A), known(drag_torque_Nm(motor.nominal)),
+          known(motor.nominal.terminal_resistance_ohm)};
+}
+
+MeasuredRunOptions how_to_read(const Motor& motor, HeatInput heat) {
+  // Limits of the step, whatever time constant the data sheet states.
+  constexpr double kShortest_s = 0.05;
+  constexpr double kLongest_s = 2.0;
+  MeasuredRunOptions how;
+  how.longest_step_s = std::clamp(motor.nominal.thermal_time_constant_winding_s / 10.0, kShortest_s, kLongest_s);
+  // The input power contains the copper loss; a current from the torque would count it twice.
+  if (heat != HeatInput::input_power) {
+    how.torque = shaft_torque_of(motor);
+  }
+  how.least_current_A = least_driving_current_A(motor);
+  for (const MotorSensor& sensor : motor.sensors) {
+    how.faults.push_back({sensor.type, sensor.size.value});
+  }
+  for (const MotorEffect& effect : motor.effects) {
+    how.column = effect.column.empty() ? how.column : effect.column;
+  }
+  return how;
+}
+
+HeatInput heat_input_for(std::span<const Recording> recordings, const ShaftTorque& torque) {
+  if (all_have(recordings, Signal::current)) {
+    return HeatInput::current;
+  }
+  if (all_have(recordings, Signal::input_power)) {
+    return HeatInput::input_power;
+  }
+  if (all_have(recordings, Signal::current, torque)) {
+    return HeatInput::current;
+  }
+  std::vector<Diagnostic> lacking;
+  for (const Recording& each : recordings) {
+    const std::vector<Signal> signals = signals_of(each);
+    if (std::ranges::find(signals, Signal::current) == signals.end()) {
+      lacking.push_back({{each.file.string()},
+                         "current_A",
+                         "is no column of this log, or one without a number, and not all logs have power_in_W instead; heat cannot be "
+                         "computed"});
+    }
+  }
+  throw Failure(ExitCode::bad_input, "the logs have no heat input", std::move(lacking));
+}
+
+bool has_remaining_loss(const Motor& motor) {
+  return std::ranges::any_of(motor.effects, [](const MotorEffect& each) { return each.type->name == std::string_view("remaining_loss"); });
+}
+
+HeatInput heat_input_of(const Motor& motor, std::span<const Recording> recordings, bool may_add_remaining_loss) {
+  const bool has_no_losses = motor.effects.empty() && !motor.fit;
+  const bool is_balanced = std::ranges::all_of(std::array{Signal::current, Signal::input_power, Signal::shaft_power, Signal::speed},
+                                               [&](Signal signal) { return all_have(recordings, signal); });
+  if (is_balanced && (has_remaining_loss(motor) || (may_add_remaining_loss && has_no_losses))) {
+    return HeatInput::power_balance;
+  }
+  return heat_input_for(recordings, shaft_torque_of(motor));
+}
+
+std::vector<std::string> held_sensors(const Motor& motor, std::span<const Recording> recordings) {
+  std::vector<std::string> held;
+  for (const MotorSensor& sensor : motor.sensors) {
+    const SensorEffectType& type = *sensor.type;
+    const bool is_shown = std::ranges::any_of(recordings, [&](const Recording& each) { return has_values(each.find(type.signal)); });
+    const std::string size = fmt::format("{}{}{}", significant(sensor.size.value, 3), type.size.unit.empty() ? "" : " ", type.size.unit);
+    held.push_back(is_shown ? fmt::format("effects.{}.{} is held at {}: an error of the sensor is no property of the motor", sensor.name,
+                                          type.size.key, size)
+                            : fmt::format("no log has the {} that effects.{} speaks of: it counts for nothing", type.signal, sensor.name));
+  }
+  return held;
+}
+
+MotorModel motor_model(const Motor& motor, HeatInput heat, bool with_speed) { return ModelBuilder(motor, heat, with_speed).build(); }
+
+}  // namespace heatsoak

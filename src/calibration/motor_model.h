@@ -1,0 +1,80 @@
+// Builds a model that can be fitted from a motor file and the signals of its logs, and maps its parameters to those of the file.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "estimation/measured_run.h"
+#include "estimation/model.h"
+#include "motor/motor.h"
+
+namespace heatsoak {
+
+/// Name of the effect with the unknown loss of a motor whose speed was not logged.
+inline constexpr std::string_view kLossAtUnloggedSpeed = "loss_at_unlogged_speed";
+
+/// Name of the effect that puts the logged input power into the winding, less the shares of the file's own effects.
+inline constexpr std::string_view kImplicitPowerLoss = "input_power_loss";
+
+/// Prior standard deviation of the logarithm of a data sheet value without a stated spread.
+inline constexpr double kSheet_sd = 0.4;
+
+/// Signal from which the heat of a model is computed. `power_balance`: copper loss from current and resistance; all other loss is input
+/// power − shaft power − copper loss, by the motor's effect remaining_loss, and the no-load loss is 0.
+enum class HeatInput { current, input_power, power_balance };
+
+/// Parameter of the motor file, or a heat capacity computed from two of them. Its logarithm is linear in θ.
+struct CalibratedValue {
+  std::string name;  ///< key in the file, for example "thermal_time_constant_winding" or "effects.fan.conductance"
+  std::string unit;
+  bool is_of_file = true;     ///< false: a heat capacity; files contain time constants instead
+  Eigen::VectorXd exponents;  ///< value = constant · Π parameter^exponent
+  double before = 0.0;        ///< value in the file
+  double prior_sd = 0.0;      ///< of the logarithm, from spread and origin
+  Origin origin = Origin::estimated;
+};
+
+/// Returns true if the data, not only the prior, determine the parameter to a factor of two or better. `sd_share` is the standard deviation
+/// of its logarithm.
+bool is_identifiable(double sd_share, const CalibratedValue& figure);
+
+struct MotorModel {
+  Model model;
+  HeatInput heat = HeatInput::current;
+  std::vector<Signal> needed;
+  std::vector<CalibratedValue> figures;
+  std::vector<int> nuisances;     ///< indices of free parameters that are not parameters of the motor
+  std::vector<std::string> held;  ///< sentences: parameters that are not fitted, and why
+};
+
+/// Returns the options for reading logs of the motor; the caller sets `needed` and `ambient_C`. Rows are merged up to a tenth of the
+/// winding's time constant (0.05 to 2 s), because a network of two bodies does not describe faster changes of a real winding. A missing
+/// torque follows from torque constant and no-load current, except if the input power is the heat, which contains the copper loss. Sensors
+/// have the faults stated in the file.
+MeasuredRunOptions how_to_read(const Motor& motor, HeatInput heat);
+
+/// Returns sentences about the sensor faults stated in the file, which are not fitted.
+std::vector<std::string> held_sensors(const Motor& motor, std::span<const Recording> recordings);
+
+/// Returns the heat input that all recordings have: current (copper loss), else input power, else a current computed from the torque with
+/// `torque`. Throws Failure (bad_input) if they have none of these.
+HeatInput heat_input_for(std::span<const Recording> recordings, const ShaftTorque& torque = {});
+
+/// Returns true if the motor has a remaining_loss effect, that is, takes its losses from a measured power balance.
+bool has_remaining_loss(const Motor& motor);
+
+/// Same as heat_input_for(), but prefers the power balance if all recordings have current, input power, torque and speed. The motor must
+/// then have a remaining_loss, or (with `may_add_remaining_loss`) no effects and no fit that already describe its losses.
+HeatInput heat_input_of(const Motor& motor, std::span<const Recording> recordings, bool may_add_remaining_loss);
+
+/// Builds the model. `with_speed`: all logs have a speed, so that the no-load loss is observable.
+MotorModel motor_model(const Motor& motor, HeatInput heat, bool with_speed);
+
+/// Returns the prior standard deviation of a parameter's logarithm: from its spread, widened according to its origin, or a default for the
+/// origin if it has no spread.
+double prior_sd_of(const ParameterValue& figure);
+
+}  // namespace heatsoak

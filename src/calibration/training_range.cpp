@@ -1,0 +1,87 @@
+#include "calibration/training_range.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/quantity.h"
+#include "recording/spread.h"
+
+namespace heatsoak {
+namespace {
+
+/// Input whose range limits the validity of a forecast.
+struct RangedInput {
+  std::string_view channel;
+  std::string_view words;
+  std::string_view unit;
+  bool is_size = false;  ///< true: the magnitude counts, and up to 20 % above the largest is in range
+};
+constexpr std::array kInputs{RangedInput{"ambient_C", "an ambient temperature", "°C"},
+                             RangedInput{"speed_rad_per_s", "a speed", "rad/s", true}, RangedInput{"current_A", "a current", "A", true}};
+constexpr double kAmbient_K = 5.0;
+constexpr double kSize_ratio = 1.2;
+
+std::optional<InputRange> range_of(const RangedInput& input, const Recording& recording) {
+  const Channel* const channel = recording.find(input.channel);
+  if (channel == nullptr) {
+    return std::nullopt;
+  }
+  std::vector<double> values = channel->values;
+  if (input.is_size) {
+    std::ranges::transform(values, values.begin(), [](double value) { return std::abs(value); });
+  }
+  const InputRange found{percentile(values, 0.01), percentile(values, 0.99)};
+  return std::isfinite(found.low) ? std::optional(found) : std::nullopt;
+}
+
+}  // namespace
+
+void widen(TrainingRange& range, std::span<const Recording> recordings) {
+  for (const Recording& recording : recordings) {
+    for (const auto& [key, value] : recording.conditions) {
+      range.conditions.insert(fmt::format("{}={}", key, value));
+    }
+    for (const RangedInput& input : kInputs) {
+      if (const auto found = range_of(input, recording)) {
+        const auto [place, is_new] = range.inputs.try_emplace(std::string(input.channel), *found);
+        place->second = {std::min(place->second.low, found->low), std::max(place->second.high, found->high)};
+      }
+    }
+  }
+}
+
+std::vector<std::string> outside(const TrainingRange& range, const Recording& recording) {
+  std::vector<std::string> all;
+  for (const auto& [key, value] : recording.conditions) {
+    std::vector<std::string> seen;
+    std::ranges::copy_if(range.conditions, std::back_inserter(seen),
+                         [start = key + "="](const std::string& each) { return each.starts_with(start); });
+    if (!range.inputs.empty() && std::ranges::find(seen, fmt::format("{}={}", key, value)) == seen.end()) {
+      all.push_back(fmt::format(
+          "The forecast of {0} may be far off: its run has {1}={2}, the model was fitted to runs {3}. Calibrate with a run under {1}={2}.",
+          recording.name, key, value, seen.empty() ? fmt::format("that state no {}", key) : fmt::format("with {}", fmt::join(seen, ", "))));
+    }
+  }
+  for (const RangedInput& input : kInputs) {
+    const auto known = range.inputs.find(std::string(input.channel));
+    const auto found = range_of(input, recording);
+    if (known == range.inputs.end() || !found) {
+      continue;
+    }
+    const auto [low, high] = known->second;
+    const bool is_below = !input.is_size && found->low < low - kAmbient_K;
+    const bool is_above = found->high > (input.is_size ? kSize_ratio * high : high + kAmbient_K);
+    if (is_below || is_above) {
+      all.push_back(fmt::format("The forecast of {} extrapolates: it has {} of {} {}, the fitted runs had {} to {} {}.", recording.name,
+                                input.words, significant(is_above ? found->high : found->low, 3), input.unit, significant(low, 3),
+                                significant(high, 3), input.unit));
+    }
+  }
+  return all;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,162 @@
+#include "calibration/written_forecast.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/quantity.h"
+#include "estimation/interval.h"
+#include "motor/motor.h"
+
+namespace heatsoak {
+namespace {
+
+std::string_view name_of(ForecastSource source) {
+  switch (source) {
+    case ForecastSource::file:
+      return "file";
+    case ForecastSource::ordinary:
+      return "least squares of free runs";
+    case ForecastSource::tempered:
+      return "forecast fit";
+  }
+  return "?";
+}
+
+std::string errors_in_words(const RivalScore& rival) {
+  std::vector<std::string> each;
+  for (const auto& [signal, rmse_K] : rival.rmse_K) {
+    each.push_back(fmt::format("{} {} K", signal.substr(0, signal.rfind('_')), significant(rmse_K, 2)));
+  }
+  return fmt::format("{}: {}", name_of(rival.source), fmt::join(each, ", "));
+}
+
+}  // namespace
+
+Range declared_range(const Motor& motor, std::string_view key) {
+  for (const MotorEffect& effect : motor.effects) {
+    for (const ParameterSpec& spec : effect.type->parameters) {
+      if (key == fmt::format("effects.{}.{}", effect.name, spec.key)) {
+        return spec.range;
+      }
+    }
+  }
+  const auto specs = motor_parameter_specs();
+  const auto found = std::ranges::find(specs, key, [](const MotorParameterSpec& each) { return each.spec.key; });
+  return found == specs.end() ? Range::positive() : found->spec.range;
+}
+
+std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> figures) {
+  std::vector<std::string> notes;
+  Motor declared = motor;
+  for (const CalibratedParameter& each : figures) {
+    const ParameterValue* const figure = each.is_of_file ? find_parameter(declared, each.name) : nullptr;
+    if (figure && figure->spread && (each.value < figure->spread->low || each.value > figure->spread->high)) {
+      notes.push_back(
+          fmt::format("{} becomes {} {}, outside of its declared range of {} to {} {}: check the units of the logs, or whether "
+                      "the range still holds for this motor and its mounting",
+                      each.name, significant(each.value, 3), unit_for_display(each.unit), significant(figure->spread->low, 3),
+                      significant(figure->spread->high, 3), unit_for_display(each.unit)));
+    }
+  }
+  return notes;
+}
+
+void keep_unidentifiable(std::span<const CalibratedParameter> before, std::vector<CalibratedParameter>& figures) {
+  for (CalibratedParameter& each : figures) {
+    const auto same = std::ranges::find(before, each.name, &CalibratedParameter::name);
+    each.is_identifiable = each.is_identifiable && (same == before.end() || same->is_identifiable);
+  }
+}
+
+void write_forecast(Calibration& calibration) {
+  const Forecast& forecast = *calibration.forecast;
+  const ForecastModel model = forecast.model();
+  const Eigen::Index inner = model.motor().model.free_count();
+  calibration.motor_model = model.motor();
+  calibration.fit.theta = forecast.fit.theta.head(inner);
+  calibration.fit.covariance = forecast.fit.covariance.topLeftCorner(inner, inner);
+  constexpr double kLeast_K = 1e-3;
+  constexpr double kMost_K = 20.0;
+  calibration.fit.free_run_error_K = std::clamp(forecast.fit.error_K, kLeast_K, kMost_K);
+  calibration.is_forecast_written = true;
+}
+
+std::string what_does_not_describe(const Calibration& calibration) {
+  const bool is_extended = calibration.is_forecast_written && !calibration.forecast->accepted.empty();
+  return fmt::format("{} constant values do not describe this motor",
+                     is_extended ? "the extended network and its" : "two temperatures with");
+}
+
+std::vector<std::string> forecast_in_words(const Calibration& calibration) {
+  const Forecast& forecast = *calibration.forecast;
+  std::vector<std::string> words;
+  if (calibration.is_forecast_written && !std::ranges::all_of(calibration.figures, &CalibratedParameter::is_identifiable)) {
+    words.emplace_back(
+        "values that are not identifiable are written too: the forecast depends on all values together, so take none of these for a "
+        "measurement");
+  }
+  if (forecast.rivals.empty()) {
+    words.push_back(
+        fmt::format("{} of these runs can be left out with heat of their own, at least {} are needed: the network stays as it is, and the "
+                    "90 % band of forecasts is wide because it rests on so few",
+                    forecast.pieces, kLeastPieces));
+  } else {
+    std::vector<std::string> each;
+    std::ranges::transform(forecast.rivals, std::back_inserter(each), errors_in_words);
+    words.push_back(fmt::format("left-out pieces ({}) are predicted to, rms: {}", forecast.pieces, fmt::join(each, "; ")));
+  }
+  if (forecast.source == ForecastSource::file) {
+    words.emplace_back(
+        calibration.is_forecast_written
+            ? "no fit predicts left-out pieces better than the file: its values are written as they are"
+            : "no fit predicts left-out pieces better than the file: for forecasts its values are better than the written ones");
+  } else if (forecast.source == ForecastSource::ordinary) {
+    words.push_back(fmt::format("least squares of free runs predicts left-out pieces best: {}",
+                                calibration.is_forecast_written ? "its parameters are written" : "`--forecast` writes its parameters"));
+  } else if (!forecast.accepted.empty()) {
+    std::vector<std::string> names;
+    std::ranges::transform(forecast.accepted, std::back_inserter(names), &AcceptedExtension::name);
+    words.push_back(fmt::format("{} {}; this is no diagnosis: another effect may be the cause (`heatsoak diagnose`)",
+                                calibration.is_forecast_written
+                                    ? "for better forecasts the network has now"
+                                    : "left-out pieces are predicted best by a network that `--forecast` writes, with",
+                                fmt::join(names, ", ")));
+  }
+  return words;
+}
+
+void add_extensions(const Calibration& calibration, const std::string& source, Motor& motor) {
+  for (const MotorEffect& effect : calibration.effects) {
+    if (std::ranges::find(motor.effects, effect.name, &MotorEffect::name) != motor.effects.end()) {
+      continue;
+    }
+    motor.effects.push_back(effect);
+    for (ParameterValue& each : motor.effects.back().parameters) {
+      each.source = source;
+      each.origin = each.spread ? each.origin : Origin::derived;
+    }
+  }
+  if (!calibration.is_forecast_written) {
+    return;
+  }
+  const ForecastModel model = calibration.forecast->model();
+  const ForecastFit& fit = calibration.forecast->fit;
+  for (std::size_t i = 0; i < model.faults().size(); ++i) {
+    const FreeFault& fault = model.faults()[i];
+    const Eigen::Index own = model.motor().model.free_count() + static_cast<Eigen::Index>(i);
+    const double reach = kInterval_sd * std::sqrt(fit.covariance(own, own));
+    MotorSensor sensor{std::string(fault.type->name), fault.type, {}};
+    sensor.size.value = std::exp(fit.theta[own]);
+    sensor.size.origin = Origin::measured;
+    sensor.size.source = source;
+    sensor.size.derivation = "fit to measured temperatures, for forecasts";
+    sensor.size.spread = Spread{Spread::Kind::range, std::max(fault.type->size.range.low, sensor.size.value * std::exp(-reach)),
+                                std::min(fault.type->size.range.high, sensor.size.value * std::exp(reach)), true};
+    motor.sensors.push_back(std::move(sensor));
+  }
+}
+
+}  // namespace heatsoak

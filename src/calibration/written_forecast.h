@@ -1,0 +1,35 @@
+// Selects the parameters that a calibration writes: those of the innovations fit or, on request, those of the forecast fit.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calibration/calibrate.h"
+
+namespace heatsoak {
+
+/// Returns one sentence per fitted value outside its declared range. Verbs that need a sound motor may refuse such a file.
+std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> figures);
+
+/// Marks a value as not identifiable if it was not identifiable in `before`.
+void keep_unidentifiable(std::span<const CalibratedParameter> before, std::vector<CalibratedParameter>& figures);
+
+/// Replaces model, parameters and covariance of the innovations fit by those of the forecast fit. Needs calibration.forecast.
+void write_forecast(Calibration& calibration);
+
+/// Returns the end of a warning: the written network with constant values does not describe this motor.
+std::string what_does_not_describe(const Calibration& calibration);
+
+/// Returns sentences about the compared fits and the chosen one.
+std::vector<std::string> forecast_in_words(const Calibration& calibration);
+
+/// Adds the effects and sensor faults of the calibration that the motor file does not have.
+void add_extensions(const Calibration& calibration, const std::string& source, Motor& motor);
+
+/// Returns the allowed range of a motor parameter by its key (for example "effects.fan.conductance"), in the parameter's unit. Positive
+/// numbers if the key is unknown.
+Range declared_range(const Motor& motor, std::string_view key);
+
+}  // namespace heatsoak

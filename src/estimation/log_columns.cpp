@@ -1,0 +1,120 @@
+#include "estimation/log_columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "base/unknown.h"
+
+namespace heatsoak {
+namespace {
+
+Eigen::VectorXd means_along(const Channel& channel, const std::vector<double>& row_time_s, const std::vector<double>& time_s) {
+  Eigen::VectorXd means = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(time_s.size()) - 1, kUnknown);
+  auto row = static_cast<std::size_t>(std::ranges::lower_bound(row_time_s, time_s.front()) - row_time_s.begin());
+  for (Eigen::Index k = 0; k < means.size(); ++k) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (; row < row_time_s.size() && row_time_s[row] < time_s[static_cast<std::size_t>(k) + 1]; ++row) {
+      if (!std::isnan(channel.values[row])) {
+        sum += channel.values[row];
+        count += 1.0;
+      }
+    }
+    means[k] = count > 0.0 ? sum / count : kUnknown;
+  }
+  return means;
+}
+
+/// Replaces each NaN by the nearest known value; all stay NaN if none is known.
+Eigen::VectorXd without_gaps(Eigen::VectorXd values) {
+  Eigen::Index last = -1;
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    if (std::isnan(values[k])) {
+      continue;
+    }
+    const Eigen::Index middle = last < 0 ? 0 : (last + k + 1) / 2;
+    for (Eigen::Index gap = last + 1; gap < k; ++gap) {
+      values[gap] = gap < middle ? values[last] : values[k];
+    }
+    last = k;
+  }
+  if (last >= 0) {
+    values.tail(values.size() - 1 - last).setConstant(values[last]);
+  }
+  return values;
+}
+
+}  // namespace
+
+std::string column_lacking(const std::string& column, std::span<const Recording> recordings) {
+  const auto has_it = [&](const Recording& each) { return each.time_s.size() > 1 && columns_along(each, each.time_s).contains(column); };
+  return column.empty() || std::ranges::all_of(recordings, has_it) ? std::string()
+                                                                   : fmt::format(
+                                                                         "not every log has a column {} beside the signals of its own that "
+                                                                         "a model knows: there the hottest of the curve over it is taken",
+                                                                         column);
+}
+
+std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording, const std::vector<double>& time_s) {
+  static const std::set<std::string, std::less<>> kElsewhere{
+      "current_A", "speed_rad_per_s", "bus_V", "power_in_W", "duty_ratio", "vehicle_speed_m_per_s", "neighbour_C", "ambient_C", "age_h"};
+  std::map<std::string, Eigen::VectorXd> columns;
+  for (const Channel& channel : recording.channels) {
+    // The network's laws use the current's magnitude; its sign is only available from the log.
+    const bool has_both_signs = channel.quantity.key == "current_A" &&
+                                std::ranges::any_of(channel.values, [](double a) { return a < 0.0; }) &&
+                                std::ranges::any_of(channel.values, [](double a) { return a > 0.0; });
+    if (channel.quantity.kind != QuantityKind::temperature && (!kElsewhere.contains(channel.quantity.key) || has_both_signs)) {
+      columns.emplace(channel.quantity.key, means_along(channel, recording.time_s, time_s));
+    }
+  }
+  return columns;
+}
+
+std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::string_view of_model) {
+  std::map<std::string, std::size_t> counts;
+  for (const MeasuredRun& run : runs) {
+    for (const auto& [key, values] : run.columns) {
+      counts[key] += values.array().isNaN().all() ? 0 : 1;
+    }
+  }
+  std::vector<std::string> left_out;
+  for (const auto& [key, count] : counts) {
+    if (count < runs.size() && key != of_model) {
+      left_out.push_back(key);
+    }
+  }
+  for (MeasuredRun& run : runs) {
+    std::erase_if(run.columns, [&](const auto& each) { return std::ranges::find(left_out, each.first) != left_out.end(); });
+  }
+  return left_out;
+}
+
+void set_column(MeasuredRun& run, const std::string& key) {
+  if (key.empty()) {
+    return;
+  }
+  const auto found = run.columns.find(key);
+  const Eigen::VectorXd values = found == run.columns.end() ? Eigen::VectorXd() : without_gaps(found->second);
+  const bool is_known = values.size() > 0 && !std::isnan(values[0]);
+  const auto set = [&](OperatingPoint<double>& at, Eigen::Index k) {
+    at.column = is_known ? values[k] : 0.0;
+    at.column_share = is_known ? 1.0 : 0.0;
+  };
+  for (std::size_t k = 0; k < run.at.size(); ++k) {
+    set(run.at[k], static_cast<Eigen::Index>(k));
+  }
+  for (UnknownInputs& unknown : run.unknown_inputs) {
+    set(unknown.other, unknown.interval);
+  }
+}
+
+void set_column(std::vector<MeasuredRun>& runs, const std::string& key) {
+  std::ranges::for_each(runs, [&](MeasuredRun& run) { set_column(run, key); });
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,186 @@
+#include "estimation/log_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/unknown.h"
+
+namespace heatsoak {
+namespace {
+
+struct SignalChannel {
+  Signal signal;
+  std::string_view key;
+  std::string_view words;
+};
+constexpr std::array kSignalChannels{SignalChannel{Signal::current, "current_A", "current"},
+                                     SignalChannel{Signal::speed, "speed_rad_per_s", "speed"},
+                                     SignalChannel{Signal::shaft_power, "torque_Nm", "torque and speed"},
+                                     SignalChannel{Signal::input_power, "power_in_W", "input power"},
+                                     SignalChannel{Signal::modulation, "duty_ratio", "duty ratio"},
+                                     SignalChannel{Signal::bus_voltage, "bus_V", "supply voltage"},
+                                     SignalChannel{Signal::vehicle_speed, "vehicle_speed_m_per_s", "vehicle speed"},
+                                     SignalChannel{Signal::neighbour_temperature, "neighbour_C", "temperature of the neighbour"},
+                                     SignalChannel{Signal::age, "age_h", "hours of running"}};
+
+bool is_there(const Recording& recording, Signal signal, const ShaftTorque& torque) {
+  const auto is_recorded = [&](Signal each) { return has_values(recording.find(column_of(each))); };
+  if (signal == Signal::modulation && torque.resistance_ohm > 0.0 && torque.per_current_Nm_per_A > 0.0) {
+    const bool is_identifiable = is_recorded(Signal::current) && is_recorded(Signal::speed) && is_recorded(Signal::bus_voltage);
+    return is_identifiable || is_recorded(signal);
+  }
+  if (signal == Signal::current && torque.per_current_Nm_per_A > 0.0 && is_recorded(Signal::shaft_power)) {
+    return true;
+  }
+  if (signal != Signal::shaft_power) {
+    return is_recorded(signal);
+  }
+  return is_recorded(Signal::speed) && (is_recorded(signal) || (torque.per_current_Nm_per_A > 0.0 && is_recorded(Signal::current)));
+}
+
+bool has_negative(const std::vector<double>* values) {
+  return values && std::ranges::any_of(*values, [](double value) { return value < 0.0; });
+}
+
+const std::vector<double>* values(std::string_view key, const Recording& recording) {
+  const Channel* const channel = recording.find(key);
+  return has_values(channel) ? &channel->values : nullptr;
+}
+/// Fills gaps shorter than 60 s by linear interpolation, at the ends by the nearest value. Air and coolant change slowly enough for that.
+std::vector<double> bridged(const std::vector<double>* values, const std::vector<double>& time_s) {
+  constexpr double kSlow_s = 60.0;
+  std::vector<double> all = values ? *values : std::vector<double>();
+  std::size_t last = all.size();
+  for (std::size_t row = 0; row < all.size(); ++row) {
+    if (std::isnan(all[row])) {
+      continue;
+    }
+    for (std::size_t gap = last + 1; last < row && time_s[row] - time_s[last] < kSlow_s && gap < row; ++gap) {
+      all[gap] = all[last] + (all[row] - all[last]) * (time_s[gap] - time_s[last]) / (time_s[row] - time_s[last]);
+    }
+    if (last == all.size() && row > 0 && time_s[row] - time_s.front() < kSlow_s) {
+      std::fill(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(row), all[row]);
+    }
+    last = row;
+  }
+  if (last < all.size() && time_s.back() - time_s[last] < kSlow_s) {
+    std::fill(all.begin() + static_cast<std::ptrdiff_t>(last), all.end(), all[last]);
+  }
+  return all;
+}
+/// Value of a row, or 0 if there is no such channel. The signals that a model needs are checked beforehand.
+double of(const std::vector<double>* values, std::size_t row) { return values ? (*values)[row] : 0.0; }
+
+}  // namespace
+
+std::string_view column_of(Signal signal) { return std::ranges::find(kSignalChannels, signal, &SignalChannel::signal)->key; }
+
+std::string_view words_of(Signal signal) { return std::ranges::find(kSignalChannels, signal, &SignalChannel::signal)->words; }
+
+bool has_values(const Channel* channel) {
+  return channel && std::ranges::any_of(channel->values, [](double value) { return !std::isnan(value); });
+}
+
+LogRows::LogRows(const Recording& recording, const MeasuredRunOptions& options)
+    : current_A_(values("current_A", recording)),
+      speed_rad_per_s_(values("speed_rad_per_s", recording)),
+      torque_Nm_(values("torque_Nm", recording)),
+      input_power_W_(values("power_in_W", recording)),
+      bus_V_(values("bus_V", recording)),
+      modulation_(values("duty_ratio", recording)),
+      vehicle_speed_m_per_s_(values("vehicle_speed_m_per_s", recording)),
+      neighbour_C_(values("neighbour_C", recording)),
+      age_h_(values("age_h", recording)),
+      surroundings_C_(bridged(values(has_values(recording.find("coolant_C")) ? "coolant_C" : "ambient_C", recording), recording.time_s)),
+      is_signed_(has_negative(current_A_) && has_negative(speed_rad_per_s_)),
+      is_driven_(current_A_ && std::ranges::any_of(*current_A_, [&](double each_A) { return std::abs(each_A) > options.least_current_A; })),
+      time_s_(recording.time_s),
+      options_(options) {}
+
+OperatingPoint<double> LogRows::at(std::size_t row) const {
+  const double speed_rad_per_s = of(speed_rad_per_s_, row);
+  OperatingPoint<double> at;
+  const bool has_torque_only = !current_A_ && torque_Nm_ && options_.torque.per_current_Nm_per_A > 0.0;
+  at.current_rms_A = std::abs(has_torque_only ? current_of_torque_A(of(torque_Nm_, row), speed_rad_per_s) : of(current_A_, row));
+  at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = std::abs(speed_rad_per_s);
+  at.velocity_rad_per_s = speed_rad_per_s;
+  if (speed_rad_per_s_ && row + 1 < time_s_.size()) {
+    at.acceleration_rad_per_s2 = std::abs((*speed_rad_per_s_)[row + 1] - speed_rad_per_s) / (time_s_[row + 1] - time_s_[row]);
+  }
+  at.ambient_C = surroundings_C_.empty() ? options_.ambient_C : surroundings_C_[row];
+  at.shaft_power_W = torque_Nm_ ? of(torque_Nm_, row) * speed_rad_per_s : power_of_current_W(of(current_A_, row), speed_rad_per_s);
+  at.input_power_W = of(input_power_W_, row);
+  at.bus_V = of(bus_V_, row);
+  at.modulation_ratio =
+      modulation_ ? std::abs(of(modulation_, row)) : modulation_of_current(of(current_A_, row), speed_rad_per_s, at.bus_V);
+  at.vehicle_speed_m_per_s = std::abs(of(vehicle_speed_m_per_s_, row));
+  at.neighbour_share = neighbour_C_ && !std::isnan((*neighbour_C_)[row]) ? 1.0 : 0.0;
+  at.neighbour_C = neighbour_C_ && at.neighbour_share > 0.0 ? (*neighbour_C_)[row] : 25.0;
+  at.unlogged_speed_share = is_driven_ && (!speed_rad_per_s_ || std::isnan(speed_rad_per_s)) ? 1.0 : 0.0;
+  at.age_h = of(age_h_, row);
+  return at;
+}
+
+double LogRows::current_of_torque_A(double torque_Nm, double speed_rad_per_s) const {
+  const double drag_Nm = speed_rad_per_s == 0.0 ? 0.0 : std::copysign(options_.torque.drag_Nm, speed_rad_per_s);
+  return (torque_Nm + drag_Nm) / options_.torque.per_current_Nm_per_A;
+}
+
+bool LogRows::is_known(std::size_t row) const {
+  const OperatingPoint<double> point = at(row);
+  return !std::isnan(point.ambient_C) &&
+         std::ranges::none_of(options_.needed, [&](Signal signal) { return std::isnan(quantity_of(point, signal)); });
+}
+
+double LogRows::power_of_current_W(double current_A, double speed_rad_per_s) const {
+  const double drives_A_rad_per_s = is_signed_ ? current_A * speed_rad_per_s : std::abs(current_A * speed_rad_per_s);
+  return options_.torque.per_current_Nm_per_A * drives_A_rad_per_s - options_.torque.drag_Nm * std::abs(speed_rad_per_s);
+}
+
+double LogRows::modulation_of_current(double current_A, double speed_rad_per_s, double bus_V) const {
+  const ShaftTorque& motor = options_.torque;
+  if (!(motor.resistance_ohm > 0.0) || !current_A_ || !speed_rad_per_s_ || !bus_V_) {
+    return 0.0;
+  }
+  const double back_V = motor.per_current_Nm_per_A * speed_rad_per_s;
+  const double across_V = motor.resistance_ohm * current_A;
+  const double terminal_V = is_signed_ ? std::abs(back_V + across_V) : std::abs(back_V) + std::abs(across_V);
+  return bus_V > 0.0 ? std::min(1.0, terminal_V / bus_V) : std::isnan(bus_V) ? bus_V : 0.0;
+}
+
+double quantity_of(const OperatingPoint<double>& at, Signal signal) {
+  switch (signal) {
+    case Signal::current:
+      return at.current_rms_A;
+    case Signal::speed:
+      return at.speed_mean_rad_per_s;
+    case Signal::shaft_power:
+      return at.shaft_power_W;
+    case Signal::input_power:
+      return at.input_power_W;
+    case Signal::modulation:
+      return at.modulation_ratio;
+    case Signal::bus_voltage:
+      return at.bus_V;
+    case Signal::vehicle_speed:
+      return at.vehicle_speed_m_per_s;
+    case Signal::neighbour_temperature:
+      return at.neighbour_C;
+    case Signal::age:
+      return at.age_h;
+  }
+  return kUnknown;
+}
+
+std::vector<Signal> signals_of(const Recording& recording, const ShaftTorque& torque) {
+  std::vector<Signal> signals;
+  for (const SignalChannel& each : kSignalChannels) {
+    if (is_there(recording, each.signal, torque)) {
+      signals.push_back(each.signal);
+    }
+  }
+  return signals;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,49 @@
+// Converts the rows of a recording to operating points of a network.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "estimation/measured_run.h"
+#include "recording/recording.h"
+
+namespace heatsoak {
+
+/// Returns the column of a canonical log from which a signal is read; for the shaft power this is the torque.
+std::string_view column_of(Signal signal);
+/// Returns the name of a signal in sentences, for example "torque and speed".
+std::string_view words_of(Signal signal);
+
+bool has_values(const Channel* channel);
+
+/// Returns the value of a signal in an operating point, in SI units (°C for temperatures, h for age).
+double quantity_of(const OperatingPoint<double>& at, Signal signal);
+
+/// Operating points of single rows; NaN if a logged quantity has no value there. Recording and options must outlive this object.
+class LogRows {
+ public:
+  LogRows(const Recording& recording, const MeasuredRunOptions& options);
+  [[nodiscard]] OperatingPoint<double> at(std::size_t row) const;
+  /// True if the row has the temperature of the surroundings and all signals that the options need.
+  [[nodiscard]] bool is_known(std::size_t row) const;
+  [[nodiscard]] bool has_surroundings() const { return !surroundings_C_.empty(); }
+
+ private:
+  /// Current in A for a log with torque but no current. The drag opposes the motion and adds to the torque.
+  [[nodiscard]] double current_of_torque_A(double torque_Nm, double speed_rad_per_s) const;
+  /// Shaft power in W from current and speed. Braking is recognised only if the log has signs for both; otherwise the motor drives.
+  [[nodiscard]] double power_of_current_W(double current_A, double speed_rad_per_s) const;
+  /// Modulation (terminal voltage / supply voltage, at most 1) from back-EMF and resistance. 0 if a constant or a signal is missing.
+  [[nodiscard]] double modulation_of_current(double current_A, double speed_rad_per_s, double bus_V) const;
+
+  const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *input_power_W_, *bus_V_, *modulation_, *vehicle_speed_m_per_s_,
+      *neighbour_C_, *age_h_;
+  std::vector<double> surroundings_C_;
+  bool is_signed_;  ///< current and speed both have negative values
+  bool is_driven_;  ///< the current exceeds least_current_A at any time
+  const std::vector<double>& time_s_;
+  const MeasuredRunOptions& options_;
+};
+
+}  // namespace heatsoak

@@ -1,0 +1,28 @@
+// Merges the heat inputs of neighbouring intervals into one interval with the same heat.
+#pragma once
+
+#include "estimation/measured_run.h"
+
+namespace heatsoak {
+
+/// Time averages of operating points; current and RMS speed are averaged as squares. Uncertainties of different intervals are independent.
+class MeanInputs {
+ public:
+  void add(const OperatingPoint<double>& at, double duration_s);
+  /// Adds uncertainty: for `duration_s` of the added time the inputs may have been `other` instead of `at`, or equally far in the other
+  /// direction.
+  void doubt(const OperatingPoint<double>& at, const OperatingPoint<double>& other, double duration_s);
+  [[nodiscard]] double duration_s() const { return duration_s_; }
+  /// Appends the mean and its uncertainty to the run as the next interval, then resets.
+  void take(MeasuredRun& run);
+
+ private:
+  static OperatingPoint<double> zero();
+
+  double duration_s_ = 0.0;
+  OperatingPoint<double> sum_ = zero();
+  OperatingPoint<double> variance_ = zero();
+  bool has_uncertainty_ = false;
+};
+
+}  // namespace heatsoak

@@ -1,0 +1,126 @@
+#include "estimation/open_loop.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace heatsoak {
+
+RunStart start_of(const Network& network, const MeasuredRun& run) {
+  const Eigen::Index states = network.state_count();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kSensed_K = 5.0;
+  /// If two or more sensors are all this close to ambient, the motor is at ambient temperature, nodes without sensors included.
+  constexpr double kRest_K = 2.0;
+  const double ambient_C = run.at.front().ambient_C;
+  RunStart start{Eigen::VectorXd::Constant(states, nan), {}, Eigen::VectorXd::Constant(states, kSensed_K)};
+  double sum_C = 0.0;
+  double farthest_K = 0.0;
+  int seen = 0;
+  for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
+    const auto sensor_C = run.measured_C.col(static_cast<Eigen::Index>(sensor));
+    const auto first = std::ranges::find_if(sensor_C, [](double value_C) { return !std::isnan(value_C); });
+    if (const int node = network.find_node(run.sensors[sensor].node); node >= 0 && node < states && first != sensor_C.end()) {
+      const double true_C = true_at_rest_C(run.sensors[sensor].faults, *first);
+      start.state_C[node] = true_C;
+      sum_C += true_C;
+      farthest_K = std::max(farthest_K, std::abs(true_C - ambient_C));
+      ++seen;
+    }
+  }
+  const bool rests = seen > 1 && farthest_K < kRest_K;
+  if (rests) {
+    start.prior_sd_K.setConstant(1.0);
+  }
+  for (Eigen::Index node = 0; node < states; ++node) {
+    if (std::isnan(start.state_C[node])) {
+      // The motor may just have been used: an unmeasured node may differ from the sensors as much as these differ from ambient.
+      start.state_C[node] = seen > 0 ? sum_C / seen : ambient_C;
+      start.prior_sd_K[node] = (rests ? 1.0 : kSensed_K) + std::abs(start.state_C[node] - ambient_C);
+    }
+  }
+  start.prior_C = start.state_C;
+  return start;
+}
+
+namespace {
+
+/// Returns the number of samples that determine the start: five, or more if a state node has no sensor, since its temperature shows later.
+Eigen::Index deciding_samples(const Network& network, const MeasuredRun& run) {
+  constexpr Eigen::Index kFew = 5;
+  bool all_are_sensed = true;
+  for (int node = 0; node < network.state_count(); ++node) {
+    all_are_sensed = all_are_sensed && run.sensor_at(network.node_name(node)) >= 0;
+  }
+  if (all_are_sensed) {
+    return kFew;
+  }
+  constexpr double kAWhile_s = 60.0;
+  constexpr double kMost_share = 0.1;
+  const double until_s = run.time_s.front() + std::min(kAWhile_s, kMost_share * (run.time_s.back() - run.time_s.front()));
+  return std::max<Eigen::Index>(kFew, std::ranges::upper_bound(run.time_s, until_s) - run.time_s.begin());
+}
+
+MeasuredRun beginning_of(const MeasuredRun& run, Eigen::Index samples) {
+  MeasuredRun part = run;
+  part.time_s.resize(static_cast<std::size_t>(samples));
+  part.at.resize(static_cast<std::size_t>(samples - 1));
+  part.measured_C = run.measured_C.topRows(samples);
+  return part;
+}
+
+}  // namespace
+
+DecidedStart decided_start(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along) {
+  // No model predicts the first seconds better than this; with less noise, its error would distort unmeasured nodes.
+  constexpr double kLeastNoise_K = 0.3;
+  const MeasuredRun beginning = beginning_of(run, std::min(run.samples(), deciding_samples(network, run)));
+  const LinearisedRun path = along({start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, beginning);
+  Eigen::MatrixXd normal = start.prior_sd_K.cwiseAbs2().cwiseInverse().asDiagonal();
+  Eigen::VectorXd right = normal * (start.prior_C - start.state_C);
+  for (Eigen::Index row = 0; row < path.residual_K.size(); ++row) {
+    if (!std::isnan(path.residual_K[row])) {
+      const double noise_K = std::max(kLeastNoise_K, run.sensors[static_cast<std::size_t>(row % path.sensors())].noise_K);
+      normal += path.by_start.row(row).transpose() * path.by_start.row(row) / (noise_K * noise_K);
+      right += path.by_start.row(row).transpose() * path.residual_K[row] / (noise_K * noise_K);
+    }
+  }
+  const Eigen::MatrixXd covariance_K2 = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+  return {start.state_C + covariance_K2 * right, covariance_K2};
+}
+
+Eigen::VectorXd decided_start_C(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along) {
+  return decided_start(network, start, run, along).state_C;
+}
+
+Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run) {
+  const std::vector<int> none;
+  const RunFrom along = [&](std::span<const double> start_C, const MeasuredRun& part) {
+    return linearise(network, parameters, none, none, start_C, part);
+  };
+  const Eigen::VectorXd start_C = decided_start_C(network, start_of(network, run), run, along);
+  return along({start_C.data(), static_cast<std::size_t>(start_C.size())}, run).sensor_C;
+}
+
+double standard_deviation_K(std::span<const MeasuredRun> runs, std::string_view signal) {
+  double sum_C = 0.0;
+  double squares_C2 = 0.0;
+  double count = 0.0;
+  for (const MeasuredRun& run : runs) {
+    const auto sensor = std::ranges::find(run.sensors, signal, &Sensor::signal);
+    if (sensor == run.sensors.end()) {
+      continue;
+    }
+    for (const double each_C : run.measured_C.col(sensor - run.sensors.begin())) {
+      if (!std::isnan(each_C)) {
+        sum_C += each_C;
+        squares_C2 += each_C * each_C;
+        count += 1.0;
+      }
+    }
+  }
+  return std::sqrt(std::max(0.0, squares_C2 / count - sum_C * sum_C / (count * count)));
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,51 @@
+// Free-running (open-loop) simulation with measured inputs, its start temperatures and its error.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "estimation/linearised_run.h"
+#include "estimation/measured_run.h"
+
+namespace heatsoak {
+
+/// Start temperatures of a run, per state node. prior_sd_K states how well the first samples determine them.
+struct RunStart {
+  Eigen::VectorXd state_C;  ///< fitted start
+  Eigen::VectorXd prior_C;  ///< from the first samples
+  Eigen::VectorXd prior_sd_K;
+};
+
+/// Estimates the start temperatures without a fit: the first sample of each sensor; for other nodes the mean of the sensors, or the ambient
+/// temperature if there are none.
+RunStart start_of(const Network& network, const MeasuredRun& run);
+
+/// Simulates and linearises the model along a run from given start temperatures.
+using RunFrom = std::function<LinearisedRun(std::span<const double> start_C, const MeasuredRun& run)>;
+struct DecidedStart {
+  Eigen::VectorXd state_C;
+  Eigen::MatrixXd covariance_K2;
+};
+/// Estimates the start temperatures from the first five samples, or from the first minute (at most a tenth of the run) if a node has no
+/// sensor. The prior is that of `start`.
+DecidedStart decided_start(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
+Eigen::VectorXd decided_start_C(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
+
+/// Returns the predicted readings (n × sensors, in °C) of a free-running simulation. The start temperatures come from decided_start(), that
+/// is, only from the first samples: otherwise they could compensate for heat that the model lacks.
+Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run);
+
+struct SignalError {
+  std::string signal;
+  double rmse_K = 0.0;
+  double max_abs_K = 0.0;
+  Eigen::Index samples = 0;
+};
+
+/// Standard deviation of all readings of a sensor in all runs. It is the RMS error of a constant prediction.
+double standard_deviation_K(std::span<const MeasuredRun> runs, std::string_view signal);
+
+}  // namespace heatsoak

@@ -1,0 +1,20 @@
+// Rows in which a motor reverses. There, the mean of the signed speed is smaller than the mean magnitude, which determines the losses.
+#pragma once
+
+#include <string_view>
+
+#include "estimation/measured_run.h"
+
+namespace heatsoak {
+
+/// True if the motor may reverse within a row: the speeds of the row and its two neighbours have both signs.
+bool may_turn_within_rows(const MeasuredRun& run);
+
+/// Returns the run with the mean and RMS speed of such rows recomputed for a speed that varies linearly from the row before to the row
+/// after, instead of a constant speed. Rows that are means of finer rows are not changed.
+MeasuredRun turning_within_rows(MeasuredRun run);
+
+inline constexpr std::string_view kTurningRowsReason =
+    "speed changes its sign from row to row: it is interpolated linearly within rows, because that has the larger evidence in these runs";
+
+}  // namespace heatsoak

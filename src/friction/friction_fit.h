@@ -1,0 +1,103 @@
+// Fits damping and friction of every wheel from steady segments (ETDP 2025, section 2).
+#pragma once
+
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "friction/robust_fit.h"
+#include "friction/steady_parts.h"
+
+namespace heatsoak {
+
+// In steady motion  V_i = d_i·ω_i + f_i(θ),  f_i(θ) = a_i·sin(θ + φ_i) + b_i·sign(sin(θ + φ_i)).
+// A wheel that should stand by geometry carries no information and is omitted, as in the paper.
+// The other wheels turn in their rolling direction, so the sign is known. With S = sin(θ + φ_0), C = cos(θ + φ_0) and φ_0 the
+// phase of the rolling direction, the law is linear:  V = d·ω + A·S + B·C + b·sign S  (+ c·sign ω in rotation),
+// a = ±√(A² + B²) and φ = φ_0 + atan(B/A). The fit is robust over all parts of a wheel (robust_fit.h). Legs are clusters if
+// there are three per term. The interval of φ is Fieller's. It is cut off at the φ for which a wheel would have to turn the
+// other way than measured; there a and b are the best ones for that φ. Headings in only two directions and their opposites do
+// not determine φ: then φ = φ_0, and the intervals of a and b cover the uncertainty of φ.
+// If the residuals depend on θ, the intervals are widened by the part of that error that a and b may contain (lack_of_fit.h).
+
+/// Model error that depends on the direction of travel (lack_of_fit.h).
+struct LackOfFit {
+  bool is_found = false;
+  double left_V = std::numeric_limits<double>::quiet_NaN();     ///< RMS over headings, without the scatter of repeats
+  double repeats_V = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation of the scatter of repeats; NaN: too few repeats
+  std::string repeats;                                          ///< kind of repeats used, for example "legs on one heading"
+};
+
+struct WheelFriction {
+  Estimate damping_V_s_per_rad;     ///< d
+  Estimate sine_V;                  ///< a
+  Estimate constant_V;              ///< b
+  Estimate phase_rad;               ///< φ, −π to π
+  Estimate rotation_V;              ///< c; NaN without rotation legs
+  bool damping_is_given = false;    ///< true: d was not fitted but taken from FitSettings
+  double sine_per_damping_V = 0.0;  ///< decrease of a if the given d were twice as large
+  bool phase_is_given = false;      ///< true: too few headings, so φ is that of the rolling direction
+  bool phase_is_bounded = false;    ///< true: φ is at its limit; beyond it the wheel would turn the other way than measured
+  double r2_ratio = std::numeric_limits<double>::quiet_NaN();  ///< coefficient of determination of the voltage
+  double rmse_V = std::numeric_limits<double>::quiet_NaN();
+  LackOfFit lack;  ///< if found, the intervals include it
+  int parts_used = 0;
+  int parts_standing = 0;  ///< parts in which the wheel should stand, or does
+  int parts_outlying = 0;
+  std::size_t rows_used = 0;
+  std::string problem;  ///< why the wheel was not fitted; empty if it was
+
+  [[nodiscard]] bool is_learned() const { return problem.empty(); }
+  /// Voltage of the motor driver in steady motion. The friction always opposes the wheel's speed, even if sin(θ + φ) has another sign than
+  /// the speed, as is possible near headings on which the wheel stands.
+  [[nodiscard]] double voltage_V(double heading_rad, double wheel_speed_rad_per_s) const;
+  /// Friction voltage f(θ).
+  [[nodiscard]] double friction_V(double heading_rad) const;
+};
+
+/// Straight line of voltage over speed of one wheel on one heading (Figs. 4, 6, 8 of the paper).
+struct HeadingLine {
+  double heading_rad = 0.0;
+  Estimate offset_V;             ///< at zero speed, the static friction; its interval uses the scatter of all headings
+  Estimate damping_V_s_per_rad;  ///< NaN if the heading has only one speed
+};
+
+struct FrictionFit {
+  std::vector<WheelFriction> wheels;
+  std::vector<std::vector<HeadingLine>> lines;  ///< per wheel
+  int headings = 0;                             ///< number of distinct headings
+  [[nodiscard]] bool is_learned() const;        ///< true if any wheel was fitted
+};
+
+struct FitSettings {
+  bool use_return_legs = false;
+  /// Damping to use if all legs have one speed, so that d and a are indistinguishable; NaN: unknown.
+  double known_damping_V_s_per_rad = std::numeric_limits<double>::quiet_NaN();
+  /// Half width of the 95 % interval of φ about the rolling direction if the data do not determine φ. The nine fits of reports/friction
+  /// deviate by 4.6° RMS; this is multiplied by Student's quantile for nine.
+  double phase_uncertainty_rad = 10.0 * std::numbers::pi / 180.0;
+};
+
+/// Returns the heading number of each part; −1 for rotation and for legs that are not used. Headings within 2.5° of each other are one.
+std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts, const FitSettings& settings);
+
+FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, const FitSettings& settings);
+
+/// Returns the voltages of all wheels that are expected before the fit.
+using ExpectedVoltages = std::function<PerWheel(const SteadyPart&)>;
+
+/// Prediction errors on hold-out headings: every third heading is excluded from the fit and then predicted.
+struct HeldOutError {
+  int headings = 0;  ///< number of hold-out headings
+  int all_headings = 0;
+  double before_V = std::numeric_limits<double>::quiet_NaN();  ///< RMS over wheels and parts
+  double after_V = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> before_of_wheel_V;
+  std::vector<double> after_of_wheel_V;
+};
+HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, const FitSettings& settings,
+                                        const ExpectedVoltages& before);
+
+}  // namespace heatsoak

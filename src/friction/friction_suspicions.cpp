@@ -1,0 +1,153 @@
+#include "friction/friction_suspicions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/quantity.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kFarOff_deg = 20.0;
+constexpr double kContradicting_share = 0.15;
+constexpr double kLeastOfBackEmf_ratio = 0.6;
+constexpr double kMostOfBackEmf_ratio = 2.3;
+constexpr double kLeastExplained_ratio = 0.7;
+constexpr double kDead_share = 0.05;
+
+/// Median angle in degrees between the log's direction of travel and that computed from the wheel speeds; 0 without legs.
+double direction_off_deg(const SteadyParts& steady, const Kinematics& kinematics) {
+  std::vector<double> off_deg;
+  for (const SteadyPart& part : steady.parts) {
+    if (!part.is_rotation) {
+      const BodyVelocity velocity = body_velocity(kinematics, part.wheel_speed_rad_per_s);
+      const double wheels_rad = std::atan2(velocity.y_m_per_s, velocity.x_m_per_s);
+      off_deg.push_back(std::abs(std::remainder(part.heading_rad - wheels_rad, 2.0 * std::numbers::pi)) * 180.0 / std::numbers::pi);
+    }
+  }
+  return off_deg.empty() ? 0.0 : median(off_deg);
+}
+
+/// Median share of the wheel speeds that no motion of the robot explains; always 0 with three wheels.
+double contradiction_share(const SteadyParts& steady, const Kinematics& kinematics) {
+  std::vector<double> shares;
+  for (const SteadyPart& part : steady.parts) {
+    const PerWheel expected = wheel_speeds_rad_per_s(kinematics, body_velocity(kinematics, part.wheel_speed_rad_per_s));
+    double off_rad2_per_s2 = 0.0;
+    double all_rad2_per_s2 = 0.0;
+    for (int i = 0; i < kinematics.wheel_count; ++i) {
+      const double off_rad_per_s = part.wheel_speed_rad_per_s[i] - expected[i];
+      off_rad2_per_s2 += off_rad_per_s * off_rad_per_s;
+      all_rad2_per_s2 += part.wheel_speed_rad_per_s[i] * part.wheel_speed_rad_per_s[i];
+    }
+    shares.push_back(std::sqrt(off_rad2_per_s2 / all_rad2_per_s2));
+  }
+  return shares.empty() ? 0.0 : median(shares);
+}
+
+/// Largest voltage of a wheel divided by the median of the other wheels' largest voltages.
+double voltage_share(const SteadyParts& steady, int wheel, int wheel_count) {
+  std::vector<double> tops_V;
+  double own_V = 0.0;
+  for (int i = 0; i < wheel_count; ++i) {
+    double top_V = 0.0;
+    for (const SteadyPart& part : steady.parts) {
+      top_V = std::max(top_V, std::isfinite(part.voltage_V[i]) ? std::abs(part.voltage_V[i]) : 0.0);
+    }
+    if (i == wheel) {
+      own_V = top_V;
+    } else {
+      tops_V.push_back(top_V);
+    }
+  }
+  const double others_V = median(tops_V);
+  return others_V > 0.0 ? own_V / others_V : 1.0;
+}
+
+/// Returns a sentence if one wheel is implausible by itself, else an empty string.
+std::string suspicion_of_wheel(const SteadyParts& steady, const WheelFriction& wheel, int number, int wheel_count,
+                               double back_emf_V_s_per_rad) {
+  if (voltage_share(steady, number - 1, wheel_count) < kDead_share) {
+    return fmt::format("wheel {} turns with hardly any voltage: is its modulation missing from the log?", number);
+  }
+  if (!wheel.is_learned()) {
+    return {};
+  }
+  const double damping = wheel.damping_is_given ? back_emf_V_s_per_rad : wheel.damping_V_s_per_rad.value;
+  if (damping < 0.0) {
+    return fmt::format("voltage of wheel {} falls as it turns faster: does its speed or its modulation have the wrong sign?", number);
+  }
+  if (wheel.constant_V.high < 0.0 || wheel.sine_V.high + wheel.constant_V.high < 0.0) {
+    return fmt::format(
+        "friction of wheel {} would drive it (a = {} V, b = {} V): is its modulation that of another wheel, or of the wrong sign?", number,
+        significant(wheel.sine_V.value, 2), significant(wheel.constant_V.value, 2));
+  }
+  if (wheel.r2_ratio < kLeastExplained_ratio) {
+    return fmt::format("voltage of wheel {} hardly follows its speed and direction (R² {:.2f}): is its modulation that of another wheel?",
+                       number, wheel.r2_ratio);
+  }
+  const double ratio = damping / back_emf_V_s_per_rad;
+  if (!wheel.damping_is_given && (ratio < kLeastOfBackEmf_ratio || ratio > kMostOfBackEmf_ratio)) {
+    return fmt::format("d of wheel {} is {} times the motor's back-EMF, where 1 to 2 is usual: is its speed or modulation in another unit?",
+                       number, significant(ratio, 2));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::string> friction_suspicions(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics,
+                                             const std::optional<DriveConstants>& drive) {
+  std::vector<std::string> found;
+  if (const double off_deg = direction_off_deg(steady, kinematics); off_deg > kFarOff_deg) {
+    found.push_back(
+        fmt::format("the direction of travel is {:.0f}° off what the wheels' speeds amount to: are the wheels in another order than in the "
+                    "robot's file, is an angle in degrees, or of another frame?",
+                    off_deg));
+  }
+  if (const double share = contradiction_share(steady, kinematics); share > kContradicting_share) {
+    found.push_back(
+        fmt::format("{:.0f} % of the wheels' speeds fit to no motion of the robot: are they in another order, or of another sign, than in "
+                    "the robot's file?",
+                    100.0 * share));
+  }
+  std::vector<double> dampings;
+  for (const WheelFriction& wheel : fit.wheels) {
+    if (wheel.is_learned() && !wheel.damping_is_given) {
+      dampings.push_back(wheel.damping_V_s_per_rad.value);
+    }
+  }
+  const double damping = dampings.empty() ? std::numeric_limits<double>::quiet_NaN() : median(dampings);
+  // Problems that not all wheels have are reported per wheel below.
+  const auto all = [&dampings](auto is_wrong) { return std::ranges::all_of(dampings, is_wrong); };
+  if (damping < 0.0 && all([](double each) { return each < 0.0; })) {
+    found.emplace_back("voltage falls as the wheels turn faster: does one of them have the wrong sign?");
+  } else if (drive) {
+    const double back_emf_V_s_per_rad = drive->torque_constant_Nm_per_A * drive->gear_ratio;
+    const double ratio = damping / back_emf_V_s_per_rad;
+    if (std::isfinite(ratio) && (all([&](double each) { return each < kLeastOfBackEmf_ratio * back_emf_V_s_per_rad; }) ||
+                                 all([&](double each) { return each > kMostOfBackEmf_ratio * back_emf_V_s_per_rad; }))) {
+      found.push_back(
+          fmt::format("d is {} times the motor's back-EMF, where 1 to 2 is usual: is a speed in rpm or that of the wheel in place of its "
+                      "motor, a modulation in percent, a voltage in millivolts or too high, or the motor another one?",
+                      significant(ratio, 2)));
+    }
+  }
+  // Report single wheels only if no common problem was found.
+  const bool is_of_single_wheels = found.empty();
+  const double back_emf_V_s_per_rad =
+      drive ? drive->torque_constant_Nm_per_A * drive->gear_ratio : std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; is_of_single_wheels && i < fit.wheels.size(); ++i) {
+    const int number = static_cast<int>(i) + 1;
+    if (std::string of_wheel = suspicion_of_wheel(steady, fit.wheels[i], number, kinematics.wheel_count, back_emf_V_s_per_rad);
+        !of_wheel.empty()) {
+      found.push_back(std::move(of_wheel));
+    }
+  }
+  return found;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,17 @@
+// Plausibility checks after the friction fit: units, signs, order of the wheels.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "friction/friction_fit.h"
+#include "robot/friction.h"
+
+namespace heatsoak {
+
+/// Returns sentences for the user about implausible results; nothing is corrected. `drive`: constants of the motor, if known.
+std::vector<std::string> friction_suspicions(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics,
+                                             const std::optional<DriveConstants>& drive);
+
+}  // namespace heatsoak

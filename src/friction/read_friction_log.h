@@ -1,0 +1,37 @@
+// Converts a recording to the columns that the friction test needs.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "friction/friction_log.h"
+#include "recording/recording.h"
+#include "robot/friction.h"
+#include "robot/robot.h"
+
+namespace heatsoak {
+
+/// Source of the direction of travel.
+enum class TravelDirection {
+  best,       ///< the first of the following that the log has
+  commanded,  ///< heading_rad, vx_set_m_per_s and vy_set_m_per_s, or on the field: heading_field_rad, vx_field_set_m_per_s, …
+  measured,   ///< vx_m_per_s and vy_m_per_s, or on the field vx_field_m_per_s and vy_field_m_per_s
+  wheels      ///< computed from the wheel speeds
+};
+
+/// Sentences about the interpretation of columns; each one occurs once, even if several logs cause it.
+using Findings = std::vector<std::string>;
+
+struct FrictionLogNeeds {
+  bool voltage = true;                  ///< the voltage of every wheel is needed
+  std::optional<DriveConstants> drive;  ///< motor constants to convert currents to voltages
+  TravelDirection direction = TravelDirection::best;
+};
+
+/// Converts speeds of motor shafts to speeds of wheels, and directions on the field to directions in the robot's frame. The voltage is
+/// wheel_voltage_V, else wheel_pwm_ratio × battery_V (or bus_V, or the robot's nominal voltage), else R·I + K_t·n·ω with
+/// I = wheel_current_A, which gets the sign of the speed if it has none. Throws Failure (bad_input) with all missing columns.
+FrictionLog friction_log(const Recording& recording, const Robot& robot, const FrictionLogNeeds& needs, Findings& findings);
+
+}  // namespace heatsoak

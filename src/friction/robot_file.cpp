@@ -1,0 +1,248 @@
+#include "friction/robot_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <regex>
+#include <sstream>
+
+namespace heatsoak {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+Lines lines_of(const std::string& text) {
+  Lines lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+std::string joined(const Lines& lines) {
+  std::string text;
+  for (const std::string& line : lines) {
+    text += line + "\n";
+  }
+  return text;
+}
+
+/// Quotes a text as a TOML string.
+std::string quoted(const std::string& text) { return fmt::format("{:?}", text); }
+
+/// Formats a value and its range as TOML, with two digits more than the first uncertain one. `least` is a lower bound.
+std::string figure(const Estimate& estimate, double scale, const std::string& unit, double least, const std::string& source,
+                   const std::string& derivation) {
+  const auto kept = [&](double value) { return std::max(value, least) * scale; };
+  const double width = estimate.is_known() ? kept(estimate.high) - kept(estimate.low) : 0.0;
+  const double smallest = width > 0.0 ? width : std::max(std::abs(kept(estimate.value)), 1e-3) * 0.01;
+  const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(smallest))), 0, 9);
+  const auto text = [&](double value) {
+    const double rounding = 0.5 * std::pow(10.0, -decimals);
+    return fmt::format("\"{:.{}f} {}\"", std::abs(value) < rounding ? 0.0 : value, decimals, unit);  // no −0
+  };
+  std::string range;
+  if (width > 0.0) {
+    range = fmt::format(", range = [{}, {}]", text(kept(estimate.low)), text(kept(estimate.high)));
+  }
+  return fmt::format("{{ value = {}, origin = \"measured\", source = {}{}, derivation = {} }}", text(kept(estimate.value)), quoted(source),
+                     range, quoted(derivation));
+}
+
+bool is_header(const std::string& line) { return std::regex_search(line, std::regex(R"(^\s*\[)")); }
+bool is_header_of(const std::string& line, const std::string& table) {
+  return std::regex_search(line,
+                           std::regex(R"(^\s*\[\[?\s*)" + std::regex_replace(table, std::regex(R"(\.)"), R"(\s*\.\s*)") + R"(\s*[\].])"));
+}
+
+Failure other_form(const Robot& robot, const std::string& table) {
+  return bad_input({robot.file.string()}, table,
+                   fmt::format("is not written as a table [{}], so that it cannot be updated in place", table));
+}
+
+/// Removes [friction.heading], its wheels and the comments before it; keeps comments that belong to the next table.
+void remove_heading(Lines& lines) {
+  for (auto begin = lines.begin(); begin != lines.end();) {
+    if (!is_header_of(*begin, "friction.heading")) {
+      ++begin;
+      continue;
+    }
+    auto end = std::find_if(begin + 1, lines.end(), is_header);
+    while (end != begin + 1 && (std::prev(end)->empty() || std::prev(end)->starts_with("#"))) {
+      --end;
+    }
+    // The comment above the table belongs to it.
+    while (begin != lines.begin() && (std::prev(begin)->starts_with("#") || std::prev(begin)->empty())) {
+      --begin;
+    }
+    begin = lines.erase(begin, end);
+  }
+}
+
+/// Returns the position after the last line with text of the table [friction]; appends the table if the file has none.
+Lines::iterator end_of_friction(Lines& lines, const Robot& robot) {
+  static const std::regex kHeader(R"(^\s*\[\s*friction\s*\])");
+  const auto header = std::ranges::find_if(lines, [](const std::string& line) { return std::regex_search(line, kHeader); });
+  if (header == lines.end()) {
+    if (std::ranges::any_of(robot.figures, [](const auto& each) { return each.first.starts_with("friction."); })) {
+      throw other_form(robot, "friction");
+    }
+    lines.insert(lines.end(), {"", "[friction]"});
+    return lines.end();
+  }
+  auto end = std::find_if(header + 1, lines.end(), is_header);
+  while (end != header + 1 && (std::prev(end)->empty() || std::prev(end)->starts_with("#"))) {
+    --end;
+  }
+  return end;
+}
+
+void set_damping(Lines& lines, const Robot& robot, const std::string& value) {
+  const std::string line = "wheel_damping = " + value;
+  const auto place = robot.figures.find("friction.wheel_damping");
+  if (place == robot.figures.end()) {
+    lines.insert(end_of_friction(lines, robot), line);
+    return;
+  }
+  std::string& old = lines[static_cast<std::size_t>(place->second.at.line - 1)];
+  if (!std::regex_search(old, std::regex(R"(^\s*wheel_damping\s*=\s*\{.*\}\s*(#.*)?$)"))) {
+    throw other_form(robot, "friction");
+  }
+  old = line;
+}
+
+/// Mean of the wheels; the interval covers the intervals of all wheels.
+Estimate over_wheels(const std::vector<Estimate>& wheels) {
+  Estimate all{0.0, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const Estimate& wheel : wheels) {
+    all.value += wheel.value / static_cast<double>(wheels.size());
+    all.low = std::min(all.low, std::isnan(wheel.low) ? wheel.value : wheel.low);
+    all.high = std::max(all.high, std::isnan(wheel.high) ? wheel.value : wheel.high);
+  }
+  return all;
+}
+
+template <class Convert>
+Estimate converted(const Estimate& estimate, const Convert& convert) {
+  return {convert(estimate.value), convert(estimate.low), convert(estimate.high)};
+}
+
+std::string volts(const Estimate& estimate) {
+  return estimate.is_known() ? fmt::format("{:.3f} V, 95 % in {:.3f} to {:.3f} V", estimate.value, estimate.low, estimate.high)
+                             : fmt::format("{:.3f} V", estimate.value);
+}
+
+/// Lines of the table of one wheel.
+Lines wheel_table(const WheelFriction& wheel, const DriveConstants& drive, const std::string& conversion, const std::string& source) {
+  const double Nm_per_V = drive.torque_constant_Nm_per_A / drive.resistance_ohm * drive.gear_ratio * drive.gear_efficiency;
+  const Estimate constant = converted(
+      wheel.constant_V, [&](double value_V) { return std::isnan(value_V) ? value_V : friction_torque_of_voltage_Nm(drive, value_V); });
+  Estimate sine = converted(wheel.sine_V, [&](double value_V) { return value_V * Nm_per_V; });
+  // Friction must not drive the wheel on any heading.
+  sine = converted(sine, [&](double value) { return std::max(value, -constant.value); });
+  const auto degrees = [&](double angle_rad) { return angle_rad * 180.0 / std::numbers::pi; };
+  const double none = -std::numeric_limits<double>::infinity();
+  return {"", "[[friction.heading.wheel]]",
+          "constant = " +
+              figure(constant, 1e3, "mN m", 0.0, source, "b = " + volts(wheel.constant_V) + "; " + conversion + ", less the motor's drag"),
+          "sine = " + figure(sine, 1e3, "mN m", none, source, "a = " + volts(wheel.sine_V) + "; " + conversion),
+          "phase = " + figure(converted(wheel.phase_rad, degrees), 1.0, "deg", none, source,
+                              wheel.phase_is_given ? "the wheel's rolling direction: too few headings to determine it" : "fitted")};
+}
+
+void note_what_is_cut(const FrictionFit& fit, const DriveConstants& drive, std::vector<std::string>& notes) {
+  const double drag_V = drive.drag_torque_Nm * drive.resistance_ohm / drive.torque_constant_Nm_per_A;
+  const double back_emf_V_s_per_rad = drive.torque_constant_Nm_per_A * drive.gear_ratio;
+  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+    const WheelFriction& wheel = fit.wheels[i];
+    if (wheel.constant_V.value < drag_V) {
+      notes.push_back(
+          fmt::format("wheel {}: the drag of the motor alone, {:.3f} V by its data sheet, is more than b; 0 is written", i + 1, drag_V));
+    }
+    if (!wheel.damping_is_given && wheel.damping_V_s_per_rad.value < back_emf_V_s_per_rad) {
+      notes.push_back(
+          fmt::format("wheel {}: the back-EMF of the motor alone, {:.4f} V s/rad by its data sheet, is more than d; 0 is written", i + 1,
+                      back_emf_V_s_per_rad));
+    }
+  }
+}
+
+/// Joins the lines. Throws Failure (bug) if the result cannot be read as a robot file.
+std::string checked(const Lines& lines, const Robot& robot) {
+  std::string text = joined(lines);
+  try {
+    parse_robot(text, robot.file);
+  } catch (const Failure& failure) {
+    throw Failure(ExitCode::bug, fmt::format("the updated robot file cannot be read: {}", failure.what()));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string with_measured_friction(const std::string& text, const Robot& robot, const DriveConstants& drive, const FrictionFit& fit,
+                                   const std::string& source, std::vector<std::string>& notes) {
+  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+    if (!fit.wheels[i].is_learned() || std::isnan(fit.wheels[i].constant_V.value)) {
+      throw Failure(ExitCode::cannot_answer,
+                    fmt::format("wheel {} was not learned over the directions, so that no robot file is written: {}", i + 1,
+                                fit.wheels[i].is_learned() ? "its logs only turn on the spot" : fit.wheels[i].problem));
+    }
+  }
+  note_what_is_cut(fit, drive, notes);
+  Lines lines = lines_of(text);
+  const bool has_heading = std::ranges::any_of(lines, [](const std::string& line) { return is_header_of(line, "friction.heading"); });
+  const bool is_known = !std::isnan(robot.heading_constant_Nm) || !robot.heading_wheels.empty();
+  if (is_known && !has_heading) {
+    throw other_form(robot, "friction.heading");
+  }
+  const auto old_rotation = robot.figures.find("friction.heading.rotation");
+  const std::string rotation_line =
+      old_rotation == robot.figures.end() ? "" : lines[static_cast<std::size_t>(old_rotation->second.at.line - 1)];
+  const std::string conversion =
+      fmt::format("as voltage at the driver, / {:.4g} ohm x {:.4g} mN m/A{}", drive.resistance_ohm, 1e3 * drive.torque_constant_Nm_per_A,
+                  drive.gear_ratio == 1.0 ? "" : fmt::format(" x {:.4g} of the gear", drive.gear_ratio * drive.gear_efficiency));
+  if (std::ranges::none_of(fit.wheels, &WheelFriction::damping_is_given)) {
+    std::vector<Estimate> dampings;
+    for (const WheelFriction& wheel : fit.wheels) {
+      dampings.push_back(converted(wheel.damping_V_s_per_rad, [&](double value) { return damping_of_voltage_Nm_s_per_rad(drive, value); }));
+    }
+    const Estimate all = over_wheels(dampings);
+    set_damping(lines, robot,
+                figure(all, 1e3, "mN m s/rad", 0.0, source,
+                       "mean of the wheels, the interval covers those of all; " + conversion + ", without the back-EMF"));
+  }
+  remove_heading(lines);
+  Lines table{"", "# f = a sin(heading + phase) + b sign(sin(heading + phase)); torques at the wheel, without the drag of the motor",
+              "[friction.heading]"};
+  std::vector<Estimate> rotations;
+  for (const WheelFriction& wheel : fit.wheels) {
+    rotations.push_back(converted(
+        wheel.rotation_V, [&](double value_V) { return std::isnan(value_V) ? value_V : friction_torque_of_voltage_Nm(drive, value_V); }));
+  }
+  if (const Estimate all = over_wheels(rotations); std::isfinite(all.value)) {
+    table.push_back("rotation = " + figure(all, 1e3, "mN m", 0.0, source, "mean of the wheels; " + conversion + ", less the motor's drag"));
+  } else if (!rotation_line.empty()) {
+    table.push_back(rotation_line);
+  }
+  for (const WheelFriction& wheel : fit.wheels) {
+    const Lines more = wheel_table(wheel, drive, conversion, source);
+    table.insert(table.end(), more.begin(), more.end());
+  }
+  lines.insert(end_of_friction(lines, robot), table.begin(), table.end());
+  return checked(lines, robot);
+}
+
+std::string with_measured_damping(const std::string& text, const Robot& robot, const std::vector<Estimate>& wheel_damping_Nm_s_per_rad,
+                                  const std::string& source) {
+  Lines lines = lines_of(text);
+  set_damping(lines, robot,
+              figure(over_wheels(wheel_damping_Nm_s_per_rad), 1e3, "mN m s/rad", 0.0, source,
+                     "mean of the wheels over roll-outs with open motors"));
+  return checked(lines, robot);
+}
+
+}  // namespace heatsoak

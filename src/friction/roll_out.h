@@ -1,0 +1,46 @@
+// Estimates wheel damping from a robot that rolls out with its motors off.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "friction/friction_log.h"
+#include "friction/robust_fit.h"
+#include "robot/body.h"
+
+namespace heatsoak {
+
+// With open motor terminals, a friction torque τ and a damping D act on each wheel. They reduce the kinetic energy of body, wheels and
+// rotors:
+//   E(t) = E_0 − τ·Σ∫|ω_i| dt − D·Σ∫ω_i² dt.
+// This is linear in τ and D, needs no derivative, and holds even if the robot turns while it rolls (the dry friction of all wheels need not
+// point against the travel). If the robot is lifted, every wheel rolls out by itself. Losses of the rollers count as τ. A segment begins
+// when all drivers are off (in a log without voltages, at the largest speed) and ends at 15 % of its first speed.
+
+enum class RollOut { translation, rotation, lifted_wheel };
+
+struct RollOutRun {
+  RollOut kind = RollOut::translation;
+  int wheel = -1;                           ///< index of the lifted wheel; −1: the robot is on the floor
+  double heading_rad = 0.0;                 ///< direction of a translation in the robot's frame
+  double force_N = 0.0;                     ///< friction force against a translation at zero speed
+  double wheel_damping_Nm_s_per_rad = 0.0;  ///< D; equal for all wheels if the robot is on the floor
+  double wheel_torque_Nm = 0.0;             ///< τ; equal for all wheels if the robot is on the floor
+  double r2_ratio = 0.0;
+  int rows_used = 0;
+};
+
+struct RollOutResult {
+  std::vector<RollOutRun> runs;
+  /// Mechanical damping per wheel, without back-EMF. The interval follows from the scatter between runs; NaN with fewer than three.
+  std::vector<Estimate> wheel_damping_Nm_s_per_rad;
+  std::vector<Estimate> wheel_torque_Nm;
+  std::size_t rows = 0;
+};
+
+/// Evaluates the roll-outs of all logs. `body` has the masses and inertias.
+RollOutResult roll_out(const std::vector<FrictionLog>& logs, const BodyConfig& body, bool is_lifted);
+/// Same, but the intervals include the uncertainty of masses and inertias in the robot file, with which all results scale.
+RollOutResult roll_out(const std::vector<FrictionLog>& logs, const Robot& robot, const MotorValues& motor, bool is_lifted);
+
+}  // namespace heatsoak

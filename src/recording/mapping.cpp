@@ -1,0 +1,253 @@
+#include "recording/mapping.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/quantity.h"
+#include "input/document.h"
+#include "input/reader.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 3> kConventions{"held", "linear", "previous_interval"};
+constexpr std::array<std::string_view, 2> kSigns{"+", "-"};
+constexpr std::array<std::string_view, 2> kDecimals{".", ","};
+
+bool matches(const std::string& pattern, const fs::path& log) { return ::fnmatch(pattern.c_str(), log.filename().c_str(), 0) == 0; }
+
+std::optional<int> whole_number(Reader& reader, const char* key, int lowest, int highest, const char* meaning) {
+  const std::optional<double> value =
+      reader.quantity({key, "", Range::between(static_cast<double>(lowest), static_cast<double>(highest)), meaning}, Need::optional);
+  if (value && *value != std::floor(*value)) {
+    reader.problem(key, "is not a whole number");
+    return std::nullopt;
+  }
+  return value ? std::optional(static_cast<int>(*value)) : std::nullopt;
+}
+
+TableFormat read_format(Reader& file) {
+  TableFormat format;
+  if (const std::optional<std::string> separator = file.text("separator", Need::optional)) {
+    if (*separator == "tab") {
+      format.separator = '\t';
+    } else if (separator->size() == 1 && std::string_view("\"\n\r.#+-").find(*separator) == std::string_view::npos) {
+      format.separator = separator->front();
+    } else {
+      file.problem("separator", fmt::format(R"('{}' separates no cells; expected one character such as "," or ";", or "tab")", *separator));
+    }
+  }
+  if (const std::optional<std::string> decimal = file.choice("decimal", kDecimals, Need::optional)) {
+    format.decimal_point = decimal->front();
+    if (format.decimal_point == format.separator) {
+      file.problem("decimal", "is the separator of the cells too");
+    }
+  }
+  format.comment = file.text("comment", Need::optional).value_or(format.comment);
+  format.header_rows = whole_number(file, "header_rows", 1, 20, "rows of the header").value_or(format.header_rows);
+  format.names_row = whole_number(file, "names_row", 1, 20, "which row of the header names the columns").value_or(1);
+  if (format.names_row > format.header_rows) {
+    file.problem("names_row", fmt::format("{} is not one of the {} header rows", format.names_row, format.header_rows));
+  }
+  file.finish();
+  return format;
+}
+
+/// Reads unit and sign into value and scale_factor.
+void read_unit(Reader& reader, QuantityMapping& mapping) {
+  const std::string& wanted = mapping.quantity.unit;
+  const std::string unit = reader.text("unit", Need::optional).value_or(wanted);
+  const ParsedQuantity zero = parse_quantity("0 " + unit, wanted);
+  const ParsedQuantity one = parse_quantity("1 " + unit, wanted);
+  if (!zero.ok() || !one.ok()) {
+    reader.problem("unit", fmt::format("'{}' is no unit of {}; expected one that converts to {}", unit, mapping.quantity.key,
+                                       wanted.empty() ? "a pure number" : wanted));
+    return;
+  }
+  mapping.value = zero.value;
+  mapping.scale_factor = one.value - zero.value;
+  if (reader.choice("sign", kSigns, Need::optional).value_or("+") == "-") {
+    if (wanted == "degC") {
+      reader.problem("sign", "a temperature has none");
+    }
+    mapping.value = -mapping.value;
+    mapping.scale_factor = -mapping.scale_factor;
+  }
+}
+
+std::optional<double> limit(Reader& reader, const char* key, const QuantityMapping& mapping) {
+  return reader.quantity({key, mapping.quantity.unit, Range::any(), "value at which the sensor is at its end"}, Need::optional);
+}
+
+void read_fills(Reader& reader, QuantityMapping& mapping) {
+  for (Reader& fill : reader.tables("fill")) {
+    const std::optional<double> value =
+        fill.quantity({"value", mapping.quantity.unit, mapping.quantity.possible, "what a blank cell stands for"}, Need::required);
+    const std::optional<std::string> where = fill.text("where", Need::required);
+    if (value && where) {
+      mapping.fills.push_back({*value, *where});
+    }
+    fill.finish();
+  }
+}
+
+std::optional<QuantityMapping> read_quantity(const std::string& key, Reader& reader) {
+  const std::optional<Quantity> quantity = quantity_named(key);
+  if (!quantity) {
+    reader.problem("", fmt::format("is no quantity: not of the table, and its name does not end in a unit{}", nearest_quantity(key)));
+    return std::nullopt;
+  }
+  QuantityMapping mapping;
+  mapping.quantity = *quantity;
+  mapping.at = reader.at("");
+  for (const std::string& part : reader.keys()) {
+    mapping.places[part] = reader.at(part);
+  }
+  mapping.column = reader.text("column", Need::optional).value_or("");
+  mapping.expression = reader.text("expression", Need::optional).value_or("");
+  if (mapping.column.empty() == mapping.expression.empty()) {
+    reader.problem("", "expected one of column = \"…\" and expression = \"…\"");
+  }
+  read_unit(reader, mapping);
+  mapping.valid = reader.text("valid", Need::optional).value_or("");
+  mapping.saturates_low = limit(reader, "saturates_low", mapping);
+  mapping.saturates_high = limit(reader, "saturates_high", mapping);
+  mapping.is_optional = reader.flag("optional", Need::optional).value_or(false);
+  if (mapping.is_optional && mapping.column.empty()) {
+    reader.problem("optional", "expected for a column only");
+  }
+  mapping.clock_offset_s = reader
+                               .quantity({"clock_offset", "s", Range::between(-3600.0, 3600.0),
+                                          "added to the row's time gives the moment of this channel's sample"},
+                                         Need::optional)
+                               .value_or(0.0);
+  read_fills(reader, mapping);
+  if (quantity->kind == QuantityKind::time && (mapping.clock_offset_s != 0.0 || !mapping.fills.empty())) {
+    reader.problem("", "the time has no clock_offset and no fill");
+  }
+  reader.finish();
+  return mapping;
+}
+
+void read_conditions(Reader& table, std::map<std::string, std::string>& conditions) {
+  for (const std::string& key : table.keys()) {
+    if (const std::optional<std::string> text = table.text(key, Need::required)) {
+      conditions[key] = *text;
+    }
+  }
+}
+
+/// Applies the [[files]] entries for this log. Returns true if there is any.
+bool read_files(Reader& root, const fs::path& log, Mapping& mapping) {
+  bool is_named = false;
+  std::map<std::pair<std::string, std::string>, std::string> said;  // by name and condition
+  for (Reader& file : root.tables("files")) {
+    const std::string name = file.text("name", Need::required).value_or("");
+    std::map<std::string, std::string> conditions;
+    const std::optional<std::string> motor = file.text("motor", Need::optional);
+    if (std::optional<Reader> table = file.table("conditions", Need::optional)) {
+      read_conditions(*table, conditions);
+      for (const auto& [key, text] : conditions) {
+        if (const auto& [before, is_new] = said.try_emplace({name, key}, text); !is_new && before->second != text) {
+          table->problem(key, fmt::format("contradicts \"{}\", which another [[files]] says of {}", before->second, name));
+        }
+      }
+    }
+    if (matches(name, log)) {
+      is_named = true;
+      mapping.motor = motor.value_or(mapping.motor);
+      for (auto& [key, text] : conditions) {
+        mapping.conditions[key] = text;
+      }
+    }
+    file.finish();
+  }
+  return is_named;
+}
+
+void read_quantities(Reader& root, Mapping& mapping) {
+  std::optional<Reader> table = root.table("quantities", Need::required);
+  if (!table) {
+    return;
+  }
+  for (auto& [key, reader] : table->named_tables()) {
+    if (std::optional<QuantityMapping> quantity = read_quantity(key, reader)) {
+      mapping.quantities.push_back(std::move(*quantity));
+    }
+  }
+  const auto is_time = [](const QuantityMapping& each) { return each.quantity.kind == QuantityKind::time; };
+  if (std::ranges::none_of(mapping.quantities, is_time)) {
+    table->problem("", "has no time_s, which every log needs");
+  }
+}
+
+}  // namespace
+
+Location QuantityMapping::place_of(const std::string& part) const {
+  const auto found = places.find(part);
+  return found == places.end() ? at : found->second;
+}
+
+Mapping read_mapping(const fs::path& file, const fs::path& log) {
+  const Value document = read_toml(file);
+  Diagnostics problems;
+  Reader root(document, "", problems);
+  Mapping mapping;
+  mapping.file = file;
+  root.text("summary", Need::optional);
+  mapping.motor = root.text("motor", Need::optional).value_or("");
+  if (std::optional<Reader> conditions = root.table("conditions", Need::optional)) {
+    read_conditions(*conditions, mapping.conditions);
+  }
+  if (std::optional<Reader> format = root.table("file", Need::optional)) {
+    mapping.format = read_format(*format);
+  }
+  if (std::optional<Reader> rows = root.table("rows", Need::optional)) {
+    mapping.valid = rows->text("valid", Need::required).value_or("");
+    mapping.valid_at = rows->at("valid");
+    rows->finish();
+  }
+  if (std::optional<Reader> runs = root.table("runs", Need::optional)) {
+    mapping.run_column = runs->text("column", Need::optional).value_or("");
+    mapping.run_column_at = runs->at("column");
+    mapping.longest_gap_s =
+        runs->quantity({"longest_gap", "s", Range::positive(), "a longer gap between rows splits the run"}, Need::optional);
+    runs->finish();
+  }
+  const std::string convention = root.choice("inputs", kConventions, Need::optional).value_or("held");
+  mapping.inputs = static_cast<InputConvention>(std::ranges::find(kConventions, convention) - kConventions.begin());
+  read_quantities(root, mapping);
+  const std::vector<std::string> patterns =
+      document.find("applies_to") != nullptr ? root.texts("applies_to", Need::required) : std::vector<std::string>{"*"};
+  const bool is_named = read_files(root, log, mapping);
+  if (!is_named && std::ranges::none_of(patterns, [&log](const std::string& pattern) { return matches(pattern, log); })) {
+    root.problem("applies_to",
+                 fmt::format("{} is none of the files of this mapping: {}", log.filename().string(), fmt::join(patterns, ", ")));
+  }
+  root.finish();
+  problems.throw_if_any();
+  return mapping;
+}
+
+Mapping mapping_for(const fs::path& log, const fs::path& chosen) {
+  if (!chosen.empty()) {
+    return read_mapping(chosen, log);
+  }
+  for (const fs::path& beside : {fs::path(log.string() + ".map.toml"), fs::path(log).replace_extension(".map.toml")}) {
+    std::error_code ignored;
+    if (fs::exists(beside, ignored)) {
+      return read_mapping(beside, log);
+    }
+  }
+  return {};
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,124 @@
+// Quality of a recording, assessed before any fit.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "recording/condensed_recording.h"
+#include "recording/noise.h"
+#include "recording/recording.h"
+#include "recording/recording_report.h"
+
+namespace heatsoak {
+
+struct Sampling {
+  double duration_s = 0.0;
+  double usual_period_s = 0.0;  ///< median time between rows
+  double jitter_s = 0.0;        ///< 1.4826 · median absolute deviation of the periods
+  double longest_gap_s = 0.0;
+};
+
+/// Gap before a row, in which nothing is known.
+struct Gap {
+  int line = 0;
+  double begin_s = 0.0;
+  double duration_s = 0.0;
+};
+
+/// Quality of a channel. Values are in its unit.
+struct ChannelQuality {
+  Quantity quantity;
+  std::size_t samples = 0;
+  std::size_t left_out = 0;  ///< number of omitted samples, for any reason
+  double low = 0.0;
+  double high = 0.0;
+  std::size_t at_low = 0;  ///< samples of exactly this value
+  std::size_t at_high = 0;
+  std::size_t distinct = 0;  ///< number of distinct values; in long logs, of some ten thousand samples
+  double step = 0.0;         ///< resolution; 0 if no quantisation is visible
+  double noise = 0.0;        ///< standard deviation, model-free, not below step/√12
+  [[nodiscard]] bool is_constant() const { return !(high > low); }
+};
+
+/// Delay of a temperature relative to the heat input. A clock offset and a sensor lag are indistinguishable.
+struct ClockOffset {
+  std::string temperature;
+  std::string heat_input;
+  std::optional<double> delay_s;     ///< positive: the temperature is late; nullopt if not determined
+  double delay_uncertainty_s = 0.0;  ///< standard error; includes a jackknife over eighths of the log
+  double misfit_ratio = 1.0;         ///< sum of squared errors without delay divided by that with delay
+  std::string why_not;               ///< reason if delay_s is not determined
+  bool explains_flow = false;        ///< true: the log has other temperatures, and this one is the hottest while heated
+};
+
+/// Suitability of a log for one purpose.
+struct Fitness {
+  std::vector<std::string> lacks;  ///< sentences: what is missing; empty if suitable
+  [[nodiscard]] bool is_good() const { return lacks.empty(); }
+};
+
+struct DataQuality {
+  static constexpr std::size_t kMostGaps = 1000;
+  Sampling sampling;
+  std::size_t runs = 0;
+  std::vector<Gap> gaps;  ///< between runs, the first kMostGaps
+  std::vector<ChannelQuality> channels;
+  std::vector<ClockOffset> clock_offsets;
+  std::vector<std::string> suspicions;           ///< reported only, nothing is corrected
+  std::vector<std::string> blocking;             ///< subset about units, signs and sensors that, if true, prevents any fit
+  std::vector<std::string> blocking_for_wheels;  ///< same for a robot's wheels and angles, and for the clock
+  Fitness thermal;                               ///< for fitting a thermal network
+  Fitness drive;                                 ///< for fitting friction of wheels
+};
+
+/// Assesses a log part by part with bounded memory.
+class Assessment {
+ public:
+  static constexpr double kNotStated_C = std::numeric_limits<double>::quiet_NaN();
+
+  /// Adds the next part, as returned by RecordingStream.
+  void add(const Recording& part);
+  /// Returns the result after the last part. Channels without samples are not listed. `ambient_C`: air temperature stated by the user, NaN
+  /// if not stated.
+  DataQuality conclude(const RecordingReport& report, double ambient_C = kNotStated_C);
+  [[nodiscard]] const CondensedRecording& condensed() const { return condensed_; }
+
+ private:
+  struct Gauge {
+    NoiseGauge noise;
+    std::size_t samples = 0;
+    std::size_t at_low = 0;
+    std::size_t at_high = 0;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -std::numeric_limits<double>::infinity();
+    void add(std::span<const double> values);
+  };
+  void add_times(const Recording& part);
+  void report_channels(const RecordingReport& report);
+
+  CondensedRecording condensed_;
+  std::vector<Gauge> gauges_;  ///< per channel
+  Thinned steps_s_;
+  std::size_t rows_ = 0;
+  double first_s_ = 0.0;
+  double last_s_ = 0.0;
+  DataQuality quality_;
+};
+
+DataQuality assess(const Recording& recording, const RecordingReport& report, double ambient_C = Assessment::kNotStated_C);
+
+/// Throws Failure (cannot_answer) if the recording contains no information about a thermal network: too short, no changes, no temperature
+/// or no heat input.
+void require_thermal(const Recording& recording, const DataQuality& quality);
+
+/// Returns the varying channel that heats the winding most directly: current, else power, torque, voltage, speed; nullptr if none varies.
+const Channel* heat_input_of(const Recording& recording);
+
+/// Returns the heat per row up to a factor: the channel itself if it is a power, else its square. NaN if not known.
+std::vector<double> relative_heat(const Channel& heat_input);
+
+}  // namespace heatsoak

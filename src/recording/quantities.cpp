@@ -1,0 +1,186 @@
+#include "recording/quantities.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "base/quantity.h"
+
+namespace heatsoak {
+namespace {
+
+using Kind = QuantityKind;
+
+constexpr Range kTemperature_C = Range::between(-100.0, 1000.0);
+constexpr Range kAny = Range::any();
+/// Valid for all units; larger values would make squares and sums meaningless.
+constexpr Range kHeatInput = Range::between(-1e12, 1e12);
+
+constexpr std::array kTypes{
+    QuantityType{"time_s", Kind::time, "s", kAny, false, "time of the row; any origin, strictly increasing"},
+    QuantityType{"winding_C", Kind::temperature, "degC", kTemperature_C, false, "temperature of the winding"},
+    QuantityType{"stator_C", Kind::temperature, "degC", kTemperature_C, false, "temperature of the stator (iron, or the motor's outside)"},
+    QuantityType{"housing_C", Kind::temperature, "degC", kTemperature_C, false, "temperature of a housing around the stator"},
+    QuantityType{"tooth_C", Kind::temperature, "degC", kTemperature_C, false, "temperature of a stator tooth"},
+    QuantityType{"magnet_C", Kind::temperature, "degC", kTemperature_C, false, "temperature of the rotor's magnets"},
+    QuantityType{"ambient_C", Kind::surroundings, "degC", kTemperature_C, false, "temperature of the air around the motor"},
+    QuantityType{"coolant_C", Kind::surroundings, "degC", kTemperature_C, false, "temperature of a cooling liquid"},
+    QuantityType{"driver_C", Kind::surroundings, "degC", kTemperature_C, false, "temperature of the motor's driver"},
+    QuantityType{"neighbour_C", Kind::surroundings, "degC", kTemperature_C, false, "temperature of another motor close by"},
+    QuantityType{"current_A", Kind::heat_input, "A", kHeatInput, false,
+                 "current as the motor's torque constant counts it: rms over the interval, sign of its mean"},
+    QuantityType{"current_d_A", Kind::heat_input, "A", kHeatInput, false, "field-producing current, peak of a phase"},
+    QuantityType{"current_q_A", Kind::heat_input, "A", kHeatInput, false, "torque-producing current, peak of a phase"},
+    QuantityType{"speed_rad_per_s", Kind::heat_input, "rad/s", kHeatInput, false, "speed of the motor's shaft"},
+    QuantityType{"torque_Nm", Kind::heat_input, "Nm", kHeatInput, false, "torque at the motor's shaft"},
+    QuantityType{"motor_V", Kind::heat_input, "V", kHeatInput, false, "voltage at the motor's terminals, with sign"},
+    QuantityType{"motor_d_V", Kind::heat_input, "V", kHeatInput, false, "voltage along the field"},
+    QuantityType{"motor_q_V", Kind::heat_input, "V", kHeatInput, false, "voltage across the field"},
+    QuantityType{"bus_V", Kind::heat_input, "V", kHeatInput, false, "voltage of the supply at the driver"},
+    QuantityType{"bus_A", Kind::heat_input, "A", kHeatInput, false, "current from the supply into the driver"},
+    QuantityType{"power_in_W", Kind::heat_input, "W", kHeatInput, false, "electric power into the driver, its losses included"},
+    QuantityType{"power_out_W", Kind::heat_input, "W", kHeatInput, false, "mechanical power at the shaft"},
+    QuantityType{"duty_ratio", Kind::heat_input, "", kHeatInput, false, "modulation of the driver, -1 … 1"},
+    QuantityType{"battery_V", Kind::signal, "V", kAny, false, "voltage of the robot's battery"},
+    QuantityType{"vehicle_speed_m_per_s", Kind::signal, "m/s", kAny, false, "speed over ground: airflow"},
+    QuantityType{"heading_rad", Kind::signal, "rad", kAny, false, "direction of travel in the robot's frame, 0 is ahead, anticlockwise"},
+    QuantityType{"vx_m_per_s", Kind::signal, "m/s", kAny, false, "measured velocity ahead, robot's frame"},
+    QuantityType{"vy_m_per_s", Kind::signal, "m/s", kAny, false, "measured velocity to the left, robot's frame"},
+    QuantityType{"yaw_rate_rad_per_s", Kind::signal, "rad/s", kAny, false, "measured turning rate, anticlockwise"},
+    QuantityType{"vx_set_m_per_s", Kind::signal, "m/s", kAny, false, "demanded velocity ahead, robot's frame"},
+    QuantityType{"vy_set_m_per_s", Kind::signal, "m/s", kAny, false, "demanded velocity to the left, robot's frame"},
+    QuantityType{"yaw_rate_set_rad_per_s", Kind::signal, "rad/s", kAny, false, "demanded turning rate, anticlockwise"},
+    QuantityType{"x_m", Kind::signal, "m", kAny, false, "position on the field"},
+    QuantityType{"y_m", Kind::signal, "m", kAny, false, "position on the field"},
+    QuantityType{"yaw_rad", Kind::signal, "rad", kAny, false, "orientation on the field, anticlockwise from x to y"},
+    QuantityType{"wheel_speed_rad_per_s", Kind::signal, "rad/s", kAny, true, "speed of a wheel's motor shaft"},
+    QuantityType{"wheel_speed_set_rad_per_s", Kind::signal, "rad/s", kAny, true, "demanded speed of a wheel's motor shaft"},
+    QuantityType{"wheel_angle_rad", Kind::signal, "rad", kAny, true, "angle of a wheel's motor shaft, counted on over turns"},
+    QuantityType{"wheel_current_A", Kind::signal, "A", kAny, true, "current of a wheel's motor"},
+    QuantityType{"wheel_voltage_V", Kind::signal, "V", kAny, true, "voltage at a wheel's motor, with sign"},
+    QuantityType{"wheel_pwm_ratio", Kind::signal, "", kAny, true, "modulation of a wheel's driver, -1 … 1"},
+    QuantityType{"wheel_winding_C", Kind::temperature, "degC", kTemperature_C, true, "temperature of the winding of a wheel's motor"},
+    QuantityType{"wheel_stator_C", Kind::temperature, "degC", kTemperature_C, true, "temperature of the stator of a wheel's motor"},
+};
+
+/// Endings that UDUNITS-2 spells differently or interprets differently (C is coulomb there).
+struct Ending {
+  std::string_view name;
+  std::string_view unit;
+};
+constexpr std::array kEndings{Ending{"C", "degC"}, Ending{"ratio", ""}, Ending{"share", ""}, Ending{"percent", "%"}, Ending{"pct", "%"}};
+
+std::string_view without_number(std::string_view key) {
+  const std::size_t end = key.find_last_not_of("0123456789");
+  const bool is_numbered = end != std::string_view::npos && end + 1 < key.size() && key[end] == '_' && key[end + 1] != '0';
+  return is_numbered ? key.substr(0, end) : key;
+}
+
+Quantity quantity_of(const QuantityType& type, std::string_view key) {
+  return {std::string(key), type.kind, std::string(type.unit), type.possible, std::string(type.meaning)};
+}
+
+std::vector<std::string_view> words_of(std::string_view key) {
+  std::vector<std::string_view> words;
+  for (std::size_t begin = 0; begin <= key.size();) {
+    const std::size_t end = std::min(key.find('_', begin), key.size());
+    words.push_back(key.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return words;
+}
+
+/// Returns the unit at the end of a name, for example "rad/s" for "…_rad_per_s". nullopt if there is none.
+std::optional<std::string> unit_at_end(std::string_view key) {
+  const std::vector<std::string_view> words = words_of(key);
+  if (words.size() < 2 || std::ranges::any_of(words, &std::string_view::empty)) {
+    return std::nullopt;
+  }
+  for (const Ending& ending : kEndings) {
+    if (words.back() == ending.name && words[words.size() - 2] != "per") {
+      return std::string(ending.unit);
+    }
+  }
+  std::size_t first = words.size() - 1;
+  while (first >= 2 && words[first - 1] == "per") {
+    first -= 2;
+  }
+  first -= first >= 2 && words[first] == "m2" && words[first - 1] == "kg" ? 1 : 0;
+  if (first == 0) {
+    return std::nullopt;
+  }
+  std::string unit;
+  for (std::size_t i = first; i < words.size(); ++i) {
+    if (words[i] == "per") {
+      unit += '/';
+      continue;
+    }
+    if (i > first && words[i - 1] != "per") {
+      unit += ' ';
+    }
+    unit += words[i];
+  }
+  const bool is_symbol = std::isalpha(static_cast<unsigned char>(unit[0])) != 0;
+  return is_symbol && parse_quantity("1 " + unit, unit).ok() ? std::optional(unit) : std::nullopt;
+}
+
+}  // namespace
+
+std::string_view to_string(QuantityKind kind) {
+  switch (kind) {
+    case Kind::time:
+      return "time";
+    case Kind::temperature:
+      return "temperature of the motor";
+    case Kind::surroundings:
+      return "surroundings";
+    case Kind::heat_input:
+      return "heat input";
+    case Kind::signal:
+      return "other signal";
+  }
+  return "?";
+}
+
+std::span<const QuantityType> quantity_types() { return kTypes; }
+
+std::optional<Quantity> quantity_named(std::string_view key) {
+  const std::string_view stem = without_number(key);
+  for (const QuantityType& type : kTypes) {
+    if (type.is_numbered ? stem != key && type.key == stem : type.key == key) {
+      return quantity_of(type, key);
+    }
+  }
+  const std::optional<std::string> unit = unit_at_end(stem);
+  if (!unit) {
+    return std::nullopt;
+  }
+  const Range possible = *unit == "degC" ? kTemperature_C : kAny;
+  return Quantity{std::string(key), Kind::signal, *unit, possible, ""};
+}
+
+std::string nearest_quantity(std::string_view key) {
+  std::vector<std::string> names;
+  for (const QuantityType& type : kTypes) {
+    names.push_back(std::string(type.key) + (type.is_numbered ? "_1" : ""));
+  }
+  // For example "winding_F": a known quantity in another unit.
+  const std::string stem(key.substr(0, key.rfind('_') + 1));
+  std::string_view same;
+  for (const QuantityType& type : kTypes) {
+    if (stem.size() > 1 && !type.is_numbered && type.key.starts_with(stem) && (same.empty() || type.key.size() < same.size())) {
+      same = type.key;
+    }
+  }
+  if (!same.empty() && same != key) {
+    return fmt::format("; did you mean '{0}'? A column in another unit is read with a mapping: {0} = {{ column = \"{1}\", unit = … }}",
+                       same, key);
+  }
+  return did_you_mean(key, names);
+}
+
+}  // namespace heatsoak

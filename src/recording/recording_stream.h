@@ -1,0 +1,37 @@
+// Reads a file of measurements in parts of some ten thousand rows.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+
+#include "recording/mapping.h"
+#include "recording/recording.h"
+#include "recording/recording_report.h"
+
+namespace heatsoak {
+
+/// Omits and reports invalid rows and samples (blank, not numbers, repeated or decreasing times, saturated, frozen, outliers of
+/// temperatures); never replaces them by guesses. Memory is bounded. Frozen and saturated samples and the order of rows are judged within
+/// parts of some 65 000 rows, which is all of most logs. Throws Failure: bad_input if the file is not a table, lacks a column or its time
+/// does not increase; cannot_answer if nothing is left. Errors that are visible only at the end of the file are thrown by next().
+class RecordingStream {
+ public:
+  /// `report` must outlive the stream.
+  RecordingStream(const std::filesystem::path& log, const Mapping& mapping, RecordingReport& report);
+  ~RecordingStream();
+  RecordingStream(const RecordingStream&) = delete;
+  RecordingStream& operator=(const RecordingStream&) = delete;
+
+  /// Reads the next rows of all channels; returns false at the end. `run_begins` contains 0 only if a run begins with the part.
+  bool next(Recording& part);
+  [[nodiscard]] std::size_t bytes_read() const;
+  /// True if the channel has had a valid number so far.
+  [[nodiscard]] bool has_numbers(std::size_t channel) const;
+
+ private:
+  class Intake;
+  std::unique_ptr<Intake> intake_;
+};
+
+}  // namespace heatsoak

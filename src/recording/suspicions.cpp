@@ -1,0 +1,282 @@
+#include "recording/suspicions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "base/quantity.h"
+#include "recording/clock_offset.h"
+#include "recording/row_order.h"
+#include "recording/sensor_places.h"
+#include "recording/spread.h"
+#include "recording/temperature_scales.h"
+
+namespace heatsoak {
+namespace {
+
+class Suspector {
+ public:
+  Suspector(const Recording& recording, const DataQuality& told, double ambient_C)
+      : recording_(recording), told_(told), ambient_C_(ambient_C) {}
+
+  Suspicions run() {
+    found_ = suspicious_scales(recording_, ambient_C_);
+    std::ranges::move(suspicious_places(recording_, told_.channels), std::back_inserter(found_));
+    currents();
+    speeds();
+    early_answers();
+    const std::size_t of_motors = found_.size();
+    clock();
+    std::vector<std::string> blocking = found_;
+    angles();
+    wheels();
+    std::vector<std::string> blocking_for_wheels(found_.begin() + static_cast<std::ptrdiff_t>(of_motors), found_.end());
+    short_clock();
+    constants();
+    limits();
+    return {std::move(found_), std::move(blocking), std::move(blocking_for_wheels)};
+  }
+
+ private:
+  [[nodiscard]] const ChannelQuality* quality(const std::string& key) const {
+    const auto found = std::ranges::find_if(told_.channels, [&key](const ChannelQuality& each) { return each.quantity.key == key; });
+    return found == told_.channels.end() ? nullptr : &*found;
+  }
+
+  void currents() {
+    for (const char* key : {"current_A", "current_q_A", "bus_A"}) {
+      const Channel* const current = recording_.find(key);
+      if (const double top_A = current != nullptr ? top_of_sizes(current->values) : 0.0; top_A > kLargestCurrent_A) {
+        found_.push_back(fmt::format("{} reaches {} A: is it in milliamperes?", key, significant(top_A, 3)));
+      }
+    }
+    const Channel* const power = recording_.find("power_in_W");
+    const Channel* const voltage = recording_.find("bus_V");
+    const Channel* const supply = recording_.find("bus_A");
+    if (power != nullptr && voltage != nullptr && supply != nullptr) {
+      std::vector<double> ratios;
+      const double large_W = 0.3 * std::max(std::abs(percentile(power->values, 0.98)), std::abs(percentile(power->values, 0.02)));
+      for (std::size_t i = 0; i < recording_.rows(); ++i) {
+        const double product_W = voltage->values[i] * supply->values[i];
+        if (std::abs(product_W) > 0.0 && std::abs(power->values[i]) > large_W) {
+          ratios.push_back(power->values[i] / product_W);
+        }
+      }
+      const double ratio = middle_of(ratios);
+      if (std::abs(ratio) < 0.5 || std::abs(ratio) > 2.0) {
+        found_.push_back(fmt::format("power_in_W is {} times bus_V × bus_A: is one of them in another unit?", significant(ratio, 3)));
+      } else if (ratio < 0.0) {
+        found_.emplace_back("power_in_W and bus_V × bus_A have opposite signs");
+      }
+    }
+    if (const Channel* const torque = recording_.find("torque_Nm"); torque != nullptr && recording_.find("current_A") != nullptr) {
+      const Regression answer = pairs(*recording_.find("current_A"), *torque);
+      if (answer.points > 20 && answer.correlation_ratio < -0.7) {
+        found_.emplace_back("torque_Nm and current_A have opposite signs: is the sign of one of them wrong?");
+      }
+    }
+  }
+  [[nodiscard]] static Regression pairs(const Channel& a, const Channel& b) {
+    std::vector<double> x;
+    std::vector<double> y;
+    for (std::size_t i = 0; i < a.values.size(); ++i) {
+      if (!std::isnan(a.values[i]) && !std::isnan(b.values[i])) {
+        x.push_back(a.values[i]);
+        y.push_back(b.values[i]);
+      }
+    }
+    return regress(x, y);
+  }
+
+  void speeds() {
+    constexpr double kRpm = 30.0 / std::numbers::pi;
+    for (const Channel& channel : recording_.channels) {
+      const double fastest = top_of_sizes(channel.values);
+      if (channel.quantity.unit == "rad/s" && channel.quantity.key.find("speed") != std::string::npos && fastest > kFastest_rad_per_s) {
+        found_.push_back(fmt::format("{} reaches {} rad/s: is it in rpm ({} rad/s) or degrees per second ({} rad/s)?", channel.quantity.key,
+                                     significant(fastest, 4), significant(fastest / kRpm, 3),
+                                     significant(fastest * std::numbers::pi / 180.0, 3)));
+      }
+    }
+    const Channel* const speed = recording_.find("speed_rad_per_s");
+    const Channel* const torque = recording_.find("torque_Nm");
+    const Channel* const power = recording_.find("power_in_W");
+    if (speed == nullptr || torque == nullptr || power == nullptr) {
+      return;
+    }
+    std::vector<double> ratios;
+    const double large_W = 0.3 * percentile(power->values, 0.98);
+    for (std::size_t i = 0; i < recording_.rows(); ++i) {
+      if (power->values[i] > large_W && large_W > 0.0) {
+        ratios.push_back(std::abs(speed->values[i] * torque->values[i]) / power->values[i]);
+      }
+    }
+    if (const double ratio = middle_of(ratios); ratio > 1.1) {
+      found_.push_back(
+          fmt::format("torque_Nm × speed_rad_per_s is {} times power_in_W, more than goes in: is the speed in rpm (÷ 9.55) or "
+                      "degrees per second (÷ 57.3)?",
+                      significant(ratio, 3)));
+    }
+  }
+
+  void angles() {
+    for (const ChannelQuality& channel : told_.channels) {
+      const double span = channel.high - channel.low;
+      const bool is_angle = channel.quantity.key.starts_with("yaw") || channel.quantity.key.starts_with("heading");
+      if (channel.quantity.unit == "rad" && is_angle && span > 100.0 && span <= 721.0) {
+        found_.push_back(fmt::format("{} spans {} rad: is it in degrees?", channel.quantity.key, significant(span, 3)));
+      }
+    }
+  }
+
+  /// Checks units of wheel signals with the 98th percentile of the magnitudes, which ignores single outliers.
+  void wheels() {
+    constexpr double kLargestBattery_V = 1000.0;
+    constexpr double kLongestPeriod_s = 2.0;  // wheels speed up and stop within it
+    const double period_s = usual_period_s(recording_.time_s);
+    const bool has_wheels = std::ranges::any_of(recording_.channels,
+                                                [](const Channel& each) { return each.quantity.key.starts_with("wheel_speed_rad_per_s"); });
+    if (has_wheels && period_s > kLongestPeriod_s && recording_.time_s.back() - recording_.time_s.front() <= kLongest_s) {
+      found_.push_back(fmt::format("the speeds of wheels are {} s apart: is the time in milliseconds?", significant(period_s, 3)));
+    }
+    for (const Channel& channel : recording_.channels) {
+      const std::string& key = channel.quantity.key;
+      const double top = top_of_sizes(channel.values);
+      if (key.starts_with("wheel_pwm_ratio") && top > 1.5) {
+        found_.push_back(fmt::format("{} reaches {}: is it in percent or in counts of a timer? 1 is the whole battery voltage", key,
+                                     significant(top, 3)));
+      } else if ((key == "battery_V" || key.starts_with("wheel_voltage_V")) && top > kLargestBattery_V) {
+        found_.push_back(fmt::format("{} reaches {} V: is it in millivolts?", key, significant(top, 3)));
+      } else if (key.starts_with("wheel_current_A") && top > kLargestCurrent_A) {
+        found_.push_back(fmt::format("{} reaches {} A: is it in milliamperes?", key, significant(top, 3)));
+      }
+    }
+  }
+
+  void clock() {
+    const double duration_s = recording_.time_s.back() - recording_.time_s.front();
+    if (duration_s > kLongest_s) {
+      const double in_days = duration_s / 86400.0;
+      found_.push_back(fmt::format("the log lasts {} days at {} s per row: is the time in {}?", significant(in_days, 3),
+                                   significant(usual_period_s(recording_.time_s), 3),
+                                   duration_s > 1e3 * kLongest_s ? "microseconds" : "milliseconds"));
+    }
+  }
+
+  /// Reports temperatures that respond before their heat input.
+  void early_answers() {
+    for (const ClockOffset& offset : told_.clock_offsets) {
+      if (std::string early = early_answer(offset, told_.sampling.usual_period_s); !early.empty()) {
+        found_.push_back(std::move(early));
+      }
+    }
+  }
+
+  /// Detects times in minutes or hours: the period is then a whole number of seconds, and a temperature falls faster than any motor cools.
+  /// Loggers with 60 Hz look similar.
+  void short_clock() {
+    const double period_s = usual_period_s(recording_.time_s);
+    constexpr double kMost_s = 60.0;
+    constexpr double kOff_ratio = 5e-3;
+    const auto is_whole = [](double value, double off) { return std::abs(value - std::round(value)) < off; };
+    for (const auto& [unit, in_s] : {std::pair("minutes", 60.0), std::pair("hours", 3600.0)}) {
+      const double true_s = in_s * period_s;
+      if (true_s > kMost_s || std::round(true_s) < 1.0 || !is_whole(true_s, kOff_ratio * true_s) || is_whole(1e3 * period_s, 0.01)) {
+        continue;
+      }
+      for (const Channel& channel : recording_.channels) {
+        if (channel.quantity.kind != QuantityKind::temperature) {
+          continue;
+        }
+        // The rate of a rise depends on the current, but the rate of a fall only on the motor.
+        const double fast_s = channel.quantity.key.find("winding") != std::string::npos ? 0.5 : 5.0;
+        if (const double fall_s = usual_fall_s(channel); fall_s < fast_s) {
+          found_.push_back(fmt::format("the rows are {} s apart and {} falls by {} K in {} s: is the time in {}?", significant(period_s, 3),
+                                       channel.quantity.key, significant(kFall_K, 2), significant(fall_s, 2), unit));
+          return;
+        }
+      }
+    }
+  }
+  static constexpr double kFall_K = 10.0;
+  /// Median time of a fall by kFall_K without a rise; infinite with fewer than two falls.
+  [[nodiscard]] double usual_fall_s(const Channel& channel) const {
+    std::vector<double> falls_s;
+    for (const auto& [begin, end] : recording_.runs()) {
+      double from_C = -std::numeric_limits<double>::infinity();
+      double from_s = 0.0;
+      for (std::size_t row = begin; row < end; ++row) {
+        const double now_C = channel.values[row];
+        const bool is_fallen = from_C - now_C >= kFall_K;
+        if (is_fallen) {
+          falls_s.push_back(recording_.time_s[row] - from_s);
+        }
+        if (is_fallen || now_C > from_C) {
+          from_C = now_C;
+          from_s = recording_.time_s[row];
+        }
+      }
+    }
+    return falls_s.size() < 2 ? std::numeric_limits<double>::infinity() : middle_of(falls_s);
+  }
+
+  /// Reports constant temperatures. The fit ignores such a sensor.
+  void constants() {
+    constexpr double kMoves_K = 10.0;
+    for (const Channel& constant : recording_.channels) {
+      const ChannelQuality* const range = quality(constant.quantity.key);
+      if (constant.quantity.kind != QuantityKind::temperature || !range->is_constant()) {
+        continue;
+      }
+      const auto moving = std::ranges::find_if(recording_.channels, [](const Channel& each) {
+        return each.quantity.kind == QuantityKind::temperature && swing(each) > kMoves_K;
+      });
+      if (moving != recording_.channels.end()) {
+        found_.push_back(fmt::format("{} is constant, {} °C, while {} moves by {} K: is its sensor connected?", constant.quantity.key,
+                                     significant(range->low, 4), moving->quantity.key, significant(swing(*moving), 3)));
+      }
+    }
+  }
+
+  /// Reports heat inputs that often have their extreme value. For a temperature that would be saturation; for an input it is often valid.
+  void limits() {
+    constexpr double kMuch_share = 0.2;
+    for (const Channel& channel : recording_.channels) {
+      const ChannelQuality* const range = quality(channel.quantity.key);
+      if (channel.quantity.kind != QuantityKind::heat_input || range->samples < 100 || range->is_constant()) {
+        continue;
+      }
+      constexpr std::size_t kManyValues = 50;  // set points have few, measured signals have many
+      for (const auto& [end, samples] : {std::pair(range->high, range->at_high), std::pair(range->low, range->at_low)}) {
+        const auto there = static_cast<double>(samples);
+        if (end != 0.0 && there > kMuch_share * static_cast<double>(range->samples) && range->noise > 0.0 &&
+            range->distinct > kManyValues) {
+          found_.push_back(fmt::format("{} stays at exactly {} {} in {:.0f} % of its rows: a limit, or a saturated sensor?",
+                                       channel.quantity.key, significant(end, 5), unit_for_display(channel.quantity.unit),
+                                       100.0 * there / static_cast<double>(range->samples)));
+        }
+      }
+    }
+  }
+
+  static constexpr double kLongest_s = 2.0 * 86400.0;
+
+  const Recording& recording_;
+  const DataQuality& told_;
+  double ambient_C_;
+  std::vector<std::string> found_;
+};
+
+}  // namespace
+
+Suspicions suspicions(const Recording& recording, const DataQuality& told, double ambient_C) {
+  return Suspector(recording, told, ambient_C).run();
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,21 @@
+// Detects probable wrong units, wrong signs and swapped channels. They are reported to the user, never corrected.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "recording/quality.h"
+#include "recording/recording.h"
+
+namespace heatsoak {
+
+struct Suspicions {
+  std::vector<std::string> all;
+  std::vector<std::string> blocking;             ///< subset about units, signs and sensors that, if true, prevents any fit
+  std::vector<std::string> blocking_for_wheels;  ///< subset about a robot's wheels and angles, and about the clock
+};
+/// Returns the suspicions as sentences. `told` must contain sampling, channels and clock offsets. `ambient_C`: air temperature stated by
+/// the user, NaN if not stated.
+Suspicions suspicions(const Recording& recording, const DataQuality& told, double ambient_C);
+
+}  // namespace heatsoak

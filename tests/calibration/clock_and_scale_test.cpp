@@ -1,0 +1,134 @@
+// Clocks that are off, scales that only the end of a run gives away, and samples that are wild or only look so.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "calibration/admission.h"
+#include "recording/clock_offset.h"
+#include "read_log.h"
+#include "support/shipped.h"
+
+namespace heatsoak {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// A sensor of 1 K in a calm room, between two of its steps now and then.
+TEST(Screening, CoarseSensorAtRestKeepsItsNeighbouringSteps) {
+  for (const double step_K : {1.0, -1.0}) {
+    for (const int steps : {1, 2}) {
+      const Read result = read_text(changed({}, [=](int row, std::vector<double>& cells) {
+        cells[ambient] = 21.0 + (row % 500 == 250 ? step_K : row % 700 == 350 ? steps * step_K : 0.0);
+      }));
+      EXPECT_TRUE(result.report.left_out.empty()) << step_K << " K";
+      EXPECT_EQ(result.quality.channels[2].samples, 1800U);
+    }
+  }
+}
+
+TEST(Screening, SingleWildCurrentIsLeftOutByLine) {
+  const Read result =
+      read_text(changed({}, [](int row, std::vector<double>& cells) { cells[current] = row == 700 ? 1e9 : cells[current]; }));
+  EXPECT_THAT(lines_of(result.report.find("current_A", LeftOutReason::outlier)), ElementsAre(702));
+  EXPECT_TRUE(std::isnan(result.recording.find("current_A")->values[700]));
+  EXPECT_THAT(result.quality.suspicions, IsEmpty());
+}
+
+SyntheticLog unsteady(double delay_s) {
+  SyntheticLog log;
+  log.delay_s = delay_s;
+  log.current_A = [](double time_s) {
+    Random random(static_cast<std::uint64_t>(std::max(time_s, 0.0) / 20.0), 5);
+    return random.uniform() < 0.4 ? 0.0 : 6.0 * random.uniform();
+  };
+  return log;
+}
+
+TEST(ClockOffsets, TemperatureBeforeItsHeatSpoils) {
+  for (const auto& [delay_s, remedy] : {std::pair(-1.0, "inputs = \"previous_interval\""), std::pair(-4.0, "clock_offset = \"-")}) {
+    const Read result = read_text(unsteady(delay_s).csv());
+    EXPECT_THAT(result.quality.blocking, ElementsAre(testing::AllOf(HasSubstr("winding_C answers"), HasSubstr(remedy)))) << delay_s;
+    EXPECT_THAT(result.quality.suspicions, result.quality.blocking);
+  }
+}
+
+TEST(ClockOffsets, TemperatureAfterItsHeatIsSaidByTheAdmission) {
+  for (const double delay_s : {0.0, 3.0}) {
+    const Read result = read_text(unsteady(delay_s).csv());
+    EXPECT_THAT(result.quality.suspicions, IsEmpty()) << "sensors lag";
+    const Admission admission = admit(shipped_motor("maxon_ec45_flat_70w_24v"), std::vector{result.recording}, {}, false);
+    if (delay_s > 0.0) {
+      EXPECT_THAT(admission.notes, ElementsAre(HasSubstr("log: winding_C follows current_A 3")));
+      EXPECT_THAT(admission.next_steps, ElementsAre(HasSubstr("winding_C answers late")));
+    } else {
+      EXPECT_THAT(admission.notes, IsEmpty());
+      EXPECT_THAT(admission.next_steps, IsEmpty());
+    }
+  }
+}
+
+/// Without another temperature the heat that the winding gives away passes for an offset.
+TEST(ClockOffsets, WindingAloneIsNotJudged) {
+  ClockOffset offset{.temperature = "winding_C",
+                     .heat_input = "current_A",
+                     .delay_s = -3.0,
+                     .delay_uncertainty_s = 0.1,
+                     .misfit_ratio = 50.0,
+                     .why_not = {}};
+  EXPECT_EQ(early_answer(offset, 1.0), "");
+  offset.explains_flow = true;
+  EXPECT_NE(early_answer(offset, 1.0), "");
+  EXPECT_EQ(late_answer(offset, 1.0), "");
+  offset.misfit_ratio = 2.0;
+  EXPECT_EQ(early_answer(offset, 1.0), "") << "little better than no delay: another heat makes that";
+  offset.misfit_ratio = 50.0;
+  offset.delay_s = -0.25;
+  EXPECT_EQ(early_answer(offset, 1.0), "") << "less than a sample tells";
+}
+
+/// A motor that turns for minutes without load: the iron heats the winding, which is never the hottest and follows no current.
+TEST(ClockOffsets, WindingThatFollowsTheIronIsNotJudged) {
+  std::string text = "time_s,winding_C,stator_C,ambient_C,current_A\n";
+  double winding_C = 22.0;
+  double stator_C = 22.0;
+  for (int row = 0; row < 1800; ++row) {
+    const double current_A = (row / 120) % 2 == 0 ? 0.0 : 0.23;
+    text += fmt::format("{},{:.1f},{:.1f},22.0,{}\n", row, winding_C, stator_C, current_A);
+    const double flow_W = (winding_C - stator_C) / 4.0;
+    winding_C += (0.6 * current_A * current_A - flow_W) / 7.0;
+    stator_C += ((row / 120) % 4 == 1 ? 6.0 : 0.5) / 50.0 + (flow_W - (stator_C - 22.0) / 3.5) / 50.0;
+  }
+  const Read result = read_text(text);
+  EXPECT_THAT(result.quality.suspicions, IsEmpty());
+  for (const ClockOffset& offset : result.quality.clock_offsets) {
+    EXPECT_EQ(offset.explains_flow, offset.temperature == "stator_C");
+  }
+  EXPECT_TRUE(std::ranges::any_of(read_text(unsteady(0.0).csv()).quality.clock_offsets, &ClockOffset::explains_flow));
+}
+
+/// After heat of so long, seen from `from_s` on; motor and air each in its scale.
+std::string cooling(double heated_s, int from_s, bool is_fahrenheit) {
+  SyntheticLog log;
+  log.rows = from_s + 1800;
+  log.current_A = [heated_s](double time_s) { return time_s < heated_s ? 8.0 : 0.0; };
+  const auto rows_C = log.temperatures_C();
+  const auto shown = [is_fahrenheit](double value_C) { return is_fahrenheit ? 1.8 * value_C + 32.0 : value_C; };
+  std::string text = "time_s,winding_C,stator_C,ambient_C,current_A\n";
+  for (std::size_t row = static_cast<std::size_t>(from_s); row < rows_C.size(); ++row) {
+    const auto& [winding_C, stator_C] = rows_C[row];
+    text += fmt::format("{},{:.2f},{:.2f},22,{}\n", row, shown(winding_C), shown(stator_C), log.current_A(static_cast<double>(row)));
+  }
+  return text;
+}
+
+TEST(Suspicion, FahrenheitByWhereACoolingMotorComesToRest) {
+  for (const auto& [heated_s, from_s] :
+       {std::pair(300.0, 310), std::pair(1500.0, 1500), std::pair(1500.0, 1000), std::pair(1500.0, 1600)}) {
+    EXPECT_THAT(read_text(cooling(heated_s, from_s, true)).quality.blocking, ElementsAre(HasSubstr("degrees Fahrenheit"))) << from_s;
+    EXPECT_THAT(read_text(cooling(heated_s, from_s, false)).quality.suspicions, IsEmpty()) << from_s;
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,375 @@
+// What a steady-state test teaches about friction, against drives of the forward dynamics whose friction is known.
+#include "friction/friction_fit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <iomanip>
+#include <iostream>
+
+#include "test_drive.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr double kDegree_rad = std::numbers::pi / 180.0;
+
+struct Truth {
+  double damping_V_s_per_rad = 0.0;
+  std::array<double, 4> sine_V{};
+  std::array<double, 4> constant_V{};
+  std::array<double, 4> phase_rad{};
+  double rotation_V = 0.0;
+};
+
+struct Case {
+  PlantConfig plant;
+  Truth truth;
+};
+
+/// The long statistics, `ctest -C statistics -L statistics`, drives 200 times (two minutes); sixteen without it.
+int seeds_wanted() {
+  const char* given = std::getenv("HEATSOAK_FRICTION_SEEDS");
+  return given ? std::atoi(given) : 16;
+}
+
+/// f(θ) of a wheel.
+double friction_V(const Truth& truth, std::size_t wheel, double heading_rad) {
+  const double s = std::sin(heading_rad + truth.phase_rad[wheel]);
+  return truth.sine_V[wheel] * s + std::copysign(truth.constant_V[wheel], s);
+}
+
+/// A robot with 0.9 Ω, 33 mN m/A and friction of its own at every wheel.
+Case any_case(std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  Robot robot;
+  robot.mass_kg = 2.6;
+  robot.wheel_radius_m = 0.028;
+  robot.wheel_contact_radius_m = 0.08;
+  for (const double axis_deg : {-30.0, 30.0, 135.0, -135.0}) {
+    robot.wheel_axis_rad.push_back(axis_deg * kDegree_rad);
+  }
+  robot.battery_V = 22.2;
+  robot.yaw_inertia_kg_m2 = 0.011;
+  robot.center_of_gravity_height_m = 0.05;
+  robot.wheel_inertia_kg_m2 = 2.2e-5;
+  robot.wheel_friction_torque_Nm = 0.0;
+  robot.wheel_damping_Nm_s_per_rad = 1e-4 + 2e-4 * any(engine);
+  robot.roller_drag_ratio = 0.0;
+  robot.traction_ratio = 0.4;
+  robot.slip_speed_m_per_s = 0.5;
+  robot.driver_resistance_ohm = 0.05;
+  robot.driver_standby_W = 0.5;
+  robot.battery_full_V = 25.2;
+  robot.battery_empty_V = 19.8;
+  robot.battery_resistance_ohm = 0.06;
+  robot.battery_capacity_A_s = 4680.0;
+  robot.heading_rotation_Nm = 0.008;
+  for (std::size_t i = 0; i < 4; ++i) {
+    robot.heading_wheels.push_back(
+        {0.015 + 0.02 * any(engine), -0.008 + 0.024 * any(engine), -robot.wheel_axis_rad[i] + 8.0 * kDegree_rad * (any(engine) - 0.5)});
+  }
+  MotorValues motor;
+  motor.terminal_resistance_ohm = 0.85;
+  motor.torque_constant_Nm_per_A = 0.033;
+  motor.no_load_current_A = 0.2;
+  motor.temperature_coefficient_per_K = 0.0;
+  motor.rotor_inertia_kg_m2 = 7.2e-6;
+  Case made{make_plant(robot, motor, 0.001), {}};
+  made.plant.body.friction.smoothing_rad_per_s = 0.05;
+  // The steady state by hand: V = R·(T/K_t) + K_t·ω with T = 6.6 mN m of the motor + friction + damping·ω, R = 0.9 Ω.
+  const double per_torque = 0.9 / 0.033;
+  made.truth.damping_V_s_per_rad = 0.033 + per_torque * robot.wheel_damping_Nm_s_per_rad;
+  made.truth.rotation_V = per_torque * (0.0066 + 0.008);
+  for (std::size_t i = 0; i < 4; ++i) {
+    made.truth.sine_V[i] = per_torque * robot.heading_wheels[i].sine_Nm;
+    made.truth.constant_V[i] = per_torque * (0.0066 + robot.heading_wheels[i].constant_Nm);
+    made.truth.phase_rad[i] = robot.heading_wheels[i].phase_rad;
+  }
+  return made;
+}
+
+TestDrive usual_drive() {
+  TestDrive drive;
+  for (int i = 0; i < 16; ++i) {
+    drive.headings_rad.push_back(22.5 * i * kDegree_rad);
+  }
+  drive.speeds_m_per_s = {0.4, 0.8, 1.2};
+  drive.bad_row_share = 0.2;
+  return drive;
+}
+
+struct Coverage {
+  int inside = 0;
+  int all = 0;
+  double worst = 0.0;
+  void add(double truth, const Estimate& found) {
+    ++all;
+    inside += found.low <= truth && truth <= found.high ? 1 : 0;
+    worst = std::max(worst, std::abs(found.value - truth));
+  }
+};
+
+TEST(FrictionFit, intervals_hold_the_truth_of_95_percent_of_drives) {
+  const int seeds = seeds_wanted();
+  Coverage damping, sine, constant, phase, offset;
+  int alarms = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const Case known = any_case(static_cast<std::uint64_t>(seed));
+    const FrictionLog log = log_of(DriveOnPlant(known.plant, usual_drive(), static_cast<std::uint64_t>(seed)).rows(), 4);
+    const SteadyParts steady = find_steady_parts({log}, known.plant.body.kinematics);
+    const FrictionFit fit = fit_friction(steady.parts, known.plant.body.kinematics, {});
+    for (std::size_t i = 0; i < 4; ++i) {
+      ASSERT_TRUE(fit.wheels[i].is_learned()) << fit.wheels[i].problem;
+      alarms += fit.wheels[i].lack.is_found ? 1 : 0;
+      damping.add(known.truth.damping_V_s_per_rad, fit.wheels[i].damping_V_s_per_rad);
+      sine.add(known.truth.sine_V[i], fit.wheels[i].sine_V);
+      constant.add(known.truth.constant_V[i], fit.wheels[i].constant_V);
+      const double turns = std::remainder(known.truth.phase_rad[i] - fit.wheels[i].phase_rad.value, 2.0 * std::numbers::pi);
+      phase.add(fit.wheels[i].phase_rad.value + turns, fit.wheels[i].phase_rad);
+      for (const HeadingLine& line : fit.lines[i]) {
+        if (line.damping_V_s_per_rad.is_known()) {
+          offset.add(friction_V(known.truth, i, line.heading_rad), line.offset_V);
+        }
+      }
+    }
+  }
+  for (const auto& [name, coverage] :
+       {std::pair("damping", damping), {"a", sine}, {"b", constant}, {"phase", phase}, {"offset of a heading", offset}}) {
+    std::cout << name << ": " << coverage.inside << " of " << coverage.all << " inside, largest error " << coverage.worst << "\n";
+    // 95 % within three standard errors of the share; the wheels of a drive share its pushes, so drives are counted.
+    const double margin = 3.0 * std::sqrt(0.95 * 0.05 / seeds);
+    EXPECT_GE(coverage.inside, (0.95 - margin) * coverage.all) << name;
+    EXPECT_LE(coverage.inside, (0.95 + margin) * coverage.all) << name << ": wider than it says";
+  }
+  EXPECT_LE(alarms, 0.02 * seeds) << "the law holds in all of them";
+}
+
+SteadyParts parts_of(const Case& known, const TestDrive& drive, std::uint64_t seed) {
+  return find_steady_parts({log_of(DriveOnPlant(known.plant, drive, seed).rows(), 4)}, known.plant.body.kinematics);
+}
+
+TestDrive short_drive(const std::vector<double>& headings_deg, const std::vector<double>& speeds_m_per_s) {
+  TestDrive drive;
+  for (const double heading_deg : headings_deg) {
+    drive.headings_rad.push_back(heading_deg * kDegree_rad);
+  }
+  drive.speeds_m_per_s = speeds_m_per_s;
+  return drive;
+}
+
+/// Without pushes, without bad rows: what is left is the logger's noise.
+TEST(FrictionFit, an_undisturbed_drive_gives_the_friction_within_millivolts) {
+  const Case known = any_case(3);
+  TestDrive drive = usual_drive();
+  drive.push_N = 0.0;
+  drive.bad_row_share = 0.0;
+  drive.rotates = true;
+  const SteadyParts steady = parts_of(known, drive, 3);
+  const FrictionFit fit = fit_friction(steady.parts, known.plant.body.kinematics, {});
+  for (std::size_t i = 0; i < 4; ++i) {
+    const WheelFriction& wheel = fit.wheels[i];
+    EXPECT_NEAR(wheel.damping_V_s_per_rad.value, known.truth.damping_V_s_per_rad, 4e-4);
+    EXPECT_NEAR(wheel.sine_V.value, known.truth.sine_V[i], 0.015);
+    EXPECT_NEAR(wheel.constant_V.value, known.truth.constant_V[i], 0.010);
+    EXPECT_NEAR(wheel.rotation_V.value, known.truth.rotation_V, 0.010);
+    EXPECT_GT(wheel.r2_ratio, 0.999);
+    // what every heading says by itself
+    for (const HeadingLine& line : fit.lines[i]) {
+      EXPECT_NEAR(line.offset_V.value, friction_V(known.truth, i, line.heading_rad), 0.06);
+    }
+  }
+}
+
+TEST(FrictionFit, bad_rows_and_return_legs_are_left_out) {
+  const Case known = any_case(4);
+  const SteadyParts steady = parts_of(known, usual_drive(), 4);
+  int returns = 0;
+  double kept = 0.0;
+  double rows = 0.0;
+  for (const SteadyPart& part : steady.parts) {
+    EXPECT_FALSE(part.is_rotation);
+    returns += part.is_return ? 1 : 0;
+    kept += part.rows_kept[0];
+    rows += static_cast<double>(part.row_count);
+    if (!part.is_return) {
+      const double speed_m_per_s = part.speed_m_per_s;
+      EXPECT_TRUE(std::abs(speed_m_per_s - 0.4) < 0.03 || std::abs(speed_m_per_s - 0.8) < 0.03 || std::abs(speed_m_per_s - 1.2) < 0.03)
+          << speed_m_per_s;
+    } else {
+      EXPECT_NEAR(part.speed_m_per_s, 0.8, 0.03);  // homing knows one speed
+    }
+  }
+  EXPECT_GT(returns, 15);
+  // A fifth of the rows is bad, but a quarter of those repeat a row that may have been as steady.
+  EXPECT_NEAR(kept / rows, 0.83, 0.05);
+  const FrictionFit without = fit_friction(steady.parts, known.plant.body.kinematics, {});
+  const FrictionFit with = fit_friction(steady.parts, known.plant.body.kinematics, {.use_return_legs = true});
+  EXPECT_GT(with.wheels[0].parts_used, without.wheels[0].parts_used);
+}
+
+/// Straight ahead no wheel stands, at 60° wheel 2 (axle at 30°, rolling along 120°) turns with cos 60°, wheel 1 (rolling
+/// along 60°) fully; at −30° wheel 1 should stand.
+TEST(FrictionFit, a_wheel_that_should_stand_tells_nothing) {
+  const Case known = any_case(5);
+  const SteadyParts steady = parts_of(known, short_drive({-30.0, 0.0, 60.0, 90.0, 150.0, 180.0, 240.0, 270.0}, {0.5, 1.0}), 5);
+  const FrictionFit fit = fit_friction(steady.parts, known.plant.body.kinematics, {});
+  EXPECT_EQ(fit.wheels[0].parts_standing, 4);  // −30° and 150°
+  ASSERT_TRUE(fit.wheels[0].is_learned()) << fit.wheels[0].problem;
+  for (const HeadingLine& line : fit.lines[0]) {
+    EXPECT_GT(std::abs(std::sin(line.heading_rad + 30.0 * kDegree_rad)), 0.1);
+  }
+}
+
+TEST(FrictionFit, says_what_a_drive_cannot_tell) {
+  const Case known = any_case(6);
+  const FrictionFit one_heading =
+      fit_friction(parts_of(known, short_drive({20.0, 20.0, 20.0}, {0.4, 0.7, 1.0}), 6).parts, known.plant.body.kinematics, {});
+  EXPECT_FALSE(one_heading.is_learned());
+  EXPECT_THAT(one_heading.wheels[0].problem, testing::HasSubstr("too few headings"));
+
+  std::vector<double> all_round;
+  for (int i = 0; i < 16; ++i) {
+    all_round.push_back(22.5 * i + 5.0);
+  }
+  const SteadyParts one_speed = parts_of(known, short_drive(all_round, {0.8}), 6);
+  const FrictionFit unknown = fit_friction(one_speed.parts, known.plant.body.kinematics, {});
+  EXPECT_FALSE(unknown.is_learned());
+  EXPECT_THAT(unknown.wheels[0].problem, testing::HasSubstr("one speed"));
+  // With the damping known the rest is learned, and said to rest on it.
+  const FrictionFit given =
+      fit_friction(one_speed.parts, known.plant.body.kinematics, {.known_damping_V_s_per_rad = known.truth.damping_V_s_per_rad});
+  ASSERT_TRUE(given.is_learned());
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_TRUE(given.wheels[i].damping_is_given);
+    EXPECT_TRUE(std::isnan(given.wheels[i].damping_V_s_per_rad.low));
+    EXPECT_NEAR(given.wheels[i].constant_V.value, known.truth.constant_V[i], 0.2);
+  }
+}
+
+/// Two directions and their opposites are two equations for a, b and φ. Diagonally a front wheel turns once fully and once
+/// slowly, so that some doubt in φ leaves a and b in wide intervals; 7° off straight ahead the speeds of three wheels are
+/// so alike on both that it leaves nothing.
+TEST(FrictionFit, few_headings_leave_wide_intervals_or_nothing) {
+  Coverage sine, constant, damping;
+  for (int seed = 1; seed <= 6; ++seed) {
+    const Case known = any_case(static_cast<std::uint64_t>(seed));
+    const auto fitted = [&](double first_deg) {
+      const std::vector<double> headings_deg = {first_deg, first_deg + 90.0, first_deg + 180.0, first_deg + 270.0};
+      const SteadyParts steady = parts_of(known, short_drive(headings_deg, {0.4, 0.8, 1.2}), static_cast<std::uint64_t>(seed));
+      return fit_friction(steady.parts, known.plant.body.kinematics, {});
+    };
+    const FrictionFit diagonal = fitted(45.0);
+    for (std::size_t i = 0; i < 2; ++i) {
+      ASSERT_TRUE(diagonal.wheels[i].is_learned()) << diagonal.wheels[i].problem;
+      EXPECT_TRUE(diagonal.wheels[i].phase_is_given);
+      sine.add(known.truth.sine_V[i], diagonal.wheels[i].sine_V);
+      constant.add(known.truth.constant_V[i], diagonal.wheels[i].constant_V);
+      damping.add(known.truth.damping_V_s_per_rad, diagonal.wheels[i].damping_V_s_per_rad);
+    }
+    const FrictionFit nearly_alike = fitted(7.0);
+    for (const std::size_t i : {0U, 2U, 3U}) {
+      EXPECT_THAT(nearly_alike.wheels[i].problem, testing::HasSubstr("too few headings"));
+    }
+  }
+  for (const auto& [name, coverage] : {std::pair("a", sine), {"b", constant}, {"damping", damping}}) {
+    EXPECT_GE(coverage.inside, 0.9 * coverage.all) << name << ": " << coverage.inside << " of " << coverage.all;
+  }
+}
+
+TEST(FrictionFit, a_robot_that_stands_or_swings_has_no_steady_parts) {
+  const Case known = any_case(7);
+  FrictionLog log;
+  log.run_begins = {0};
+  for (int row = 0; row < 3000; ++row) {
+    log.time_s.push_back(0.01 * row);
+    for (std::size_t i = 0; i < 4; ++i) {
+      log.wheel_speed_rad_per_s[i].push_back(0.0);
+      log.voltage_V[i].push_back(0.001 * (row % 3));
+    }
+  }
+  EXPECT_TRUE(find_steady_parts({log}, known.plant.body.kinematics).parts.empty());
+  for (int row = 0; row < 3000; ++row) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      log.wheel_speed_rad_per_s[i][static_cast<std::size_t>(row)] = 30.0 * std::sin(0.02 * row + static_cast<double>(i));
+      log.voltage_V[i][static_cast<std::size_t>(row)] = 2.0 * std::sin(0.02 * row + static_cast<double>(i));
+    }
+  }
+  EXPECT_TRUE(find_steady_parts({log}, known.plant.body.kinematics).parts.empty());
+}
+
+/// Every third heading predicted: a robot file without friction is wrong by the friction, the fit by the pushes only.
+TEST(FrictionFit, foretells_headings_that_it_has_not_seen) {
+  const Case known = any_case(8);
+  const SteadyParts steady = parts_of(known, usual_drive(), 8);
+  const auto none = [](const SteadyPart& part) {
+    PerWheel voltage_V = part.wheel_speed_rad_per_s;
+    std::ranges::for_each(voltage_V, [](double& each) { each *= 0.033; });
+    return voltage_V;
+  };
+  const HeldOutError error = error_on_held_out_headings(steady.parts, known.plant.body.kinematics, {}, none);
+  EXPECT_EQ(error.all_headings, 16);
+  EXPECT_GT(error.before_V, 0.6);
+  EXPECT_LT(error.after_V, 0.1);
+}
+
+/// A third harmonic hides in a and b to a large part, and R² stays above 0.998.
+TEST(FrictionFit, of_a_third_harmonic_is_told_and_covered) {
+  Coverage sine, constant;
+  for (int seed = 1; seed <= 5; ++seed) {
+    const Case known = any_case(static_cast<std::uint64_t>(seed));
+    TestDrive drive = usual_drive();
+    drive.headings_rad.clear();
+    for (int i = 0; i < 24; ++i) {
+      drive.headings_rad.push_back(15.0 * i * kDegree_rad);
+    }
+    drive.push_N = 0.01;
+    SteadyParts steady = parts_of(known, drive, static_cast<std::uint64_t>(seed));
+    for (SteadyPart& part : steady.parts) {
+      for (int i = 0; i < 4; ++i) {
+        part.voltage_V[i] += 0.08 * std::sin(3.0 * part.heading_rad + i);
+      }
+    }
+    const FrictionFit fit = fit_friction(steady.parts, known.plant.body.kinematics, {});
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_TRUE(fit.wheels[i].lack.is_found);
+      EXPECT_GT(fit.wheels[i].lack.left_V, 0.015);
+      EXPECT_LT(fit.wheels[i].lack.left_V, 0.075);
+      EXPECT_LT(fit.wheels[i].lack.repeats_V, fit.wheels[i].lack.left_V);
+      EXPECT_GT(fit.wheels[i].r2_ratio, 0.998);
+      sine.add(known.truth.sine_V[i], fit.wheels[i].sine_V);
+      constant.add(known.truth.constant_V[i], fit.wheels[i].constant_V);
+    }
+  }
+  EXPECT_GE(sine.inside, 0.9 * sine.all);
+  EXPECT_GE(constant.inside, 0.9 * constant.all);
+}
+
+/// A robot whose friction has a part of twice the angle, as Twente's firmware has it: the law cannot follow it, phases go to
+/// where the wheels would turn the other way, and what is predicted must stay as good as the law can be.
+TEST(FrictionFit, of_another_law_is_said_and_still_foretells) {
+  Case known = any_case(9);
+  HeadingFriction& friction = known.plant.body.friction.heading;
+  friction.constant_Nm.fill(0.030);
+  friction.sine_Nm.fill(0.0);
+  friction.phase_offset.fill({});
+  friction.double_angle_Nm = 0.014;
+  friction.double_angle_phase = {Direction::of(56.5 * kDegree_rad), Direction::of(116.7 * kDegree_rad), Direction::of(59.6 * kDegree_rad),
+                                 Direction::of(112.4 * kDegree_rad)};
+  const SteadyParts steady = parts_of(known, usual_drive(), 9);
+  const FrictionFit fit = fit_friction(steady.parts, known.plant.body.kinematics, {});
+  EXPECT_TRUE(std::ranges::any_of(fit.wheels, &WheelFriction::phase_is_bounded));
+  EXPECT_TRUE(std::ranges::all_of(fit.wheels, [](const WheelFriction& wheel) { return wheel.lack.is_found; }));
+  for (const WheelFriction& wheel : fit.wheels) {
+    EXPECT_LT(wheel.phase_rad.low, wheel.phase_rad.high) << "an interval of no width would be a false certainty";
+    EXPECT_NEAR(wheel.damping_V_s_per_rad.value, known.truth.damping_V_s_per_rad, 0.006);
+  }
+  const HeldOutError error = error_on_held_out_headings(steady.parts, known.plant.body.kinematics, {}, {});
+  // All of it is 0.7 V to 1.4 V, the part of twice the angle 0.27 V rms.
+  EXPECT_LT(error.after_V, 0.3);
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,170 @@
+// The friction test on recordings of real robots, where they are at hand; no part of the project.
+#include <gtest/gtest.h>
+
+#include <iomanip>
+#include <iostream>
+
+#include "../support/measured_data.h"
+#include "friction/friction_fit.h"
+#include "friction/read_friction_log.h"
+#include "recording/read_recording.h"
+#include "support/source_folder.h"
+
+namespace heatsoak {
+namespace {
+
+std::filesystem::path data_or_skip(const std::string& folder) {
+  const std::optional<std::filesystem::path> found = measured_data(folder);
+  return found.value_or("");
+}
+
+FrictionLog log_of(const std::filesystem::path& file, const std::string& mapping, const Robot& robot, const FrictionLogNeeds& needs,
+                   Findings& findings) {
+  RecordingReport report;
+  return friction_log(read_recording(file, mapping_for(file, kSource / "tests/data/mappings" / mapping), report), robot, needs, findings);
+}
+
+const Robot& robotino() {
+  static const Robot robot = read_robot(kSource / "tests/data/robots/festo_robotino.toml");
+  return robot;
+}
+
+/// Friction torque at the wheel is measured with the motor's drag in it; 5.95 Ω, 51.4 mN m/A.
+DriveConstants robotino_drive() {
+  return {.resistance_ohm = 5.95, .torque_constant_Nm_per_A = 0.0514, .drag_torque_Nm = 0.0, .gear_ratio = 16.0};
+}
+
+/// Back-EMF alone: what the data sheet makes expect.
+PerWheel back_emf_V(const SteadyPart& part) {
+  PerWheel voltage_V{};
+  for (int i = 0; i < 3; ++i) {
+    voltage_V[i] = steady_voltage_V(robotino_drive(), 0.0, part.wheel_speed_rad_per_s[i]);
+  }
+  return voltage_V;
+}
+
+SteadyParts robotino_parts(const std::filesystem::path& surface, int first, int end, Findings& findings) {
+  std::vector<FrictionLog> logs;
+  for (int n = first; n < end; ++n) {
+    const std::filesystem::path file = surface / fmt::format("exp{:02}.csv", n);
+    logs.push_back(log_of(file, "robotino_omni.map.toml", robotino(), {.voltage = true, .drive = robotino_drive()}, findings));
+  }
+  return find_steady_parts(logs, make_kinematics(robotino()));
+}
+
+void print(const std::string& name, const SteadyParts& steady, const FrictionFit& fit, const HeldOutError& error) {
+  std::cout << name << ": " << steady.legs << " legs, " << steady.rows_steady << " of " << steady.rows << " rows steady; on "
+            << error.headings << " of " << error.all_headings << " headings " << error.before_V << " V before, " << error.after_V
+            << " V after\n";
+  for (const WheelFriction& wheel : fit.wheels) {
+    std::cout << "  d " << wheel.damping_V_s_per_rad.value << " [" << wheel.damping_V_s_per_rad.low << ", "
+              << wheel.damping_V_s_per_rad.high << "]  a " << wheel.sine_V.value << " [" << wheel.sine_V.low << ", " << wheel.sine_V.high
+              << "]  b " << wheel.constant_V.value << " [" << wheel.constant_V.low << ", " << wheel.constant_V.high << "]  phase "
+              << wheel.phase_rad.value << "  R2 " << wheel.r2_ratio << "  " << wheel.parts_used << " legs, " << wheel.parts_standing
+              << " standing, " << wheel.parts_outlying << " outlying\n";
+  }
+}
+
+/// One speed: damping is taken as back-EMF, and the directions say the rest. Opposite headings repeat within 5 % of Σi².
+TEST(FrictionOfRecordings, robotino_on_two_surfaces) {
+  const std::filesystem::path folder = data_or_skip("robotino_omni");
+  if (folder.empty()) {
+    GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
+  }
+  for (const char* surface : {"table_surface", "brown_surface"}) {
+    Findings findings;
+    const SteadyParts steady = robotino_parts(folder / surface, 0, 72, findings);
+    EXPECT_GE(steady.legs, 65);
+    FitSettings settings;
+    settings.known_damping_V_s_per_rad = 0.0514 * 16.0;
+    const Kinematics kinematics = make_kinematics(robotino());
+    const FrictionFit fit = fit_friction(steady.parts, kinematics, settings);
+    const HeldOutError error = error_on_held_out_headings(steady.parts, kinematics, settings, back_emf_V);
+    print(surface, steady, fit, error);
+    EXPECT_EQ(error.headings, 24);
+    EXPECT_LT(error.after_V, 0.35 * error.before_V);
+    // Where a wheel turns slowly neighbouring points lie off the curve together.
+    EXPECT_TRUE(fit.wheels[0].lack.is_found);
+    EXPECT_EQ(fit.wheels[0].lack.repeats, "neighbouring headings");
+    for (const WheelFriction& wheel : fit.wheels) {
+      ASSERT_TRUE(wheel.is_learned()) << wheel.problem;
+      EXPECT_TRUE(wheel.damping_is_given);
+      EXPECT_GT(wheel.r2_ratio, 0.98);
+      // robots.md of the recordings: about 0.15 A to keep a wheel turning, 5.95 Ω
+      EXPECT_NEAR(wheel.constant_V.value, 0.15 * 5.95, 0.5);
+    }
+  }
+}
+
+TEST(FrictionOfRecordings, robotino_on_carpet_at_three_speeds) {
+  const std::filesystem::path folder = data_or_skip("robotino_omni");
+  if (folder.empty()) {
+    GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
+  }
+  Findings findings;
+  const SteadyParts steady = robotino_parts(folder / "green_surface", 0, 216, findings);
+  const Kinematics kinematics = make_kinematics(robotino());
+  const FrictionFit fit = fit_friction(steady.parts, kinematics, {});
+  const HeldOutError error = error_on_held_out_headings(steady.parts, kinematics, {}, back_emf_V);
+  print("green_surface", steady, fit, error);
+  EXPECT_LT(error.after_V, 0.35 * error.before_V);
+  for (const WheelFriction& wheel : fit.wheels) {
+    ASSERT_TRUE(wheel.is_learned()) << wheel.problem;
+    EXPECT_FALSE(wheel.damping_is_given);
+    EXPECT_GT(wheel.r2_ratio, 0.98);
+    // Back-EMF is the least, unless friction falls with speed; what is measured must not contradict it.
+    EXPECT_GT(wheel.damping_V_s_per_rad.high, 0.0514 * 16.0);
+    EXPECT_GT(wheel.damping_V_s_per_rad.value, 0.95 * 0.0514 * 16.0);
+    EXPECT_LT(wheel.damping_V_s_per_rad.value, 1.5 * 0.0514 * 16.0);
+  }
+}
+
+/// Staircases of modulation on blocks, both ways. An ordinary line through all rows above 5 rad/s is the reference; the
+/// motors' back-EMF and the battery make 24 V/(60 rad/s per 0.083) about 0.033 V s/rad.
+TEST(FrictionOfRecordings, a_team_wheel_motors_voltage_over_speed) {
+  const std::filesystem::path folder = data_or_skip("ateam_wheel_motor");
+  if (folder.empty()) {
+    GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
+  }
+  Robot robot = robotino();
+  robot.wheel_axis_rad = {-0.5, 0.5, 2.4, -2.4};
+  robot.gear_ratio = 1.0;
+  robot.battery_V = 24.0;
+  Findings findings;
+  std::vector<FrictionLog> logs;
+  for (const char* file : {"Model1_pos.csv", "Model2_neg.csv"}) {
+    logs.push_back(log_of(folder / file, "ateam_wheel_motor.map.toml", robot, {}, findings));
+  }
+  const SteadyParts steady = find_steady_parts(logs, make_kinematics(robot));
+  const FrictionFit fit = fit_friction(steady.parts, make_kinematics(robot), {});
+  std::cout << steady.parts.size() << " parts\n";
+  for (std::size_t i = 0; i < 4; ++i) {
+    double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+    for (const FrictionLog& log : logs) {
+      for (std::size_t row = 0; row < log.rows(); ++row) {
+        const double speed = log.wheel_speed_rad_per_s[i][row];
+        if (std::abs(speed) > 5.0 && std::isfinite(log.voltage_V[i][row])) {
+          const double side = speed > 0.0 ? 1.0 : -1.0;
+          n += 1.0;
+          x += side * speed;
+          y += side * log.voltage_V[i][row];
+          xx += speed * speed;
+          xy += speed * log.voltage_V[i][row];
+        }
+      }
+    }
+    const double slope = (n * xy - x * y) / (n * xx - x * x);
+    const double offset_V = (y - slope * x) / n;
+    const WheelFriction& wheel = fit.wheels[i];
+    ASSERT_TRUE(wheel.is_learned()) << wheel.problem;
+    std::cout << "wheel " << i + 1 << ": " << wheel.damping_V_s_per_rad.value << " [" << wheel.damping_V_s_per_rad.low << ", "
+              << wheel.damping_V_s_per_rad.high << "] V s/rad, offset " << wheel.rotation_V.value << " V, R2 " << wheel.r2_ratio
+              << ", legs " << wheel.parts_used << "; line through the rows " << slope << ", " << offset_V << "\n";
+    EXPECT_NEAR(wheel.damping_V_s_per_rad.value, slope, 0.02 * slope);
+    EXPECT_NEAR(wheel.rotation_V.value, offset_V, 0.04);
+    EXPECT_GT(wheel.r2_ratio, 0.998);
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,132 @@
+// Roll-outs of the plant with open motors, and of a lifted wheel by its closed solution.
+#include "friction/roll_out.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <random>
+
+#include "robot/plant.h"
+
+namespace heatsoak {
+namespace {
+
+PlantConfig rolling_robot() {
+  Robot robot;
+  robot.mass_kg = 2.6;
+  robot.wheel_radius_m = 0.028;
+  robot.wheel_contact_radius_m = 0.08;
+  for (const double axis_deg : {-30.0, 30.0, 135.0, -135.0}) {
+    robot.wheel_axis_rad.push_back(axis_deg * std::numbers::pi / 180.0);
+  }
+  robot.battery_V = 22.2;
+  robot.yaw_inertia_kg_m2 = 0.011;
+  robot.center_of_gravity_height_m = 0.05;
+  robot.wheel_inertia_kg_m2 = 2.2e-5;
+  robot.wheel_friction_torque_Nm = 0.012;
+  robot.wheel_damping_Nm_s_per_rad = 4e-4;
+  robot.roller_drag_ratio = 0.0;
+  robot.traction_ratio = 0.7;
+  robot.slip_speed_m_per_s = 0.05;
+  robot.driver_resistance_ohm = 0.05;
+  robot.driver_standby_W = 0.5;
+  robot.battery_full_V = 25.2;
+  robot.battery_empty_V = 19.8;
+  robot.battery_resistance_ohm = 0.06;
+  robot.battery_capacity_A_s = 4680.0;
+  MotorValues motor;
+  motor.terminal_resistance_ohm = 0.85;
+  motor.torque_constant_Nm_per_A = 0.033;
+  motor.no_load_current_A = 0.2;  // 6.6 mN m of drag
+  motor.temperature_coefficient_per_K = 0.0;
+  motor.rotor_inertia_kg_m2 = 7.2e-6;
+  return make_plant(robot, motor, 0.001);
+}
+
+/// Rolls from a velocity to standstill; a fifth of the rows is lost or wild.
+FrictionLog rolled(const PlantConfig& plant, const BodyVelocity& from, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  PlantState state = plant_at_rest(plant);
+  state.velocity = from;
+  state.wheel_speed_rad_per_s = wheel_speeds_rad_per_s(plant.body.kinematics, from);
+  FrictionLog log;
+  log.run_begins = {0};
+  for (int row = 0; row < 200; ++row) {
+    log.time_s.push_back(0.01 * row);
+    const double fate = any(engine);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double speed = state.wheel_speed_rad_per_s[i] + 0.05 * normal(engine);
+      log.wheel_speed_rad_per_s[i].push_back(fate < 0.1 ? std::nan("") : fate < 0.2 ? 200.0 * any(engine) : speed);
+    }
+    for (int n = 0; n < 10; ++n) {
+      step(plant, state, {});  // motors open
+    }
+  }
+  return log;
+}
+
+TEST(RollOut, of_the_plant_gives_its_damping_and_friction) {
+  const PlantConfig plant = rolling_robot();
+  std::vector<FrictionLog> logs;
+  for (int n = 0; n < 8; ++n) {
+    const double heading_rad = 0.2 + n * std::numbers::pi / 4.0;
+    logs.push_back(rolled(plant, {2.0 * std::cos(heading_rad), 2.0 * std::sin(heading_rad), 0.0}, static_cast<std::uint64_t>(n + 1)));
+  }
+  logs.push_back(rolled(plant, {0.0, 0.0, 20.0}, 9));
+  const RollOutResult found = roll_out(logs, plant.body, false);
+  ASSERT_EQ(found.runs.size(), 9U);
+  EXPECT_EQ(found.runs.back().kind, RollOut::rotation);
+  for (const RollOutRun& run : found.runs) {
+    EXPECT_NEAR(run.wheel_torque_Nm, 0.012 + 0.0066, 0.001);
+    EXPECT_GT(run.r2_ratio, 0.999);
+  }
+  const Estimate& damping = found.wheel_damping_Nm_s_per_rad[0];
+  EXPECT_NEAR(damping.value, 4e-4, 2e-5);
+  EXPECT_LT(damping.low, 4e-4);
+  EXPECT_GT(damping.high, 4e-4);
+}
+
+/// J·dω/dt = −τ − D·ω:  ω = (ω_0 + τ/D)·exp(−D·t/J) − τ/D.
+TEST(RollOut, of_lifted_wheels_gives_each_its_own) {
+  const PlantConfig plant = rolling_robot();
+  const double inertia_kg_m2 = plant.body.wheel_inertia_kg_m2;
+  const std::array<double, 4> damping{3e-5, 5e-5, 8e-5, 2e-5};
+  const std::array<double, 4> torque{2e-3, 3e-3, 2.5e-3, 4e-3};
+  std::vector<FrictionLog> logs;
+  for (int n = 0; n < 4; ++n) {
+    std::mt19937_64 engine(static_cast<std::uint64_t>(n));
+    std::normal_distribution<double> normal;
+    FrictionLog& log = logs.emplace_back();
+    log.run_begins = {0};
+    for (int row = 0; row < 300; ++row) {
+      const double time_s = 0.005 * row - 0.3;
+      log.time_s.push_back(0.005 * row);
+      for (std::size_t i = 0; i < 4; ++i) {
+        const double dry = torque[i] / damping[i];
+        const double rolling = (150.0 + dry) * std::exp(-damping[i] * time_s / inertia_kg_m2) - dry;
+        log.wheel_speed_rad_per_s[i].push_back((time_s < 0.0 ? 150.0 : std::max(0.0, rolling)) + 0.1 * normal(engine));
+        log.voltage_V[i].push_back(time_s < 0.0 ? 6.0 : 0.0);
+      }
+    }
+  }
+  const RollOutResult found = roll_out(logs, plant.body, true);
+  EXPECT_EQ(found.runs.size(), 16U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(found.wheel_damping_Nm_s_per_rad[i].value, damping[i], 0.03 * damping[i] + 1e-6);
+    EXPECT_NEAR(found.wheel_torque_Nm[i].value, torque[i], 0.03 * torque[i]);
+  }
+}
+
+TEST(RollOut, a_robot_that_is_driven_all_the_time_does_not_roll_out) {
+  const PlantConfig plant = rolling_robot();
+  FrictionLog log = rolled(plant, {2.0, 0.0, 0.0}, 1);
+  for (std::size_t i = 0; i < 4; ++i) {
+    log.voltage_V[i].assign(log.rows(), 3.0);
+  }
+  EXPECT_TRUE(roll_out({log}, plant.body, false).runs.empty());
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,431 @@
+// What is told about a log before anything is fitted. All logs here are synthetic.
+#include "recording/quality.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "base/diagnostic.h"
+#include "recording/noise.h"
+#include "read_log.h"
+
+namespace heatsoak {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class Resolution : public testing::TestWithParam<double> {};
+
+TEST_P(Resolution, SoundLogKeepsItsSamplesAndRaisesNoSuspicion) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SyntheticLog log;
+    log.seed = seed;
+    log.step_K = GetParam();
+    const Read result = read_text(log.csv());
+    std::size_t left_out = 0;
+    for (const auto& [what, entry] : result.report.left_out) {
+      left_out += entry.count;
+    }
+    EXPECT_LE(left_out, 4U) << "of 3600 samples, seed " << seed;
+    EXPECT_THAT(result.quality.suspicions, IsEmpty());
+    EXPECT_TRUE(result.quality.thermal.is_good());
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Synthetic, Resolution, testing::Values(0.0, 0.1, 0.25, 1.0));
+
+/// Second differences of white noise have six times its variance; a slope has none.
+TEST(Noise, WhiteNoiseOnASlope) {
+  Random random(3, 0);
+  std::vector<double> values;
+  for (int i = 0; i < 20000; ++i) {
+    double normal = -6.0;
+    for (int k = 0; k < 12; ++k) {
+      normal += random.uniform();
+    }
+    values.push_back(20.0 + 0.01 * i + 0.2 * normal);
+  }
+  const std::vector<std::pair<std::size_t, std::size_t>> runs{{0, values.size()}};
+  EXPECT_NEAR(noise_level(values, runs).noise, 0.2, 0.006);
+  for (double& value : values) {
+    value = 0.5 * std::round(value / 0.5);
+  }
+  EXPECT_NEAR(noise_level(values, runs).step, 0.5, 1e-9);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = 0.5 * std::floor(1e-3 * static_cast<double>(i));
+  }
+  EXPECT_NEAR(noise_level(values, runs).noise, 0.5 / std::sqrt(12.0), 1e-9) << "no noise is seen below the resolution";
+}
+
+/// A fifth of the samples is anywhere: the counts of the encoder are seen all the same.
+TEST(Noise, ResolutionAmongBadSamples) {
+  Random random(4, 0);
+  std::vector<double> values;
+  for (int i = 0; i < 5000; ++i) {
+    values.push_back(random.uniform() < 0.2 ? 400.0 * random.uniform() - 200.0 : 0.0767 * std::round(200.0 * random.uniform()));
+  }
+  EXPECT_NEAR(resolution_of(values), 0.0767, 1e-9);
+  for (double& value : values) {
+    value = random.uniform();
+  }
+  EXPECT_EQ(resolution_of(values), 0.0);
+}
+
+TEST(Screening, PlantedOutliersAreFoundByLine) {
+  const Read result = read_text(changed({}, [](int row, std::vector<double>& cells) {
+    cells[winding] += row == 400 ? 5.0 : row == 880 || row == 881 ? -6.0 : 0.0;
+  }));
+  const std::vector<int> lines = lines_of(result.report.find("winding_C", LeftOutReason::outlier));
+  EXPECT_THAT(lines, testing::IsSupersetOf({402, 882, 883}));
+  EXPECT_LE(lines.size(), 5U);
+  EXPECT_TRUE(std::isnan(result.recording.find("winding_C")->values[400]));
+}
+
+TEST(Screening, FrozenSensorIsLeftOutByLine) {
+  double held = 0.0;
+  const Read result = read_text(changed({}, [&held](int row, std::vector<double>& cells) {
+    held = row == 320 ? cells[winding] : held;
+    cells[winding] = row >= 320 && row < 380 ? held : cells[winding];
+  }));
+  const std::vector<int> lines = lines_of(result.report.find("winding_C", LeftOutReason::frozen));
+  ASSERT_EQ(lines.size(), 60U);
+  EXPECT_EQ(lines.front(), 322);
+  EXPECT_EQ(result.report.find("stator_C", LeftOutReason::frozen), nullptr);
+}
+
+TEST(Screening, FrozenToTheEnd) {
+  double held = 0.0;
+  const Read result = read_text(changed({}, [&held](int row, std::vector<double>& cells) {
+    held = row == 1550 ? cells[winding] : held;
+    cells[winding] = row >= 1550 ? held : cells[winding];
+  }));
+  EXPECT_EQ(lines_of(result.report.find("winding_C", LeftOutReason::frozen)).size(), 250U);
+}
+
+TEST(Screening, SaturatedSensorIsLeftOut) {
+  int cut = 0;
+  const Read result = read_text(changed({}, [&cut](int, std::vector<double>& cells) {
+    cut += cells[winding] >= 85.0 ? 1 : 0;
+    cells[winding] = std::min(cells[winding], 85.0);
+  }));
+  ASSERT_GT(cut, 50);
+  EXPECT_EQ(lines_of(result.report.find("winding_C", LeftOutReason::saturated)).size(), static_cast<std::size_t>(cut));
+}
+
+TEST(ClockOffsets, DelayOfTheTemperaturesIsFound) {
+  for (const double delay_s : {0.0, 2.5, 6.0}) {
+    SyntheticLog log;
+    log.delay_s = delay_s;
+    const Read result = read_text(log.csv());
+    ASSERT_EQ(result.quality.clock_offsets.size(), 2U);
+    const ClockOffset& offset = result.quality.clock_offsets[0];
+    ASSERT_TRUE(offset.delay_s) << offset.why_not;
+    EXPECT_NEAR(*offset.delay_s, delay_s, 3.0 * offset.delay_uncertainty_s);
+    EXPECT_LT(offset.delay_uncertainty_s, 1.0);
+  }
+}
+
+/// Loggers that were started by hand one after the other. What repeats itself soon would look alike at several delays.
+TEST(ClockOffsets, AMinuteIsFoundWhereTheCurrentDoesNotRepeatItself) {
+  for (const double delay_s : {-60.0, 25.0, 60.0}) {
+    SyntheticLog log;
+    log.delay_s = delay_s;
+    log.current_A = [](double t) {
+      Random random(static_cast<std::uint64_t>(t / 20.0), 5);
+      return random.uniform() < 0.4 ? 0.0 : 6.0 * random.uniform();
+    };
+    const ClockOffset offset = read_text(log.csv()).quality.clock_offsets[0];
+    ASSERT_TRUE(offset.delay_s) << offset.why_not;
+    EXPECT_NEAR(*offset.delay_s, delay_s, 3.0 * offset.delay_uncertainty_s);
+    EXPECT_LT(offset.delay_uncertainty_s, 2.0);
+  }
+}
+
+TEST(ClockOffsets, SteadyHeatTellsNothing) {
+  SyntheticLog log;
+  log.current_A = [](double t) { return 5.0 + 1e-3 * std::sin(t / 400.0); };
+  const Read result = read_text(log.csv());
+  EXPECT_FALSE(result.quality.clock_offsets[0].delay_s);
+  EXPECT_NE(result.quality.clock_offsets[0].why_not, "");
+}
+
+struct Fault {
+  const char* name;
+  std::function<void(int, std::vector<double>&)> change;
+  const char* said;
+};
+class Suspicion : public testing::TestWithParam<Fault> {};
+
+TEST_P(Suspicion, IsSaidAndNothingIsChanged) {
+  const Read sound = read_text(SyntheticLog{}.csv());
+  const Read faulty = read_text(changed({}, GetParam().change));
+  EXPECT_THAT(faulty.quality.suspicions, testing::Contains(HasSubstr(GetParam().said)));
+  EXPECT_EQ(faulty.recording.rows(), sound.recording.rows());
+}
+INSTANTIATE_TEST_SUITE_P(
+    Synthetic, Suspicion,
+    testing::Values(
+        Fault{"fahrenheit_winding", [](int, auto& cells) { cells[winding] = 32.0 + 1.8 * cells[winding]; }, "winding_C starts at"},
+        Fault{"fahrenheit_ambient", [](int, auto& cells) { cells[ambient] = 32.0 + 1.8 * cells[ambient]; },
+              "ambient_C starts at 71.6 °C: is it in degrees Fahrenheit (22 °C)?"},
+        Fault{"fahrenheit_all",
+              [](int, auto& cells) {
+                for (const Column each : {winding, stator, ambient}) {
+                  cells[each] = 32.0 + 1.8 * cells[each];
+                }
+              },
+              "stator_C starts at"},
+        Fault{"fahrenheit_motor",
+              [](int, auto& cells) {
+                for (const Column each : {winding, stator}) {
+                  cells[each] = 32.0 + 1.8 * cells[each];
+                }
+              },
+              "are they in degrees Fahrenheit (22"},
+        Fault{"fahrenheit_motor_that_starts_warm",
+              [](int, auto& cells) {
+                cells[winding] = 32.0 + 1.8 * cells[winding];
+                cells[stator] = 32.0 + 1.8 * (cells[stator] + 3.0);
+              },
+              "are they in degrees Fahrenheit (22"},
+        Fault{"tenths",
+              [](int, auto& cells) {
+                cells[winding] *= 10.0;
+                cells[stator] *= 10.0;
+              },
+              "is it in tenths of degrees (22"},
+        Fault{"constant", [](int, auto& cells) { cells[winding] = 25.0; }, "winding_C is constant, 25 °C, while stator_C moves"},
+        Fault{"microseconds", [](int, auto& cells) { cells[time] *= 1e6; }, "is the time in microseconds?"},
+        Fault{"kelvin", [](int, auto& cells) { cells[stator] += 273.15; }, "is it in kelvin"},
+        Fault{"milliampere", [](int, auto& cells) { cells[current] *= 1000.0; }, "is it in milliamperes?"},
+        Fault{"milliseconds", [](int, auto& cells) { cells[time] *= 1000.0; }, "is the time in milliseconds?"},
+        Fault{"swapped", [](int, auto& cells) { std::swap(cells[winding], cells[stator]); }, "are the two swapped?"},
+        Fault{"hot_ambient", [](int, auto& cells) { cells[ambient] += 60.0; }, "ambient_C is hotter than"},
+        Fault{"upside_down", [](int, auto& cells) { cells[winding] = 120.0 - cells[winding]; }, "is the sign of the sensor wrong?"}),
+    [](const auto& instance) { return instance.param.name; });
+
+/// A run with a column more or less than SyntheticLog writes; `row` gives the cells behind the time.
+std::string run_of(const std::string& columns, std::size_t first, const std::vector<std::pair<double, double>>& rows_C,
+                   const std::function<std::string(double winding_C, double stator_C, std::size_t row)>& cells) {
+  std::string text = "time_s," + columns + "\n";
+  for (std::size_t row = first; row < rows_C.size(); ++row) {
+    text += fmt::format("{},{}\n", row, cells(rows_C[row].first, rows_C[row].second, row));
+  }
+  return text;
+}
+
+/// Only the cool-down after a heat of so long; with the columns of winding and stator in this order.
+std::string cool_down(const char* columns, double heated_s, int rest_s, double stator_offset_K = 0.0) {
+  SyntheticLog log;
+  log.rows = static_cast<int>(heated_s) + 1 + rest_s;
+  log.current_A = [heated_s](double time_s) { return time_s < heated_s ? 8.0 : 0.0; };
+  return run_of(fmt::format("{},ambient_C,current_A", columns), static_cast<std::size_t>(heated_s) + 1, log.temperatures_C(),
+                [=](double winding_C, double stator_C, std::size_t) {
+                  return fmt::format("{:.3f},{:.3f},22,0", winding_C, stator_C + stator_offset_K);
+                });
+}
+
+class CoolDown : public testing::TestWithParam<std::tuple<double, int, double>> {};
+
+TEST_P(CoolDown, IsSwappedOrNotHoweverLongItsTail) {
+  const auto& [heated_s, rest_s, offset_K] = GetParam();
+  EXPECT_THAT(read_text(cool_down("stator_C,winding_C", heated_s, rest_s, offset_K)).quality.suspicions,
+              testing::Contains(HasSubstr("are the two swapped?")));
+  EXPECT_THAT(read_text(cool_down("winding_C,stator_C", heated_s, rest_s, offset_K)).quality.suspicions, IsEmpty());
+}
+INSTANTIATE_TEST_SUITE_P(Synthetic, CoolDown,
+                         testing::Combine(testing::Values(60.0, 1500.0), testing::Values(400, 1100, 3000), testing::Values(0.0, 2.0)));
+
+/// The resistance rises with the temperature, and so does the power: while the motor levels out the one falls as the other
+/// rises, without a wrong sign.
+TEST(Suspicions, NoneInAWarmUpAtConstantCurrent) {
+  SyntheticLog log;
+  log.current_A = [](double) { return 6.0; };
+  for (const int rows : {240, 900, 1800}) {
+    log.rows = rows;
+    EXPECT_THAT(read_text(run_of("winding_C,stator_C,ambient_C,power_in_W", 0, log.temperatures_C(),
+                                 [](double winding_C, double stator_C, std::size_t) {
+                                   return fmt::format("{:.3f},{:.3f},22,{:.3f}", winding_C, stator_C,
+                                                      16.2 * (1.0 + 0.0039 * (winding_C - 25.0)));
+                                 }))
+                    .quality.suspicions,
+                IsEmpty())
+        << rows;
+    EXPECT_THAT(read_text(run_of("winding_C,stator_C,ambient_C,current_A", 0, log.temperatures_C(),
+                                 [rows](double winding_C, double stator_C, std::size_t row) {
+                                   return fmt::format("{:.3f},{:.3f},22,{:.4f}", winding_C, stator_C,
+                                                      6.0 * (1.0 + 0.01 * static_cast<double>(row) / rows));
+                                 }))
+                    .quality.suspicions,
+                IsEmpty())
+        << rows;
+  }
+}
+
+/// Without load the iron is heated, and the stator answers first: to the speed, or to a current that comes and goes with it.
+/// A mirrored network: the part of 60 J/K is heated, that of 12 J/K follows.
+TEST(Suspicions, NoneWhereTheIronIsHeated) {
+  for (const int period_s : {40, 80, 150, 300, 600}) {
+    const auto turns = [period_s](std::size_t row) {
+      return row % static_cast<std::size_t>(period_s) < static_cast<std::size_t>(period_s) / 2;
+    };
+    std::vector<std::pair<double, double>> rows_C;
+    double winding_C = 22.0;
+    double stator_C = 22.0;
+    Random random(5, 0);
+    for (std::size_t row = 0; row < 600; ++row) {
+      rows_C.emplace_back(winding_C + 0.1 * random.uniform(), stator_C + 0.1 * random.uniform());
+      for (int i = 0; i < 100; ++i) {
+        const double flow_W = (winding_C - stator_C) / 3.0;
+        winding_C -= 0.01 * flow_W / 12.0;
+        stator_C += 0.01 * ((turns(row) ? 8.0 : 0.0) + flow_W - (stator_C - 22.0) / 4.0) / 60.0;
+      }
+    }
+    for (const auto& [current_turning_A, current_resting_A] : {std::pair(0.0, 0.0), std::pair(0.3, 0.3), std::pair(0.3, 0.0)}) {
+      const double turning_A = current_turning_A;
+      const double resting_A = current_resting_A;
+      EXPECT_THAT(read_text(run_of("winding_C,stator_C,ambient_C,current_A,speed_rad_per_s", 0, rows_C,
+                                   [=](double of_winding_C, double of_stator_C, std::size_t row) {
+                                     return fmt::format("{:.3f},{:.3f},22,{},{}", of_winding_C, of_stator_C,
+                                                        turns(row) ? turning_A : resting_A, turns(row) ? 500 : 0);
+                                   }))
+                      .quality.suspicions,
+                  IsEmpty())
+          << period_s << " s, " << turning_A << " A";
+    }
+  }
+}
+
+/// Fallen to what is room temperature in degrees Fahrenheit when the log begins; a motor at the air's temperature cannot fall.
+TEST(Suspicions, NoneWhereOneSensorStartsWarm) {
+  SyntheticLog log;
+  log.current_A = [](double time_s) { return time_s < 900.0 ? 8.0 : 0.0; };
+  const auto rows_C = log.temperatures_C();
+  std::size_t first = 910;
+  while (rows_C[first].second > 73.0) {
+    ++first;
+  }
+  for (const bool of_winding : {false, true}) {
+    EXPECT_THAT(read_text(run_of(of_winding ? "winding_C,ambient_C,current_A" : "stator_C,ambient_C,current_A", first, rows_C,
+                                 [of_winding](double winding_C, double stator_C, std::size_t) {
+                                   return fmt::format("{:.3f},22,0", of_winding ? winding_C : stator_C);
+                                 }))
+                    .quality.suspicions,
+                IsEmpty());
+  }
+}
+
+/// 15 K colder than the air it comes into.
+TEST(Suspicions, NoneOfAMotorBroughtInCold) {
+  SyntheticLog log;
+  log.current_A = [](double time_s) { return time_s < 60.0 ? 0.0 : 1.0; };
+  log.rows = 600;
+  EXPECT_THAT(read_text(run_of("winding_C,stator_C,ambient_C,current_A", 0, log.temperatures_C(),
+                               [&log](double winding_C, double stator_C, std::size_t row) {
+                                 const auto time_s = static_cast<double>(row);
+                                 const double below_K = 15.0 * std::exp(-time_s / 300.0);
+                                 return fmt::format("{:.3f},{:.3f},22,{}", winding_C - below_K, stator_C - below_K, log.current_A(time_s));
+                               }))
+                  .quality.suspicions,
+              IsEmpty());
+}
+
+TEST(Suspicions, PowerThatCannotBe) {
+  std::string text = "time_s,winding_C,torque_Nm,speed_rad_per_s,power_in_W,bus_V,bus_A\n";
+  for (int i = 0; i < 200; ++i) {
+    const double power_W = 20.0 + i % 50;
+    // 80 % of the power arrives at the shaft, the speed is written in rpm, the supply's current in mA.
+    text += fmt::format("{},{},{:.4f},{:.3f},{},24,{:.2f}\n", i, 25.0 + 0.1 * i, 0.8 * power_W / 300.0, 300.0 * 9.5493, power_W,
+                        1000.0 * power_W / 24.0);
+  }
+  const Read result = read_text(text);
+  EXPECT_THAT(result.quality.suspicions, testing::Contains(HasSubstr("is 7.64 times power_in_W")));
+  EXPECT_THAT(result.quality.suspicions, testing::Contains(HasSubstr("power_in_W is 0.001 times bus_V × bus_A")));
+}
+
+std::vector<std::string> lacks_of(const std::string& text) {
+  const Read result = read_text(text);
+  if (!result.quality.thermal.is_good()) {
+    try {
+      require_thermal(result.recording, result.quality);
+      ADD_FAILURE() << "did not refuse";
+    } catch (const Failure& failure) {
+      EXPECT_EQ(failure.code(), ExitCode::cannot_answer);
+    }
+  }
+  return result.quality.thermal.lacks;
+}
+
+TEST(Fitness, LogsThatTellNothingAboutHeat) {
+  EXPECT_THAT(lacks_of(changed({}, [](int, auto& cells) { cells[winding] = cells[stator] = 25.0; })),
+              ElementsAre(HasSubstr("winding_C is constant, 25 °C")));
+  SyntheticLog off;
+  off.current_A = [](double) { return 0.0; };
+  EXPECT_THAT(lacks_of(off.csv()), testing::Contains(HasSubstr("no heat goes in: current_A is 0 throughout")));
+  SyntheticLog shortened;
+  shortened.rows = 12;
+  EXPECT_THAT(lacks_of(shortened.csv()), testing::Contains(HasSubstr("12 rows; at least 20")));
+  EXPECT_THAT(lacks_of("time_s,ambient_C,bus_V\n0,20,24\n1,20,24.1\n"), testing::Contains(HasSubstr("no temperature of the motor")));
+}
+
+/// A motor that stands under one current from cold, with the speed logged.
+std::string standing_run(double current_A, bool is_swapped, double speed_rad_per_s, double winding_offset_K) {
+  SyntheticLog log;
+  log.current_A = [=](double) { return current_A; };
+  std::string text = "time_s,winding_C,stator_C,ambient_C,current_A,speed_rad_per_s\n";
+  double time_s = 0.0;
+  for (const auto& [winding_C, stator_C] : log.temperatures_C()) {
+    const double sensor_C = winding_C + winding_offset_K;
+    text += fmt::format("{},{:.3f},{:.3f},22,{},{}\n", time_s, is_swapped ? stator_C : sensor_C, is_swapped ? sensor_C : stator_C,
+                        current_A, speed_rad_per_s);
+    time_s += log.period_s;
+  }
+  return text;
+}
+
+TEST(Suspicion, SwappedAtStandstillUnderOneCurrent) {
+  for (const double current_A : {4.0, 5.0, 6.0}) {
+    EXPECT_THAT(read_text(standing_run(current_A, true, 0.0, 0.0)).quality.blocking, ElementsAre(HasSubstr("are the two swapped")));
+    EXPECT_THAT(read_text(standing_run(current_A, false, 0.0, 0.0)).quality.suspicions, IsEmpty());
+    // Its offset was there from the start; what turns may heat the stator.
+    EXPECT_THAT(read_text(standing_run(current_A, false, 0.0, -9.0)).quality.suspicions, IsEmpty());
+    EXPECT_THAT(read_text(standing_run(current_A, true, 200.0, 0.0)).quality.suspicions, IsEmpty());
+  }
+}
+
+/// A warm-up of the winding alone, in degrees Fahrenheit or not, beside a room that the user states.
+TEST(Suspicion, FahrenheitBesideAStatedRoom) {
+  for (const auto& [is_fahrenheit, room_C] :
+       {std::pair(true, 22.0), std::pair(true, 18.5), std::pair(false, 22.0), std::pair(false, 40.0)}) {
+    std::string text = "time_s,winding_C,current_A\n";
+    const SyntheticLog log;
+    double time_s = 0.0;
+    for (const auto& [winding_C, stator_C] : log.temperatures_C()) {
+      text += fmt::format("{},{:.3f},{}\n", time_s, is_fahrenheit ? 1.8 * winding_C + 32.0 : winding_C, log.current_A(time_s));
+      time_s += log.period_s;
+    }
+    const Read result = read_text(text);
+    EXPECT_THAT(result.quality.suspicions, IsEmpty()) << "without the room it may be a warm motor";
+    const DataQuality beside_room = assess(result.recording, result.report, room_C);
+    EXPECT_EQ(beside_room.blocking.size(), is_fahrenheit ? 1U : 0U) << room_C;
+  }
+}
+
+/// A logger of 60 Hz is none that writes minutes.
+TEST(Suspicion, MinutesByRowsThatNoMotorFollows) {
+  SyntheticLog fast;
+  fast.period_s = 1.0 / 60.0;
+  fast.rows = 6000;
+  EXPECT_THAT(read_text(changed(fast, [&](int row, std::vector<double>& cells) { cells[time] = row / 60.0; })).quality.suspicions,
+              IsEmpty());
+  for (const auto& [unit, in_s] : {std::pair("minutes", 60.0), std::pair("hours", 3600.0)}) {
+    const Read result = read_text(changed({}, [in_s = in_s](int row, std::vector<double>& cells) { cells[time] = row / in_s; }));
+    EXPECT_THAT(result.quality.suspicions, ElementsAre(HasSubstr(fmt::format("is the time in {}?", unit))));
+    EXPECT_THAT(result.quality.blocking, IsEmpty());
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak

@@ -1,0 +1,47 @@
+// Names of channels: of the table, numbered, or free with a unit at their end.
+#include "recording/quantities.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+namespace heatsoak {
+namespace {
+
+std::string unit_of(const char* key) {
+  const auto quantity = quantity_named(key);
+  return quantity ? quantity->unit : "none";
+}
+
+TEST(Quantities, NamesTellTheirUnits) {
+  EXPECT_EQ(unit_of("winding_C"), "degC");
+  EXPECT_EQ(unit_of("wheel_speed_rad_per_s_3"), "rad/s");
+  EXPECT_EQ(unit_of("thrust_N"), "N");
+  EXPECT_EQ(unit_of("T_esc_C"), "degC") << "not coulomb";
+  EXPECT_EQ(unit_of("flow_m3_per_s"), "m3/s");
+  EXPECT_EQ(unit_of("rotor_inertia_kg_m2"), "kg m2");
+  EXPECT_EQ(unit_of("resistance_K_per_W"), "K/W");
+  EXPECT_EQ(unit_of("valve_ratio"), "");
+  EXPECT_EQ(unit_of("duty_pct"), "%");
+  for (const char* key : {"comment", "winding", "C", "_C", "a__C", "time", "motor_speed_fast", "wheel_1", "x_2", ""}) {
+    EXPECT_EQ(unit_of(key), "none") << key;
+  }
+}
+
+TEST(Quantities, TableIsSoundAndItsNamesEndInTheirUnits) {
+  std::set<std::string_view> keys;
+  for (const QuantityType& type : quantity_types()) {
+    EXPECT_TRUE(keys.insert(type.key).second) << type.key;
+    EXPECT_FALSE(type.meaning.empty()) << type.key;
+    const std::string free_name = "another_" + std::string(type.key);
+    ASSERT_TRUE(quantity_named(free_name)) << free_name;
+    EXPECT_EQ(quantity_named(free_name)->unit, type.unit) << "the name itself would tell another unit";
+    EXPECT_EQ(quantity_named(std::string(type.key) + (type.is_numbered ? "_2" : ""))->kind, type.kind) << type.key;
+  }
+}
+
+TEST(Quantities, NearestNameIsSuggested) { EXPECT_EQ(nearest_quantity("windng_C"), "; did you mean 'winding_C'?"); }
+
+}  // namespace
+}  // namespace heatsoak

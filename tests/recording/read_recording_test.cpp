@@ -1,0 +1,223 @@
+// A canonical log becomes a recording; what is no measurement is left out and said by line.
+#include "recording/read_recording.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/diagnostic.h"
+#include "base/random.h"
+#include "recording/quality.h"
+#include "recording/write_recording.h"
+#include "log_files.h"
+
+namespace heatsoak {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using namespace std::string_view_literals;
+
+Recording read(const std::string& text, RecordingReport& report, const Mapping& mapping = {}) {
+  const LogFile file("log.csv", text);
+  return read_recording(file.path(), mapping, report);
+}
+
+std::string failure_of(const std::string& text, const Mapping& mapping = {}) {
+  RecordingReport report;
+  try {
+    read(text, report, mapping);
+  } catch (const Failure& failure) {
+    return failure.what();
+  }
+  return "nothing";
+}
+
+TEST(ReadRecording, CanonicalColumnsByTheirNames) {
+  RecordingReport report;
+  const Recording recording = read("time_s,winding_C,current_A,thrust_N,comment\n0,25.0,1.5,7,0\n1,25.5,-1.5,8,0\n2,26.0,0,9,0\n", report);
+  EXPECT_EQ(recording.name, "log");
+  EXPECT_THAT(recording.time_s, ElementsAre(0.0, 1.0, 2.0));
+  EXPECT_THAT(recording.line, ElementsAre(2, 3, 4));
+  ASSERT_EQ(recording.channels.size(), 3U);
+  EXPECT_THAT(recording.find("winding_C")->values, ElementsAre(25.0, 25.5, 26.0));
+  EXPECT_EQ(recording.find("winding_C")->quantity.kind, QuantityKind::temperature);
+  EXPECT_EQ(recording.find("thrust_N")->quantity.unit, "N");
+  EXPECT_EQ(recording.find("comment"), nullptr);
+  EXPECT_THAT(report.notes, ElementsAre(HasSubstr("column 5 'comment' is not used")));
+  EXPECT_EQ(report.rows_kept, 3U);
+  EXPECT_TRUE(report.left_out.empty());
+}
+
+TEST(ReadRecording, GapOfMoreThanThreePeriodsSplitsTheRun) {
+  RecordingReport report;
+  const Recording recording = read("time_s,winding_C\n0,20\n1,20\n2,20\n5,20\n8.5,20\n9.5,20\n", report);
+  EXPECT_THAT(recording.run_begins, ElementsAre(0U, 4U)) << "a step of exactly three periods does not split";
+}
+
+TEST(ReadRecording, CopiesOfRowsAreLeftOutHoweverMany) {
+  std::string text = "time_s,winding_C\n";
+  for (int i = 0; i < 60; ++i) {
+    text += fmt::format("{0},{1}\n", i, 20.0 + 0.1 * i) + (i % 3 == 0 ? fmt::format("{0},{1}\n", i, 20.0 + 0.1 * i) : "");
+  }
+  RecordingReport report;
+  EXPECT_EQ(read(text, report).rows(), 60U);
+  EXPECT_EQ(report.find("", LeftOutReason::time_does_not_increase)->count, 20U);
+  EXPECT_EQ(report.repeated_times, 20U);
+}
+
+TEST(ReadRecording, TimeOfTooFewDigitsIsRefused) {
+  std::string text = "time_s,winding_C\n";
+  for (int i = 0; i < 60; ++i) {
+    text += fmt::format("{},{}\n", i / 10, 20.0 + 0.1 * i);
+  }
+  EXPECT_THAT(failure_of(text), HasSubstr("54 of 60 rows have the time of the row before"));
+}
+
+TEST(ReadRecording, OtherSeparatorsUnitsAndNamesAreSaid) {
+  EXPECT_THAT(failure_of("log of 3 May\ntime_s,winding_C\n0,20\n"), HasSubstr("header_rows"));
+  EXPECT_THAT(failure_of("time_s;winding_C\n0;20\n"), HasSubstr("this file seems to have ';'"));
+  EXPECT_THAT(failure_of("time_s\twinding_C\n0\t20\n"), HasSubstr("separator = \"tab\""));
+  RecordingReport report;
+  read("time_s,winding_C,stator_F,windin_C\n0,20,68,20\n1,21,69,21\n", report);
+  EXPECT_THAT(report.notes, testing::Contains(HasSubstr("stator_C = { column = \"stator_F\", unit = … }")));
+  EXPECT_THAT(report.notes, testing::Contains(HasSubstr("windin_C is taken as one more signal; did you mean 'winding_C'?")));
+}
+
+TEST(ReadRecording, WithoutTimeSaysWhatToDo) {
+  EXPECT_THAT(failure_of("tme_s,winding_C\n0,20\n"),
+              HasSubstr("log.csv:1:1: error: time_s: there is no such column; did you mean 'tme_s'?"));
+}
+
+TEST(ReadRecording, RowsThatAreNoneAreLeftOutByLine) {
+  RecordingReport report;
+  const Recording recording = read(
+      "# a comment\n\ntime_s,winding_C,current_A\r\n0,20,1\n1,,1\n# "
+      "pause\n2,nan,1\n2,21,1\n1.5,21,1\n3,warm,1,\n,22,1\n4,22,inf\n5,-300,1\n"
+      "6,\"22.5\",1\n7,22,1\n8,22,1\n9,22,1\n10,22,1\n11,22,1\n12,22,1\n13,22,1\n14,22,1\n15,22,1\n16,22,1\n17,22,1\n18,22,1\n19,22,1\n20,"
+      "22,1\n21,22,1\n22,2",
+      report);
+  const auto line_of = [&report](const char* quantity, LeftOutReason reason) {
+    const LeftOut* const entry = report.find(quantity, reason);
+    return entry == nullptr || entry->count != 1 ? -1 : entry->lines.front().first;
+  };
+  EXPECT_EQ(line_of("winding_C", LeftOutReason::not_recorded), 5);
+  EXPECT_EQ(line_of("winding_C", LeftOutReason::not_a_number), 7);
+  EXPECT_EQ(line_of("", LeftOutReason::wrong_number_of_cells), 10);
+  EXPECT_EQ(line_of("", LeftOutReason::without_time), 11);
+  EXPECT_EQ(line_of("current_A", LeftOutReason::not_a_number), 12);
+  EXPECT_EQ(line_of("winding_C", LeftOutReason::impossible), 13);
+  EXPECT_EQ(line_of("", LeftOutReason::cut_off), 30);
+  ASSERT_NE(report.find("", LeftOutReason::time_does_not_increase), nullptr);
+  EXPECT_THAT(report.find("", LeftOutReason::time_does_not_increase)->lines.front().first, 8);
+  EXPECT_EQ(report.find("", LeftOutReason::time_does_not_increase)->count, 2U);
+  EXPECT_EQ(report.repeated_times, 1U);
+  EXPECT_EQ(report.rows_in_file, 26U);
+  EXPECT_EQ(recording.rows(), 21U);
+  EXPECT_DOUBLE_EQ(recording.find("winding_C")->values[5], 22.5);
+}
+
+/// One wild time must not take the rows after it along.
+TEST(ReadRecording, OneTimeFarAheadGoesAlone) {
+  RecordingReport report;
+  std::string text = "time_s,winding_C\n";
+  for (int i = 0; i < 100; ++i) {
+    text += std::to_string(i == 40 ? 1000000 : i) + ",20\n";
+  }
+  const Recording recording = read(text, report);
+  EXPECT_EQ(recording.rows(), 99U);
+  EXPECT_EQ(report.find("", LeftOutReason::time_does_not_increase)->lines.front().first, 42);
+}
+
+TEST(ReadRecording, FilesThatAreNoLogs) {
+  EXPECT_THAT(failure_of(""), HasSubstr("is empty"));
+  EXPECT_THAT(failure_of("time_s,winding_C\n"), HasSubstr("has a header but no rows"));
+  EXPECT_THAT(failure_of("winding_C\n20\n"), HasSubstr("the header has one column only"));
+  EXPECT_THAT(failure_of("log of 3 May\ntime_s,winding_C\n0,20\n"), HasSubstr("header_rows"));
+  EXPECT_THAT(failure_of("time_s;winding_C\n0;20\n"), HasSubstr("the header has one column only"));
+  EXPECT_THAT(failure_of(std::string("time_s,winding_C\n0,\0\n", 21)), HasSubstr("binary file"));
+  EXPECT_THAT(failure_of("time_s,winding_C\n0,20,1\n1,20,1\n"), HasSubstr("none of its 2 rows can be used; another number of cells"));
+  EXPECT_THAT(failure_of("time_s,winding_C\n0,\"20\n1,21\n"), HasSubstr(":2:1: error: a quote in this row is not closed"));
+  EXPECT_THAT(failure_of("time_s,winding_C\r0,20\r1,21\r"), HasSubstr(":1:1: error: its lines end with a carriage return alone"));
+  EXPECT_THAT(failure_of("time_s,winding_C\n0," + std::string(3 << 20, '1') + "\n"), HasSubstr("a line of more than 1 MB"));
+  EXPECT_THAT(failure_of("time_s,winding_C,winding_C\n0,20,20\n"), HasSubstr("'winding_C' stands twice in the header"));
+  EXPECT_THAT(failure_of("time_s,winding_C\n5,20\n4,20\n3,20\n2,20\n"), HasSubstr(":3:1: error: time_s: time does not increase"));
+  EXPECT_THAT(failure_of("time_s,winding_C\n0,\n1,nan\n"), HasSubstr("no quantity beside the time holds a number"));
+}
+
+TEST(ReadRecording, ExitCodesTellWhatIsWrong) {
+  const auto code_of = [](const std::string& text) {
+    RecordingReport report;
+    try {
+      read(text, report);
+    } catch (const Failure& failure) {
+      return failure.code();
+    }
+    return ExitCode::done;
+  };
+  EXPECT_EQ(code_of("time_s,winding_C\n5,20\n4,20\n3,20\n"), ExitCode::bad_input);
+  EXPECT_EQ(code_of("time_s,winding_C\n0,\n1,nan\n"), ExitCode::cannot_answer);
+}
+
+/// Whatever is done to a log, it ends in a recording whose columns fit together, or in a Failure that says why.
+TEST(ReadRecording, DamagedLogsNeverCrash) {
+  std::string sound = "time_s,winding_C,stator_C,current_A\n";
+  for (int i = 0; i < 200; ++i) {
+    sound += fmt::format("{},{:.2f},{:.2f},{}\n", i, 25.0 + 0.1 * i, 25.0 + 0.05 * i, i % 7);
+  }
+  const std::string_view spoilers = ",;\"\n\r #\0-+.eEnN9\xff\xef"sv;
+  int failures = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Random random(seed, 0);
+    std::string damaged = sound;
+    const int hits = 1 + static_cast<int>(random.uniform() * 30.0);
+    for (int hit = 0; hit < hits; ++hit) {
+      const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(damaged.size()));
+      const double what = random.uniform();
+      if (what < 0.5) {
+        damaged[at] = spoilers[static_cast<std::size_t>(random.uniform() * static_cast<double>(spoilers.size()))];
+      } else if (what < 0.8) {
+        damaged.erase(at, static_cast<std::size_t>(random.uniform() * 40.0));
+      } else if (what < 0.95) {
+        damaged.insert(at, damaged.substr(static_cast<std::size_t>(random.uniform() * static_cast<double>(damaged.size())), 60));
+      } else {
+        damaged.resize(at + 1);
+      }
+    }
+    RecordingReport report;
+    try {
+      const Recording recording = read(damaged, report);
+      EXPECT_EQ(recording.line.size(), recording.rows());
+      for (const Channel& channel : recording.channels) {
+        EXPECT_EQ(channel.values.size(), recording.rows());
+      }
+      EXPECT_EQ(std::ranges::adjacent_find(recording.time_s, std::greater_equal<>()), recording.time_s.end());
+      assess(recording, report);
+    } catch (const Failure& failure) {
+      ++failures;
+      EXPECT_NE(failure.code(), ExitCode::bug);
+      EXPECT_NE(std::string(failure.what()), "");
+    }
+  }
+  EXPECT_GT(failures, 10);
+  EXPECT_LT(failures, 190);
+}
+
+TEST(ReadRecording, CanonicalFormReadsBackTheSame) {
+  RecordingReport report;
+  const Recording first = read("time_s,winding_C,current_A,flow_m3_per_s\n0.1,20.123456789,1,0.5\n1.1,,2,\n2.1,22,0.1,7e-9\n", report);
+  EXPECT_EQ(first.find("flow_m3_per_s")->quantity.unit, "m3/s");
+  const Recording again = read(to_canonical_csv(first), report);
+  ASSERT_EQ(again.channels.size(), 3U);
+  EXPECT_EQ(again.time_s, first.time_s);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(again.channels[i].quantity.key, first.channels[i].quantity.key);
+    EXPECT_THAT(again.channels[i].values, testing::Pointwise(testing::NanSensitiveDoubleEq(), first.channels[i].values));
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak
