@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kSeconds = 600;
 
-/// The most that the runs reached.
+/// Largest values in the runs.
 struct Levels {
   double current_A = 0.0;
   double speed_rad_per_s = 0.0;
@@ -44,7 +44,7 @@ Levels levels_of(const std::vector<MeasuredRun>& runs) {
     }
   }
   most.ambient_C = runs.front().at.front().ambient_C;
-  // Where nothing got warm this much hurts nothing either.
+  // A temperature rise of 10 K is harmless even if the runs stayed colder.
   constexpr double kHarmless_K = 10.0;
   most.measured_C = most.ambient_C + kHarmless_K;
   for (const MeasuredRun& run : runs) {
@@ -59,21 +59,21 @@ Levels levels_of(const std::vector<MeasuredRun>& runs) {
 
 struct Primitive {
   std::string_view what;
-  /// Shares of the highest speed and current at a second of the experiment.
+  /// Fractions of the highest speed and of the highest current, as a function of the time in s.
   std::function<std::pair<double, double>(int)> shares;
 };
 
-/// Of a staircase with steps of this length, from 0.
+/// Returns the step, from 0, of a staircase with steps of `length_s`.
 int step_of(int time_s, int length_s) { return time_s / length_s; }
 
 const std::vector<Primitive>& menu() {
   static const std::vector<Primitive> all{
-      {"ten minutes of a no-load staircase of speed", [](int s) { return std::pair(0.2 * (1 + step_of(s, 120)), 0.05); }},
+      {"ten minutes without load, with the speed raised in steps", [](int s) { return std::pair(0.2 * (1 + step_of(s, 120)), 0.05); }},
       {"ten minutes of current pulses at standstill",
        [](int s) { return std::pair(0.0, s % 60 < 25 ? 0.4 + 0.12 * step_of(s, 120) : 0.0); }},
       {"heat at standstill for five minutes, then spin without load while hot",
        [](int s) { return s < 300 ? std::pair(0.0, 0.6) : std::pair(0.9, 0.05); }},
-      {"spin without load while cold for five minutes, then rest",
+      {"spin without load for five minutes from cold, then rest",
        [](int s) { return s < 300 ? std::pair(0.9, 0.05) : std::pair(0.0, 0.0); }},
       {"one current at four speeds", [](int s) { return std::pair(0.25 * (1 + step_of(s, 150)), 0.5); }},
       {"one speed at four currents", [](int s) { return std::pair(0.6, 0.2 * (1 + step_of(s, 150))); }},
@@ -102,12 +102,12 @@ MeasuredRun planned(const Primitive& primitive, const Levels& levels, const Meas
       run.at.push_back(at);
     }
   }
-  // Measured as predicted: only the columns count.
+  // The readings are placeholders: only the columns of the run are used.
   run.measured_C = Eigen::MatrixXd::Constant(run.samples(), static_cast<Eigen::Index>(run.sensors.size()), levels.ambient_C);
   return run;
 }
 
-/// An experiment that stays below what the runs measured, and the path of the model along it.
+/// An experiment that stays below the measured temperatures, with the model's path along it.
 struct Plan {
   std::string what;
   MeasuredRun run;
@@ -134,11 +134,13 @@ std::string description_of(const Primitive& primitive, const MeasuredRun& run) {
   if (fastest_rad_per_s > 0.0) {
     levels.push_back(significant(fastest_rad_per_s, 2) + " rad/s");
   }
-  return levels.empty() ? std::string(primitive.what)
-                        : fmt::format("{}; with at most {} it gets no hotter than these runs", primitive.what, fmt::join(levels, " and "));
+  return levels.empty()
+             ? std::string(primitive.what)
+             : fmt::format("{}; with at most {} the motor gets no hotter than in these runs", primitive.what, fmt::join(levels, " and "));
 }
 
-/// The menu, each with as much of the runs' highest current as they were hot: a peak of tenths of a second is no level for minutes.
+/// Returns the menu. Reduces the current of each experiment until it stays below the temperatures of the runs. A logged peak of 0.1 s must
+/// not be held for minutes.
 std::vector<Plan> plans(const Selection& selection, const std::vector<MeasuredRun>& runs) {
   constexpr double kStep_ratio = 0.7;
   constexpr int kTries = 12;
@@ -159,7 +161,7 @@ std::vector<Plan> plans(const Selection& selection, const std::vector<MeasuredRu
   return all;
 }
 
-/// Of ½‖φ·(column − its part along θ and the rival)‖², θ as known as the fit knows it.
+/// Returns ½‖column − its projection on θ and the rival‖² in whitened space, with the posterior of θ as prior.
 double separation_nats(const RefitResult& fit, const LatentFlux& flux, const std::vector<Candidate>& pair, double size_share,
                        const Plan& plan) {
   const std::vector<MeasuredRun> runs{plan.run};
@@ -174,7 +176,7 @@ double separation_nats(const RefitResult& fit, const LatentFlux& flux, const std
     absorbing.push_back(i);
   }
   absorbing.push_back(own + 1);
-  // What the runs so far have said of the parameters holds: they absorb only what it leaves them free to.
+  // θ can absorb the difference only within its posterior from the runs so far.
   const Eigen::MatrixXd precision = (fit.covariance + 1e-12 * Eigen::MatrixXd::Identity(own, own)).inverse();
   Eigen::MatrixXd others = Eigen::MatrixXd::Zero(triangle.rows() + own, own + 1);
   others.topRows(triangle.rows()) = triangle(Eigen::all, absorbing);
@@ -192,7 +194,7 @@ bool has_nodes_of(const Network& network, const Candidate& candidate) {
   return has_all;
 }
 
-/// In the first round that judged it; null where none did: then it has the words of its own experiment.
+/// Returns the candidate as evaluated in the first round that contains it; null if no round does.
 const JudgedCandidate* judged(const Selection& selection, const std::string& id) {
   for (const Round& round : selection.rounds) {
     const auto found = std::ranges::find_if(round.ladder, [&](const JudgedCandidate& each) { return each.candidate.id == id; });
@@ -213,7 +215,7 @@ std::vector<Experiment> next_experiments(const Selection& selection, const std::
     for (std::size_t rival = 0; term.candidate && rival < term.confusable_with.size(); ++rival) {
       Experiment best{fmt::format("{} or {}", term.candidate->id, term.confusable_with[rival]), term.experiments[rival], 0.0};
       const JudgedCandidate* const other = judged(selection, term.confusable_with[rival]);
-      // At a body that came with another effect: there is no such body where the next run is tried out.
+      // The base model has no node for an effect at a body that another effect added.
       if (!other || !has_nodes_of(selection.before.model.model.network, *term.candidate) ||
           !has_nodes_of(selection.before.model.model.network, other->candidate)) {
         experiments.push_back(std::move(best));
@@ -228,7 +230,7 @@ std::vector<Experiment> next_experiments(const Selection& selection, const std::
           best.what = plan.what;
         }
       }
-      // What ten minutes cannot tell needs another set-up: that stands with the effect.
+      // If ten minutes do not separate the effects, use the catalogue's experiment, which needs another set-up.
       if (best.expected_nats < 1.0) {
         best.what = term.experiments[rival];
         best.expected_nats = 0.0;

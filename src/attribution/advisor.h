@@ -1,4 +1,4 @@
-// What to measure next: how much a short experiment would add to the evidence between two effects that the runs confuse.
+// Next experiment: how much evidence a ten-minute run would add between two effects that these runs confound.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace heatsoak {
 
-/// For every accepted effect with look-alikes: the experiment of the menu that separates it best from each of them (T-optimal:
-/// D = min over the rival's size, and θ as far as the runs leave it open, of ½‖G·φ − G_rival·φ_rival‖² in whitened space, in nats), best
-/// first. The unknown heat is supposed to be what is left after the diagnosis. The experiments take ten minutes each, at levels that the
-/// runs reached and no hotter than they measured.
+/// Returns, for each accepted effect and each effect confounded with it, the experiment that separates the two best; largest gain first.
+/// The criterion is T-optimality (Atkinson and Fedorov 1975): D = min ½‖G·φ − G_rival·φ_rival‖² in whitened space, in nats. The minimum is
+/// over the rival's size and over θ within its posterior. The unknown heat is that of the final fit. Each experiment lasts 10 min, with
+/// levels and temperatures within those of the runs. If none adds 1 nat, the experiment is the catalogue's and expected_nats is 0.
 std::vector<Experiment> next_experiments(const Selection& selection, const std::vector<MeasuredRun>& runs);
 
 }  // namespace heatsoak

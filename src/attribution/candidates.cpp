@@ -11,10 +11,10 @@
 namespace heatsoak {
 namespace {
 
-/// Heat capacity of the motors that the catalogue's typical sizes are of.
+/// Heat capacity of the motors for which the catalogue gives typical sizes (about 50 W).
 constexpr double kUsualCapacity_J_per_K = 120.0;
 
-/// Names of the signals that some run lacks.
+/// Returns the names of the signals that at least one run lacks.
 std::vector<std::string_view> lacking(const std::vector<Signal>& needs, const std::vector<MeasuredRun>& runs) {
   std::vector<std::string_view> names;
   for (const Signal signal : needs) {
@@ -44,7 +44,7 @@ bool is_in(const ExtendedModel& model, const Candidate& candidate) {
   });
 }
 
-/// The roles' usual nodes; a node of the effect's own gets a name that the network does not have. Empty where a node is missing.
+/// Returns the default nodes of the roles, with an unused name for a node that the effect adds. Empty if a node is missing.
 std::vector<std::string> usual_nodes(const Network& network, const EffectType& type) {
   std::vector<std::string> nodes;
   for (const NodeRole& role : type.nodes) {
@@ -61,8 +61,8 @@ std::vector<std::string> usual_nodes(const Network& network, const EffectType& t
   return nodes;
 }
 
-/// Effects of one node act at every node that stores heat, in a network of two the usual one unless they say otherwise; the rest where
-/// their roles say.
+/// Returns all node assignments to try. A one-node effect is tried at every node with a heat capacity. In a network of two nodes it is
+/// tried at its default node, unless its candidacy allows any. Other effects use their default nodes.
 std::vector<std::vector<std::string>> placements(const Network& network, const EffectType& type) {
   std::vector<std::vector<std::string>> all;
   if (std::vector<std::string> usual = usual_nodes(network, type); !usual.empty()) {
@@ -78,10 +78,10 @@ std::vector<std::vector<std::string>> placements(const Network& network, const E
   return all;
 }
 
-/// What is typical of a motor beside one of some 50 W.
+/// Scale of the motor relative to one of about 50 W.
 struct MotorSize {
-  double heat_ratio = 1.0;     ///< in W, W/K, J/K
-  double current_ratio = 1.0;  ///< in A: of windings for another voltage
+  double heat_ratio = 1.0;     ///< for W, W/K and J/K
+  double current_ratio = 1.0;  ///< for A; differs with the winding's voltage
 };
 
 std::vector<double> scaled(const EffectType& type, std::vector<double> parameters, const MotorSize& size) {
@@ -101,7 +101,7 @@ std::vector<double> scaled(const EffectType& type, std::vector<double> parameter
   return parameters;
 }
 
-/// Currents of the usual order count as usual.
+/// Returns the ratio of the 98th percentile of the current to 8 A; 1 if it is within a factor of 2.5, or without current.
 double current_ratio_of(const std::vector<MeasuredRun>& runs) {
   constexpr double kUsual_A = 8.0;
   constexpr double kOrder_ratio = 2.5;
@@ -136,7 +136,7 @@ std::string in_words(const Condition& condition) {
   return text;
 }
 
-/// Every way in which what is said of the runs parts them in two; a stated condition comes before the name of the only run that has it.
+/// Returns all conditions that divide the runs in two, without duplicates. A stated condition has priority over the name of a single run.
 std::vector<Condition> conditions_of(const std::vector<MeasuredRun>& runs) {
   std::vector<Condition> conditions;
   std::vector<std::vector<bool>> known;
@@ -159,7 +159,7 @@ std::vector<Condition> conditions_of(const std::vector<MeasuredRun>& runs) {
   return conditions;
 }
 
-/// What may be different in some of the runs without any signal of it: air that is moved or missing, heat from outside or not in the log.
+/// Adds candidates that act only in some runs and appear in no signal: airflow, constant heat, and run deviations.
 void add_conditional_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const MotorSize& size,
                                 CandidateList& list) {
   const Network& network = model.model.network;
@@ -234,18 +234,18 @@ Eigen::Index sensor_of(const MeasuredRun& run, std::string_view signal) {
   return std::ranges::find(run.sensors, signal, &Sensor::signal) - run.sensors.begin();
 }
 
-/// All of them in one network at a size of 0: they do not change what it does, but it has their derivatives.
+/// Network with all candidates added at size 0. It behaves like the original network, but provides their derivatives.
 struct Extended {
   Network network;
-  std::vector<int> wanted;           ///< sizes; where an effect brings nodes of its own, their capacities behind the size
-  std::vector<double> slope;         ///< weight of each of them in its candidate's column
-  std::vector<std::size_t> own;      ///< which candidate it belongs to
-  std::vector<double> state_C;       ///< at the start of an interval; nodes of their own behind the network's
-  std::vector<Eigen::Index> bodies;  ///< those nodes
+  std::vector<int> wanted;           ///< parameter indices of the sizes; the capacity of an added node follows its size
+  std::vector<double> slope;         ///< weight of each parameter in its candidate's column
+  std::vector<std::size_t> own;      ///< candidate of each parameter
+  std::vector<double> state_C;       ///< temperatures at the start of an interval; added nodes last
+  std::vector<Eigen::Index> bodies;  ///< indices of the added nodes
 };
 
-/// Where a body of its own comes with the effect, its capacity goes with the size: a body of a given time constant that takes hardly
-/// any heat. With the capacity held it would never warm at a size near 0 and look like a wall at ambient temperature.
+/// Size, in typical sizes, at which an effect with its own body is linearised. Its capacity scales with it, so the time constant stays.
+/// With a fixed capacity the body would not warm up at size 0 and act like a wall at ambient temperature.
 constexpr double kHardly_share = 1e-3;
 
 void extend(Extended& extended, const Candidate& candidate, std::size_t own, double ambient_C) {
@@ -273,8 +273,8 @@ void extend(Extended& extended, const Candidate& candidate, std::size_t own, dou
   }
 }
 
-/// How a linear system answers over a step to where it was and to a rate that is held: e^(A·h) and ∫e^(A·s)ds, both to the fourth order
-/// as the fit's own steps have them.
+/// Computes the response of a linear system over a step to its state, e^(A·h), and to a constant rate, ∫e^(A·s)ds. Both are of fourth
+/// order, like the steps of the fit.
 void set_step(const Eigen::MatrixXd& slope_per_s, double step_s, Eigen::MatrixXd& power, Eigen::MatrixXd& forward,
               Eigen::MatrixXd& held_s) {
   const Eigen::Index size = slope_per_s.rows();
@@ -289,8 +289,8 @@ void set_step(const Eigen::MatrixXd& slope_per_s, double step_s, Eigen::MatrixXd
   held_s *= step_s;
 }
 
-/// The tangent of the extended network along the path that the fit has taken: laws are asked once per interval, halfway.
-/// `first_body`: place of the columns of the bodies' starts.
+/// Adds the columns of the extended network, linearised once per interval at its midpoint along the fitted path. `first_body`: index of the
+/// first column for the start temperature of a body.
 void add_network_columns(Extended& extended, std::span<const double> parameters, const LinearisedRun& fitted, const MeasuredRun& run,
                          Eigen::Index first_body, Columns& columns) {
   const Eigen::Index own = fitted.states;
@@ -300,7 +300,7 @@ void add_network_columns(Extended& extended, std::span<const double> parameters,
   std::ranges::copy(parameters, values.begin());
   const auto bodies = static_cast<Eigen::Index>(extended.bodies.size());
   Linearised slope;
-  // Step of the sensitivities over this interval: to the candidates, to the start temperatures of added bodies, and the transition.
+  // Sensitivities to the candidates and to the start temperatures of added bodies; the last column is the state's step.
   Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(states, wanted + bodies + 1), moved = rate, next = rate;
   for (Eigen::Index body = 0; body < bodies; ++body) {
     moved(extended.bodies[static_cast<std::size_t>(body)], wanted + body) = 1.0;
@@ -342,7 +342,7 @@ void add_network_columns(Extended& extended, std::span<const double> parameters,
   }
 }
 
-/// How the nodes move becomes how the sensors do with the faults that are stated for them.
+/// Converts sensitivities of the nodes to those of the readings, with the stated sensor errors of the run.
 void show(const MeasuredRun& run, Columns& columns) {
   const auto sensors = static_cast<Eigen::Index>(run.sensors.size());
   for (Eigen::Index sensor = 0; sensor < sensors; ++sensor) {
@@ -445,7 +445,7 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Extend
     const Eigen::Index sensor = sensor_of(run, candidate.sensor_type->signal);
     Eigen::VectorXd true_C = fitted.state_C.row(fitted.sensor_node[static_cast<std::size_t>(sensor)]);
     apply(run.sensors[static_cast<std::size_t>(sensor)].faults, run.time_s, false, true_C);
-    // The change at a size of that order, not the slope at none: a lag is far from linear in its size.
+    // A lag is strongly nonlinear in its size, so use a finite difference instead of the derivative at 0.
     Eigen::VectorXd sensor_C = true_C;
     candidate.sensor_type->law.apply(run.time_s, candidate.column_at_share * candidate.typical_size(), false, sensor_C);
     for (Eigen::Index k = 0; k < sensor_C.size(); ++k) {

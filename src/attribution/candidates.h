@@ -1,4 +1,4 @@
-// Every effect that a model may lack, as columns: how the sensors would move with its size, from a size of nothing.
+// Candidate effects as regressor columns: the sensitivity of each sensor to the effect's size, evaluated at size zero.
 #pragma once
 
 #include <string>
@@ -13,20 +13,22 @@ namespace heatsoak {
 
 struct ExtendedModel;
 
-/// One effect in one shape at certain nodes, of the network or of a sensor, or a deviation of some runs: one of the three types is there.
+/// One candidate effect: a variant of a network effect at given nodes, a sensor error, or a run deviation. Exactly one of the three types
+/// is set.
 struct Candidate {
   const EffectType* type = nullptr;
   const SensorEffectType* sensor_type = nullptr;
   const RunDeviationType* deviation_type = nullptr;
-  std::string id;                  ///< the type's name; "@node" follows where it is not at its usual node
-  std::vector<std::string> nodes;  ///< as the type's roles
-  std::vector<double> parameters;  ///< at the typical size, in declared order
+  std::string id;                  ///< name of the type, followed by "@node" if it is not at its default node
+  std::vector<std::string> nodes;  ///< one node per role of the type
+  std::vector<double> parameters;  ///< values at the typical size, in declared order
   int variant = 0;
-  double column_at_share = 1.0;  ///< sensor errors only: the column is linearised at this size, in typical sizes
+  double column_at_share = 1.0;  ///< sensor errors only: size of the linearisation point, in typical sizes
   Condition condition;           ///< the candidate acts only in runs with this condition; empty: in all runs
 
-  /// Named for unmistakable evidence only: what few runs have, and laws at another node than their usual one.
+  /// True for a deviation marked as rare, and for a one-node effect at another node than its default, without a condition.
   [[nodiscard]] bool is_rare() const;
+  /// Index of the parameter that the effect is proportional to.
   [[nodiscard]] int size_parameter() const;
   [[nodiscard]] double typical_size() const { return parameters[static_cast<std::size_t>(size_parameter())]; }
   [[nodiscard]] const ParameterSpec& size_spec() const;
@@ -36,18 +38,19 @@ struct Candidate {
 
 struct CandidateList {
   std::vector<Candidate> candidates;
-  std::vector<std::string> not_judged;  ///< "windage: the logs have no speed": what the runs cannot speak about
+  std::vector<std::string> not_judged;  ///< effects that these runs cannot test, each with the reason: "windage: not every log has speed"
 };
 
-/// What the runs can speak about: signals are there, sensors are there, and the model does not have the effect already. Some may act under
-/// the conditions that part the runs, each run by itself among them.
+/// Returns the candidates that these runs can test: all needed signals and sensors are logged, and the model does not contain the effect
+/// yet. Includes candidates limited to runs with one condition, for every condition that divides the runs; each run alone is such a
+/// condition.
 CandidateList candidates_for(const ExtendedModel& model, const std::vector<MeasuredRun>& runs);
 
-/// Candidates that bring a body of their own, in their order.
+/// Returns the indices of the candidates that add a body (node with a heat capacity) of their own, ascending.
 std::vector<int> candidates_with_body(const std::vector<Candidate>& candidates);
 
-/// One column per candidate, per typical size, at the model's present parameters; then one per candidate with a body, per kelvin that the
-/// body begins above ambient at the typical size. n·s rows.
+/// Returns the columns of one run (n·s rows), in K, at the model's present parameters. First one column per candidate, per typical size.
+/// Then one per candidate with a body, per kelvin of the body's start temperature above ambient, at the typical size.
 Columns candidate_columns(const std::vector<Candidate>& candidates, const ExtendedModel& model, const LinearisedRun& fitted,
                           const MeasuredRun& run);
 

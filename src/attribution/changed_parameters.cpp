@@ -3,7 +3,7 @@
 namespace heatsoak {
 
 Prior with_prior_sd(const Prior& prior, Eigen::Index coordinate, double sheet_sd) {
-  // The inverse of (Λ⁻¹ + s²·e·eᵀ), which needs no Λ⁻¹ (Sherman and Morrison 1950).
+  // Inverse of (Λ⁻¹ + s²·e·eᵀ) without computing Λ⁻¹ (Sherman and Morrison 1950).
   Prior doubted = prior;
   const Eigen::VectorXd column = prior.precision.col(coordinate);
   doubted.precision -= column * column.transpose() * (sheet_sd * sheet_sd / (1.0 + sheet_sd * sheet_sd * column[coordinate]));

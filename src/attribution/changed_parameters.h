@@ -1,5 +1,5 @@
-// Figures of the file that the runs contradict: another mounting, another motor of the type, a terminal that has worked loose. A file that
-// was calibrated knows its figures well, and what has changed since then must not pass for an effect.
+// Parameters of the file that the runs contradict, because of another mounting, another specimen or a loose terminal. A calibrated file has
+// narrow priors; without this test, such a change would be mistaken for an effect.
 #pragma once
 
 #include <string>
@@ -9,22 +9,24 @@
 
 namespace heatsoak {
 
-/// A free parameter of the model that is better known than a sheet knows it, given back the uncertainty of a sheet.
+/// A free parameter whose narrow prior from the file is widened to the uncertainty of a data sheet.
 struct ChangedParameter {
-  Eigen::Index coordinate = 0;  ///< of θ
-  std::string name;             ///< of the network's parameter, "stator_ambient.thermal_resistance"
+  Eigen::Index coordinate = 0;  ///< index in θ
+  std::string name;             ///< name in the network, "stator_ambient.thermal_resistance"
   std::string unit;
-  double gain_nats = 0.0;  ///< ln evidence with a wide prior for this parameter, minus that with the file's prior
+  double gain_nats = 0.0;  ///< ln evidence with the wide prior minus ln evidence with the file's prior
+  /// Values of the parameter: of the file, of the final fit, and the fit's 95 % interval; all in `unit`.
   double before = 0.0;
-  double value = 0.0;  ///< of the final fit, with its 95 % interval
+  double value = 0.0;
   double low = 0.0;
   double high = 0.0;
 };
 
-/// Prior with the uncertainty of a data sheet (`sheet_sd`, of the logarithm) added to one coordinate.
+/// Returns the prior with the variance of one coordinate increased by `sheet_sd`², where `sheet_sd` is the standard deviation of the
+/// logarithm on a data sheet.
 Prior with_prior_sd(const Prior& prior, Eigen::Index coordinate, double sheet_sd);
 
-/// Coordinates of figures that are known more than twice as well as a sheet knows them.
+/// Returns the coordinates of positive parameters whose prior standard deviation is less than half of `sheet_sd`.
 std::vector<Eigen::Index> well_known_values(const ExtendedModel& model, double sheet_sd);
 
 }  // namespace heatsoak

@@ -11,10 +11,11 @@
 namespace heatsoak {
 namespace {
 
-/// Of the time on either side that is passing by, not dwelling.
+/// Fraction of the time in each tail that does not count as part of the range.
 constexpr double kTail_share = 0.02;
-/// Of the width of what was visited, or of its size, that a law may be trusted beyond it.
+/// Extension of the range, as a fraction of its width or of its upper end.
 constexpr double kReach_share = 0.1;
+/// Fraction of the time outside the range from which a warning is given.
 constexpr double kMuch_share = 0.25;
 
 struct Watched {
@@ -30,7 +31,7 @@ constexpr std::array kWatched{
     Watched{Signal::vehicle_speed, "the vehicle's speed", "m/s", &OperatingPoint<double>::vehicle_speed_m_per_s},
 };
 
-/// Values with the time that they are held.
+/// Returns the values with their durations in s, sorted by value.
 std::vector<std::pair<double, double>> held(const std::vector<MeasuredRun>& runs, const Watched& watched) {
   std::vector<std::pair<double, double>> all;
   for (const MeasuredRun& run : runs) {
@@ -50,7 +51,7 @@ double time_s(const std::vector<std::pair<double, double>>& values) {
   return sum_s;
 }
 
-/// The value below which `share` of the time is spent.
+/// Returns the value that is not exceeded for `share` of the time.
 double quantile(const std::vector<std::pair<double, double>>& values, double share) {
   double left_s = share * time_s(values);
   for (const auto& [value, duration_s] : values) {
@@ -81,8 +82,8 @@ std::vector<std::string> beyond_fitted(const std::vector<MeasuredRun>& fitted, c
     }
     if (const double share = outside_s / time_s(wanted); share > kMuch_share) {
       sentences.push_back(fmt::format(
-          "For {:.0f} % of the time of the runs never seen {} is outside of what the training runs dwelt at ({} to {} {}): what "
-          "depends on it is predicted, not known.",
+          "The forecast is an extrapolation for {:.0f} % of the time of the hold-out runs, because {} is outside the range of the "
+          "training runs ({} to {} {}).",
           100.0 * share, watched.name, significant(low, 2), significant(high, 2), watched.unit));
     }
   }

@@ -1,4 +1,4 @@
-// Where a prediction goes beyond what was fitted.
+// Detects predictions outside the range of the data that the model was fitted to.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace heatsoak {
 
-/// One sentence per signal whose values in `unseen` lie, for much of the time, outside of what `fitted` dwelt at.
+/// Returns one warning per signal that is outside the range of `fitted` for more than a quarter of the time of `unseen`. The range is from
+/// the 2nd to the 98th percentile, extended by 10 %.
 std::vector<std::string> beyond_fitted(const std::vector<MeasuredRun>& fitted, const std::vector<MeasuredRun>& unseen);
 
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-// Curves that nobody declared: straight between seven evenly spaced knots, constant outside, smooth before anything is measured.
+// Curves without a known law: piecewise linear between seven equally spaced knots, constant outside, with a smoothness prior.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,22 +10,26 @@
 namespace heatsoak {
 
 inline constexpr int kKnots = 7;
+/// Returns kKnots equally spaced knots from the low to the high end of the range.
 std::vector<double> knots_from(const Regressor::Range& range);
-/// Where a driver (no temperature) changes its sign one of them is 0: forwards and backwards, driving and braking differ.
+/// Returns such knots, but if a signal other than a temperature changes its sign, the range is extended so that one knot is 0. The curve
+/// may then differ between forward and reverse, or driving and braking.
 std::vector<double> knots_between(Regressor::Range range, DriverKind kind);
+/// Returns the knots over the range of the signal's values.
 std::vector<double> knots_over(const Regressor& driver);
 
-/// The two hat functions that are not 0 at a value, which is clamped to the outer knots.
+/// The two hat functions that are nonzero at a value: knots `left` and `left` + 1, with weights 1 − right_share and right_share. Values
+/// outside the knots are clamped.
 struct HatsAt {
   Eigen::Index left = 0;
   double right_share = 0.0;
 };
 HatsAt hats_at(const std::vector<double>& knots, double value);
 
-/// A curve with its values at the knots.
+/// Evaluates the piecewise linear curve with the given values at the knots.
 double value_at(const std::vector<double>& knots, const Eigen::VectorXd& curve, double value);
 
-/// Precision of a curve before anything is measured, in units of its usual size: level · I + step · DᵀD.
+/// Returns the prior precision of a curve at its knots, in units of its typical size: level · I + step · DᵀD, with D the first differences.
 Eigen::MatrixXd curve_precision(Eigen::Index knots, const SelectionRules& rules);
 
 }  // namespace heatsoak

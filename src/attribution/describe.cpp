@@ -1,4 +1,4 @@
-// A diagnosis in words: what was looked for, what was found, how sure, what it does to the error, what to do next.
+// The diagnosis in words: verdict, effects with their uncertainty, errors before and after, and the next experiment.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,18 +14,19 @@
 namespace heatsoak {
 namespace {
 
-/// What the model's own figures do when they are fitted alone stands between, so that nobody takes their share for that of an effect.
+/// Reports the errors before and after, and with only the model's own parameters refitted, whose part is not due to an effect.
 std::string errors_in_words(const Errors& before, const Errors& refitted, const Errors& after, std::string_view where) {
   std::string text;
   for (const auto& [signal, error] : before) {
     const auto found = after.find(signal);
     if (found != after.end()) {
       const auto own = refitted.find(signal);
-      text += fmt::format("{} of the {}: {:.2g} K rms before, {}{:.2g} K after.",
-                          text.empty() ? fmt::format("On {}, error", where) : std::string(" Error"), signal.substr(0, signal.rfind('_')),
-                          error.rmse_K,
-                          own == refitted.end() ? "" : fmt::format("{:.2g} K with only its own parameters refitted, ", own->second.rmse_K),
-                          found->second.rmse_K);
+      text += fmt::format(
+          "{} of the {}: {:.2g} K before, {}{:.2g} K after.",
+          text.empty() ? fmt::format("On {}, RMS error", where) : std::string(" RMS error"), signal.substr(0, signal.rfind('_')),
+          error.rmse_K,
+          own == refitted.end() ? "" : fmt::format("{:.2g} K with only the model's own parameters refitted, ", own->second.rmse_K),
+          found->second.rmse_K);
     }
   }
   return text;
@@ -35,7 +36,7 @@ std::string condition_in_words(const std::map<std::string, std::string>& conditi
   std::string text;
   for (const auto& [key, value] : condition) {
     text += text.empty() ? "" : " and ";
-    text += key == "run" ? fmt::format("only in {}", value) : fmt::format("only where {} is {}", key, value);
+    text += key == "run" ? fmt::format("only in {}", value) : fmt::format("only in runs with {} = {}", key, value);
   }
   return text.empty() ? "" : ", " + text;
 }
@@ -49,8 +50,8 @@ std::string effect_in_words(const FoundEffect& effect) {
       break;
     }
     if (parameter.is_at_bound) {
-      text += fmt::format("; {} {:.3g} {}, the bound of what is looked for: perhaps it is something else", parameter.name, parameter.value,
-                          parameter.unit);
+      text += fmt::format("; {} {:.3g} {}, at the bound of the search range: another effect may be the cause", parameter.name,
+                          parameter.value, parameter.unit);
       break;
     }
   }
@@ -59,37 +60,39 @@ std::string effect_in_words(const FoundEffect& effect) {
   }
   text += fmt::format(". Without it the model would be e^{:.0f} times less probable.", effect.gain_nats);
   if (!effect.confusable_with.empty()) {
-    text += fmt::format(" These runs cannot tell it from {}.", fmt::join(effect.confusable_with, " or "));
+    text += fmt::format(" In these runs it cannot be distinguished from {}.", fmt::join(effect.confusable_with, " or "));
   }
   return text;
 }
 
-/// What the reader must know before he trusts the model on other runs.
+/// Returns warnings about the use of the model for other runs.
 std::string reservations(const Diagnosis& diagnosis, const HoldoutScore& score) {
   constexpr double kElsewhere_ratio = 3.0;
   std::string text;
   const double before_K = rms_K(score.before);
   const double after_K = rms_K(score.after), train_K = rms_K(diagnosis.after_train);
   if (is_plainly_worse(after_K, before_K)) {
-    text += " The error on runs the fit never saw grows: do not rely on the new model there.";
+    text += " Do not use the new model for other runs: the error on the hold-out runs grows.";
   }
   if (is_plainly_worse(train_K, rms_K(diagnosis.before_train))) {
-    text += " The error on the training runs grows: keep the model's own figures.";
+    text += " Keep the parameters of the original file: the error on the training runs grows.";
   }
   const auto report_growth = [&](const Errors& before, const Errors& after, std::string_view where) {
     for (const auto& [signal, error] : after) {
       const auto own = before.find(signal);
       if (own != before.end() && is_plainly_worse(error.rmse_K, own->second.rmse_K) && !is_plainly_worse(rms_K(after), rms_K(before))) {
-        text += fmt::format(" That of the {} alone grows on {}, from {} to {} K.", signal.substr(0, signal.rfind('_')), where,
+        text += fmt::format(" The error of the {} alone grows on {}, from {} to {} K.", signal.substr(0, signal.rfind('_')), where,
                             significant(own->second.rmse_K, 2), significant(error.rmse_K, 2));
       }
     }
   };
-  report_growth(score.before, score.after, "the runs held out");
+  report_growth(score.before, score.after, "the hold-out runs");
   report_growth(diagnosis.before_train, diagnosis.after_train, "the training runs");
   if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * kMatters_K) {
-    text += fmt::format(" It is {:.0f} times that on the training runs: those runs hold something that these do not show.",
-                        after_K / std::max(kMatters_K, train_K));
+    text += fmt::format(
+        " The error on the hold-out runs is {:.0f} times that on the training runs: they contain an effect that the training runs do not "
+        "show.",
+        after_K / std::max(kMatters_K, train_K));
   }
   return text;
 }
@@ -98,54 +101,52 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   switch (diagnosis.verdict) {
     case DiagnosisVerdict::effect_found:
       if (std::ranges::any_of(diagnosis.effects, [](const FoundEffect& effect) { return effect.has_heat && effect.is_from_catalogue; })) {
-        return "The runs show heat that the model does not have, and it follows a known law.";
+        return "The runs show unmodelled heat, and it follows a known law.";
       }
-      return std::string("The sensors read wrongly, and the error follows a known law") +
-             (diagnosis.unexplained.empty() ? "." : "; besides, there is heat that no law of the catalogue explains.");
+      return std::string("The sensors have an error that follows a known law") +
+             (diagnosis.unexplained.empty() ? "." : "; there is also unmodelled heat that no law of the catalogue explains.");
     case DiagnosisVerdict::nothing_missing:
       return diagnosis.changed.empty()
-                 ? "No effect of the catalogue and no curve over a measured signal explains the runs better than the model with an unknown "
-                   "smooth heat of the size that every model leaves."
-                 : "No effect is missing that these runs show, but not all of the file's parameters hold in them.";
+                 ? "No effect of the catalogue and no curve over a measured signal explains the runs better than the model with a small, "
+                   "smooth unknown heat."
+                 : "These runs show no missing effect, but they contradict some of the file's parameters.";
     case DiagnosisVerdict::unexplained:
-      return "The runs show heat that the model does not have, and no law of the catalogue explains it.";
+      return "The runs show unmodelled heat, and no law of the catalogue explains it.";
     case DiagnosisVerdict::not_identifiable:
       break;
   }
   if (!diagnosis.changed.empty()) {
-    return "The runs contradict the file's own parameters. These runs do not determine whether they have changed since "
-           "(another mounting, another specimen of the motor) or an effect is missing that acts like such a change. No effect is named, "
-           "and "
-           "the parameters are those of these runs.";
+    return "The runs contradict the file's parameters. Either these have changed (another mounting, another specimen of the motor), "
+           "or a missing effect acts like such a change; these runs do not determine which. No effect is named, and the parameters are "
+           "fitted to these runs.";
   }
   return !diagnosis.selection.is_undecided()
              ? fmt::format(
-                   "These runs cannot tell whether something is missing: at their usual size only {:.0f} % of the effects of the "
-                   "catalogue would show in them.",
+                   "These runs do not determine whether an effect is missing: at typical size, only {:.0f} % of the effects of "
+                   "the catalogue would be visible in them.",
                    100.0 * diagnosis.selection.seen_share)
              : std::string(
-                   "Something may be missing, but on these runs the model's own resistances and capacities can take its place; no name "
-                   "is given.");
+                   "An effect may be missing, but in these runs it cannot be distinguished from a change of the model's own "
+                   "resistances and capacities. No effect is named.");
 }
 
 std::string changed_in_words(const ChangedParameter& figure) {
-  // The interval has the scale of all heat in it, on which the file agrees: where it reaches the file's own figure it would mislead.
+  // The interval includes a common factor on all heat. If it contains the file's value it would be misleading, so it is not printed.
   const bool is_beyond_scale = figure.before < figure.low || figure.before > figure.high;
   return fmt::format(
       "Does not hold here: {}, {:.3g} {} in the file, {:.3g} {} in these runs{}; with the file's value the runs would be e^{:.0f} times "
-      "less "
-      "probable.",
+      "less probable.",
       figure.name, figure.before, figure.unit, figure.value, figure.unit,
       is_beyond_scale ? fmt::format(" (95 %: {:.3g} to {:.3g})", figure.low, figure.high) : std::string(), figure.gain_nats);
 }
 
-/// Conductances count what flows out, sources what comes in.
+/// A positive conductance means heat out of the node, a positive source means heat into it.
 bool is_leaving(const Unexplained& heat) {
   const double largest = std::ranges::max(heat.curve, {}, [](double value) { return std::abs(value); });
   return heat.curve_unit == "W/K" ? largest > 0.0 : largest < 0.0;
 }
 
-/// Of curves over one signal that share what they say.
+/// Heat of several curves over one signal.
 std::string watts_in_words(std::span<const Unexplained* const> curves) {
   std::vector<std::string> each;
   for (const Unexplained* const heat : curves) {
@@ -154,28 +155,31 @@ std::string watts_in_words(std::span<const Unexplained* const> curves) {
   return curves.size() == 1 ? each.front() : fmt::format("in {} curves: {}", each.size(), fmt::join(each, "; "));
 }
 
-/// `curves` are all with the first one's node and signals.
+/// All `curves` have the node and the signals of the first one.
 std::string unexplained_in_words(std::span<const Unexplained* const> curves, const Diagnosis& diagnosis) {
   const Unexplained& heat = *curves.front();
   if (heat.drivers.empty()) {
     const std::string_view no_driver = std::ranges::any_of(diagnosis.runs, turns_unseen)
-                                           ? "while not every log has a speed no signal is taken for what follows them"
-                                           : "no signal that all logs have follows them";
-    return fmt::format("Unexplained: {} W rms into the {}{} that come and go within {:.0f} s; {}.", significant(heat.rms_W, 2), heat.node,
+                                           ? "no signal can be assigned to it, because not every log has a speed"
+                                           : "it follows no signal that all logs have";
+    return fmt::format("Unexplained: unknown heat of {} W RMS into the {}{}, which varies within {:.0f} s; {}.", significant(heat.rms_W, 2),
+                       heat.node,
                        heat.or_nodes.empty() ? "" : fmt::format(" (or the {}, which has no sensor)", fmt::join(heat.or_nodes, " or ")),
                        heat.time_scale_s, no_driver);
   }
   const bool goes_by_clock = heat.drivers.size() == 1 && heat.drivers.front() == kTimeDriver;
   const std::string where = fmt::format("{} the {}", is_leaving(heat) ? "out of" : "into", heat.node);
-  return (goes_by_clock ? fmt::format("Unexplained: heat {} that no measured signal explains; it goes by the time since a run began", where)
-                        : fmt::format("Unnamed: heat {} that follows {}{}", where,
-                                      heat.times.empty() ? "" : heat.times + " times a curve over ", fmt::join(heat.drivers, " or "))) +
-         fmt::format(", {}.", watts_in_words(curves)) + (heat.drivers.size() > 1 ? " The list of drivers is in order of evidence." : "") +
-         (heat.is_in_model ? " The extended model has it as a curve."
-                           : " The extended model does not have it: its figures carry what they can of it.");
+  return (goes_by_clock
+              ? fmt::format("Unexplained: heat {} that no measured signal explains; it depends on the time since the start of the run",
+                            where)
+              : fmt::format("Unnamed: heat {} that follows {}{}", where, heat.times.empty() ? "" : heat.times + " times a curve over ",
+                            fmt::join(heat.drivers, " or "))) +
+         fmt::format(", {}.", watts_in_words(curves)) + (heat.drivers.size() > 1 ? " The signals are in order of evidence." : "") +
+         (heat.is_in_model ? " The extended model contains it as a curve."
+                           : " The extended model does not contain it: its parameters absorb a part of it.");
 }
 
-/// Curves over one signal share what they have in common to say.
+/// Reports curves with the same node and signals in one sentence.
 void add_unexplained(const Diagnosis& diagnosis, std::vector<std::string>& all) {
   const auto is_shared = [](const Unexplained& a, const Unexplained& b) {
     return !a.drivers.empty() && a.node == b.node && a.drivers == b.drivers && a.times == b.times && a.is_in_model == b.is_in_model &&
@@ -191,7 +195,7 @@ void add_unexplained(const Diagnosis& diagnosis, std::vector<std::string>& all) 
   }
 }
 
-/// Where some runs have more or less of something, the motor's file cannot follow them as well as was said.
+/// Reports the larger errors of the motor file alone, which does not contain run deviations.
 std::string file_alone_in_words(const Diagnosis& diagnosis, const HoldoutScore& score) {
   const std::vector<RunDeviation>& deviations = diagnosis.selection.after.model.deviations;
   if (deviations.empty()) {
@@ -206,8 +210,9 @@ std::string file_alone_in_words(const Diagnosis& diagnosis, const HoldoutScore& 
   for (const auto& [signal, error] : is_held_out ? score.file : diagnosis.file_train) {
     errors.push_back(fmt::format("{} {} K", signal.substr(0, signal.rfind('_')), significant(error.rmse_K, 2)));
   }
-  return fmt::format("{} is of those runs, not of the motor, so the motor file has it as a note only: the file alone follows {} to {}.",
-                     fmt::join(names, " and "), is_held_out ? "the runs the fit never saw" : "the training runs", fmt::join(errors, ", "));
+  return fmt::format(
+      "{} belongs to those runs, not to the motor, and is only a note in the motor file. RMS error of the file alone on {}: {}.",
+      fmt::join(names, " and "), is_held_out ? "the hold-out runs" : "the training runs", fmt::join(errors, ", "));
 }
 
 }  // namespace
@@ -215,7 +220,7 @@ std::string file_alone_in_words(const Diagnosis& diagnosis, const HoldoutScore& 
 std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore& score) {
   std::vector<std::string> all{verdict_in_words(diagnosis)};
   for (const FoundEffect& effect : diagnosis.effects) {
-    // What has no name in the catalogue is described below, with its driver.
+    // Effects outside the catalogue are described below, with their signals.
     if (effect.is_from_catalogue) {
       all.push_back(effect_in_words(effect));
     }
@@ -224,11 +229,11 @@ std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore
     all.push_back(changed_in_words(figure));
   }
   if (!diagnosis.changed.empty() && diagnosis.verdict != DiagnosisVerdict::not_identifiable) {
-    all.emplace_back("Whether that has changed since, or an effect that acts like such a change is missing, these runs cannot tell.");
+    all.emplace_back("These runs do not determine whether this has changed, or whether a missing effect acts like such a change.");
   }
   add_unexplained(diagnosis, all);
   if (diagnosis.selection.is_as_usual) {
-    all.emplace_back("The file's values stay: the runs are followed as well as those that the file was fitted to.");
+    all.emplace_back("The file's values are kept: the model follows these runs as well as those that it was fitted to.");
   }
   const bool is_held_out = !score.before.empty();
   const bool is_more = !diagnosis.effects.empty();
@@ -237,7 +242,7 @@ std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore
                                 : is_held_out ? score.refitted
                                               : diagnosis.refitted_train,
                                 is_held_out ? score.after : diagnosis.after_train,
-                                is_held_out ? "runs the fit never saw" : "the training runs") +
+                                is_held_out ? "the hold-out runs" : "the training runs") +
                 reservations(diagnosis, score));
   if (const std::string alone = file_alone_in_words(diagnosis, score); !alone.empty()) {
     all.push_back(alone);
@@ -248,7 +253,7 @@ std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore
   }
   if (!diagnosis.experiments.empty()) {
     const Experiment& next = diagnosis.experiments.front();
-    all.push_back(fmt::format("Next, to tell {}: {}", next.rivals, next.what) +
+    all.push_back(fmt::format("Next experiment, to decide whether it is {}: {}", next.rivals, next.what) +
                   (next.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats).", next.expected_nats) : std::string(".")));
   }
   return all;

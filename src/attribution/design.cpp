@@ -83,7 +83,7 @@ Reduced reduced(const Products& products, const ThetaPrior& prior) {
   const Eigen::MatrixXd& square = products.square;
   const Eigen::VectorXd pull = prior.precision * prior.mean;
   Eigen::MatrixXd normal = square.topLeftCorner(t, t) + prior.precision;
-  // A figure that neither the runs nor the file say anything about stays where it is.
+  // Keeps a parameter at its present value if neither the runs nor the prior determine it.
   normal.diagonal().array() += 1e-9;
   const Eigen::LDLT<Eigen::MatrixXd> theta(normal);
   const Eigen::VectorXd right = square.topRightCorner(t, 1) + pull;

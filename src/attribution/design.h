@@ -1,4 +1,4 @@
-// The runs at the present fit as linear algebra takes them: columns of everything free, of every candidate, and the residual.
+// The linearised runs as least squares: columns of all free parameters and candidates, and the residual.
 #pragma once
 
 #include <vector>
@@ -8,52 +8,53 @@
 
 namespace heatsoak {
 
-/// One run. The columns are: one per coordinate of the model (per unit of θ), then those of candidates (per typical size).
+/// One linearised run. Columns: one per coordinate of the model (per unit of θ), then one per candidate (per typical size).
 struct DesignRun {
-  LinearisedRun run;  ///< averaged, see estimation/averaged_run.h; without by_parameter
+  LinearisedRun run;  ///< averaged run, see estimation/averaged_run.h; by_parameter is empty
   SensorNoise noise;
   StartPrior start;
   Columns columns;
-  std::vector<Eigen::Index> interval_of;  ///< per interval of the log that of `run`; -1: none
+  std::vector<Eigen::Index> interval_of;  ///< for each interval of the log, the index of the interval in `run`; -1: none
 };
 
-/// Gaussian knowledge of θ; the mean is relative to the present θ.
+/// Gaussian prior of θ. The mean is relative to the present θ.
 struct ThetaPrior {
   Eigen::MatrixXd precision;
   Eigen::VectorXd mean;
 };
 
-/// `weights` per run and sample as SensorNoise has them, or empty. `merged` per run how many samples are averaged, or empty: none.
-/// `extra` columns per run beside those of the model's coordinates, or empty.
+/// Builds the columns of all runs, in parallel. `weights`: per run SensorNoise::weight, or empty. `merged`: per run the number of samples
+/// per average, or empty for no averaging. `extra`: per run additional columns after those of the model's coordinates, or empty.
 std::vector<DesignRun> design(const Network& network, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
                               const std::vector<Eigen::VectorXd>& weights, const std::vector<int>& merged,
                               const std::vector<Columns>& extra);
 
-/// The prior of the model's coordinates relative to where they are.
+/// Returns the prior of the model's coordinates relative to their present values.
 ThetaPrior prior_here(const ExtendedModel& model);
 
-/// First measured temperatures; nodes without a sensor begin between the measured ones.
+/// Returns the start temperature of every state node in °C, from the first samples. A node without a sensor gets the mean of the sensors.
 std::vector<double> measured_start_C(const Network& network, const MeasuredRun& run);
 
-/// Products of whitened columns over all runs under one supposition, the start temperatures eliminated.
+/// Products of the whitened columns, summed over all runs for one assumed unknown heat. The start temperatures are eliminated.
 struct Products {
-  Eigen::MatrixXd square;        ///< of [columns, residual], (c + 1) × (c + 1)
+  Eigen::MatrixXd square;        ///< products of [columns, residual], (c + 1) × (c + 1)
   double log_determinant = 0.0;  ///< ln|V| + ln|posterior precision of the starts| − ln|prior precision of the starts|
 };
 
-/// Uses the columns with these indices, in this order; empty: all columns.
+/// Computes the products of the columns with these indices, in this order; empty: all columns.
 Products products_of(const std::vector<DesignRun>& runs, const LatentFlux& flux, const std::vector<Eigen::Index>& columns);
 
-/// Least squares of the candidates after θ, the model's own parameters, has been eliminated.
+/// Normal equations of e candidates after the t parameters θ of the model have been eliminated.
 struct Reduced {
   double base_nats = 0.0;         ///< ln evidence of the model without any candidate, up to a constant
-  Eigen::MatrixXd products;       ///< e × e
+  Eigen::MatrixXd products;       ///< e × e: products of the columns
   Eigen::VectorXd right;          ///< e: products with the residual
-  Eigen::MatrixXd theta_by_size;  ///< t × e: how θ moves per unit of each size, with the opposite sign
-  Eigen::VectorXd theta;          ///< step without any candidate
-  Eigen::VectorXd whole;          ///< e: squares of the columns before θ absorbed anything
+  Eigen::MatrixXd theta_by_size;  ///< t × e: decrease of θ per unit of each size
+  Eigen::VectorXd theta;          ///< step of θ without any candidate
+  Eigen::VectorXd whole;          ///< e: squares of the columns before θ was eliminated
 };
 
+/// Eliminates θ, the first columns of `products`. A direction of θ without data and without prior stays at its present value.
 Reduced reduced(const Products& products, const ThetaPrior& prior);
 
 }  // namespace heatsoak

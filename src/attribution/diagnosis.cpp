@@ -24,13 +24,13 @@
 namespace heatsoak {
 namespace {
 
-/// A figure of the file that is further off than this (of its logarithm) is no longer the same mounting.
+/// Change of a parameter's logarithm from which another mounting is assumed.
 constexpr double kOtherMounting = 0.1;
 
-/// Errors that grow by more have grown.
+/// Ratio from which an error counts as larger.
 constexpr double kWorse_ratio = 1.1;
 
-/// Without the conditions that only some runs have: those are no property of the motor.
+/// Returns the errors without run deviations, which the motor file does not contain.
 Errors errors_of_file(ExtendedModel model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {
   model.deviations.clear();
   return open_loop_errors(model, runs, before_them);
@@ -86,7 +86,7 @@ class DiagnosisReport {
     out_.file_train = errors_of_file(after().model, input_.train, {});
   }
 
-  /// Smoothed unknown heat of every run: fluxes × samples.
+  /// Returns the smoothed unknown heat of every run, fluxes × samples.
   [[nodiscard]] std::vector<FluxEstimate> smoothed(const RefitResult& fit) const {
     std::vector<FluxEstimate> all(fit.fitted.size());
     const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
@@ -126,7 +126,7 @@ class DiagnosisReport {
     const Network& network = model.model.network;
     const auto nodes = static_cast<std::size_t>(network.node_count());
     const std::size_t effects = network.effects().size();
-    std::vector<double> energy_J((effects + model.deviations.size()) * nodes, 0.0);  // of effects, then of deviations
+    std::vector<double> energy_J((effects + model.deviations.size()) * nodes, 0.0);  // effects first, then deviations
     double time_s = 0.0;
     for (std::size_t r = 0; r < input_.train.size(); ++r) {
       const MeasuredRun& run = input_.train[r];
@@ -158,7 +158,7 @@ class DiagnosisReport {
     return fmt::format("{} in {}", deviation.type->name, deviation.condition.begin()->second);
   }
 
-  /// What a deviation adds in a run goes from the rows of the effects that it concerns into its own, which begins at `own`.
+  /// Moves the heat that a deviation causes in a run from the rows of its effects to its own row, which starts at `own`.
   void add_part(const RunDeviation& deviation, const MeasuredRun& run, std::span<const double> in_run_J, std::span<double> energy_J,
                 std::size_t own) const {
     const Network& network = after().model.model.network;

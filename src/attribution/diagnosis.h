@@ -1,4 +1,4 @@
-// The whole question: what does the model lack, what does it do to the error, what remains, what to measure next.
+// Diagnosis: which effect the model lacks, how it changes the error, what remains unexplained, and what to measure next.
 #pragma once
 
 #include <map>
@@ -15,21 +15,22 @@ namespace heatsoak {
 enum class DiagnosisVerdict { effect_found, nothing_missing, unexplained, not_identifiable };
 std::string_view to_string(DiagnosisVerdict verdict);
 
-/// Nothing in it is held out: hold-out runs are scored by score_holdout() after everything is decided.
+/// Input of a diagnosis. It contains no hold-out run: score_holdout() scores these after every decision.
 struct DiagnosisInput {
-  ExtendedModel model;  ///< as calibrated
+  ExtendedModel model;  ///< calibrated model
   std::vector<MeasuredRun> train;
-  bool turns_within_rows = false;  ///< set by settle_turning_rows()
+  bool turns_within_rows = false;  ///< set by settle_turning_rows(): the motor reverses within rows of the log
 };
 
+/// Heat that no effect of the catalogue explains.
 struct Unexplained {
-  std::string node;                   ///< whose sensor shows it
-  std::vector<std::string> or_nodes;  ///< that it may enter as well: they have no sensor
-  std::vector<std::string> drivers;   ///< empty: no measured signal explains it
-  std::string times;                  ///< signal that multiplies what goes with the driver; empty: none
+  std::string node;                   ///< node whose sensor shows the heat
+  std::vector<std::string> or_nodes;  ///< nodes without a sensor that the heat may enter instead
+  std::vector<std::string> drivers;   ///< signals that the heat may follow, in order of evidence; empty: none
+  std::string times;                  ///< signal that multiplies the curve; empty: none
   double mean_W = 0.0;
   double peak_W = 0.0;
-  double rms_W = 0.0;  ///< of a curve the mean magnitude
+  double rms_W = 0.0;  ///< for a curve: mean magnitude
   double time_scale_s = 0.0;
   double gain_nats = 0.0;
   std::vector<double> knots;
@@ -37,72 +38,75 @@ struct Unexplained {
   std::vector<double> curve_sd;
   std::string curve_unit;
   std::string driver_unit;
-  bool is_in_model = false;  ///< the extended model follows it
+  bool is_in_model = false;  ///< the extended model contains the curve
 };
 
-/// Unknown heat along a training run, in W.
+/// Estimated unknown heat along a training run, in W.
 struct FluxTrace {
   std::string run;
   std::string node;
   std::vector<double> time_s;
   std::vector<double> before_W, after_W;
-  std::vector<double> after_sd_W;  ///< posterior, given the model
+  std::vector<double> after_sd_W;  ///< posterior standard deviation, given the model
 };
 
-/// Mean heat in W that an effect, or what some runs have more or less of, brings into a node over the training runs.
+/// Mean heat in W that an effect or a run deviation adds to each node, over all training runs.
 struct BalanceRow {
   std::string effect;
   std::map<std::string, double> heat_W;
 };
 
 struct Experiment {
-  std::string rivals;  ///< "iron_loss_eddy or windage"
+  std::string rivals;  ///< effects to separate: "iron_loss_eddy or windage"
   std::string what;
-  double expected_nats = 0.0;  ///< that it adds to their difference; 0: not computed
+  double expected_nats = 0.0;  ///< expected gain in evidence between them; 0: not computed
 };
 
 struct Diagnosis {
   DiagnosisVerdict verdict = DiagnosisVerdict::nothing_missing;
   std::vector<FoundEffect> effects;
-  std::vector<ChangedParameter> changed;  ///< figures of the file that do not hold in these runs
+  std::vector<ChangedParameter> changed;  ///< parameters of the file that the runs contradict
   std::vector<Unexplained> unexplained;
   Errors before_train, after_train;
-  Errors refitted_train;          ///< the model's own figures fitted to the training runs, nothing added
-  Errors file_train;              ///< of the written model alone: without the conditions that only some runs have
-  std::vector<MeasuredRun> runs;  ///< of the training
+  Errors refitted_train;          ///< errors with only the model's own parameters refitted to the training runs
+  Errors file_train;              ///< errors of the written motor file alone, without run deviations
+  std::vector<MeasuredRun> runs;  ///< training runs
   std::vector<InnovationTests> tests_before, tests_after;
   std::vector<FluxTrace> flux;
-  std::map<std::string, double> flux_rms_before_W, flux_rms_after_W;  ///< by node
+  std::map<std::string, double> flux_rms_before_W, flux_rms_after_W;  ///< RMS of the unknown heat by node
   std::vector<BalanceRow> balance;
   std::vector<Experiment> experiments;
   std::vector<std::string> notes;
-  std::vector<std::string> words;  ///< what to say first, what was found, what it does to the error, what to do next
-  std::string description;         ///< the same as one paragraph
+  std::vector<std::string> words;  ///< one sentence or more each: verdict, findings, errors, next experiment; see describe()
+  std::string description;         ///< `words` as one paragraph
   Selection selection;
 };
 
-/// Errors of the free-running models on runs that decided nothing.
+/// Errors of the free-running models on hold-out runs, which influenced no decision.
 struct HoldoutScore {
   std::vector<MeasuredRun> runs;
-  Errors before, refitted, after;                     ///< as in Diagnosis, of the hold-out runs
-  Errors file;                                        ///< of the written model alone
-  std::vector<PredictedRun> runs_before, runs_after;  ///< predictions by the motor file and by the extended one: score_files()
-  std::vector<std::string> beyond_training;           ///< sentences: where the hold-out runs exceed the range of the training runs
+  Errors before, refitted, after;                     ///< same models as in Diagnosis
+  Errors file;                                        ///< errors of the written motor file alone
+  std::vector<PredictedRun> runs_before, runs_after;  ///< predictions of the original and the extended motor file; set by score_files()
+  std::vector<std::string> beyond_training;  ///< warnings that a signal of the hold-out runs exceeds the range of the training runs
 };
 
-/// By a tenth, and by more than matters to anybody.
+/// True if the error is larger than the other by more than 10 % and by more than kMatters_K.
 bool is_plainly_worse(double error_K, double than_K);
 
-/// Takes the runs for ones whose motor turns round within rows of the log where that is more probable than that its speed was held over
-/// them; says so in a sentence, or nothing.
+/// Decides by evidence whether the motor reverses within rows of the log. If so, replaces the training runs by turning_within_rows(), sets
+/// the flag and returns the reason as a sentence. Otherwise returns an empty text.
 std::string settle_turning_rows(DiagnosisInput& input);
 
+/// Runs the whole diagnosis on the training runs. Throws Failure (numerics_failed) if the model cannot be simulated along them.
 Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules);
 
-/// Scores `holdout` (runs as read from their logs) with the models of a finished diagnosis. Nothing of the diagnosis may depend on it.
+/// Scores `holdout` (runs as read from their logs) with the models of a finished diagnosis. The diagnosis must not depend on the result.
+/// Returns an empty score if there are no hold-out runs.
 HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<MeasuredRun> holdout);
 
-/// Of everything else in the diagnosis and, where there are hold-out runs, of their score.
+/// Returns the diagnosis as a list of sentences. The errors are those of the hold-out runs if `score` has any, else those of the training
+/// runs.
 std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore& score);
 
 }  // namespace heatsoak

@@ -93,7 +93,7 @@ std::vector<double> ExtendedModel::values_in(const MeasuredRun& run) const {
 
 namespace {
 
-/// How the parameter at `place` in a run moves with the model's own.
+/// Returns the factor between the parameter at `place` in a run and in the model.
 double factor_in(const ExtendedModel& model, int place, const MeasuredRun& run) {
   double factor = 1.0;
   for (const RunDeviation& each : model.deviations) {
@@ -108,7 +108,7 @@ double factor_in(const ExtendedModel& model, int place, const MeasuredRun& run) 
   return factor;
 }
 
-/// `along`: of wanted parameters of the network, by values.
+/// `along` linearises the network for given values and requested parameters.
 template <class Along>
 LinearisedRun linearised(const ExtendedModel& model, const MeasuredRun& run, const Along& along) {
   const Network& network = model.model.network;
@@ -116,7 +116,7 @@ LinearisedRun linearised(const ExtendedModel& model, const MeasuredRun& run, con
   for (const FreeParameter& free : model.model.free) {
     wanted.push_back(free.place);
   }
-  std::vector<Eigen::Index> deviates;  // of each wanted parameter beyond the model's own: by which deviation
+  std::vector<Eigen::Index> deviates;  // deviation of each requested parameter after the model's own
   for (std::size_t i = 0; i < model.deviations.size(); ++i) {
     if (run.has(model.deviations[i].condition)) {
       const std::vector<int> places = model.deviations[i].type->places_in(network);

@@ -1,4 +1,4 @@
-// A model with what a diagnosis adds to it: effects that act in some runs only, and faults of sensors.
+// A model with the additions of a diagnosis: effects that act only in some runs, sensor errors, and run deviations.
 #pragma once
 
 #include <map>
@@ -10,30 +10,32 @@
 
 namespace heatsoak {
 
-/// An effect of the network that acts only where a run has the condition.
+/// An effect of the network that acts only in runs with the condition.
 struct ConditionalTerm {
   std::string effect_name;
-  int place = 0;           ///< of the parameter that switches it
-  double off_value = 0.0;  ///< with which the effect does nothing
+  int place = 0;           ///< index of the parameter that switches the effect off
+  double off_value = 0.0;  ///< value of that parameter at which the effect is zero
   Condition condition;
 };
 
+/// A sensor error whose size is a coordinate of the model.
 struct SensorTerm {
   const SensorEffectType* type = nullptr;
-  double value = 0.0;      ///< in the unit of the type's size
-  double spread_sd = 1.0;  ///< known before, around 0, in the same unit
+  double value = 0.0;      ///< size, in the unit of the type
+  double spread_sd = 1.0;  ///< prior standard deviation around 0, in the same unit
 };
 
-/// Coordinates: the model's θ, then the sensors' sizes in units of their types' typical sizes, then the runs' deviations in units of the
-/// usual ones.
+/// Coordinates, in this order: θ of the model; sensor errors, in typical sizes; run deviations, in units of their type's `usual`.
 struct ExtendedModel {
   Model model;
   std::vector<ConditionalTerm> conditional;
   std::vector<SensorTerm> sensors;
   std::vector<RunDeviation> deviations;
-  std::string column;          ///< of the logs, that a curve is drawn over; set_column puts it into runs; empty: none
-  double usual_error_K = 0.0;  ///< of whole runs, where those decided the file's figures (free_run_error_K of MotorFit); else 0
-  double usual_flux_W = 0.0;   ///< rms of the unknown heat in runs that the file was fitted to: such motors always leave it
+  std::string column;  ///< name of the log column that a curve uses, see set_column(); empty: none
+  /// RMS error of whole runs with the file's parameters if whole runs decided them (free_run_error_K of MotorFit); else 0.
+  double usual_error_K = 0.0;
+  /// RMS of the unknown heat in the runs that the file was fitted to; 0: not known.
+  double usual_flux_W = 0.0;
 
   [[nodiscard]] Eigen::Index free_count() const {
     return model.free_count() + static_cast<Eigen::Index>(sensors.size() + deviations.size());
@@ -41,19 +43,19 @@ struct ExtendedModel {
   [[nodiscard]] Eigen::Index first_deviation() const { return model.free_count() + static_cast<Eigen::Index>(sensors.size()); }
   [[nodiscard]] Eigen::VectorXd theta() const;
   void set_theta(const Eigen::VectorXd& theta);
-  /// Prior of all coordinates; the mean is absolute.
+  /// Returns the prior of all coordinates. The mean is absolute.
   [[nodiscard]] Prior prior() const;
-  /// Bounds of a coordinate.
+  /// Returns the lower or upper bound of a coordinate; the lower one may be −∞.
   [[nodiscard]] double low(Eigen::Index coordinate) const;
   [[nodiscard]] double high(Eigen::Index coordinate) const;
-  /// The network's parameters in that run.
+  /// Returns the network's parameters in that run, with conditional effects and run deviations applied.
   [[nodiscard]] std::vector<double> values_in(const MeasuredRun& run) const;
 };
 
-/// As linearise(), with the sensors as they are; columns by coordinate (per unit of θ). `start_C` may be shorter than the
-/// network has nodes: the rest begin at the ambient temperature.
+/// Same as linearise() of a network, with the sensor errors of the model. The columns are per unit of each coordinate. If `start_C` is
+/// shorter than the number of state nodes, the other nodes start at ambient temperature.
 LinearisedRun linearise(const ExtendedModel& model, std::span<const double> start_C, const MeasuredRun& run);
-/// As linearise_along().
+/// Same as linearise_along() of a network, with the sensor errors of the model.
 LinearisedRun linearise_along(const ExtendedModel& model, const Eigen::MatrixXd& path_C, const MeasuredRun& run);
 
 }  // namespace heatsoak

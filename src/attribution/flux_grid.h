@@ -1,4 +1,4 @@
-// Suppositions about the unknown heat: strengths at the nodes and a time scale, on a lattice.
+// Grid of assumed statistics of the unknown heat: RMS per node, correlation time, and drift of the sensors.
 #pragma once
 
 #include <functional>
@@ -8,30 +8,31 @@
 
 namespace heatsoak {
 
-/// One place per node that unknown heat may reach, then those of its time scale, and of size and time scale of the slow
-/// error of all sensors.
+/// Point of the grid, as indices. First one RMS per node with unknown heat, then the correlation time. The last two are the size of the
+/// sensor drift and its correlation time.
 using FluxPlace = std::vector<int>;
 
 struct FluxGrid {
-  std::vector<double> rms_W;         ///< increasing
-  std::vector<double> time_scale_s;  ///< increasing
-  std::vector<double> drift_K;       ///< increasing, first 0
+  std::vector<double> rms_W;         ///< ascending
+  std::vector<double> time_scale_s;  ///< ascending
+  std::vector<double> drift_K;       ///< ascending, the first is 0
   std::vector<double> drift_time_scale_s;
   std::size_t fluxes = 2;
 
+  /// Returns the statistics at a grid point.
   [[nodiscard]] LatentFlux at(const FluxPlace& place) const;
   [[nodiscard]] FluxPlace middle() const;
-  /// Places all over the lattice, for a search that must not begin beside one optimum.
+  /// Returns points spread over the whole grid, so that a search does not stop at one local optimum.
   [[nodiscard]] std::vector<FluxPlace> all_over() const;
-  /// The place and its neighbours on each axis; without a slow error it has no time scale.
+  /// Returns the point and its neighbours on each axis. Without drift, the axis of the drift's correlation time is left out.
   [[nodiscard]] std::vector<FluxPlace> star(const FluxPlace& place) const;
 };
 
-/// Six strengths from hardly any to far more than what matters (`material_W`), four times.
-/// `travel_K`: rms of how far the measured temperatures move.
+/// Returns a grid of seven RMS values (0.02 to 8 times `material_W`), four correlation times, four drift sizes (0 to 3 % of `travel_K`) and
+/// three drift correlation times. `material_W`: unknown heat that matters. `travel_K`: RMS over the sensors of the range of their readings.
 FluxGrid flux_grid(double material_W, double travel_K, std::size_t fluxes);
 
-/// Ascent from `start` to a place that no neighbour exceeds.
+/// Climbs from `start` to a point where no neighbour has a larger value of `nats`. Evaluates each point at most once.
 FluxPlace most_probable(const FluxGrid& grid, FluxPlace start, const std::function<double(const FluxPlace&)>& nats);
 
 }  // namespace heatsoak

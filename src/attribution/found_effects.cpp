@@ -67,7 +67,7 @@ class EffectReport {
     report_size(candidate, type.size, type.typical_size, type.size.range.low, effect);
   }
 
-  /// Of what is no effect of the network: its only figure, `unit_size` for each unit of its coordinate.
+  /// Reports the size of a sensor error or a run deviation, its only parameter. `unit_size` is the size per unit of the coordinate.
   void report_size(const Candidate& candidate, const ParameterSpec& spec, double unit_size, double low, FoundEffect& effect) const {
     const Eigen::Index own = size_coordinate(after().model, candidate, {});
     const double value = unit_size * after().model.theta()[own];
@@ -131,7 +131,7 @@ class EffectReport {
           const double sd = std::sqrt(after().covariance(i, i));
           parameter.low = std::max(model.value_of(i, theta[i] - kInterval_sd * sd), spec.range.low);
           parameter.high = std::min(model.value_of(i, theta[i] + kInterval_sd * sd), spec.range.high);
-          // Where a curve's knots lie says nothing of whether it is there.
+          // The positions of a curve's knots are no evidence for the curve, so only its values count.
           const int size = in_place.type->candidacy.size_parameter;
           if (size < 0 ? spec.range.low == 0.0 : static_cast<std::size_t>(size) == p) {
             effect.p_value = std::min(effect.p_value, p_of(theta[i], sd));

@@ -19,7 +19,7 @@ double mean_heat_W(const Model& model, const std::vector<MeasuredRun>& runs) {
       time_s += duration_s;
       for (std::size_t e = 0; e < model.network.effects().size(); ++e) {
         const auto row = std::span(heat_W).subspan(e * nodes, nodes);
-        // What a flow takes out of one node it brings into another: only sources have a sum.
+        // A flow only moves heat between nodes and sums to 0, so only sources count.
         energy_J += duration_s * std::abs(std::accumulate(row.begin(), row.end(), 0.0));
       }
     }

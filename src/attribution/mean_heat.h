@@ -1,4 +1,4 @@
-// Heat that the model knows of, and what the size and the length of things are measured by.
+// Mean and peak of the modelled heat, and the length of the runs.
 #pragma once
 
 #include <functional>
@@ -9,21 +9,24 @@
 
 namespace heatsoak {
 
-/// Mean over time of the heat in W that the model's sources make, at the first measured temperatures.
+/// Returns the time average of the modelled source heat in W, evaluated at the start temperatures. Flows between nodes do not count. 0
+/// without data.
 double mean_heat_W(const Model& model, const std::vector<MeasuredRun>& runs);
+/// Returns the duration of the longest run in s; 0 without runs.
 double longest_s(const std::vector<MeasuredRun>& runs);
 
 /// Heat of every effect in every node (effects × nodes, W) over one interval of a run.
 using HeatVisit = std::function<void(std::size_t interval, std::span<const double> heat_W)>;
 
-/// Visits the intervals of a run along the path that a fit has taken.
+/// Calls `visit` for each interval of a run, with the temperatures of `path` at its start.
 void heat_along(const RefitResult& fit, const MeasuredRun& run, const LinearisedRun& path, const HeatVisit& visit);
 
 struct HeatOfEffect {
   double mean_W = 0.0;
-  double peak_W = 0.0;  ///< 99 % of the samples have less
+  double peak_W = 0.0;  ///< 99th percentile of the magnitude
 };
-/// Size of the heat into the first node of those effects of the fitted network that `counts` says, in runs of the condition.
+/// Returns mean and peak magnitude of the heat into the first node of all effects that `counts` accepts, over the runs with the condition.
+/// 0 if no run has it.
 HeatOfEffect heat_of(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const std::function<bool(const EffectInPlace&)>& counts,
                      const Condition& condition);
 

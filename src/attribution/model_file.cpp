@@ -52,7 +52,9 @@ void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recordin
   if (!has_heat) {
     throw Failure(
         ExitCode::bad_input,
-        fmt::format("no log has a heat input that {} turns into heat: current_A, or power_in_W with an effect input_power_loss", motor.id));
+        fmt::format(
+            "no log has a heat input for {}; expected current_A, or power_in_W with an effect input_power_loss; add one to the logs",
+            motor.id));
   }
   for (const EffectInPlace& effect : out.model.model.network.effects()) {
     std::vector<std::string_view> lacking;
@@ -62,13 +64,12 @@ void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recordin
       }
     }
     if (!lacking.empty()) {
-      out.notes.push_back(
-          fmt::format("no log has {}, which {} goes with: there it is taken as 0", fmt::join(lacking, " and "), effect.name));
+      out.notes.push_back(fmt::format("no log has {}, which {} depends on: it is taken as 0", fmt::join(lacking, " and "), effect.name));
     }
   }
 }
 
-/// Switches effects with a condition off in runs without it, and notes where that is impossible or concerns every run.
+/// Switches conditional effects off in runs without their condition. Adds a note if that is impossible, or if no run has the condition.
 void add_conditional_effects(const Motor& motor, const std::vector<Recording>& recordings, ModelOfLogs& out) {
   const auto holds = [](const Recording& recording, const std::map<std::string, std::string>& condition) {
     return std::ranges::all_of(condition, [&](const auto& part) {
@@ -113,7 +114,7 @@ ParameterValue measured(double value, double low, double high, const Range& rang
 
 MotorSensor motor_sensor(const SensorEffectType& type, const FittedParameter& size) {
   MotorSensor sensor{std::string(type.name), &type, measured(size.value, size.low, size.high, type.size.range)};
-  // An offset or a gain may have either sign.
+  // An offset or a gain may have either sign, unlike a lag.
   if (size.low < size.value && size.value < size.high) {
     sensor.size.spread =
         Spread{Spread::Kind::range, std::max(size.low, type.size.range.low), std::min(size.high, type.size.range.high), false};
@@ -121,7 +122,7 @@ MotorSensor motor_sensor(const SensorEffectType& type, const FittedParameter& si
   return sensor;
 }
 
-/// Adds the sensor's fault under a name that no effect of the motor has.
+/// Adds the sensor error under an unused name.
 void add_sensor(Motor& motor, const MotorSensor& sensor) {
   const auto is_used = [&](const std::string& name) {
     return std::ranges::find(motor.effects, name, &MotorEffect::name) != motor.effects.end() ||
@@ -159,7 +160,7 @@ MotorEffect motor_effect(const FoundEffect& found, const RefitResult& fit) {
   return effect;
 }
 
-/// The file's figures as the fit has them, and how they hang together.
+/// Writes the fitted values, intervals and correlations of the file's parameters.
 void set_parameters(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
   const RefitResult& fit = diagnosis.selection.after;
   const auto free = model.model.model.free_count();
@@ -185,11 +186,12 @@ void set_parameters(Motor& motor, const ModelOfLogs& model, const Diagnosis& dia
     const std::string source = figure.source;
     const Origin origin = figure.origin;
     figure = measured(value, value * std::exp(-kInterval_sd * sd), value * std::exp(kInterval_sd * sd), Range::positive());
-    figure.derivation = source.empty() ? "fit to measured temperatures" : fmt::format("fit to measured temperatures, before it {}", source);
+    figure.derivation =
+        source.empty() ? "fit to measured temperatures" : fmt::format("fit to measured temperatures; before the fit: {}", source);
     if (!is_identifiable(sd, each)) {
       figure.origin = origin;
       figure.source += source.empty() ? "" : fmt::format(", {}", source);
-      figure.derivation = "fit to measured temperatures, which do not tell it alone";
+      figure.derivation = "fit to measured temperatures, which do not determine it alone";
     }
     together.figures.push_back(each.name);
   }
@@ -211,8 +213,8 @@ void set_parameters(Motor& motor, const ModelOfLogs& model, const Diagnosis& dia
   motor.fit = std::move(together);
 }
 
-/// Figures that were fitted to some of these very runs are known no better than from a data sheet: the runs would count twice, and the
-/// intervals held for a model that perhaps lacked something.
+/// If the file was fitted to some of these runs, resets its fitted parameters to the uncertainty of a data sheet. The runs would count
+/// twice, and the intervals may belong to an incomplete model.
 void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vector<std::string>& notes) {
   const auto is_fitted = [&](const Recording& each) { return was_fitted_to(*motor.fit, each); };
   if (!motor.fit || std::ranges::none_of(recordings, is_fitted)) {
@@ -220,14 +222,15 @@ void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vec
   }
   for (const std::string& name : motor.fit->figures) {
     ParameterValue* const figure = find_parameter(motor, name);
-    // Of the others the fit has said that it does not tell them.
+    // The other parameters were not identifiable in that fit and kept their own uncertainty.
     if (figure && figure->origin == Origin::measured && figure->value > 0.0) {
       figure->spread =
           Spread{Spread::Kind::range, figure->value * std::exp(-2.0 * kSheet_sd), figure->value * std::exp(2.0 * kSheet_sd), true};
     }
   }
   motor.fit.reset();
-  notes.emplace_back("the model was fitted to some of these runs: its intervals do not count a second time");
+  notes.emplace_back(
+      "the file's intervals are replaced by those of a data sheet: it was fitted to some of these runs, which would count twice");
 }
 
 }  // namespace
@@ -253,8 +256,8 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   out.model.column = out.how.column;
   if (built.heat == HeatInput::current && !have(Signal::speed) && most_loss_at_speed_W(motor) > 0.0) {
     out.notes.push_back(
-        fmt::format("not every log has a speed: the loss at speed, up to {} W, is part of what is unexplained; no effect at the stator is "
-                    "named and no curve over another signal added in its place",
+        fmt::format("not every log has a speed: the loss at speed, up to {} W, is part of the unknown heat; no effect at the stator is "
+                    "named, and no curve over another signal is added",
                     significant(most_loss_at_speed_W(motor), 2)));
   }
   out.model.model = std::move(built.model);
@@ -271,8 +274,7 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   const bool has_torque = have(Signal::shaft_power);
   if (!has_torque &&
       std::ranges::all_of(recordings, [&](const Recording& each) { return has_signal(each, Signal::shaft_power, out.how.torque); })) {
-    out.notes.emplace_back(
-        "not every log has a torque: where there is none, current times torque constant less the no-load drag stands for it");
+    out.notes.emplace_back("not every log has a torque: without one, current times torque constant minus the no-load drag is used");
   }
   return out;
 }
@@ -310,7 +312,7 @@ Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnos
     } else if (!effect.parameters.empty()) {
       const FittedParameter& size = effect.parameters.front();
       result.notes.push_back(fmt::format(
-          "{} at the {}{}: {} {:.3g} {}; found in measurements, no property of the motor", effect.id, effect.node,
+          "{} at the {}{}: {} {:.3g} {}; found in measurements, not a property of the motor", effect.id, effect.node,
           effect.condition.empty() ? "" : fmt::format(" in {}", effect.condition.begin()->second), size.name, size.value, size.unit));
     }
   }

@@ -1,4 +1,4 @@
-// Between a motor file and a model of measured runs: what is fitted of it, and how what was found goes back into the file.
+// Converts a motor file to a model of measured runs, and a diagnosis back to a motor file.
 #pragma once
 
 #include <string>
@@ -10,26 +10,27 @@
 
 namespace heatsoak {
 
+/// A motor's model as the logs require it.
 struct ModelOfLogs {
   ExtendedModel model;
-  std::vector<CalibratedValue> figures;  ///< of the motor's file, as the model's parameters make them
-  MeasuredRunOptions how;                ///< what its runs must have and how they are read; but for the ambient temperature
-  std::vector<std::string> fitted;       ///< rows that the figures know, as name_and_fingerprint()
-  TrainingRange training;                ///< of the runs that they are rows of
-  std::vector<std::string> notes;        ///< what is taken for granted because no log has it
+  std::vector<CalibratedValue> figures;  ///< parameters of the motor file, as functions of the model's coordinates
+  MeasuredRunOptions how;                ///< required signals and options for reading the runs, except for the ambient temperature
+  std::vector<std::string> fitted;       ///< logs that the file's parameters were fitted to, as name_and_fingerprint()
+  TrainingRange training;                ///< range of the signals in those logs and in these
+  std::vector<std::string> notes;        ///< assumptions for signals that no log has
 };
 
-/// The motor's network with the figures free that a calibration frees, known before as well as the file says. Where not every recording has
-/// a current, measured input power heats the winding. Effects under conditions act in the runs that have them. Heat inputs that no
-/// recording has count as 0. Throws Failure (bad_input) where the recordings have no heat input that the motor's effects turn into heat.
+/// Builds the motor's network with the same free parameters as a calibration and with the file's uncertainties as priors. If not every
+/// recording has a current, measured input power heats the winding. Effects with a condition act in the runs that have it. Heat inputs that
+/// no recording has are 0. Throws Failure (bad_input) if the recordings have no heat input that an effect of the motor uses.
 ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& recordings);
 
-/// The motor with the diagnosis' figures and its effects, those of sensors too: what `to_toml` writes is again a motor file. Deviations of
-/// a run's heat are no properties of a motor: they become notes.
+/// Returns the motor with the parameters, effects and sensor errors of the diagnosis; to_toml() writes it as a motor file. Run deviations
+/// are not properties of a motor and become notes.
 Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis);
 
-/// The score of two motor files on recordings that decided nothing, by predict(): replaces errors before and after in `score`, per signal
-/// those of the run that it is worst in after the diagnosis.
+/// Predicts the hold-out recordings from both motor files with predict(), and replaces the errors before and after in `score`. Per signal
+/// the errors are those of the run with the largest error after the diagnosis. Does nothing without recordings.
 void score_files(const Motor& before, const Motor& after, const std::vector<Recording>& holdout, const PredictionOptions& options,
                  HoldoutScore& score);
 

@@ -9,7 +9,7 @@
 namespace heatsoak {
 namespace {
 
-/// A run that goes on within this time after another of the same recording continues it.
+/// Largest gap between two runs of one recording at which the second continues the first.
 constexpr double kContinues_s = 30.0;
 
 std::string recording_of(const MeasuredRun& run) {
@@ -17,7 +17,7 @@ std::string recording_of(const MeasuredRun& run) {
   return found == run.conditions.end() ? run.name : found->second;
 }
 
-/// The stated faults of a sensor and those that the model has beyond.
+/// Returns the stated errors of a sensor, followed by those of the model.
 std::vector<SensorFault> all_faults(const ExtendedModel& model, const Sensor& sensor) {
   std::vector<SensorFault> faults = sensor.faults;
   for (const SensorTerm& term : model.sensors) {
@@ -52,7 +52,7 @@ std::vector<double> start_C(const ExtendedModel& model, const MeasuredRun& run, 
 }  // namespace
 
 Eigen::MatrixXd open_loop_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it) {
-  // Nobody asks for derivatives by what is free.
+  // Removing the free parameters saves the sensitivities, which are not needed.
   ExtendedModel settled = model;
   settled.model.free.clear();
   settled.model.flux_nodes.clear();

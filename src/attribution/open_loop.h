@@ -1,4 +1,4 @@
-// How far an extended model is off when it runs freely, each run from its first measured temperatures.
+// Errors of an extended model in free-running simulation, each run from its first measured temperatures.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,17 +14,17 @@ struct ErrorOfSignal {
   double rmse_K = 0.0;
   double max_abs_K = 0.0;
 };
-inline constexpr double kMatters_K = 0.1;  ///< errors that differ by less differ to nobody
+inline constexpr double kMatters_K = 0.1;  ///< smaller differences between errors are irrelevant
 
-/// By signal, "winding_C".
+/// Errors by signal, such as "winding_C".
 using Errors = std::map<std::string, ErrorOfSignal>;
 
-/// The model run freely from the first measured temperatures. A run that goes on where one of `before_them` ends begins where the model's
-/// free run of that one has arrived: nothing but the beginning of the log is looked at.
+/// Simulates each run freely from its first measured temperatures and returns the errors by signal. A run that continues one of
+/// `before_them` within 30 s starts from the simulated end of that run; later samples are not used.
 Errors open_loop_errors(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them);
-/// Predictions of one run, n × sensors.
+/// Returns the predicted readings of one run in °C, n × sensors.
 Eigen::MatrixXd open_loop_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it);
-/// Over all signals, each counting alike.
+/// Returns the RMS over all signals, with equal weights.
 double rms_K(const Errors& errors);
 
 }  // namespace heatsoak

@@ -15,10 +15,10 @@
 namespace heatsoak {
 namespace {
 
-/// A fit rests where its next step promises no more: no name depends on a tenth of a nat.
+/// The fit has converged if the next step promises a smaller decrease; differences of 0.1 nats decide nothing.
 constexpr double kConverged_nats = 0.1;
 
-/// The prior of the moving coordinates, the others held at `step`.
+/// Returns the prior of the moving coordinates with the others fixed at `step`.
 ThetaPrior prior_given(const ThetaPrior& prior, const std::vector<Eigen::Index>& moving, const Eigen::VectorXd& step) {
   const Eigen::MatrixXd own = prior.precision(moving, moving);
   Eigen::VectorXd held = step - prior.mean;
@@ -27,7 +27,7 @@ ThetaPrior prior_given(const ThetaPrior& prior, const std::vector<Eigen::Index>&
   return {own, prior.mean(moving) - Eigen::VectorXd(own.completeOrthogonalDecomposition().solve(pull))};
 }
 
-/// Least squares of the moving coordinates, the others held at `step`.
+/// Solves least squares for the moving coordinates with the others fixed at `step`.
 LinearFit fit_moving(const RunEvidence& all, const ThetaPrior& prior, const std::vector<Eigen::Index>& moving,
                      const Eigen::VectorXd& step) {
   const auto inner = static_cast<Eigen::Index>(moving.size());
@@ -44,8 +44,8 @@ LinearFit fit_moving(const RunEvidence& all, const ThetaPrior& prior, const std:
   return linear_fit({&reduced, 1}, own.mean, own.precision);
 }
 
-/// The step of all coordinates that decreases the squares most while none leaves its bounds (Stark and Parker 1995, bounded-variable
-/// least squares): those that would leave are held, and let go again where the squares pull them back inside.
+/// Solves bounded least squares (Stark and Parker 1995, bounded-variable least squares). A coordinate that would leave its bounds is fixed
+/// there, and released again if the gradient points inward.
 LinearFit bounded_fit(const RunEvidence& all, const ThetaPrior& prior, const Eigen::VectorXd& low, const Eigen::VectorXd& high) {
   const Eigen::Index count = prior.mean.size();
   const auto data = all.triangle.leftCols(count);
@@ -97,7 +97,7 @@ LinearFit bounded_fit(const RunEvidence& all, const ThetaPrior& prior, const Eig
   if (!moving.empty()) {
     covariance(moving, moving) = fit.covariance;
   }
-  // What the held ones cost before anything is measured counts as well.
+  // The prior misfit of the fixed coordinates is part of the evidence.
   const double misfit = residual().squaredNorm() + (step - prior.mean).dot(prior.precision * (step - prior.mean));
   return {std::move(step), std::move(covariance), fit.log_evidence - 0.5 * (misfit - fit.misfit), misfit};
 }
@@ -153,7 +153,7 @@ class Fitter {
     return designs;
   }
 
-  /// Triangle of [columns, residual] of all runs.
+  /// Returns the triangular factor of [columns, residual] of all runs.
   [[nodiscard]] static RunEvidence all_runs(const std::vector<DesignRun>& designs, const LatentFlux& flux) {
     std::vector<RunEvidence> each(designs.size());
     in_parallel(designs.size(), 0, [&](std::size_t r) {
@@ -168,7 +168,7 @@ class Fitter {
     return all;
   }
 
-  /// Whitened squares that are left where the columns were taken, the start temperatures at their best, the prior's included.
+  /// Returns the sum of squared whitened residuals at the linearisation point, with optimal start temperatures and the priors included.
   [[nodiscard]] static double misfit_of(const RunEvidence& all, const RefitResult& at) {
     const ThetaPrior prior = prior_here(at.model);
     return all.triangle.rightCols<1>().squaredNorm() + prior.mean.dot(prior.precision * prior.mean);
@@ -180,7 +180,8 @@ class Fitter {
     return bounded_fit(all, prior_here(now_.model), (low_ - theta).array().max(-longest), (high_ - theta).array().min(longest));
   }
 
-  /// Mean and covariance over the suppositions: Σ w·(covariance + step·stepᵀ), w by evidence. Bodies may be a little uneven.
+  /// Sets the mean and covariance over all assumptions, Σ w·(covariance + step·stepᵀ) with w by evidence. Includes temperature differences
+  /// within bodies, see uneven_bodies().
   void average() {
     const std::vector<Columns> uneven = uneven_bodies(now_.fitted, runs_);
     const std::vector<DesignRun> designs = design_of(now_, uneven);
@@ -222,7 +223,7 @@ class Fitter {
     }
   }
 
-  /// What the start temperatures do when the coordinates make a step.
+  /// Returns the change of the start temperatures in K for a step of the coordinates.
   [[nodiscard]] std::vector<Eigen::VectorXd> start_steps_K(const Eigen::VectorXd& step, const std::vector<DesignRun>& designs) const {
     std::vector<Eigen::VectorXd> steps_K;
     for (const DesignRun& one : designs) {
@@ -231,7 +232,7 @@ class Fitter {
     return steps_K;
   }
 
-  /// Throws Failure where the temperatures run away.
+  /// Returns the result after a fraction of the step. Throws Failure if the temperatures diverge.
   [[nodiscard]] RefitResult moved(const Eigen::VectorXd& step, const std::vector<Eigen::VectorXd>& start_step_K, double share) const {
     RefitResult next;
     next.model = now_.model;
@@ -251,7 +252,7 @@ class Fitter {
     return next;
   }
 
-  /// The longest of the halved steps that lowers the squares; false where none does.
+  /// Takes the longest of five successively halved steps that decreases the misfit. Returns false if none does.
   bool take(const LinearFit& fit, double misfit, std::vector<DesignRun>& designs) {
     const std::vector<Eigen::VectorXd> start_step_K = start_steps_K(fit.coefficients, designs);
     for (double share = 1.0; share > 0.05; share *= 0.5) {

@@ -1,4 +1,4 @@
-// All runs together once more in the equations: Gauss-Newton in whitened space under one supposition about the unknown heat, bounds kept.
+// Nonlinear fit of all runs together: Gauss-Newton on whitened residuals for one assumed unknown heat, with bounds.
 #pragma once
 
 #include <limits>
@@ -10,30 +10,32 @@ namespace heatsoak {
 
 struct RefitResult {
   ExtendedModel model;
-  std::vector<std::vector<double>> start_C;  ///< per run
-  std::vector<LinearisedRun> fitted;         ///< free runs of the model
-  LatentFlux flux;                           ///< supposed
+  std::vector<std::vector<double>> start_C;  ///< start temperatures per run
+  std::vector<LinearisedRun> fitted;         ///< free-running simulations of the model
+  LatentFlux flux;                           ///< assumed unknown heat
   double evidence_nats = 0.0;
-  Eigen::MatrixXd covariance;  ///< of the coordinates; 0 for those at a bound
+  Eigen::MatrixXd covariance;  ///< posterior covariance of the coordinates; 0 for those at a bound
   bool converged = false;
 };
 
 struct RefitOptions {
   LatentFlux flux;
-  std::vector<Eigen::VectorXd> weights = {};  ///< per run and sample; empty: all count
-  std::vector<int> merged = {};               ///< per run how many samples are averaged; empty: none
-  double white_noise_K = 0.0;                 ///< above 0: of every sensor, instead of its own; for a model that lacks something
+  std::vector<Eigen::VectorXd> weights = {};  ///< per run and sample; empty: all 1
+  std::vector<int> merged = {};               ///< per run, number of samples per average; empty: no averaging
+  double white_noise_K = 0.0;                 ///< if > 0, noise of every sensor in place of its own, for an incomplete model
   int most_steps = 8;
-  double longest_step_ratio = std::numeric_limits<double>::infinity();  ///< of a coordinate
-  /// The result is averaged over these as they are probable, for intervals that hold what they promise. Empty: `flux` alone.
+  double longest_step_ratio = std::numeric_limits<double>::infinity();  ///< largest change of a coordinate in one step
+  /// Other assumptions about the unknown heat. The result is averaged over them with their evidence as weights, so that the intervals
+  /// include this uncertainty. Empty: `flux` alone.
   std::vector<LatentFlux> around = {};
 };
 
-/// `start_C` per run, as linearise() takes it. Throws Failure (numerics_failed) where the model cannot be run at all.
+/// Fits the model. `start_C` per run as in linearise(). Throws Failure (numerics_failed) if the model cannot be simulated from its start
+/// values.
 RefitResult refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                   const RefitOptions& options);
 
-/// The same for a model that is only tried: where its temperatures run away its evidence is −∞, and nothing of it is fitted.
+/// Same for a trial model: if its temperatures diverge, returns an evidence of −∞ and empty results instead of throwing.
 RefitResult try_refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                       const RefitOptions& options);
 

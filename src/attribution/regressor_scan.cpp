@@ -14,13 +14,13 @@
 namespace heatsoak {
 namespace {
 
-/// All hats of a driver and what rounds them up to what is whitened at once.
+/// Hat functions of a signal, padded to the number of columns that are whitened at once.
 using HatColumns = Eigen::Matrix<double, Eigen::Dynamic, kKnots + 1, Eigen::RowMajor>;
-/// Standard deviation that the prior gives to a curve's heat, as a share of the mean heat.
+/// Prior standard deviation of a curve's heat, as a fraction of the mean heat.
 constexpr double kUsual_share = 0.3;
 
-/// Response of the sensors to heats that are constant over each interval: `heat_W` (intervals × hats) into the node with place `flux`, out
-/// of `other`.
+/// Returns the response of the sensors to `heat_W` (intervals × hats), constant over each interval. The heat enters the node with index
+/// `flux` and leaves the node with index `other`; -1: none.
 HatColumns response(const LinearisedRun& run, const HatColumns& heat_W, int flux, int other) {
   HatColumns shown = HatColumns::Zero(run.residual_K.size(), heat_W.cols());
   HatColumns state = HatColumns::Zero(run.states, heat_W.cols());
@@ -43,8 +43,8 @@ HatColumns response(const LinearisedRun& run, const HatColumns& heat_W, int flux
   return shown;
 }
 
-/// Whether a curve over `driver` may be multiplied by `multiplier`. A loss depends on two operating signals; heat that depends on a
-/// temperature is cooling, or a loss of current or copper whose size varies with that temperature.
+/// True if a curve over `driver` may be multiplied by `multiplier`. A loss may depend on two operating signals. Heat that depends on a
+/// temperature is cooling, or a copper or current loss that varies with that temperature.
 bool goes_with(const Regressor& driver, Multiplier multiplier) {
   if (driver.kind == DriverKind::node_temperature && multiplier == Multiplier::source) {
     return false;
@@ -55,19 +55,20 @@ bool goes_with(const Regressor& driver, Multiplier multiplier) {
 
 bool is_taken_out(Multiplier multiplier) { return multiplier == Multiplier::excess || multiplier == Multiplier::difference; }
 
-/// A curve beside the subset and the unknown heat with which it is most probable.
+/// Evidence of a curve with its most probable subset and unknown heat.
 struct Scored {
-  double nats = -std::numeric_limits<double>::infinity();  ///< ln P, priors of the members counted
+  double nats = -std::numeric_limits<double>::infinity();  ///< ln P, including the priors of the members
   std::size_t subset = 0;
   FluxPlace place;
 };
 
+/// A curve: term, signal and knots.
 struct Family {
   ScanTerm term;
   std::vector<double> knots;
   double usual = 1.0;
   std::vector<Eigen::VectorXd> multiplier;  ///< per run
-  std::vector<HatColumns> shown;            ///< per run, of every hat at its usual size
+  std::vector<HatColumns> shown;            ///< per run, response to every hat at its typical size
   Scored scored;
 };
 
@@ -154,7 +155,7 @@ class Scanner {
     return families;
   }
 
-  /// The given places, and ones with far less unknown heat: a curve that is right leaves little.
+  /// Returns the given grid points, and points with far less unknown heat: a correct curve leaves little of it.
   [[nodiscard]] std::vector<FluxPlace> beginnings() const {
     constexpr int kLess = 2;
     std::vector<FluxPlace> all = input_.places;
@@ -176,7 +177,7 @@ class Scanner {
     }
   }
 
-  /// To the unknown heat beside which the curve is most probable.
+  /// Moves to the most probable unknown heat for the curve.
   void climb(Family& family) {
     (void)most_probable(input_.grid, family.scored.place, [&](const FluxPlace& place) {
       Scored scored = score(family, shared_at(place), place);
@@ -186,7 +187,7 @@ class Scanner {
     });
   }
 
-  /// Knots where something happens: a thermostat or a resonance is narrower than a seventh of all that the driver does.
+  /// Concentrates the knots: a thermostat or a resonance is narrower than a seventh of the signal's range.
   void zoom(Family& family) {
     constexpr int kHalvings = 3;
     const Regressor& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
@@ -214,7 +215,7 @@ class Scanner {
     }
   }
 
-  /// Without any curve: the best subset of the members at its own place.
+  /// Returns ln P of the best subset without a curve, at its own unknown heat.
   double best_without_nats() {
     double best_nats = -std::numeric_limits<double>::infinity();
     for (const FluxPlace& start : input_.places) {
@@ -244,7 +245,7 @@ class Scanner {
     }
   }
 
-  /// Heat of every hat along a run, in units of the family's usual size.
+  /// Returns the heat of every hat along a run at the family's typical size.
   [[nodiscard]] HatColumns heats_W(const Family& family, std::size_t r) const {
     const double sign = is_taken_out(family.term.multiplier) ? -1.0 : 1.0;
     const DesignRun& design = (*input_.designs)[r];
@@ -299,7 +300,7 @@ class Scanner {
     return shared;
   }
 
-  /// Products of a run without its start temperatures; adds what they say to the determinant.
+  /// Eliminates the start temperatures of a run and adds its products and its determinant to `sum`.
   static void add_run(const Eigen::MatrixXd& square, const DesignRun& design, const Whitening& whitening, Products& sum) {
     const Eigen::Index starts = design.run.states;
     const Eigen::Index rest = square.cols() - starts;
@@ -321,8 +322,8 @@ class Scanner {
     return members;
   }
 
-  /// ln evidence of a subset of the members, with or without the curve, minus that of no member. Writes the curve to `curve` and its
-  /// covariance to `covariance`.
+  /// Returns the ln evidence of a subset of the members, with or without the curve, minus that of no member. Writes the sizes (curve last)
+  /// and their posterior precision if the pointers are set.
   [[nodiscard]] double gain_of(const Reduced& all, std::size_t subset, bool with_curve, Eigen::VectorXd* sizes = nullptr,
                                Eigen::MatrixXd* precision_of = nullptr) const {
     std::vector<Eigen::Index> places = members_of(subset);
@@ -350,7 +351,7 @@ class Scanner {
     return set_gain_nats(products, all.right(places), precision, has_sign, sizes);
   }
 
-  /// θ eliminated: [members, hats].
+  /// Returns the normal equations of [members, hats] with θ eliminated.
   [[nodiscard]] Reduced reduced_with(const Family& family, const std::vector<SharedRun>& shared) const {
     Products sum;
     for (std::size_t r = 0; r < shared.size(); ++r) {
@@ -450,7 +451,7 @@ class Scanner {
   const SelectionRules& rules_;
   Eigen::MatrixXd precision_;
   std::size_t subsets_;
-  ThetaPrior prior_;  ///< of θ and the companions
+  ThetaPrior prior_;  ///< prior of θ and the companions
   std::map<FluxPlace, std::vector<SharedRun>> shared_;
 };
 

@@ -1,5 +1,5 @@
-// What is it, if it is not in the catalogue? Heat = g(driver) × multiplier at a node, with a curve g that nobody declared: hat functions
-// with a prior that likes smooth curves. Each curve competes beside every subset of the best set of effects.
+// Search for heat outside the catalogue: heat = g(signal) × multiplier at a node. The curve g is a sum of hat functions with a smoothness
+// prior. Each curve competes in combination with every subset of the best set of effects.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,30 +13,33 @@
 
 namespace heatsoak {
 
+/// One curve, with the subset and the unknown heat that make it most probable.
 struct ScanResult {
   ScanTerm term;
-  double usual = 1.0;          ///< size of curves that the prior takes for usual, in the curve's unit
-  double gain_nats = 0.0;      ///< of ln P, best subset with the curve above best subset without one, each beside its own unknown heat
-  std::vector<double> knots;   ///< of the driver, in its unit
-  Eigen::VectorXd curve;       ///< g at the knots, in unit_of(multiplier)
-  Eigen::MatrixXd covariance;  ///< of the curve
-  double mean_W = 0.0;         ///< of the heat's magnitude over the time it acts
-  double peak_W = 0.0;         ///< 99 % of its magnitude
-  std::vector<int> beside;     ///< places of the members that stay beside it
-  /// Per member: squared correlation of what the sensors show of it and of the curve, θ having absorbed what it can.
+  double usual = 1.0;  ///< typical size of the curve in the prior, in the curve's unit
+  /// Gain in ln P: the best subset with the curve compared with the best subset without one. Each has its own unknown heat.
+  double gain_nats = 0.0;
+  std::vector<double> knots;   ///< knots, in the unit of the signal
+  Eigen::VectorXd curve;       ///< values of g at the knots, in unit_of(multiplier)
+  Eigen::MatrixXd covariance;  ///< posterior covariance of the curve
+  double mean_W = 0.0;         ///< mean magnitude of the heat over the time it acts
+  double peak_W = 0.0;         ///< 99th percentile of the magnitude
+  std::vector<int> beside;     ///< indices of the members in the best subset
+  /// Per member: squared correlation of the responses of the sensors to the member and to the curve, with θ eliminated.
   std::vector<double> shape_ratio;
 };
 
-/// The effects that curves compete with, as columns of the design behind those of θ.
+/// Effects of the best set, as columns of the design after those of θ.
 struct ScanMembers {
   std::vector<Eigen::Index> columns;
   std::vector<bool> has_sign;
   std::vector<double> prior_nats;
   double size_sd = 1.0;
-  std::vector<Eigen::Index> companions = {};  ///< that are free like θ, whichever of the effects are there
+  std::vector<Eigen::Index> companions = {};  ///< columns that are always free, in every subset
   double companion_sd = 1.0;
 };
 
+/// Input of the scan. The pointers must be set and outlive the scan.
 struct ScanInput {
   const Model* model = nullptr;
   const std::vector<MeasuredRun>* runs = nullptr;
@@ -46,11 +49,11 @@ struct ScanInput {
   ThetaPrior prior;
   ScanMembers members;
   FluxGrid grid;
-  std::vector<FluxPlace> places;  ///< where the best set is most probable, and where nothing is
-  double mean_heat_W = 1.0;       ///< sets the scale that the prior expects
+  std::vector<FluxPlace> places;  ///< start points of the search: most probable with the best set, and without any effect
+  double mean_heat_W = 1.0;       ///< mean modelled heat, which scales the prior of the curves
 };
 
-/// Best first; at most `most`.
+/// Returns the best curves, at most `most`, best first; empty if there are no signals. The gain may be negative.
 std::vector<ScanResult> scan_drivers(const ScanInput& input, const SelectionRules& rules, std::size_t most);
 
 }  // namespace heatsoak

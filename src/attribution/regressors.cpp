@@ -11,9 +11,9 @@
 namespace heatsoak {
 namespace {
 
-/// Two drivers whose values go together more than this are one; the earlier name stays.
+/// Signals with a larger correlation are copies; the earlier one is kept.
 constexpr double kSameCorrelation_ratio = 0.9995;
-/// A curve over a driver has seven knots: with fewer samples than a few for each it says nothing.
+/// Smallest number of samples: a few for each of the seven knots of a curve.
 constexpr std::size_t kFewestSamples = 30;
 
 Regressor driver_of(std::string name, std::string unit, DriverKind kind) {
@@ -82,7 +82,7 @@ class Collector {
     kept_.push_back(std::move(driver));
   }
 
-  /// Hardly moves within any run: it says which run it is, no more.
+  /// True if the signal hardly varies within any run: it only distinguishes runs.
   [[nodiscard]] static bool is_label(const Regressor& driver) {
     constexpr double kLeastWithin_share = 0.2;
     return std::ranges::none_of(driver.values, [&](const Eigen::VectorXd& of_run) {
@@ -146,7 +146,7 @@ void add_temperatures(Collector& all, const Model& model, const std::vector<Line
     const std::string name(model.network.node_name(node));
     const bool is_seen = std::ranges::any_of(runs, [&](const MeasuredRun& run) { return run.sensor_at(name) >= 0; });
     if (!is_seen && name != "winding" && name != "stator") {
-      continue;  // a body that the model supposes is no signal
+      continue;  // a body without a sensor is no signal
     }
     Regressor absolute = driver_of(name + "_temperature", "degC", DriverKind::node_temperature);
     absolute.choice = "temperature";

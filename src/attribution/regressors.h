@@ -1,4 +1,4 @@
-// Signals that an unknown heat might follow, along the intervals of every run.
+// Signals that unknown heat may follow, one value per interval of every run.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,30 +10,31 @@
 
 namespace heatsoak {
 
-/// What a driver is to the rest of the tool: what every operating point has, a temperature, or what only logs have.
+/// Origin of a signal: every operating point, a temperature, or only the log.
 enum class DriverKind { operating_point, node_temperature, log_only };
 
+/// A signal that a curve may depend on.
 struct Regressor {
   std::string name;  ///< "speed", "stator_excess", "time", "thrust_N"
-  std::string unit;  ///< UDUNITS text, "" for pure numbers
+  std::string unit;  ///< UDUNITS text; "" for pure numbers
   DriverKind kind = DriverKind::operating_point;
-  std::vector<Eigen::VectorXd> values;  ///< per run one per interval, in the driver's unit; NaN: not known there
-  double low = 0.0;                     ///< 1 % of the time is below
-  double high = 0.0;                    ///< 1 % of the time is above
+  std::vector<Eigen::VectorXd> values;  ///< per run, one value per interval; NaN: not known
+  double low = 0.0;                     ///< 1st percentile of the values
+  double high = 0.0;                    ///< 99th percentile of the values
   struct Range {
     double low = 0.0;
     double high = 0.0;
   };
-  std::vector<Range> inner;  ///< where it is in the middle 80 % and 50 % of the time: a curve may need its knots there
-  std::string choice;        ///< what the effect `tabulated` calls it; empty where it cannot follow it
-  std::string watched;       ///< node that a temperature is of
-  std::string reference;     ///< node that it is above
+  std::vector<Range> inner;  ///< ranges of the middle 80 % and 50 % of the values, if clearly narrower: a curve may need its knots there
+  std::string choice;        ///< name of the signal in the effect `tabulated`; empty: not available there
+  std::string watched;       ///< node whose temperature it is
+  std::string reference;     ///< node that the temperature is relative to
 };
 
-/// Seconds since a run's begin.
+/// Name of the signal "time since the start of the run", in s.
 inline constexpr std::string_view kTimeDriver = "time";
 
-/// What varies enough to be described from a constant, without copies of each other.
+/// Returns the signals that vary within at least one run and are not copies of each other.
 std::vector<Regressor> drivers_of(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs);
 
 }  // namespace heatsoak

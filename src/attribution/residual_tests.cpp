@@ -11,7 +11,7 @@ namespace {
 constexpr int kLjungBoxLags = 40;
 constexpr int kCrossLags = 20;
 
-/// Σ a(k+lag)·b(k) over pairs that are both there, and how many.
+/// Σ a(k+lag)·b(k) over the pairs without NaN, and their number.
 struct LaggedSum {
   double sum = 0.0;
   double count = 0.0;
@@ -29,7 +29,7 @@ LaggedSum lagged(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Eigen::Inde
   return out;
 }
 
-/// Mean 0 and variance 1 over what is there.
+/// Returns the values with mean 0 and variance 1, ignoring NaN.
 Eigen::VectorXd standardised(const Eigen::VectorXd& values) {
   double sum = 0.0, squares = 0.0, count = 0.0;
   for (const double value : values) {
@@ -42,6 +42,7 @@ Eigen::VectorXd standardised(const Eigen::VectorXd& values) {
   return (values.array() - mean) / std::sqrt(variance > 0.0 ? variance : 1.0);
 }
 
+/// Returns the p-value of the Ljung-Box statistic up to lag 40.
 double ljung_box(const Eigen::VectorXd& z, double count) {
   double statistic = 0.0;
   for (int lag = 1; lag <= kLjungBoxLags; ++lag) {
@@ -55,13 +56,14 @@ double ljung_box(const Eigen::VectorXd& z, double count) {
   return boost::math::cdf(boost::math::complement(boost::math::chi_squared(kLjungBoxLags), statistic));
 }
 
-/// The periodogram at every Fourier frequency of at most 2000, gaps as zeros.
+/// Returns the largest distance of the cumulative periodogram from a straight line, in units of the 95 % band. At most 400 equally spaced
+/// frequencies; gaps count as 0.
 double periodogram(const Eigen::VectorXd& z, double count) {
   const Eigen::Index n = z.size();
   const Eigen::Index frequencies = std::min<Eigen::Index>(n / 2, 400);
   std::vector<double> cumulated;
   double total = 0.0;
-  // Evenly spread over all frequencies, eight at a time; a rotating phasor instead of a sine for each sample.
+  // Eight frequencies at a time, with a rotating phasor instead of a sine per sample.
   using Eight = Eigen::Array<double, 8, 1>;
   for (Eigen::Index first = 1; first <= frequencies; first += Eight::SizeAtCompileTime) {
     Eight c, s;
@@ -123,7 +125,7 @@ InnovationTests test_innovations(std::string signal, const Eigen::VectorXd& inno
       beyond += std::abs(correlation) > 2.0 / std::sqrt(std::max(1.0, pair.count)) ? 1 : 0;
       largest = std::abs(correlation) > std::abs(largest) ? correlation : largest;
     }
-    // A steady input correlates with itself: one lag in twenty beyond is chance, four of twenty-one are not.
+    // One lag in twenty may exceed the limit by chance; four of 21 are significant even for an input that correlates with itself.
     if (beyond >= 4) {
       out.correlated_with.emplace_back(input.name, largest);
     }

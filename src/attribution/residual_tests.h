@@ -1,5 +1,5 @@
-// Is what a fit leaves still telling something? Tests on whitened innovations, which are independent and of variance 1
-// where model, noise and unknown heat are right.
+// Residual tests. If the model is correct, the whitened innovations are independent with unit variance; each test checks one consequence of
+// that.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,15 +8,16 @@
 
 namespace heatsoak {
 
+/// Results for one sensor. With fewer than 160 samples only `count` is set.
 struct InnovationTests {
   std::string signal;
   int count = 0;
-  double variance_ratio = 0.0;         ///< of the innovations; 1 where the noise level is right
-  double ljung_box_probability = 0.0;  ///< of correlations up to lag 40 as large by chance
-  /// Largest distance of the cumulated periodogram from the straight line, in units of the 95 % Kolmogorov band: above 1 is not white.
+  double variance_ratio = 0.0;         ///< variance of the innovations; 1 if the noise level is correct
+  double ljung_box_probability = 0.0;  ///< p-value of the autocorrelation up to lag 40 (Ljung and Box 1978)
+  /// Largest distance of the cumulative periodogram from a straight line, divided by the 95 % Kolmogorov band. Not white noise if above 1.
   double periodogram_ratio = 0.0;
-  double kurtosis_ratio = 0.0;  ///< of a normal distribution: 1
-  /// Inputs whose correlation with the innovations exceeds 2/√n at some lag of 0 … 20 more often than chance does, by name, largest first.
+  double kurtosis_ratio = 0.0;  ///< kurtosis divided by that of a normal distribution
+  /// Inputs with their largest cross-correlation, largest first. Listed if at least 4 of the lags 0 to 20 exceed 2/√n.
   std::vector<std::pair<std::string, double>> correlated_with;
 };
 
@@ -25,7 +26,7 @@ struct NamedInput {
   Eigen::VectorXd values;  ///< one per innovation; NaN: not known
 };
 
-/// `innovation`: in the order of time; NaN where there was no sample.
+/// Tests one sensor. `innovation` is in order of time, NaN for a missing sample.
 InnovationTests test_innovations(std::string signal, const Eigen::VectorXd& innovation, const std::vector<NamedInput>& inputs);
 
 }  // namespace heatsoak

@@ -20,7 +20,8 @@
 namespace heatsoak {
 namespace {
 
-/// K/W: how far the outermost body that unknown heat may reach is warmed by a heat that is held, mean over the runs.
+/// Returns the steady temperature rise of the warmest node in K/W, as a mean over the runs. The heat enters the flux node with the smallest
+/// such rise, the outermost body.
 double steady_rise_K_per_W(const std::vector<LinearisedRun>& runs) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Index x = runs.front().states;
@@ -36,7 +37,7 @@ double steady_rise_K_per_W(const std::vector<LinearisedRun>& runs) {
   return (lost.colPivHouseholderQr().solve(gained)).colwise().maxCoeff().minCoeff();
 }
 
-/// K: how far the measured temperatures move, rms over the sensors.
+/// Returns the range of the readings in K, RMS over all sensors and runs.
 double travel_K(const std::vector<MeasuredRun>& runs) {
   double sum_K2 = 0.0;
   double count = 0.0;
@@ -55,7 +56,8 @@ double travel_K(const std::vector<MeasuredRun>& runs) {
   return count > 0.0 ? std::sqrt(sum_K2 / count) : 0.0;
 }
 
-/// What the search knows of a candidate: those that act in some runs only, or at unusual nodes, share the odds of one effect.
+/// Returns the priors and families. Candidates of one type that act only in some runs, or at other nodes than the default, share the prior
+/// odds of one effect.
 std::vector<CandidateRule> rules_of(const std::vector<Candidate>& candidates, const SelectionRules& rules) {
   const auto group = [](const Candidate& each) {
     if (each.condition.empty()) {
@@ -74,7 +76,7 @@ std::vector<CandidateRule> rules_of(const std::vector<Candidate>& candidates, co
     const double kind_nats = each.condition.empty() ? rules.inclusion_nats : rules.conditional_nats;
     rule.prior_nats = kind_nats - std::log(static_cast<double>(counts[group(each)]));
     rule.id = each.id;
-    // An offset of one sensor and one of the other differ by heat that both the runs and the figures may have.
+    // Offsets of the two sensors have different families: their difference can also be explained by heat.
     rule.family = each.sensor_type ? each.id.substr(0, each.id.rfind('_')) : std::string(each.family());
     for (const auto& [key, value] : each.condition) {
       rule.family += fmt::format(" where {} is {}", key, value);
@@ -124,7 +126,7 @@ void Rounds::begin() {
   out_.weights = weights_by_model(now_.fitted, input_.runs, unit_W_);
   list_ = candidates_for(input_.model, input_.runs);
   if (is_speed_open_) {
-    // Heat at the stator may well be the loss at the speed that nobody logged.
+    // Heat at the stator may be the loss at the speed that was not logged.
     std::erase_if(list_.candidates, [](const Candidate& each) { return each.type && each.nodes.front() == "stator"; });
   }
   out_.not_judged = list_.not_judged;
@@ -177,7 +179,7 @@ Judged Rounds::judge() {
   if (!best_.empty()) {
     add_points(judged.designs, prior, grid_.star(best_place_), points);
   }
-  // The unknown heat beside the best set is not that beside nothing.
+  // The most probable unknown heat with the best set differs from that without effects.
   constexpr int kMostMoves = 3;
   for (int move = 0; move < kMostMoves; ++move) {
     std::vector<Reduced> all;

@@ -1,4 +1,4 @@
-// The rounds of a selection: fit, linear equations about the fit's path, search of sets, and again about the path of the best set.
+// Rounds of a selection: fit the model, linearise along the fit, search sets of effects, and repeat along the path of the best set.
 #pragma once
 
 #include <map>
@@ -13,18 +13,18 @@
 
 namespace heatsoak {
 
-/// A round's linear algebra and what the search makes of it.
+/// One round: the linearised equations, and the best set found with them.
 struct Judged {
   std::vector<LinearisedRun> fitted;
   std::vector<DesignRun> designs;
   std::vector<FluxPlace> places;
   std::vector<int> best;  ///< members of the best set
   SetSearch::AtBest at_best;
-  FluxPlace empty_place;  ///< most probable without any effect
+  FluxPlace empty_place;  ///< most probable unknown heat without any effect
   FluxPlace best_place;
 };
 
-/// Until the best set repeats. What is found is left in the members; `out_` has the rounds.
+/// Repeats rounds until the best set repeats. Results are in the protected members and in `out_`.
 class Rounds {
  public:
   Rounds(const SelectionInput& input, const SelectionRules& rules);
@@ -36,44 +36,52 @@ class Rounds {
   [[nodiscard]] Eigen::Index parameter_of(int member) const { return figures_[static_cast<std::size_t>(member) - candidates().size()]; }
   [[nodiscard]] Eigen::Index free_count() const { return input_.model.free_count(); }
   void begin();
-  /// The base model about the path of the last fit.
+  /// Returns the base model with the parameter values of the last fit.
   [[nodiscard]] ExtendedModel base_here() const { return with_values_of(input_.model, now_.model); }
+  /// Runs one round along the path of the last fit.
   Judged judge();
+  /// Adds the normal equations at those grid points that `points` does not contain yet.
   void add_points(const std::vector<DesignRun>& designs, const ThetaPrior& prior, const std::vector<FluxPlace>& places,
                   std::map<FluxPlace, Reduced>& points) const;
+  /// Returns the most probable unknown heat for a set of effects.
   [[nodiscard]] FluxPlace best_place(const std::vector<DesignRun>& designs, const ThetaPrior& prior, const std::vector<int>& members,
                                      const FluxPlace& start) const;
-  /// The model with a set of effects, near where the linear algebra has them.
+  /// Returns the model with a set of effects, at the sizes and θ of the linear solution.
   [[nodiscard]] ExtendedModel with_members(const std::vector<int>& members, const SetSearch::AtBest& at, ShapesAre shapes) const;
-  /// Moves the path to the free run of the best set, and the columns of its members to their shapes and sizes.
+  /// Refits the best set and linearises along its free run. The columns of its members get their fitted shapes and sizes.
   void follow(const Judged& judged);
+  /// Returns the size, or ±0.1 if it is closer to 0, where columns would vanish.
   static double away_from_zero(double share);
-  /// The candidate's exponents, thresholds and time constants as the fit has them; its size stays the typical one.
+  /// Copies the fitted exponents, thresholds and time constants to the candidate. Its size stays the typical one.
   void take_shapes(const EffectInPlace& fitted, Candidate& candidate) const;
+  /// Records the round: candidates with their single gains, the best set, and the probability of the empty set.
   void note();
+  /// Records the effects whose expected gain at typical size is below `seen_nats`.
   void note_sight();
   [[nodiscard]] RefitOptions final_options(const FluxPlace& place) const;
-  /// Where sensors show what heats nothing, the network lacks bodies, and whitened errors may no longer say which figures predict: these
-  /// are fitted to the free runs then, if that predicts the ends of the runs better. What they move by counts as uncertainty.
+  /// Sensor drift means that the network lacks bodies, and whitened residuals may then not give the most predictive parameters. Refits to
+  /// the free runs if that predicts the ends of the runs better; the change is added to the covariance.
   [[nodiscard]] RefitResult to_predict(RefitResult fit) const;
-  /// K rms: how well a fit to the first parts of all runs predicts their last thirds.
+  /// Fits the first two thirds of all runs and returns the RMS error in K of the predicted last thirds; ∞ if the fit fails.
   [[nodiscard]] double error_of_ends_K(const RefitResult& start, RefitOptions options) const;
-  /// Least squares of free runs.
+  /// Returns options for plain least squares of the free runs, without unknown heat.
   [[nodiscard]] RefitOptions plain_options() const;
-  /// The model with nothing added, as the file has it and with uncertainty in what does not hold.
+  /// Fits the model without effects: once with the file's priors (`before`), once with wider priors for the contradicted parameters
+  /// (`own`).
   void own_parameters(const Judged& judged);
-  /// Of the last fit; nodes that it does not have begin at the ambient temperature.
+  /// Returns the start temperatures of the last fit. Nodes that it does not contain start at ambient temperature.
   [[nodiscard]] std::vector<std::vector<double>> starts_of(const ExtendedModel& model) const;
-  /// Root mean square of what a fit leaves, by node.
+  /// Returns the RMS of the smoothed unknown heat in W of a fit, by node.
   [[nodiscard]] std::map<std::string, double> left_by(const RefitResult& fit) const;
 
   const SelectionInput& input_;
   const SelectionRules& rules_;
-  bool is_speed_open_;  ///< heat at the stator then may well be the loss at the speed that nobody logged
+  bool is_speed_open_;  ///< speed was not logged: heat at the stator may be the loss at speed
   Selection out_;
-  RefitResult now_;  ///< the fit whose path the equations are linearised about
+  RefitResult now_;  ///< fit along which the equations are linearised
   std::vector<int> merged_;
-  double unit_W_ = 0.0;  ///< of unknown heat
+  /// Unknown heat in W that warms the outermost node by `material_K`; scale of the grid.
+  double unit_W_ = 0.0;
   FluxGrid grid_;
   FluxPlace place_, best_place_;
   CandidateList list_;

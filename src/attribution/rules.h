@@ -1,40 +1,46 @@
-// Every tunable number of an attribution, with its origin. README.md shows what each of them does when it is halved or doubled.
+// Tunable constants of the selection, with their origin. The benchmark heatsoak_attribution_ablation varies them.
 #pragma once
 
 namespace heatsoak {
 
 struct SelectionRules {
-  // Before anything is measured.
-  double inclusion_nats = -4.5;              ///< ln prior odds of one effect: one motor in three lacks one of some 30
-  double conditional_nats = -7.0;            ///< the same of what only some runs have: one motor in 20 has one of some 50
-  double size_sd = 2.0;                      ///< of an effect's size, in typical sizes
-  double body_start_K = 5.0;                 ///< of a body that comes with an effect, above ambient when a run begins
-  double curve_nats = -7.0;                  ///< ln prior odds of one curve over a signal: one motor in 20 has one of some 50
-  double curve_level_precision_ratio = 0.1;  ///< of a curve's values, in its usual size: within some three of it
-  double curve_step_precision_ratio = 2.0;   ///< of the steps between its knots: neighbours are alike within 0.7 of it
+  // Priors.
+  double inclusion_nats = -4.5;              ///< ln prior odds of one effect: one motor in three lacks one of 30
+  double conditional_nats = -7.0;            ///< ln prior odds of one effect in some runs: one motor in 20 has one of 50
+  double size_sd = 2.0;                      ///< prior standard deviation of a size, in typical sizes
+  double body_start_K = 5.0;                 ///< prior standard deviation of an added body's start temperature
+  double curve_nats = -7.0;                  ///< ln prior odds of one curve: one motor in 20 has one of 50
+  double curve_level_precision_ratio = 0.1;  ///< prior precision of a curve's values: standard deviation 3.2 typical sizes
+  double curve_step_precision_ratio = 2.0;   ///< prior precision of the steps between knots: standard deviation 0.7 typical sizes
 
-  // What gets a name.
-  double named_probability = 0.95;     ///< one name in twenty may be wrong
-  double material_K = 1.8;             ///< unknown heat matters where it would warm the outermost body by this
-  double material_share = 0.1;         ///< of the mean heat that the model knows: less than this every model leaves
-  double as_usual_ratio = 1.5;         ///< more than this of the unknown heat of earlier runs of the motor is not as usual
-  double curve_gain_nats = 10.0;       ///< that a curve must explain beyond the best effects
-  double narrow_nats = 5.0;            ///< that knots over half the range must explain more
-  double second_signal_nats = 10.0;    ///< that heat over one signal times another must be ahead of heat over one
-  double beside_unknown_share = 0.5;   ///< of the error of whole runs, with which a name stays although unknown heat remains that matters
-  double better_share = 0.97;          ///< of the error of whole runs, that a calibrated model may have with a name
-  double plainly_better_share = 0.85;  ///< the same where whole runs decided its figures
-  double same_shape_share = 0.2;   ///< of the evidence of an effect and a curve: with more of it a curve is no other shape of the effect
-  double same_shape_ratio = 0.75;  ///< squared correlation from which a curve is another shape of a named effect
-  double seen_nats = 7.0;          ///< that an effect of typical size would add, to count as one that these runs can show
-  double least_seen_share = 0.5;   ///< of the catalogue: with less nobody can say that nothing is missing
+  // Decisions.
+  double named_probability = 0.95;   ///< smallest probability of a name: at most one in twenty is wrong
+  double material_K = 1.8;           ///< temperature rise of the outermost body from which unknown heat matters
+  double material_share = 0.1;       ///< fraction of the mean modelled heat from which unknown heat matters
+  double as_usual_ratio = 1.5;       ///< largest ratio of unknown heat and error to those of earlier runs of the motor
+  double curve_gain_nats = 10.0;     ///< smallest gain of a curve over the best effects
+  double narrow_nats = 5.0;          ///< smallest gain from halving the range of the knots
+  double second_signal_nats = 10.0;  ///< penalty of a curve over one signal multiplied by a second one
+  /// A name beside material unknown heat must reduce the error of whole runs below this fraction.
+  double beside_unknown_share = 0.5;
+  /// A name in a calibrated model must reduce the error of whole runs below this fraction.
+  double better_share = 0.97;
+  /// The same for a model whose parameters were decided by whole runs.
+  double plainly_better_share = 0.85;
+  /// A curve is another shape of an effect if its fraction of the two gains is below this, and see `same_shape_ratio`.
+  double same_shape_share = 0.2;
+  double same_shape_ratio = 0.75;  ///< smallest squared correlation of the responses for the same shape
+  double seen_nats = 7.0;          ///< smallest expected gain of a typical effect that counts as visible in the runs
+  double least_seen_share = 0.5;   ///< smallest fraction of visible effects for the result "nothing missing"
 
-  // The start: plain least squares, before any unknown heat is supposed.
-  double start_error_K = 1.0;       ///< of a model that lacks something
-  double longest_step_ratio = 0.4;  ///< of a figure's logarithm in one Gauss-Newton step
+  // First fit: plain least squares without unknown heat.
+  double start_error_K = 1.0;       ///< standard deviation of the error of an incomplete model
+  double longest_step_ratio = 0.4;  ///< largest change of a coordinate in one Gauss-Newton step
 
-  // Limits of the computation; they decide nothing.
-  int most_effects = 3;  ///< in a set
+  // Limits of the computation, not meant to influence the result.
+  int most_effects = 3;  ///< largest number of effects in a set
+  /// Search pool: number of best single effects, of best additions to one effect, and of best additions to a pair. The search extends
+  /// `best_pairs` pairs.
   int pool_of_one = 9;
   int pool_of_two = 7;
   int pool_of_three = 5;

@@ -1,4 +1,4 @@
-// What a run may have more or less of than the model says, where no signal of its log tells: heat that goes in, cooling.
+// Run deviations: heat input, cooling or contact that differs in some runs although no signal of the log shows it.
 #pragma once
 
 #include <map>
@@ -12,38 +12,39 @@
 
 namespace heatsoak {
 
-/// What runs have in common that others lack: "cooling" -> "fan", or "run" -> "run4".
+/// Property that some runs share: "cooling" -> "fan", or "run" -> "run4".
 using Condition = std::map<std::string, std::string>;
 
-/// Parameters of the network that are worth 1 + d times as much under a condition.
+/// A kind of deviation: it multiplies parameters of the network by 1 + d in runs with a condition.
 struct RunDeviationType {
   std::string_view name;
-  ParameterSpec size;    ///< d
-  double usual = 0.1;    ///< of d
-  bool is_rare = false;  ///< named for unmistakable evidence of its own only
+  ParameterSpec size;    ///< d, dimensionless
+  double usual = 0.1;    ///< typical size of d
+  bool is_rare = false;  ///< see Candidate::is_rare()
   std::string_view node;
   std::string_view summary;
   std::string_view equation;
   std::string_view family;
   std::string_view confounded_with;
   std::string_view experiment;
-  /// Effects whose first parameter it is.
+  /// True for effects whose first parameter is multiplied.
   bool (*concerns)(const Network& network, const EffectInPlace& effect) = nullptr;
-  /// Heat that is more (or, negative, less) than without it, as a share of what those effects book with it.
+  /// Additional heat (negative: less) as a fraction of the heat of those effects with the deviation.
   double (*part_ratio)(double deviation_share) = nullptr;
 
+  /// Returns the indices of the multiplied parameters in the network's list.
   [[nodiscard]] std::vector<int> places_in(const Network& network) const;
 };
 
-/// The list lives as long as the program.
+/// Returns all kinds. The list lives as long as the program.
 const std::vector<RunDeviationType>& all_run_deviations();
 
-/// One of them in the runs of a condition.
+/// One deviation in the runs with a condition.
 struct RunDeviation {
   const RunDeviationType* type = nullptr;
   Condition condition;
   double deviation_share = 0.0;
-  double spread_sd = 0.2;  ///< known before, around 0
+  double spread_sd = 0.2;  ///< prior standard deviation around 0
 
   [[nodiscard]] bool is_same(const RunDeviationType* other, const Condition& where) const { return type == other && condition == where; }
 };

@@ -22,7 +22,7 @@ namespace {
 /// Explanations whose ln probability differs by less than this cannot be distinguished.
 constexpr double kAmbiguous_nats = 5.0;
 
-/// What the rounds found becomes names, a curve, heat that nothing explains, or nothing.
+/// Decides which members of the best set get a name, whether a curve is accepted, and whether unknown heat remains.
 class Selector : Rounds {
  public:
   using Rounds::Rounds;
@@ -56,7 +56,7 @@ class Selector : Rounds {
       } else if (probability > rules_.named_probability) {
         named.push_back(m);
       } else {
-        refuse(best.members[m], fmt::format("its probability is {:.0f} %, and a name needs {:.0f} %", 100.0 * probability,
+        refuse(best.members[m], fmt::format("its probability is {:.0f} %, but a name requires {:.0f} %", 100.0 * probability,
                                             100.0 * rules_.named_probability));
       }
     }
@@ -112,8 +112,8 @@ class Selector : Rounds {
   void scan(const Judged& judged, const EffectSet& best) {
     constexpr std::size_t kMostReported = 8;
     const ExtendedModel base = base_here();
-    // Where the model is far off, curves are drawn over temperatures as they were measured, smoothed. What heat is multiplied with stays
-    // the model's: noise in it would be that of the residual.
+    // With much missing heat, curves depend on smoothed measured temperatures. Multipliers stay those of the model: measurement noise in
+    // them would correlate with the residual.
     std::vector<LinearisedRun> path = judged.fitted;
     for (std::size_t r = 0; out_.is_material() && r < path.size(); ++r) {
       const std::vector<DesignRun> own = design(now_.model.model.network, {now_.fitted[r]}, {input_.runs[r]}, {out_.weights[r]}, {}, {});
@@ -143,7 +143,7 @@ class Selector : Rounds {
     out_.rounds.back().scan = scan_drivers(input, rules_, kMostReported);
   }
 
-  /// The member of the best set that a curve is another shape of.
+  /// Returns the member of the best set that has the same shape as the curve, if there is one.
   [[nodiscard]] std::optional<std::size_t> same_effect(const EffectSet& best, const ScanResult& curve) const {
     for (std::size_t m = 0; m < best.members.size(); ++m) {
       const double share = curve.gain_nats / (curve.gain_nats + search_->loss_without_nats(best, m));
@@ -154,8 +154,8 @@ class Selector : Rounds {
     return std::nullopt;
   }
 
-  /// Replaces the effects that the curve explains better by the curve. Returns false, with nothing changed, if the curve does not predict
-  /// training runs that its fit has not seen.
+  /// Replaces the effects that the curve explains better by the curve. Returns false, without a change, if the curve does not improve the
+  /// prediction of left-out training runs.
   bool follow_curve(const Judged& judged, const EffectSet& best, const std::vector<std::size_t>& named, const ScanResult& curve) {
     const auto stays = [&](std::size_t m) { return std::ranges::find(curve.beside, static_cast<int>(m)) != curve.beside.end(); };
     std::vector<std::size_t> beside;
@@ -181,7 +181,7 @@ class Selector : Rounds {
 
   [[nodiscard]] double free_run_error_K(const ExtendedModel& model) const { return rms_K(open_loop_errors(model, input_.runs, {})); }
 
-  /// Of whole training runs, with some members of the best set.
+  /// Returns the RMS error in K of whole training runs with some members of the best set; ∞ if the fit fails.
   [[nodiscard]] double error_with_K(const EffectSet& best, const std::vector<std::size_t>& members) const {
     std::vector<int> kept;
     std::ranges::transform(members, std::back_inserter(kept), [&](std::size_t m) { return best.members[m]; });
@@ -194,7 +194,7 @@ class Selector : Rounds {
     return std::isfinite(fit.evidence_nats) ? free_run_error_K(fit.model) : std::numeric_limits<double>::infinity();
   }
 
-  /// Beside unknown heat that matters a name stays where whole runs are followed far better with it than without.
+  /// Keeps, beside material unknown heat, only names that reduce the error of whole runs below `beside_unknown_share`.
   void keep_what_outweighs(const EffectSet& best, std::vector<std::size_t>& named) {
     if (named.empty()) {
       return;
@@ -207,13 +207,13 @@ class Selector : Rounds {
       if (with_all_K < rules_.beside_unknown_share * error_with_K(best, others)) {
         kept.push_back(m);
       } else {
-        refuse(best.members[m], "the residual heat stays larger than the model error");
+        refuse(best.members[m], "material unknown heat remains, and it does not reduce the error of whole runs enough");
       }
     }
     named = std::move(kept);
   }
 
-  /// Whole runs decided the file's parameters, and the model follows these runs as well as it followed those.
+  /// True if whole runs decided the file's parameters, and the model predicts these runs about as well as those.
   [[nodiscard]] bool are_runs_as_usual() const {
     return input_.model.usual_flux_W > 0.0 && input_.model.usual_error_K > 0.0 &&
            free_run_error_K(input_.model) < rules_.as_usual_ratio * input_.model.usual_error_K;
@@ -227,17 +227,17 @@ class Selector : Rounds {
     out_.after.covariance = input_.model.prior().precision.inverse();
   }
 
-  /// A calibrated model leaves some heat of the runs it was fitted to, so evidence alone is not enough: with a named effect whole runs
-  /// must be followed plainly better.
+  /// Keeps only names that improve the prediction of whole runs. Evidence alone is not sufficient: a calibrated model leaves some unknown
+  /// heat even in the runs it was fitted to.
   void keep_what_helps(const EffectSet& best, std::vector<std::size_t>& named) {
-    // The weakest is examined first.
+    // The name with the weakest evidence is examined first.
     std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
     for (std::size_t i = named.size(); i-- > 0;) {
       std::vector<std::size_t> others = named;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
       const double better_share = input_.model.usual_error_K > 0.0 ? rules_.plainly_better_share : rules_.better_share;
       if (error_with_K(best, named) > better_share * error_with_K(best, others)) {
-        refuse(best.members[named[i]], "the prediction of whole runs hardly improves with it");
+        refuse(best.members[named[i]], "it hardly improves the prediction of whole runs");
         named = std::move(others);
       }
     }
@@ -268,7 +268,7 @@ class Selector : Rounds {
   }
 
   void add_terms(const EffectSet& best, const std::vector<std::size_t>& named, const std::vector<int>& kept) {
-    // Instances stand in the network in the order in which they were added.
+    // The network contains the instances in the order in which they were added.
     const std::size_t first = input_.model.model.network.effects().size();
     std::map<int, std::string> names;
     std::size_t instance = first;
@@ -298,7 +298,7 @@ class Selector : Rounds {
     }
   }
 
-  /// Mean square error of each training run as a model predicts it from a fit to all others.
+  /// Returns the mean square error in K² of each training run, predicted from a fit to all other runs.
   [[nodiscard]] std::vector<double> left_out_errors_K2(const ExtendedModel& model, const std::vector<MeasuredRun>& runs,
                                                        const LatentFlux& flux) const {
     std::vector<double> errors_K2;
@@ -322,7 +322,7 @@ class Selector : Rounds {
     return errors_K2;
   }
 
-  /// Gives the model a curve if that predicts training runs that the fit has not seen.
+  /// Adds the curve to the model if that improves the prediction of left-out training runs. Returns true if it did.
   bool adopt_curve(const Judged& judged, const ScanResult& curve) {
     const Regressor& driver = out_.drivers[static_cast<std::size_t>(curve.term.driver)];
     const std::optional<ExtendedModel> curved = with_curve(out_.after.model, curve, driver);
@@ -355,7 +355,7 @@ class Selector : Rounds {
       }
     }
     out_.after = std::move(fit);
-    // In the order of their evidence.
+    // The terms are in order of evidence.
     const auto behind =
         std::ranges::find_if(out_.terms, [&](const AcceptedTerm& other) { return other.loss_without_nats < term.loss_without_nats; });
     out_.terms.insert(behind, std::move(term));

@@ -1,4 +1,4 @@
-// Which effects a model lacks: the base model, an unknown heat and every candidate compete by the evidence of sets of effects.
+// Selection of the effects that a model lacks: sets of candidates compete by evidence, with unknown heat in every model.
 #pragma once
 
 #include <map>
@@ -19,72 +19,74 @@ struct SelectionInput {
   std::vector<MeasuredRun> runs;  ///< at least one
 };
 
-/// A candidate as one of a round's sets of one.
+/// A candidate evaluated alone, as a set of one effect.
 struct JudgedCandidate {
   Candidate candidate;
-  double gain_nats = 0.0;         ///< ln evidence above that of no effect
-  double visibility_ratio = 0.0;  ///< share of it that no change of the model's own figures could pass for
-  double size_share = 0.0;        ///< in typical sizes
-  double probability = 0.0;       ///< of all sets that contain it
+  double gain_nats = 0.0;         ///< ln evidence relative to the model without effects
+  double visibility_ratio = 0.0;  ///< fraction of its column, as a sum of squares, that θ cannot reproduce
+  double size_share = 0.0;        ///< fitted size in typical sizes
+  double probability = 0.0;       ///< probability of all sets that contain it
 };
 
-/// A search at one linearisation.
+/// Result of one search, along one linearisation.
 struct Round {
   std::vector<JudgedCandidate> ladder;  ///< best first
-  std::vector<ScanResult> scan;         ///< best first; of the last round
+  std::vector<ScanResult> scan;         ///< last round only; best first
   std::vector<std::string> taken;       ///< members of the best set
-  double taken_nats = 0.0;              ///< ln P of the best set above that of the empty one
+  double taken_nats = 0.0;              ///< ln P of the best set relative to the empty set
 };
 
-/// An effect that got a name, or a curve that the model was given.
+/// An accepted effect of the catalogue, or an accepted curve.
 struct AcceptedTerm {
-  std::optional<Candidate> candidate;  ///< of the catalogue, or else:
-  std::optional<ScanResult> curve;     ///< found by the driver scan
-  std::string effect_name;             ///< of the instance in the network; empty for sensors
-  double probability = 0.0;            ///< of its family
-  double loss_without_nats = 0.0;      ///< of ln P, without any of its family
+  std::optional<Candidate> candidate;  ///< effect of the catalogue; empty for a curve
+  std::optional<ScanResult> curve;     ///< curve of the scan; empty for an effect
+  std::string effect_name;             ///< name of the instance in the network; empty for sensor errors and run deviations
+  double probability = 0.0;            ///< probability of its family
+  double loss_without_nats = 0.0;      ///< loss of ln P without its family
   double visibility_ratio = 0.0;
-  std::vector<std::string> confusable_with;  ///< ids within the ambiguity
-  std::vector<std::string> experiments;      ///< that would tell them apart
+  std::vector<std::string> confusable_with;  ///< ids of effects, or names of signals, that explain the runs almost as well
+  std::vector<std::string> experiments;      ///< experiments that separate them, in the same order
 };
 
-/// What explains something and still gets no name.
+/// A candidate that explains something but was rejected, with the reason.
 struct Refusal {
   std::string id;
   std::string words;
 };
 
+/// Result of the selection.
 struct Selection {
-  RefitResult before;  ///< the model's own figures, nothing added
+  RefitResult before;  ///< fit of the model's own parameters, without effects
   RefitResult after;
-  RefitResult own;  ///< `before` once more, with uncertainty in figures that do not hold
+  RefitResult own;  ///< same as `before`, with wider priors for contradicted parameters
   std::vector<ChangedParameter> changed;
   std::vector<AcceptedTerm> terms;
   std::vector<Round> rounds;
-  std::vector<Regressor> drivers;  ///< that the scan looked at
+  std::vector<Regressor> drivers;  ///< signals of the scan
   std::vector<std::string> not_judged;
-  double mean_heat_W = 0.0;              ///< that the model knows of, over all runs
-  double material_W = 0.0;               ///< unknown heat of less is what every model leaves
-  std::map<std::string, double> left_W;  ///< by node: rms of what the best set leaves, smoothed
-  std::vector<Eigen::VectorXd> weights;  ///< per run and sample: 0 for what the model makes impossible
-  std::vector<std::string> unseen;       ///< effects that at their typical size would not show in these runs
-  double seen_share = 1.0;               ///< of the effects that were judged
-  double nothing_probability = 1.0;      ///< of the empty set
+  double mean_heat_W = 0.0;              ///< mean modelled heat over all runs
+  double material_W = 0.0;               ///< unknown heat below this is normal for any model
+  std::map<std::string, double> left_W;  ///< by node: RMS of the smoothed unknown heat with the best set
+  std::vector<Eigen::VectorXd> weights;  ///< per run and sample: 0 for samples that the model excludes as wrong
+  std::vector<std::string> unseen;       ///< effects that would not be visible in these runs at typical size
+  double seen_share = 1.0;               ///< fraction of the tested effects that would be visible
+  double nothing_probability = 1.0;      ///< probability of the empty set
   std::vector<Refusal> refused;
-  bool is_as_usual = false;     ///< whole runs are followed as those that the file was fitted to: nothing was changed
-  bool is_unexplained = false;  ///< heat is left that matters, and no effect of the catalogue is it
+  bool is_as_usual = false;     ///< the file's model predicts these runs as well as those it was fitted to; it is unchanged
+  bool is_unexplained = false;  ///< material unknown heat remains, and no effect of the catalogue explains it
 
-  /// More heat is left than what every model leaves.
+  /// True if the unknown heat at some node exceeds `material_W`.
   [[nodiscard]] bool is_material() const;
-  /// Something is missing that cannot be named.
+  /// True if an effect is probably missing but none can be named.
   [[nodiscard]] bool is_undecided(const SelectionRules& rules = {}) const {
     return terms.empty() && nothing_probability < 1.0 - rules.named_probability;
   }
 };
 
+/// Selects the effects. Throws Failure (numerics_failed) if the model cannot be simulated along the runs.
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules);
 
-/// ln evidence of the model with nothing added, its figures fitted and the unknown heat at its most probable.
+/// Returns the ln evidence of the model without effects, with fitted parameters and the most probable unknown heat.
 double evidence_without_effects_nats(const SelectionInput& input);
 
 }  // namespace heatsoak

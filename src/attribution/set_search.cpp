@@ -148,7 +148,7 @@ void SetSearch::search() {
     return set;
   };
   for (int size = 1; size < rules_.most_effects; ++size) {
-    // What explains nothing alone may explain what the best sets leave.
+    // An effect without evidence alone may explain the residual of the best sets.
     std::vector<std::pair<double, int>> additions;
     for (const std::vector<int>& set : best_of_size(static_cast<std::size_t>(size), kGrownFrom)) {
       for (int j = 0; j < count; ++j) {
@@ -217,7 +217,7 @@ int SetSearch::count_of(const EffectSet& set, const std::string& family) const {
 }
 
 int SetSearch::rank_in_family(const EffectSet& set, std::size_t place) const {
-  // Of two alike the one whose loss costs more is the surer.
+  // Of two effects in one family, the one with the larger loss of ln P without it has the better rank.
   const auto nats_without = [&](std::size_t gone) {
     std::vector<int> rest = set.members;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(gone));

@@ -1,7 +1,7 @@
-// Which effects the runs ask for: the exact evidence of sets of a few of them, from least squares that θ is eliminated from.
+// Search of the most probable set of effects, with the evidence of least squares after θ has been eliminated.
 //
-// With priors N(0, s²) on the sizes, half of it where a size has a sign, the evidence of a set S under one supposition about the unknown
-// heat is ln p0 + ½ vᵀp − ½ ln|K| + ½ ln|Λ| + Σ ln 2Φ(p_j/sd_j), K = M_SS + Λ, p = K⁻¹ v_S. Sums over suppositions follow.
+// Priors of the sizes are N(0, s²), or its positive half if a size has a sign. For one assumed unknown heat the ln evidence of a set S is
+// ln p0 + ½ vᵀp − ½ ln|K| + ½ ln|Λ| + Σ ln 2Φ(p_j/sd_j). Here K = M_SS + Λ and p = K⁻¹ v_S. The evidence is averaged over the assumptions.
 #pragma once
 
 #include <functional>
@@ -13,56 +13,58 @@
 
 namespace heatsoak {
 
-/// What the search has to know of a candidate.
+/// Prior of a candidate, and its relation to the others.
 struct CandidateRule {
-  bool has_sign = true;              ///< its size cannot be negative
+  bool has_sign = true;              ///< the size cannot be negative
   double prior_nats = -4.5;          ///< ln prior odds
-  std::string id;                    ///< variants of one effect share it; a set has at most one of them
-  std::string family;                ///< what stands in for each other
-  std::vector<int> companions = {};  ///< columns that come with it, each with a size of its own that may be negative
+  std::string id;                    ///< same for all variants of an effect; a set contains at most one of them
+  std::string family;                ///< group of effects that may replace each other
+  std::vector<int> companions = {};  ///< columns added with it; each has a size that may be negative
   double companion_sd = 1.0;
 };
 
 struct EffectSet {
-  std::vector<int> members;           ///< ascending
+  std::vector<int> members;           ///< indices, ascending
   double log_probability_nats = 0.0;  ///< not normalised
   double probability = 0.0;
 };
 
-/// Linear evidence under several suppositions about the unknown heat.
+/// Linear evidence for several assumptions about the unknown heat (points).
 class SetSearch {
  public:
-  /// A set under one supposition.
+  /// Solution for a set, at one point.
   struct AtBest {
     std::size_t point = 0;
-    double evidence_nats = 0.0;  ///< linear, at that supposition; no prior of the set
-    Eigen::VectorXd sizes;       ///< of the members, in typical sizes
-    Eigen::VectorXd theta;       ///< step
+    double evidence_nats = 0.0;  ///< linear evidence at that point, without the prior of the set
+    Eigen::VectorXd sizes;       ///< sizes of the members, in typical sizes
+    Eigen::VectorXd theta;       ///< step of θ
   };
   SetSearch(std::vector<Reduced> points, std::vector<CandidateRule> candidates, const SelectionRules& rules);
 
-  /// Linear evidence about the path of another set can be too good by more than what a name needs. The best sets, in their order, get the
-  /// evidence of their own fits, until one keeps what it promised or `most` were fitted; all others change as the best of these does.
+  /// Replaces the linear evidence by that of nonlinear fits, best set first, because linear evidence along another set's path can be too
+  /// high. Stops at the first set that loses less than 5 nats, or after `most` fits. Sets without a fit change by as much as the best
+  /// fitted one.
   void reconsider(const std::function<double(const std::vector<int>& members, const AtBest& at)>& fitted_nats, std::size_t most);
-  /// All sets that were looked at, best first.
+  /// Returns all evaluated sets, best first.
   [[nodiscard]] const std::vector<EffectSet>& sets() const { return sets_; }
-  /// Of at least as many members of its family as `set` has that are as sure as its member `place` or surer.
+  /// Returns the probability of all sets with at least as many members of this family as the rank of `place` in its family.
   [[nodiscard]] double family_probability(const EffectSet& set, std::size_t place) const;
-  /// What ln P loses with fewer of them.
+  /// Returns ln P of `set` minus that of the best set with fewer members of this family; 0 if there is none.
   [[nodiscard]] double loss_without_nats(const EffectSet& set, std::size_t place) const;
-  /// Of a set of one: ln evidence above that of the empty set, prior not counted.
+  /// Returns the ln evidence of the candidate alone minus that of the empty set, without priors.
   [[nodiscard]] double single_gain_nats(int candidate) const;
-  /// Candidates of the family of `set`'s member that could stand in its place within `within_nats`.
+  /// Returns candidates that may replace the member at `place` with a loss of ln P of at most `within_nats`.
   [[nodiscard]] std::vector<int> stand_ins(const EffectSet& set, std::size_t place, double within_nats) const;
 
-  /// Under the supposition at which the set is most probable.
+  /// Returns the solution at the point where the set is most probable.
   [[nodiscard]] AtBest at_best(const std::vector<int>& members) const;
-  /// Share of a candidate's column that θ does not absorb.
+  /// Returns the fraction of the candidate's column, as a sum of squares, that θ cannot reproduce; 0 to 1.
   [[nodiscard]] double visibility_ratio(int candidate) const;
-  /// Expected gain at its typical size, where it is seen least of the suppositions that matter.
+  /// Returns the expected gain at typical size, at the most probable point of the empty set.
   [[nodiscard]] double typical_gain_nats(int candidate) const;
 
  private:
+  /// Evaluates the empty set, all single candidates and growing combinations of the best ones.
   void search();
   void rank();
   double score(std::vector<int> members);
@@ -70,7 +72,7 @@ class SetSearch {
   [[nodiscard]] double log_evidence(const std::vector<int>& members) const;
   [[nodiscard]] std::vector<std::vector<int>> best_of_size(std::size_t size, std::size_t most) const;
   [[nodiscard]] int count_of(const EffectSet& set, const std::string& family) const;
-  /// 1 for the surest member of its family, 2 for the next.
+  /// Returns 1 for the most certain member of its family, 2 for the next, and so on.
   [[nodiscard]] int rank_in_family(const EffectSet& set, std::size_t place) const;
 
   std::vector<Reduced> points_;
@@ -79,20 +81,21 @@ class SetSearch {
   std::vector<EffectSet> sets_;
 };
 
-/// Columns of some candidates and of what comes with them, with their prior.
+/// Columns of a set with their companions, and the prior precision.
 struct SetColumns {
-  std::vector<Eigen::Index> columns;  ///< the candidates' own first
+  std::vector<Eigen::Index> columns;  ///< columns of the members first
   std::vector<bool> has_sign;
   Eigen::VectorXd precision;
 };
 SetColumns columns_of(const std::vector<int>& members, const std::vector<CandidateRule>& candidates, double size_sd);
 
-/// ½ vᵀp − ½ ln|K| + ½ ln|Λ| + Σ ln 2Φ for those that have a sign; `precision` is Λ.
+/// Returns ½ vᵀp − ½ ln|K| + ½ ln|Λ| + Σ ln 2Φ, the sum over sizes with a sign. `precision` is Λ. Writes p to `sizes` if given. Returns −∞
+/// if K is not positive definite.
 double set_gain_nats(const Eigen::MatrixXd& products, const Eigen::VectorXd& right, const Eigen::MatrixXd& precision,
                      const std::vector<bool>& has_sign, Eigen::VectorXd* sizes = nullptr);
-/// Of the set in what the runs say at one supposition.
+/// Same for a set at one point.
 double set_gain_nats(const Reduced& point, const SetColumns& set, Eigen::VectorXd* sizes = nullptr);
-/// ln Σ exp.
+/// Returns ln Σ exp(x) of a non-empty list.
 double log_sum_nats(const std::vector<double>& all_nats);
 
 }  // namespace heatsoak

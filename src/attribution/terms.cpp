@@ -11,18 +11,18 @@
 namespace heatsoak {
 namespace {
 
-/// Standard deviation of a size before anything is measured, in typical sizes.
+/// Prior standard deviation of a size, in typical sizes.
 constexpr double kSizeSpread_share = SelectionRules{}.size_sd;
-/// Of a shape parameter's logarithm before anything is measured.
+/// Prior standard deviation of the logarithm of a shape parameter.
 constexpr double kShapeSpread = 0.3;
-/// Of the ends of a curve over a temperature, in gaps between its knots.
+/// Prior standard deviation of the first and last knot of a curve over a temperature, in gaps between knots.
 constexpr double kKnotSpread = 0.5;
-/// The same where the effect brings a body: anything may be screwed to a motor.
+/// Prior standard deviation of the logarithm for an effect with a body: its capacity may be almost anything.
 constexpr double kBodySpread = 1.0;
 
 std::string named(std::string_view name, std::string usual) { return name.empty() ? std::move(usual) : std::string(name); }
 
-/// What a motor file takes for a name.
+/// Returns the text as a valid name in a motor file.
 std::string as_word(std::string text) {
   std::ranges::transform(text, text.begin(),
                          [](unsigned char c) { return std::isalnum(c) != 0 ? static_cast<char>(std::tolower(c)) : '_'; });
@@ -38,7 +38,7 @@ std::string unused_name(const Network& network, const std::string& wanted) {
   return name;
 }
 
-/// Adds the effect; `values` of the model stay what they are.
+/// Adds the effect. The present values of the model's parameters are kept.
 const EffectInPlace& add(Model& model, const std::string& name, const EffectType& type, const std::vector<std::string>& nodes,
                          const std::vector<double>& parameters) {
   model.network.add_effect(unused_name(model.network, name), type, nodes, parameters);
@@ -47,7 +47,7 @@ const EffectInPlace& add(Model& model, const std::string& name, const EffectType
   return model.network.effects().back();
 }
 
-/// Free around nothing.
+/// Frees a parameter with a prior mean of 0.
 void set_free_around_zero(Model& model, int place, double scale, const Range& range, double spread) {
   model.set_free({.place = place, .by_log = false, .scale = scale, .low = range.low, .high = range.high}, spread);
   model.prior.mean[model.free_count() - 1] = 0.0;
@@ -75,7 +75,8 @@ std::string_view form_of(Multiplier multiplier) {
   return "";
 }
 
-/// The curve with what passivity asks: nowhere negative. The constant part of a conductance is the base network's own.
+/// Returns the curve without negative values, because losses and conductances cannot be negative. The constant part of a conductance
+/// belongs to the base network and is subtracted.
 Eigen::VectorXd passive(const ScanResult& curve) {
   const bool is_conductance = curve.term.multiplier == Multiplier::excess || curve.term.multiplier == Multiplier::difference;
   const double shift = is_conductance ? curve.curve.minCoeff() : 0.0;
@@ -88,7 +89,7 @@ std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanRe
   const std::optional<double> choice = choice_value(type.parameters[0], driver.choice);
   const std::optional<double> form = choice_value(type.parameters[1], form_of(curve.term.multiplier));
   const bool is_column = driver.choice == kColumnChoice;
-  // An operating point has room for one.
+  // An operating point holds only one log column.
   if (!choice || !form || (is_column && !model.column.empty() && model.column != driver.name)) {
     return std::nullopt;
   }
@@ -105,7 +106,7 @@ std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanRe
                                    {curve.term.node, cold, watched, reference}, parameters);
   const double gap = (curve.knots.back() - curve.knots.front()) / static_cast<double>(values.size() - 1);
   for (const std::size_t end : {2U, 3U}) {
-    // The scan saw temperatures as they were measured, noise and a sensor's error and all: the curve may stand a little beside.
+    // The scan used measured temperatures with noise and sensor errors, so the knots may be off.
     if (driver.kind == DriverKind::node_temperature) {
       const double knot = parameters[end];
       out.model.set_free(
@@ -154,7 +155,7 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
   for (std::size_t p = 0; shapes == ShapesAre::free && p < parameters.size(); ++p) {
     const ParameterSpec& spec = candidate.type->parameters[p];
     if (static_cast<int>(p) != candidate.size_parameter() && spec.choices.empty() && parameters[p] > 0.0 && spec.range.low >= 0.0) {
-      // Exponents, thresholds, capacities: near what is usual, yet the runs may say otherwise.
+      // Exponents, thresholds and capacities have a prior around the typical value.
       out.model.set_free({.place = effect.parameter_index[p],
                           .by_log = true,
                           .scale = 1.0,

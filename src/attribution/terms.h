@@ -1,4 +1,4 @@
-// A model with one term more, or one less.
+// Adds terms to a model, and transfers parameter values between models.
 #pragma once
 
 #include <optional>
@@ -9,24 +9,26 @@
 
 namespace heatsoak {
 
-/// Exponents, thresholds and capacities that come with an effect.
+/// Whether exponents, thresholds and capacities of an added effect are fitted or fixed.
 enum class ShapesAre { free, held };
 
-/// The candidate in place with its size free, beginning at `size_share` typical sizes. Without a `name` it gets one that is not used.
+/// Returns the model with the candidate added and its size free, starting at `size_share` typical sizes, clamped to the allowed range. If
+/// `name` is empty or used, an unused name is chosen.
 ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candidate, double size_share, std::string_view name = {},
                              ShapesAre shapes = ShapesAre::free);
 
-/// The coordinate of the candidate's size in a model that has it: as an effect of that name, or a fault of a sensor, or a run's deviation.
+/// Returns the coordinate of the candidate's size. The model must contain it as an effect of that name, a sensor error or a run deviation.
 Eigen::Index size_coordinate(const ExtendedModel& model, const Candidate& candidate, std::string_view effect_name);
 
-/// The curve as an effect of the network, its values free: a table over the driver, or a conductance or source in certain runs only.
-/// What physics forbids (a loss below zero) is cut off; nothing where no operating point has the driver, or nothing would be left.
+/// Returns the model with the curve added as an effect `tabulated` with free values. Negative values are set to 0; the minimum of a
+/// conductance is subtracted first. Returns nothing if an effect cannot depend on this signal, or if the model already uses another log
+/// column.
 std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Regressor& driver,
                                         std::string_view name = {});
 
-/// `model` with the values that parameters and sensors of the same name have in `other`.
+/// Returns `model` with the values of parameters, sensor errors and deviations that `other` also contains.
 ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other);
-/// One of the figures that both have is off by a factor of two or more: from there not every step leads back.
+/// True if a common parameter differs by a factor of two or more: Gauss-Newton steps may not converge from there.
 bool has_strayed(const ExtendedModel& model, const ExtendedModel& from);
 
 }  // namespace heatsoak

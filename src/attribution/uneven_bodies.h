@@ -1,4 +1,4 @@
-// A body of the network is not of one temperature, and its sensor sits somewhere in it.
+// Sensor errors from temperature differences within a body: a reading depends on where the sensor is.
 #pragma once
 
 #include <vector>
@@ -7,12 +7,13 @@
 
 namespace heatsoak {
 
-/// How much of the difference to a neighbour a sensor may show, standard deviation: a fifth of a per cent, far below a Biot number of 0.1
-/// up to which bodies are taken as lumped at all (F. P. Incropera et al., Fundamentals of Heat and Mass Transfer, 7th edition,
-/// section 5.1).
+/// Prior standard deviation of a sensor's error, as a fraction of the temperature difference to another body. It is far below the Biot
+/// number of 0.1 up to which a body may be lumped (F. P. Incropera et al., Fundamentals of Heat and Mass Transfer, 7th edition, section
+/// 5.1).
 inline constexpr double kUneven_share = 0.002;
 
-/// Per run one column per sensor and other body, in K per share of their difference: the same columns in every run.
+/// Returns, per run, one column per sensor and body: the temperature difference in K between that body and the sensor's own. All runs have
+/// the same columns.
 std::vector<Columns> uneven_bodies(const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs);
 
 }  // namespace heatsoak

@@ -16,7 +16,7 @@ class UnexplainedHeatReport {
  public:
   UnexplainedHeatReport(const Diagnosis& diagnosis, const std::vector<MeasuredRun>& train) : told_(diagnosis), train_(train) {}
 
-  /// Curves that the model was given; without one, the node with the most unknown heat.
+  /// Returns the accepted curves or, without one, the node with the most unknown heat.
   std::vector<Unexplained> tell() {
     for (const AcceptedTerm& term : told_.selection.terms) {
       if (term.curve) {
@@ -31,7 +31,7 @@ class UnexplainedHeatReport {
   }
 
  private:
-  /// What is left at the node where most is.
+  /// Returns the unknown heat at the node with the largest RMS.
   [[nodiscard]] Unexplained most() const {
     Unexplained most;
     for (const auto& [node, members] : unknown_by_sensor()) {
@@ -51,7 +51,7 @@ class UnexplainedHeatReport {
         train_, [&](const MeasuredRun& run) { return std::ranges::find(run.sensors, node, &Sensor::node) != run.sensors.end(); });
   }
 
-  /// Nodes that unknown heat may enter, by the one whose sensor shows it: itself, or the first that has one.
+  /// Groups the nodes with unknown heat by the node whose sensor shows it: the node itself, or else the first one with a sensor.
   [[nodiscard]] std::map<std::string, std::vector<std::string>> unknown_by_sensor() const {
     std::map<std::string, std::vector<std::string>> shown;
     const auto first = std::ranges::find_if(told_.flux_rms_after_W, [&](const auto& each) { return has_sensor(each.first); });
@@ -61,7 +61,7 @@ class UnexplainedHeatReport {
     return shown;
   }
 
-  /// Of all `members` together.
+  /// Returns the sum of the unknown heat of all `members`.
   [[nodiscard]] Unexplained unnamed_heat(const std::string& node, const std::vector<std::string>& members) const {
     Unexplained heat;
     heat.node = node;
@@ -87,7 +87,7 @@ class UnexplainedHeatReport {
     return heat;
   }
 
-  /// The curve as the model has it, which is what physics leaves of the scan's.
+  /// Overwrites the curve of the scan by the fitted one of the model.
   void report_as_added(const AcceptedTerm& term, Unexplained& heat) const {
     const auto effect = std::ranges::find(told_.effects, term.effect_name, &FoundEffect::name);
     heat.is_in_model = true;

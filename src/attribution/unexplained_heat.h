@@ -1,4 +1,4 @@
-// Heat that has no name: what goes with a signal by a curve of its own, and what follows no signal.
+// Reports heat without a name: accepted curves over signals, and unknown heat that follows no signal.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,8 @@
 
 namespace heatsoak {
 
-/// Of a diagnosis that has its selection, its effects and its courses of unknown heat.
+/// Returns the accepted curves. If there are none and the selection is unexplained, returns the node with the most unknown heat. Needs the
+/// selection, effects and flux of the diagnosis.
 std::vector<Unexplained> unexplained_heat(const Diagnosis& described, const std::vector<MeasuredRun>& train);
 
 }  // namespace heatsoak

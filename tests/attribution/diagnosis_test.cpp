@@ -326,7 +326,7 @@ TEST(Examination, ExperimentsStayAsCoolAsTheRuns) {
   input.train.front().at[100].current_rms_A = 200.0;
   const std::vector<Experiment> experiments = next_experiments(diagnosis.selection, input.train);
   ASSERT_FALSE(experiments.empty());
-  EXPECT_THAT(experiments.front().what, testing::HasSubstr("no hotter than these runs"));
+  EXPECT_THAT(experiments.front().what, testing::HasSubstr("no hotter than in these runs"));
   EXPECT_GT(experiments.front().expected_nats, 1.0);
 }
 

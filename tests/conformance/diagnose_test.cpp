@@ -168,7 +168,7 @@ TEST(Diagnose, NamesNothingInPlaceOfASpeedThatNobodyLogged) {
   const ProgramRun done = run({"diagnose", "--model", kMotor, "--train", without_speed("match_1.csv"), without_speed("match_2.csv"),
                                without_speed("bench.csv"), "--holdout", without_speed("match_3.csv"), "--json", "-"},
                               wide);
-  EXPECT_THAT(done.err, HasSubstr("the loss at speed, up to 5.5 W, is part of what is unexplained"));
+  EXPECT_THAT(done.err, HasSubstr("the loss at speed, up to 5.5 W, is part of the unknown heat"));
   const nlohmann::json answer = done.json();
   for (const nlohmann::json& effect : answer["effects"]) {
     EXPECT_NE(effect["node"], "stator") << effect;
