@@ -1,10 +1,10 @@
-// The drive core as blocks and signals, for people: `heatsoak describe robot_core` prints these tables and draws them. drive_core.cpp and
-// drive_stages.h declare the same for the compiler; a test compares both, so a change of one has to come with a change of the other.
+// Blocks and signals of the drive core for readers: `heatsoak describe robot_core` prints these tables and draws them. drive_core.cpp and
+// drive_stages.h declare the same for the compiler. A test compares both, so change both together.
 #pragma once
 
 namespace robot_core {
 
-/// In the order in which step() calls them; the planner is called by the stage before it, the firmware calls step().
+/// Blocks in the order in which step() calls them. The stage before the planner calls the planner; the firmware calls step().
 enum class Block : unsigned char {
   firmware,
   validate_input,
@@ -22,16 +22,16 @@ enum class BlockRate : unsigned char {
   every_period,             ///< Config::period_s
   every_second_period,      ///< every second period while a body velocity is commanded, else every period
   every_guard_period,       ///< GuardModel::period_s, once per wheel
-  every_period_of_command,  ///< Config::period_s as long as the command is of one mode
+  every_period_of_command,  ///< Config::period_s while the command has the mode that uses the block
 };
 
 struct BlockText {
   Block block;
-  const char* function;  ///< in namespace robot_core
-  const char* files;     ///< of robot_core/, the one that defines the function first
-  const char* number;    ///< stage, or a letter beside the stages
+  const char* function;  ///< name in namespace robot_core
+  const char* files;     ///< files of robot_core/; the first one defines the function
+  const char* number;    ///< stage number, or a letter for a block beside the stages
   const char* title;
-  const char* task;  ///< one sentence
+  const char* task;  ///< purpose in one sentence
   BlockRate rate;
 };
 
@@ -62,7 +62,7 @@ inline constexpr BlockText kBlocks[] = {
      "Converts voltages to PWM ratios of the battery voltage and collects reasons and warnings.", BlockRate::every_period},
 };
 
-/// A set of blocks, a bit each.
+/// Set of blocks, one bit per block.
 using Blocks = unsigned;
 constexpr Blocks only(Block block) { return 1U << static_cast<unsigned>(block); }
 constexpr Blocks operator|(Block a, Block b) { return only(a) | only(b); }
@@ -70,9 +70,9 @@ constexpr Blocks operator|(Blocks a, Block b) { return a | only(b); }
 constexpr bool contains(Blocks blocks, Block block) { return (blocks & only(block)) != 0; }
 
 struct SignalText {
-  const char* carrier;  ///< struct that is handed on, or State where the signal is kept between calls
-  const char* name;     ///< member of it; "wheel." stands for wheel[i].
-  const char* unit;     ///< of a vector, of its plane and yaw parts; "flag", "code" or "count" without one
+  const char* carrier;  ///< struct that is passed on, or State if the signal is kept between calls
+  const char* name;     ///< member of the carrier; "wheel." stands for wheel[i].
+  const char* unit;     ///< unit, of a vector those of plane and yaw; "flag", "code" or "count" if there is none
   Block from;
   Blocks to;
 };
@@ -81,8 +81,8 @@ namespace diagram {
 
 using enum Block;
 
-/// By carrier and block that writes it. A signal that a later call reads, because an earlier block of the order above needs it, is of the
-/// period before.
+/// Signals, sorted by carrier and writing block. A block that runs before the writer in the order above reads the value of the previous
+/// period.
 inline constexpr SignalText kSignals[] = {
     {"Input", "wheel_speed_rad_per_s", "rad/s", firmware, only(validate_input)},
     {"Input", "motor_current_A", "A", firmware, only(validate_input)},

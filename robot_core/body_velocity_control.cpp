@@ -1,4 +1,4 @@
-// Stage 2: from the command to the motion that the body is to have now.
+// Stage 2: converts the command into the motion that the body should have now.
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
@@ -8,15 +8,15 @@ constexpr float kStanding_m_per_s = 0.03F;
 constexpr float kStanding_rad_per_s = 0.3F;
 // A command that jumps is approached with this multiple of the acceleration limit: more than a planned motion needs.
 constexpr float kApproach_ratio = 2.0F;
-// The same where the command is at fault and the robot stops: a planned motion brakes no less.
+// Multiple for the stop after a command fault: a planned motion brakes at least as hard.
 constexpr float kFaultyApproach_ratio = 1.0F;
 constexpr float kMostYawIntegral_rad = 0.5F;
-// How fast the reference follows a robot that its limits hold back, and how far ahead of it the reference stays.
+// Speed at which the reference follows a robot that its limits hold back, and lead of the reference over the robot.
 constexpr float kHoldBack_s = 0.1F;
 constexpr float kLead_share = 0.2F;
 constexpr float kRecovery_s = 0.3F;
 constexpr float kRelease_s = 0.2F;
-// Over which the force that accelerates the body is smoothed.
+// Smoothing time of the force that accelerates the body.
 constexpr float kForce_s = 0.01F;
 
 Vector3 turned(const Vector3& v, const SineCosine& turn) {
@@ -29,7 +29,7 @@ bool is_standing(const Vector3& v) { return length(v) < kStanding_m_per_s && abs
 
 Vector3 scaled(const Vector3& v, float plane, float yaw) { return {v.x * plane, v.y * plane, v.yaw * yaw}; }
 
-/// Length of the plane part and size of the yaw part at most as given, directions kept. Whether there was anything to do.
+/// Limits the length of the plane part and the magnitude of the yaw part, keeping their directions. Returns true if it changed `v`.
 [[gnu::always_inline]] inline bool limit(Vector3& v, float most_plane, float most_yaw) {
   const float square = v.x * v.x + v.y * v.y;
   const bool is_long = square > most_plane * most_plane;
@@ -45,7 +45,7 @@ Vector3 scaled(const Vector3& v, float plane, float yaw) { return {v.x * plane, 
   return is_long || is_fast;
 }
 
-/// Reference of the command for the present: extrapolated by its acceleration and turned into the robot's present heading.
+/// Reference of the command for the present time: extrapolated by its acceleration and turned into the robot's present heading.
 void follow_command(const Config& config, State& state, const Input& input, const Validated& validated, BodyReference& body) {
   if (validated.mode == Mode::body_velocity) {
     const Command& command = input.command;
@@ -67,8 +67,8 @@ void follow_command(const Config& config, State& state, const Input& input, cons
   }
 }
 
-/// Where limits hold the robot back, the velocity reference stays a little ahead of the robot in the commanded direction, so that the
-/// wheels' errors keep the ratios of that direction.
+/// If limits hold the robot back, the velocity reference stays a little ahead of the robot in the commanded direction. The errors of the
+/// wheels then keep the ratios of that direction.
 void hold_back(State& state, const Vector3& wanted, const Validated& validated, float since_s) {
   if (state.is_limited == 0 && state.speed_share >= 1.0F) {
     return;
@@ -87,9 +87,9 @@ float approach_ratio_of(const Validated& validated) {
   return validated.command_fault == Reason::none ? kApproach_ratio : kFaultyApproach_ratio;
 }
 
-/// The last reference seen from the robot's present heading, moved towards the wanted one.
+/// Turns the last reference into the robot's present heading and moves it towards the wanted one.
 void approach(const Config& config, const State& state, const Validated& validated, float since_s, BodyReference& body) {
-  // Within a period the robot turns by a tenth of a radian at most, in a gap the reference has been set anew.
+  // Within a period the robot turns by at most a tenth of a radian; after a gap the reference has been set anew.
   const float angle_rad = clamped(-validated.yaw_rate_rad_per_s * since_s, -0.3F, 0.3F);
   const Vector3 last = turned(state.velocity_reference, {angle_rad, 1.0F - 0.5F * angle_rad * angle_rad});
   Vector3 change{body.velocity.x - last.x, body.velocity.y - last.y, body.velocity.yaw - last.yaw};
@@ -106,7 +106,7 @@ void approach(const Config& config, const State& state, const Validated& validat
 void close_loop(const Config& config, State& state, const Validated& validated, float since_s, BodyReference& body) {
   const float yaw_error_rad_per_s = body.velocity.yaw - validated.yaw_rate_rad_per_s;
   state.yaw_integral_rad = clamped(state.yaw_integral_rad + yaw_error_rad_per_s * since_s, -kMostYawIntegral_rad, kMostYawIntegral_rad);
-  // A robot that is to stand must not turn because its integral was needed on the way.
+  // A standing robot must not turn because of the integral that its motion needed.
   if (body.velocity.yaw == 0.0F && length(body.velocity) < kStanding_m_per_s) {
     state.yaw_integral_rad -= state.yaw_integral_rad * smaller(1.0F, since_s / kRelease_s);
   }
@@ -116,14 +116,14 @@ void close_loop(const Config& config, State& state, const Validated& validated, 
   const float approach_ratio = approach_ratio_of(validated);
   const float most_m_per_s2 = approach_ratio * config.acceleration_limit_m_per_s2;
   limit(body.acceleration, most_m_per_s2, approach_ratio * config.yaw_acceleration_limit_rad_per_s2);
-  // Every packet corrects the velocity a little at once: as a force that would be a blow.
+  // Every packet corrects the velocity by a small step, which would act as a force impulse.
   const float share = smaller(1.0F, since_s / kForce_s);
   Vector3& smoothed = state.acceleration_reference;
   smoothed.x += share * (body.acceleration.x - smoothed.x);
   smoothed.y += share * (body.acceleration.y - smoothed.y);
   smoothed.yaw += share * (body.acceleration.yaw - smoothed.yaw);
   body.acceleration = smoothed;
-  // The wheels follow their speeds; what they slip in yaw only the gyro sees.
+  // The wheels follow their speeds; only the gyro sees their slip in yaw.
   body.velocity.yaw += config.derived.yaw_correction_per_s * state.yaw_integral_rad;
 }
 
@@ -131,7 +131,7 @@ void close_loop(const Config& config, State& state, const Validated& validated, 
 
 BodyReference control_body_velocity(const Config& config, State& state, const Input& input, const Validated& validated) {
   BodyReference body;
-  // After a gap or a restart of State the references start anew, and go on for one period.
+  // After a gap or a restart of State the references start anew and are valid for one period.
   const bool is_anew = validated.robot_fault == Reason::time_jump || validated.robot_fault == Reason::state_corrupted;
   const float since_s = is_anew ? config.period_s : state.held.since_s + validated.elapsed_s;
   state.held.since_s = 0.0F;

@@ -1,5 +1,5 @@
-/* The derating table of a motor and how it is read: the same text in the drive core and in the exported C header, so plain C99.
-   Method: squares of the allowed current, straight between the places (trilinear), because copper heats with the square. */
+/* Derating table of a motor and its reader. Plain C99: the drive core and the exported C header share this text. Method: trilinear
+   interpolation of the squared current, because copper heats with the square. */
 #ifndef HEATSOAK_CURRENT_TABLE_H
 #define HEATSOAK_CURRENT_TABLE_H
 
@@ -8,7 +8,7 @@
 #include <math.h>
 #endif
 
-/* Ascending places of an axis; one place: the axis does not matter. */
+/* Axis points in ascending order. With one point the current does not depend on this axis. */
 typedef struct {
   const float *points;
   int32_t count;
@@ -18,26 +18,26 @@ typedef struct {
   heatsoak_axis speed_rad_per_s;
   heatsoak_axis stator_C;
   heatsoak_axis winding_C;
-  const float *square_A2; /* [speed][stator][winding]; negative: no current is too much already */
+  const float *square_A2; /* [speed][stator][winding]; negative: even zero current is too much */
   float most_current_A;
-  float straight_below_A;           /* a smaller current is square/straight_below, so that it falls to 0 with a finite slope */
-  float most_speed_rad_per_s;       /* from here on the current falls in a straight line */
-  float no_current_speed_rad_per_s; /* to none here */
-  float winding_per_stator_K;       /* a stator above its axis counts as a winding that is so many times hotter */
+  float straight_below_A;           /* below this current the result is square/straight_below, so that it falls to 0 with a finite slope */
+  float most_speed_rad_per_s;       /* above this speed the allowed current falls linearly */
+  float no_current_speed_rad_per_s; /* the allowed current is 0 from this speed on */
+  float winding_per_stator_K;       /* a stator 1 K above its axis counts as a winding that is this much hotter */
 } heatsoak_current_table;
 
-/* Where a speed and a stator temperature lie in the table: found once, used for several winding temperatures. */
+/* Position of a speed and a stator temperature in the table: found once, used for several winding temperatures. */
 typedef struct {
-  int32_t first;       /* of the squares: corner of the cells of the row; negative: no current is allowed */
-  int32_t next_stator; /* from a square to that of the next stator and speed; 0 without such an axis */
+  int32_t first;       /* index of the first square of the row; negative: no current is allowed */
+  int32_t next_stator; /* step to the square of the next stator point; 0 if the axis has one point */
   int32_t next_speed;
-  float stator_share; /* 0 to 1, place in the cell */
+  float stator_share; /* position between two stator points, 0 to 1 */
   float speed_share;
-  float hotter_K;   /* that the winding counts hotter, for the stator */
-  float fade_ratio; /* 0 to 1, current that a speed above the highest leaves */
+  float hotter_K;   /* added to the winding temperature for a stator above its axis */
+  float fade_ratio; /* factor on the current above the highest speed of the axis, 0 to 1 */
 } heatsoak_row;
 
-/* Segment of an axis, from 0, and the place in it, 0 to 1; the ends for what lies outside. */
+/* Returns the axis segment of x, from 0, and sets `share` to the position in it, 0 to 1. Values outside the axis count as its ends. */
 static inline int32_t heatsoak_find(const heatsoak_axis *axis, float x, float *share) {
   int32_t above = 1;
   float low;
@@ -53,7 +53,7 @@ static inline int32_t heatsoak_find(const heatsoak_axis *axis, float x, float *s
   return above - 1;
 }
 
-/* What is not a number allows no current. */
+/* Finds the row of a speed and a stator temperature. NaN allows no current. */
 static inline heatsoak_row heatsoak_find_row(const heatsoak_current_table *table, float speed_rad_per_s, float stator_C) {
   const int32_t windings = table->winding_C.count;
   const float last_stator_C = table->stator_C.points[table->stator_C.count - 1];
@@ -75,7 +75,7 @@ static inline heatsoak_row heatsoak_find_row(const heatsoak_current_table *table
   return row;
 }
 
-/* Between two places of the winding's axis. */
+/* Linear interpolation between two points of the winding axis. */
 static inline float heatsoak_along_winding(const float *square_A2, int32_t at, float share) {
   return square_A2[at] + share * (square_A2[at + 1] - square_A2[at]);
 }
@@ -86,7 +86,7 @@ static inline float heatsoak_along_stator(const float *square_A2, const heatsoak
                                : low_A2 + row->stator_share * (heatsoak_along_winding(square_A2, at + row->next_stator, share) - low_A2);
 }
 
-/* Square of the current; 0 above the axis of the winding and for what is not a number. */
+/* Square of the allowed current; 0 for a winding above its axis and for NaN. */
 static inline float heatsoak_allowed_A2(const heatsoak_current_table *table, const heatsoak_row *row, float winding_C) {
   const float first_C = table->winding_C.points[0];
   float counted_C = winding_C;
@@ -106,7 +106,7 @@ static inline float heatsoak_allowed_A2(const heatsoak_current_table *table, con
              : low_A2 + row->speed_share * (heatsoak_along_stator(table->square_A2, row, at + row->next_speed, share) - low_A2);
 }
 
-/* Of a positive number: one instruction where the controller has it, else the C library's; correctly rounded, so equal everywhere. */
+/* Square root of a positive number: one instruction if the controller has it, else the C library's. Both round correctly. */
 static inline float heatsoak_square_root(float x) {
 #ifdef __GNUC__
   return __builtin_sqrtf(x);
@@ -115,7 +115,7 @@ static inline float heatsoak_square_root(float x) {
 #endif
 }
 
-/* Current of a square of that row, from 0 to most_current_A. */
+/* Allowed current for a square of that row, 0 to most_current_A. */
 static inline float heatsoak_current_A(const heatsoak_current_table *table, const heatsoak_row *row, float square_A2) {
   const float straight_A = table->straight_below_A;
   float current_A;

@@ -1,4 +1,4 @@
-// Checks a Config, and fills in the values that follow from others.
+// Checks a Config and calculates the values that follow from others.
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
@@ -26,7 +26,7 @@ bool all(const float (&values)[count]) {
   return all<is_finite<float>>(values) && all<is_positive>(positive) && all<is_not_negative>(not_negative);
 }
 
-/// Whole guard periods per control period, and a table.
+/// Returns true if a guard period is a whole number of control periods and the guard has a table.
 [[gnu::cold]] bool is_possible(const GuardModel& guard, float period_s) {
   const float periods = guard.period_s / period_s;
   const float whole = static_cast<float>(static_cast<int>(clamped(periods, 0.0F, 1e6F) + 0.5F));
@@ -83,8 +83,8 @@ bool all(const float (&values)[count]) {
 
 namespace {
 
-/// Rim speeds of one motion of the body fulfil Σ c·r = 0, for each three wheels with the gyro and for all four without. An estimate of
-/// r_i from the others is therefore off by |Σ c·residual|/|c_i|, at most the largest |c|/|c_i| times the sum of the residuals' sizes.
+/// Rim speeds of one body motion satisfy Σ c·r = 0: for any three wheels with the gyro, and for all four without it. An estimate of r_i
+/// from the others is therefore off by |Σ c·residual|/|c_i|. That is at most the largest |c|/|c_i| times the sum of the absolute residuals.
 /// Coefficients below `least` determine no speed.
 float most_ratio(const float (&coefficient)[kMostWheels], float least) {
   float largest = 0.0F;
@@ -138,10 +138,10 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
     xy += wheel.rolling_x_share * wheel.rolling_y_share;
     yy += wheel.rolling_y_share * wheel.rolling_y_share;
   }
-  constexpr float kJump_share = 0.03F;     // of the fastest speed: encoder steps and noise
+  constexpr float kJump_share = 0.03F;     // share of the fastest speed: encoder steps and noise
   constexpr float kCurrent_share = 0.15F;  // noise, delay and settling of the current
   derived.jump_rad_per_s = config.largest_acceleration_rad_per_s2 * config.period_s + kJump_share * config.fastest_wheel_rad_per_s;
-  derived.most_sensed_A = 2.5F * config.battery_full_V / config.lowest_resistance_ohm;  // braking, the back-EMF adds to the battery
+  derived.most_sensed_A = 2.5F * config.battery_full_V / config.lowest_resistance_ohm;  // when braking, the back-EMF adds to the battery
   const float per_determinant = 1.0F / (xx * yy - xy * xy);
   derived.plane_xx_factor = yy * per_determinant;
   derived.plane_xy_factor = -xy * per_determinant;
@@ -155,16 +155,16 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
     wheel.per_damping_rad_per_V_s = 1.0F / wheel.damping_V_s_per_rad;
     const float leverage =
         derived.plane_xx_factor * t_x * t_x + 2.0F * derived.plane_xy_factor * t_x * t_y + derived.plane_yy_factor * t_y * t_y;
-    constexpr float kMostLeverage = 0.98F;  // else the other wheels say next to nothing of this one's direction
+    constexpr float kMostLeverage = 0.98F;  // above this the other wheels hardly determine this wheel's direction
     wheel.others_factor = leverage < kMostLeverage ? 1.0F / (1.0F - leverage) : 0.0F;
     const float force_N = config.traction_ratio * wheel.level_load_share * config.mass_kg * kGravity_m_per_s2;
     const float nominal_A = force_N * config.wheel_radius_m / (derived.geared_constant_V_s_per_rad * config.gear_efficiency) +
                             absolute(wheel.sign_V) / config.resistance_ohm;
-    // The grip limit uses the nominal resistance, because it protects no part.
+    // The grip limit uses the nominal resistance, because it protects no component.
     const float grip_A = nominal_A * config.resistance_ohm / config.lowest_resistance_ohm;
     wheel.is_grip_limit = config.traction_ratio > 0.0F && grip_A < config.current_limit_A ? 1 : 0;
     wheel.body_limit_A = wheel.is_grip_limit != 0 ? grip_A : config.current_limit_A;
-    // A robot without a driver limit still has a current that it drives with.
+    // The margin follows the grip limit if the robot has no driver limit.
     derived.current_margin_A = larger(derived.current_margin_A, kCurrent_share * wheel.body_limit_A);
   }
   derived.spread_V_s_per_m = spread_V_s_per_m(config);
@@ -175,7 +175,7 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
 }
 
 [[gnu::cold]] std::uint32_t config_check_sum(const Config& config) {
-  // FNV-1a by words (Fowler, Noll, Vo): every change of one word changes it.
+  // FNV-1a over words (Fowler, Noll, Vo): every change of a single word changes the sum.
   static_assert(__builtin_offsetof(Config, unused) % sizeof(std::uint32_t) == 2, "flags and padding fill the last word");
   constexpr unsigned kWords = (__builtin_offsetof(Config, unused) + sizeof(Config::unused)) / sizeof(std::uint32_t);
   std::uint32_t sum = 2166136261U;

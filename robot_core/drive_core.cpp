@@ -6,7 +6,7 @@ namespace robot_core {
 namespace {
 
 constexpr std::uint32_t kStarted = 0x4452564EU;
-// So that a state of zeros is none.
+// Makes a state of zeros invalid.
 constexpr std::uint64_t kSeed = 0x9E3779B97F4A7C15U;
 
 /// Check sum of the State, from the member after the sum up to the comparisons.
@@ -15,7 +15,7 @@ constexpr std::uint64_t kSeed = 0x9E3779B97F4A7C15U;
   return kSeed + sum_of_words<1, __builtin_offsetof(State, comparison) / sizeof(std::uint64_t)>(&state);
 }
 
-/// Guard steps of the wheels are spread over the guard period.
+/// Spreads the guard steps of the wheels over the guard period.
 void spread_guards(const Config& config, State& state) {
   if (config.guard == nullptr) {
     return;
@@ -38,7 +38,7 @@ void spread_guards(const Config& config, State& state) {
     const float start_C = state.guard[i].state_C[0];
     const bool is_at_limit = !(start_C < config.guard->winding_limit_C);
     wheel.guard_fault = is_at_limit ? static_cast<std::uint8_t>(Reason::guard_unknown) : 0;
-    // Until its first step, at standstill, as the table says.
+    // Until the guard's first step, use the table at standstill.
     wheel.allowed_A = wheel.allowed_braking_A = allowed_current_A(*config.guard, 0.0F, start_C, start_C + config.braking_reserve_K);
   }
   spread_guards(config, state);
@@ -71,7 +71,7 @@ void spread_guards(const Config& config, State& state) {
 
 namespace {
 
-/// Stages 2 to 4.
+/// Runs stages 2 to 4 and stores their result for the next period.
 BodyReference find_references(const Config& config, State& state, const Input& input, const Validated& validated, WheelReferences& wheels,
                               WheelVoltages& voltage) {
   const BodyReference body = control_body_velocity(config, state, input, validated);
@@ -86,7 +86,7 @@ BodyReference find_references(const Config& config, State& state, const Input& i
   return body;
 }
 
-/// Once more what stages 2 to 4 found in the last period.
+/// Reuses the result of stages 2 to 4 of the last period.
 void hold_references(const Config& config, State& state, const Validated& validated, WheelReferences& wheels, WheelVoltages& voltage) {
   HeldReference& held = state.held;
   held.is_fresh = 0;
@@ -98,7 +98,7 @@ void hold_references(const Config& config, State& state, const Validated& valida
   }
 }
 
-/// Stages 5 to 7.
+/// Runs stages 5 to 7.
 void control_wheels(const Config& config, State& state, const Validated& validated, const BodyReference& body,
                     const WheelReferences& wheels, WheelVoltages& voltage, Output& out) {
   control_wheel_speeds(config, state, validated, wheels, voltage);
@@ -106,11 +106,11 @@ void control_wheels(const Config& config, State& state, const Validated& validat
   make_output(config, state, validated, limited, out);
 }
 
-/// The reference of a body velocity is slow beside the wheels' loops, so it serves two periods; what changes the kind of motion acts at
-/// once.
+/// The reference of a body velocity changes slowly compared with the wheel loops, so it serves two periods. A change of mode or a fault of
+/// the robot takes effect at once.
 void step_valid(const Config& config, State& state, const Input& input, bool was_corrupted, Output& out) {
   Validated validated = validate_input(config, state, input);
-  // The bridges stay open where the period is invalid, too.
+  // With an invalid period the bridges stay open as well.
   if (was_corrupted && validated.robot_fault != Reason::period_invalid) {
     validated.robot_fault = Reason::state_corrupted;
   }
@@ -131,7 +131,7 @@ void step_valid(const Config& config, State& state, const Input& input, bool was
   state.check_sum = state_check_sum(state);
 }
 
-/// After a flip of a bit the faults that were known stay; of memory that was never started nothing does.
+/// Restarts State. After a single flipped bit the known faults are kept; memory that was never started keeps nothing.
 [[gnu::cold]] void restart(const Config& config, State& state) {
   const KnownFaults known{state.comparison, state.battery_source_V};
   const std::uint32_t flips = state.is_valid ^ kStarted;

@@ -1,5 +1,5 @@
-// The stages of step(), in order, and the signals between them. One file each: input_validation.cpp, body_velocity_control.cpp,
-// wheel_speeds.cpp, feed_forward.cpp, wheel_speed_control.cpp, limits.cpp, output.cpp. block_diagram.h declares the same for people.
+// The stages of step() in order and the signals between them. One file each: input_validation.cpp, body_velocity_control.cpp,
+// wheel_speeds.cpp, feed_forward.cpp, wheel_speed_control.cpp, limits.cpp, output.cpp. block_diagram.h describes the same for readers.
 #pragma once
 
 #include "robot_core/drive_core.h"
@@ -7,14 +7,14 @@
 
 namespace robot_core {
 
-// Values per wheel are written by every stage for the wheels that the robot has, so they have no values before.
+// Members per wheel have no initial values: every stage writes them for all wheels of the robot.
 
-/// Stage 1: what is believed of one wheel.
+/// Stage 1: validated signals of one wheel.
 struct ValidatedWheel {
   float speed_rad_per_s;    ///< sensed, else implied, else 0
-  float implied_rad_per_s;  ///< by the other wheels and the gyro; the sensed speed where they say nothing. Of stage 1 alone
+  float implied_rad_per_s;  ///< implied by the other wheels and the gyro, else the sensed speed; only stage 1 uses it
   float current_A;          ///< sensed, else estimated from voltage and speed
-  bool is_speed_known;      ///< sensed or implied
+  bool is_speed_known;      ///< speed sensed or implied
   bool is_speed_sensed;
   bool is_current_sensed;
 };
@@ -22,32 +22,32 @@ struct ValidatedWheel {
 struct Validated {
   ValidatedWheel wheel[kMostWheels];
   float yaw_rate_rad_per_s = 0.0F;
-  Vector3 velocity;            ///< of the body, local frame
-  float battery_V = 0.0F;      ///< for limits: never more than the true one is likely to be
-  float pwm_battery_V = 0.0F;  ///< for the PWM ratio: never less
+  Vector3 velocity;            ///< velocity of the body, local frame
+  float battery_V = 0.0F;      ///< voltage for limits, unlikely to be above the true one
+  float pwm_battery_V = 0.0F;  ///< voltage for the PWM ratio, unlikely to be below the true one
   float ambient_C = 0.0F;
-  float elapsed_s = 0.0F;  ///< since the last step: a whole number of periods
-  int guard_periods = 1;   ///< the same as periods, and one more as often as small delays add up to one
+  float elapsed_s = 0.0F;  ///< time since the last step, a whole number of periods
+  int guard_periods = 1;   ///< elapsed periods; one more whenever small delays add up to a period
   float spread_V = 0.0F;  ///< bound of the difference between estimates of one back-EMF from different sensors; infinite: use speed_range()
-  bool is_redundancy_reduced = false;  ///< three wheels, or a speed sensor or the gyro is not believed
-  bool is_checked = true;              ///< enough sensors are left that a wrong one contradicts the others
+  bool is_redundancy_reduced = false;  ///< true: three wheels, or a speed sensor or the gyro is not accepted
+  bool is_checked = true;              ///< true: enough sensors are left for a wrong one to contradict the others
   bool are_all_sensed = true;
-  bool are_samples_compared = false;  ///< too few are believed: implied speeds are those of all samples
-  Mode mode = Mode::coast;            ///< after faults of the command
+  bool are_samples_compared = false;  ///< true: too few sensors are accepted, so implied speeds come from all samples
+  Mode mode = Mode::coast;            ///< mode after faults of the command
   Reason command_fault = Reason::none;
   Reason robot_fault = Reason::none;
 };
 
-/// Stage 2.
+/// Result of stage 2: motion of the body.
 struct BodyReference {
   Vector3 velocity;           ///< local frame
-  Vector3 acceleration;       ///< as seen from the field, resolved in the local frame
-  Vector3 push;               ///< on something outside
-  bool is_wheelwise = false;  ///< wheel_speed or wheel_torque: no body motion is asked for
-  bool is_open = false;       ///< coast
+  Vector3 acceleration;       ///< seen from the field, resolved in the local frame
+  Vector3 push;               ///< force and moment on an external object, local frame
+  bool is_wheelwise = false;  ///< true in the modes wheel_speed and wheel_torque: no body motion is commanded
+  bool is_open = false;       ///< true: coast
 };
 
-/// Stage 3.
+/// Result of stage 3: reference of one wheel.
 struct WheelReference {
   float speed_rad_per_s;
   float acceleration_rad_per_s2;
@@ -56,16 +56,16 @@ struct WheelReferences {
   WheelReference wheel[kMostWheels];
 };
 
-/// Stages 4 and 5: voltages that are asked for.
+/// Result of stages 4 and 5: requested voltages of one wheel.
 struct WheelVoltage {
   float feed_forward_V;
-  float wanted_V;  ///< with the speed control's share
+  float wanted_V;  ///< feed-forward plus the speed control's voltage
 };
 struct WheelVoltages {
   WheelVoltage wheel[kMostWheels];
 };
 
-/// Stage 6.
+/// Result of stage 6: voltage of one wheel after the limits.
 struct LimitedWheel {
   float voltage_V;
   float allowed_A;
@@ -85,20 +85,20 @@ void control_wheel_speeds(const Config& config, State& state, const Validated& v
                           WheelVoltages& voltage);
 LimitedVoltages apply_limits(const Config& config, State& state, const Validated& validated, const BodyReference& body,
                              const WheelVoltages& voltage);
-/// Writes all of `out`.
+/// Stage 7. Writes all members of `out`.
 void make_output(const Config& config, const State& state, const Validated& validated, const LimitedVoltages& limited, Output& out);
 
-// Parts of stage 1, in sensor_comparison.cpp.
+// Parts of stage 1, mostly in sensor_comparison.cpp.
 
 inline float rim_speed_m_per_s(const Config& config, int i, float speed_rad_per_s) {
   return speed_rad_per_s * config.wheel[i].rim_per_speed_m;
 }
 
-/// Yaw rate that the sensed wheel speeds imply.
+/// Yaw rate that the validated wheel speeds imply.
 float yaw_rate_of_wheels(const Config& config, const Validated& validated);
 
-/// Speeds that a wheel has by every smallest set of sensors that determines it: its own, two others and the gyro, or three others. Of
-/// four wheels and a gyro any two may lie: one of these speeds is true, as long as the wheels roll.
+/// Range of the speeds that the smallest sufficient sets of sensors give for a wheel: its own sensor, two others with the gyro, or three
+/// others. With four wheels and a gyro any two sensors may be wrong: while the wheels roll, one of these speeds is the true one.
 struct SpeedRange {
   float slowest_rad_per_s = std::numeric_limits<float>::infinity();
   float fastest_rad_per_s = -std::numeric_limits<float>::infinity();
@@ -109,38 +109,38 @@ struct SpeedRange {
   }
   bool is_known() const { return slowest_rad_per_s <= fastest_rad_per_s; }
 };
-/// In speed_range.cpp. Empty where no such set is believed.
+/// Calculates the range of one wheel (speed_range.cpp). The range is empty if no accepted set of sensors determines the speed.
 SpeedRange speed_range(const Config& config, const State& state, const Validated& validated, int wheel);
 
-/// Two wheels whose rolling directions differ by less than 8 degrees (sine), or three that span a smaller doubled area, determine no speed.
+/// A set determines no speed if two rolling directions have a smaller sine (8 degrees apart), or three span a smaller doubled area.
 inline constexpr float kLeastArea_ratio = 0.14F;
-/// Twice the signed area of the triangle between the ends of three unit vectors along rolling directions.
+/// Twice the signed area of the triangle between the tips of three rolling direction vectors.
 inline float area(const WheelConfig& a, const WheelConfig& b, const WheelConfig& c) {
   return (b.rolling_x_share - a.rolling_x_share) * (c.rolling_y_share - a.rolling_y_share) -
          (b.rolling_y_share - a.rolling_y_share) * (c.rolling_x_share - a.rolling_x_share);
 }
-/// Sine of the angle from the rolling direction of `a` to that of `b`.
+/// Sine of the angle from the rolling direction of `a` to the rolling direction of `b`.
 inline float cross(const WheelConfig& a, const WheelConfig& b) {
   return a.rolling_x_share * b.rolling_y_share - a.rolling_y_share * b.rolling_x_share;
 }
 
-/// Compares sensors with each other: stuck and swapped ones, and those that are believed again.
+/// Compares sensors with each other: finds stuck and swapped ones, and accepts those again that have recovered.
 void compare_sensors(const Config& config, State& state, const Input& input, Validated& validated);
 
-/// Copies the faults of wheel speeds and yaw rate to where a flipped bit in the rest of State does not reach them.
+/// Copies the faults of wheel speeds and yaw rate into ComparisonState, where a flipped bit in the rest of State does not reach them.
 void note_faults(State& state);
 
-/// Known sensor faults and the battery's voltage. They survive a flipped bit in the rest of State, so that no sensor is believed again.
+/// Known sensor faults and open-circuit voltage. They survive a flipped bit in the rest of State, so that faulty sensors stay rejected.
 struct KnownFaults {
   ComparisonState comparison;
   float battery_source_V;
 };
 void recall_faults(const KnownFaults& known, State& state);
 
-/// Sets the check sum of the comparisons.
+/// Updates the check sum of the comparisons.
 void seal(ComparisonState& comparison);
 
-/// Steps the thermal guards that are due: each wheel's once per guard period, spread over the period.
+/// Steps the thermal guards that are due: each wheel's guard once per guard period, spread over that period.
 void run_guards(const Config& config, State& state, const Input& input, const Validated& validated);
 
 }  // namespace robot_core

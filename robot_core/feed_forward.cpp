@@ -1,17 +1,17 @@
-// Stage 4: the voltage that the motion needs, as far as it is known beforehand.
+// Stage 4: the part of the voltage that can be calculated from the wanted motion.
 //   V = d·ω + f(θ),  f(θ) = a·sin(θ + φ) + b·sign(sin(θ + φ))      (RoboTeam Twente, ETDP 2025, equations (2) and (3))
 //   + R/(K_t·n·η)·(r·F + J·dω/dt),  F = J⁺ᵀ·(m·a_x + push_x, m·a_y + push_y, I·a_yaw + push_yaw)
-// θ is the direction of travel, and sin(θ + φ) = (v_y·cos φ + v_x·sin φ)/|v|. The sign is smoothed near a standstill. In rotation f goes
-// over to one constant, by the share γ = s²·(3 − 2·s), s = min(1, R·|yaw rate|/|v|).
+// θ is the direction of travel, and sin(θ + φ) = (v_y·cos φ + v_x·sin φ)/|v|. The sign is smoothed near standstill. In rotation f changes
+// to a constant, with the share γ = s²·(3 − 2·s), s = min(1, R·|yaw rate|/|v|).
 #include "robot_core/drive_stages.h"
 
-// For size: it runs in every second step.
+// Optimised for size, because it runs in every second step only.
 #pragma GCC optimize("Os")
 
 namespace robot_core {
 namespace {
 
-/// Of one wheel over the motion of the body.
+/// Friction voltage of one wheel for a motion of the body.
 float friction_V(const Config& config, const WheelConfig& wheel, const Vector3& velocity, float per_speed_s_per_m, float rotation_share,
                  float wheel_rad_per_s) {
   const float smoothing = config.friction_smoothing_m_per_s;

@@ -4,11 +4,11 @@ namespace robot_core {
 namespace {
 
 constexpr float kStep_share = 0.05F;
-// An Euler step of a twentieth of a time constant cools as 1/20 + 1/800 of it would.
+// An Euler step of a twentieth of a time constant cools as much as (1/20 + 1/800) time constants.
 constexpr float kCounted_share = 0.97F;
 constexpr float kVeryLong_s = 1e9F;
 
-/// Cooling without current, speed and airflow. Unknown temperatures take their highest safe value.
+/// Signals during power-off: no current, speed or airflow. Unknown temperatures take their highest safe value.
 void signals_without_power(const GuardModel& model, float* signal) {
   for (int i = 0; i < kGuardSignals; ++i) {
     signal[i] = 0.0F;
@@ -21,7 +21,7 @@ void signals_without_power(const GuardModel& model, float* signal) {
   }
 }
 
-/// A twentieth of the shortest time constant: no rate is above the largest sum of a row of derivatives (Gershgorin).
+/// Returns a twentieth of the shortest time constant. No rate exceeds the largest row sum of the derivatives (Gershgorin).
 float cooling_step_s(const GuardModel& model, const float* signal, const float* state_C) {
   float moved_C[kMostGuardNodes];
   float rate_K_per_s[kMostGuardNodes];
@@ -46,7 +46,7 @@ float cooling_step_s(const GuardModel& model, const float* signal, const float* 
   return fastest_per_s > 0.0F ? kStep_share / fastest_per_s : model.period_s;
 }
 
-/// `peak_C`: hottest of each node on the way. Time beyond the largest number of steps does not count.
+/// Cools the nodes; `peak_C` becomes the highest temperature of each node. Ignores the time beyond kMostCoolingSteps steps.
 void cool(const GuardModel& model, float elapsed_s, float* state_C, float* peak_C) {
   float signal[kGuardSignals];
   signals_without_power(model, signal);
@@ -96,7 +96,7 @@ Restored restore_guard(const GuardModel& model, GuardState& state, const GuardSt
 }
 
 bool restore_guards(const Config& config, State& state, const GuardState* saved, float elapsed_s, float board_C) {
-  // The State's check sum is a sum of words: it follows their change, and one that is wrong stays wrong.
+  // The check sum of State is a sum of words, so adding the change keeps a valid sum valid and a wrong one wrong.
   constexpr unsigned kEnd = __builtin_offsetof(State, comparison) / sizeof(std::uint64_t);
   const std::uint64_t before = sum_of_words<1, kEnd>(&state);
   bool are_all = config.guard != nullptr;

@@ -1,16 +1,16 @@
-// The thermal guards of the wheels, each stepped once per guard period, spread over it so that no control step carries all of them.
+// Thermal guards of the wheels. Each is stepped once per guard period, at different times, so that no control step runs all of them.
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
 namespace {
 
 constexpr float kLongestGap_s = 1.0F;
-// A guard that began as hot as its limit is known again when it allows this share of what a cold motor may carry, or all of the driver.
+// A guard that started at its limit counts as known when it allows this share of the cold motor's current, or the driver's limit.
 constexpr float kKnown_share = 0.8F;
 
 int periods_per_guard_step(const Config& config) { return static_cast<int>(config.guard->period_s / config.period_s + 0.5F); }
 
-/// Of the motors next to this one, their windings left out.
+/// Highest temperature of the neighbouring motors, without their windings.
 float hottest_neighbour_C(const Config& config, const State& state, int of) {
   float hottest_C = config.guard->coldest_ambient_C;
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -21,9 +21,9 @@ float hottest_neighbour_C(const Config& config, const State& state, int of) {
   return hottest_C;
 }
 
-/// The limits hold voltages by the lowest resistance. The guard limits heat, and a motor that is as hot as its observer says has more:
-/// its current is what the guard allows when one of the lowest resistance would carry this many times as much. A motor that is colder
-/// than that carries more, but heats by the square of the voltage over its resistance and so stays colder than the observer.
+/// Ratio of the current with the lowest resistance to the current of a motor as hot as its observer. Voltage limits assume the lowest
+/// resistance, but the guard limits heat, so its allowed current is multiplied by this ratio. A colder motor carries more current, but its
+/// heat is the squared voltage over its resistance: it stays colder than the observer.
 float cold_current_ratio(const Config& config, float winding_C) {
   constexpr float kReference_C = 25.0F;
   const float warm_K = larger(0.0F, winding_C - kReference_C);
@@ -31,26 +31,26 @@ float cold_current_ratio(const Config& config, float winding_C) {
                 config.resistance_ohm * (1.0F + config.resistance_rise_per_K * warm_K) * config.derived.per_lowest_resistance_A_per_V);
 }
 
-/// Reciprocal of the nominal motor's terminal resistance at its winding temperature, which follows from the observer's: the observer counts
-/// heat_ratio times the heat. Without an air temperature the rise is above the coldest air, which gives the larger current.
+/// Reciprocal of the nominal motor's terminal resistance at its winding temperature. That temperature follows from the observer's, which
+/// counts heat_ratio times the heat. Without an air temperature the coldest air is assumed, which gives the larger current.
 float nominal_conductance_A_per_V(const Config& config, const GuardState& guard, float ambient_C) {
   constexpr float kReference_C = 25.0F;
   const GuardModel& model = *config.guard;
   const float air_C = ambient_C == ambient_C ? ambient_C : model.coldest_ambient_C;
   const float observed_K = guard.state_C[0] - air_C;
-  // Steady state at one current: both rises are proportional to heat and to 1 + α·rise.
+  // In steady state at one current both rises are proportional to the heat and to 1 + α·rise.
   const float feedback = config.resistance_rise_per_K * observed_K * (model.heat_ratio - 1.0F);
   const float warm_K = air_C + observed_K / (model.heat_ratio + feedback) - kReference_C;
   return config.derived.per_resistance_A_per_V / (1.0F + config.resistance_rise_per_K * warm_K);
 }
 
-/// Mean square of the current that voltage and speed drive through the nominal motor, beyond what has been counted.
+/// Mean square of the current that voltage and speed drive through the nominal motor, minus the square already counted.
 float missing_A2(const State& state, int i) {
   const float per_ohm = state.wheel[i].conductance_A_per_V;
   return larger(0.0F, state.comparison.driven_V2[i] * per_ohm * per_ohm - state.comparison.counted_A2[i]);
 }
 
-/// `periods`: that current_squared_A2 is the sum of.
+/// Steps the guard of one wheel. `periods`: number of periods summed up in current_squared_A2.
 void step_wheel_guard(const Config& config, State& state, const Validated& validated, int i, float periods) {
   WheelState& wheel = state.wheel[i];
   const GuardModel& model = *config.guard;
@@ -59,10 +59,10 @@ void step_wheel_guard(const Config& config, State& state, const Validated& valid
   const float speed_rad_per_s = sensed.speed_rad_per_s * config.gear_ratio;
   float signal[kGuardSignals];
   signal[guard_current_A] = sensed.current_A < 0.0F ? -rms_A : rms_A;
-  // Of a wheel without a speed nothing is known, but then the current is the limp current, which every speed bears.
+  // Without a speed the current is the limp current, which is safe at every speed.
   signal[guard_speed_rad_per_s] = sensed.is_speed_known ? speed_rad_per_s : kNoSample;
   signal[guard_ambient_C] = validated.ambient_C;
-  // Nobody measures it: laws that depend on it take the speed that heats most.
+  // This signal is not measured: laws that depend on it use the speed that heats most.
   signal[guard_vehicle_speed_m_per_s] = kNoSample;
   signal[guard_neighbour_C] = model.plausible_range[guard_neighbour_C].is_used ? hottest_neighbour_C(config, state, i) : 0.0F;
   signal[guard_age_h] = kNoSample;
@@ -70,7 +70,7 @@ void step_wheel_guard(const Config& config, State& state, const Validated& valid
   const GuardOutput guard = step_guard(model, state.guard[i], signal, config.braking_reserve_K);
   wheel.conductance_A_per_V = nominal_conductance_A_per_V(config, state.guard[i], validated.ambient_C);
   const float cold_ratio = cold_current_ratio(config, guard.winding_C);
-  // A winding bears the limp current for good, but not where it is at its limit already.
+  // A winding carries the limp current permanently, unless it is at its limit already.
   const float limp_A = guard.winding_C + config.braking_reserve_K < model.winding_limit_C ? config.limp_current_A : 0.0F;
   wheel.allowed_A = sensed.is_speed_known ? cold_ratio * guard.allowed_A : limp_A;
   wheel.allowed_braking_A = sensed.is_speed_known ? cold_ratio * guard.allowed_braking_A : limp_A;
@@ -82,7 +82,7 @@ void step_wheel_guard(const Config& config, State& state, const Validated& valid
   }
 }
 
-/// A stator that is hotter than the observer says is believed, a colder one is not.
+/// Takes a stator sample if it is hotter than the observer; a colder one is ignored.
 void take_stator_sample(const GuardModel& model, State& state, const Input& input, int i) {
   WheelState& wheel = state.wheel[i];
   const float sample_C = input.stator_C[i];
@@ -98,7 +98,7 @@ void take_stator_sample(const GuardModel& model, State& state, const Input& inpu
   }
 }
 
-/// Nobody knows what flowed in a gap: the largest current heats a standing winding for all of it, up to the limit.
+/// The current during a gap is unknown: assume the largest one at standstill for the whole gap, up to the temperature limit.
 [[gnu::cold]] void heat_for_gap(const Config& config, WheelState& wheel, GuardState& guard, float gap_s) {
   const GuardModel& model = *config.guard;
   if (!(gap_s <= kLongestGap_s) || !is_started(model, guard)) {
@@ -119,7 +119,7 @@ void take_stator_sample(const GuardModel& model, State& state, const Input& inpu
   seal(guard);
 }
 
-/// Steps the guards that are due.
+/// Steps the guards whose period has passed.
 void run_due_guards(const Config& config, State& state, const Input& input, const Validated& validated, int periods) {
   const bool is_gap = validated.robot_fault == Reason::time_jump;
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -131,7 +131,7 @@ void run_due_guards(const Config& config, State& state, const Input& input, cons
     if (steps >= periods) {
       take_stator_sample(*config.guard, state, input, i);
       step_wheel_guard(config, state, validated, i, static_cast<float>(steps));
-      // A sum over a period or two more than the guard's counts for its own length: the surplus is kept for the next step.
+      // The sum may cover one or two periods more than the guard's: its mean is used now and the surplus kept for the next step.
       wheel.guard_steps = static_cast<std::uint16_t>(steps - periods);
       wheel.current_squared_A2 *= static_cast<float>(steps - periods) / static_cast<float>(steps);
     }

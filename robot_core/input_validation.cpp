@@ -1,7 +1,7 @@
-// Stage 1: which samples are believed, and what stands in for the others.
+// Stage 1: decides which samples are accepted, and replaces the others.
 #include "robot_core/drive_stages.h"
 
-// For size, which here is faster, too: less is inlined that is seldom needed.
+// Optimised for size, which is also faster here: less of the seldom needed code is inlined.
 #pragma GCC optimize("Os")
 
 namespace robot_core {
@@ -19,20 +19,20 @@ void validate_time(const Config& config, State& state, const Input& input, Valid
   validated.guard_periods = 1;
   const float elapsed_s = input.elapsed_s;
   constexpr float kShortest_share = 0.5F;
-  // Written so that what is no number is invalid.
+  // This form of the comparison also rejects NaN.
   if (!(elapsed_s >= kShortest_share * config.period_s) || !is_finite(elapsed_s)) {
     validated.robot_fault = Reason::period_invalid;
   } else if (elapsed_s > kLongestGap_periods * config.period_s) {
     validated.robot_fault = Reason::time_jump;
     validated.elapsed_s = elapsed_s;
   } else {
-    // Rounded up, so that nothing is integrated over too short a time; a tenth is the timer's jitter.
+    // Rounded up, so that no integration covers too short a time. A tenth of a period is jitter of the timer.
     constexpr float kRoundUp_share = 0.9F;
     const float periods = elapsed_s / config.period_s;
     validated.guard_periods = static_cast<int>(clamped(periods + kRoundUp_share, 1.0F, kLongestGap_periods));
     const auto whole = static_cast<float>(validated.guard_periods);
     validated.elapsed_s = whole * config.period_s;
-    // A loop that is always a little late would lose that share of its heat.
+    // A loop that is always slightly late would otherwise lose that share of its heat.
     state.late_periods += larger(0.0F, periods - whole);
     if (state.late_periods >= 1.0F) {
       state.late_periods -= 1.0F;
@@ -41,10 +41,10 @@ void validate_time(const Config& config, State& state, const Input& input, Valid
   }
 }
 
-// Nobody means a larger number, and products of such numbers stay finite.
+// No plausible command is larger, and products of such numbers stay finite.
 constexpr float kMostCommand = 1e6F;
 
-/// Not a number if one of the components is not.
+/// Sum of magnitudes; NaN if a component is NaN.
 float sum(const Vector3& v) { return absolute(v.x) + absolute(v.y) + absolute(v.yaw); }
 
 bool has_finite_values(const Config& config, const Command& command) {
@@ -89,18 +89,18 @@ void validate_command(const Config& config, const Input& input, Validated& valid
   }
 }
 
-/// The battery's voltage for limits, where a lower one is safe, and for the PWM ratio, where a higher one is. A sample that is lower than
-/// the known load explains is no fault: a kicker may charge. The limits take it, the PWM ratio keeps to what the battery has shown.
+/// Finds the battery voltage for the limits, where a low value is safe, and for the PWM ratio, where a high value is safe. A sample below
+/// the voltage that the known load explains is no fault: a kicker may charge. The limits use it; the PWM ratio uses earlier samples.
 void validate_battery(const Config& config, State& state, const Input& input, Validated& validated) {
   const float sample_V = input.battery_V;
   const float sag_V = config.battery_resistance_ohm * larger(0.0F, state.battery_current_A);
-  constexpr float kSag_ratio = 1.5F;         // an old battery, and what it has to recover from
-  constexpr float kTolerance_share = 0.03F;  // of the full battery: noise
+  constexpr float kSag_ratio = 1.5F;         // allows for an aged battery and its recovery after a load
+  constexpr float kTolerance_share = 0.03F;  // share of the full battery: noise
   constexpr float kFall_share_per_s = 0.004F;
   constexpr float kRise_s = 0.05F;
   const float shown_V = state.battery_source_V;
   const float least_V = shown_V - kSag_ratio * sag_V;
-  // A timer that lies makes no battery empty.
+  // A faulty timer must not discharge the battery estimate.
   const float since_s = smaller(validated.elapsed_s, kLongestGap_periods * config.period_s);
   state.battery_source_V = larger(0.0F, shown_V - kFall_share_per_s * config.battery_full_V * since_s);
   if (!(sample_V >= 0.5F * config.battery_lowest_V && sample_V <= 1.1F * config.battery_full_V)) {
@@ -116,16 +116,16 @@ void validate_battery(const Config& config, State& state, const Input& input, Va
     state.battery_source_V += rise_ratio * larger(0.0F, source_V - state.battery_source_V);
     validated.pwm_battery_V = larger(sample_V, least_V);
   } else {
-    // Motors that brake may charge it by as much as the tolerance.
+    // Braking motors may charge the battery by up to the tolerance.
     validated.pwm_battery_V = smaller(shown_V, config.battery_full_V) + kTolerance_share * config.battery_full_V;
   }
 }
 
-/// Air does not become cold at once: a sample below the last one is approached slowly, in case the sensor has come off.
+/// Validates the air temperature. A sample below the last one is followed slowly, in case the sensor has come off.
 void validate_ambient(const Config& config, State& state, const Input& input, Validated& validated) {
   constexpr float kCooling_K_per_s = 0.02F;
   const float coldest_C = config.guard != nullptr ? config.guard->coldest_ambient_C : -40.0F;
-  // A dead sensor shows just 0.
+  // A dead sensor shows exactly 0.
   const bool is_plausible = input.ambient_C >= coldest_C + 0.05F && input.ambient_C <= kHottestAir_C;
   validated.ambient_C = kNoSample;
   if (is_plausible) {
@@ -137,7 +137,7 @@ void validate_ambient(const Config& config, State& state, const Input& input, Va
   }
 }
 
-/// Normal equations of the body's velocity: Σ t·tᵀ·v = Σ t·(r·ω/slip − R·yaw rate) over the wheels that count.
+/// Normal equations of the body's velocity: Σ t·tᵀ·v = Σ t·(r·ω/slip − R·yaw rate) over the wheels used.
 struct PlaneFit {
   float xx = 0.0F;
   float xy = 0.0F;
@@ -154,7 +154,7 @@ struct PlaneFit {
     x_m_per_s += t_x * rim_m_per_s;
     y_m_per_s += t_y * rim_m_per_s;
   }
-  /// False where the wheels leave a direction open.
+  /// Returns false if the wheels do not determine both directions.
   bool solve(float& x, float& y) const {
     constexpr float kLeastDeterminant = 0.02F;  // two wheels whose rolling directions are 8 degrees apart
     const float determinant = xx * yy - xy * xy;
@@ -168,8 +168,8 @@ struct PlaneFit {
   }
 };
 
-/// All sensors are believed: least squares with a matrix that never changes. Leaving one wheel out multiplies its residual by
-/// 1/(1 − leverage) (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, equation 2.8).
+/// All sensors are accepted: least squares with a constant matrix. Leaving one wheel out multiplies its residual by 1/(1 − leverage)
+/// (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, equation 2.8).
 void find_from_all(const Config& config, Validated& validated) {
   const DerivedConfig& derived = config.derived;
   const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
@@ -199,7 +199,7 @@ void find_from_all(const Config& config, Validated& validated) {
 
 constexpr float kUnknown = std::numeric_limits<float>::infinity();
 
-/// Three wheels, or a sensor that is not believed: at most one more may lie. Each wheel then needs its speed_range().
+/// Three wheels, or a rejected sensor: at most one more may be wrong. Each wheel then needs its speed_range().
 [[gnu::cold, gnu::noinline]] void check_redundancy(const Config& config, const State& state, Validated& validated) {
   const bool is_gyro_trusted = state.yaw_fault == 0;
   int spare = is_gyro_trusted ? -2 : -3;
@@ -211,8 +211,8 @@ constexpr float kUnknown = std::numeric_limits<float>::infinity();
   validated.spread_V = kUnknown;
 }
 
-/// Too few sensors are left: every sample is compared with all the others, although none of them is believed. So sensors come back that
-/// were lost together, and agree with each other again.
+/// If too few sensors are left, every sample is compared with all others, even with rejected ones. Sensors that were lost together and
+/// agree with each other again are so accepted again.
 [[gnu::cold]] void compare_samples(const Config& config, const State& state, Validated& validated) {
   PerWheel rim_m_per_s = {};
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -235,7 +235,7 @@ constexpr float kUnknown = std::numeric_limits<float>::infinity();
   }
 }
 
-/// Some sensors are missing: from those that are left.
+/// Calculates speeds and body velocity from the remaining sensors if some are missing.
 [[gnu::cold]] void find_from_some(const Config& config, const State& state, Validated& validated) {
   const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
   PlaneFit all;
@@ -263,7 +263,7 @@ constexpr float kUnknown = std::numeric_limits<float>::infinity();
     float& implied_rad_per_s = validated.wheel[i].implied_rad_per_s;
     implied_rad_per_s = is_implied ? implied_m_per_s * config.wheel[i].speed_per_rim_per_m : validated.wheel[i].speed_rad_per_s;
     if (!validated.wheel[i].is_speed_sensed) {
-      // Without the gyro three wheels still determine the fourth, two do not.
+      // Without the gyro three wheels still determine the fourth, but two do not determine a third.
       const SpeedRange range = speed_range(config, state, validated, i);
       is_implied = range.is_known();
       implied_rad_per_s = is_implied ? clamped(implied_rad_per_s, range.slowest_rad_per_s, range.fastest_rad_per_s) : implied_rad_per_s;
@@ -280,7 +280,7 @@ constexpr float kUnknown = std::numeric_limits<float>::infinity();
 
 void validate_yaw_rate(const Config& config, State& state, const Input& input, Validated& validated) {
   const float sample = input.yaw_rate_rad_per_s;
-  const bool is_possible = absolute(sample) <= kFastestYaw_rad_per_s;  // false for what is no number
+  const bool is_possible = absolute(sample) <= kFastestYaw_rad_per_s;  // false for NaN
   const bool is_jump = absolute(sample - state.raw_yaw_rate_rad_per_s) > kYawJump_rad_per_s && state.steps != 0;
   if (!is_possible || is_jump) {
     state.yaw_fault = code(Reason::yaw_rate_missing);
@@ -299,13 +299,13 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, V
   validated.yaw_rate_rad_per_s = state.yaw_rate_rad_per_s;
 }
 
-/// A sample that speaks against itself (no number, out of range, a jump), that has not changed, or of a sensor with a fault.
+/// Handles a sample that is implausible (NaN, out of range, a jump), unchanged, or from a sensor with a fault.
 [[gnu::cold]] void take_doubtful_sample(const Config& config, WheelState& wheel, float sample, float jump_rad_per_s,
                                         ValidatedWheel& validated) {
   const float change_rad_per_s = sample - wheel.raw_speed_rad_per_s;
   const int same = change_rad_per_s == 0.0F ? wheel.same_steps + 1 : 0;
   wheel.same_steps = static_cast<std::uint16_t>(same < kMostSameSteps ? same : kMostSameSteps);
-  const bool is_possible = absolute(sample) <= config.fastest_wheel_rad_per_s;  // false for what is no number
+  const bool is_possible = absolute(sample) <= config.fastest_wheel_rad_per_s;  // false for NaN
   wheel.raw_speed_rad_per_s = is_possible ? sample : 0.0F;
   if (!is_possible || absolute(change_rad_per_s) > jump_rad_per_s) {
     wheel.has_spoken_wrongly = 1;
@@ -319,7 +319,7 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, V
 void take_samples(const Config& config, State& state, const Input& input, Validated& validated) {
   const float most_rad_per_s = config.fastest_wheel_rad_per_s;
   const float jump_rad_per_s =
-      // After a start there is no sample to jump from.
+      // After a start there is no earlier sample to compare with.
       state.steps == 0 ? 2.0F * most_rad_per_s
                        : config.derived.jump_rad_per_s + config.largest_acceleration_rad_per_s2 * (validated.elapsed_s - config.period_s);
   validated.are_all_sensed = true;
@@ -344,8 +344,8 @@ void take_samples(const Config& config, State& state, const Input& input, Valida
   }
 }
 
-/// Current that the last voltage drives through the nominal motor, for a wheel without a current sensor. The heat of a motor with another
-/// resistance differs by as much as at a sensed current, with the opposite sign, so the safety factor on heat covers it.
+/// Current that the last voltage drives through the nominal motor, for a wheel without a current sensor. With another resistance the heat
+/// differs as much as with a sensed current, in the opposite sense, so the safety factor on heat covers it.
 float estimated_current_A(const Config& config, const WheelState& wheel, float speed_rad_per_s) {
   if (wheel.is_open != 0) {
     return 0.0F;
@@ -358,7 +358,7 @@ void validate_currents(const Config& config, State& state, const Input& input, V
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     const float sample_A = input.motor_current_A[i];
-    const bool is_sample = absolute(sample_A) <= config.derived.most_sensed_A;  // false for what is no number
+    const bool is_sample = absolute(sample_A) <= config.derived.most_sensed_A;  // false for NaN
     wheel.current_fault = 0;
     if (is_sample) {
       wheel.has_current = 1;

@@ -1,33 +1,33 @@
-// Stage 6: what voltage, current, battery, grip and the thermal guard leave of the wanted voltages.
+// Stage 6: limits the wanted voltages by voltage, current, battery, grip and thermal guard.
 //
-// A limit works on currents: I = (V − K_e·n·ω)/R with the lowest R that the motor can have, so that the true current is not larger. One
-// factor scales the currents of all wheels, and with them the force on the body, so that its direction is kept. At last each voltage has
-// to keep the wheel's current within its limit for every speed that the wheel may have, by its own sensor and by the others
-// (speed_range()). Where no voltage does, the bridge is opened.
+// The limits act on currents: I = (V − K_e·n·ω)/R with the lowest R that the motor can have, so that the true current is not larger. One
+// factor scales the currents of all wheels, which keeps the direction of the force on the body. Finally each voltage must keep the current
+// limit for every speed that the wheel may have, by its own sensor and by the others (speed_range()). If no voltage does, the bridge
+// opens.
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
 namespace {
 
-// A sensed current this far above the limit is no noise and no settling.
+// A sensed current this far above the limit is neither noise nor settling.
 constexpr float kOvercurrent_ratio = 1.3F;
-constexpr float kBoundDecay = 0.8F;  // of the bound's memory, per period: sampling and actuation are late by one or two
+constexpr float kBoundDecay = 0.8F;  // decay of the bound per period: sampling and actuation are late by one or two periods
 
 constexpr float kRounding = 1.0001F;
-constexpr float kSlip_V = 1e-3F;  // a smaller change of a voltage has no reason of its own
+constexpr float kSlip_V = 1e-3F;  // a smaller change of a voltage is not reported
 
-/// What one wheel wants and may have.
+/// Wanted current of one wheel and its limit.
 struct WheelDemand {
   float back_V;     ///< back-EMF at the sensed speed
-  float current_A;  ///< that the wanted voltage drives
-  float most_A;     ///< largest magnitude within driver, grip and guard
-  float share;      ///< of the wanted current that the wheel's own limits leave
-  Reason reason;    ///< of most_A; none: the smaller one of driver limit and grip
+  float current_A;  ///< current that the wanted voltage drives
+  float most_A;     ///< largest magnitude that driver, grip and guard allow
+  float share;      ///< fraction of the wanted current that the wheel's own limits allow
+  Reason reason;    ///< reason for most_A; none: the smaller one of driver limit and grip
 };
 
-// What is seldom needed stands in functions of its own: the loops over the wheels are unrolled.
+// Seldom needed code is in functions of its own, because the loops over the wheels are unrolled.
 
-/// Limits a wheel without a speed sensor to the limp current; limits every wheel if a wrong sensor would not contradict any other one.
+/// Limits a wheel without speed sensor to the limp current, and every wheel if a faulty sensor would contradict no other one.
 [[gnu::cold, gnu::noinline]] void limit_to_limp(const Config& config, const WheelState& state, WheelDemand& demand) {
   if (config.limp_current_A < demand.most_A) {
     demand.most_A = config.limp_current_A;
@@ -35,7 +35,7 @@ struct WheelDemand {
   }
 }
 
-/// Without the guard.
+/// Sets the current limit of a wheel without the guard.
 void limit_demand(const Config& config, const WheelState& state, const Validated& validated, const BodyReference& body, int i,
                   WheelDemand& demand) {
   demand.most_A = config.wheel[i].body_limit_A;
@@ -54,7 +54,7 @@ void limit_demand(const Config& config, const WheelState& state, const Validated
   return demand.reason == Reason::none ? own : demand.reason;
 }
 
-/// Limits one wheel to the allowed current. Shadow mode only counts the excess; true if it would have limited.
+/// Limits one wheel to the allowed current. Shadow mode only counts the excess and returns true if it would have limited.
 bool apply_guard(const Config& config, State& state, float allowed_A, float elapsed_s, WheelDemand& demand) {
   if (allowed_A >= demand.most_A) {
     return false;
@@ -69,26 +69,26 @@ bool apply_guard(const Config& config, State& state, float allowed_A, float elap
   return excess_A > 0.0F;
 }
 
-/// Share of the power that the battery gives before it sags below its lowest voltage. The power of scaled currents is convex in the
-/// scale, so scaling by this share is enough.
+/// Fraction of the power that the battery supplies before it sags below its lowest voltage. The power is a convex function of the scale of
+/// the currents, so scaling them by this fraction is enough.
 float share_of_battery(const Config& config, const State& state, const Validated& validated, float power_W) {
   const float source_V =
       smaller(config.battery_full_V, validated.battery_V + larger(0.0F, config.battery_resistance_ohm * state.battery_current_A));
-  // A battery that is nearly empty still has to carry the robot home.
+  // A nearly empty battery must still supply the way home.
   constexpr float kLeastSag_share = 0.03F;
   const float sag_V = larger(source_V - config.battery_lowest_V, kLeastSag_share * config.battery_full_V);
   const float most_W = (source_V - sag_V) * sag_V * config.derived.most_battery_sag_A;
   return power_W > most_W && config.derived.most_battery_sag_A > 0.0F ? most_W / power_W : 1.0F;
 }
 
-/// Finds the share of a wheel's current that its limits leave, and the reason.
+/// Finds the fraction of a wheel's current that its limits allow, and the reason.
 [[gnu::noinline]] void scale_wheel(const WheelConfig& wheel, float reachable_A, WheelDemand& demand, Reason& reason) {
   reason = reachable_A < demand.most_A ? Reason::voltage : reason_of(wheel, demand);
   const float most_A = smaller(demand.most_A, reachable_A);
   demand.share = most_A > 0.0F ? most_A / absolute(demand.current_A) : 0.0F;
 }
 
-/// Current in the demanded direction that the voltage reaches; negative: none.
+/// Current in the wanted direction that the voltage can drive; negative if it cannot.
 float reachable_current_A(const Config& config, const WheelDemand& demand, float most_V) {
   const float room_V = demand.current_A > 0.0F ? most_V - demand.back_V : most_V + demand.back_V;
   return room_V * config.derived.per_lowest_resistance_A_per_V;
@@ -109,8 +109,8 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
   return absolute(voltage_V) <= kRounding * most_V;
 }
 
-/// Holds a voltage within the current limit for every speed that the wheel may have. False where no voltage does, or where the voltage is
-/// no number. As long as sensors agree about as well as the voltage is within its limit, no single estimate is needed.
+/// Keeps a voltage within the current limit for every speed that the wheel may have. Returns false if no voltage does, or for NaN. If the
+/// spread of the estimates is smaller than the room to the limit, single estimates are not needed.
 bool hold_window(const Config& config, const State& state, const Validated& validated, const WheelDemand& demand, int i, float most_V,
                  float& voltage_V, Reason& reason) {
   const float band_V = config.lowest_resistance_ohm * demand.most_A;
@@ -118,7 +118,7 @@ bool hold_window(const Config& config, const State& state, const Validated& vali
          move_into_window(config, state, validated, demand, i, most_V, voltage_V, reason);
 }
 
-/// Voltage of a wheel of unknown speed: at most the limp current, or the guard's limit if that is smaller, into a standing motor.
+/// Limits the voltage of a wheel with unknown speed: at standstill at most the limp current or the guard's limit. False: open the bridge.
 [[gnu::cold, gnu::noinline]] bool limp_blindly(const Config& config, const Validated& validated, const WheelDemand& demand, int i,
                                                float most_V, float& voltage_V) {
   const float limp_V = smaller(config.lowest_resistance_ohm * demand.most_A, most_V);
@@ -126,8 +126,8 @@ bool hold_window(const Config& config, const State& state, const Validated& vali
   return demand.most_A > 0.0F && validated.wheel[i].is_current_sensed && absolute(validated.wheel[i].current_A) <= demand.most_A;
 }
 
-/// Keeps the current within its limit by the sensed current: the new current is the sensed one plus the change of voltage over resistance,
-/// at any speed. Sensor noise within the slack is ignored if the speed estimates agree, because they keep the limit already.
+/// Keeps the limit by the sensed current. The new current is the sensed one plus the change of voltage over resistance, at any speed. Noise
+/// within the slack is ignored if the speed estimates agree, because they keep the limit already.
 void hold_sensed_current(const Config& config, const Validated& all, int i, const WheelState& wheel, float most_A, float& voltage_V) {
   const ValidatedWheel& validated = all.wheel[i];
   if (wheel.is_open != 0) {
@@ -143,7 +143,7 @@ bool is_overcurrent(const Config& config, const ValidatedWheel& sensed, const Wh
   return absolute(sensed.current_A) > kOvercurrent_ratio * wheel.current_bound_A + config.derived.current_margin_A;
 }
 
-/// Scales a wheel that wants more than it may have; the smaller one of `least` and the wheel's share.
+/// Scales a wheel that exceeds its limit; returns the smaller one of `least` and the wheel's fraction.
 float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& demand, Reason& reason, float least) {
   const float size_A = absolute(demand.current_A);
   const float reachable_A = reachable_current_A(config, demand, most_V);
@@ -154,10 +154,10 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
   return smaller(least, demand.share);
 }
 
-/// The guards of a robot with a hot motor, or whose wheel speeds are dead. A stopping robot brakes as a whole: a wheel that turns over or
-/// is pulled along drives for a moment, and without current for it the common factor would leave none to the others. So all wheels may use
-/// the braking reserve while the wanted currents take power out of the body, and do so without the wheel that brakes most: its speed sensor
-/// may lie. A wheel that brakes may always. Returns the new least share.
+/// Applies the guards of a robot with a hot motor or with dead wheel speeds. Returns the new smallest fraction. A wheel that brakes may
+/// always use the braking reserve. All wheels may use it while the wanted currents take power out of the body. This must hold without the
+/// wheel that brakes most, because its speed sensor may be faulty. Otherwise a wheel that is pulled along and drives for a moment would
+/// take the brakes from all the others through the common factor.
 [[gnu::cold, gnu::noinline]] float apply_guards(const Config& config, State& state, const Validated& validated, const BodyReference& body,
                                                 float most_V, WheelDemand* demand, LimitedVoltages& limited, float least) {
   float body_W = 0.0F;
@@ -172,7 +172,7 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
   bool would_limit = false;
   for (int i = 0; i < config.wheel_count; ++i) {
     const bool brakes = body_brakes || demand[i].back_V * demand[i].current_A < 0.0F;
-    // Nobody asked for the stop that follows a fault of the command: it gets no reserve.
+    // The stop after a command fault was not commanded, so it gets no reserve.
     const float allowed_A = brakes && validated.command_fault == Reason::none ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
     would_limit = apply_guard(config, state, allowed_A, validated.elapsed_s, demand[i]) || would_limit;
     if (are_speeds_dead) {
@@ -189,7 +189,7 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
   return least;
 }
 
-/// What every wheel wants and may have, and one factor for all of them, so that the direction of the force is kept.
+/// Finds current and limit of every wheel, and one common factor that keeps the direction of the force.
 float find_demands(const Config& config, State& state, const Validated& validated, const BodyReference& body, const WheelVoltages& voltage,
                    float most_V, WheelDemand* demand, LimitedVoltages& limited) {
   float least = 1.0F;
@@ -204,7 +204,7 @@ float find_demands(const Config& config, State& state, const Validated& validate
     each.share = 1.0F;
     limited.wheel[i].reason = Reason::none;
     limit_demand(config, state.wheel[i], validated, body, i, each);
-    // Braking is allowed at least as much.
+    // The limit for braking is at least as high.
     is_hot = is_hot || !(state.wheel[i].allowed_A >= each.most_A);
     if (sensed.is_speed_known) {
       least = share_of_wheel(config, i, most_V, each, limited.wheel[i].reason, least);
@@ -214,7 +214,7 @@ float find_demands(const Config& config, State& state, const Validated& validate
   if (is_hot) {
     least = apply_guards(config, state, validated, body, most_V, demand, limited, least);
   }
-  // The power of the scaled currents is at most as much smaller.
+  // Scaled by this factor, the power falls at least as much.
   const float of_battery = share_of_battery(config, state, validated, least * power_W);
   const float factor = least * of_battery;
   if (factor < 1.0F) {
@@ -236,7 +236,7 @@ Reason strongest(const WheelState& wheel, Reason limit) {
   return static_cast<Reason>(wheel.speed_fault != 0 ? wheel.speed_fault : later);
 }
 
-/// Of a wheel with a current sensor, or without a speed: what is left of the wanted voltage; false if its bridge has to be opened.
+/// Limits a wheel that has a current sensor or no speed. Returns false if its bridge has to open.
 [[gnu::noinline]] bool hold_wheel(const Config& config, State& state, const Validated& validated, const WheelDemand& demand, int i,
                                   float most_V, float& voltage_V, Reason& reason) {
   WheelState& wheel = state.wheel[i];
@@ -248,7 +248,7 @@ Reason strongest(const WheelState& wheel, Reason limit) {
     hold_sensed_current(config, validated, i, wheel, demand.most_A, voltage_V);
     if (voltage_V != asked_V) {
       reason = reason == Reason::none ? reason_of(config.wheel[i], demand) : reason;
-      // A current sensor may lie too: where it and the speeds leave no voltage the bridge is opened.
+      // The current sensor may be faulty too: if it and the speeds leave no common voltage, the bridge opens.
       const float held_V = voltage_V;
       is_held = is_held && !(sensed.is_speed_known && (!hold_window(config, state, validated, demand, i, most_V, voltage_V, reason) ||
                                                        absolute(voltage_V - held_V) > kSlip_V));
@@ -258,7 +258,7 @@ Reason strongest(const WheelState& wheel, Reason limit) {
   return is_held && is_finite(voltage_V) && !(sensed.is_current_sensed && is_overcurrent(config, sensed, wheel));
 }
 
-/// What is left of the wanted voltage of one wheel; true if its bridge has to be opened.
+/// Limits the wanted voltage of one wheel. Returns true if its bridge has to open.
 bool finish_wheel(const Config& config, State& state, const Validated& validated, const WheelDemand& demand, int i, float most_V,
                   float& voltage_V, Reason& reason) {
   voltage_V = demand.back_V + config.lowest_resistance_ohm * demand.current_A;
@@ -280,7 +280,7 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
   const float share = find_demands(config, state, validated, body, voltage, most_V, demand, limited);
   const bool is_all_open = body.is_open || validated.robot_fault == Reason::period_invalid || state.comparison.runaway_s >= kRunaway_s;
   state.is_limited = !is_all_open && share < 1.0F ? 1 : 0;
-  // The integrators follow the voltages that the wheels really get.
+  // Back-calculation: the integrators follow the voltages after the limits.
   const float feedback_share = smaller(1.0F, validated.elapsed_s * config.derived.per_tracking_time_per_s);
   float power_W = 0.0F;
 #pragma GCC unroll 4

@@ -1,4 +1,4 @@
-// The few functions of <cmath> that the drive core needs: a freestanding build has no <cmath>.
+// Replacements for the few functions of <cmath> that the drive core needs: a freestanding build has no <cmath>.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace robot_core {
 
-/// Without the sign: one instruction.
+/// Absolute value in one instruction.
 constexpr float absolute(float x) { return __builtin_fabsf(x); }
 constexpr double absolute(double x) { return __builtin_fabs(x); }
 
@@ -25,7 +25,7 @@ constexpr Real clamped(Real x, Real low, Real high) {
   return x < low ? low : (high < x ? high : x);
 }
 
-/// False for NaN and both infinities.
+/// Returns false for NaN and both infinities.
 template <typename Real>
 constexpr bool is_finite(Real x) {
   return absolute(x) <= std::numeric_limits<Real>::max();
@@ -33,35 +33,35 @@ constexpr bool is_finite(Real x) {
 
 namespace detail {
 
-// One correctly rounded instruction where the target has it: the core is compiled with -fno-math-errno, without which
-// the builtin would also call the C library.
+// One correctly rounded instruction if the target has it. The core needs -fno-math-errno: otherwise the builtin also calls the C
+// library.
 inline double sqrt_instruction(double x) { return __builtin_sqrt(x); }
 inline float sqrt_instruction(float x) { return __builtin_sqrtf(x); }
 
 }  // namespace detail
 
-/// Square root; of a negative number (a rounding error of zero, where this is used) it is 0.
+/// Square root; 0 for a negative number, which only a rounding error of zero produces here.
 template <typename Real>
 inline Real square_root(Real x) {
   return x > Real(0) ? detail::sqrt_instruction(x) : Real(0);
 }
 
-/// x with the sign's jump at zero spread over `width`: x/√(x² + width²).
+/// Sign of x, smoothed over `width` around zero: x/√(x² + width²). Returns 0 if `width` is not positive.
 inline float smooth_sign(float x, float width) { return width > 0.0F ? x / square_root(x * x + width * width) : 0.0F; }
 
-/// Word number `i` of an object, for check sums.
+/// Returns the 32-bit word number `i` of an object, for check sums.
 inline std::uint32_t word_of(const void* object, unsigned i) {
   std::uint32_t word = 0;
   __builtin_memcpy(&word, static_cast<const unsigned char*>(object) + i * sizeof(word), sizeof(word));
   return word;
 }
 
-/// Sum of the 8-byte words `first` to `last` - 1 of an object at an address that 8 divides: every flip of a single bit changes it.
+/// Sum of the 8-byte words `first` to `last` - 1 of an object with 8-byte alignment. Every flip of a single bit changes it.
 template <unsigned first, unsigned last>
 std::uint64_t sum_of_words(const void* object) {
   const auto* const at = static_cast<const unsigned char*>(object);
   std::uint64_t sum = 0;
-  // Wholly unrolled: the drive core spends a good part of its time here.
+  // Fully unrolled, because the drive core spends a good part of its time here.
 #pragma GCC unroll 128
   for (unsigned i = first; i < last; ++i) {
     std::uint64_t word = 0;
@@ -76,7 +76,7 @@ struct SineCosine {
   float cosine_ratio = 1.0F;
 };
 
-/// Error below 4e-7 for |angle| up to 1000 rad, which larger angles are taken for.
+/// Sine and cosine, with an error below 4e-7. Angles are clamped to ±1000 rad.
 SineCosine sine_cosine(float angle_rad);
 
 }  // namespace robot_core

@@ -1,10 +1,10 @@
-// Stage 7: what the firmware gets.
+// Stage 7: output for the firmware.
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
 namespace {
 
-/// The guards check their State when they are stepped; until then a flipped bit must not reach the telemetry as what is no number.
+/// The guards check their State when they are stepped. Until then a flipped bit must not put NaN into the telemetry.
 [[gnu::cold, gnu::noinline]] float bounded_C(const Config& config, float winding_C) {
   constexpr float kMost_C = 1000.0F;
   const float limit_C = config.guard != nullptr ? config.guard->winding_limit_C : 0.0F;
@@ -12,7 +12,7 @@ namespace {
 }
 
 float reported_C(const Config& config, float winding_C) {
-  // Positive numbers are ordered like their bits; one comparison of integers finds all that needs a second look.
+  // Positive floats are ordered like their bits, so one integer comparison finds all values that need bounded_C().
   constexpr auto kMost = __builtin_bit_cast(std::uint32_t, 1000.0F);
   return __builtin_bit_cast(std::uint32_t, winding_C) <= kMost ? winding_C : bounded_C(config, winding_C);
 }

@@ -1,4 +1,4 @@
-// Pose targets: the planner, called once per period. On its own so that firmware without a pose links no planner.
+// Pose targets: calls the planner once per period. A file of its own, so that firmware without a pose does not link the planner.
 #include "robot_core/drive_core.h"
 
 namespace robot_core {
@@ -6,7 +6,7 @@ namespace robot_core {
 bool plan_to_pose(const Config& config, const Vector3& pose, const Vector3& target, Vector3& velocity, Vector3& acceleration) {
   constexpr float kPi = 3.14159265F;
   constexpr float kTurn = 2.0F * kPi;
-  // The shorter way round.
+  // Take the shorter direction of rotation.
   const float apart_rad = target.yaw - pose.yaw;
   const float turns = apart_rad / kTurn + (apart_rad < 0.0F ? -0.5F : 0.5F);
   if (!(absolute(turns) < 1e6F)) {
@@ -17,7 +17,7 @@ bool plan_to_pose(const Config& config, const Vector3& pose, const Vector3& targ
       {pose.x, velocity.x, acceleration.x}, {pose.y, velocity.y, acceleration.y}, {pose.yaw, velocity.yaw, acceleration.yaw}};
   const AxisState<float> to[3] = {{target.x, 0.0F, 0.0F}, {target.y, 0.0F, 0.0F}, {nearest_yaw_rad, 0.0F, 0.0F}};
   const PlaneLimits<float> plane{config.speed_limit_m_per_s, config.acceleration_limit_m_per_s2, config.jerk_limit_m_per_s3};
-  // The turn gets a jerk that takes it to its acceleration in the time that the plane's takes.
+  // Yaw and plane motion reach their acceleration limits in the same time.
   const float yaw_jerk = config.yaw_acceleration_limit_rad_per_s2 * config.jerk_limit_m_per_s3 / config.acceleration_limit_m_per_s2;
   const auto yaw = AxisLimits<float>::symmetric(config.yaw_rate_limit_rad_per_s, config.yaw_acceleration_limit_rad_per_s2, yaw_jerk);
   Trajectory<float> plan[3];

@@ -1,31 +1,31 @@
-// Stage 1, second part: sensors compared with each other over tens of milliseconds. The tests take turns, so that no step carries
-// all of them.
+// Stage 1, second part: compares sensors with each other over tens of milliseconds. The tests take turns, so that no step runs all of
+// them.
 #include "robot_core/drive_stages.h"
 
-// For size: a part of it runs in every third step.
+// Optimised for size; a part of it runs in about every fifth step.
 #pragma GCC optimize("Os")
 
 namespace robot_core {
 namespace {
 
 constexpr std::uint32_t kStepsPerComparison = 16;
-// A sample that is exactly the same for so long while other evidence says that it should have changed is stuck.
+// A sample counts as stuck if it stays exactly constant for this time while other evidence shows a change.
 constexpr float kStuck_s = 0.05F;
-// Sliding contacts make wheels disagree with each other for a while; beyond this share of the fastest speed it is no sliding.
+// Sliding contacts make wheels disagree for a while. A disagreement above this share of the fastest speed is not sliding.
 constexpr float kDisagreement_share = 0.06F;
-constexpr float kSameDisagreement_share = 0.02F;  // of a sample that does not change at all
+constexpr float kSameDisagreement_share = 0.02F;  // limit for a sample that does not change at all
 constexpr float kYawDisagreement_rad_per_s = 2.0F;
-// A winding is never this many times its coldest resistance: 2 is copper at 280 degC.
+// Upper bound of winding resistance over coldest resistance: 2 is copper at 280 degC.
 constexpr float kHotResistance_ratio = 2.0F;
-// Settling and delay, as a share of the explained current, in addition to Config's margin.
+// Settling and delay as a share of the explained current, in addition to Config's margin.
 constexpr float kSettling_share = 0.15F;
-// Swapped sensors: time constant of the comparison, least contradiction, and how many times the confirmation it is.
+// Swapped sensors: time constant, smallest contradiction, and smallest ratio of contradiction to confirmation.
 constexpr float kSwap_s = 0.3F;
 constexpr float kLeastContradiction_share = 0.008F;
 constexpr float kMuchMore_ratio = 4.0F;
-// Share of the least contradiction above which a comparison says something.
+// A comparison counts if it exceeds this share of the smallest contradiction.
 constexpr float kClear_share = 0.1F;
-// Of the least contradiction, as a confirmation while wheels are driven one by one: they slide for a while after it.
+// Confirmation in wheel-by-wheel modes, as a multiple of the smallest contradiction: the wheels slide for a while afterwards.
 constexpr float kWheelwise_ratio = 10.0F;
 // Sums of the sizes of the rim speeds: of a robot that runs away, of one that stands again, and the decrease of one that slows down.
 constexpr float kRuns_m_per_s = 0.5F;
@@ -33,9 +33,9 @@ constexpr float kStands_m_per_s = 0.1F;
 constexpr float kSlows_m_per_s = 0.05F;
 // Reference velocity from which currents are compared with what they do.
 constexpr float kDriven_m_per_s = 0.1F;
-// A wheel that changes its speed faster than this multiple of the limits of acceleration slides.
+// A wheel that accelerates by more than this multiple of the acceleration limits slides.
 constexpr float kGripping_ratio = 2.0F;
-// Speeds of four wheels that do not slide contradict each other by less.
+// Residual below which the speeds of four wheels without sliding count as consistent.
 constexpr float kLeastResidual_m_per_s = 0.03F;
 
 struct CurrentRange {
@@ -58,7 +58,7 @@ void copy_faults(State& state) {
   state.comparison.yaw_fault = state.yaw_fault;
 }
 
-/// Current that a voltage explains at a speed, whatever the winding's temperature.
+/// Range of currents that a voltage explains at a speed, over all winding temperatures.
 CurrentRange explained_current(const Config& config, float voltage_V, float speed_rad_per_s) {
   const float cold_A =
       (voltage_V - config.derived.geared_constant_V_s_per_rad * speed_rad_per_s) * config.derived.per_lowest_resistance_A_per_V;
@@ -67,7 +67,7 @@ CurrentRange explained_current(const Config& config, float voltage_V, float spee
   return {smaller(cold_A, hot_A), larger(cold_A, hot_A)};
 }
 
-/// Whether a sample can be of the last period or of the one before: nobody knows how late samples and voltages are.
+/// Returns true if a sample fits neither the last period nor the one before; the delay of samples and voltages is unknown.
 bool current_contradicts(const Config& config, const WheelState& wheel, float sensed_A, float speed_rad_per_s) {
   const CurrentRange last = wheel.is_open != 0 ? CurrentRange{} : explained_current(config, wheel.voltage_V, speed_rad_per_s);
   const CurrentRange earlier = explained_current(config, wheel.earlier_V, speed_rad_per_s);
@@ -77,7 +77,7 @@ bool current_contradicts(const Config& config, const WheelState& wheel, float se
          !(sensed_A >= smaller(last.low_A, earlier.low_A) - margin_A && sensed_A <= larger(last.high_A, earlier.high_A) + margin_A);
 }
 
-/// A current sensor that reads too little would hide heat from the guard, long before it contradicts the motor's equation.
+/// Compares the heat of the current sensor with voltage and speed: a low reading hides heat long before it contradicts the motor equation.
 void compare_heat(const Config& config, State& state, const Validated& validated, float sensed_A, int i, float since_s) {
   constexpr float kHeat_s = 1.0F;
   const WheelState& wheel = state.wheel[i];
@@ -91,7 +91,7 @@ void compare_heat(const Config& config, State& state, const Validated& validated
   comparison.counted_A2[i] += share * (counted_A * counted_A - comparison.counted_A2[i]);
 }
 
-/// Speed and current sensor of one wheel against the other wheels and the motor's equation.
+/// Compares speed and current sensor of one wheel with the other wheels and the motor equation.
 [[gnu::cold]] void compare_wheel(const Config& config, State& state, const Input& input, Validated& validated, int i, float since_s) {
   WheelState& wheel = state.wheel[i];
   ComparisonState& comparison = state.comparison;
@@ -100,7 +100,7 @@ void compare_heat(const Config& config, State& state, const Validated& validated
   const float most_apart_rad_per_s = (is_same ? kSameDisagreement_share : kDisagreement_share) * config.fastest_wheel_rad_per_s;
   const bool contradicts = current_contradicts(config, wheel, input.motor_current_A[i], sample);
   const bool agrees = absolute(sample - validated.wheel[i].implied_rad_per_s) <= most_apart_rad_per_s && !contradicts;
-  // Up to kSteadyAgain_s beyond the threshold are kept, so that the sensor has to agree for that long before it is believed again.
+  // Counts up to kSteadyAgain_s beyond the threshold, so that the sensor must agree for that time before it is accepted again.
   float& current_error_s = comparison.current_error_s[i];
   current_error_s = contradicts ? smaller(current_error_s + since_s, kStuck_s + kSteadyAgain_s) : larger(0.0F, current_error_s - since_s);
   wheel.is_current_distrusted = current_error_s > kStuck_s ? 1 : 0;
@@ -112,7 +112,7 @@ void compare_heat(const Config& config, State& state, const Validated& validated
     const bool is_comparable = validated.wheel[i].is_speed_known || validated.are_samples_compared;
     const bool is_confirmed = agrees && is_comparable && wheel.has_spoken_wrongly == 0;
     comparison.agreement_s[i] = is_confirmed ? comparison.agreement_s[i] + since_s : 0.0F;
-    // A sensor that shows the same all the time may do so while no current flows.
+    // A sensor with a constant sample may recover only while no current flows.
     if (comparison.agreement_s[i] >= kSteadyAgain_s && (!is_same || wheel.is_open != 0)) {
       wheel.speed_fault = 0;
       comparison.disagreement_s[i] = 0.0F;
@@ -146,7 +146,7 @@ bool is_asked_to_move(const Config& config, const State& state, const Validated&
          absolute(asked.x) + absolute(asked.y) + config.contact_radius_m * absolute(asked.yaw) > kDriven_m_per_s;
 }
 
-/// All speeds at once: sensors that are dead together agree with each other.
+/// Checks all speeds at once, because sensors that are dead together agree with each other.
 [[gnu::cold]] void compare_standing(const Config& config, State& state, const Validated& validated, float since_s) {
   bool is_driven = false;
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -160,7 +160,7 @@ bool is_asked_to_move(const Config& config, const State& state, const Validated&
     const float evidence_V = larger(absolute(driven_V), validated.mode == Mode::coast ? 0.0F : validated.spread_V);
     is_driven = is_driven || evidence_V > config.lowest_resistance_ohm * config.limp_current_A;
   }
-  // Up to twice the threshold is counted: limited to the limp current, a wheel stays below it.
+  // Counts up to twice the threshold: the limp current keeps the evidence below it afterwards.
   float& standing_s = state.comparison.standing_s;
   standing_s = is_driven ? smaller(standing_s + since_s, 2.0F * kStanding_s) : standing_s;
 }
@@ -186,7 +186,7 @@ bool is_asked_to_move(const Config& config, const State& state, const Validated&
   }
 }
 
-/// What the currents do to one wheel: (V − K·n·ω), and the speed that it has gained since the last comparison.
+/// Reaction of one wheel: driving voltage (V − K·n·ω), and speed gained since the last comparison.
 struct WheelResponse {
   float driving_V;
   float gained_rad_per_s;
@@ -201,7 +201,7 @@ void find_responses(const Config& config, State& state, const Validated& validat
     const WheelState& wheel = state.wheel[i];
     const WheelConfig& at = config.wheel[i];
     float& last_rad_per_s = state.comparison.last_rad_per_s[i];
-    // Seen from a robot that turns, its velocity turns without any force.
+    // In the frame of a turning robot the velocity turns without any force.
     const float turned_m_per_s = turning_rad * (at.rolling_x_share * validated.velocity.y - at.rolling_y_share * validated.velocity.x);
     const float gained_rad_per_s = wheel.raw_speed_rad_per_s - last_rad_per_s - turned_m_per_s * at.speed_per_rim_per_m;
     last_rad_per_s = wheel.raw_speed_rad_per_s;
@@ -211,8 +211,8 @@ void find_responses(const Config& config, State& state, const Validated& validat
   }
 }
 
-/// Mean square of what is left of the speed samples, as rim speeds, that one motion of the body should explain. 0 for three wheels,
-/// whose speeds and yaw rate any exchange of two samples explains as well.
+/// Mean square residual of the speed samples, as rim speeds, against one motion of the body. It is 0 for three wheels, whose speeds fit
+/// some motion with the gyro even after two samples were exchanged.
 [[gnu::cold]] float contradiction_m2_per_s2(const Config& config, const State& state, const Validated& validated) {
   const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
   float x = 0.0F;
@@ -224,22 +224,22 @@ void find_responses(const Config& config, State& state, const Validated& validat
     y += config.wheel[i].rolling_y_share * rim_m_per_s;
     all += rim_m_per_s * rim_m_per_s;
   }
-  // Σ r² − bᵀ·P·b, b = Σ t·r: the residual of least squares.
+  // Least-squares residual: Σ r² − bᵀ·P·b with b = Σ t·r.
   const DerivedConfig& derived = config.derived;
   const float explained = derived.plane_xx_factor * x * x + 2.0F * derived.plane_xy_factor * x * y + derived.plane_yy_factor * y * y;
   return larger(0.0F, all - explained) / static_cast<float>(config.wheel_count);
 }
 
-/// Swapped sensors: the difference of two wheels' currents accelerates the difference of their speeds. If the sensors are swapped it
-/// seems to decelerate it: then the control makes the difference grow, until the product of both is large. Only where the body is
-/// controlled: wheels that are driven against each other move as the strongest want.
+/// Finds swapped sensors. The difference of two wheels' currents accelerates the difference of their speeds. With swapped sensors it seems
+/// to decelerate it; the control then increases the difference until the product of both is large. Used only in body modes: wheels driven
+/// against each other follow the strongest one.
 void compare_pairs(const Config& config, State& state, const Validated& validated, float since_s) {
   ComparisonState& comparison = state.comparison;
   if (comparison.is_checked != 0) {
-    return;  // wires change no places while the robot drives, but pushed robots slide as if they had
+    return;  // wiring does not change while driving, but pushed robots slide as if it had
   }
   const float keep = 1.0F - smaller(1.0F, since_s / kSwap_s);
-  // Where wheels and gyro contradict each other, one of them lies about the turning.
+  // If wheels and gyro disagree about the rotation, one of them is wrong.
   const bool is_turning_known =
       state.yaw_fault == 0 && absolute(yaw_rate_of_wheels(config, validated) - validated.yaw_rate_rad_per_s) < kYawDisagreement_rad_per_s;
   // Pushes on a standing robot look like swapped sensors.
@@ -249,7 +249,7 @@ void compare_pairs(const Config& config, State& state, const Validated& validate
   float most = kLeastContradiction_share * config.derived.geared_constant_V_s_per_rad * fastest_rad_per_s * fastest_rad_per_s;
   const float clear = kClear_share * most;
   bool is_checked = true;
-  // The body couples its wheels, so a current may well slow its wheel down. Four samples then still fit one motion of the body.
+  // The body couples its wheels, so a current may slow its own wheel down. Four samples then still fit one motion of the body.
   float& residual_m2_per_s2 = comparison.residual_m2_per_s2;
   residual_m2_per_s2 += (1.0F - keep) * (contradiction_m2_per_s2(config, state, validated) - residual_m2_per_s2);
   const bool is_contradiction = config.wheel_count < 4 || residual_m2_per_s2 > kLeastResidual_m_per_s * kLeastResidual_m_per_s;
@@ -262,7 +262,7 @@ void compare_pairs(const Config& config, State& state, const Validated& validate
       const bool is_usable = is_turning_known && is_driven && response[i].is_usable && response[j].is_usable;
       const float gained_rad_per_s = response[i].gained_rad_per_s - response[j].gained_rad_per_s;
       const float product = is_usable ? (response[i].driving_V - response[j].driving_V) * gained_rad_per_s : 0.0F;
-      // Friction slows down against the drive; a difference that grows against the drive is none of its making.
+      // Friction decelerates against the drive. Only a difference that grows against the drive shows a swap.
       const float apart_rad_per_s = state.wheel[i].raw_speed_rad_per_s - state.wheel[j].raw_speed_rad_per_s;
       const bool grows = apart_rad_per_s * gained_rad_per_s > 0.0F;
       float& with = comparison.with_V_rad_per_s[pair];
@@ -306,7 +306,7 @@ float yaw_rate_of_wheels(const Config& config, const Validated& validated) {
   if (comparison.check_sum == check_sum_of(comparison)) {
     copy_faults(state);
     seal(comparison);
-  }  // else damaged: its next comparison reports it
+  }  // else damaged: the next comparison reports it
 }
 
 [[gnu::cold]] void recall_faults(const KnownFaults& known, State& state) {
@@ -327,7 +327,7 @@ void seal(ComparisonState& comparison) { comparison.check_sum = check_sum_of(com
 
 void compare_sensors(const Config& config, State& state, const Input& input, Validated& validated) {
   if (validated.robot_fault == Reason::time_jump) {
-    // Speeds of before the gap cannot be compared with those after it; what was found stays.
+    // Speeds before the gap cannot be compared with those after it. Earlier findings stay.
     ComparisonState after;
     for (int i = 0; i < kMostWheels; ++i) {
       after.current_error_s[i] = state.comparison.current_error_s[i];
@@ -340,13 +340,13 @@ void compare_sensors(const Config& config, State& state, const Input& input, Val
     seal(state.comparison);
     return;
   }
-  // Two wheels in step 0, two and the yaw rate in step 8, all pairs in step 4.
+  // Step 0: two wheels. Step 8: the other two and the yaw rate. Step 4: all pairs.
   const std::uint32_t turn = state.steps % kStepsPerComparison;
   if (turn != 0 && turn != 4 && turn != 8) {
     return;
   }
   if (state.comparison.check_sum != check_sum_of(state.comparison)) {
-    // Speed faults stand in `wheel`. The rest is taken at its worst: currents are doubted and speeds count as dead until they agree again.
+    // The speed faults are also in `wheel`. Assume the worst for the rest: currents distrusted and speeds dead until they agree again.
     state.comparison = {};
     for (float& error_s : state.comparison.current_error_s) {
       error_s = kStuck_s + kSteadyAgain_s;

@@ -1,4 +1,4 @@
-// Method: reduction to ±π/4 by a two-part π/2 (Cody and Waite, Software Manual for the Elementary Functions, 1980), Taylor polynomials.
+// Method: reduction to ±π/4 with π/2 in parts (Cody and Waite, Software Manual for the Elementary Functions, 1980), Taylor polynomials.
 #include "robot_core/math.h"
 
 namespace robot_core {

@@ -1,19 +1,19 @@
-// Stage 1, third part: the speeds that a wheel may have if some of its robot's sensors lie. Called where a wheel is near its current limit.
+// Stage 1, third part: speeds that a wheel may have if some sensors are faulty. Called if a wheel is near its current limit.
 #include "robot_core/drive_stages.h"
 
-// For size: few steps need it.
+// Optimised for size, because few steps need it.
 #pragma GCC optimize("Os")
 
 namespace robot_core {
 namespace {
 
-/// Rim speeds of the believed wheels; a wheel without a sensor is left out.
+/// Rim speeds of the accepted wheel sensors.
 struct Rims {
   float rim_m_per_s[kMostWheels] = {};
   bool is_sensed[kMostWheels] = {};
 };
 
-/// From two other wheels and the gyro.
+/// Adds the speed that two other wheels and the gyro imply.
 void add_pair(const Config& config, const Rims& rims, int i, int j, int k, float turning_m_per_s, SpeedRange& range) {
   const float determinant = cross(config.wheel[j], config.wheel[k]);
   if (!rims.is_sensed[j] || !rims.is_sensed[k] || absolute(determinant) < kLeastArea_ratio) {
@@ -24,7 +24,7 @@ void add_pair(const Config& config, const Rims& rims, int i, int j, int k, float
   range.add(((of_j + of_k) / determinant + turning_m_per_s) * config.wheel[i].speed_per_rim_per_m);
 }
 
-/// From three other wheels without the gyro: barycentric coordinates.
+/// Adds the speed that three other wheels imply without the gyro (barycentric coordinates).
 void add_triple(const Config& config, const Rims& rims, int i, SpeedRange& range) {
   const int j = (i + 1) % kMostWheels;
   const int k = (i + 2) % kMostWheels;
@@ -51,8 +51,8 @@ void add_triple(const Config& config, const Rims& rims, int i, SpeedRange& range
     rims.rim_m_per_s[j] = rim_speed_m_per_s(config, j, validated.wheel[j].speed_rad_per_s);
     sensed += rims.is_sensed[j] ? 1 : 0;
   }
-  // With one sensor to spare, two swapped ones may go unnoticed: until they would have been found, every sample may be this wheel's.
-  // Without one, the current is a safe one anyway.
+  // With one spare sensor two swapped ones may go unnoticed. Until a swap would have been found, every sample may belong to this wheel.
+  // Without a spare sensor the current is limited to a safe value anyway.
   const bool is_any_possible = sensed == 4 && state.comparison.is_checked == 0;
   const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
   for (int j = 0; j < config.wheel_count; ++j) {

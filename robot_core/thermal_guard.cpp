@@ -3,14 +3,14 @@
 namespace robot_core {
 namespace {
 
-// So that a state of zeros is none.
+// Makes a state of zeros invalid.
 constexpr std::uint64_t kStarted = 0x4845415453544152U;
 constexpr float kMostTemperature_C = 1000.0F;
-// Over which heating and load are smoothed for the time until the guard limits, and how many steps an estimate serves.
+// Smoothing time of heating and load for the time until the guard limits, and number of steps between two estimates.
 constexpr float kSmoothing_s = 3.0F;
 constexpr std::uint32_t kStepsPerEstimate = 50;
 
-/// False for what is no number.
+/// Returns false for NaN.
 bool is_between(float low, float x, float high) { return x >= low && x <= high; }
 
 bool is_temperature(const GuardModel& model, float x_C) { return is_between(model.coldest_ambient_C - 1.0F, x_C, kMostTemperature_C); }
@@ -19,12 +19,12 @@ std::uint64_t check_sum_of(const GuardState& state) {
   return kStarted + sum_of_words<1, sizeof(GuardState) / sizeof(std::uint64_t)>(&state);
 }
 
-/// Replaces what is not believed by some possible value; a bit per signal that was replaced.
+/// Replaces implausible signals by a candidate value. Returns one bit per replaced signal.
 unsigned replace_implausible(const GuardModel& model, float* signal) {
   unsigned unknown = 0;
   for (int i = 0; i < kGuardSignals; ++i) {
     const PlausibleRange& plausible_range = model.plausible_range[i];
-    // A neighbour that is colder than the air has no working sensor.
+    // The sensor of a neighbour that is much colder than the air is faulty.
     const float least = i == guard_neighbour_C ? signal[guard_ambient_C] - 5.0F : plausible_range.least;
     if (plausible_range.is_used && !is_between(least, signal[i], plausible_range.most)) {
       signal[i] = plausible_range.possible[0];
@@ -34,7 +34,7 @@ unsigned replace_implausible(const GuardModel& model, float* signal) {
   return unknown;
 }
 
-/// Every node heats as fast as with the worst of the possible values; the signal keeps the value that heats the winding most.
+/// Raises the rate of each node to its worst case over the candidates; the signal keeps the value that heats the winding most.
 [[gnu::cold]] void take_hottest(const GuardModel& model, float* signal, int which, const float* state_C, float* most_K_per_s) {
   const PlausibleRange& plausible_range = model.plausible_range[which];
   float hottest = plausible_range.possible[0];
@@ -54,7 +54,7 @@ unsigned replace_implausible(const GuardModel& model, float* signal) {
   signal[which] = hottest;
 }
 
-/// Two passes where several are unknown: a signal's hottest value may depend on another's.
+/// Uses two passes if several signals are unknown, because a signal's hottest value may depend on another signal.
 [[gnu::cold]] void find_hottest_rates(const GuardModel& model, unsigned unknown, float* signal, const float* state_C, float* rate_K_per_s) {
   const int passes = (unknown & (unknown - 1)) != 0 ? 2 : 1;
   for (int pass = 0; pass < passes; ++pass) {
@@ -90,7 +90,7 @@ bool is_started(const GuardModel& model, const GuardState& state) {
 
 namespace {
 
-// One copy each for all callers.
+// One copy of the function for all callers.
 [[gnu::noinline]] heatsoak_row row_at(const heatsoak_current_table& table, float speed_rad_per_s, float stator_C) {
   return heatsoak_find_row(&table, speed_rad_per_s, stator_C);
 }
@@ -99,7 +99,7 @@ namespace {
   return heatsoak_allowed_A2(&table, &row, winding_C);
 }
 
-/// Temperature at which the table allows no more than `current_A`: the squares fall in a straight line between the axis points.
+/// Temperature at which the table allows only `current_A`; the squared current is linear between the axis points.
 [[gnu::cold]] float limiting_temperature_C(const heatsoak_current_table& table, heatsoak_row row, float current_A) {
   const heatsoak_axis& axis = table.winding_C;
   const float square_A2 = current_A * larger(current_A, table.straight_below_A);
@@ -117,7 +117,7 @@ namespace {
   return axis.points[above - 1] + share * (axis.points[above] - axis.points[above - 1]) - hotter_K;
 }
 
-/// If the load goes on: straight extrapolation of the smoothed heating, an estimate that is early while the winding approaches balance.
+/// Time until the guard limits at the present load. Linear extrapolation of the smoothed heating: too short near the steady state.
 float find_time_to_limit_s(const GuardModel& model, const GuardState& state, const heatsoak_row& row, const GuardOutput& out,
                            float braking_reserve_K) {
   const float load_A = square_root(state.load_squared_A2);

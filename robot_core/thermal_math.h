@@ -17,7 +17,7 @@ static inline float heatsoak_two_to(int32_t n) {
   return made.value;
 }
 
-/* e to the power of x; 0 below -87, above 88 as at 88 (1.65e38); not a number stays none. */
+/* e to the power of x. Below -87 the result is 0, above 88 it is e^88 (1.65e38); NaN gives NaN. */
 static inline float heatsoak_exp(float x) {
   int32_t n;
   float rest_exponent, factor;
@@ -39,7 +39,7 @@ static inline float heatsoak_exp(float x) {
   return factor * heatsoak_two_to(n);
 }
 
-/* Natural logarithm of x > 0 that is normal; smaller ones count as the smallest normal number. */
+/* Natural logarithm of a normal number x > 0. Smaller values count as the smallest normal number. */
 static inline float heatsoak_log(float x) {
   union {
     float value;

@@ -1,4 +1,4 @@
-// When one axis can arrive: first, and not before a given time. Part of the trajectory planner.
+// Arrival times of one axis: the earliest one, and the earliest one not before a given time. Part of the trajectory planner.
 #pragma once
 
 #include <limits>
@@ -11,7 +11,7 @@
 
 namespace robot_core::detail {
 
-/// The ascent of a problem and, as the ascent of the mirrored problem, its descent.
+/// Ascent of a problem, and its descent, which is the ascent of the mirrored problem.
 template <typename Real>
 struct Families {
   Ascent<Real> up;
@@ -23,7 +23,7 @@ Families<Real> families_of(const Problem<Real>& p) {
   const Real half0 = p.a0 * p.a0 / Real(2);
   const Real half1 = p.a1 * p.a1 / Real(2);
   const Real tolerance = smaller(kTouch<Real>, Real(8) * kRounding<Real>) * (absolute(p.v0) + absolute(p.v1) + half0 + half1);
-  // Ends that lie on one parabola but for rounding: without this the motion along it would be missed.
+  // Ends on one parabola count as such despite rounding; otherwise the motion along it would be missed.
   const auto or_zero = [tolerance](Real difference) { return absolute(difference) <= tolerance ? Real(0) : difference; };
   const Real up = or_zero((p.v1 - p.v0) + (half0 - half1));
   const Real down = or_zero((p.v0 - p.v1) + (half0 - half1));
@@ -37,7 +37,7 @@ Families<Real> families_of(const Problem<Real>& p) {
 
 template <typename Real>
 Real duration_of(const Ascent<Real>& a, const Shape<Real>& shape) {
-  // Leg by leg, so that a short motion between large accelerations keeps its digits.
+  // Sum leg by leg, so that a short motion between large accelerations keeps its digits.
   return larger(shape.slope_low - a.low.entry, Real(0)) + larger(shape.slope_high - a.high.entry, Real(0)) + shape.hold_low +
          shape.hold_high + shape.fall + shape.cruise;
 }
@@ -49,7 +49,7 @@ Extreme<Real> path_of(const Ascent<Real>& a, const Shape<Real>& shape, Real sign
   const Leg<Real>& end = forward ? a.high : a.low;
   const Real start_slope = forward ? shape.slope_low : shape.slope_high;
   const Real end_slope = forward ? shape.slope_high : shape.slope_low;
-  // A limit that an end already has is left out, not approached by a rounding error.
+  // Leave out a change of slope that is only a rounding error.
   const auto beyond = [](Real slope, Real entry) {
     const Real difference = slope - entry;
     return difference > Real(4) * std::numeric_limits<Real>::epsilon() * slope ? difference : Real(0);
@@ -69,7 +69,7 @@ Extreme<Real> path_of(const Ascent<Real>& a, const Shape<Real>& shape, Real sign
   return path;
 }
 
-/// A widest or lowest motion that arrives.
+/// Widest or lowest motion that arrives.
 template <typename Real>
 struct Arrival {
   bool is_up;
@@ -82,7 +82,7 @@ Arrival<Real> arrival(const Families<Real>& f, bool is_up, const Shape<Real>& sh
   return {is_up, shape, duration_of(is_up ? f.up : f.down, shape)};
 }
 
-/// An arrival at the very start or end of the gap, where both families have the same motion.
+/// Finds an arrival at the start or end of the gap, where both families have the same motion. Returns false if there is none.
 template <typename Real>
 bool arrive_at_edge(const Families<Real>& f, bool is_end, Arrival<Real>& found) {
   const bool is_up = f.up.has_gap;
@@ -95,7 +95,7 @@ bool arrive_at_edge(const Families<Real>& f, bool is_end, Arrival<Real>& found) 
   return true;
 }
 
-/// The first arrival behind the gap; both families have one, `one` for certain.
+/// Returns the first arrival after the gap. Both families have one; the family `one_is_up` has it for certain.
 template <typename Real>
 Arrival<Real> arrival_after_gap(const Families<Real>& f, bool one_is_up) {
   if (Arrival<Real> edge{}; arrive_at_edge(f, true, edge)) {
@@ -124,7 +124,7 @@ Arrival<Real> arrival_after_gap(const Families<Real>& f, bool one_is_up) {
   return arrival(f, !one_is_up, shape);
 }
 
-/// The first arrival before the gap. False if there is none; `is_up` then tells where the goal was missed.
+/// Finds the first arrival before the gap. Returns false if there is none; `is_up` is then the family that misses the goal.
 template <typename Real>
 bool arrive_before_gap(const Families<Real>& f, bool& is_up, Arrival<Real>& found) {
   Place<Real> place = shortest(f.up);
@@ -146,8 +146,8 @@ bool arrive_before_gap(const Families<Real>& f, bool& is_up, Arrival<Real>& foun
   return arrive_at_edge(f, false, found);
 }
 
-/// One segment of full jerk from end to end, where that meets the target but for rounding errors: no change of acceleration
-/// is faster. Such ends lie on a corner of what can be reached; a rounding error beyond it the next arrival is far off.
+/// Uses one segment of full jerk if it meets the target within rounding, because no change of acceleration is faster. Such ends lie at a
+/// corner of the reachable set: a rounding error beyond it, the next arrival comes much later.
 template <typename Real>
 bool arrive_in_one(const Problem<Real>& p, const Families<Real>& f, Arrival<Real>& found) {
   const Real change = p.a1 - p.a0;
@@ -169,7 +169,7 @@ bool arrive_in_one(const Problem<Real>& p, const Families<Real>& f, Arrival<Real
   return true;
 }
 
-/// An arrival of a given duration, or the next one possible.
+/// Arrival of a given duration, or the next possible one.
 template <typename Real>
 struct Timed {
   bool is_extreme;
@@ -186,8 +186,8 @@ void set_extreme(Timed<Real>& timed, const Arrival<Real>& found, Real not_before
   timed.duration_s = larger(not_before_s, found.duration_s);
 }
 
-/// An arrival in that time or as soon afterwards as possible, but before the gap. False if there is none; `is_up` then
-/// tells where the goal was missed.
+/// Finds an arrival at `duration_s` or as soon afterwards as possible, but before the gap. Returns false if there is none; `is_up` is then
+/// the family that misses the goal.
 template <typename Real>
 bool arrive_before_gap_from(const Families<Real>& f, Real duration_s, bool& is_up, Timed<Real>& timed) {
   is_up = true;
@@ -228,18 +228,18 @@ void append_timed(const Families<Real>& f, const Timed<Real>& timed, Way<Real>& 
   append_blend(path_of(f.up, timed.up, Real(1)), path_of(f.down, timed.down, Real(-1)), up_share, timed.duration_s, way);
 }
 
-/// One axis, ready to be asked for arrivals.
+/// One axis, prepared for arrive_first() and arrive_from().
 template <typename Real>
 struct Axis {  // NOLINT(cppcoreguidelines-pro-type-member-init): pose_axis() fills it
   Problem<Real> problem;
   Families<Real> families;
-  /// A start that will inevitably break a velocity limit may still arrive before. Then these are the motions without a
-  /// brake, of use only before their gap: in them the acceleration never changes its sign.
+  /// Motions without a brake, for a start that will inevitably break a velocity limit but may arrive before. They are used only before
+  /// their gap: there the acceleration never changes its sign.
   Families<Real> early;
   Arrival<Real> in_one;
-  bool may_be_early;     ///< whether there are early ones
-  bool is_in_one;        ///< behind the brake, the first arrival takes one segment
-  bool is_early_in_one;  ///< the same of the early ones
+  bool may_be_early;     ///< true if there are early motions
+  bool is_in_one;        ///< true if the first arrival after the brake takes one segment
+  bool is_early_in_one;  ///< true if the first early arrival takes one segment
 };
 
 template <typename Real>
@@ -263,12 +263,12 @@ PlanResult pose_axis(const AxisState<Real>& start, const AxisState<Real>& target
   return PlanResult::ok;
 }
 
-/// An arrival of an axis, and by which of its motions.
+/// Arrival of an axis, and the family of motions that it uses.
 template <typename Real>
 struct AxisArrival {
   bool is_early;
   Timed<Real> timed;
-  Real duration_s;  ///< with the brake
+  Real duration_s;  ///< duration including the brake
 };
 
 template <typename Real>
@@ -289,7 +289,7 @@ void arrive_first(const Axis<Real>& axis, AxisArrival<Real>& arrival) {
   arrival.duration_s = timed.duration_s + (arrival.is_early ? Real(0) : axis.problem.brake_s);
 }
 
-/// The first arrival not before `duration_s`; no less than the one of arrive_first.
+/// Finds the first arrival not before `duration_s`, which must not be below the duration of arrive_first().
 template <typename Real>
 void arrive_from(const Axis<Real>& axis, Real duration_s, AxisArrival<Real>& arrival) {
   bool is_up = true;
@@ -304,7 +304,7 @@ void arrive_from(const Axis<Real>& axis, Real duration_s, AxisArrival<Real>& arr
   const Real brake_s = axis.problem.brake_s;
   Arrival<Real> first{};
   if (axis.may_be_early) {
-    // The braked motions start later than the others end.
+    // The braked motions start later than the early ones end.
     const bool arrives = arrive_before_gap(axis.families, is_up, first);
     if (!arrives) {
       first = arrival_after_gap(axis.families, is_up);
@@ -333,7 +333,7 @@ void append_arrival(const Axis<Real>& axis, const AxisArrival<Real>& arrival, Wa
   append_timed(axis.families, arrival.timed, way);
 }
 
-/// The duration of plan_position, or the largest number where it has no answer.
+/// Returns the duration of plan_position(), or the largest number if there is no plan.
 template <typename Real>
 Real earliest_arrival_s(const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits, Target how) {
   Axis<Real> axis;

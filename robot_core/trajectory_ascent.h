@@ -1,21 +1,21 @@
-// The widest motion of a given duration, and the durations at which it covers a given distance. Part of the trajectory
-// planner; unit of jerk here is the axis' jerk_max, so that accelerations are in s, velocities in s2, distances in s3.
+// The widest motion of a given duration, and the durations at which it covers a given distance. Part of the trajectory planner. The unit of
+// jerk is the axis' jerk_max, so accelerations are in s, velocities in s2, distances in s3.
 //
-// Among all motions of duration T from (v0, a0) to (v1, a1) that keep the limits there is one that is fastest at every
-// single moment, hence widest: raise, hold, fall, [cruise,] fall, hold, raise. (Two parabolas of jerk +1 bound the
-// velocity from both ends; a parabola of jerk -1 that touches both cannot be exceeded: the difference of a faster
-// motion would be convex and not above zero at its ends.) The lowest one is the same with all signs turned. Motions of
-// equal T may be blended, since all limits are convex. So a target is reachable in T exactly if its distance lies between the
-// lowest and the widest one, and the earliest arrival is the first T at which one of the two meets the distance.
+// Consider all motions of duration T from (v0, a0) to (v1, a1) that keep the limits. One of them has the highest velocity at every moment,
+// hence the largest distance: the widest motion. Its phases are raise, hold, fall, [cruise,] fall, hold, raise. Proof: two parabolas of
+// jerk +1 bound the velocity from both ends. A parabola of jerk -1 that touches both cannot be exceeded: the difference of a faster motion
+// would be convex and not above zero at its ends. The lowest motion is the same with all signs reversed. Motions of equal T may be blended,
+// because all limits are convex. A target is therefore reachable in T exactly if its distance lies between the lowest and the widest
+// motion. The earliest arrival is the first T at which one of the two covers the distance.
 //
-// A widest motion has two legs that are alike when one is read backwards: a leg begins with the slope `entry` of the
-// velocity, raises it to `slope`, holds it there if that is the `bound`, and falls to the top. Extended backwards, its
-// parabola has a vertex of velocity `vertex`. Counting distance from vertex to vertex makes entries vanish from all formulas.
+// A widest motion has two legs, which are alike when one is read backwards. A leg begins with the slope `entry` of the velocity, raises it
+// to `slope`, holds it if that is the `bound`, and falls to the top. Extended backwards, its parabola has a vertex of velocity `vertex`.
+// With distances counted from vertex to vertex, the entries vanish from all formulas.
 //   free (nothing held):  x^2 - y^2 = K,  s = x + y,  T = 2 s,  distance = s^3/4 + W s - K^2/(4 s)
-// with slopes x, y of the legs with the lower and higher vertex, K and W the difference and sum of the vertices.
-// y < 0 is a saddle: the acceleration never changes sign between the legs. Otherwise there is a top of velocity u:
+// Here x and y are the slopes of the legs with the lower and higher vertex; K and W are the difference and sum of the vertices. y < 0 is a
+// saddle: the acceleration does not change its sign between the legs. Otherwise there is a top of velocity u:
 //   a leg of height z = u - vertex lasts 2 sqrt(z), or B + z/B beyond z = B^2, at a mean velocity of (u + vertex)/2.
-// In both cases d(distance)/dT = u + x y/2 with u = (higher vertex) + y^2; along growing T it first falls, then rises.
+// In both cases d(distance)/dT = u + x y/2 with u = (higher vertex) + y^2. With growing T it first falls, then rises.
 #pragma once
 
 #include <limits>
@@ -24,7 +24,7 @@
 
 namespace robot_core::detail {
 
-/// Rounding errors of a few operations, relative.
+/// Relative rounding error of a few operations.
 template <typename Real>
 inline constexpr Real kRounding = Real(128) * std::numeric_limits<Real>::epsilon();
 
@@ -35,45 +35,45 @@ struct Leg {
   Real bound;
 };
 
-/// What the two ends and the limits say about upward motions.
+/// Properties of the upward motions between two ends.
 template <typename Real>
 struct Ascent {
   Leg<Real> low;
   Leg<Real> high;
   bool low_is_start;
-  Real rise;     ///< K, >= 0
-  Real sum;      ///< W
-  Real ceiling;  ///< the highest top
-  Real goal;     ///< distance from vertex to vertex that is asked for
+  Real rise;     ///< K, difference of the vertices, >= 0
+  Real sum;      ///< W, sum of the vertices
+  Real ceiling;  ///< velocity of the highest top
+  Real goal;     ///< required distance from vertex to vertex
   Real goal_scale;
-  Real distance;        ///< the same from end to end
-  Real position_scale;  ///< of the positions whose difference that is
+  Real distance;        ///< required distance from end to end
+  Real position_scale;  ///< magnitude of the positions whose difference is `distance`
   bool starts_in_saddle;
-  /// The shortest saddles are possible up to y = gap; then no motion is, until the low leg starts at its entry.
+  /// Saddles exist from the shortest one up to y = gap. For longer durations no motion exists until the low leg starts at its entry.
   bool has_gap;
   Real gap;
-  Real entries;  ///< duration from vertex to vertex less duration of the motion
+  Real entries;  ///< duration from vertex to vertex minus duration of the motion
 };
 
-/// One widest motion.
+/// Phases of one widest motion.
 template <typename Real>
 struct Shape {
   Real slope_low;
   Real hold_low;
   Real slope_high;
   Real hold_high;
-  Real fall;    ///< both falls together
-  Real cruise;  ///< between them
+  Real fall;    ///< duration of both falls together
+  Real cruise;  ///< duration of the cruise between the falls
   Real distance;
 };
 
-/// A place in the family of widest motions: the top u, or the saddle's y < 0.
+/// Member of the family of widest motions: the top u, or the saddle's y < 0.
 template <typename Real>
 struct Place {
   bool is_saddle;
   Real at;
   Real distance;
-  Real low_height;  ///< of the legs of a top
+  Real low_height;  ///< leg heights, only for a top
   Real high_height;
 };
 
@@ -89,7 +89,7 @@ inline Place<Real> top_place(const Ascent<Real>& a, Real top, Real low_height, R
   return {false, top, distance, low_height, high_height};
 }
 
-/// No leg is lower than its own entry, not even where the square of that is lost beside the velocities.
+/// Lowest height of a leg: the square of its entry, even if that is lost to rounding beside the velocities.
 template <typename Real>
 inline Real least_height(const Leg<Real>& leg) {
   return leg.entry > Real(0) ? leg.entry * leg.entry : Real(0);
@@ -142,7 +142,7 @@ inline Real saddle_distance(const Ascent<Real>& a, Real y) {
   return s * (s * s / Real(4) + a.sum) - a.rise * difference / Real(4);
 }
 
-/// `up_difference` is vertex of the end less vertex of the start; `down_difference` the same for the mirrored motion.
+/// `up_difference`: vertex of the end minus vertex of the start. `down_difference`: the same for the mirrored motion.
 template <typename Real>
 inline Ascent<Real> make_ascent(const Leg<Real>& start, const Leg<Real>& end, Real up_difference, Real down_difference, Real velocity_max,
                                 Real distance, Real position_scale) {
@@ -165,7 +165,7 @@ inline Ascent<Real> make_ascent(const Leg<Real>& start, const Leg<Real>& end, Re
   const Real missing = a.low.entry * a.low.entry - a.rise;
   a.has_gap = a.starts_in_saddle && a.low.entry > Real(0) && missing > Real(0);
   a.gap = a.has_gap ? larger(-square_root(missing), a.high.entry) : Real(0);
-  // What an end has beyond the limit; not its rounding errors, which a slow cruise would take for its velocity.
+  // Counts the excess of an end over the limit, but not its rounding error, which a slow cruise would take for its velocity.
   const auto beyond = [velocity_max](const Leg<Real>& leg) {
     const Real least = least_height(leg);
     const Real rounding = Real(4) * std::numeric_limits<Real>::epsilon() * (absolute(leg.vertex) + least);
@@ -175,7 +175,7 @@ inline Ascent<Real> make_ascent(const Leg<Real>& start, const Leg<Real>& end, Re
   return a;
 }
 
-/// The lowest top at which both legs are whole: one of them begins with a fall, or, if none can, with its vertex.
+/// Returns the lowest top with complete legs: one of them begins with a fall or, if none can, at its vertex.
 template <typename Real>
 inline Place<Real> lowest_top(const Ascent<Real>& a) {
   const Real low = least_height(a.low);
@@ -186,7 +186,7 @@ inline Place<Real> lowest_top(const Ascent<Real>& a) {
   return top_place(a, a.high.vertex + high, a.rise + high, high);
 }
 
-/// The motion of the shortest duration of all.
+/// Returns the motion with the shortest duration of all.
 template <typename Real>
 inline Place<Real> shortest(const Ascent<Real>& a) {
   return a.starts_in_saddle ? saddle_place(a.high.entry, saddle_distance(a, a.high.entry)) : lowest_top(a);
@@ -222,14 +222,14 @@ inline Shape<Real> free_shape(const Ascent<Real>& a, Real s, Real distance) {
   return {x, Real(0), y, Real(0), s, Real(0), distance};
 }
 
-/// The low leg held, the high one with slope y.
+/// Shape with the low leg held and the slope y of the high leg.
 template <typename Real>
 inline Shape<Real> low_held_shape(const Ascent<Real>& a, Real y, Real distance) {
   const Real bound = a.low.bound;
   return {bound, larger((a.rise + y * y) / bound - bound, Real(0)), y, Real(0), bound + y, Real(0), distance};
 }
 
-/// The high leg held, the low one with slope x.
+/// Shape with the high leg held and the slope x of the low leg.
 template <typename Real>
 inline Shape<Real> high_held_shape(const Ascent<Real>& a, Real x, Real distance) {
   const Real bound = a.high.bound;
@@ -249,7 +249,7 @@ inline Shape<Real> shape_at(const Ascent<Real>& a, const Place<Real>& place) {
   return {x, Real(0), place.at, Real(0), s, Real(0), place.distance};
 }
 
-/// The widest motion of duration T from vertex to vertex, and its place.
+/// Returns the widest motion of a duration (from vertex to vertex); sets `place` to its place in the family.
 template <typename Real>
 inline Shape<Real> at_duration(const Ascent<Real>& a, Real duration, Place<Real>& place) {
   const Real s = duration / Real(2);
@@ -286,7 +286,7 @@ inline Shape<Real> at_duration(const Ascent<Real>& a, Real duration, Place<Real>
       return top_shape(a, place, Real(0), place.distance);
     }
   }
-  // Not by the top: a short motion at a high velocity hardly raises it.
+  // Do not calculate this from the top: a short motion at a high velocity hardly raises it.
   Shape<Real> shape{};
   if (low_is_held) {
     shape = low_held_shape(a, y, held_distance(a.low.bound, a.high.vertex, a.sum, a.rise, y));

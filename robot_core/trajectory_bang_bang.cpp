@@ -6,7 +6,7 @@ namespace robot_core {
 namespace detail {
 namespace {
 
-/// Segments of constant acceleration, one after the other.
+/// Appends segments of constant acceleration.
 template <typename Real>
 class Steps {
  public:
@@ -34,10 +34,10 @@ class Steps {
   Real time_s_ = 0;
 };
 
-/// From v0 to v1 over `distance`, all within `lower` and `upper`: raise, cruise, fall, or the same mirrored.
+/// Appends a motion from v0 to v1 over `distance` with velocities from `lower` to `upper`: raise, cruise, fall, or its mirror image.
 template <typename Real>
 void cover(Real distance, Real v0, Real v1, Real lower, Real upper, const AxisLimits<Real>& limits, Steps<Real>& steps) {
-  // The direct change of velocity tells the direction.
+  // Compare with the direct change of velocity to find the direction.
   const Real direct = (v1 * v1 - v0 * v0) / (Real(2) * (v1 > v0 ? limits.acceleration_max : limits.acceleration_min));
   const Real sign = distance < direct ? Real(-1) : Real(1);
   const Real raise = sign > Real(0) ? limits.acceleration_max : -limits.acceleration_min;

@@ -1,4 +1,4 @@
-// One axis' problem, and how a start that violates limits is led back inside. Part of the trajectory planner.
+// Problem of one axis, and the brake that leads a start outside the limits back inside. Part of the trajectory planner.
 #pragma once
 
 #include "robot_core/math.h"
@@ -8,19 +8,19 @@
 
 namespace robot_core::detail {
 
-/// One axis in units of its jerk_max, after its brake.
+/// Problem of one axis in units of its jerk_max, after its brake.
 template <typename Real>
 struct Problem {  // NOLINT(cppcoreguidelines-pro-type-member-init): pose() fills it
   Real v0, a0, v1, a1;
-  Real velocity_max, velocity_min, acceleration_max, acceleration_min;  ///< magnitudes of the minima
+  Real velocity_max, velocity_min, acceleration_max, acceleration_min;  ///< the minima are magnitudes
   Real distance;
-  Real distance_scale;  ///< of the positions whose difference it is
+  Real distance_scale;  ///< magnitude of the positions whose difference is `distance`
   Real brake_s;
   Path<Real, 2> brake;
 };
 
-/// Upwards too fast, now or inevitably soon: jerk down until the velocity is `velocity_max` again and sinking; but no
-/// longer than `velocity_min` can still be kept.
+/// Brakes a start that moves upwards too fast, now or inevitably soon. Jerks down until the velocity sinks below `velocity_max`, but only
+/// as long as `velocity_min` can still be kept.
 template <typename Real>
 void brake_velocity(Real& v, Real& a, Real velocity_max, Real velocity_min, Real acceleration_min, Real sign, Path<Real, 2>& brake) {
   const Real square = a * a / Real(2);
@@ -42,7 +42,7 @@ void brake_velocity(Real& v, Real& a, Real velocity_max, Real velocity_min, Real
   v += hold_s * a;
 }
 
-/// Accelerating too much: jerk down to the limit, and on as long as a velocity limit asks for it.
+/// Brakes a start with too much acceleration: jerks down to the limit, then holds it as long as a velocity limit requires it.
 template <typename Real>
 void brake_acceleration(Real& v, Real& a, Real velocity_max, Real velocity_min, Real acceleration_max, Real acceleration_min, Real sign,
                         Path<Real, 2>& brake) {
@@ -63,7 +63,7 @@ void brake_acceleration(Real& v, Real& a, Real velocity_max, Real velocity_min, 
   }
 }
 
-/// Leads a start that violates limits back inside.
+/// Leads a start outside the limits back inside.
 template <typename Real>
 void leave_violation(Problem<Real>& p) {
   AxisState<Real> state{Real(0), p.v0, p.a0};
@@ -97,7 +97,7 @@ void leave_violation(Problem<Real>& p) {
   p.distance_scale += absolute(state.position);
 }
 
-/// No limit is violated yet, but a velocity limit inevitably will be, unless the motion ends before.
+/// Returns true if no limit is violated yet, but a velocity limit will be unless the motion ends before.
 template <typename Real>
 bool violates_later(const Problem<Real>& p) {
   const Real tolerance = kLimitTolerance<Real>;
@@ -109,7 +109,7 @@ bool violates_later(const Problem<Real>& p) {
          (p.a0 > Real(0) ? p.v0 + square > p.velocity_max + velocity_tolerance : p.v0 - square < -p.velocity_min - velocity_tolerance);
 }
 
-/// Everything in units of jerk_max, in the frame of a target that moves on.
+/// Converts a task to units of jerk_max in the frame of a moving target. Returns the error of an invalid state, target or limit.
 template <typename Real>
 PlanResult pose(const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits, Target how, Problem<Real>& p) {
   if (!is_whole(start) || !is_whole(target)) {

@@ -1,4 +1,4 @@
-// What a motion in the plane needs of a circle of speed and acceleration. Part of the trajectory planner.
+// Checks of a motion in the plane against the circle of speed and acceleration. Part of the trajectory planner.
 #pragma once
 
 #include "robot_core/math.h"
@@ -11,15 +11,15 @@ Real length(Real x, Real y) {
   return square_root(x * x + y * y);
 }
 
-/// What a start may have beyond the circle, relative. It is of the limits, so that whoever plans again and again gains nothing by it.
+/// Relative tolerance for a start outside the circle. It refers to the limits, so that planning again and again does not add it up.
 template <typename Real>
 inline constexpr Real kCircleTolerance = Real(5e-4);
 
-/// How far a plan from inside may lead out, all in all.
+/// Largest speed of a plan from inside, relative to the limit.
 template <typename Real>
 inline constexpr Real kPromised = Real(1) + Real(2e-3);
 
-/// The limits of a plane, with the tolerance.
+/// Limits of a plane, with the tolerance.
 template <typename Real>
 struct Circle {
   Real speed;
@@ -32,7 +32,7 @@ struct Circle {
   }
 };
 
-/// The least share of a circle with which an axis keeps its share of speed and acceleration, now and from now on:
+/// Returns the smallest fraction of the circle with which an axis keeps its share of speed and acceleration from now on:
 /// share * speed >= velocity + acceleration^2 / (2 share * jerk).
 template <typename Real>
 Real least_share(const AxisState<Real>& state, const Circle<Real>& circle) {
@@ -42,22 +42,22 @@ Real least_share(const AxisState<Real>& state, const Circle<Real>& circle) {
   return larger(larger(absolute(state.velocity) / circle.speed, absolute(state.acceleration) / circle.acceleration), braked);
 }
 
-/// The speed that is left when the acceleration has been brought to zero along its own direction. Meanwhile the velocity goes along a line:
-/// it is never faster than at one end.
+/// Returns the speed after the acceleration has been brought to zero along its own direction. The velocity follows a straight line until
+/// then, so that the speed never exceeds the larger one at both ends.
 template <typename Real>
 Real braked_speed(const AxisState<Real>& x, const AxisState<Real>& y, Real jerk) {
   const Real time_s = length(x.acceleration, y.acceleration) / jerk;
   return length(x.velocity + x.acceleration * time_s / Real(2), y.velocity + y.acceleration * time_s / Real(2));
 }
 
-/// A velocity during a segment, as the corners of its parabola (Bernstein's form), over the circle's speed.
+/// Velocity of one axis during a segment, divided by the circle's speed, as coefficients of its parabola in Bernstein form.
 template <typename Real>
 struct Parabola {
   Real from, corner, to;
 };
 
-/// The largest x^2 + y^2, or anything not above `floor` if it is not above that: never less, and at most 1e-6 more. The square's own
-/// corners bound it; where they are too far off, halves are looked at.
+/// Upper bound of x^2 + y^2, at most 1e-6 above the maximum or `floor`, whichever is larger. The Bernstein coefficients of the square bound
+/// it; if they are too far off, the segment is halved.
 template <typename Real>
 Real most_square(const Parabola<Real>& x, const Parabola<Real>& y, Real floor, int halvings) {
   constexpr Real kExact = Real(1) + Real(1e-6);
@@ -81,7 +81,7 @@ Real most_square(const Parabola<Real>& x, const Parabola<Real>& y, Real floor, i
   return larger(left, most_square(xs[1], ys[1], larger(floor, left), halvings - 1));
 }
 
-/// Walks through the segments of time in which neither x nor y changes its jerk.
+/// Iterates over the time intervals in which neither x nor y changes its jerk.
 template <typename Real>
 class PairOfSegments {
  public:
@@ -89,7 +89,7 @@ class PairOfSegments {
 
   [[nodiscard]] Real duration_s() const { return until_s_ - from_s_; }
 
-  /// False behind the last segment.
+  /// Goes to the next interval. Returns false after the last one.
   bool next() {
     const int ended = end_s(0) <= end_s(1) ? 0 : 1;
     ++at_[ended];
@@ -122,7 +122,7 @@ class PairOfSegments {
   Real until_s_ = 0;
 };
 
-/// The highest speed on the way: the square of its part of the circle, or anything not above 1.
+/// Square of the highest speed of the path relative to the circle's speed; 1 (to 1e-6) if it stays inside.
 template <typename Real>
 Real speed_square(const Trajectory<Real>* motions, const Circle<Real>& circle) {
   constexpr int kHalvings = 10;
@@ -141,7 +141,7 @@ Real speed_square(const Trajectory<Real>* motions, const Circle<Real>& circle) {
   return most;
 }
 
-/// The same of the acceleration. It goes along a line between changes of a jerk, and so is longest at one of them.
+/// Square of the highest acceleration relative to the circle's. It is linear between changes of a jerk, so it is highest at one of them.
 template <typename Real>
 Real acceleration_square(const Trajectory<Real>* motions, const Circle<Real>& circle) {
   Real most = 0;
@@ -156,8 +156,8 @@ Real acceleration_square(const Trajectory<Real>* motions, const Circle<Real>& ci
   return most / (circle.acceleration * circle.acceleration);
 }
 
-/// Whether someone who plans anew anywhere on the way can stay inside: the state keeps some shares of the circle, or braking its
-/// acceleration leaves no more than `speed`. Sampled, as densely as the velocity changes, until the shares of the plan itself are kept.
+/// Returns true if planning anew anywhere on the path can stay inside: the state keeps fractions of some split, or braking its acceleration
+/// leaves at most `speed`. Samples as densely as the velocity changes, until the state keeps the fractions of the plan itself.
 template <typename Real>
 bool can_stay_inside(const Trajectory<Real>* motions, const Circle<Real>& circle, Real speed, Real share_x, Real share_y) {
   constexpr Real kFewest = 4;

@@ -1,4 +1,4 @@
-// What x and y do together, straight, before each goes its own way. Part of the trajectory planner.
+// The lead: a straight motion of x and y together, before each axis follows its own plan. Part of the trajectory planner.
 #pragma once
 
 #include <limits>
@@ -10,7 +10,7 @@
 
 namespace robot_core::detail {
 
-/// An axis' part of the lead: segments of constant jerk in m/s3 (or rad/s3), and where they end.
+/// One axis' part of the lead: segments of constant jerk in m/s3 (or rad/s3), and the state at their end.
 template <typename Real>
 struct Lead {  // NOLINT(cppcoreguidelines-pro-type-member-init): only the first of the path's places hold values
   Path<Real, 5> path;
@@ -23,7 +23,7 @@ struct Lead {  // NOLINT(cppcoreguidelines-pro-type-member-init): only the first
   }
 };
 
-/// A brake along a line: jerk against the velocity, hold, jerk back until the acceleration is gone.
+/// Brake along a line: jerk against the velocity, hold, jerk back until the acceleration is zero.
 template <typename Real>
 struct StraightBrake {
   Real jerk_s;
@@ -31,7 +31,7 @@ struct StraightBrake {
   Real back_s;
 };
 
-/// Less speed by `change`. `slope` is the deceleration that is there already.
+/// Returns the brake that reduces the speed by `change`. `slope` is the deceleration at its start.
 template <typename Real>
 StraightBrake<Real> straight_brake(Real change, Real slope, const PlaneLimits<Real>& plane) {
   const Real square = plane.jerk_max * change + slope * slope / Real(2);
@@ -41,7 +41,7 @@ StraightBrake<Real> straight_brake(Real change, Real slope, const PlaneLimits<Re
   return {(deepest - slope) / plane.jerk_max, hold_s, deepest / plane.jerk_max};
 }
 
-/// How x and y bring their accelerations to zero, each with a share of the jerk, and the velocity that is left.
+/// Motion that brings the accelerations of x and y to zero, each with a fraction of the jerk, and the velocity at its end.
 template <typename Real>
 struct Calming {
   Real share[2];
@@ -62,8 +62,8 @@ Calming<Real> calming(const AxisState<Real>* start, Real jerk_max, Real share_x,
   return c;
 }
 
-/// x and y: the acceleration is brought to zero, then the velocity down to `speed` along its own direction. Where the acceleration brakes
-/// along the velocity already, it goes on from there.
+/// Plans the leads of x and y: the acceleration goes to zero, then the velocity down to `speed` along its own direction. If the
+/// acceleration already brakes along the velocity, the brake continues from it.
 template <typename Real>
 void lead_to(Real speed, const AxisState<Real>* start, const Calming<Real>& calm, const PlaneLimits<Real>& plane, Lead<Real>* leads) {
   constexpr Real kStraight = std::numeric_limits<Real>::digits > 32 ? Real(1e-9) : Real(1e-4);
@@ -100,8 +100,8 @@ void lead_to(Real speed, const AxisState<Real>* start, const Calming<Real>& calm
   }
 }
 
-/// The lead as the first segments. Its end is exact: its rounding errors may be large beside a small share of the circle, and would add up
-/// over a long way.
+/// Writes the lead as the first segments. Its end is set exactly: rounding errors may be large beside a small fraction of the circle and
+/// would add up over a long path.
 template <typename Real>
 void lay_out_lead(const Lead<Real>& lead, Trajectory<Real>& trajectory) {
   for (int i = 0; i < lead.path.count; ++i) {
@@ -113,7 +113,7 @@ void lay_out_lead(const Lead<Real>& lead, Trajectory<Real>& trajectory) {
   trajectory.target = lead.end;
 }
 
-/// plan_synchronised, behind the leads of the first `lead_count` axes.
+/// Plans as plan_synchronised(), but from the end of the leads of the first `lead_count` axes.
 template <typename Real>
 PlanResult plan_together(int axis_count, const AxisState<Real>* start, const AxisState<Real>* target, const AxisLimits<Real>* limits,
                          const Lead<Real>* leads, int lead_count, Trajectory<Real>* trajectories, Target how, int* failed_axis);

@@ -1,4 +1,4 @@
-// What every planner asks of its numbers first.
+// Checks of the numbers that every planner makes first.
 #pragma once
 
 #include <limits>
@@ -8,12 +8,12 @@
 
 namespace robot_core::detail {
 
-/// What a start that was computed, not chosen, may be off, relative. More than a few roundings: behind a gap of durations
-/// that opens at a small slope y, an error of the velocities counts 1/y times.
+/// Relative error that a calculated start may have. It is more than a few roundings: after a gap of durations that opens at a small slope
+/// y, an error of the velocities counts 1/y times.
 template <typename Real>
 inline constexpr Real kTouch = std::numeric_limits<Real>::digits > 32 ? Real(1e-11) : Real(1e-5);
 
-/// What the end of the last segment may be off the target, relative; see plan_position.
+/// Relative error that the end of the last segment may have; see plan_position.
 template <typename Real>
 inline constexpr Real kArrival = std::numeric_limits<Real>::digits > 32 ? Real(1e-8) : Real(1e-3);
 

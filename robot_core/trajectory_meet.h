@@ -1,4 +1,4 @@
-// The first of the widest motions that covers the distance asked for; see trajectory_ascent.h.
+// Finds the first widest motion that covers the required distance; see trajectory_ascent.h.
 #pragma once
 
 #include <limits>
@@ -10,7 +10,7 @@
 
 namespace robot_core::detail {
 
-/// Neither leg held: the duration s of the fall.
+/// Solves for the duration s of the fall, with neither leg held.
 template <typename Real>
 inline Shape<Real> solve_free(const Ascent<Real>& a, Real low_s, Real high_s, Real guess) {
   const Real quarter_rise_2 = a.rise * a.rise / Real(4);
@@ -24,7 +24,7 @@ inline Shape<Real> solve_free(const Ascent<Real>& a, Real low_s, Real high_s, Re
   return free_shape(a, root_between(function, low_s, high_s, guess, Real(0)), a.goal);
 }
 
-/// One leg held at `bound`: the slope of the other leg. `rise` is the other vertex less the held leg's.
+/// Solves for the slope of the other leg, with one leg held at `bound`. `rise` is the other vertex minus the vertex of the held leg.
 template <typename Real>
 inline Real solve_held(Real bound, Real vertex, Real sum, Real rise, Real goal, Real low, Real high, Real guess) {
   const Real inverse = Real(1) / bound;
@@ -43,7 +43,7 @@ inline Real solve_held(Real bound, Real vertex, Real sum, Real rise, Real goal, 
   return root_between(function, low, high, guess, bound);
 }
 
-/// Both legs held: the height of the high leg at which the goal is met.
+/// Solves for the height of the high leg at which the goal is met, with both legs held.
 template <typename Real>
 inline Real solve_both_held(const Ascent<Real>& a) {
   const Real inverse = Real(1) / a.low.bound + Real(1) / a.high.bound;
@@ -53,13 +53,13 @@ inline Real solve_both_held(const Ascent<Real>& a) {
   return linear > Real(0) ? -Real(2) * rest / (linear + root) : (root - linear) / inverse;
 }
 
-/// Some top with distance(from) <= goal < distance(ceiling): the motion with a top above `from` that meets the goal. By heights, not by
-/// the top: a short motion at a high velocity hardly raises it.
+/// Finds the motion with a top above `from` that meets the goal, for distance(from) <= goal < distance(ceiling). Calculates with heights
+/// instead of the top: a short motion at a high velocity hardly raises it.
 template <typename Real>
 inline Shape<Real> solve_top(const Ascent<Real>& a, const Place<Real>& from, const Place<Real>& ceiling) {
   Place<Real> low = from;
   Place<Real> high = ceiling;
-  // Beyond its threshold a leg is held: on which side of it the goal is tells whether.
+  // Above its threshold height a leg is held; compare the goal with the distance at that height.
   const auto narrow = [&](Real high_height) {
     if (high_height <= low.high_height) {
       return true;
@@ -93,7 +93,7 @@ inline Shape<Real> solve_top(const Ascent<Real>& a, const Place<Real>& from, con
   }
   const Real s_low = x_low + y_low;
   const Real s_high = x_high + y_high;
-  // The legs' own velocities pull the root of the pure cubic up or down.
+  // The legs' own velocities shift the root of the pure cubic up or down.
   Real guess = s_low + share * (s_high - s_low);
   const Real linear = a.sum - a.rise / Real(4);
   const Real cubic = rough_cube_root(Real(4) * larger(a.goal, Real(0)));
@@ -102,7 +102,7 @@ inline Shape<Real> solve_top(const Ascent<Real>& a, const Place<Real>& from, con
   return solve_free(a, s_low, s_high, guess);
 }
 
-/// The saddle between y = low and y = high (same way of being held) that meets the goal.
+/// Finds the saddle between y = low and y = high that meets the goal. The low leg must be held at both or at neither.
 template <typename Real>
 inline Shape<Real> solve_saddle(const Ascent<Real>& a, Real low, Real high, Real low_distance, Real high_distance) {
   const Real share = clamped((a.goal - low_distance) / (high_distance - low_distance), Real(0), Real(1));
@@ -115,7 +115,7 @@ inline Shape<Real> solve_saddle(const Ascent<Real>& a, Real low, Real high, Real
   return solve_free(a, s_low, s_high, s_low + share * (s_high - s_low));
 }
 
-/// The y of the saddle where the distance stops to grow with T, or `otherwise` if it grows on.
+/// Returns the y of the saddle at which the distance stops growing with T, or `otherwise` if it does not stop.
 template <typename Real>
 inline Real saddle_crest(const Ascent<Real>& a, Real from, Real otherwise) {
   const Real bound = a.low.bound;
@@ -140,14 +140,14 @@ inline Real saddle_crest(const Ascent<Real>& a, Real from, Real otherwise) {
   return otherwise;
 }
 
-/// d(distance)/dT.
+/// Returns d(distance)/dT of a saddle.
 template <typename Real>
 inline Real saddle_speed(const Ascent<Real>& a, Real y) {
   const Real x = smaller(a.low.bound, square_root(a.rise + y * y));
   return a.high.vertex + y * (y + x / Real(2));
 }
 
-/// One piece of a saddle's range, at whose start the distance is not above the goal: true if it is met in it.
+/// Searches one part of the saddles, with a distance not above the goal at its start. Returns true if the goal is met in it.
 template <typename Real>
 inline bool meet_in_saddle(const Ascent<Real>& a, Place<Real>& from, Real until, Shape<Real>& shape) {
   if (!(until > from.at)) {
@@ -183,8 +183,8 @@ inline bool meet_in_saddle(const Ascent<Real>& a, Place<Real>& from, Real until,
   return false;
 }
 
-/// What a motion misses from end to end. From vertex to vertex this cannot be told: short motions between large accelerations are far
-/// shorter than that. `scale` is what rounding errors are relative to.
+/// Returns the distance that a motion misses from end to end. From vertex to vertex the error is not visible: short motions between large
+/// accelerations are far shorter than that. `scale` is the reference for rounding errors.
 template <typename Real>
 inline Real missed_distance(const Ascent<Real>& a, const Shape<Real>& shape, Real& scale) {
   Real distance = 0;
@@ -207,7 +207,7 @@ inline Real missed_distance(const Ascent<Real>& a, const Shape<Real>& shape, Rea
   return a.distance - distance;
 }
 
-/// Whether the motion at a place meets the goal, but for rounding errors.
+/// Returns true if the motion at a place meets the goal within rounding.
 template <typename Real>
 inline bool is_met(const Ascent<Real>& a, const Place<Real>& place) {
   if (absolute(a.goal - place.distance) > kTouch<Real> * (a.goal_scale + absolute(place.distance))) {
@@ -218,8 +218,8 @@ inline bool is_met(const Ascent<Real>& a, const Place<Real>& place) {
   return absolute(missed) <= kTouch<Real> * scale;
 }
 
-/// A motion that meets the goal but for a rounding error. Where the next one is far off, that makes all the difference:
-/// whoever plans again on the way would be sent around.
+/// Accepts a motion that meets the goal within rounding. Otherwise, if the next arrival comes much later, a plan made on the way would take
+/// a detour.
 template <typename Real>
 inline bool touch(const Ascent<Real>& a, const Place<Real>& place, Shape<Real>& shape) {
   const bool meets = is_met(a, place);
@@ -229,10 +229,10 @@ inline bool touch(const Ascent<Real>& a, const Place<Real>& place, Shape<Real>& 
   return meets;
 }
 
-/// A motion that one leg enters with its fall, while the other is raised to a slope (of the given sign) or held: the shortest one, and
-/// those at both ends of the gap. It is the only one of its duration, and beside it there may be no arrival for long. The velocities alone
-/// tell the slope, but their rounding errors count 1/slope times in it, and so in the distance. So the slope (or the hold) is taken from
-/// the distance, and then the velocities have to allow it but for rounding errors. False as well if motions exist where it leads to.
+/// Finds a motion that one leg enters with its fall, while the other is raised to a slope (of the given sign) or held. These are the
+/// shortest motion and those at both ends of the gap. Each is the only one of its duration, and the next arrival may come much later. The
+/// velocities alone give the slope, but their rounding errors enter it, and the distance, 1/slope times. So the distance gives the slope
+/// (or the hold), and the velocities must agree within rounding. Returns false also if ordinary motions exist there.
 template <typename Real>
 inline bool meet_at_edge(const Ascent<Real>& a, bool low_is_free, Real sign, Shape<Real>& shape) {
   const Leg<Real>& fixed = low_is_free ? a.high : a.low;
@@ -257,12 +257,12 @@ inline bool meet_at_edge(const Ascent<Real>& a, bool low_is_free, Real sign, Sha
       return false;
     }
   }
-  // Beside a large velocity that allows any slope; the limits do not.
+  // At a large velocity that test accepts any slope, so check the limits as well.
   return shape.fall >= Real(0) && hold >= Real(0) && slope > free.entry &&
          slope <= free.bound * (Real(1) + kLimitTolerance<Real>)&&absolute(missed) <= kTouch<Real> * scale;
 }
 
-/// The shortest motion, if it meets the goal but for rounding errors, while longer ones at first fall behind it.
+/// Finds the shortest motion, if it meets the goal within rounding and slightly longer ones cover less distance.
 template <typename Real>
 inline bool meet_at_shortest(const Ascent<Real>& a, const Place<Real>& place, Shape<Real>& shape) {
   const Real entry_2 = a.high.entry * a.high.entry;
@@ -270,7 +270,7 @@ inline bool meet_at_shortest(const Ascent<Real>& a, const Place<Real>& place, Sh
   return falls_behind && meet_at_edge(a, place.is_saddle || entry_2 >= place.high_height, Real(1), shape);
 }
 
-/// The first motion from `from` on (whose distance is not above the goal) that meets the goal. False if a gap comes first.
+/// Finds the first motion from `from` on that meets the goal; the distance at `from` must not be above it. False if a gap comes first.
 template <typename Real>
 inline bool meet(const Ascent<Real>& a, Place<Real> from, Shape<Real>& shape) {
   if (from.is_saddle) {

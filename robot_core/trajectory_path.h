@@ -1,5 +1,5 @@
-// Segments of constant jerk, before they become segments of a trajectory. Part of the trajectory planner; the unit of
-// jerk is the axis' jerk_max, as in trajectory_ascent.h.
+// Segments of constant jerk, before they become segments of a trajectory. Part of the trajectory planner. The unit of jerk is the axis'
+// jerk_max, as in trajectory_ascent.h.
 #pragma once
 
 #include <limits>
@@ -10,7 +10,7 @@
 
 namespace robot_core::detail {
 
-/// Durations and the jerk of each, in units of jerk_max.
+/// Durations of consecutive segments and the jerk of each, in units of jerk_max.
 template <typename Real, int most>
 struct Path {  // NOLINT(cppcoreguidelines-pro-type-member-init): only `count` of the places hold values
   int count = 0;
@@ -43,15 +43,15 @@ void append(const Extreme<Real>& path, Way<Real>& way) {
   }
 }
 
-/// One end of a motion that is taken apart from both ends.
+/// Position in a motion that is read from one of its ends.
 template <typename Real>
 struct Cursor {
   int at;
-  Real left_s;  ///< of the segment `at`
+  Real left_s;  ///< time left in segment `at`
 };
 
-/// Both motions, each with its share of the jerk. Times are counted from the nearer end: what is short there stays exact
-/// even beside a long cruise, where the rounding errors go.
+/// Appends the blend of two motions, each with its fraction of the jerk. Times are counted from the nearer end, so that short segments
+/// there stay exact. The rounding errors go into the segment between, such as a long cruise.
 template <typename Real>
 void append_blend(const Extreme<Real>& up, const Extreme<Real>& down, Real up_share, Real duration_s, Way<Real>& way) {
   if (up.count == 0 || down.count == 0) {
@@ -70,7 +70,7 @@ void append_blend(const Extreme<Real>& up, const Extreme<Real>& down, Real up_sh
     const bool down_ends = front[1].at < back[1].at;
     return up_ends && (!down_ends || at[0].left_s < at[1].left_s) ? 0 : 1;
   };
-  // The step to the nearest change of either jerk; a step that only rounding makes is left out.
+  // Steps to the nearest change of either jerk. Leaves out a step that exists only by rounding.
   const auto step = [](Cursor<Real>(&at)[2], int which, const Extreme<Real>& motion, int forward, Real& passed_s) {
     const Real step_s = larger(at[which].left_s, Real(0));
     at[1 - which].left_s -= step_s;
@@ -102,8 +102,8 @@ void append_blend(const Extreme<Real>& up, const Extreme<Real>& down, Real up_sh
   }
 }
 
-/// `value`, or the nearest of `low`, 0 and `high` that it differs from by a rounding error of `scale`: by `at_limit` of it at `low` and
-/// `high`.
+/// Returns the nearest of `low`, 0 and `high` if `value` differs from it by a rounding error, else `value`. The error is relative to
+/// `scale`: `at_limit` at `low` and `high`, kTouch at 0.
 template <typename Real>
 Real snapped(Real value, Real low, Real high, Real scale, Real at_limit) {
   const Real limit = value < Real(0) ? low : high;
@@ -112,7 +112,7 @@ Real snapped(Real value, Real low, Real high, Real scale, Real at_limit) {
   return absolute(value - nearest) <= touch * scale ? nearest : value;
 }
 
-/// The way as further segments of the axis, behind those it has. False if the numbers do not hold.
+/// Appends the path to the segments of the axis. Returns false if a number overflows.
 template <typename Real>
 bool lay_out_behind(const Way<Real>& way, const AxisLimits<Real>& limits, Trajectory<Real>& trajectory) {
   AxisState<Real> state = trajectory.target;
@@ -124,8 +124,8 @@ bool lay_out_behind(const Way<Real>& way, const AxisLimits<Real>& limits, Trajec
     most_acceleration = larger(most_acceleration, absolute(state.acceleration));
     most_velocity = larger(most_velocity, absolute(state.velocity));
     if (jerk == Real(0)) {
-      // Rounding errors would add up over a long hold or cruise. A blend may by nature hold an acceleration close to the limit, and moved
-      // there it would not find back to 0.
+      // Rounding errors would add up over a long hold or cruise. A blend may hold an acceleration close to the limit on purpose; moved
+      // there, it would not return to 0.
       constexpr Real kHeld = kTouch<Real> / Real(4);
       state.acceleration = snapped(state.acceleration, limits.acceleration_min, limits.acceleration_max, most_acceleration, kHeld);
       if (state.acceleration == Real(0)) {
@@ -142,7 +142,7 @@ bool lay_out_behind(const Way<Real>& way, const AxisLimits<Real>& limits, Trajec
   return is_finite(state.position) && is_finite(state.velocity) && is_finite(time_s);
 }
 
-/// No segment yet.
+/// Starts a trajectory at `start` without segments.
 template <typename Real>
 void begin_at(const AxisState<Real>& start, Trajectory<Real>& trajectory) {
   trajectory.segment_count = 0;
@@ -150,7 +150,7 @@ void begin_at(const AxisState<Real>& start, Trajectory<Real>& trajectory) {
   trajectory.target = start;
 }
 
-/// Whether velocity and acceleration stay within the limits, but for rounding errors of the larger ones.
+/// Returns true if velocity and acceleration keep the limits, except for rounding errors relative to the larger limit.
 template <typename Real>
 bool keeps_limits(const Trajectory<Real>& trajectory, const AxisLimits<Real>& limits) {
   constexpr Real kRelative = std::numeric_limits<Real>::digits > 32 ? Real(1e-10) : Real(4e-3);
@@ -166,7 +166,7 @@ bool keeps_limits(const Trajectory<Real>& trajectory, const AxisLimits<Real>& li
     const Real velocity = s.start.velocity;
     const Real slope = s.start.acceleration;
     const Real change = s.jerk * s.duration_s;
-    // Where the acceleration passes zero, the velocity turns. All without a branch: there are no two ways alike.
+    // The velocity has an extremum where the acceleration passes zero. No branches, because no two paths are alike.
     const Real left = slope > Real(0) ? velocity_max - velocity : velocity - velocity_min;
     const auto turns = static_cast<unsigned>(slope * (slope + change) < Real(0));
     breaks |= turns & static_cast<unsigned>(slope * slope > Real(2) * absolute(s.jerk) * left);
@@ -176,7 +176,7 @@ bool keeps_limits(const Trajectory<Real>& trajectory, const AxisLimits<Real>& li
   return breaks == 0;
 }
 
-/// The change of segments that is farthest out, and how far the way leads.
+/// Returns the index of the segment that starts farthest out, or segment_count. `farthest` becomes the largest |position| of the path.
 template <typename Real>
 int farthest_change(const Trajectory<Real>& trajectory, Real& farthest) {
   int from = trajectory.segment_count;
@@ -193,10 +193,10 @@ int farthest_change(const Trajectory<Real>& trajectory, Real& farthest) {
   return from;
 }
 
-/// What is left to the target at the end of a way is the sum of its rounding errors. Where that can be seen beside the positions asked for,
-/// the way has gone far beyond them, and the error goes where it came from: to the change of segments that is farthest out. False if even
-/// so the end is not the target, or the error can be seen beside the whole way; `trajectory` is then empty. An axis that waits for others
-/// is blended of motions that go further than itself, and has their rounding errors.
+/// Closes the path at its target. The error at the end is the sum of its rounding errors. If it is visible beside the positions of start
+/// and target, the path has gone far beyond them, and the error moves to the farthest segment boundary. Returns false if the end still
+/// misses the target or the error is visible beside the whole path; `trajectory` is then empty. An axis that waits for others is blended
+/// from motions that go further than itself, and has their rounding errors.
 template <typename Real>
 bool close_at(const AxisState<Real>& target, const AxisState<Real>& start, const AxisLimits<Real>& limits, bool waits,
               Trajectory<Real>& trajectory) {
@@ -207,7 +207,7 @@ bool close_at(const AxisState<Real>& target, const AxisState<Real>& start, const
   const Real acceleration = larger(limits.acceleration_max, -limits.acceleration_min);
   const Real missed = target.position - end.position;
   Real farthest = asked;
-  // Where the scales themselves overflow, nothing is too far off.
+  // Infinite scales would accept any error, so the error itself must be finite.
   bool is_there = is_finite(missed);
   if (absolute(missed) > kTouch<Real> * asked) {
     const int from = farthest_change(trajectory, farthest);

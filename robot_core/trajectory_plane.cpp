@@ -10,16 +10,16 @@ namespace robot_core {
 namespace detail {
 namespace {
 
-/// How x and y share a circle: x gets the cosine, y the sine of an angle that is told by the tangent t of its half;
-/// cos = (1 - t^2)/(1 + t^2), sin = 2 t/(1 + t^2), 0 < t < 1.
+/// Split of the circle: x gets the cosine and y the sine of an angle, given by the tangent t of half that angle; cos = (1 - t^2)/(1 + t^2),
+/// sin = 2 t/(1 + t^2), 0 < t < 1.
 template <typename Real>
 class Split {
  public:
   explicit Split(const PlaneLimits<Real>& plane) : plane_(plane) {}
 
-  /// x and y are parts of their limits. False if no split is left.
+  /// Narrows the split so that x and y, fractions of their limits, fit. Returns false if no split is left.
   bool leave_room(Real x, Real y) {
-    // Half of the angle whose cosine is x, and whose sine is y. Rounding must not make a share as small as what it has to hold.
+    // Tangents of half the angles with cosine x and with sine y. The room keeps rounding from making a share too small.
     constexpr Real kRoom = Real(4) * std::numeric_limits<Real>::epsilon();
     const Real cosine = smaller(absolute(x) + kRoom, Real(1));
     const Real sine = smaller(absolute(y) + kRoom, Real(1));
@@ -28,8 +28,8 @@ class Split {
     return low_ <= high_;
   }
 
-  /// `duration_s(limits, axis)` of axis 0 and 1: more of everything makes an axis faster, so the two cross once. An axis
-  /// that cannot do with its part needs more.
+  /// Returns the split at which `duration_s(limits, axis)` of axes 0 and 1 is equal. Larger limits make an axis faster, so both durations
+  /// cross once. An axis that cannot move with its share must return a large duration.
   template <typename Duration>
   [[nodiscard]] Real balanced(const Duration& duration_s, int halvings = std::numeric_limits<Real>::digits > 32 ? 24 : 16) const {
     Real low = low_;
@@ -41,10 +41,10 @@ class Split {
     return (low + high) / Real(2);
   }
 
-  /// The split of a vector's own direction, as near as the room allows.
+  /// Returns the split along a vector, as near as the room allows.
   [[nodiscard]] Real along(Real x, Real y) const { return near(absolute(y) / (length(x, y) + absolute(x))); }
 
-  /// As near as the room allows.
+  /// Returns the split nearest to t that the room allows.
   [[nodiscard]] Real near(Real t) const { return clamped(t, low_, high_); }
 
   [[nodiscard]] static Real share(Real t, int axis) { return (axis == 0 ? Real(1) - t * t : Real(2) * t) / (Real(1) + t * t); }
@@ -82,16 +82,16 @@ bool leave_room_for_acceleration(const AxisState<Real> (&target)[3], const Plane
   return split.leave_room(target[0].acceleration / plane.acceleration_max, target[1].acceleration / plane.acceleration_max);
 }
 
-/// The best plan so far, by its split and the level of its lead.
+/// Best plan so far: its split and the level of its lead.
 template <typename Real>
 struct Candidate {
   Real split;
   int level;
-  Real square;  ///< of the highest speed, over the circle's; not below 1
+  Real square;  ///< squared ratio of the highest speed to the circle's, at least 1
   Real duration_s;
 };
 
-/// The search for the shortest plan that stays inside of the circle, from where one can plan anew and still stay inside.
+/// Searches the shortest plan that stays inside the circle and from which planning anew also stays inside.
 template <typename Real>
 class Inside {
  public:
@@ -118,7 +118,7 @@ class Inside {
     can_stay_ = calm_.speed <= circle_.speed;
     const Real speed = length(start[0].velocity, start[1].velocity);
     const Real most_speed = kPromised<Real> * larger(larger(plane.speed_max, calm_.speed), speed);
-    // Who is outside of the circle has to go no further out.
+    // A start outside the circle must not go further out.
     circle_.speed = larger(circle_.speed, speed);
     circle_.acceleration = larger(circle_.acceleration, length(start[0].acceleration, start[1].acceleration));
     const Real most = larger(most_speed / circle_.speed, Real(1));
@@ -128,7 +128,7 @@ class Inside {
   PlanResult search(Real fastest) {
     const PlanResult result = plan(fastest, kNoLead);
     const bool holds = result == PlanResult::ok;
-    // What is led back slowly from far outside of its share may be too far apart; the other ways are not.
+    // The numbers of a slow way back from far outside may be out of range; other plans may still work.
     if (!holds && result != PlanResult::out_of_range) {
       return result;
     }
@@ -142,7 +142,7 @@ class Inside {
       return PlanResult::ok;
     }
     turn_from(fastest);
-    // Worth the time where turning the split costs much.
+    // Leads cost time; try them only if turning the split makes the plan much longer.
     constexpr Real kLittle = Real(5) / Real(4);
     if (best_.square > Real(1) || best_.duration_s > kLittle * fastest_s_) {
       for (int level = 0; level < kLevels; ++level) {
@@ -162,13 +162,13 @@ class Inside {
   static constexpr int kNoLead = -1;
   static constexpr int kLevels = 4;
 
-  /// The speed in the end of a lead: what is left when the acceleration is gone, or parts of the limit.
+  /// Speed at the end of a lead: the remaining speed once the acceleration is zero, or a fraction of the limit.
   [[nodiscard]] Real speed_of(int level) const {
     const Real part = Real(kLevels - 1 - level) / Real(kLevels - 1) * Real(3) / Real(4);
     return level == 0 ? calm_.speed : part * plane_.speed_max;
   }
 
-  /// A plan of axes that keep their shares stays inside but for rounding, which is worth a look in single precision only.
+  /// A plan whose axes keep their shares stays inside, except for rounding; only single precision needs the check.
   [[nodiscard]] bool rounds_little() const {
     return std::numeric_limits<Real>::digits > 32 || speed_square(trajectories_, circle_) <= most_square_;
   }
@@ -187,7 +187,7 @@ class Inside {
     return plan_together<Real>(3, start_, target_, limits, leads_, leads, trajectories_, how_, nullptr);
   }
 
-  /// Whether the plan just made stays inside, also if it is planned anew on the way, and gets on.
+  /// Returns true if the last plan stays inside, also when planned anew on the way, and takes no long detour. Keeps the best plan.
   bool consider_planned(Real t, int level) {
     constexpr Real kMostDetour = 8;
     const Real duration_s = trajectories_[0].duration_s;
@@ -201,7 +201,7 @@ class Inside {
       return false;
     }
     const Real square = speed_square(trajectories_, circle_);
-    // As far out but for rounding: the shorter one.
+    // Of plans equally far out within rounding, the shorter one is better.
     constexpr Real kAlike = Real(1e-4);
     if (square < (Real(1) - kAlike) * best_.square || (square <= (Real(1) + kAlike) * best_.square && duration_s < best_.duration_s)) {
       best_ = {t, level, square, duration_s};
@@ -211,7 +211,7 @@ class Inside {
 
   bool consider(Real t, int level) { return plan(t, level) == PlanResult::ok && consider_planned(t, level); }
 
-  /// The split turns to where it fits the start, no further than needed.
+  /// Turns the split until it fits the start, no further than needed.
   void turn_from(Real fastest) {
     constexpr int kHalvings = 5;
     Split<Real> fitting = room_;
@@ -272,7 +272,7 @@ class Inside {
   Calming<Real> calm_;
   bool is_in_a_box_;
   bool can_stay_;
-  Real most_square_;  ///< of the speed that may be promised, over the circle's
+  Real most_square_;  ///< squared ratio of the permitted speed to the circle's
   Lead<Real> leads_[2];
   Candidate<Real> best_{};
   Real fastest_s_ = 0;
@@ -280,9 +280,9 @@ class Inside {
   int planned_level_ = kNoLead;
 };
 
-/// Plans with the fastest split. Where that would leave the circle, because x and y of the start do not fit it, the split
-/// turns towards the start's own direction, no further than needed, and not where the motion would then hardly get on.
-/// `plan(t)` fills the trajectories.
+/// Plans with the fastest split. If that leaves the circle because x and y of the start do not fit it, the split turns towards the
+/// start's own direction, no further than needed. A split that makes the motion very slow is rejected. `plan(t)` fills the
+/// trajectories.
 template <typename Real, typename Plan>
 PlanResult plan_velocity_inside(const Split<Real>& split, Real fastest, const AxisState<Real> (&start)[3], const Circle<Real>& circle,
                                 const Trajectory<Real> (&trajectories)[3], const Plan& plan) {
@@ -306,7 +306,7 @@ PlanResult plan_velocity_inside(const Split<Real>& split, Real fastest, const Ax
     }
     return square;
   };
-  // The direction of next to nothing is noise.
+  // The direction of a tiny acceleration is noise.
   constexpr Real kNoise = Real(1) / Real(128);
   if (least > kInside && length(start[0].acceleration, start[1].acceleration) > kNoise * circle.acceleration) {
     Real near = fastest;

@@ -1,4 +1,4 @@
-// Roots of the monotonic functions that the trajectory planner meets.
+// Root finding for the monotonic functions of the trajectory planner.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace robot_core::detail {
 
-/// Value and first two derivatives; the magnitude of the terms that make up the value.
+/// Value, its first two derivatives, and the magnitude of the terms that make up the value.
 template <typename Real>
 struct Jet {
   Real value;
@@ -17,8 +17,8 @@ struct Jet {
   Real second;
 };
 
-/// The root of a function that is not above zero at `low` and not below at `high`: Halley's steps, kept inside of the
-/// bracket. `resolution` is the smallest step worth taking at zero.
+/// Finds the root of a function that is not above zero at `low` and not below zero at `high`, by Halley's method inside the bracket.
+/// `resolution` is the smallest step worth taking at zero.
 template <typename Real, typename Function>
 inline Real root_between(const Function& function, Real low, Real high, Real guess, Real resolution) {
   constexpr int kMostSteps = 64;
@@ -26,7 +26,7 @@ inline Real root_between(const Function& function, Real low, Real high, Real gue
   Real x = clamped(guess, low, high);
   for (int step = 0; step < kMostSteps; ++step) {
     const Jet<Real> f = function(x);
-    // Below its own rounding errors a value tells no direction any more.
+    // Below its own rounding error the sign of a value means nothing.
     if (!(absolute(f.value) > kEpsilon * f.magnitude)) {
       return x;
     }
@@ -46,7 +46,7 @@ inline Real root_between(const Function& function, Real low, Real high, Real gue
   return x;
 }
 
-/// Within 6 % of the cube root, for a guess: a third of the exponent's bits (and of the others, which come close).
+/// Cube root within 6 %, as a first guess: a third of the exponent's bits (and of the others, which come close).
 inline double rough_cube_root(double x) {
   return __builtin_bit_cast(double, __builtin_bit_cast(std::uint64_t, x) / 3 + 0x2a9f789300000000U);
 }

@@ -9,24 +9,24 @@
 
 namespace robot_core::detail {
 
-/// Arrivals that are this close are one. Rounding of a start moves the time of an arrival by much more than its own size, and a corner of
-/// what can be reached has no second chance: an axis that flies by its target would have to come back. The target is missed by a part of
-/// 1e-9 of what the limits reach.
+/// Arrivals closer than this count as one. Rounding of a start shifts an arrival by much more than its own size. An axis that misses
+/// an arrival at a corner of the reachable set would have to come back. The target is missed by at most 1e-9 of the range of the
+/// limits.
 template <typename Real>
 Real same_time_s(const Problem<Real>& p) {
   constexpr Real kTogether = std::numeric_limits<Real>::digits > 32 ? Real(1e-9) : Real(1e-4);
   return kTogether * smaller(p.acceleration_max + p.acceleration_min, square_root(p.velocity_max + p.velocity_min)) / Real(2);
 }
 
-/// Whether the limits of an axis are kept from its start on.
+/// Returns true if an axis keeps its limits from its start on.
 template <typename Real>
 bool starts_inside(const Axis<Real>& axis) {
   const Problem<Real>& p = axis.problem;
-  // One that returns by its own acceleration has no brake.
+  // An axis that returns by its own acceleration has no brake.
   return !axis.may_be_early && p.brake.count == 0 && p.v0 <= p.velocity_max && -p.v0 <= p.velocity_min;
 }
 
-/// `way` behind what the trajectory has so far: it ends at the target and, if it starts inside of the limits, keeps them.
+/// Appends `way` to the trajectory. Fails if it misses the target or, with a start inside the limits, breaks them.
 template <typename Real>
 PlanResult finish(bool is_inside, bool waits, const Way<Real>& way, const AxisState<Real>& start, const AxisState<Real>& target,
                   const AxisLimits<Real>& limits, Target how, Trajectory<Real>& trajectory) {
@@ -46,14 +46,14 @@ PlanResult finish(bool is_inside, bool waits, const Way<Real>& way, const AxisSt
   return PlanResult::ok;
 }
 
-/// Axes that arrive together. The first `lead_count` of them have a lead, behind which they are planned.
+/// Plans axes that arrive together. The first `lead_count` axes are planned from the end of their lead.
 template <typename Real>
 class Together {
  public:
   Together(int axis_count, Target how, const Lead<Real>* leads, int lead_count)
       : axis_count_(axis_count), how_(how), leads_(leads), lead_count_(lead_count) {}
 
-  /// What every axis can do, and the first time at which all can arrive.
+  /// Prepares every axis and finds the first time at which all can arrive.
   PlanResult agree(const AxisState<Real>* start, const AxisState<Real>* target, const AxisLimits<Real>* limits, int& failed_axis) {
     for (int i = 0; i < axis_count_; ++i) {
       AxisState<Real> met = target[i];
@@ -68,7 +68,7 @@ class Together {
       arrive_first(axes_[i], arrivals_[i]);
       duration_s_ = larger(duration_s_, lead_s(i) + arrivals_[i].duration_s);
     }
-    // An axis that cannot arrive in this time puts the arrival off for all. Each has only a few spans of time without arrival.
+    // An axis that cannot arrive at this time delays all. Each axis has only a few time intervals without an arrival.
     constexpr int kMostDelays = 8 * kMostAxes;
     for (int delay = 0; delay < kMostDelays && !agrees_with_all(); ++delay) {
     }
@@ -101,7 +101,7 @@ class Together {
  private:
   [[nodiscard]] Real lead_s(int axis) const { return axis < lead_count_ ? leads_[axis].duration_s : Real(0); }
 
-  /// Whether every axis arrives at duration_s_. If one cannot, that becomes its next arrival.
+  /// Returns true if every axis arrives at duration_s_. Otherwise sets duration_s_ to the next arrival of an axis that cannot.
   bool agrees_with_all() {
     for (int i = 0; i < axis_count_; ++i) {
       AxisArrival<Real>& arrival = arrivals_[i];
@@ -112,7 +112,7 @@ class Together {
       }
       arrive_from(axes_[i], asked_s, arrival);
       if (arrival.duration_s > asked_s + same_s) {
-        // The end of a span of time with arrival is a corner as well.
+        // The end of a time interval with arrivals is a corner as well.
         const Real later_s = arrival.duration_s;
         arrive_from(axes_[i], asked_s - same_s, arrival);
         if (arrival.duration_s > asked_s) {

@@ -9,21 +9,21 @@ namespace robot_core {
 namespace detail {
 namespace {
 
-/// One axis' change of velocity in units of its jerk_max, after its acceleration is inside of the limits. The shortest
-/// change of acceleration from a0 to a1 is the ramp; `gain` is the change of velocity that is asked for beyond the ramp's.
+/// Change of velocity of one axis in units of its jerk_max, from an acceleration inside the limits. The ramp is the shortest change of
+/// acceleration from a0 to a1. `gain` is the required change of velocity beyond that of the ramp.
 template <typename Real>
 struct VelocityChange {
-  Real highest, lowest;                     ///< of a0 and a1
-  Real acceleration_max, acceleration_min;  ///< magnitude of the minimum; what a0 and a1 have beyond is a rounding error
-  bool rises;                               ///< a1 above a0
+  Real highest, lowest;                     ///< larger and smaller one of a0 and a1
+  Real acceleration_max, acceleration_min;  ///< the minimum as magnitude; a0 and a1 exceed both only by rounding
+  bool rises;                               ///< true if a1 is above a0
   Real gain;
-  Real scale;  ///< of what `gain` is the difference of
+  Real scale;  ///< magnitude of the terms whose difference is `gain`
   Real brake_s;
   Real brake_jerk;
 };
 
-/// Upwards (or, with all signs turned, downwards) beyond the ramp: up from its higher end, hold, and down again. Of all
-/// motions as long, this one gains most velocity.
+/// Motion upwards beyond the ramp (downwards with all signs reversed): from its higher end up, hold, and down again. It gains the most
+/// velocity of all motions of that duration.
 template <typename Real>
 struct Swing {
   Real slope_s;
@@ -32,7 +32,7 @@ struct Swing {
   Real extra_s() const { return Real(2) * slope_s + hold_s; }
 };
 
-/// The shortest swing from the level `end` that gains `gain` > 0.
+/// Returns the shortest swing from the level `end` with a velocity gain `gain` > 0.
 template <typename Real>
 Swing<Real> swing_of_gain(Real end, Real bound, Real gain) {
   const Real top = square_root(end * end + gain);
@@ -51,13 +51,13 @@ Swing<Real> swing_of_duration(Real end, Real bound, Real extra_s) {
   return {slope_s, hold_s, slope_s * (Real(2) * end + slope_s) + hold_s * (end + slope_s)};
 }
 
-/// A change of velocity of a given duration: the swings in both directions, blended.
+/// Change of velocity of a given duration: a blend of the swings in both directions.
 template <typename Real>
 struct TimedChange {
   Swing<Real> up;
   Swing<Real> down;
   Real up_share;
-  Real duration_s;  ///< with the brake
+  Real duration_s;  ///< duration including the brake
 };
 
 template <typename Real>
@@ -87,7 +87,7 @@ Real ramp_s(const VelocityChange<Real>& c) {
   return c.brake_s + c.highest - c.lowest;
 }
 
-/// The first change not shorter than `duration_s`.
+/// Finds the first change not shorter than `duration_s`.
 template <typename Real>
 void change_from(const VelocityChange<Real>& c, Real duration_s, TimedChange<Real>& timed) {
   const Real extra_s = larger(duration_s - ramp_s(c), Real(0));
@@ -120,8 +120,8 @@ Extreme<Real> path_of(const VelocityChange<Real>& c, const Swing<Real>& swing, R
   return path;
 }
 
-/// Rounding errors of a blended acceleration, which may be small beside the limits, add up over a long hold: the hold
-/// takes what is missing at the end.
+/// Corrects the longest hold by the velocity that is missing at the end. Rounding errors of a blended acceleration may be small beside the
+/// limits but add up over a long hold.
 template <typename Real>
 void close_velocity(Real velocity, Trajectory<Real>& trajectory) {
   int hold = -1;
@@ -216,7 +216,7 @@ PlanResult plan_velocity_synchronised(int axis_count, const AxisState<Real>* sta
     change_from(changes[i], Real(0), timed[i]);
     duration_s = larger(duration_s, timed[i].duration_s);
   }
-  // Each axis has at most one span of durations that it cannot have, and so puts the arrival off at most once.
+  // Each axis has at most one interval of impossible durations, so it delays the arrival at most once.
   for (int delay = 0; delay <= axis_count; ++delay) {
     for (int i = 0; i < axis_count; ++i) {
       if (timed[i].duration_s != duration_s) {

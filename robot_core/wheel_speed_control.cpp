@@ -1,11 +1,11 @@
-// Stage 5: PI control of the wheel speeds on top of the feed-forward. The limits of stage 6 feed back into the integrator
-// (back-calculation; Åström and Hägglund, PID controllers, 1995, section 3.5), in limits.cpp.
+// Stage 5: PI control of the wheel speeds, added to the feed-forward. The limits of stage 6 feed back into the integrator in limits.cpp
+// (back-calculation; Åström and Hägglund, PID controllers, 1995, section 3.5).
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
 namespace {
 
-constexpr float kStanding_rad_per_s = 2.0F;  // sum of reference and speed
+constexpr float kStanding_rad_per_s = 2.0F;  // sum of the magnitudes of reference and speed
 constexpr float kRelease_per_s = 3.0F;
 
 }  // namespace
@@ -26,7 +26,7 @@ void control_wheel_speeds(const Config& config, State& state, const Validated& v
     const float error_rad_per_s = wheels.wheel[i].speed_rad_per_s - validated.wheel[i].speed_rad_per_s;
     const float fastest_rad_per_s = absolute(wheels.wheel[i].speed_rad_per_s) + absolute(validated.wheel[i].speed_rad_per_s);
     wheel.integral_V += integral_gain_V_s_per_rad * error_rad_per_s;
-    // Standing, integrators of wheels that hold each other back would heat motors for nothing.
+    // At standstill, integrators of wheels that work against each other would only heat the motors.
     if (fastest_rad_per_s < kStanding_rad_per_s) {
       wheel.integral_V -= wheel.integral_V * release_share;
     }

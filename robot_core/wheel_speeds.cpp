@@ -1,10 +1,10 @@
-// Stage 3: wheel speeds of a body motion. r·ω = slip factor·(t·v + R·yaw rate).
+// Stage 3: wheel speeds of a body motion: r·ω = slip factor·(t·v + R·yaw rate).
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
 
 void find_wheel_speeds(const Config& config, const Input& input, const BodyReference& body, WheelReferences& wheels) {
-  // Seen from the turning robot: dv/dt = a − yaw rate × v.
+  // Acceleration in the frame of the turning robot: dv/dt = a − yaw rate × v.
   const float rate_x = body.acceleration.x + body.velocity.yaw * body.velocity.y;
   const float rate_y = body.acceleration.y - body.velocity.yaw * body.velocity.x;
   for (int i = 0; i < config.wheel_count; ++i) {

@@ -1,22 +1,22 @@
 // Counts the instructions of a call under QEMU.
 //
-// With `-icount shift=N` QEMU advances its virtual clock by 2^N ns per instruction. SysTick counts that clock at 25 MHz, one tick per
-// 40 ns, in 24 bits. With shift=0 a tick is 40 instructions. With shift=8 an instruction is 256 ns = 6.4 ticks: two readings, each
-// rounded to a tick, leave the number of instructions exact, and up to 2.6 million can be counted. Checked with 0 to 300 instructions in
-// a row and with loops of known length (QEMU 7.2).
+// With `-icount shift=N` QEMU advances its virtual clock by 2^N ns per instruction. SysTick counts that clock at 25 MHz in 24 bits, one
+// tick per 40 ns. With shift=0 a tick is 40 instructions. With shift=8 an instruction takes 256 ns = 6.4 ticks. Two reads, each rounded to
+// a tick, then give the exact number of instructions, up to 2.6 million. Checked with 0 to 300 instructions in a row and with loops of
+// known length (QEMU 7.2).
 //
-// An instruction counts as one whether it is a move, a division or a push of eight registers; in an IT block it also counts where its
-// condition does not hold. It is no cycle count: a Cortex-M7 needs several cycles for some and does others in pairs.
+// Every instruction counts as one: a move, a division or a push of eight registers. In an IT block it also counts if its condition is
+// false. This is no cycle count: a Cortex-M7 needs several cycles for some instructions and executes others in pairs.
 #pragma once
 
 #include <cstdint>
 
 namespace robot_core::port {
 
-/// The value of `-icount shift=` that the counter needs.
+/// Value of `-icount shift=` that the counter needs.
 inline constexpr std::uint32_t kInstructionShift = 8;
 
-/// More instructions than can be counted.
+/// Result of a call with more instructions than the counter can hold.
 inline constexpr std::uint32_t kTooManyInstructions = 0xFFFFFFFFU;
 
 namespace detail {
@@ -31,13 +31,13 @@ inline volatile std::uint32_t& systick_value() { return *reinterpret_cast<volati
 
 inline constexpr std::uint32_t kEnable = 1U;
 inline constexpr std::uint32_t kProcessorClock = 1U << 2U;
-inline constexpr std::uint32_t kHasWrapped = 1U << 16U;  // cleared by reading
+inline constexpr std::uint32_t kHasWrapped = 1U << 16U;  // cleared by a read
 
 /// SysTick ticks between two reads with `run` between them.
 template <typename Run>
 std::uint32_t ticks(Run&& run) {
   systick_reload() = kReload;
-  systick_value() = 0;  // starts over at kReload
+  systick_value() = 0;  // the counter restarts at kReload
   systick_control() = kEnable | kProcessorClock;
   // The first tick loads the counter.
   while (systick_value() == 0) {
@@ -54,7 +54,7 @@ std::uint32_t ticks(Run&& run) {
 
 }  // namespace detail
 
-/// Instructions that `run` takes beyond an empty call, rounded to the nearest.
+/// Returns the instructions of `run` beyond an empty call, rounded to the nearest.
 template <typename Run>
 std::uint32_t count_instructions(Run&& run) {
   const std::uint32_t ticks = detail::ticks(run);

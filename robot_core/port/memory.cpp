@@ -4,7 +4,7 @@
 
 namespace {
 
-// May alias whatever is copied.
+// A word may alias any object that is copied.
 using Word [[gnu::may_alias]] = std::uint32_t;
 
 constexpr std::size_t kBlock_words = 8;
@@ -15,7 +15,7 @@ bool is_aligned(const void* pointer) { return reinterpret_cast<std::uintptr_t>(p
 
 extern "C" {
 
-// Without the attribute GCC would turn these loops into calls to the functions that they implement.
+// Without the attribute GCC would turn these loops into calls of the same functions.
 [[gnu::optimize("no-tree-loop-distribute-patterns"), gnu::used]] void* memcpy(void* __restrict to, const void* __restrict from,
                                                                               std::size_t size) {
   auto* target = static_cast<unsigned char*>(to);

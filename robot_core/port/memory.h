@@ -1,4 +1,4 @@
-// The two functions of the C library that GCC calls on its own.
+// The two functions of the C library that GCC calls without being asked to.
 #pragma once
 
 #include <cstddef>

@@ -16,7 +16,7 @@ enum class Operation : std::uint32_t {
 
 constexpr std::uintptr_t kApplicationExit = 0x20026;
 
-/// On M-profile cores the host sees the breakpoint 0xAB and reads r0 and r1.
+/// Calls the host. On M-profile cores the host handles the breakpoint 0xAB and reads r0 and r1.
 std::uintptr_t call(Operation operation, const void* arguments) {
   register std::uintptr_t r0 asm("r0") = static_cast<std::uintptr_t>(operation);
   register const void* r1 asm("r1") = arguments;

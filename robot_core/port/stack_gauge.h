@@ -1,4 +1,4 @@
-// Measures how deep a call goes: fills the free stack with a pattern and looks how much of it is left.
+// Measures the stack use of a call: fills the free stack with a pattern and checks how much of it is left.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ inline std::uint32_t lowest_stack_address() { return static_cast<std::uint32_t>(
 
 }  // namespace detail
 
-/// Fills what lies below this call. Words that the calls of the caller left there count as not used any more.
+/// Fills the stack below this call. Words that earlier calls of the caller left there no longer count as used.
 [[gnu::noinline]] inline void fill_stack() {
   const std::uint32_t end = stack_pointer();
   for (std::uint32_t address = detail::lowest_stack_address(); address < end; address += sizeof(std::uint32_t)) {
@@ -32,7 +32,7 @@ inline std::uint32_t lowest_stack_address() { return static_cast<std::uint32_t>(
   }
 }
 
-/// Bytes between `top`, a stack pointer, and the deepest word that was written since fill_stack().
+/// Returns the bytes between `top`, a stack pointer, and the deepest word written since fill_stack().
 inline std::uint32_t stack_bytes_below(std::uint32_t top) {
   std::uint32_t address = detail::lowest_stack_address();
   while (address < top && *detail::stack_word(address) == detail::kStackPattern) {

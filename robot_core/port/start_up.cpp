@@ -9,7 +9,7 @@ int main();
 
 extern "C" {
 
-// From the linker script; only their addresses mean something.
+// Symbols of the linker script; only their addresses have a meaning.
 extern unsigned char port_data_begin[];
 extern unsigned char port_data_end[];
 extern const unsigned char port_data_contents[];
@@ -29,13 +29,13 @@ constexpr std::uint32_t kFullAccessToFpu = 0xFU << 20U;  // coprocessors 10 and 
 /// Coprocessor Access Control Register (Armv7-M Architecture Reference Manual, B3.2.20).
 volatile std::uint32_t& cpacr() { return *reinterpret_cast<volatile std::uint32_t*>(0xE000ED88U); }
 
-/// Interrupt Control and State Register; its low nine bits are the number of the active exception.
+/// Interrupt Control and State Register. The low nine bits are the number of the active exception.
 volatile std::uint32_t& icsr() { return *reinterpret_cast<volatile std::uint32_t*>(0xE000ED04U); }
 
 /// Vector Table Offset Register.
 volatile std::uint32_t& vtor() { return *reinterpret_cast<volatile std::uint32_t*>(0xE000ED08U); }
 
-// Not inlined: no floating-point instruction of this may be moved before the FPU is enabled.
+// Not inlined, so that no floating-point instruction moves before the FPU is enabled.
 [[noreturn, gnu::noinline]] void run() {
   memcpy(port_data_begin, port_data_contents, static_cast<std::size_t>(port_data_end - port_data_begin));
   memset(port_bss_begin, 0, static_cast<std::size_t>(port_bss_end - port_bss_begin));
@@ -47,7 +47,7 @@ union Vector {
   void (*handler)();
 };
 
-constexpr int kVectors = 16;  // the exceptions of the core; no interrupt is used
+constexpr int kVectors = 16;  // exceptions of the core; no interrupt is used
 
 [[gnu::section(".vectors"), gnu::used]] const Vector vectors[kVectors] = {
     {.stack = port_stack_end},   {.handler = port_reset},     {.handler = port_exception}, {.handler = port_exception},
@@ -68,6 +68,6 @@ void port_reset() {
 
 void port_exception() {
   using namespace robot_core::port;
-  // Exceptions 2 to 15; 3 is a hard fault, 6 a usage fault.
+  // Exceptions 2 to 15, for example 3 hard fault, 6 usage fault.
   exit(kExceptionExitCode + static_cast<int>(icsr() & 0x1FFU));
 }

@@ -1,17 +1,17 @@
-// The drive core among liars: random episodes in which the true robot runs on while sensors, radio, timer and memory lie in the ways of
-// the fault table. A twin of the core sees the truth, and its allowed current is what no true motor's current may exceed.
+// Fault injection: random episodes in which the true robot keeps driving while sensors, radio, timer and memory fail as in the fault table.
+// A twin of the core gets the true signals. No true motor's current may exceed the current that the twin allows.
 //
 // Margin: within a period the contact's largest force r·µ·N/J turns a wheel against its voltage, and samples have noise; both times
-// K_t·n/R. Excluded, because in principle nobody can know it:
-//   - a wheel that slips while its own sensor lies, without a current sensor: wheels and gyro know a wheel that rolls only. The excess is
-//     at most K_t·n·(speed − implied speed)/R, which slip_A() calculates from the truth and the test takes off;
-//   - more speed sensors (wheels, gyro) that lie at once than the core has to spare: measured, not limited. Two swapped ones are two lies;
-//     three wheels have one sensor to spare, but the core counts on swapped ones until they would have been found;
-//   - a battery sensor that is wrong by the same factor since the start, or sinks slower than a battery does (0.4 %/s);
-//   - a command that is wrong but possible: the twin gets it too.
-// Plays 1.2e7 hostile inputs. With HEATSOAK_HOSTILE_FACTOR=10 (2.4e7) no single lie exceeds the limits, nor does any combination with at
-// most one lie about a speed. Of combinations of any three lies 4 in 3600 do: up to 0.15 A on four wheels, 0.08 A on three, and 2.1 A for
-// five steps where a stuck gyro lies beside a jumping wheel on three.
+// K_t·n/R. Excluded, because the core cannot know it:
+//   - a wheel that slips while its own sensor is faulty, without a current sensor: the other sensors know a rolling wheel only. The excess
+//     is at most K_t·n·(speed − implied speed)/R; slip_A() calculates it from the true speeds, and the test subtracts it;
+//   - more faulty speed sensors (wheels, gyro) at once than spare ones: measured, not limited. Two swapped sensors count as two faults;
+//     three wheels have one spare sensor, but the core assumes swapped ones until it would have found them;
+//   - a battery sensor that is wrong by a constant factor since the start, or sinks more slowly than a battery does (0.4 %/s);
+//   - a wrong command with plausible values: the twin gets it too.
+// Tests 1.2e7 faulty inputs. With HEATSOAK_HOSTILE_FACTOR=10 (2.4e7) no single fault exceeds the limits, nor does any combination with at
+// most one fault of a speed. Of combinations of any three faults, 4 in 3600 exceed them: by up to 0.15 A on four wheels, 0.08 A on three. A
+// stuck gyro beside a jumping wheel on three wheels gives 2.1 A for five steps.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,12 +38,12 @@ constexpr int kStepsPerEpisode = 2000;
 
 struct Tally {
   long steps = 0;
-  long violations = 0;  ///< wheels and steps with a current above what the twin allows and the margin
+  long violations = 0;  ///< wheels and steps with a current above the twin's limit plus the margin
   double largest_excess_A = -1e9;
   long non_finite = 0;
   double hottest_C = 0.0;
-  long alarms_of_twin = 0;  ///< faults that the twin reports, to which nothing lies
-  long unexplained = 0;     ///< violations larger than what slip of the wheels explains
+  long alarms_of_twin = 0;  ///< faults that the twin reports although its signals are true
+  long unexplained = 0;     ///< violations larger than the slip of the wheels explains
   double largest_unexplained_A = -1e9;
   unsigned worst_episode = 0;
 
@@ -96,7 +96,7 @@ class Episode {
     for (const Lie lie : lies) {
       const int first = random_.below(kStepsPerEpisode / 2);
       const int last = first + random_.below(kStepsPerEpisode);
-      // Plugs are swapped while the power is off.
+      // Plugs are swapped only while the power is off, so this fault lasts for the whole episode.
       const bool is_wiring = lie == Lie::wheel_swapped;
       sabotages_.emplace_back(lie, config, random_, is_wiring ? 0 : first, is_wiring ? kStepsPerEpisode : last);
     }
@@ -115,7 +115,7 @@ class Episode {
       for (Sabotage& each : sabotages_) {
         each.spoil(config_, random_, step, shown, state_);
       }
-      // A command that is wrong but possible is a command.
+      // A wrong but plausible command is a valid command.
       truth.command = shown.command;
       truth.command_age_s = shown.command_age_s;
       const Output out = robot_core::step(config_, state_, shown);
@@ -132,8 +132,8 @@ class Episode {
     return truth;
   }
 
-  /// What the twin allows to each wheel, more where a wheel or the robot as a whole brakes: if its motors together take power out of it.
-  /// Within the noise nobody knows.
+  /// Finds the current that the twin allows to each wheel. Braking has a higher limit: for a wheel, or for the whole robot if its motors
+  /// together take power out of it, with noise counted as braking.
   void find_allowed(Mode mode, const double* current_A, double* allowed_A) const {
     const bool is_wheelwise = mode == Mode::wheel_speed || mode == Mode::wheel_torque;
     double body_A_per_s = 0.0;
@@ -147,13 +147,13 @@ class Episode {
       allowed_A[i] = static_cast<double>(std::min(of_driver_A, brakes ? wheel.allowed_braking_A : wheel.allowed_A));
     }
   }
-  /// Of one wheel, per torque constant: power taken out of the wheel, noise of its speed included.
+  /// Power taken out of one wheel per torque constant, noise of its speed included.
   double braking_A_per_s(int i, double current_A) const {
     return static_cast<double>(kNoise_rad_per_s) * std::abs(current_A) - plant_.wheel_speed_rad_per_s(i) * current_A;
   }
 
-  /// Current that a wheel's speed makes which the other wheels and the gyro, all telling the truth, cannot know: they see a wheel that
-  /// rolls. Least squares of the body's velocity over the other wheels; of every two of them, because one may be left out as faulty.
+  /// Current caused by slip that the other wheels and the gyro, all without faults, cannot know: they see a rolling wheel. Uses least
+  /// squares of the body velocity over the other wheels, and over every two of them, because one may be left out as faulty.
   double slip_A(int i) const {
     double apart_rad_per_s = 0.0;
     for (int left_out = 0; left_out < config_.wheel_count; ++left_out) {
@@ -184,7 +184,7 @@ class Episode {
   }
 
   void check(const Output& out, const Output& of_twin, Mode mode) {
-    // Within a period the contact may turn the wheel by so much against the voltage.
+    // Within a period the contact may change the wheel's speed by this much against the voltage.
     const double margin_A = static_cast<double>(config_.derived.geared_constant_V_s_per_rad) *
                             (plant_.contact_change_rad_per_s() + static_cast<double>(kNoise_rad_per_s)) /
                             static_cast<double>(config_.lowest_resistance_ohm);
@@ -203,7 +203,7 @@ class Episode {
       tally_.unexplained += unexplained_A > 0.0 ? 1 : 0;
       tally_.largest_unexplained_A = std::max(tally_.largest_unexplained_A, unexplained_A);
       tally_.alarms_of_twin += robot_core::is_fault(of_twin.reason[i]) && of_twin.reason[i] != robot_core::Reason::guard_unknown ? 1 : 0;
-      // The twin's State gets the voltage that was applied instead of its own.
+      // The twin's State gets the applied voltage instead of its own.
       twin_.wheel[i].voltage_V = out.is_open[i] ? 0.0F : static_cast<float>(static_cast<double>(out.pwm_ratio[i]) * plant_.battery_V());
       twin_.wheel[i].is_open = out.is_open[i] ? 1 : 0;
     }
@@ -281,7 +281,7 @@ void print_excess(const std::vector<Lie>& lies, const Tally& tally) {
   }
 }
 
-/// Two or three lies; with `is_covered` at most one of them concerns a speed.
+/// Two or three faults; with `is_covered` at most one of them concerns a speed.
 TEST(Adversarial, CombinationsOfLies) {
   print_head();
   for (const bool is_covered : {true, false}) {

@@ -1,4 +1,4 @@
-// A core that limits everything is safe and useless: how fast healthy robots drive while it does not know yet whether sensors are swapped.
+// Availability: speed of healthy robots while the core does not yet know whether sensors are swapped. Too strict limits would be useless.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace heatsoak::test_robot {
 namespace {
 
-/// Speed of the robot at the end of each leg of 1.5 s, in m/s: forward, left, back and right at 2 m/s in turn, while it also turns.
+/// Speed of the robot at the end of each leg of 1.5 s, in m/s. The command is forward, left, back, right at 2 m/s while the robot turns.
 std::vector<double> speeds_m_per_s(int wheels, bool has_gyro, int legs) {
   constexpr int kLeg = 1500;
   const robot_core::Config config = make_config(wheels);
@@ -45,7 +45,7 @@ double slowest_m_per_s(const std::vector<double>& speeds, std::ptrdiff_t first =
 
 TEST(Availability, FourWheelsDriveAtFullSpeedFromTheStart) {
   const std::vector<double> speeds = speeds_m_per_s(4, true, 12);
-  // The fourth leg ends all turns of the command; the same legs later, when swapped sensors are ruled out, are no faster.
+  // The first four legs cover all turns. When swapped sensors are ruled out later, the same legs are no faster.
   for (std::size_t leg = 0; leg < 4; ++leg) {
     EXPECT_GT(speeds[leg], 0.95 * speeds[leg + 8]) << leg;
   }
@@ -60,7 +60,7 @@ TEST(Availability, ThreeWheelsDriveSlowerUntilSwappedSensorsAreRuledOut) {
 
 TEST(Availability, FourWheelsWithoutGyroStillPlay) { EXPECT_GT(slowest_m_per_s(speeds_m_per_s(4, false, 8)), 1.0); }
 
-// No sensor is to spare: the limp current, enough to drive home.
+// Without a spare sensor the limp current applies, which is enough to drive home.
 TEST(Availability, ThreeWheelsWithoutGyroDriveHome) { EXPECT_GT(slowest_m_per_s(speeds_m_per_s(3, false, 8)), 0.2); }
 
 }  // namespace

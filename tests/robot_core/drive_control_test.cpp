@@ -1,4 +1,4 @@
-// What the drive core does while nothing fails: it follows commands, compensates friction, keeps its limits and the motors' temperature.
+// The drive core without faults: it follows commands, compensates friction, and keeps its limits and the motors' temperature.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using robot_core::State;
 
 constexpr double kPeriod_s = 0.001;
 
-/// A core that drives a plant, ideal but for one period between samples and voltage.
+/// Drive core with a simulated robot. The loop is ideal except for one period between samples and voltage.
 class Loop {
  public:
   explicit Loop(Config config, Truth truth = {}, bool is_rested = true) : config_(config), plant_(config_, truth) {
@@ -78,7 +78,7 @@ TEST(SineCosine, AgreesWithTheLibrary) {
   }
 }
 
-// By hand from equations (2) and (3): d = 0.04 V s/rad, a = 0.3 V, b = 1.2 V, phase 30 degrees, driving to the left at 1 m/s.
+// Calculated by hand from equations (2) and (3): d = 0.04 V s/rad, a = 0.3 V, b = 1.2 V, phase 30 degrees, driving left at 1 m/s.
 TEST(FeedForward, HasTheVoltageOfThePaper) {
   Config config = make_config(4);
   for (robot_core::WheelConfig& wheel : config.wheel) {
@@ -108,7 +108,7 @@ TEST(FeedForward, HasTheVoltageOfThePaper) {
   EXPECT_NEAR(voltage.wheel[0].feed_forward_V, 0.8 - 1.459808, 2e-5);
 }
 
-// The accelerating part is a force: wheel forces of the voltages that it adds sum up to m*a along a, and to nothing else.
+// The accelerating part is a force: the wheel forces of its voltages sum up to m*a along a, without any other component.
 TEST(FeedForward, AcceleratesTheBodyAsAsked) {
   Config config = make_config(4);
   config.wheel_inertia_kg_m2 = 1e-9F;
@@ -183,7 +183,7 @@ TEST_P(Wheels, TurnAtTheirOwnSpeed) {
 
 INSTANTIATE_TEST_SUITE_P(Robots, Wheels, testing::Values(3, 4));
 
-/// Error after braking from a saturated drive. The integrator of the rival does not know of the limits.
+/// Returns the velocity error after braking from a saturated drive. A long tracking time means an integrator that ignores the limits.
 double error_after_saturation_m_per_s(float tracking_time_s) {
   Config config = make_config(4);
   config.voltage_limit_V = 2.5F;
@@ -202,14 +202,14 @@ TEST(SpeedControl, DoesNotWindUp) {
   EXPECT_LT(with_back_calculation, 0.3 * without);
 }
 
-/// Quick to accelerate, and with all the current that the driver gives.
+/// Config with high acceleration and all the current that the driver gives.
 Config quick(Config config) {
   config.traction_ratio = 0.0F;
   config.acceleration_limit_m_per_s2 = 6.0F;
   return config;
 }
 
-/// To and fro with the largest acceleration, which heats most.
+/// Drives to and fro with the largest acceleration, which heats most, and returns the highest temperature.
 double hottest_after_shuttling_C(Loop& loop, int times) {
   for (int i = 0; i < times; ++i) {
     loop.run(velocity(i % 2 == 0 ? 2.0F : -2.0F, 0.0F), 0.8);
@@ -217,7 +217,7 @@ double hottest_after_shuttling_C(Loop& loop, int times) {
   return loop.hottest_C();
 }
 
-/// Dirty wheels in hot air: the guard knows the air, and the current tells it of the wheels.
+/// Dirty wheels in hot air: the guard knows the air temperature, and the current shows the extra load of the wheels.
 Truth badly_cooled() {
   Truth truth;
   truth.bearing_Nm = 0.16;
@@ -225,7 +225,7 @@ Truth badly_cooled() {
   return truth;
 }
 
-// The observer counts heat 1.3 times, so the true winding of the nominal motor stays below the limit, and without the guard it does not.
+// The observer counts 1.3 times the heat, so the nominal motor's winding stays below the limit. Without the guard it does not.
 TEST(Guard, KeepsTheWindingBelowItsLimit) {
   Loop unguarded(quick(make_config(4, false)), badly_cooled());
   unguarded.plant().warm_up(120.0);
@@ -282,7 +282,7 @@ TEST(Guard, CountsInShadowModeAndChangesNothing) {
   EXPECT_GT(counted.state().shadow_deficit_A_s, 0.0F);
 }
 
-// A steady load that the table allows at first: the guard limits when the winding is warm, and has warned before.
+// A steady load that the table allows at first: the guard warns and later limits, when the winding is warm.
 TEST(Guard, WarnsBeforeItLimits) {
   Config config = make_config(4);
   config.traction_ratio = 0.0F;
@@ -312,7 +312,7 @@ TEST(Guard, AllowsNothingAfterAnUnknownRest) {
 
 TEST(Limits, KeepTheBatteryAboveItsLowestVoltage) {
   Config config = make_config(4);
-  config.battery_resistance_ohm = 2.0F;  // a bad one
+  config.battery_resistance_ohm = 2.0F;  // high resistance, as of a bad battery
   config.mass_kg = 12.0F;
   config.traction_ratio = 0.0F;
   config.acceleration_limit_m_per_s2 = 20.0F;
@@ -336,7 +336,7 @@ TEST(Commands, ThatStopComingStopTheRobot) {
   EXPECT_TRUE(loop.output().is_open[0]);
 }
 
-// Whenever it comes, a gap clears with the next step: no sensor is suspected of what the robot did in the gap.
+// At any time a gap clears with the next step: the robot's motion during the gap raises no sensor fault.
 TEST(TimeJump, LeavesNoFaultBehind) {
   for (int phase = 0; phase < 16; ++phase) {
     Loop loop(make_config(4));
@@ -353,7 +353,7 @@ TEST(TimeJump, LeavesNoFaultBehind) {
   }
 }
 
-// A timer with the wrong prescaler must not let the observer cool.
+// A timer with a wrong prescaler must not let the observer cool down.
 TEST(ShortPeriod, OpensTheBridges) {
   Loop loop(make_config(4));
   Random random(1);
@@ -365,7 +365,7 @@ TEST(ShortPeriod, OpensTheBridges) {
   EXPECT_TRUE(output.is_open[0]);
 }
 
-/// Winding of the guard after 20 s of a constant measured current, the loop's period being this multiple of Config::period_s.
+/// Winding of the guard after 20 s of a constant measured current, with a loop period of this multiple of Config::period_s.
 float guarded_winding_C(float period_ratio) {
   const Config config = make_config(4);
   State state;
@@ -391,7 +391,7 @@ TEST(LatePeriod, LosesNoHeat) {
   }
 }
 
-/// How a robot stops that drives at an angle to its axes, with motors and guard at `body_C`.
+/// Stop of a robot that drives diagonally, with motors and guard at `body_C`.
 struct Stop {
   double way_m = 0.0;
   int periods = 0;
@@ -418,7 +418,7 @@ Stop stop_from_diagonal(double body_C) {
   return stop;
 }
 
-// At 154 degC nothing is left for driving. A wheel that is pulled along for a moment must not take the brakes from all the others.
+// At 154 degC no current is left for driving. A wheel that is pulled along briefly must not take the brakes from the others.
 TEST(Guard, KeepsBrakingAuthorityInEveryDirection) {
   const Stop cold = stop_from_diagonal(25.0);
   const Stop hot = stop_from_diagonal(154.0);
@@ -431,7 +431,7 @@ TEST(Guard, KeepsBrakingAuthorityInEveryDirection) {
               cold.periods, hot.way_m, hot.periods, hot.without_current);
 }
 
-// A kicker that charges takes a tenth of the voltage. That is no fault, and the robot drives on.
+// A charging kicker takes a tenth of the voltage. That is no fault, and the robot keeps driving.
 TEST(Battery, UnknownLoadIsNoFault) {
   Loop loop(make_config(4));
   loop.run(velocity(1.0F, 0.3F), 1.0);
@@ -443,7 +443,7 @@ TEST(Battery, UnknownLoadIsNoFault) {
     slowest_m_per_s = std::min(slowest_m_per_s, loop.speed_m_per_s());
   }
   EXPECT_GT(slowest_m_per_s, 0.9 * std::hypot(1.0, 0.3));
-  // A first sample that was too high is no fault of the later ones.
+  // A first sample that was too high must not make later ones faulty.
   Loop other(make_config(4));
   other.plant().set_battery_V(25.2);
   other.run(velocity(0.0F, 0.0F), kPeriod_s);

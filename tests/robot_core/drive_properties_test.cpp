@@ -1,4 +1,4 @@
-// What holds for every input and every Config that the core accepts.
+// Properties that hold for every input and every Config that the core accepts.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
@@ -22,10 +22,10 @@ using robot_core::State;
 
 constexpr float kNoise_rad_per_s = 0.3F;
 
-/// The same cases in every run, unless the environment says otherwise.
+/// Uses the same cases in every run, unless the environment sets others.
 [[maybe_unused]] const int fixed_seed = setenv("RC_PARAMS", "seed=1 max_success=300", 0);
 
-/// Any bit patterns, or a possible input with some of its values replaced by any bit patterns.
+/// Returns random bit patterns, or a possible input with some values replaced by random bit patterns.
 Input any_input(Random& random, const Input& possible, float share) {
   Input input = possible;
   unsigned char bytes[sizeof(Input)];
@@ -41,7 +41,7 @@ Input any_input(Random& random, const Input& possible, float share) {
   return input;
 }
 
-/// Values of a Config changed by up to a factor of ten up or down, or by any bit pattern, until the core accepts it.
+/// Changes values of a Config by up to a factor of ten, or to any bit pattern, until the core accepts the Config.
 Config any_config(Random& random) {
   for (int attempt = 0; attempt < 1000; ++attempt) {
     Config config = make_config(3 + random.below(2), random.happens(0.7F));
@@ -73,7 +73,7 @@ Config any_config(Random& random) {
   return make_config(4);
 }
 
-/// `before` and `after`: a sensor that is believed again at the end of the step was not yet at its beginning.
+/// Checks one output. `before` and `after`: a sensor that is accepted again at the end of the step was not yet at its beginning.
 void check_output(const Config& config, const Input& input, const State& before, const State& after, const Output& out) {
   for (int i = 0; i < kMostWheels; ++i) {
     RC_ASSERT(std::isfinite(out.pwm_ratio[i]) && std::abs(out.pwm_ratio[i]) <= 1.0F);
@@ -102,7 +102,7 @@ RC_GTEST_PROP(DriveProperties, EveryInputGivesAPossibleOutput, (std::uint64_t se
     const Input input = any_input(random, plant.sense(random, kNoise_rad_per_s, true), share);
     const State before = state;
     const Output out = robot_core::step(config, state, input);
-    // Valid to the next step: no corruption is found where nobody flips a bit.
+    // The State stays valid until the next step: no corruption is reported without a flipped bit.
     RC_ASSERT(out.robot_reason != Reason::state_corrupted);
     check_output(config, input, before, state, out);
   }
@@ -149,7 +149,7 @@ Input mirrored(const Config& config, const Input& input) {
   return mirror;
 }
 
-/// Without the guard, whose wheels are stepped in turn.
+/// Without the guard, because its wheels are stepped in turn.
 RC_GTEST_PROP(DriveProperties, MirroredInputsGiveMirroredOutputs, (std::uint64_t seed)) {
   Random random(seed);
   const Config config = make_config(3 + random.below(2), false);
@@ -178,7 +178,7 @@ RC_GTEST_PROP(DriveProperties, MirroredInputsGiveMirroredOutputs, (std::uint64_t
 struct Wrench {
   double x = 0.0;
   double y = 0.0;
-  double moment = 0.0;  ///< per contact radius
+  double moment = 0.0;  ///< divided by the contact radius
 };
 
 /// Angle between two wrenches.
@@ -198,7 +198,7 @@ Wrench wrench_of(const Config& config, const double* current_A) {
   return wrench;
 }
 
-/// From rest with one hot motor: the wanted currents are those of a core without limits, the rival limits each wheel on its own.
+/// Starts at rest with one hot motor. The wanted currents come from a core without limits; the comparison limits each wheel alone.
 RC_GTEST_PROP(DriveProperties, ForceKeepsItsDirectionWhereOneWheelIsLimited, (std::uint64_t seed)) {
   Random random(seed);
   const Config config = make_config(4);
@@ -238,7 +238,7 @@ RC_GTEST_PROP(DriveProperties, ForceKeepsItsDirectionWhereOneWheelIsLimited, (st
   RC_ASSERT(!is_limited || error_rad <= rival_rad + 1e-3);
 }
 
-/// All bits of the State, one at a time.
+/// Flips all bits of the State, one at a time.
 TEST(StateBits, EveryFlipIsFoundAndDrivesNoMoreCurrent) {
   const Config config = make_config(4);
   Plant plant(config, {});
@@ -263,7 +263,7 @@ TEST(StateBits, EveryFlipIsFoundAndDrivesNoMoreCurrent) {
     bytes[bit / 8] = static_cast<unsigned char>(bytes[bit / 8] ^ (1U << (bit % 8)));
     std::memcpy(&state, bytes, sizeof(State));
     bool is_found = false;
-    // Comparisons and guards are looked at when they are used: within 16 and 10 periods.
+    // Comparisons and guards verify their check sums when they are used: within 16 and 10 periods.
     for (int k = 0; k < 17 && !is_found; ++k) {
       const Output out = robot_core::step(config, state, input);
       const Output of_healthy = robot_core::step(config, healthy, input);

@@ -1,4 +1,4 @@
-// Every row of the fault table in robot_core/reason.h: condition, reaction, reason code and how it clears, on a robot that drives on.
+// Tests every row of the fault table in robot_core/reason.h on a driving robot: condition, reaction, reason code and how it clears.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,24 +76,24 @@ TEST(FaultTableText, AndEnumAgree) {
   }
 }
 
-/// What a run shows from kFrom to the end of the fault, and afterwards.
+/// Record of a run from kFrom to the end of the fault, and afterwards.
 struct Record {
   double peak_A = 0.0;           ///< largest current of the coldest motor during the fault
-  double peak_of_wheel_A = 0.0;  ///< of kWheel alone
-  int first_period = -1;         ///< with the code, after kFrom
+  double peak_of_wheel_A = 0.0;  ///< largest current of kWheel alone
+  int first_period = -1;         ///< first period with the code, after kFrom
   int last_period = -1;
-  std::set<Reason> others;      ///< codes of faults besides it
-  bool was_open_at_end = true;  ///< all bridges, in the last period of the fault
+  std::set<Reason> others;      ///< codes of other faults
+  bool was_open_at_end = true;  ///< true if all bridges were open in the last period of the fault
   double speed_at_end_m_per_s = 0.0;
-  double hottest_guard_C = 0.0;  ///< of kWheel, at the end of the fault
+  double hottest_guard_C = 0.0;  ///< temperature of kWheel at the end of the fault
 };
 
 struct Case {
   Reason code = Reason::none;
   int wheel_count = 4;
   bool are_currents_fitted = true;
-  int periods = 400;                               ///< of the fault
-  std::function<void(Input&, State&, int)> spoil;  ///< period since kFrom
+  int periods = 400;                               ///< duration of the fault
+  std::function<void(Input&, State&, int)> spoil;  ///< injects the fault; the last argument is the period since kFrom
   int until = 3000;
   int from = kFrom;
   Mode mode = Mode::body_velocity;
@@ -143,13 +143,13 @@ Record run(const Case& test, bool is_healthy) {
   return record;
 }
 
-/// Noise of 0.3 rad/s, slip in grip and one period of the contact's largest force.
+/// Noise of 0.3 rad/s, slip within the grip and one period of the contact's largest force.
 double margin_A(const Config& config) {
   return static_cast<double>(config.derived.geared_constant_V_s_per_rad) * (Plant(config, {}).contact_change_rad_per_s() + 2.0) /
          static_cast<double>(config.lowest_resistance_ohm);
 }
 
-/// Reported within `delay` periods, no longer than `lag` periods after the fault, nothing else reported, no more current than without.
+/// Checks that the fault is reported within `delay` periods and at most `lag` periods after its end, alone, without a higher current.
 Record check(const Case& test, int delay, int lag) {
   const Record healthy = run(test, true);
   const Record faulty = run(test, false);
@@ -161,14 +161,14 @@ Record check(const Case& test, int delay, int lag) {
   EXPECT_LE(faulty.peak_A, healthy.peak_A + margin_A(make_config(test.wheel_count)));
   for (const Reason other : faulty.others) {
     if (test.code == Reason::state_corrupted && other == Reason::guard_unknown) {
-      continue;  // the guard begins as hot as its limit
+      continue;  // the guard starts at its temperature limit
     }
     ADD_FAILURE() << "also reported: " << static_cast<int>(other);
   }
   return faulty;
 }
 
-constexpr int kSteadyAgain = static_cast<int>(1e3F * robot_core::kSteadyAgain_s) + 100;  // compared every 16 periods
+constexpr int kSteadyAgain = static_cast<int>(1e3F * robot_core::kSteadyAgain_s) + 100;  // comparisons run every 16 periods
 
 TEST(FaultTable, config_invalid) {
   Config config = make_config(4);
@@ -212,7 +212,7 @@ TEST(FaultTable, period_invalid) {
 TEST(FaultTable, time_jump) {
   const Case test{.code = Reason::time_jump, .periods = 1, .spoil = [](Input& input, State&, int) { input.elapsed_s = 0.05F; }};
   const Record record = check(test, 0, 0);
-  // 14 A for 50 ms heat 6 J/K by (1.3·14²·1 ohm)·0.05 s/6 = 2.1 K, whatever has flowed.
+  // 14 A for 50 ms heat 6 J/K by (1.3·14²·1 ohm)·0.05 s/6 = 2.1 K, independent of the true current.
   EXPECT_GT(record.hottest_guard_C, run(test, true).hottest_guard_C + 1.5);
 }
 
@@ -298,7 +298,7 @@ TEST(FaultTable, wheel_speed_swapped) {
                   .from = 0};
   const Record record = check(test, 500, 0);
   EXPECT_EQ(record.last_period, test.until - 1);
-  // Clears with start() only.
+  // Only start() clears this fault.
   const Record after = run({.code = test.code, .periods = 1000, .spoil = test.spoil, .from = 0}, false);
   EXPECT_EQ(after.last_period, test.until - 1);
 }
@@ -310,7 +310,7 @@ TEST(FaultTable, wheel_speed_unknown) {
                          .spoil = [](Input& input, State&, int) { std::fill_n(input.wheel_speed_rad_per_s, 3, kNone); }},
                         false);
     EXPECT_EQ(record.first_period, kFrom);
-    // All wheels agree again, so all are believed again, although for a while none was.
+    // All wheels agree again, so all are accepted again, although for a while none was.
     EXPECT_LE(record.last_period, kFrom + 400 + 2 * kSteadyAgain);
     EXPECT_EQ(record.others, std::set<Reason>{Reason::wheel_speed_missing});
     EXPECT_LE(record.peak_of_wheel_A, are_currents_fitted ? 4.6 : 0.0);
@@ -325,13 +325,13 @@ TEST(FaultTable, wheel_speeds_dead) {
   EXPECT_GE(record.first_period, 300);
   EXPECT_LE(record.first_period, 400);
   EXPECT_LE(record.last_period, 3000 + 16);
-  // A motor that runs away under the limp current's voltage is as fast as its back-EMF; rolling wheels are at most as fast as the robot.
+  // A runaway motor at the limp current's voltage reaches the speed of its back-EMF. Rolling wheels are at most as fast as the robot.
   const Config config = make_config(4);
   const float limp_rad_per_s = config.limp_current_A * config.lowest_resistance_ohm / config.derived.geared_constant_V_s_per_rad;
   EXPECT_LE(record.speed_at_end_m_per_s, 1.5 * static_cast<double>(limp_rad_per_s * config.wheel_radius_m));
-  // A robot that was at rest, then held: 0.3 s of pushing, then the limp current.
+  // A robot at rest, then held: 0.3 s of pushing, then the limp current.
   EXPECT_LT(record.peak_of_wheel_A, 12.0);
-  // A gap in time or a flipped bit every 250 ms does not make the sensors alive again.
+  // A gap in time or a flipped bit every 250 ms does not make the dead sensors count as working.
   for (const bool is_gap : {true, false}) {
     Case upset = test;
     upset.spoil = [&](Input& input, State& state, int k) {
@@ -391,7 +391,7 @@ TEST(FaultTable, ambient_missing) {
 
 TEST(FaultTable, stator_missing) {
   for (const float sample_C : {kNone, kInfinity, -100.0F, 900.0F}) {
-    // Looked at when the guard is stepped, every 10 periods.
+    // The sample is checked when the guard is stepped, every 10 periods.
     check({.code = Reason::stator_missing, .spoil = [=](Input& input, State&, int) { input.stator_C[kWheel] = sample_C; }}, 10, 10);
   }
 }
@@ -404,7 +404,7 @@ TEST(FaultTable, guard_unknown) {
   EXPECT_GE(record.first_period, kFrom);
   EXPECT_LE(record.first_period, kFrom + 10);
   EXPECT_GE(record.hottest_guard_C, kWindingLimit_C - 1.0);
-  // Power returned after an unknown time: as hot as the limit, until it has cooled down.
+  // After a power loss of unknown duration the guard starts at its limit, until it has cooled down.
   const Config config = make_config(4);
   const Plant plant(config, {});
   State state;

@@ -1,4 +1,4 @@
-// Flips of single bits in State: every bit, in the middle of a drive with faulty sensors.
+// Flips every single bit of State in the middle of a drive with faulty sensors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,13 +21,13 @@ using robot_core::State;
 
 constexpr float kNone = robot_core::kNoSample;
 
-/// One bit of State flipped; State is an array of bytes to this test.
+/// Flips one bit of State, which is an array of bytes for this test.
 void flip(State& state, std::size_t byte, unsigned bit) {
   auto* const bytes = reinterpret_cast<unsigned char*>(&state);
   bytes[byte] = static_cast<unsigned char>(bytes[byte] ^ (1U << bit));
 }
 
-// Whichever bit flips, nothing that is no number reaches the output, and in the next periods no sensor is believed that was not before.
+// Whichever bit flips, no NaN reaches the output, and in the next periods no sensor is accepted that was rejected before.
 TEST(FlippedBit, OfAnyByteHidesNoFault) {
   const Config config = make_config(4);
   Random random(9);
@@ -78,7 +78,7 @@ TEST(FlippedBit, OfAnyByteHidesNoFault) {
   EXPECT_GT(found, 1000);
 }
 
-// Without a guard nothing holds the robot back after the restart, so its references must not begin at a stand.
+// Without a guard nothing holds the robot back after the restart, so its references must not start at standstill.
 TEST(FlippedBit, DoesNotBrakeARobotWithoutGuard) {
   const Config config = make_config(4, false);
   Plant plant(config, {});

@@ -1,4 +1,4 @@
-// The drive core as a controller's compiler sees it: it needs no library, and a square root is one instruction.
+// The drive core compiled for a controller: it needs no library, and a square root is one instruction.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace {
 
-/// What the command prints; its exit code has to be 0.
+/// Returns the output of a command, whose exit code must be 0.
 std::string output_of(const std::string& command) {
   std::string text;
   FILE* const pipe = popen(command.c_str(), "r");

@@ -1,4 +1,4 @@
-// Guards of the drive core over a loss of power.
+// Restores the guards of the drive core after a loss of power.
 #include "robot_core/guard_memory.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using test_robot::make_config;
 
 constexpr float kUnknown_s = std::numeric_limits<float>::quiet_NaN();
 
-/// A guard that has carried a current for a while.
+/// Returns a guard that has carried a current for a while.
 GuardState worked(const GuardModel& model, int steps, float current_A = 4.0F) {
   GuardState guard;
   start_guard(model, guard, 30.0F);
@@ -40,7 +40,7 @@ TEST(GuardMemory, WithoutTimeItIsWhatWasSaved) {
   }
 }
 
-// The guard itself, stepped without current through the same time, is the reference.
+// Reference: the guard itself, stepped without current for the same time.
 TEST(GuardMemory, CoolsAsTheGuardDoesAndNoFaster) {
   const Config config = make_config(4);
   const GuardModel& model = *config.guard;
@@ -115,7 +115,7 @@ TEST(GuardMemory, AWheelWithoutACopyStaysAtItsLimit) {
   EXPECT_EQ(state.guard[1].state_C[0], config.guard->winding_limit_C);
 }
 
-// A State that was not valid before does not become so.
+// An invalid State must stay invalid.
 TEST(GuardMemory, HealsNoCorruptState) {
   const Config config = make_config(4);
   State state;

@@ -1,4 +1,4 @@
-// The ways in which sensors, radio, timer and memory may lie to the drive core.
+// Faults of sensors, radio, timer and memory that the tests inject into the drive core.
 #pragma once
 
 #include <array>
@@ -55,11 +55,11 @@ enum class Lie : int {
 inline constexpr int kLies = static_cast<int>(Lie::kinds);
 std::string_view name_of(Lie lie);
 
-/// One thing that lies for a while.
+/// One injected fault that acts for a limited time.
 class Sabotage {
  public:
   Sabotage(Lie lie, const robot_core::Config& config, Random& random, int first_step, int last_step);
-  /// Changes what the core is shown at this step.
+  /// Changes the input or the state of the core at this step.
   void spoil(const robot_core::Config& config, Random& random, int step, robot_core::Input& input, robot_core::State& state);
   Lie lie() const { return lie_; }
   int wheel() const { return wheel_; }
@@ -78,8 +78,8 @@ class Sabotage {
   int other_;
   int first_step_;
   int last_step_;
-  float size_;         ///< factor or offset, drawn once
-  float held_ = 0.0F;  ///< of a sensor that is stuck
+  float size_;         ///< factor or offset, drawn once per fault
+  float held_ = 0.0F;  ///< sample of a stuck sensor
 };
 
 }  // namespace heatsoak::test_robot

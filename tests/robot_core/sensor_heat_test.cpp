@@ -1,4 +1,4 @@
-// Sensors of current and air that read too little for minutes: the guard must not lose the heat.
+// Current and air sensors that read too low for minutes: the guard must not lose the heat.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using robot_core::State;
 
 constexpr double kDuration_s = 120.0;
 
-/// Torques of four wheels that cancel as forces and as a moment on the body: null space of the rows t_x, t_y, 1.
+/// Returns torques of four wheels that cancel as force and as moment on the body: the null space of the rows t_x, t_y, 1.
 std::array<float, 4> torques_against_each_other(const Config& config) {
   const auto minor = [&](int left_out) {
     std::array<std::array<double, 3>, 3> m{};
@@ -48,7 +48,7 @@ struct Heat {
   double limited_s = 0.0;  ///< time in which the guard limits a wheel
 };
 
-/// Wheels on rubber that hold each other back with up to 0.21 N m, for two minutes.
+/// Wheels on rubber that work against each other with up to 0.21 N m for two minutes.
 Heat push(const Config& config, const std::function<void(Input&)>& spoil, double air_C = 25.0) {
   Truth truth;
   truth.air_C = air_C;
@@ -81,7 +81,7 @@ Heat push(const Config& config, const std::function<void(Input&)>& spoil, double
   return heat;
 }
 
-// As hot as without a sensor at most, when the guard takes the current of voltage and speed.
+// The winding is at most as hot as without a sensor, where the guard uses the current from voltage and speed.
 TEST(SensorHeat, CurrentSensorThatReadsTooLittleHidesNoHeat) {
   for (const float driver_limit_A : {12.0F, 45.0F}) {
     Config config = make_config(4);

@@ -1,4 +1,4 @@
-// The stop after the radio falls silent: how much current it takes.
+// Current of the stop after the radio link is lost.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,13 +16,13 @@ using robot_core::Mode;
 using robot_core::Output;
 using robot_core::State;
 
-/// Noise of 0.3 rad/s, and one period of the contact's largest force.
+/// Noise of 0.3 rad/s and one period of the contact's largest force.
 double margin_A(const Config& config) {
   return static_cast<double>(config.derived.geared_constant_V_s_per_rad) * (Plant(config, {}).contact_change_rad_per_s() + 0.3) /
          static_cast<double>(config.lowest_resistance_ohm);
 }
 
-/// Largest current in a stop from 2 m/s beyond what the guard allows without its reserve for braking.
+/// Largest current in a stop from 2 m/s above the guard's limit without braking reserve.
 struct Stop {
   double peak_A = 0.0;
   double over_guard_A = -1e9;
@@ -52,7 +52,7 @@ Stop stop_from_2_m_per_s(float body_C, float age_s) {
   return stop;
 }
 
-// Nobody asked for the stop: it is gentler than a commanded one, and leaves the guard's reserve alone.
+// The stop was not commanded: it is gentler than a commanded one and leaves the guard's reserve unused.
 TEST(StaleCommand, BrakesWithNoMoreThanTheGuardAllows) {
   const Stop commanded = stop_from_2_m_per_s(25.0F, 0.0F);
   const Stop stale = stop_from_2_m_per_s(25.0F, 1.0F);

@@ -1,4 +1,4 @@
-// Two wheel sensors swapped by a mistake in the wiring: how long until the core notices, and what flows before.
+// Two wheel sensors swapped by a wiring error: time until the core finds them, and current before that.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using robot_core::Output;
 using robot_core::Reason;
 using robot_core::State;
 
-/// Driving as on the field: starts, stops, turns; a new velocity every 0.2 to 0.8 s.
+/// Drives as on the field: starts, stops and turns, with a new velocity every 0.2 to 0.8 s.
 class Drive {
  public:
   Drive(const Config& config, bool are_currents_fitted, unsigned seed)
@@ -83,14 +83,14 @@ class Drive {
   double largest_A_ = 0.0;
 };
 
-/// The thresholds of the core were chosen on the drives 100 to 139.
+/// The thresholds of the core were chosen with the drives 100 to 139.
 constexpr unsigned kFirstSeed = 5000;
 
 struct Times {
   double mean_s = 0.0;
   double worst_s = 0.0;
   int never = 0;
-  int wrong = 0;  ///< other wheels than the swapped ones
+  int wrong = 0;  ///< drives in which other wheels than the swapped ones were reported
   double largest_A = 0.0;
   int over = 0;  ///< drives with a current more than 15 % above the limit
 };
@@ -123,7 +123,7 @@ Times find_times(const Config& config, bool are_currents_fitted, int a, int b, i
 
 constexpr int kRuns = 200;
 
-/// A pair whose difference of speeds a drive does not use takes until the next manoeuvre.
+/// A swap of two wheels whose speeds a drive does not separate is found in a later manoeuvre.
 TEST(SwappedSensors, AreFoundWhileLittleCurrentFlows) {
   std::printf("wheels | currents | pair | mean s | worst s | never | wrong | largest A | limit A\n");
   int drives = 0;

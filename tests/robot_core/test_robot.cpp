@@ -29,14 +29,14 @@ double resistance_at_ohm(const Truth& truth, double winding_C) {
   return truth.winding_ohm * (1.0 + kCopperRise_per_K * (winding_C - 25.0)) + truth.driver_ohm;
 }
 
-/// Axle angles in degrees: the first half lies to the left of the x axis, the rest mirrors it.
+/// Axle angles in degrees. The first half of the wheels lies left of the x axis, the rest mirrors it.
 double axle_deg(int wheel_count, int wheel) {
   constexpr std::array<double, 4> kFour{60.0, 135.0, -135.0, -60.0};
   constexpr std::array<double, 3> kThree{60.0, 180.0, -60.0};
   return wheel_count == 4 ? kFour.at(static_cast<std::size_t>(wheel)) : kThree.at(static_cast<std::size_t>(wheel));
 }
 
-/// The network that the guard observes, with kSafetyFactor on its heat.
+/// Thermal network of the guard's observer, with kSafetyFactor on its heat.
 void observer_rates(const void*, const float* signal, const float* state_C, float* rate_K_per_s) {
   const Truth truth;
   const auto current_A = static_cast<double>(signal[robot_core::guard_current_A]);
@@ -50,7 +50,7 @@ void observer_rates(const void*, const float* signal, const float* state_C, floa
   rate_K_per_s[1] = static_cast<float>((kSafetyFactor * iron_W + inward_W - outward_W) / truth.stator_J_per_K);
 }
 
-/// The axes, the table over them, and the values that a signal which is not believed may have.
+/// Axes, table, and candidate values of signals that are implausible.
 struct GuardData {
   std::array<float, kSpeeds> speed_rad_per_s{0.0F, 300.0F, 600.0F, 900.0F};
   std::array<float, kStators> stator_C{25.0F, 50.0F, 75.0F, 100.0F, 115.0F, 130.0F, 145.0F, 155.0F};
@@ -96,7 +96,7 @@ struct GuardData {
   }
 };
 
-/// Columns of (AᵀA)⁻¹Aᵀ, where A has the rows t_x, t_y, R, by Cramer's rule.
+/// Calculates the columns of (AᵀA)⁻¹Aᵀ by Cramer's rule, where A has the rows t_x, t_y, R.
 void set_inverse(Config& config) {
   double n[3][3] = {};
   const auto row_of = [&](int i) {
@@ -236,7 +236,7 @@ double Plant::contact_change_rad_per_s() const {
          static_cast<double>(config_.period_s);
 }
 
-/// Implicit in the wheel's speed: J·(ω' − ω)/h = K·I(ω') − friction − r·F(ω'), F in a straight line over the slip up to the grip.
+/// Implicit in the wheel's speed: J·(ω' − ω)/h = K·I(ω') − friction − r·F(ω'). F is proportional to the slip up to the grip.
 void Plant::turn_wheels(const robot_core::Output& output, double period_s, double* force_N) {
   const double radius_m = static_cast<double>(config_.wheel_radius_m);
   const double inertia_kg_m2 = static_cast<double>(config_.wheel_inertia_kg_m2);
@@ -343,7 +343,7 @@ void Plant::set_velocity(double x_m_per_s, double y_m_per_s, double yaw_rad_per_
 }
 
 void seal(robot_core::State& state) {
-  // As state_check_sum() of the core: a step after this reports state_corrupted if the two ever differ.
+  // Same formula as state_check_sum() of the core; if they differ, the next step reports state_corrupted.
   constexpr std::uint64_t kSeed = 0x9E3779B97F4A7C15U;
   state.check_sum = kSeed + robot_core::sum_of_words<1, __builtin_offsetof(robot_core::State, comparison) / sizeof(std::uint64_t)>(&state);
 }

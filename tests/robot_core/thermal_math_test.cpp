@@ -1,4 +1,4 @@
-// The exponential and the power of thermal laws against the C library in double precision.
+// Tests exponential and power of the thermal laws against the C library in double precision.
 #include "robot_core/thermal_math.h"
 
 #include <gtest/gtest.h>
@@ -14,10 +14,10 @@ double relative_error(float value, double exact) { return std::abs(static_cast<d
 
 float float_of(std::uint32_t bits) { return std::bit_cast<float>(bits); }
 
-// Claimed: below 3e-7.
+// The documented error is below 3e-7.
 TEST(ThermalMath, ExponentialOverItsRange) {
   double most = 0.0;
-  // Every 61st number on both sides of 0, from the smallest normal one on.
+  // Tests every 61st number on both sides of 0, starting with the smallest normal one.
   for (std::uint32_t bits = 0x00800000U; bits <= std::bit_cast<std::uint32_t>(88.0F); bits += 61) {
     const float x = float_of(bits);
     most = std::fmax(most, relative_error(heatsoak_exp(x), std::exp(static_cast<double>(x))));
@@ -40,7 +40,7 @@ TEST(ThermalMath, ExponentialAtTheEndsOfItsRange) {
   EXPECT_TRUE(std::isnan(heatsoak_exp(std::numeric_limits<float>::quiet_NaN())));
 }
 
-// A thermal law that falls where it should rise would let a search for the hottest value miss it.
+// The exponential must be monotonic: otherwise a search for the hottest candidate value could miss it.
 TEST(ThermalMath, ExponentialRisesWithinItsRounding) {
   float last = 0.0F;
   for (float x = -87.0F; x <= 88.0F; x += 1e-3F) {
@@ -57,7 +57,7 @@ TEST(ThermalMath, LogarithmOverAllNormalNumbers) {
       most = std::fmax(most, relative_error(heatsoak_log(x), std::log(static_cast<double>(x))));
     }
   }
-  // Close to 1 every number counts: the result is nearly 0.
+  // Close to 1 every number is tested, because the result is nearly 0.
   for (std::uint32_t bits = std::bit_cast<std::uint32_t>(0.99F); bits < std::bit_cast<std::uint32_t>(1.01F); ++bits) {
     if (bits != std::bit_cast<std::uint32_t>(1.0F)) {
       most = std::fmax(most, relative_error(heatsoak_log(float_of(bits)), std::log(static_cast<double>(float_of(bits)))));
@@ -68,7 +68,7 @@ TEST(ThermalMath, LogarithmOverAllNormalNumbers) {
   EXPECT_EQ(heatsoak_log(0.0F), heatsoak_log(std::numeric_limits<float>::min()));
 }
 
-// Claimed: below 2e-6 up to |y·log2 x| = 20. Beyond, the error of the logarithm grows with the product.
+// The documented error is below 2e-6 up to |y·log2 x| = 20. Above, the error of the logarithm grows with the product.
 TEST(ThermalMath, PowerOverItsRange) {
   double most = 0.0;
   double most_beyond = 0.0;

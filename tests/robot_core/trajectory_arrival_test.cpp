@@ -1,4 +1,4 @@
-// Arrivals on the rim of what can be reached, and what ok promises of the end.
+// Arrivals at the edge of the reachable set, and the accuracy of the end that `ok` guarantees.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace robot_core::reference {
 namespace {
 
-/// Log-uniform between 1/span and span.
+/// Returns a log-uniform number between 1/span and span.
 double scale_within(std::mt19937_64& random, double span) { return std::exp(uniform(random, -std::log(span), std::log(span))); }
 
 Limits limits_within(std::mt19937_64& random, double span) {
@@ -27,7 +27,7 @@ struct Built {
   double duration_s = 0.0;
 };
 
-/// A start inside of the limits and where segments of full or no jerk lead, as long as they keep the limits.
+/// Returns a start inside the limits and the end of segments of full or zero jerk, as long as they keep the limits.
 Built built_of_segments(std::mt19937_64& random, double span, int segments) {
   Built built;
   const Limits l = built.task.limits = limits_within(random, span);
@@ -54,7 +54,7 @@ Built built_of_segments(std::mt19937_64& random, double span, int segments) {
 }
 
 TEST(TrajectoryArrival, AMotionOfAFewSegmentsIsNotPassedOver) {
-  // Many of these ends lie on the rim of what can be reached: a rounding error of the velocity beyond, the next arrival is far off.
+  // Many of these ends lie at the edge of the reachable set: a velocity rounding error beyond it, the next arrival comes much later.
   std::mt19937_64 random(27);
   int planned_count = 0;
   for (int i = 0; i < problem_count(); ++i) {
@@ -73,7 +73,7 @@ TEST(TrajectoryArrival, AMotionOfAFewSegmentsIsNotPassedOver) {
   EXPECT_GT(planned_count, problem_count() * 9 / 10);
 }
 
-/// Each of these once took from seconds to hours.
+/// Each of these cases once resulted in durations of seconds to hours.
 TEST(TrajectoryArrival, OnTheRimOfWhatCanBeReached) {
   const Built cases[] = {
       // at the start of a gap of durations
@@ -90,7 +90,7 @@ TEST(TrajectoryArrival, OnTheRimOfWhatCanBeReached) {
         {2.3691980769424212, 1.3015338179994862, -0.022753678866611261},
         {1.3404703244603737, -1.387642569804294, 0.2364905859653797, -0.09841316921323584, 0.40930796731699398}},
        0.124003161},
-      // the shortest change of velocity and acceleration, as long as the other end's fall (top) or not (saddle)
+      // the shortest change of velocity and acceleration, as long as the fall of the other end (top) or not (saddle)
       {{{2.9963540679887846, -88.249987150270684, -0.0016792347508964856},
         {0.34550576112523168, -88.249934917556402, -0.0062881173747728093},
         {45.016055495332857, -124.25534913488225, 0.026685484200522934, -0.037324473306309253, 0.79177814677377178}},
@@ -101,7 +101,7 @@ TEST(TrajectoryArrival, OnTheRimOfWhatCanBeReached) {
        0.000674252574},
   };
   for (const Built& built : cases) {
-    // Rounding of the target on either side changes nothing.
+    // Rounding errors of the target in both directions must not change the result.
     for (const double moved : {0.0, -1e-16, 1e-16, -1e-14, 1e-14, -1e-12, 1e-12}) {
       Task task = built.task;
       task.target.position += moved;
@@ -113,7 +113,7 @@ TEST(TrajectoryArrival, OnTheRimOfWhatCanBeReached) {
 }
 
 TEST(TrajectoryArrival, AnAccelerationWhoseSquareIsLostBesideTheVelocity) {
-  // At the velocity limit such a start fell short of its own acceleration, and drifted all along the cruise.
+  // Regression: at the velocity limit such a start missed its own acceleration and drifted during the whole cruise.
   std::mt19937_64 random(28);
   for (int i = 0; i < problem_count(); ++i) {
     Task task = random_task(random);
@@ -127,7 +127,7 @@ TEST(TrajectoryArrival, AnAccelerationWhoseSquareIsLostBesideTheVelocity) {
   }
 }
 
-/// Where the last segment really leads.
+/// Returns the state to which the last segment leads.
 State end_of(const Motion& motion) {
   if (motion.segment_count == 0) {
     return motion.target;
@@ -136,7 +136,7 @@ State end_of(const Motion& motion) {
   return Motion::advanced(last.start, last.jerk, last.duration_s);
 }
 
-/// What plan_position promises of its end.
+/// Checks the accuracy of the end that plan_position guarantees.
 void expect_arrival(const Motion& motion, const Task& task) {
   const Limits& l = task.limits;
   const double velocity = std::max(l.velocity_max, -l.velocity_min);
@@ -149,7 +149,7 @@ void expect_arrival(const Motion& motion, const Task& task) {
 }
 
 TEST(TrajectoryArrival, AWayThatLeadsFarOutEndsAtTheTarget) {
-  // Limits a million times apart: starts that cannot but go out to 1e17 m come back to their target, not to metres beside it.
+  // Limits a million times apart: starts that must go out to 1e17 m return exactly to their target, not metres beside it.
   std::mt19937_64 random(29);
   double worst = 0.0;
   int asked = 0;
@@ -170,7 +170,7 @@ TEST(TrajectoryArrival, AWayThatLeadsFarOutEndsAtTheTarget) {
     ++asked;
     expect_arrival(motion, task);
     worst = std::max(worst, std::abs(end_of(motion).position - task.target.position));
-    // The rounding errors of the way are where it is farthest, and small beside that.
+    // The rounding errors of the path must appear where it is farthest, and be small compared with that.
     const double infinity = std::numeric_limits<double>::infinity();
     double farthest = scale_of(task, motion.duration_s).position;
     for (int k = 0; k < motion.segment_count; ++k) {
@@ -183,7 +183,7 @@ TEST(TrajectoryArrival, AWayThatLeadsFarOutEndsAtTheTarget) {
     }
     EXPECT_LT(farthest, infinity);
   }
-  EXPECT_LE(worst, 1e-8);  // m, though many go out to 1e9 m and more
+  EXPECT_LE(worst, 1e-8);  // in m, although many paths go out to 1e9 m and more
   EXPECT_GT(asked, problem_count() / 3);
 }
 
@@ -212,7 +212,7 @@ TEST(TrajectoryArrival, OkIsNeverSaidOfAMissedTarget) {
 }
 
 TEST(TrajectoryArrival, BesideALargeVelocityTheAccelerationKeepsItsLimit) {
-  // The velocity is at its limit at both ends: a motion of 443 times the acceleration was once taken for a rounding error.
+  // Regression: with the velocity at its limit at both ends, a motion of 443 times the acceleration was taken for a rounding error.
   const Task task{{0.00041953722389421273, -1824.3890266849216, 0.00013140995237322025},
                   {-0.00027132456965280044, -1824.3890266849216, 0.00023670276998448073},
                   {23042.620128732324, -1824.3890266849216, 0.00026622071430543257, -6.9526299006441692e-06, 623974.53998763638}};
@@ -226,8 +226,8 @@ TEST(TrajectoryArrival, BesideALargeVelocityTheAccelerationKeepsItsLimit) {
 }
 
 TEST(TrajectoryArrival, WithinTwelveDecadesOkKeepsTheLimitsAndFewAreOutOfRange) {
-  // Velocity, acceleration and jerk each from 1e-6 to 1e6. Where a hold of next to no acceleration follows a slope of a million times it,
-  // its duration is a difference of velocities that double does not hold: a few in 10^5 miss their target by more than is granted.
+  // Velocity, acceleration and jerk vary from 1e-6 to 1e6 each. If a hold at a tiny acceleration follows a million times steeper slope, its
+  // duration is a difference of velocities beyond double precision. A few in 10^5 then miss their target by more than the tolerance.
   std::mt19937_64 random(31);
   constexpr double kSpan = 1e6;
   int out_of_range = 0;

@@ -1,4 +1,4 @@
-// The circle that bounds speed and acceleration of a robot, from any start and while planning anew in every tick.
+// Circle that bounds speed and acceleration of a robot, from any start and with a new plan in every tick.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace robot_core::reference {
 namespace {
 
 const Limits kYaw = Limits::symmetric(20, 50, 500);
-/// What trajectory.h grants.
+/// Ratio that trajectory.h guarantees.
 constexpr double kMost = 1.002;
 
 template <typename Real>
@@ -26,7 +26,7 @@ double acceleration(const AxisState<Real>& x, const AxisState<Real>& y) {
   return std::hypot(static_cast<double>(x.acceleration), static_cast<double>(y.acceleration));
 }
 
-/// The speed behind the shortest segment of full jerk that leaves no acceleration.
+/// Returns the speed after the shortest segment of full jerk that brings the acceleration to zero.
 double braked_speed(const State& x, const State& y, double jerk) {
   const double time_s = acceleration(x, y) / jerk;
   return std::hypot(x.velocity + x.acceleration * time_s / 2, y.velocity + y.acceleration * time_s / 2);
@@ -36,7 +36,7 @@ PlaneLimits<double> any_plane(std::mt19937_64& random) {
   return {std::exp(uniform(random, -1.5, 1.5)), std::exp(uniform(random, -1.0, 2.5)), std::exp(uniform(random, 0.0, 4.0))};
 }
 
-/// The longest vectors on the way.
+/// Largest speed and acceleration of a path.
 struct Longest {
   double speed = 0.0;
   double acceleration = 0.0;
@@ -58,7 +58,7 @@ Longest longest(const Trajectory<Real> (&motions)[3]) {
   for (int i = 0; i <= kSamples; ++i) {
     look(motions[0].duration_s * static_cast<Real>(i) / static_cast<Real>(kSamples));
   }
-  // Beside a target that is hardly slower than the limit, all turns are short.
+  // In the frame of a target that is hardly slower than the limit, all turns are short.
   for (int axis = 0; axis < 2; ++axis) {
     for (int i = 0; i < motions[axis].segment_count; ++i) {
       look(motions[axis].segments[i].start_s);
@@ -96,7 +96,7 @@ TEST(TrajectoryCircle, AnyStartThatCanStayInsideDoes) {
     Motion motions[3];
     ASSERT_EQ(plan_plane(start, target, plane, kYaw, motions, i % 3 == 0 ? Target::moving_on : Target::at_position), PlanResult::ok);
     const Longest most = longest(motions);
-    // Braking the acceleration along its own direction is one way to stay inside. Who cannot goes no further out than that leads.
+    // Braking the acceleration along its own direction is one way to stay inside. Other starts go no further out than that way leads.
     const double braked = braked_speed(start[0], start[1], plane.jerk_max);
     ASSERT_LE(most.speed, kMost * std::max({plane.speed_max, speed(start[0], start[1]), braked})) << i;
     ASSERT_LE(most.acceleration, kMost * std::max(plane.acceleration_max, acceleration(start[0], start[1]))) << i;
@@ -112,7 +112,7 @@ TEST(TrajectoryCircle, AnyStartThatCanStayInsideDoes) {
   EXPECT_GT(can_stay, problem_count() / 2);
 }
 
-/// Robots on their way when the referee halves their speed limit; how many of them then have a plan.
+/// Halves the speed limit of robots in motion, as a referee does. Returns how many of them then have a plan.
 template <typename Real>
 int planned_under_half_the_limit(int count) {
   std::mt19937_64 random(35);
@@ -140,7 +140,7 @@ TEST(TrajectoryCircle, ALimitThatFallsOnTheWayLeavesAPlan) {
   EXPECT_EQ(planned_under_half_the_limit<float>(problem_count()), problem_count());
 }
 
-/// How long it takes to meet a target that moves on, planned in double precision.
+/// Returns the time to reach a moving target, planned in double precision.
 template <typename Real>
 double chase_s(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane) {
   const State from[3] = {widened(start[0]), widened(start[1]), widened(start[2])};
@@ -151,7 +151,7 @@ double chase_s(const AxisState<Real> (&start)[3], const AxisState<Real> (&target
   return motions[0].duration_s;
 }
 
-/// Targets that move on with `part` of the speed limit; how many are met or beyond the numbers, and none of them outside of the circle.
+/// Targets move with `part` of the speed limit. Returns how many are met or out of range; no plan may leave the circle.
 template <typename Real>
 int met_inside(double part, int count, bool any_limits) {
   std::mt19937_64 random(34);
@@ -168,13 +168,13 @@ int met_inside(double part, int count, bool any_limits) {
       start[axis] = {real(uniform(random, -2, 2)), real(uniform(random, -v, v)), 0};
       target[axis].position = real(uniform(random, -2, 2));
     }
-    // Every fourth along an axis or between two: there the room is least.
+    // Every fourth target moves along an axis or a diagonal, where the room is smallest.
     const double angle = i % 4 == 0 ? std::round(uniform(random, 0, 8)) * M_PI / 4 : uniform(random, 0, 2 * M_PI);
     target[0].velocity = real(part * like.speed_max * std::cos(angle));
     target[1].velocity = real(part * like.speed_max * std::sin(angle));
     Trajectory<Real> motions[3];
     if (const PlanResult result = plan_plane(start, target, plane, yaw, motions, Target::moving_on); result != PlanResult::ok) {
-      // A chase of minutes on what the target leaves of the limits is more than float can hold.
+      // A chase of minutes with the small rest of the limits exceeds the range of float.
       met += any_limits && result == PlanResult::out_of_range && chase_s(start, target, plane) > 120 ? 1 : 0;
       continue;
     }
@@ -194,7 +194,7 @@ TEST(TrajectoryCircle, ATargetMayBeNearlyAsFastAsTheLimit) {
   }
   EXPECT_EQ(met_inside<double>(1 - 1e-6, count, false), count);
   EXPECT_EQ(met_inside<float>(0.99, count, true), count);
-  // Closer than float can tell it may find none, but none outside either.
+  // Closer to the limit than float resolves, a plan may be missing, but none may leave the circle.
   for (const double part : {0.99999, 0.999999}) {
     EXPECT_GE(met_inside<float>(part, count, false), count * 9 / 10) << part;
   }
@@ -218,7 +218,7 @@ TEST(TrajectoryCircle, ALongWayBehindALeadInSinglePrecision) {
   }
 }
 
-/// A robot that plans anew in every tick, or at every jump of its target only.
+/// Robot that plans anew in every tick, or only at every jump of its target.
 template <typename Real>
 class Robot {
  public:
@@ -248,7 +248,7 @@ class Robot {
     passed_s_ += static_cast<Real>(period_s);
   }
 
-  /// The longest vectors so far, over their limits.
+  /// Largest speed so far over its limit.
   [[nodiscard]] double most_speed() const { return speed_; }
   [[nodiscard]] double most_acceleration() const { return acceleration_; }
   [[nodiscard]] double distance(double x, double y) const {
@@ -285,7 +285,7 @@ void follow_jumps(std::mt19937_64& random, const PlaneLimits<double>& plane, boo
   }
   EXPECT_LE(robot.most_speed(), kMost) << plane.speed_max << " " << plane.acceleration_max << " " << plane.jerk_max;
   EXPECT_LE(robot.most_acceleration(), kMost) << plane.speed_max << " " << plane.acceleration_max << " " << plane.jerk_max;
-  // And it gets there, once the target rests.
+  // The robot reaches the target once that rests.
   for (int tick = 0; tick < 40 * kTicks && robot.distance(x.position, y.position) > 1e-3; ++tick) {
     ASSERT_NO_FATAL_FAILURE(robot.plan(x, y, Target::at_position));
     robot.advance(kTick_s);

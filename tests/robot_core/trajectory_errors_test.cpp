@@ -61,7 +61,7 @@ TEST(TrajectoryErrors, AreCodes) {
   task = good;
   task.target.acceleration = -2.001;
   EXPECT_EQ(result(task), PlanResult::target_acceleration_beyond_limit);
-  task.target = {1, -1.9, 1.9};  // who accelerates so much at that velocity was slower than -2 before
+  task.target = {1, -1.9, 1.9};  // with this acceleration at this velocity the velocity was below -2 before
   EXPECT_EQ(result(task), PlanResult::target_without_approach);
   task = good;
   task.target = {1, 2.0, 0};
@@ -98,7 +98,7 @@ TEST(TrajectoryErrors, DistancesThatOverflow) {
   EXPECT_EQ(plan_position({1.7e308, 0.97, 2.2e-308}, {-1.7e308, -3.6, -1.07}, wide, motion), PlanResult::out_of_range);
   EXPECT_EQ(motion.segment_count, 0);
   EXPECT_EQ(plan_bang_bang({1.7e308, 1, 0}, {-1.7e308, -1.8, 0}, {2.2e-308, -1.7e308, 1e-310, -5.8, 11}, motion), PlanResult::out_of_range);
-  // Limits that are none do not make a short way one of those.
+  // Very high limits must not make a short path count as out of range.
   EXPECT_EQ(plan_position({0, 1, 0}, {1, 0, 0}, Limits::symmetric(1e200, 1e3, 1e4), motion), PlanResult::ok);
 }
 
@@ -115,7 +115,7 @@ TEST(TrajectoryErrors, OfThePlaneAreCodes) {
   EXPECT_EQ(result({1, 0, 0}, {1, 0, 0}, {2, 0, 6}), PlanResult::limit_without_room);
   EXPECT_EQ(result({1, 0, 0}, {1, 0, 0}, {2, 2, nan}), PlanResult::not_finite);
   EXPECT_EQ(result({1, nan, 0}, {1, 0, 0}, {2, 2, 6}), PlanResult::not_finite);
-  // Each is inside of the square, but not of the circle.
+  // Each target is inside the square of the limits, but not inside the circle.
   EXPECT_EQ(result({1, 1.5, 0}, {1, 1.5, 0}, {2, 2, 6}), PlanResult::target_velocity_beyond_limit);
   EXPECT_EQ(result({1, 0, 1.5}, {1, 0, 1.5}, {2, 2, 6}), PlanResult::target_acceleration_beyond_limit);
   // Velocity along x and acceleration along y, both close to the limit, leave no split.

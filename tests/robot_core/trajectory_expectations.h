@@ -1,4 +1,4 @@
-// What the tests of the planners expect of every result.
+// Expectations that every result of the planners must meet.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace robot_core::reference {
 
-/// Of a test on random problems; HEATSOAK_TRAJECTORY_PROBLEMS=1000000 is the long run.
+/// Number of random problems per test; HEATSOAK_TRAJECTORY_PROBLEMS=1000000 is the long run.
 int problem_count();
 
 template <typename Real>
@@ -22,14 +22,14 @@ Limits widened(const AxisLimits<Real>& l) {
           static_cast<double>(l.acceleration_min), static_cast<double>(l.jerk_max)};
 }
 
-/// A task as it is written in a test.
+/// Returns a task in the notation of a test's source.
 std::string text(const Task& task);
 
-/// The result of plan_position, which has to be ok.
+/// Returns the result of plan_position, which must be ok.
 Motion planned(const Task& task);
 double duration_s(const Task& task);
 
-/// `most` bounds what the end and the limits may be off, relative to the task's scales.
+/// `most` bounds the errors of end and limits, relative to the task's scales.
 void expect_flawless(const Motion& motion, const Task& task, double judged_from_s = 0.0, double most = 1e-10);
 
 struct Fleet {
@@ -37,7 +37,7 @@ struct Fleet {
   std::vector<Motion> motions;
 };
 
-/// The results of plan_synchronised or plan_velocity_synchronised, which have to be ok.
+/// Return the results of plan_synchronised or plan_velocity_synchronised, which must be ok.
 Fleet synchronised(std::vector<Task> tasks);
 Fleet velocity_synchronised(std::vector<Task> tasks);
 

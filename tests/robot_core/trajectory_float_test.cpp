@@ -49,10 +49,10 @@ TEST(TrajectoryFloat, KeepsSixDigits) {
                               static_cast<double>(s.acceleration / limits.acceleration_max) - 1,
                               static_cast<double>(s.acceleration / limits.acceleration_min) - 1});
     }
-    // Rounding the ends may close the way that was shortest; apart from that the durations agree.
+    // Rounding the ends may make the shortest path impossible; otherwise the durations agree.
     Motion exact;
     if (plan_position(widened(start), widened(target), task.limits, exact) != PlanResult::ok) {
-      continue;  // a target on the edge, which its rounding crosses
+      continue;  // rounding moves a target on the edge outside
     }
     different += std::abs(exact.duration_s - static_cast<double>(motion.duration_s)) > 1e-3 * exact.duration_s ? 1 : 0;
   }
@@ -64,7 +64,7 @@ TEST(TrajectoryFloat, KeepsSixDigits) {
   EXPECT_LE(different, problem_count() / 500);
 }
 
-/// Where the last segment leads.
+/// Returns the state to which the last segment leads.
 State end_of(const Trajectory<float>& motion) {
   const TrajectorySegment<float>& last = motion.segments[motion.segment_count - 1];
   return widened(Trajectory<float>::advanced(last.start, last.jerk, last.duration_s));
@@ -82,10 +82,10 @@ TEST(TrajectoryFloat, BringsAViolatingStartBackAsDoubleDoes) {
     ASSERT_EQ(plan_position(start, target, limits, motion), PlanResult::ok) << text(task);
     Motion exact;
     if (plan_position(widened(start), widened(target), widened(limits), exact) != PlanResult::ok) {
-      continue;  // a target on the edge, which its rounding crosses
+      continue;  // rounding moves a target on the edge outside
     }
     const Task rounded{widened(start), widened(target), widened(limits)};
-    // Until its acceleration is gone, the start may run far beyond its velocity limits.
+    // Until its acceleration is zero, the start may go far beyond its velocity limits.
     const double excursion = rounded.start.acceleration * rounded.start.acceleration / (2 * rounded.limits.jerk_max);
     State scale = scale_of(rounded, exact.duration_s);
     scale.velocity += excursion;

@@ -93,7 +93,7 @@ TEST(TrajectoryPlane, ReplannedEveryTickItStaysOnItsWay) {
   }
 }
 
-/// The longest vectors on the way, each over its limit.
+/// Largest speed and acceleration of a path, each divided by its limit.
 struct LongestOverLimit {
   double speed = 0.0;
   double acceleration = 0.0;
@@ -160,13 +160,13 @@ TEST(TrajectoryPlane, ANewTargetOnTheWayKeepsTheCircle) {
       fastest = std::max(fastest, std::hypot(state[0].velocity, state[1].velocity));
     }
     EXPECT_LE(fastest, 3 * 1.002);
-    // Later plans find more room than the first one after the turn had.
+    // Later plans have more room than the first one after the turn.
     EXPECT_LE(passed_s, std::max(first_s, turn_s) * 1.001 + 0.05);
   }
 }
 
 TEST(TrajectoryPlane, ALowerLimitIsApproachedFromAbove) {
-  // A referee's speed limit comes while the robot runs.
+  // A referee lowers the speed limit while the robot drives.
   const PlaneLimits<double> plane{1.5, 3, 20};
   const State start[3] = {{0, 2.4, 0}, {0, 1.8, 0}, {}};
   const State target[3] = {{-1, 0, 0}, {4, 0, 0}, {}};
@@ -217,12 +217,12 @@ TEST(TrajectoryPlane, BangBangOfADiagonalIsNoFasterThanAStraightRun) {
   }
 }
 
-/// What a robot does that plans again in every tick.
+/// Measurements of a robot that plans anew in every tick.
 struct Followed {
-  double speed = 0.0;         ///< the highest, over its limit
-  double acceleration = 0.0;  ///< the highest, over its limit
-  double distance = 0.0;      ///< from the target, the largest of the second half
-  double ripple = 0.0;        ///< of the acceleration around the target's own, the largest of the second half
+  double speed = 0.0;         ///< highest speed divided by its limit
+  double acceleration = 0.0;  ///< highest acceleration divided by its limit
+  double distance = 0.0;      ///< largest distance from the target in the second half
+  double ripple = 0.0;        ///< largest deviation from the target's acceleration in the second half
 };
 
 template <typename TargetAt>
@@ -267,8 +267,8 @@ TEST(TrajectoryPlane, FollowsAnEvenTargetAtOneKilohertzWithoutJitter) {
 }
 
 TEST(TrajectoryPlane, FollowsACirclingTargetAtOneKilohertzWithoutJitter) {
-  // Nobody tells the target's acceleration: the planner learns of it by the next tick. It then answers with less than what
-  // the jerk can do in one tick.
+  // The planner is not given the target's acceleration; it observes the change in the next tick. Its response is then smaller than the
+  // change that the jerk can cause in one tick.
   const Followed followed = follow([](double time_s, State(&target)[3]) {
     const double turn = 0.8;
     const double sine = std::sin(turn * time_s);

@@ -10,7 +10,7 @@ namespace {
 
 double decades(std::mt19937_64& random, double low, double high) { return std::pow(10.0, uniform(random, low, high)); }
 
-/// A state that can be kept from breaking the velocity limits, before (-1) or after (+1) it is met.
+/// Returns a random state from which the velocity limits can be kept, before (-1) or after (+1) it is met.
 State admissible(std::mt19937_64& random, const Limits& limits, double position, bool at_edges, double direction) {
   State state;
   state.position = position;
@@ -148,8 +148,8 @@ struct Candidate {
   double peak_velocity;
 };
 
-/// Raise the acceleration to a peak, hold it, lower it, hold it, raise it: as the first two say, the rest follows from the
-/// final velocity. `branch` chooses the sign of the lowest acceleration.
+/// Raises the acceleration to `peak`, holds it for `hold_s`, lowers it, holds it and raises it. The final velocity determines the rest;
+/// `branch` chooses the sign of the lowest acceleration.
 std::optional<Candidate> upward(const Task& task, double peak, double hold_s, double branch) {
   const Limits& l = task.limits;
   const double j = l.jerk_max;
@@ -172,7 +172,7 @@ std::optional<Candidate> upward(const Task& task, double peak, double hold_s, do
     lowest = l.acceleration_min;
     low_hold_s = (task.target.velocity - s.velocity - (peak * peak + a1 * a1 - 2.0 * lowest * lowest) / (2.0 * j)) / lowest;
   }
-  // Ends on the edge of what is allowed leave a single motion, which sampling meets but for rounding.
+  // For ends on the edge of the limits only one motion exists, which sampling meets within rounding.
   const double rounding = 1e-9 * (l.acceleration_max - l.acceleration_min);
   if (lowest > peak + rounding || lowest > a1 + rounding || low_hold_s < 0.0) {
     return {};
@@ -199,7 +199,7 @@ double earliest_upward(const Task& task, int samples) {
   };
   for (const double branch : {1.0, -1.0}) {
     const auto is_allowed = [&](const std::optional<Candidate>& c) { return c && c->peak_velocity <= l.velocity_max * (1.0 + 1e-12); };
-    /// The last allowed parameter between an allowed and another one.
+    /// Returns the last allowed parameter between an allowed and another one.
     const auto edge = [&](double allowed, double other) {
       for (int i = 0; i < 60; ++i) {
         const double middle = (allowed + other) / 2.0;
@@ -226,7 +226,7 @@ double earliest_upward(const Task& task, int samples) {
       }
       best_s = std::min(best_s, at(high, branch)->duration_s);
     };
-    // Where the velocity limit is reached it may be cruised at.
+    // At the velocity limit a cruise is possible.
     double slow = 0.0;
     double fast = 2.0;
     const auto velocity_at = [&](double parameter) {
@@ -281,7 +281,7 @@ double earliest_by_search(const Task& task, int samples) {
 
 namespace {
 
-/// Times that are dense near both ends, and nowhere so close that differences are noise.
+/// Returns times that are dense near both ends, but never so close that differences are noise.
 std::vector<double> graded_times(double duration_s, int grid) {
   std::vector<double> times;
   for (int i = 0; i <= grid; ++i) {
@@ -297,7 +297,7 @@ std::vector<double> graded_times(double duration_s, int grid) {
   return times;
 }
 
-/// The lower convex hull of values at times, at the same times.
+/// Returns the lower convex hull of `values` at the same times.
 std::vector<double> convex_hull(const std::vector<double>& times, const std::vector<double>& values) {
   std::vector<std::size_t> corners;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -323,7 +323,7 @@ std::vector<double> convex_hull(const std::vector<double>& times, const std::vec
   return hull;
 }
 
-/// What no velocity of a motion of that duration exceeds: v + jerk t^2 / 2 is convex.
+/// Returns an upper bound of the velocity of a motion of that duration, because v + jerk t^2 / 2 is convex.
 std::vector<double> velocity_bound(const Task& task, const std::vector<double>& times) {
   const Limits& l = task.limits;
   const auto raised = [&](double v, double a, double a_max, double t) {
@@ -347,7 +347,7 @@ std::vector<double> velocity_bound(const Task& task, const std::vector<double>& 
 double distance_bound(const std::vector<double>& times, const std::vector<double>& velocity, const Limits& l) {
   double sum = 0.0;
   for (std::size_t i = 1; i < velocity.size(); ++i) {
-    // Between the points, v + jerk t^2 / 2 is below its chord, and v above its own by no more than slopes allow.
+    // Between the points v + jerk t^2 / 2 is below its chord, and v exceeds its own chord by no more than the slopes allow.
     const double step_s = times[i] - times[i - 1];
     const double bulge = std::min(l.jerk_max * step_s / 12.0, (l.acceleration_max - l.acceleration_min) / 8.0) * step_s * step_s;
     sum += std::min(step_s * (velocity[i - 1] + velocity[i]) / 2.0 + bulge, step_s * l.velocity_max);

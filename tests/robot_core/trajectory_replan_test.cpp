@@ -25,8 +25,8 @@ TEST(TrajectoryReplan, OnTheWayTheArrivalStays) {
       Task rest = task;
       const double passed_s = share * motion.duration_s;
       rest.start = motion.at(passed_s);
-      // On the last segments (and where the state just touches a limit) the duration grows like the cube root of a
-      // rounding error of the state: that is the problem's nature, not the planner's.
+      // On the last segments, and if the state just touches a limit, the duration grows like the cube root of a rounding error of the
+      // state. This is a property of the problem, not of the planner.
       const double change_s = std::abs(duration_s(rest) - (motion.duration_s - passed_s)) / motion.duration_s;
       const bool is_last = motion.segment_at(passed_s) + 2 >= motion.segment_count;
       if (change_s > 1e-5) {
@@ -39,14 +39,14 @@ TEST(TrajectoryReplan, OnTheWayTheArrivalStays) {
   EXPECT_LE(worst_late, 1e-5);
 }
 
-/// Each of these was once sent around: on the way, at `share` of its duration, it was planned to take seconds longer.
+/// Regression: planned anew at `share` of the duration, each of these cases once took seconds longer.
 TEST(TrajectoryReplan, CasesThatWentWrong) {
   struct Case {
     double share = 0.0;
     Task task;
   };
   const Case cases[] = {
-      // the start will break a velocity limit, but arrives before
+      // the start will violate a velocity limit, but arrives before
       {0.95,
        {{-1.3849627029927793, -1.4583738602568976, 3.0879245244189053},
         {-4.2281798274856177, 0.10467012822382227, 2.382051499752083},
@@ -55,17 +55,17 @@ TEST(TrajectoryReplan, CasesThatWentWrong) {
        {{6.6289636626697774, 5.7939506672346468, -3.3240499746914489},
         {9.5045937756877326, -4.6676140060676135, -5.3045210948464376},
         {8.733730632074538, -4.8277262413231234, 2.4718111701109131, -6.472977676351559, 7.1143139821351005}}},
-      // arrives the very moment a gap of durations ends
+      // arrives exactly when a gap of durations ends
       {0.5,
        {{-1.7109956702844062, -6.0514064799713001, -0.57329656788216199},
         {-5.5732032028554537, 2.0935719717032697, 2.9708902201986187},
         {2.8757200213734722, -6.3729231326157834, 3.9790655879581007, -3.1504705215833106, 4.3557003871238491}}},
-      // or begins
+      // arrives exactly when a gap begins
       {0.5,
        {{-10.059461988003882, -1.9633111249166904, 3.0439095524591226},
         {-6.2203862696415939, 4.0125506853290682, 2.4866115097681871},
         {9.5738860276408744, -6.515107009148621, 8.4466810948048145, -3.0783401418989276, 5.209872403988606}}},
-      // acceleration of almost nothing, whose square is lost beside the velocities
+      // tiny acceleration, whose square is lost to rounding beside the velocities
       {0.95,
        {{2.1275293786859013, 7.7288535564820897, -0.34162519089856147},
         {-5.6747830135758255, -8.1954059053224722, -0.9786894263086241},
@@ -84,7 +84,7 @@ TEST(TrajectoryReplan, CasesThatWentWrong) {
 }
 
 TEST(TrajectoryReplan, ASegmentOfFullJerkIsFoundFromAnywhere) {
-  // Nothing changes an acceleration faster, and next to nothing else arrives as early: rounding must not hide it.
+  // No motion changes an acceleration faster, and hardly any other arrives as early: rounding must not hide it.
   std::mt19937_64 random(26);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   int found = 0;
@@ -96,7 +96,7 @@ TEST(TrajectoryReplan, ASegmentOfFullJerkIsFoundFromAnywhere) {
     task.target = Motion::advanced(task.start, jerk, time_s);
     Motion motion;
     if (plan_position(task.start, task.target, task.limits, motion) != PlanResult::ok) {
-      continue;  // it ends too fast, or no one gets there who kept the limits
+      continue;  // its end is too fast, or it is unreachable within the limits
     }
     ++found;
     ASSERT_LE(motion.duration_s, time_s * (1 + 1e-9) + 1e-12) << text(task);
@@ -125,8 +125,8 @@ TEST(TrajectoryReplan, EveryTickTowardsARestingTarget) {
   }
 }
 
-/// Passing through a fixed place at speed leaves little room near the arrival: whoever is late by a rounding error has to come back. That
-/// befell one run in four before arrivals that are next to each other counted as one; a few remain.
+/// An axis that passes a fixed position at speed has little room near the arrival: if rounding makes it late, it must come back. That
+/// happened in one run in four before neighbouring arrivals counted as one; a few such runs remain.
 TEST(TrajectoryReplan, AxesThatFlyByAFixedPlaceSeldomLoseTheirArrival) {
   std::mt19937_64 random(5);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
@@ -169,7 +169,7 @@ TEST(TrajectoryReplan, ConvergesOnAMovingTarget) {
     Task task = random_task(random);
     task.limits = Limits::symmetric(3, 4, 30);
     task.start.velocity = task.start.acceleration = 0.0;
-    // The target circles; its velocity is told, its acceleration is not.
+    // The target moves on a circle. The planner gets its velocity but not its acceleration.
     const double omega = std::uniform_real_distribution<double>(0.1, 0.8)(random);
     double time_s = 0.0;
     const auto target = [&](double at_s) { return State{std::sin(omega * at_s), omega * std::cos(omega * at_s), 0}; };
@@ -196,7 +196,7 @@ TEST(TrajectoryMovingTarget, IsMetWhereItIsByThen) {
     Task met = task;
     met.target = {task.target.position + task.target.velocity * motion.duration_s, task.target.velocity, 0};
     expect_flawless(motion, met);
-    // Whoever goes there straight may be there first, but nowhere before is the target met.
+    // A direct path may be there first, but the target is not met earlier anywhere.
     EXPECT_LE(duration_s(met), motion.duration_s * (1 + 1e-9)) << text(task);
     for (const double share : {0.3, 0.6, 0.9, 0.98}) {
       met.target.position = task.target.position + task.target.velocity * share * motion.duration_s;

@@ -38,7 +38,7 @@ TEST(TrajectorySynchronised, ArriveTogetherWithinLimits) {
 }
 
 TEST(TrajectorySynchronised, CasesThatWentWrong) {
-  // Of the last axis both legs would be held, if one took each alone; in truth only one is.
+  // Solved separately, both legs of the last axis would be held; in fact only one is.
   const std::vector<Task> one_held{
       {{4.1342772643622308, 0.92769367053839558, 2.6596765939253668},
        {0.67660242372466717, 0.41790150715411345, 7.6210073756017884},
@@ -49,7 +49,7 @@ TEST(TrajectorySynchronised, CasesThatWentWrong) {
       {{1.1838750051890474, -1.8831222900618139, 1.5392788654838179},
        {0.21644187988598998, 3.4274903332804829, 6.1088751579971019},
        {4.9352966295886551, -6.5700481754489743, 9.2506697560111526, -0.43871999231199876, 9.5078357619318155}}};
-  // The first axis moves so shortly that its velocity hardly changes.
+  // The first axis moves over such a short distance that its velocity hardly changes.
   const std::vector<Task> short_one{
       {{-2.2461964923963686e-05, 0.32443138869962523, 0},
        {0.00044064030905026586, 0.32443138869962523, 0},
@@ -71,7 +71,7 @@ TEST(TrajectorySynchronised, ExtremeScales) {
     std::vector<Task> tasks{extreme_task(random), extreme_task(random)};
     const Fleet fleet = synchronised(tasks);
     for (int axis = 0; axis < 2; ++axis) {
-      // One may have to wait a million times its own duration for the other.
+      // One axis may have to wait a million times its own duration for the other.
       expect_flawless(fleet.motions[axis], tasks[axis], 0.0, 1e-8);
     }
     if (HasFailure()) {
@@ -123,7 +123,7 @@ TEST(TrajectorySynchronised, FromRestToRestIsStraight) {
 }
 
 TEST(TrajectorySynchronised, AxesThatArriveTogetherButForRoundingStayTogether) {
-  // Each is one segment of full jerk, which has no second chance soon; scaled in time so that all last as long.
+  // Each task is one segment of full jerk, whose next arrival comes much later. Time is scaled so that all last equally long.
   std::mt19937_64 random(28);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   int tried = 0;

@@ -20,10 +20,10 @@ Task rest_to_rest(double distance, double velocity, double acceleration, double 
 }
 
 TEST(TrajectoryClosedForm, RestToRest) {
-  EXPECT_NEAR(duration_s(rest_to_rest(1, 100, 100, 6)), 4 * std::cbrt(1.0 / 12), 1e-14);                    // jerk alone
+  EXPECT_NEAR(duration_s(rest_to_rest(1, 100, 100, 6)), 4 * std::cbrt(1.0 / 12), 1e-14);                    // jerk limit alone
   EXPECT_NEAR(duration_s(rest_to_rest(8, 100, 2, 6)), 2.0 / 6 + std::sqrt(4.0 / 36 + 4 * 8.0 / 2), 1e-14);  // holds the acceleration
-  EXPECT_NEAR(duration_s(rest_to_rest(8, 2, 2, 6)), 8.0 / 2 + 2.0 / 2 + 2.0 / 6, 1e-14);                    // and cruises
-  EXPECT_NEAR(duration_s(rest_to_rest(8, 0.5, 2, 6)), 8.0 / 0.5 + 2 * std::sqrt(0.5 / 6), 1e-14);           // cruises, holds nothing
+  EXPECT_NEAR(duration_s(rest_to_rest(8, 2, 2, 6)), 8.0 / 2 + 2.0 / 2 + 2.0 / 6, 1e-14);                    // also cruises
+  EXPECT_NEAR(duration_s(rest_to_rest(8, 0.5, 2, 6)), 8.0 / 0.5 + 2 * std::sqrt(0.5 / 6), 1e-14);           // cruises without holds
   EXPECT_NEAR(duration_s(rest_to_rest(-8, 2, 2, 6)), 8.0 / 2 + 2.0 / 2 + 2.0 / 6, 1e-14);
 }
 
@@ -38,7 +38,7 @@ TEST(TrajectoryClosedForm, NothingToDo) {
 }
 
 TEST(TrajectoryClosedForm, OneSegment) {
-  // Ends on one parabola of full jerk: nothing else gets there as early.
+  // The ends lie on one parabola of full jerk: no other motion arrives as early.
   for (const double a0 : {-1.2, -0.3, 0.0, 0.4, 1.2}) {
     for (const double jerk : {6.0, -6.0}) {
       const State start{0.3, 0.4, a0};
@@ -49,7 +49,7 @@ TEST(TrajectoryClosedForm, OneSegment) {
 }
 
 TEST(TrajectoryClosedForm, AlmostNothingToDo) {
-  // The way is 1e-11 of the one that the acceleration would take to vanish, and yet no rounding error.
+  // The distance is 1e-11 of the one that braking the acceleration would take, but it is no rounding error.
   const Task task{{-4.3586650273293863e-07, 0, -2.2764570448183719},
                   {0, 0, -2.2764570448183719},
                   Limits::symmetric(96.018266215174421, 10.86836188129778, 0.026985785523818421)};
@@ -89,7 +89,7 @@ TEST(TrajectoryRandom, BringsAViolatingStartBack) {
     const Motion motion = planned(task);
     const double infinity = std::numeric_limits<double>::infinity();
     expect_flawless(motion, task, infinity);
-    // What was inside comes no further out than the start forces it to, and everything is inside later on.
+    // Motions from inside go no further out than the start forces them to; later all are inside.
     const Limits& l = task.limits;
     const State& s = task.start;
     const double inevitable = s.acceleration * std::abs(s.acceleration) / (2 * l.jerk_max);
@@ -119,7 +119,7 @@ TEST(TrajectoryOptimum, NoSwitchingStructureIsFaster) {
     const double planned_s = duration_s(task);
     const double searched_s = earliest_by_search(task, 300);
     if (searched_s > planned_s * (1 + 1e-6)) {
-      ++missed;  // by the search: a motion that exists for less than one of its samples
+      ++missed;  // the search missed a motion that exists for less than one of its samples
     } else {
       largest_gap = std::max(largest_gap, std::abs(planned_s - searched_s) / std::max(searched_s, 1e-300));
     }
@@ -136,7 +136,7 @@ TEST(TrajectoryOptimum, NoSwitchingStructureIsFaster) {
 }
 
 TEST(TrajectoryOptimum, ShorterIsImpossible) {
-  // The bound knows nothing of structures or directions: it excludes that some other kind of motion is faster.
+  // The bound assumes no structure or direction, so it shows that no other kind of motion is faster.
   std::mt19937_64 random(4);
   int undecided = 0;
   int asked = 0;
@@ -149,7 +149,7 @@ TEST(TrajectoryOptimum, ShorterIsImpossible) {
     }
     EXPECT_FALSE(is_impossible(task, planned_s * (1 + 1e-9), 500)) << text(task);
   }
-  // A grid cannot decide where nearly all of the time is a cruise.
+  // A grid cannot decide a case in which nearly all of the time is a cruise.
   EXPECT_LE(undecided, asked / 500) << asked;
 }
 
@@ -188,7 +188,7 @@ TEST(TrajectoryBangBang, IsTheLimitOfLargeJerk) {
     task.limits.jerk_max = 1e7;
     Motion motion;
     ASSERT_EQ(plan_bang_bang(task.start, task.target, task.limits, motion), PlanResult::ok);
-    // The end velocity and position of the last segment, whose acceleration then drops.
+    // Compare the end velocity and position of the last segment; its acceleration then drops to zero.
     const auto& last = motion.segments[motion.segment_count - 1];
     const State end = Motion::advanced(last.start, 0, last.duration_s);
     EXPECT_NEAR(end.position, task.target.position, 1e-9 * (1 + motion.duration_s));

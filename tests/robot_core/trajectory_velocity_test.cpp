@@ -33,7 +33,7 @@ TEST(TrajectoryVelocity, IsABangBangMotionOfTheVelocity) {
 }
 
 void expect_acceleration_kept(const Motion& motion, const Task& task, double most) {
-  // The acceleration is linear in between. A start outside of its limits is on its way back.
+  // The acceleration is linear between segment ends. A start outside its limits is on its way back.
   const double highest = std::max(task.limits.acceleration_max, task.start.acceleration);
   const double lowest = std::min(task.limits.acceleration_min, task.start.acceleration);
   for (int i = 0; i < motion.segment_count; ++i) {
@@ -59,7 +59,7 @@ TEST(TrajectoryVelocitySynchronised, ArriveTogetherWithinLimits) {
       slowest_s = std::max(slowest_s, alone.duration_s);
       Task reached = tasks[axis];
       reached.target.position = motion.target.position;
-      // Of the extreme ones, one may wait a million times its own duration for another.
+      // Among the extreme tasks one axis may wait a million times its own duration for another.
       const double most = i % 4 == 2 ? 1e-8 : 1e-10;
       expect_flawless(motion, reached, std::numeric_limits<double>::infinity(), most);
       expect_acceleration_kept(motion, tasks[axis], most);
@@ -73,7 +73,7 @@ TEST(TrajectoryVelocitySynchronised, ArriveTogetherWithinLimits) {
   }
 }
 
-/// The most that the velocity can gain in that time, summed up below what the acceleration cannot exceed from either end.
+/// Upper bound of the velocity gain in that time: sum of the acceleration bound from both ends.
 double most_gained(const Task& task, double duration_s) {
   constexpr int kSteps = 4000;
   const Limits& l = task.limits;
@@ -107,7 +107,7 @@ TEST(TrajectoryVelocitySynchronised, NoEarlierTimeSuitsAll) {
       EXPECT_TRUE(is_velocity_possible(task, together_s, 1e-4)) << text(task);
     }
     delayed += together_s > slowest_s * (1 + 1e-9) ? 1 : 0;
-    // Rounding of the sums is far below the room that is asked for here.
+    // Rounding of the sums is far below the margin used here.
     for (double share = 0.005; share < 0.999; share += 0.005) {
       bool all = true;
       for (const Task& task : tasks) {
@@ -116,7 +116,7 @@ TEST(TrajectoryVelocitySynchronised, NoEarlierTimeSuitsAll) {
       EXPECT_FALSE(all) << share << " of " << together_s << text(tasks[0]) << text(tasks[1]) << text(tasks[2]);
     }
   }
-  EXPECT_GT(delayed, 0);  // some axis cannot arrive just then
+  EXPECT_GT(delayed, 0);  // at least one axis cannot arrive at that time
 }
 
 TEST(TrajectoryVelocitySynchronised, EqualAxesGoStraightFromOneVelocityToTheOther) {

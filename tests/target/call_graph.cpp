@@ -10,7 +10,7 @@
 namespace heatsoak::target {
 namespace {
 
-/// File-local and weak functions are written "file:name".
+/// Removes the file from a name. GCC writes file-local and weak functions as "file:name".
 std::string without_file(const std::string& title) {
   const std::size_t colon = title.rfind(':');
   return colon == std::string::npos ? title : title.substr(colon + 1);
@@ -22,7 +22,7 @@ std::string without_file(const std::string& title) {
 struct CallGraph::Walk {
   std::map<std::string, std::size_t> known;  // bytes of finished functions
   std::map<std::string, std::string> next;   // the deepest callee
-  std::set<std::string> open;                // on the present path
+  std::set<std::string> open;                // functions on the present path
   std::set<std::string> problems;
 };
 

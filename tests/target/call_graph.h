@@ -1,4 +1,4 @@
-// Stack that a function needs with everything that it calls, from the files that GCC writes for -fcallgraph-info=su.
+// Stack that a function and all its callees need, from the files that GCC writes for -fcallgraph-info=su.
 #pragma once
 
 #include <cstddef>
@@ -10,34 +10,34 @@
 
 namespace heatsoak::target {
 
-/// Functions by their mangled names. A function that several objects contain counts with its largest frame and all its calls, because
-/// the linker keeps any of them; for the same reason, file-local functions of one name count as one.
+/// Functions by their mangled names. A function in several objects counts with its largest frame and all its calls, because the linker
+/// keeps any of them. For the same reason file-local functions of one name count as one.
 class CallGraph {
  public:
-  /// Calls through pointers appear under this name.
+  /// Name under which calls through pointers appear.
   static constexpr const char* kThroughPointer = "__indirect_call";
 
-  /// Adds the text of one .ci file. A frame whose size is not known at compile time is remembered as unbounded.
+  /// Adds the text of one .ci file. A frame of unknown size at compile time counts as unbounded.
   void add(std::string_view callgraph);
 
-  /// Declares what the pointer calls of a function reach. Without that, they make its depth unknown.
+  /// Declares the functions that the pointer calls of `caller` reach. Without this its depth is unknown.
   void resolve_pointers_of(const std::string& caller, const std::set<std::string>& called);
 
-  /// Declares that a function that calls itself does so until it is entered `times` times.
+  /// Declares that a recursive function is entered at most `times` times.
   void bound_recursion_of(const std::string& function, std::size_t times);
 
   struct Depth {
     std::size_t bytes = 0;
-    std::vector<std::string> path;      ///< the deepest, from the root on
-    std::vector<std::string> problems;  ///< recursion, unknown functions, pointers, frames without bound: if any, `bytes` is too small
+    std::vector<std::string> path;      ///< deepest path, starting at the root
+    std::vector<std::string> problems;  ///< recursion, unknown functions or pointers, unbounded frames: if any, `bytes` is too small
   };
-  /// Deepest path from `root` on, its own frame included.
+  /// Returns the deepest path from `root`, its own frame included.
   [[nodiscard]] Depth depth_of(const std::string& root) const;
 
-  /// Mangled names that contain `part`.
+  /// Returns the mangled names that contain `part`.
   [[nodiscard]] std::vector<std::string> names_with(const std::string& part) const;
 
-  /// Mangled names of the functions that call through pointers.
+  /// Returns the mangled names of the functions that call through pointers.
   [[nodiscard]] std::vector<std::string> callers_through_pointers() const;
 
  private:
@@ -55,7 +55,7 @@ class CallGraph {
   std::map<std::string, std::size_t> times_;
 };
 
-/// Of .ci files, whose paths are separated by ':'.
+/// Reads .ci files, whose paths are separated by ':'.
 CallGraph call_graph_of(const std::string& files);
 
 }  // namespace heatsoak::target

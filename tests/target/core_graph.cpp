@@ -9,10 +9,10 @@
 namespace heatsoak::target {
 namespace {
 
-/// most_square() in trajectory_circle.h halves a segment up to kHalvings times.
+/// Recursion depth of most_square() in trajectory_circle.h, which halves a segment up to kHalvings times.
 constexpr std::size_t kHalvings = 10;
 
-/// Without the empty name.
+/// Returns a set of one name; empty for an empty name.
 std::set<std::string> named(const std::string& name) { return name.empty() ? std::set<std::string>{} : std::set<std::string>{name}; }
 
 }  // namespace
@@ -24,7 +24,7 @@ CallGraph core_graph(const std::string& files, const std::string& rates, const s
   }
   for (const std::string& caller : graph.callers_through_pointers()) {
     if (caller.find("replay") != std::string::npos) {
-      continue;  // of the test's own program, above the core
+      continue;  // belongs to the test program, which calls the core
     }
     const bool is_planner = caller.find("control_body_velocity") != std::string::npos || caller.find("follow_command") != std::string::npos;
     const bool is_guard = caller.find("guard") != std::string::npos || caller.find("hottest") != std::string::npos ||

@@ -1,4 +1,4 @@
-// Call graph of the drive core's build for the target.
+// Call graph of the drive core built for the target.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace heatsoak::target {
 
-/// `files` are the .ci files of the program besides the core's own. `rates` is the mangled name of the thermal law, `planner` that of
-/// Config::plan_step; empty without pose targets. Fails the test where a function calls through a pointer that is not known here.
+/// `files`: .ci files of the program in addition to the core's own. `rates`: mangled name of the thermal law. `planner`: mangled name of
+/// Config::plan_step, empty without pose targets. Fails the test if a function calls through an unknown pointer.
 CallGraph core_graph(const std::string& files, const std::string& rates = "", const std::string& planner = "");
 
-/// Of the only function with this part in its mangled name. Fails the test where that is not one, or its stack has no bound.
+/// Depth of the only function with `part` in its mangled name. Fails the test if there is not exactly one or its stack is unbounded.
 CallGraph::Depth depth_of_only(const CallGraph& graph, const std::string& part);
 
 }  // namespace heatsoak::target

@@ -1,4 +1,4 @@
-// The static library for the target, as the cross compiler left it.
+// Tests of the static library that the cross compiler built for the target.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ TEST(CoreLibrary, ComputesInSinglePrecision) {
   EXPECT_THAT(double_arithmetic(disassembly), IsEmpty());
 }
 
-/// What GCC makes of a function in double precision, for this processor and for one whose FPU has it.
+/// Double-precision instructions that GCC generates for a function, with the FPU of this processor or with another one.
 std::vector<std::string> double_in(const std::string& fpu, const std::string& function) {
   const TemporaryFolder folder;
   write(folder.path() / "x.cpp", function);

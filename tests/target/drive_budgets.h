@@ -1,4 +1,4 @@
-// What one step of the drive core may take on the target: four wheels, guard included, planner left out.
+// Budgets for one step of the drive core on the target: four wheels, with guard, without planner.
 #pragma once
 
 #include <cstddef>
@@ -6,12 +6,12 @@
 
 namespace heatsoak::target {
 
-/// At 1 kHz about a seventieth of the time of a controller at 216 MHz.
+/// About a seventieth of the computing time of a controller at 216 MHz and 1 kHz.
 inline constexpr double kMeanInstructions = 3000.0;
 inline constexpr std::uint32_t kMostInstructions = 6000;
-/// Code and constants, the motor's law and its tables included.
+/// Code and constants, with the motor's law and tables.
 inline constexpr std::uint64_t kMostCode_bytes = 24 * 1024;
-/// Config and State.
+/// Bytes of Config and State together.
 inline constexpr std::uint32_t kMostMemory_bytes = 2 * 1024;
 inline constexpr std::size_t kMostStack_bytes = 1024;
 

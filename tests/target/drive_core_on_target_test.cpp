@@ -1,4 +1,4 @@
-// The drive core under QEMU, byte for byte against the host's build of the same source, and what it occupies.
+// The drive core under QEMU, compared byte for byte with the host's build of the same source, and its memory and code size.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 using robot_core::Input;
 using robot_core::Reason;
 
-/// What the host's build makes of the same inputs.
+/// Returns the results of the host's build for the same inputs.
 std::vector<DriveResult> on_host(const std::vector<Input>& inputs) {
   DriveRun run{};
   begin(run);
@@ -56,12 +56,12 @@ std::string name_of_only(const CallGraph& graph, const std::string& part) {
   return names.empty() ? part : names[0];
 }
 
-// The one that writes into the caller's output.
+// Mangled name of the overload that writes into the caller's output.
 constexpr const char* kStep = "_ZN10robot_core4stepERKNS_6ConfigERNS_5StateERKNS_5InputERNS_6OutputE";
 constexpr const char* kStepOfImage = "run_step";
 constexpr const char* kRates = "5ratesEPKv";
 
-/// Of robot_core::step(), or of the image's function that calls it; with or without what a pose target calls.
+/// Depth of robot_core::step() or of the image's function that calls it, with or without the functions of a pose target.
 CallGraph::Depth depth_of_step(const std::string& function, bool with_planner) {
   const CallGraph names = call_graph_of(HEATSOAK_TARGET_CALL_GRAPHS ":" HEATSOAK_DRIVE_IMAGE_CALL_GRAPHS);
   const std::string rates = name_of_only(names, kRates);
@@ -93,7 +93,7 @@ TEST(DriveCoreOnTarget, MinuteOfPlayAgreesBitForBit) {
 TEST(DriveCoreOnTarget, PoseTargetsAgreeBitForBit) {
   SKIP_WITHOUT_EMULATOR();
   std::vector<Input> inputs = minute_of_play(1, true);
-  inputs.resize(inputs.size() / 10);  // the planner takes its time
+  inputs.resize(inputs.size() / 10);  // fewer inputs, because the planner is slow
   const Replay target = replay(HEATSOAK_DRIVE_IMAGE, bytes_of(inputs));
   expect_same(target, inputs, on_host(inputs));
   const CallGraph::Depth depth = depth_of_step(kStepOfImage, true);
@@ -122,7 +122,7 @@ TEST(DriveCoreOnTarget, CodeAndConstantsAreSmall) {
   EXPECT_EQ(defined.find("plan_plane"), std::string::npos) << "step() needs no planner";
   EXPECT_THAT(undefined_names(object), testing::IsSubsetOf(std::vector<std::string>{"memcpy", "memset"}));
   const std::uint64_t core_bytes = section_bytes(object, {".text", ".rodata", ".data"});
-  // The motor's law and its tables, which are made for each robot.
+  // Law and tables of the motor, which are generated for each robot.
   const std::uint64_t guard_bytes = section_bytes(HEATSOAK_MOTOR_GUARD_OBJECT, {".text", ".rodata", ".data"});
   EXPECT_GT(guard_bytes, 300U) << "a law and a table";
   EXPECT_LE(core_bytes + guard_bytes, kMostCode_bytes);

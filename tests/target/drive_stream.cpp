@@ -28,7 +28,7 @@ class Random {
   std::mt19937 engine_;
 };
 
-/// A rigid robot on wheels that do not slip, with motors without inductance.
+/// Rigid robot on wheels without slip, with motors without inductance.
 class Robot {
  public:
   explicit Robot(const Config& config) : config_(config) {}
@@ -47,7 +47,7 @@ class Robot {
       force[1] += wheel.rolling_y_share * rim_N;
       force[2] += config_.contact_radius_m * rim_N;
     }
-    // With the wheels' inertia, as if each turned with half of the body's speed squared.
+    // The wheels' inertia is added as if each turned with half of the body's squared speed.
     const float of_wheels_kg = 2.0F * config_.wheel_inertia_kg_m2 / (config_.wheel_radius_m * config_.wheel_radius_m);
     const float inertia_kg_m2 = config_.yaw_inertia_kg_m2 + 2.0F * of_wheels_kg * config_.contact_radius_m * config_.contact_radius_m;
     velocity_[0] += config_.period_s * force[0] / (config_.mass_kg + of_wheels_kg);
@@ -108,7 +108,7 @@ Command random_command(Random& random, bool with_poses) {
   return command;
 }
 
-/// What goes wrong, for how many periods.
+/// Injected fault and the number of periods that it lasts.
 struct Fault {
   int kind = -1;
   int wheel = 0;
@@ -160,7 +160,7 @@ void spoil(const Fault& fault, const Input& last, Input& input) {
       input.command.velocity.x = kNone;
       break;
     case 13:
-      // All wheels at once: no speed can be implied from others.
+      // All wheels fail at once, so no speed can be implied from others.
       for (float& speed : input.wheel_speed_rad_per_s) {
         speed = kNone;
       }
@@ -187,7 +187,7 @@ std::vector<Input> minute_of_play(unsigned seed, bool with_poses) {
   float age_s = 0.0F;
   for (int k = 0; k < periods; ++k) {
     if (--until_command <= 0) {
-      // One in ten starts another manoeuvre, the others repeat.
+      // One command in ten starts a new manoeuvre, the others repeat the last.
       command = k == 0 || random.happens(with_poses ? 0.01F : 0.1F) ? random_command(random, with_poses) : command;
       until_command = 16;
       age_s = 0.004F;
@@ -200,7 +200,7 @@ std::vector<Input> minute_of_play(unsigned seed, bool with_poses) {
     if (3 * k >= 2 * periods) {
       if (--fault.periods <= 0) {
         fault = {random.happens(0.5F) ? random.below(kFaultKinds) : -1, random.below(kMostWheels), 1 + random.below(300)};
-        // Swapped sensors stay a fault until start(): not before the end.
+        // Swapped sensors remain a fault until start(), so they appear only near the end.
         fault.kind = fault.kind == kSwapped && 20 * k < 19 * periods ? -1 : fault.kind;
       }
       spoil(fault, inputs.back(), input);

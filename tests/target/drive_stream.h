@@ -1,4 +1,4 @@
-// Inputs of the drive core over a minute of play, made with the host's build of the core against a simple robot.
+// Inputs of the drive core over a minute of play, from the host's build of the core with a simple simulated robot.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace heatsoak::target {
 
-/// 60 s at the Config's period: commands that change 60 times a second, sensors with noise; faults of sensors and link in the last third.
-/// Pose targets only where `with_poses`, and then nothing else.
+/// Inputs over 60 s at the Config's period: commands that change 60 times per second, sensors with noise, and faults of sensors and radio
+/// link in the last third. With `with_poses` all commands are pose targets.
 std::vector<robot_core::Input> minute_of_play(unsigned seed, bool with_poses);
 
 }  // namespace heatsoak::target

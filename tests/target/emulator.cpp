@@ -98,7 +98,7 @@ std::uint64_t section_bytes(const std::string& object, const std::vector<std::st
 }
 
 std::vector<std::string> double_arithmetic(const std::string& disassembly) {
-  // vmov.f64 and loads only move the bits of two registers.
+  // Excludes vmov.f64 and loads, which only move the bits of two registers.
   static const std::regex kDouble(R"(\bv(?!mov)[a-z]+\S*\.f64\b|\bvcvt\S*\.f64\S*|__aeabi_(d|f2d|i2d|ui2d|l2d|ul2d|cd)\w*)");
   std::vector<std::string> found;
   std::istringstream stream(disassembly);

@@ -1,4 +1,4 @@
-// Builds for the target as files, QEMU to run them, and the tools of the cross compiler to look into them.
+// Files of the builds for the target, QEMU to run them, and the cross compiler's tools to inspect them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace heatsoak::target {
 
-/// Skips the test where no cross compiler was found when the build was configured.
+/// Skips the test if no cross compiler was found at configuration.
 #define SKIP_WITHOUT_COMPILER()                               \
   do {                                                        \
     if (*HEATSOAK_TARGET_MISSING != '\0') {                   \
@@ -21,7 +21,7 @@ namespace heatsoak::target {
     }                                                         \
   } while (false)
 
-/// Skips the test where the emulator is missing as well.
+/// Skips the test if the cross compiler or the emulator is missing.
 #define SKIP_WITHOUT_EMULATOR()                                    \
   do {                                                             \
     SKIP_WITHOUT_COMPILER();                                       \
@@ -30,35 +30,35 @@ namespace heatsoak::target {
     }                                                              \
   } while (false)
 
-/// What a program on the target wrote.
+/// Output of a program on the target.
 struct Replay {
-  std::string output;                       ///< results, one behind the other
-  std::vector<std::uint32_t> instructions;  ///< for each record
+  std::string output;                       ///< results, one after the other
+  std::vector<std::uint32_t> instructions;  ///< instructions of each record
   ReplaySummary summary;
 
   [[nodiscard]] double mean_instructions() const;
   [[nodiscard]] std::uint32_t most_instructions() const;
 };
 
-/// Runs the image under QEMU with these bytes as its input, and as what it starts from. Fails the test if it does not end with exit code 0.
+/// Runs the image under QEMU with `input` and `start` as input files. Fails the test if the exit code is not 0.
 Replay replay(const std::string& image, const std::string& input, const std::string& start = "");
 
-/// What a tool of the cross compiler prints: `tool` is "nm", "size", … or "g++".
+/// Returns the output of a tool of the cross compiler: `tool` is "nm", "size", … or "g++".
 std::string output_of_tool(const std::string& tool, const Words& arguments);
 
-/// Options that name the processor.
+/// Returns the compiler options that name the processor.
 Words processor_options();
 
-/// All of a static library as one relocatable object; with roots (mangled names), only what is reached from them.
+/// Links a static library into one relocatable object. With roots (mangled names) only the code that they reach is kept.
 std::string linked_object(const TemporaryFolder& folder, const std::string& library, const Words& roots = {});
 
-/// Names that the object needs from elsewhere.
+/// Returns the names that the object needs from elsewhere.
 std::vector<std::string> undefined_names(const std::string& object);
 
-/// Bytes that the sections whose names begin with one of these occupy.
+/// Returns the bytes of all sections whose names begin with one of `beginnings`.
 std::uint64_t section_bytes(const std::string& object, const std::vector<std::string>& beginnings);
 
-/// Lines of a disassembly that compute in double precision, and names of the compiler's functions that do.
+/// Returns the lines of a disassembly that calculate in double precision, and the compiler functions that do.
 std::vector<std::string> double_arithmetic(const std::string& disassembly);
 
 template <typename Value>
@@ -67,7 +67,7 @@ std::string bytes_of(const std::vector<Value>& values) {
   return values.empty() ? std::string() : std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
 }
 
-/// Index of the first record in which the bytes differ; the number of records where they are alike.
+/// Returns the index of the first record with different bytes, or the number of records if all are equal.
 std::size_t first_difference(const std::string& a, const std::string& b, std::size_t record_size);
 
 }  // namespace heatsoak::target

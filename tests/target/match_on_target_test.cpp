@@ -1,5 +1,5 @@
-// A minute of a recorded match on the target: bits against the closed loop on the host, instructions, memory, stack and code against their
-// budgets. See match/record_match.cpp.
+// A minute of a recorded match on the target: results bit for bit against the closed loop on the host; instructions, memory, stack and code
+// against their budgets. See match/record_match.cpp.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -64,7 +64,7 @@ TEST(MatchOnTarget, OutputsAndStateAgreeBitForBit) {
     std::memcpy(&result, expected.data() + at, sizeof(result));
     digests.insert(result.state_digest);
     for (const std::uint8_t reason : result.reason) {
-      // No sensor of the record fails.
+      // No sensor of the recorded match fails.
       EXPECT_TRUE(reason < 110 || reason > 141) << "reason " << int{reason} << " in step " << at / sizeof(DriveResult);
     }
   }

@@ -1,4 +1,4 @@
-// The planner under QEMU, byte for byte against the host's build of the same source.
+// The planner under QEMU, compared byte for byte with the host's build of the same source.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using robot_core::PlanResult;
 
-/// A robot somewhere on the field: mostly moving, now and then beyond its limits, at rest or with a target out of reach.
+/// Returns a random state on the field: mostly moving, sometimes beyond its limits, at rest or with an unreachable target.
 PlannerRecord random_record(std::mt19937_64& random) {
   const auto uniform = [&random](double low, double high) {
     return static_cast<float>(std::uniform_real_distribution<double>(low, high)(random));
@@ -78,7 +78,7 @@ TEST_F(PlannerOnTarget, InstructionsAreCounted) {
   const Replay first = replay(HEATSOAK_PLANNER_IMAGE, bytes_of(records_));
   EXPECT_EQ(first.summary.known_loop_instructions, kLoopInstructions);
   ASSERT_EQ(first.instructions.size(), records_.size());
-  // Counting is repeatable, and does not depend on what was counted before.
+  // The count must be repeatable and independent of earlier records.
   const std::vector<PlannerRecord> reversed(records_.rbegin(), records_.rend());
   std::vector<std::uint32_t> again = replay(HEATSOAK_PLANNER_IMAGE, bytes_of(reversed)).instructions;
   std::ranges::reverse(again);
@@ -91,7 +91,7 @@ TEST_F(PlannerOnTarget, StackStaysBelowTheSumAlongTheDeepestCalls) {
   const CallGraph::Depth depth = depth_of_only(core_graph(HEATSOAK_PLANNER_IMAGE_CALL_GRAPHS), "run_planner");
   const std::size_t measured = replay(HEATSOAK_PLANNER_IMAGE, bytes_of(records_)).summary.most_stack_bytes;
   EXPECT_LE(measured, depth.bytes);
-  // The planner's paths are deep for common problems, too: a sum far above would count what is never called.
+  // Common problems use the deep paths too: a sum far above the measured stack would count functions that are never called.
   EXPECT_GE(2 * measured, depth.bytes) << testing::PrintToString(depth.path);
   RecordProperty("stack_bytes", std::to_string(measured));
   RecordProperty("stack_bound_bytes", std::to_string(depth.bytes));

@@ -1,4 +1,4 @@
-// One step of the drive core as bytes, alike on host and target. A record is a robot_core::Input.
+// One step of the drive core as bytes, with the same layout on host and target. A record is a robot_core::Input.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +19,10 @@ struct DriveResult {
   std::uint8_t is_warning;
   std::uint8_t robot_reason;
   std::uint8_t unused[2];
-  std::uint32_t state_digest;  ///< of all that evolves
+  std::uint32_t state_digest;  ///< digest of the State
 };
 
-/// The core between two records.
+/// State of the run between two records.
 struct DriveRun {
   robot_core::Config config;
   robot_core::State state;
@@ -34,7 +34,7 @@ inline void begin(DriveRun& run) {
   robot_core::start(run.config, run.state, {.is_rested = true, .body_C = 25.0F});
 }
 
-/// FNV-1a over words (Fowler, Noll, Vo).
+/// FNV-1a over the words of the State (Fowler, Noll, Vo).
 inline std::uint32_t digest(const robot_core::State& state) {
   static_assert(sizeof(state) % sizeof(std::uint32_t) == 0);
   std::uint32_t sum = 2166136261U;
@@ -46,7 +46,7 @@ inline std::uint32_t digest(const robot_core::State& state) {
   return sum;
 }
 
-/// Without padding, whose bytes would be anything.
+/// Copies member by member, because padding bytes are undefined.
 inline void copy_output(const robot_core::Output& output, const robot_core::State& state, DriveResult& result) {
   for (int i = 0; i < robot_core::kMostWheels; ++i) {
     result.pwm_ratio[i] = output.pwm_ratio[i];
@@ -63,7 +63,7 @@ inline void copy_output(const robot_core::Output& output, const robot_core::Stat
   result.state_digest = digest(state);
 }
 
-/// Where a recorded match goes on.
+/// Start of the recorded part of a match.
 struct MatchStart {
   std::uint32_t config_check_sum = 0;
   std::uint32_t unused = 0;

@@ -16,7 +16,7 @@ struct Numbers {
   float values[count];
 };
 
-/// From -most to most.
+/// Returns numbers evenly spread from -most to most.
 constexpr Numbers<kCandidates> spread(float most) {
   Numbers<kCandidates> numbers{};
   for (int i = 0; i < kCandidates; ++i) {
@@ -25,7 +25,7 @@ constexpr Numbers<kCandidates> spread(float most) {
   return numbers;
 }
 
-// By `heatsoak derate`; of this motor it does not depend on the speed.
+// Calculated by `heatsoak derate`; for this motor the table does not depend on the speed.
 constexpr float kSpeed_rad_per_s[] = {0.0F};
 constexpr float kStator_C[kStators] = {40.0F, 155.0F};
 constexpr float kWinding_C[kWindings] = {40.0F, 74.5F, 97.5F, 123.5F, 140.5F, 149.5F, 155.0F, 158.0F};
@@ -40,7 +40,7 @@ constexpr float kPossibleAmbient_C[] = {40.0F};
 
 constexpr float kSafetyFactor = 2.12109375F;
 
-/// Winding and stator with the heat counted 2.12 times.
+/// Thermal law of winding and stator with 2.12 times the heat.
 void rates(const void*, const float* signal, const float* state_C, float* rate_K_per_s) {
   const float speed_rad_per_s = robot_core::absolute(signal[robot_core::guard_speed_rad_per_s]);
   const float current_A = signal[robot_core::guard_current_A];
@@ -78,7 +78,7 @@ constexpr robot_core::GuardModel make_guard() {
 
 constexpr robot_core::GuardModel kGuard = make_guard();
 
-/// Columns of (AᵀA)⁻¹Aᵀ, where A has the rows t_x, t_y, R.
+/// Calculates the columns of (AᵀA)⁻¹Aᵀ, where A has the rows t_x, t_y, R.
 void set_inverse(Config& config) {
   float normal[3][3] = {};
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -108,7 +108,7 @@ void set_inverse(Config& config) {
 }
 
 void set_wheels(Config& config) {
-  // Along the axle's angle plus 90 degrees, of axles at -30, 30, 135 and -135 degrees; the friction's phases are the team's.
+  // Rolling directions: axle angles of -30, 30, 135 and -135 degrees plus 90 degrees. The phases of the friction are the team's.
   constexpr float kRolling[4][2] = {
       {0.5F, 0.866025388F}, {-0.5F, 0.866025388F}, {-0.707106769F, -0.707106769F}, {0.707106769F, -0.707106769F}};
   constexpr float kPhase[4][2] = {{0.552F, 0.834F}, {-0.449F, 0.893F}, {0.506F, 0.862F}, {-0.381F, 0.925F}};

@@ -1,4 +1,4 @@
-// The drive core in the middle of a recorded match: it goes on from the State of kStartFile, with generated configuration and guard.
+// The drive core in the middle of a recorded match: continues from the State in kStartFile with generated configuration and guard.
 #include "core_config.h"
 #include "drive_records.h"
 #include "replay.h"

@@ -1,4 +1,4 @@
-// One plan in the plane as bytes, alike on host and target.
+// One plan in the plane as bytes, with the same layout on host and target.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ struct PlannerRecord {
 
 struct PlannerResult {
   std::int32_t result = 0;                   ///< robot_core::PlanResult
-  robot_core::Trajectory<float> motions[3];  ///< zero where they hold no values
+  robot_core::Trajectory<float> motions[3];  ///< unused segments are zero
 };
 
-/// `result` is zero before.
+/// Runs the planner. `result` must be zero before.
 inline void run_planner(const PlannerRecord& record, PlannerResult& result) {
   using namespace robot_core;
   const PlanResult planned =
@@ -28,7 +28,7 @@ inline void run_planner(const PlannerRecord& record, PlannerResult& result) {
   result.result = static_cast<std::int32_t>(planned);
 }
 
-/// Removes what the planner left in segments that hold no values.
+/// Clears the segments that hold no values but may contain earlier data of the planner.
 inline void clear_unused(PlannerResult& result) {
   for (robot_core::Trajectory<float>& motion : result.motions) {
     const bool is_planned = result.result == static_cast<std::int32_t>(robot_core::PlanResult::ok);

@@ -30,14 +30,14 @@ inline std::uint32_t count_of_known_loop() {
   });
 }
 
-/// Zeroed memory for values; nobody runs constructors of globals here.
+/// Zeroed memory for values, because no constructors of globals run on the target.
 template <typename Value, int kCount>
 struct Room {
   alignas(Value) unsigned char bytes[sizeof(Value) * kCount];
   Value* values() { return reinterpret_cast<Value*>(bytes); }
 };
 
-/// Files are written in blocks: a call of the host takes longer than a record.
+/// Writes files in blocks, because a call of the host takes longer than a record.
 template <typename Value>
 class BlockWriter {
  public:
@@ -66,9 +66,9 @@ class BlockWriter {
   Value* block_;
 };
 
-/// Runs `run(record, result)` on all records, with results that are zero before, then `finish(result)`. Instructions are
-/// those of `run` alone, the stack is that of `run` or of the calls that handle the files, which are shallow. `memory_bytes` is what `run`
-/// needs between two records.
+/// Runs `run(record, result)` on all records, with zeroed results, then `finish(result)`. Instructions are counted for `run` alone. The
+/// stack is the larger one of `run` and of the file calls, which are shallow. `memory_bytes`: memory that `run` keeps between two
+/// records.
 template <typename Record, typename Result>
 void replay(void (*run)(const Record&, Result&), void (*finish)(Result&), std::uint32_t memory_bytes) {
   using namespace robot_core::port;

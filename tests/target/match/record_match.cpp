@@ -1,5 +1,5 @@
-// Records a minute of a match for the drive core on the target: record_match FOLDER writes there
-//   core_config.h, motor_guard.h, motor_guard.cpp   as `heatsoak generate core` writes them
+// Records a minute of a match for the drive core on the target. record_match FOLDER writes into that folder:
+//   core_config.h, motor_guard.h, motor_guard.cpp   same text as `heatsoak generate core` writes
 //   match_start.bin   MatchStart: Config's check sum and State at the beginning of the minute
 //   match_input.bin   inputs of every step: real sensing and radio in the closed loop with the plant
 //   match_output.bin  DriveResult of every step, by the host's drive core with the guard of host_guard.h
@@ -36,7 +36,7 @@ void write_all(const std::filesystem::path& file, const std::vector<Value>& valu
   write_bytes(file, values.data(), values.size() * sizeof(Value));
 }
 
-/// Configuration and guard as source for the target.
+/// Writes configuration and guard as source code for the target.
 void write_sources(const std::filesystem::path& folder, const Robot& robot, const Motor& motor, const Derating& derating) {
   for (const CoreFile& file : core_files(robot, motor, with_tolerance({}, motor), derating, "test").files) {
     if (file.path == "core_config.h" || file.path.starts_with("motor_guard.")) {
@@ -45,7 +45,7 @@ void write_sources(const std::filesystem::path& folder, const Robot& robot, cons
   }
 }
 
-/// Whole seconds; the first minute that is play for the larger part and has a duel in it, not at the very start.
+/// Returns the start, in whole seconds, of the first minute that is mostly play and contains a duel, not at the very start.
 double segment_start_s(const Game& game) {
   for (double from_s = 10.0; from_s + kSegment_s < game.duration_s; from_s += 1.0) {
     double play_s = 0.0;
