@@ -17,15 +17,15 @@
 namespace heatsoak {
 namespace {
 
-struct Case {
+struct WheelCase {
   const char* robot;
   const char* motor;
 };
-constexpr Case kCases[] = {{"roboteam_twente_v2024", "maxon_ecx_flat_32l_48v"},
-                           {"roboteam_twente_v2025", "maxon_ecx_flat_42m_24v"},
-                           {"tigers_v2020", "nanotec_df45l024048_a2"}};
+constexpr WheelCase kWheelCases[] = {{"roboteam_twente_v2024", "maxon_ecx_flat_32l_48v"},
+                                     {"roboteam_twente_v2025", "maxon_ecx_flat_42m_24v"},
+                                     {"tigers_v2020", "nanotec_df45l024048_a2"}};
 
-WheelLoopPlant plant_of(const Case& each) {
+WheelLoopPlant plant_of(const WheelCase& each) {
   const Robot robot = shipped_robot(each.robot);
   const Motor motor = shipped_motor(each.motor);
   return wheel_loop_plant(make_body_with_known_friction(robot, motor.nominal), drive_constants(robot, motor.nominal));
@@ -83,7 +83,7 @@ TEST(WheelLoop, OscillatesAtTheUltimateGainOfItsDerivation) {
 
 // Without delay the closed loop has the double pole that was asked for.
 TEST(WheelLoop, PlacesThePolesOfTheLoadedWheel) {
-  for (const Case& each : kCases) {
+  for (const WheelCase& each : kWheelCases) {
     const WheelLoopPlant plant = plant_of(each);
     const WheelLoopGains gains = wheel_loop_gains(plant, 0.001);
     const double time_constant_s = plant.loaded_inertia_kg_m2 * plant.volt_per_Nm / (plant.back_emf_V_s_per_rad * plant.gear_efficiency);
@@ -96,7 +96,7 @@ TEST(WheelLoop, PlacesThePolesOfTheLoadedWheel) {
 }
 
 TEST(WheelLoop, IsStableWithHalfAndDoubleInertiaOnTheGroundAndInTheAir) {
-  for (const Case& each : kCases) {
+  for (const WheelCase& each : kWheelCases) {
     const WheelLoopPlant plant = plant_of(each);
     for (const double period_s : {0.00025, 0.001, 0.002, 0.003}) {
       const WheelLoopGains gains = wheel_loop_gains(plant, period_s);
@@ -134,7 +134,7 @@ double overshoot(const Loop& loop, const WheelLoopGains& gains, double period_s,
 }
 
 TEST(WheelLoop, SettlesWithoutMuchOvershoot) {
-  for (const Case& each : kCases) {
+  for (const WheelCase& each : kWheelCases) {
     const WheelLoopPlant plant = plant_of(each);
     const WheelLoopGains gains = wheel_loop_gains(plant, 0.001);
     for (const double part : {0.5, 1.0, 2.0}) {
@@ -148,7 +148,7 @@ TEST(WheelLoop, SettlesWithoutMuchOvershoot) {
 }
 
 TEST(WheelLoop, RefusesAPeriodThatIsTooLongAndNamesTheLongest) {
-  for (const Case& each : kCases) {
+  for (const WheelCase& each : kWheelCases) {
     const WheelLoopPlant plant = plant_of(each);
     const double longest_s = wheel_loop_gains(plant, 0.001).longest_period_s;
     const WheelLoopGains at_longest = wheel_loop_gains(plant, longest_s);

@@ -13,10 +13,10 @@
 namespace heatsoak {
 namespace {
 
-const std::filesystem::path kRobots = kSource / "robot_core/robots";
+const std::filesystem::path kRobotFiles = kSource / "robot_core/robots";
 
 std::string content_of_robot(const char* name) {
-  std::ifstream stream(kRobots / name);
+  std::ifstream stream(kRobotFiles / name);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
@@ -65,7 +65,7 @@ TEST(RobotPlausibility, yaw_inertia_fits_mass_and_size) {
 }
 
 TEST(RobotPlausibility, robots_of_the_project_pass) {
-  for (const auto& entry : std::filesystem::directory_iterator(kRobots)) {
+  for (const auto& entry : std::filesystem::directory_iterator(kRobotFiles)) {
     if (entry.path().extension() != ".toml") {
       continue;
     }

@@ -33,7 +33,6 @@ using robot_core::Mode;
 using robot_core::Output;
 using robot_core::State;
 
-constexpr float kNoise_rad_per_s = 0.3F;
 constexpr int kStepsPerEpisode = 2000;
 
 struct Tally {

@@ -20,8 +20,6 @@ using robot_core::Output;
 using robot_core::Reason;
 using robot_core::State;
 
-constexpr float kNoise_rad_per_s = 0.3F;
-
 /// Uses the same cases in every run, unless the environment sets others.
 [[maybe_unused]] const int fixed_seed = setenv("RC_PARAMS", "seed=1 max_success=300", 0);
 

@@ -26,7 +26,6 @@ using robot_core::Output;
 using robot_core::Reason;
 using robot_core::State;
 
-constexpr float kNone = robot_core::kNoSample;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kFrom = 300;  ///< first period of the fault; the command reverses a little later
 constexpr int kReversal = 320;

@@ -19,8 +19,6 @@ using robot_core::Output;
 using robot_core::Reason;
 using robot_core::State;
 
-constexpr float kNone = robot_core::kNoSample;
-
 /// Flips one bit of State, which is an array of bytes for this test.
 void flip(State& state, std::size_t byte, unsigned bit) {
   auto* const bytes = reinterpret_cast<unsigned char*>(&state);

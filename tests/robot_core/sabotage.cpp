@@ -12,7 +12,6 @@ using robot_core::Input;
 using robot_core::State;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNone = robot_core::kNoSample;
 
 constexpr std::array<std::string_view, kLies> kNames{
     "none",          "wheel_nan",       "wheel_infinite", "wheel_garbage",   "wheel_stuck",     "wheel_swapped",   "wheel_jump",

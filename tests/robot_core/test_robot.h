@@ -12,6 +12,9 @@ namespace heatsoak::test_robot {
 
 using robot_core::kMostWheels;
 
+inline constexpr float kNone = robot_core::kNoSample;
+inline constexpr float kNoise_rad_per_s = 0.3F;  ///< largest error of a wheel speed, even distribution
+
 /// Reproducible random numbers (SplitMix64; Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014).
 class Random {
  public:

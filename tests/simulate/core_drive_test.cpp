@@ -19,23 +19,23 @@ namespace {
 
 using robot_core::Reason;
 
-ScheduledCommand go(double time_s, double x_m, double y_m, double yaw_rad) {
+ScheduledCommand drive_to(double time_s, double x_m, double y_m, double yaw_rad) {
   return {time_s, Phase::running, {.duration_s = 0.0, .stand = false, .x_m = x_m, .y_m = y_m, .yaw_rad = yaw_rad}};
 }
-std::vector<ScheduledCommand> there_and_back() { return {go(0.0, 1.2, 0.5, 0.8), go(2.5, 0.0, 0.0, 0.0)}; }
+std::vector<ScheduledCommand> there_and_back() { return {drive_to(0.0, 1.2, 0.5, 0.8), drive_to(2.5, 0.0, 0.0, 0.0)}; }
 constexpr double kThereAndBack_s = 5.0;
 
-struct Driven {
+struct CoreDriven {
   DriveScore score;
   std::string csv;
 };
 
-Driven drive(const Robot& robot, const Motor& motor, const robot_core::Config& core, const DriveOptions& options, double start_C = 25.0,
-             const LoopObserver& observer = {}) {
+CoreDriven drive(const Robot& robot, const Motor& motor, const robot_core::Config& core, const DriveOptions& options, double start_C = 25.0,
+                 const LoopObserver& observer = {}) {
   SimulatedRobot simulated(robot, motor, 25.0, start_C);
   CoreDrive core_drive(core, simulated, options);
   const std::unique_ptr<Follower> plan = ideal_tracking(robot, 1.0, Planner::jerk_limited);
-  Driven driven;
+  CoreDriven driven;
   DriveScorer scorer;
   MatchRows rows(0.01, 25.0, {}, [&](const MatchRow& row) { append_csv(driven.csv, row, simulated.wheel_count(), 25.0, {}); });
   drive_script(simulated, core_drive, *plan, there_and_back(), kThereAndBack_s, [&](const LoopMoment& moment) {
