@@ -128,14 +128,6 @@ MotorSize size_of(const Model& model, const std::vector<MeasuredRun>& runs) {
   return {std::max(1.0, capacity_J_per_K / kUsualCapacity_J_per_K), current_ratio_of(runs)};
 }
 
-std::string in_words(const Condition& condition) {
-  std::string text;
-  for (const auto& [key, value] : condition) {
-    text += fmt::format("{}{}", text.empty() ? "" : ",", key == "run" ? value : fmt::format("{}={}", key, value));
-  }
-  return text;
-}
-
 /// Returns all conditions that divide the runs in two, without duplicates. A stated condition has priority over the name of a single run.
 std::vector<Condition> conditions_of(const std::vector<MeasuredRun>& runs) {
   std::vector<Condition> conditions;
@@ -359,9 +351,6 @@ void show(const MeasuredRun& run, Columns& columns) {
 }  // namespace
 
 bool Candidate::is_rare() const {
-  if (deviation_type) {
-    return deviation_type->is_rare;
-  }
   return type && condition.empty() && nodes.size() == 1 && nodes.front() != type->nodes.front().default_node;
 }
 

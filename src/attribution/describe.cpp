@@ -203,7 +203,7 @@ std::string file_alone_in_words(const Diagnosis& diagnosis, const HoldoutScore& 
   }
   std::set<std::string> names;
   for (const RunDeviation& each : deviations) {
-    names.insert(fmt::format("{} in {}", each.type->name, each.condition.begin()->second));
+    names.insert(fmt::format("{} in {}", each.type->name, in_words(each.condition)));
   }
   const bool is_held_out = !score.file.empty();
   std::vector<std::string> errors;

@@ -155,7 +155,7 @@ class DiagnosisReport {
   }
 
   static std::string name_of(const RunDeviation& deviation) {
-    return fmt::format("{} in {}", deviation.type->name, deviation.condition.begin()->second);
+    return fmt::format("{} in {}", deviation.type->name, in_words(deviation.condition));
   }
 
   /// Moves the heat that a deviation causes in a run from the rows of its effects to its own row, which starts at `own`.
@@ -209,18 +209,16 @@ class DiagnosisReport {
 
   static void add_inputs(const MeasuredRun& run, std::vector<NamedInput>& inputs) {
     const auto add = [&](std::string_view name, Signal signal, auto value) {
-      if (!run.has(signal)) {
-        return;
-      }
       auto found = std::ranges::find(inputs, name, &NamedInput::name);
       if (found == inputs.end()) {
         inputs.push_back({std::string(name), {}});
         found = inputs.end() - 1;
       }
+      // A run without the signal takes its rows, too: inputs and innovations are compared row by row.
       const Eigen::Index begin = found->values.size();
       found->values.conservativeResize(begin + run.samples());
       for (Eigen::Index k = 0; k < run.samples(); ++k) {
-        found->values[begin + k] = value(run.at[static_cast<std::size_t>(std::min(k, run.samples() - 2))]);
+        found->values[begin + k] = run.has(signal) ? value(run.at[static_cast<std::size_t>(std::min(k, run.samples() - 2))]) : std::nan("");
       }
     };
     using Point = OperatingPoint<double>;

@@ -6,16 +6,18 @@
 
 namespace heatsoak {
 
-double mean_heat_W(const Model& model, const std::vector<MeasuredRun>& runs) {
+double mean_heat_W(const ExtendedModel& extended, const std::vector<MeasuredRun>& runs) {
+  const Model& model = extended.model;
   const auto nodes = static_cast<std::size_t>(model.network.node_count());
   std::vector<double> heat_W(model.network.effects().size() * nodes);
   double energy_J = 0.0;
   double time_s = 0.0;
   for (const MeasuredRun& run : runs) {
     const std::vector<double> state_C = measured_start_C(model.network, run);
+    const std::vector<double> values = extended.values_in(run);
     for (std::size_t k = 0; k < run.at.size(); ++k) {
       const double duration_s = run.time_s[k + 1] - run.time_s[k];
-      model.network.balance_W(run.at[k], model.values, state_C, heat_W);
+      model.network.balance_W(run.at[k], values, state_C, heat_W);
       time_s += duration_s;
       for (std::size_t e = 0; e < model.network.effects().size(); ++e) {
         const auto row = std::span(heat_W).subspan(e * nodes, nodes);
@@ -25,14 +27,6 @@ double mean_heat_W(const Model& model, const std::vector<MeasuredRun>& runs) {
     }
   }
   return time_s > 0.0 ? energy_J / time_s : 0.0;
-}
-
-double longest_s(const std::vector<MeasuredRun>& runs) {
-  double longest = 0.0;
-  for (const MeasuredRun& run : runs) {
-    longest = std::max(longest, run.time_s.back() - run.time_s.front());
-  }
-  return longest;
 }
 
 void heat_along(const RefitResult& fit, const MeasuredRun& run, const LinearisedRun& path, const HeatVisit& visit) {

@@ -1,4 +1,4 @@
-// Mean and peak of the modelled heat, and the length of the runs.
+// Mean and peak of the modelled heat.
 #pragma once
 
 #include <functional>
@@ -11,9 +11,7 @@ namespace heatsoak {
 
 /// Returns the time average of the modelled source heat in W, evaluated at the start temperatures. Flows between nodes do not count. 0
 /// without data.
-double mean_heat_W(const Model& model, const std::vector<MeasuredRun>& runs);
-/// Returns the duration of the longest run in s; 0 without runs.
-double longest_s(const std::vector<MeasuredRun>& runs);
+double mean_heat_W(const ExtendedModel& extended, const std::vector<MeasuredRun>& runs);
 
 /// Heat of every effect in every node (effects × nodes, W) over one interval of a run.
 using HeatVisit = std::function<void(std::size_t interval, std::span<const double> heat_W)>;

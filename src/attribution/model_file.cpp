@@ -11,12 +11,12 @@
 #include "base/quantity.h"
 #include "calibration/admission.h"
 #include "calibration/error_before_after.h"
+#include "calibration/training_range.h"
 #include "calibration/unlogged_speed.h"
 #include "estimation/interval.h"
 #include "estimation/log_columns.h"
 #include "estimation/log_rows.h"
 #include "recording/fingerprint.h"
-#include "calibration/training_range.h"
 
 namespace heatsoak {
 namespace {
@@ -81,16 +81,16 @@ void add_conditional_effects(const Motor& motor, const std::vector<Recording>& r
     if (effect.condition.empty()) {
       continue;
     }
-    const auto& [key, value] = *effect.condition.begin();
+    const std::string condition = in_words(effect.condition);
     const auto count = std::ranges::count_if(recordings, [&](const Recording& each) { return holds(each, effect.condition); });
     const int size = effect.type->candidacy.size_parameter;
     if (size < 0 && count < std::ssize(recordings)) {
       out.notes.push_back(
-          fmt::format("{} acts in every run here, although its condition is {} = {}: an effect of the type {} has no size that could be "
+          fmt::format("{} acts in every run here, although its condition is {}: an effect of the type {} has no size that could be "
                       "set to 0; leave out the runs without that condition",
-                      effect.name, key, value, effect.type->name));
+                      effect.name, condition, effect.type->name));
     } else if (count == 0) {
-      out.notes.push_back(fmt::format("{} acts in none of these runs: no log has its condition {} = {}", effect.name, key, value));
+      out.notes.push_back(fmt::format("{} acts in none of these runs: no log has its condition {}", effect.name, condition));
     }
     if (size >= 0) {
       const auto in_place = std::ranges::find(out.model.model.network.effects(), effect.name, &EffectInPlace::name);
@@ -311,9 +311,9 @@ Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnos
       sensors.push_back(motor_sensor(*type, effect.parameters.front()));
     } else if (!effect.parameters.empty()) {
       const FittedParameter& size = effect.parameters.front();
-      result.notes.push_back(fmt::format(
-          "{} at the {}{}: {} {:.3g} {}; found in measurements, not a property of the motor", effect.id, effect.node,
-          effect.condition.empty() ? "" : fmt::format(" in {}", effect.condition.begin()->second), size.name, size.value, size.unit));
+      result.notes.push_back(fmt::format("{} at the {}{}: {} {:.3g} {}; found in measurements, not a property of the motor", effect.id,
+                                         effect.node, effect.condition.empty() ? "" : fmt::format(" in {}", in_words(effect.condition)),
+                                         size.name, size.value, size.unit));
     }
   }
   for (const MotorSensor& sensor : sensors) {

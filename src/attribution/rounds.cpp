@@ -12,9 +12,9 @@
 #include "attribution/mean_heat.h"
 #include "attribution/open_loop.h"
 #include "base/parallel.h"
-#include "estimation/averaged_run.h"
 #include "calibration/motor_model.h"
 #include "calibration/unlogged_speed.h"
+#include "estimation/averaged_run.h"
 #include "estimation/model_screening.h"
 
 namespace heatsoak {
@@ -111,7 +111,7 @@ Judged Rounds::run_rounds() {
 }
 
 void Rounds::begin() {
-  out_.mean_heat_W = mean_heat_W(input_.model.model, input_.runs);
+  out_.mean_heat_W = mean_heat_W(input_.model, input_.runs);
   std::vector<std::vector<double>> start_C;
   std::vector<LinearisedRun> paths;
   for (const MeasuredRun& run : input_.runs) {

@@ -1,5 +1,7 @@
 #include "attribution/run_deviation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -50,7 +52,6 @@ const std::vector<RunDeviationType>& all_run_deviations() {
        .size = {"resistance_change", "", Range::between(-0.9, 20.0),
                 "change of the resistance between winding and stator, as a fraction of it"},
        .usual = 0.2,
-       .is_rare = true,
        .node = "winding",
        .summary =
            "The contact between winding and stator conducts worse or better than in the model: the winding came loose, or was glued.",
@@ -72,6 +73,14 @@ std::vector<int> RunDeviationType::places_in(const Network& network) const {
     }
   }
   return places;
+}
+
+std::string in_words(const Condition& condition) {
+  std::string text;
+  for (const auto& [key, value] : condition) {
+    text += fmt::format("{}{}", text.empty() ? "" : ",", key == "run" ? value : fmt::format("{}={}", key, value));
+  }
+  return text;
 }
 
 }  // namespace heatsoak

@@ -15,12 +15,14 @@ namespace heatsoak {
 /// Property that some runs share: "cooling" -> "fan", or "run" -> "run4".
 using Condition = std::map<std::string, std::string>;
 
+/// Returns "cooling=fan", or the value alone for the condition "run"; conditions of several keys are separated by commas.
+std::string in_words(const Condition& condition);
+
 /// A kind of deviation: it multiplies parameters of the network by 1 + d in runs with a condition.
 struct RunDeviationType {
   std::string_view name;
-  ParameterSpec size;    ///< d, dimensionless
-  double usual = 0.1;    ///< typical size of d
-  bool is_rare = false;  ///< see Candidate::is_rare()
+  ParameterSpec size;  ///< d, dimensionless
+  double usual = 0.1;  ///< typical size of d
   std::string_view node;
   std::string_view summary;
   std::string_view equation;

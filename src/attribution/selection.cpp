@@ -160,6 +160,7 @@ class Selector : Rounds {
     const auto stays = [&](std::size_t m) { return std::ranges::find(curve.beside, static_cast<int>(m)) != curve.beside.end(); };
     std::vector<std::size_t> beside;
     std::ranges::copy_if(named, std::back_inserter(beside), stays);
+    const std::vector<Refusal> refused = out_.refused;
     if (input_.model.usual_flux_W > 0.0) {
       keep_what_helps(best, beside);
     }
@@ -167,6 +168,8 @@ class Selector : Rounds {
     if (!adopt_curve(judged, curve)) {
       out_.terms.clear();
       out_.after = out_.own;
+      out_.refused = refused;
+      out_.is_unexplained = false;
       return false;
     }
     for (const std::size_t m : named) {
@@ -194,25 +197,6 @@ class Selector : Rounds {
     return std::isfinite(fit.evidence_nats) ? free_run_error_K(fit.model) : std::numeric_limits<double>::infinity();
   }
 
-  /// Keeps, beside material unknown heat, only names that reduce the error of whole runs below `beside_unknown_share`.
-  void keep_what_outweighs(const EffectSet& best, std::vector<std::size_t>& named) {
-    if (named.empty()) {
-      return;
-    }
-    const double with_all_K = error_with_K(best, named);
-    std::vector<std::size_t> kept;
-    for (const std::size_t m : named) {
-      std::vector<std::size_t> others = named;
-      std::erase(others, m);
-      if (with_all_K < rules_.beside_unknown_share * error_with_K(best, others)) {
-        kept.push_back(m);
-      } else {
-        refuse(best.members[m], "material unknown heat remains, and it does not reduce the error of whole runs enough");
-      }
-    }
-    named = std::move(kept);
-  }
-
   /// True if whole runs decided the file's parameters, and the model predicts these runs about as well as those.
   [[nodiscard]] bool are_runs_as_usual() const {
     return input_.model.usual_flux_W > 0.0 && input_.model.usual_error_K > 0.0 &&
@@ -227,20 +211,29 @@ class Selector : Rounds {
     out_.after.covariance = input_.model.prior().precision.inverse();
   }
 
-  /// Keeps only names that improve the prediction of whole runs. Evidence alone is not sufficient: a calibrated model leaves some unknown
-  /// heat even in the runs it was fitted to.
-  void keep_what_helps(const EffectSet& best, std::vector<std::size_t>& named) {
+  /// Keeps only names without which the error of whole runs grows to more than 1/`error_share` times its value.
+  void keep_what_reduces_error(const EffectSet& best, std::vector<std::size_t>& named, double error_share, const std::string& why_not) {
     // The name with the weakest evidence is examined first.
     std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
     for (std::size_t i = named.size(); i-- > 0;) {
       std::vector<std::size_t> others = named;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-      const double better_share = input_.model.usual_error_K > 0.0 ? rules_.plainly_better_share : rules_.better_share;
-      if (error_with_K(best, named) > better_share * error_with_K(best, others)) {
-        refuse(best.members[named[i]], "it hardly improves the prediction of whole runs");
+      if (!(error_with_K(best, named) < error_share * error_with_K(best, others))) {
+        refuse(best.members[named[i]], why_not);
         named = std::move(others);
       }
     }
+  }
+
+  void keep_what_outweighs(const EffectSet& best, std::vector<std::size_t>& named) {
+    keep_what_reduces_error(best, named, rules_.beside_unknown_share,
+                            "material unknown heat remains, and it does not reduce the error of whole runs enough");
+  }
+
+  /// Evidence alone is not sufficient: a calibrated model leaves some unknown heat even in the runs it was fitted to.
+  void keep_what_helps(const EffectSet& best, std::vector<std::size_t>& named) {
+    keep_what_reduces_error(best, named, input_.model.usual_error_K > 0.0 ? rules_.plainly_better_share : rules_.better_share,
+                            "it hardly improves the prediction of whole runs");
   }
 
   /// Fits the model with the named effects and the changed parameters.

@@ -212,9 +212,4 @@ ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other) {
   return model;
 }
 
-bool has_strayed(const ExtendedModel& model, const ExtendedModel& from) {
-  constexpr double kFar = 0.7;
-  return (model.model.theta() - with_values_of(model, from).model.theta()).cwiseAbs().maxCoeff() > kFar;
-}
-
 }  // namespace heatsoak

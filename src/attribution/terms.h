@@ -28,7 +28,5 @@ std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanRe
 
 /// Returns `model` with the values of parameters, sensor errors and deviations that `other` also contains.
 ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other);
-/// True if a common parameter differs by a factor of two or more: Gauss-Newton steps may not converge from there.
-bool has_strayed(const ExtendedModel& model, const ExtendedModel& from);
 
 }  // namespace heatsoak

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "base/diagnostic.h"
@@ -54,6 +55,11 @@ void check_target_folder(const fs::path& folder, bool may_replace) {
   }
   if (path == path.parent_path()) {
     throw Failure(ExitCode::bad_input, fmt::format("--out {}: expected a folder of its own", folder.string()));
+  }
+  // The folder is replaced as a whole: a shell inside would stay in the old one, which is deleted.
+  if (const fs::path here = fs::current_path(problem); fs::is_directory(status) && std::ranges::mismatch(path, here).in1 == path.end()) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("--out {} contains the current folder {}; change to another folder first", folder.string(), here.string()));
   }
   if (fs::is_directory(status) && !may_replace && !fs::is_empty(path, problem)) {
     throw Failure(ExitCode::bad_input,

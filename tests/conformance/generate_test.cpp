@@ -388,6 +388,13 @@ TEST(GenerateCore, SaysWhatIsWrongAndLeavesNothing) {
     EXPECT_THAT(folder.names(), testing::ElementsAre("file", "taken"));
     EXPECT_EQ(all_bytes(folder.path() / "taken"), "mine\nmine");
   }
+  const TemporaryFolder folder;
+  RunOptions inside;
+  inside.folder = folder.path();
+  const ProgramRun here = run(Words{"generate", "core", "--robot", kRobot} + with_motor + Words{"--out", ".", "--force"}, inside);
+  EXPECT_EQ(here.exit_code, 2);
+  EXPECT_THAT(here.err, HasSubstr("change to another folder first"));
+  EXPECT_TRUE(folder.names().empty());
   const ProgramRun other = run({"generate", "house", "--robot", kRobot, "--motor", kEcx, "--out", "x"});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.err, HasSubstr("expected core"));

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "test_robot.h"
 
@@ -239,12 +240,16 @@ TEST(FaultTable, command_stale) {
 }
 
 TEST(FaultTable, pose_invalid) {
-  const Record record = check({.code = Reason::pose_invalid,
-                               .periods = 1500,
-                               .spoil = [](Input& input, State&, int) { input.pose.x = kNone; },
-                               .mode = Mode::pose_target},
-                              0, 0);
-  EXPECT_TRUE(record.was_open_at_end);
+  std::vector<std::function<void(Input&)>> poses{[](Input& input) { input.pose.x = kNone; }};
+  for (const float age_s : {0.21F, kNone, -1.0F, kInfinity}) {
+    poses.emplace_back([=](Input& input) { input.pose_age_s = age_s; });
+  }
+  for (const auto& set : poses) {
+    const Record record = check(
+        {.code = Reason::pose_invalid, .periods = 1500, .spoil = [&](Input& input, State&, int) { set(input); }, .mode = Mode::pose_target},
+        0, 0);
+    EXPECT_TRUE(record.was_open_at_end);
+  }
   Config config = make_config(4);
   config.plan_step = nullptr;
   State state;
@@ -314,6 +319,46 @@ TEST(FaultTable, wheel_speed_unknown) {
     EXPECT_EQ(record.others, std::set<Reason>{Reason::wheel_speed_missing});
     EXPECT_LE(record.peak_of_wheel_A, are_currents_fitted ? 4.6 : 0.0);
   }
+}
+
+// Swapped sensors of opposite wheels: a push of 0.3 s may make a robot spin that should stand.
+TEST(FaultTable, runaway) {
+  const Config config = make_config(4);
+  int runaways = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    State state;
+    Random random(seed);
+    ASSERT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
+    Plant plant(config, {});
+    const double x_N = random.between(-8.0F, 8.0F);
+    const double y_N = random.between(-8.0F, 8.0F);
+    int first = -1;
+    int last = -1;
+    for (int k = 0; k < 8000; ++k) {
+      plant.set_push(k > 100 && k < 400 ? x_N : 0.0, k > 100 && k < 400 ? y_N : 0.0, 0.0);
+      Input input = plant.sense(random, kNoise_rad_per_s, true);
+      std::swap(input.wheel_speed_rad_per_s[0], input.wheel_speed_rad_per_s[2]);
+      input.command.mode = Mode::body_velocity;
+      const Output output = robot_core::step(config, state, input);
+      plant.move(output);
+      if (output.robot_reason == Reason::runaway) {
+        EXPECT_EQ(std::ranges::count(output.is_open, true), 4);
+        EXPECT_TRUE(last < 0 || last == k - 1) << "reported twice";
+        first = first < 0 ? k : first;
+        last = k;
+      }
+    }
+    if (first >= 0) {
+      ++runaways;
+      EXPECT_GT(first, 1000);
+      EXPECT_LT(first, 4000);
+      EXPECT_LT(last, 7000);
+    }
+    for (int i = 0; i < 4; ++i) {
+      EXPECT_LT(std::abs(plant.wheel_speed_rad_per_s(i)) * static_cast<double>(config.wheel_radius_m), 0.05);
+    }
+  }
+  EXPECT_GT(runaways, 0);
 }
 
 TEST(FaultTable, wheel_speeds_dead) {
