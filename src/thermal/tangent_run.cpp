@@ -70,8 +70,8 @@ const NetworkStep& TangentRun::over(std::span<const double> start_C, double dura
     one_step(duration_s / parts, duration_s * fastest_per_s < kShortStep, at);
   }
   if (!(step_.state_C.minCoeff() > kAbsoluteZero_C && step_.state_C.maxCoeff() < kDestroyed_C)) {
-    throw Failure(ExitCode::numerics_failed,
-                  fmt::format("the network leaves {:.0f} … {:.0f} °C under the heat of the log", kAbsoluteZero_C, kDestroyed_C));
+    throw Failure(ExitCode::numerics_failed, fmt::format("the simulated temperature leaves {:.0f} to {:.0f} °C with the logged heat input",
+                                                         kAbsoluteZero_C, kDestroyed_C));
   }
   return step_;
 }
