@@ -117,11 +117,10 @@ class Block {
     if (step_s < shortest_s) {
       // The heat that makes the network fast goes with the square of the current.
       const double current_A = point(*by_current).current_rms_A.maxCoeff();
-      throw Failure(
-          ExitCode::bad_input,
-          fmt::format("{}: the duty drives {:.0f} A through it, which heats the winding by its own heat within {:.2g} s; expected "
-                      "at most some {:.0f} A: look at the duty's load and the robot's voltage and current limits",
-                      name_, current_A, step_s, current_A * std::sqrt(step_s / shortest_s)));
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("{}: the duty drives {:.0f} A through it, which heats the winding by its own heat within {:.2g} s; "
+                                "expected at most about {:.0f} A: check the duty's load and the robot's voltage and current limits",
+                                name_, current_A, step_s, current_A * std::sqrt(step_s / shortest_s)));
     }
     return step_s;
   }
