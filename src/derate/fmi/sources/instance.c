@@ -6,7 +6,7 @@
 
 void instance_reset(instance_state *state) {
   int i;
-  /* the gaps between the members too: equal states have equal bytes */
+  /* also sets the padding between the members: equal states have equal bytes */
   memset(state, 0, sizeof *state);
   strcpy(state->token, MODEL_TOKEN);
   for (i = 0; i < MODEL_VARIABLES; ++i) {
@@ -42,7 +42,7 @@ const char *instance_terminate(instance_state *state) {
   return 0;
 }
 
-/* The caller frees it. 0 without memory. */
+/* The caller frees it. Returns 0 if out of memory. */
 static instance_state *copy_of(const instance_state *state) {
   instance_state *const copy = malloc(sizeof *copy);
   if (copy) {
@@ -104,7 +104,7 @@ const char *instance_get(instance_state *state, unsigned reference, model_type t
     return "there is no variable of this type and value reference";
   }
   if (state->mode == mode_initialization && model_variables[reference].kind == kind_output) {
-    /* parameters may have been set since */
+    /* parameters may have been set since then */
     problem = model_begin(&state->model);
   }
   *value = state->model.value[reference];

@@ -4,7 +4,7 @@
 
 #include "model.h"
 
-/* K per step; a tenth of a kelvin is what this model is compared to */
+/* K per step; the model is compared to a tenth of a kelvin */
 #define TOLERANCE_K 1e-4
 #define MOST_STEPS 10000000L
 
@@ -91,7 +91,7 @@ const char *model_step(model_state *state, double until_s) {
         state->value[at_winding_peak_C] = now_C[0];
       }
     }
-    /* a step that only the end cut short says nothing about the next */
+    /* a step shortened only by the end does not set the size of the next */
     if (error_ratio > 1.0 || tried_s >= step_s || factor * tried_s > step_s) {
       step_s = tried_s * (factor > 5.0 ? 5.0 : factor > 0.2 ? factor : 0.2);
     }
