@@ -108,11 +108,10 @@ class Block {
       step_s = std::min({step_s, longest_step_s(network_, parameters_, at), longest_step_s(network_, parameters_, at, kHotter_K)});
     }
     if (calm_s < shortest_s) {
-      throw Failure(
-          ExitCode::numerics_failed,
-          fmt::format("{}: a duty of {:.0f} s has too many steps for a thermal network that settles within {:.2g} s; is a thermal "
-                      "resistance or a heat capacity too small?",
-                      name_, demand_.duration_s(), calm_s));
+      throw Failure(ExitCode::numerics_failed,
+                    fmt::format("{}: a duty of {:.0f} s has too many steps for a thermal network with a time constant of {:.2g} s; check "
+                                "whether a thermal resistance or a heat capacity is too small",
+                                name_, demand_.duration_s(), calm_s));
     }
     if (step_s < shortest_s) {
       // The heat that makes the network fast goes with the square of the current.

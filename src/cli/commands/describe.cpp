@@ -71,7 +71,7 @@ std::string parameter_text(std::string_view key, std::string_view unit, const Pa
   }
   text += figure.source.empty() ? "\n" : fmt::format("  [{}]\n", figure.source);
   for (const Confirmation& each : figure.confirmed_by) {
-    text += fmt::format("      {} says {}\n", each.source, each.printed);
+    text += fmt::format("      {} states {}\n", each.source, each.printed);
   }
   return figure.derivation.empty() ? text : text + fmt::format("      {}\n", figure.derivation);
 }

@@ -98,7 +98,7 @@ class Calibrating {
     std::ranges::move(outside_declared_ranges(motor, all_.figures), std::back_inserter(all_.notes));
     report_common_factor();
     report_terminal_resistance(motor);
-    report_grown_errors("the runs that were fitted", all_.fit_error);
+    report_grown_errors("the fitted runs", all_.fit_error);
     refuse_where_nothing_was_learned();
     report_implausible_values();
     score_holdout(motor);
@@ -145,7 +145,7 @@ class Calibrating {
     std::ranges::move(after.notes, std::back_inserter(all_.notes));
     all_.holdout_after = std::move(after.runs);
     all_.holdout_error = worst_errors(all_.holdout_before, all_.holdout_after);
-    report_grown_errors("the runs held out", all_.holdout_error);
+    report_grown_errors("the hold-out runs", all_.holdout_error);
   }
 
   /// If the motor may have reversed within rows, refits with interpolated speeds and keeps that fit if its evidence is larger.

@@ -106,7 +106,7 @@ std::vector<std::string> forecast_in_words(const Calibration& calibration) {
   } else {
     std::vector<std::string> each;
     std::ranges::transform(forecast.rivals, std::back_inserter(each), errors_in_words);
-    words.push_back(fmt::format("left-out pieces ({}) are predicted to, rms: {}", forecast.pieces, fmt::join(each, "; ")));
+    words.push_back(fmt::format("cross-validation error of the left-out pieces ({}), rms: {}", forecast.pieces, fmt::join(each, "; ")));
   }
   if (forecast.source == ForecastSource::file) {
     words.emplace_back(

@@ -364,7 +364,7 @@ class RecordingStream::Intake {
       if (!has_numbers(i)) {
         report_.notes.push_back(fmt::format("{} is left out: not one number in {} rows", key, report_.rows_kept));
       } else if (sources_[i].filled() > 0) {
-        report_.notes.push_back(fmt::format("{}: {} blank samples are filled as the mapping says", key, sources_[i].filled()));
+        report_.notes.push_back(fmt::format("{}: {} blank samples are filled as the mapping states", key, sources_[i].filled()));
       }
     }
     if (std::ranges::count(has_numbers_, 1) == 0) {

@@ -261,9 +261,8 @@ class Places {
       }
     }
     if (swapped > 0 && sound == 0) {
-      found_.push_back(
-          fmt::format("while nothing heats, stator_C is hotter than winding_C (by {} K) and falls by more: are the two swapped?",
-                      significant(apart_K, 2)));
+      found_.push_back(fmt::format("without heat, stator_C is hotter than winding_C (by {} K) and falls by more: are the two swapped?",
+                                   significant(apart_K, 2)));
     }
   }
 
