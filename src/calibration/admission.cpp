@@ -68,10 +68,10 @@ Reached reached(const Recording& recording, std::string_view key) {
 void single_rows_beyond(const char* key, const char* unit, const char* other_unit, const Reached& reached, double most,
                         std::vector<std::string>& wrong) {
   if (reached.largest > most && !(reached.usual > most)) {
-    wrong.push_back(fmt::format(
-        "{} reaches {} {} in line {}; at three times the nominal voltage this motor reaches {} {}, which less than 2 % of the rows are "
-        "beyond: leave wild samples out by valid = \"…\" in a mapping, or is it in {}?",
-        key, significant(reached.largest, 3), unit, reached.line, significant(most, 3), unit, other_unit));
+    wrong.push_back(
+        fmt::format("{} reaches {} {} in line {}; at three times the nominal voltage this motor reaches {} {}, and less than 2 % of the "
+                    "rows exceed that: exclude outliers with valid = \"…\" in a mapping, or is it in {}?",
+                    key, significant(reached.largest, 3), unit, reached.line, significant(most, 3), unit, other_unit));
   }
 }
 
@@ -83,8 +83,8 @@ void beyond_the_motor(const Motor& motor, const Recording& recording, std::vecto
   single_rows_beyond("current_A", "A", "milliamperes", current_A, most_A, wrong);
   if (const double reached_A = current_A.usual; reached_A > most_A) {
     wrong.push_back(
-        fmt::format("current_A reaches {} A; through {} ohm at three times the nominal voltage flow {} A: is it in "
-                    "milliamperes, or is it another motor?",
+        fmt::format("current_A reaches {} A; through {} ohm at most {} A flow at three times the nominal voltage: is it in milliamperes, "
+                    "or is it another motor?",
                     significant(reached_A, 3), significant(nominal.terminal_resistance_ohm, 3), significant(most_A, 3)));
   }
   const double most_rad_per_s = kMost_ratio * nominal.nominal_voltage_V / nominal.torque_constant_Nm_per_A;
@@ -177,7 +177,7 @@ void faster_than_the_motor(const Motor& motor, const Recording& recording, std::
     const double ratio = heat_ratio_of_rises(recording, *channel, capacity_J_per_K, heat_W);
     if (ratio > kTooFast_ratio) {
       wrong.push_back(fmt::format(
-          "{} rises some {} times as fast as the losses of this motor can heat it: is the time in {}, is a heat input in another "
+          "{} rises about {} times as fast as the losses of this motor can heat it: is the time in {}, is a heat input in another "
           "unit, or is it another motor?",
           key, significant(ratio, 1), ratio > kHours_ratio ? "hours" : "minutes"));
       return;
@@ -198,8 +198,8 @@ void late_answers(const Motor& motor, const Recording& recording, const DataQual
     }
     admission.notes.push_back(fmt::format("{}: {}", recording.name, late));
     const std::string next = fmt::format(
-        "{} answers late: let both loggers see one event, such as a step of the current; a clock's offset goes into a mapping "
-        "(clock_offset), for a sensor's lag take one in better contact",
+        "{} lags: record one event, such as a step of the current, with both loggers; state a clock offset in a mapping (clock_offset), or "
+        "replace a lagging sensor by one in better contact",
         offset.temperature);
     if (std::ranges::find(admission.next_steps, next) == admission.next_steps.end()) {
       admission.next_steps.push_back(next);
@@ -217,7 +217,7 @@ Admission admit(const Motor& motor, std::span<const Recording> fitted, std::span
   std::vector<Diagnostic> wrong;
   const auto look = [&](const Recording& recording, const DataQuality& quality) {
     if (!recording.motor.empty() && recording.motor != motor.id && !(motor.fit && recording.motor == motor.fit->motor)) {
-      notes.push_back(fmt::format("{} says that it is of the motor {}, not of {}", recording.name, recording.motor, motor.id));
+      notes.push_back(fmt::format("{} states that it is of the motor {}, not of {}", recording.name, recording.motor, motor.id));
     }
     std::vector<std::string> blocking = recording.blocking_of_whole.value_or(quality.blocking);
     for (const std::string& each : quality.suspicions) {
@@ -247,7 +247,7 @@ Admission admit(const Motor& motor, std::span<const Recording> fitted, std::span
   }
   if (!wrong.empty() && !takes_logs_as_they_are) {
     throw Failure(ExitCode::bad_input,
-                  "units or sensors of the logs look wrong; correct them in a mapping (--map), or if they are right go on with --as-is",
+                  "units or sensors of the logs look wrong; correct them in a mapping (--map), or use --as-is if they are right",
                   std::move(wrong));
   }
   return admission;
@@ -268,7 +268,7 @@ void refuse_runs_of_the_file(const Motor& motor, std::span<const Recording> fitt
   }
   if (!known.empty()) {
     throw Failure(ExitCode::bad_input,
-                  "a run would count twice; start from the file as it was before that fit, or if it is another run go on with --as-is",
+                  "a run would count twice; start from the file as it was before that fit, or use --as-is if it is another run",
                   std::move(known));
   }
 }

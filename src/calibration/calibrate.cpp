@@ -80,9 +80,8 @@ class Calibrating {
       open_loss_at_speed(all_.motor_model, motor);
       setup_.opens_loss_at_speed = true;
       all_.notes.push_back(
-          fmt::format("where a log has a current but no speed, the loss at speed is taken as unknown, from none to the {} W at no-load "
-                      "speed; a motor that "
-                      "stood still is told by speed_rad_per_s = 0",
+          fmt::format("the loss at speed is treated as unknown, 0 to {} W (the loss at no-load speed), in logs that have a current but no "
+                      "speed; if the motor stood still, add speed_rad_per_s = 0",
                       significant(most_loss_W, 2)));
     }
     all_.fit = fit(all_.motor_model.model, all_.runs, options_.fit);
@@ -99,7 +98,7 @@ class Calibrating {
     std::ranges::move(outside_declared_ranges(motor, all_.figures), std::back_inserter(all_.notes));
     report_common_factor();
     report_terminal_resistance(motor);
-    report_grown_errors("the runs that were fitted", all_.fit_error);
+    report_grown_errors("the fitted runs", all_.fit_error);
     refuse_where_nothing_was_learned();
     report_implausible_values();
     score_holdout(motor);
@@ -146,7 +145,7 @@ class Calibrating {
     std::ranges::move(after.notes, std::back_inserter(all_.notes));
     all_.holdout_after = std::move(after.runs);
     all_.holdout_error = worst_errors(all_.holdout_before, all_.holdout_after);
-    report_grown_errors("the runs held out", all_.holdout_error);
+    report_grown_errors("the hold-out runs", all_.holdout_error);
   }
 
   /// If the motor may have reversed within rows, refits with interpolated speeds and keeps that fit if its evidence is larger.
@@ -182,34 +181,35 @@ class Calibrating {
     constexpr double kAlmost = 0.95;
     constexpr double kMuch_share = 0.1;
     if (most_W > kAlmost * kMostFlux_share * fit.usual_heat_W) {
-      all_.notes.push_back(fmt::format(
-          "the model lacks something large: it would take more unknown heat than {} % of the {} W that pass through on average; "
-          "`heatsoak diagnose` looks for what it is",
-          significant(100.0 * kMostFlux_share, 2), significant(fit.usual_heat_W, 2)));
+      all_.notes.push_back(
+          fmt::format("the model lacks a large effect: the unmodelled heat exceeds {} % of the {} W that flow through the motor on "
+                      "average; `heatsoak diagnose` searches for the effect",
+                      significant(100.0 * kMostFlux_share, 2), significant(fit.usual_heat_W, 2)));
     } else if (most_W > kMuch_share * fit.usual_heat_W) {
       all_.notes.push_back(
-          fmt::format("the model lacks something: unknown heat is {} % of the {} W that pass through on average; `heatsoak diagnose` "
-                      "looks for what it is",
+          fmt::format("the model lacks an effect: the unmodelled heat is {} % of the {} W that flow through the motor on average; "
+                      "`heatsoak diagnose` searches for the effect",
                       significant(100.0 * most_W / fit.usual_heat_W, 2), significant(fit.usual_heat_W, 2)));
     }
     for (std::size_t kind = 0; kind < fit.drift_K.size(); ++kind) {
       all_.notes.push_back(
-          fmt::format("the sensor at the {} seems to wander by {} K (standard deviation) over some {} s: errors of its own, or "
-                      "of a model with two temperatures",
+          fmt::format("the sensor at the {} seems to drift by {} K (standard deviation) over about {} s: either a sensor error or an error "
+                      "of the two-node model",
                       fit.sensor_nodes[kind], significant(fit.drift_K[kind], 2), significant(fit.drift_time_scale_s, 1)));
     }
     if (std::ranges::find(fit.sensor_nodes, "winding") == fit.sensor_nodes.end()) {
       all_.notes.emplace_back(
-          "only the stator is sensed: heat that follows the current but reaches the stator directly (iron loss, driver, connections) would "
-          "pass for a faster winding, beyond what the intervals say");
+          "the values of the winding may be wrong by more than their intervals, because only the stator is measured: heat that follows the "
+          "current but enters the stator directly (iron loss, driver, connections) looks like a faster winding");
     }
     if (fit.free_run_error_K > 0.0) {
       all_.notes.emplace_back(
-          "the figures are those that follow the whole runs best: what follows the load within seconds asks for others, as in a motor of "
-          "more parts than a winding and a stator, or where an effect is missing in all of these runs");
+          "the values are those that follow the whole runs best; the response within seconds of a load change needs other values, because "
+          "the motor has more than two thermal nodes or an effect is missing in all of these runs");
     }
     if (!fit.has_converged) {
-      all_.notes.emplace_back("the fit still moved a little when it was stopped: figures are good to some tenths of their intervals");
+      all_.notes.emplace_back(
+          "the values are accurate to a few tenths of their intervals only, because the fit was stopped before it had fully converged");
     }
   }
 
@@ -252,7 +252,7 @@ class Calibrating {
       all_.notes.push_back(
           fmt::format("all heat capacities are {1} and all resistances {2} than the file's by a factor of {0} or more: the heat of the "
                       "logs seems too {3} for "
-                      "this motor; is a current a peak value or an amplitude ({4}), the resistance another one, or is it another motor?",
+                      "this motor; is a current a peak value or an amplitude ({4}), is the resistance wrong, or is it another motor?",
                       significant(std::exp(is_much ? least : -most), 2), is_much ? "larger" : "smaller", is_much ? "smaller" : "larger",
                       is_much ? "large" : "small", is_much ? "its heat counts double" : "or that of one phase of several"));
     }
@@ -292,8 +292,8 @@ class Calibrating {
     constexpr double kFar_ratio = 1.15;
     if (std::max(ratio, 1.0 / ratio) > kFar_ratio) {
       all_.notes.push_back(fmt::format(
-          "motor_V, current_A and speed of these logs go with a terminal resistance of {} ohm at 25 °C, the file says {} ohm: every "
-          "figure scales with it; is it this motor? If so, state the measured resistance in its file",
+          "motor_V, current_A and speed of these logs give a terminal resistance of {} ohm at 25 °C, but the file states {} ohm, and every "
+          "value scales with it; check whether it is this motor, and if so state the measured resistance in its file",
           significant(found[0], 3), significant(stated_ohm, 3)));
     }
   }
@@ -308,7 +308,7 @@ class Calibrating {
         all_.worse.push_back(fmt::format(
             "do not forecast such runs with this model: {} of {} is predicted worse than with the values of the file, {} K rms instead of "
             "{} "
-            "K; {}{} (`heatsoak diagnose` looks for what is missing)",
+            "K; {}{} (`heatsoak diagnose` searches for the missing effect)",
             each.signal, runs, significant(each.after.rmse_K, 3), significant(each.before.rmse_K, 3),
             &errors == &all_.holdout_error ? "they show something that the fitted ones do not, or " : "", what_does_not_describe(all_)));
       }
@@ -322,8 +322,8 @@ class Calibrating {
       const double sd = std::sqrt(each.exponents.dot(all_.fit.covariance * each.exponents));
       if (each.is_of_file && std::abs(moved) > kUnlikely_sd * std::hypot(each.prior_sd, sd)) {
         all_.notes.push_back(
-            fmt::format("{} becomes {} times what the file says, {} times as far off as the file lets expect: is a unit of the "
-                        "logs wrong, or is it another motor?",
+            fmt::format("{} becomes {} times the value of the file, a change of {} prior standard deviations: is a unit of the logs wrong, "
+                        "or is it another motor?",
                         each.name, significant(std::exp(moved), 2), significant(std::abs(moved) / each.prior_sd, 2)));
       }
     }
@@ -374,13 +374,13 @@ class Calibrating {
     if (is_file_kept || std::ranges::any_of(all_.figures, &CalibratedParameter::is_identifiable)) {
       return;
     }
-    std::string why = "nothing can be learned about this motor from these logs";
+    std::string why = "no parameter of this motor is identifiable from these logs";
     for (const OpenDirection& each : all_.open) {
-      why += fmt::format("\n  open: {}: {}\n  cheapest experiment: {}", each.what, each.why, each.experiment);
+      why += fmt::format("\n  not identifiable: {}: {}\n  cheapest experiment: {}", each.what, each.why, each.experiment);
     }
     // A current in the wrong unit, such as kiloamperes, looks like no current.
     if (std::ranges::any_of(recordings_, [](const Recording& each) { return heat_input_of(each) != nullptr; })) {
-      why += "\n  or is a heat input in another unit (kiloamperes, kilowatts)? `heatsoak log inspect` shows each channel";
+      why += "\n  also check the units of the heat inputs (kiloamperes, kilowatts); `heatsoak log inspect` shows each channel";
     }
     throw Failure(ExitCode::cannot_answer, why);
   }
@@ -393,19 +393,19 @@ class Calibrating {
     for (const ErrorBeforeAfter& each : all_.fit_error) {
       const double moves_K = standard_deviation_K(all_.runs, each.signal);
       if (each.after.rmse_K > moves_K || each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
-        why += fmt::format("\n  {} is {} K rms off, {} it moves (standard deviation {} K)", each.signal, significant(each.after.rmse_K, 2),
-                           each.after.rmse_K > moves_K ? "more than" : "much of what", significant(moves_K, 2));
+        why +=
+            fmt::format("\n  {} has an error of {} K rms, {} its variation (standard deviation {} K)", each.signal,
+                        significant(each.after.rmse_K, 2), each.after.rmse_K > moves_K ? "more than" : "close to", significant(moves_K, 2));
       }
     }
     if (!why.empty()) {
       throw Failure(
           ExitCode::cannot_answer,
           fmt::format(
-              "no figures of this motor make the model follow these logs{}{}\n  is it another motor, a wrong unit (degrees Fahrenheit, "
-              "minutes, milliamperes), a sensor elsewhere, or heat that no column tells of? `heatsoak log inspect` shows each channel",
+              "no parameter values make the model follow these logs{}{}\n  check for another motor, a wrong unit (degrees Fahrenheit, "
+              "minutes, milliamperes), a misplaced sensor, or heat that no column contains; `heatsoak log inspect` shows each channel",
               why,
-              all_.motor_model.nuisances.empty() ? ""
-                                                 : "\n  no log has the speed (speed_rad_per_s), so that the loss at speed is not known"));
+              all_.motor_model.nuisances.empty() ? "" : "\n  no log has the speed (speed_rad_per_s), so the loss at speed is unknown"));
     }
   }
 
@@ -415,10 +415,10 @@ class Calibrating {
     for (const ErrorBeforeAfter& each : all_.fit_error) {
       const double moves_K = standard_deviation_K(all_.runs, each.signal);
       if (each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
-        all_.notes.push_back(fmt::format(
-            "the fitted model is {} K rms off {}, which moves by {} K (standard deviation): do not rely on its parameters; is it another "
-            "motor, or a unit wrong (degrees Fahrenheit, minutes, milliamperes)?",
-            significant(each.after.rmse_K, 2), each.signal, significant(moves_K, 2)));
+        all_.notes.push_back(
+            fmt::format("do not rely on the fitted parameters: the model has an error of {} K rms in {}, which varies by {} K (standard "
+                        "deviation); is it another motor, or is a unit wrong (degrees Fahrenheit, minutes, milliamperes)?",
+                        significant(each.after.rmse_K, 2), each.signal, significant(moves_K, 2)));
       }
     }
   }
@@ -476,7 +476,7 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
       // The value changed together with the others, but its origin is still the earlier one.
       figure->source += figure->source.empty() ? kSource : fmt::format(", {}", kSource);
       figure->derivation +=
-          fmt::format("{}fit to measured temperatures, which do not tell it alone", figure->derivation.empty() ? "" : "; ");
+          fmt::format("{}fit to measured temperatures, which do not determine it alone", figure->derivation.empty() ? "" : "; ");
     }
     const Range declared = declared_range(result, each.name);
     figure->spread = Spread{Spread::Kind::range, std::max(each.low, declared.low), std::min(each.high, declared.high), true};

@@ -74,38 +74,38 @@ struct Answer {
 };
 
 Answer no_heat() {
-  return {"no heat goes in during these runs: cooling tells time constants, never watts",
+  return {"these runs have no heat input: a cool-down determines time constants, but no heat capacity or resistance",
           "one run with a constant current at standstill, 10 minutes, current and terminal voltage measured", 20.0};
 }
 Answer scale_open() {
   return {
-      "a common factor on all heat, all heat capacities and all conductances changes no temperature: the scale rests on the stated "
+      "a common factor on all heat, all heat capacities and all conductances changes no temperature: the scale depends on the stated "
       "terminal resistance",
       "measure the terminal resistance at a known temperature with four wires (minutes, no run needed)", 5.0};
 }
 Answer winding_unseen() {
   return {
-      "only the stator is sensed: a larger winding behind a smaller resistance to the stator looks the same from there",
+      "only the stator is measured: a larger winding behind a smaller resistance to the stator gives the same stator temperature",
       "a thermocouple at the winding, or the winding's resistance from voltage and current right after switching off, during one warm-up",
       45.0};
 }
 Answer stator_unseen() {
-  return {"only the winding is sensed and the runs are short against the stator's time constant, or never cool down",
+  return {"only the winding is measured and the runs are short against the stator's time constant, or never cool down",
           "a thermocouple on the housing, or one long warm-up with its cool-down to ambient", 60.0};
 }
 Answer loss_hidden(const Look& seen) {
-  return {seen.is_ever_at_speed ? "the loss at speed hardly shows beside the copper loss" : "the motor hardly turns in these runs",
+  return {seen.is_ever_at_speed ? "the loss at speed is small against the copper loss" : "the motor hardly turns in these runs",
           "10 minutes at no load and full speed", 15.0};
 }
 Answer not_excited() {
-  return {"the runs do not excite it: what they measure hardly changes when these parameters move together",
-          "one run from cold with a constant current until the temperatures level out, then the cool-down", 90.0};
+  return {"the runs do not excite it: the measured temperatures hardly change when these parameters change together",
+          "one run from cold with a constant current up to the steady state, then the cool-down", 90.0};
 }
 Answer speed_unlogged() {
   return {
-      "the runs do not say whether the motor turned: the loss at speed may be none or that at no-load speed, and the stator's figures go "
-      "with it",
-      "the same runs with the speed logged (speed_rad_per_s; 0 throughout where the motor stood still)", 0.0};
+      "the runs do not contain the speed: the loss may be anything from none to that at no-load speed, and the stator's values depend on "
+      "it",
+      "the same runs with the speed logged (speed_rad_per_s; 0 throughout if the motor stood still)", 0.0};
 }
 
 OpenDirection open_direction(std::string what, Answer answer) {
@@ -194,16 +194,16 @@ Answer answer_to(const MotorModel& motor, const CalibratedValue& figure, const F
   if (is_of_stator(motor, figure)) {
     const double stator_s = std::exp(fit.theta[roles.stator_capacity] + fit.theta[roles.stator_ambient]);
     return {fmt::format("the runs neither reach a steady state nor cool down far enough: the longest lasts {} min, the stator's time "
-                        "constant is some {} min",
+                        "constant is about {} min",
                         significant(seen.longest_s / 60.0, 2), significant(stator_s / 60.0, 1)),
-            "one run from cold with a constant current until the temperatures level out, then the cool-down", 90.0};
+            "one run from cold with a constant current up to the steady state, then the cool-down", 90.0};
   }
   if ((holds(roles.winding_capacity) || holds(roles.winding_stator)) && !seen.winding_is_sensed) {
     return winding_unseen();
   }
   if (holds(roles.winding_capacity) || holds(roles.winding_stator)) {
-    return {"the winding's temperature hardly leaves the stator's in these runs, or never in steps",
-            "some steps of current at standstill, on and off for two of the winding's time constants each", 20.0};
+    return {"the winding's temperature hardly differs from the stator's in these runs, or never changes in steps",
+            "several steps of current at standstill, on and off for two of the winding's time constants each", 20.0};
   }
   return not_excited();
 }

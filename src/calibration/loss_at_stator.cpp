@@ -24,7 +24,7 @@ struct LossAtStator {
 const EffectType& loss_at_stator() {
   static const EffectType type{
       .name = kDragAtStator.substr(0, kDragAtStator.find('.')),
-      .summary = "No-load loss as part of a power that is assigned to the winding.",
+      .summary = "No-load loss at the stator, subtracted from a power that is assigned to the winding.",
       .equation = "P_winding→stator = min(M_drag · |ω|, max(0, P_input − P_shaft))",
       .reference = "",
       .nodes = {{"winding", "winding"}, {"stator", "stator"}},

@@ -142,9 +142,9 @@ class ModelBuilder {
       all_.held.emplace_back("terminal_resistance is held at its stated value: all heat capacities and resistances scale with it");
     }
     if (all_.heat == HeatInput::power_balance) {
-      all_.held.emplace_back("no_load_current does not enter: the loss beside the copper loss is the measured power balance");
+      all_.held.emplace_back("no_load_current is not used: the loss other than copper loss is the measured power balance");
     } else if (!with_speed_) {
-      all_.held.emplace_back("no_load_current is held: not every log has the speed that the loss it stands for goes with");
+      all_.held.emplace_back("no_load_current is held: its loss depends on speed, which not every log has");
     } else if (motor_.nominal.no_load_current_A > 0.0) {
       all_.needed.push_back(Signal::speed);
       figure("no_load_current", {{free("no_load_loss.drag_torque"), 1.0}});
@@ -157,7 +157,7 @@ class ModelBuilder {
         "the share of the stated power that becomes heat is held at 1: all heat capacities and resistances scale with it; {} to "
         "arise at the winding, and iron loss, friction or a driver's heat at the stator {}would shift "
         "thermal_resistance_winding_stator and winding_heat_capacity",
-        has_loss_at_stator ? "what no_load_current makes of it is taken to arise at the stator and all else" : "all of it is taken",
+        has_loss_at_stator ? "the part due to no_load_current is assumed to arise at the stator and the rest" : "all of it is assumed",
         has_loss_at_stator ? "beyond that " : ""));
     if (has_loss_at_stator) {
       all_.needed.push_back(Signal::speed);
@@ -188,7 +188,7 @@ class ModelBuilder {
         bounded.high = std::min(bounded.high, spec.range.high);
       }
       if (!held.empty()) {
-        all_.held.push_back(fmt::format("effects.{}: {} {} held: the file states no spread", effect.name, fmt::join(held, ", "),
+        all_.held.push_back(fmt::format("effects.{}: {} {} held: the file states no tolerance or range", effect.name, fmt::join(held, ", "),
                                         held.size() == 1 ? "is" : "are"));
       }
     }
@@ -335,8 +335,8 @@ HeatInput heat_input_for(std::span<const Recording> recordings, const ShaftTorqu
     if (std::ranges::find(signals, Signal::current) == signals.end()) {
       lacking.push_back({{each.file.string()},
                          "current_A",
-                         "is no column of this log, or one without a number, and not all logs have power_in_W instead; heat cannot be "
-                         "computed"});
+                         "is missing in this log or contains no number, and not all logs have power_in_W instead, so heat cannot be "
+                         "computed; add one of the two columns"});
     }
   }
   throw Failure(ExitCode::bad_input, "the logs have no heat input", std::move(lacking));
@@ -362,9 +362,10 @@ std::vector<std::string> held_sensors(const Motor& motor, std::span<const Record
     const SensorEffectType& type = *sensor.type;
     const bool is_shown = std::ranges::any_of(recordings, [&](const Recording& each) { return has_values(each.find(type.signal)); });
     const std::string size = fmt::format("{}{}{}", significant(sensor.size.value, 3), type.size.unit.empty() ? "" : " ", type.size.unit);
-    held.push_back(is_shown ? fmt::format("effects.{}.{} is held at {}: an error of the sensor is no property of the motor", sensor.name,
-                                          type.size.key, size)
-                            : fmt::format("no log has the {} that effects.{} speaks of: it counts for nothing", type.signal, sensor.name));
+    held.push_back(is_shown
+                       ? fmt::format("effects.{}.{} is held at {}: an error of the sensor is not a property of the motor", sensor.name,
+                                     type.size.key, size)
+                       : fmt::format("no log has the {} to which effects.{} applies: the effect is not used", type.signal, sensor.name));
   }
   return held;
 }

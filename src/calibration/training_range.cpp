@@ -63,7 +63,8 @@ std::vector<std::string> outside(const TrainingRange& range, const Recording& re
     if (!range.inputs.empty() && std::ranges::find(seen, fmt::format("{}={}", key, value)) == seen.end()) {
       all.push_back(fmt::format(
           "The forecast of {0} may be far off: its run has {1}={2}, the model was fitted to runs {3}. Calibrate with a run under {1}={2}.",
-          recording.name, key, value, seen.empty() ? fmt::format("that state no {}", key) : fmt::format("with {}", fmt::join(seen, ", "))));
+          recording.name, key, value,
+          seen.empty() ? fmt::format("that do not state {}", key) : fmt::format("with {}", fmt::join(seen, ", "))));
     }
   }
   for (const RangedInput& input : kInputs) {

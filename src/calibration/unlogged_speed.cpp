@@ -33,14 +33,14 @@ struct LossAtUnloggedSpeed {
 const EffectType& loss_at_unlogged_speed() {
   static const EffectType type{
       .name = kLossAtUnloggedSpeed,
-      .summary = "Loss at a speed that was not logged.",
+      .summary = "Loss at an unlogged speed.",
       .equation = "P_stator = (k + k_driven · [I > I_least]) · P_most",
       .reference = "",
       .nodes = {{"stator", "stator"}},
       .parameters = {{"share", "", Range::any(), "of the loss at no-load speed, throughout"},
                      {"share_with_current", "", Range::any(), "of the loss at no-load speed, while current flows"},
                      {"most_loss", "W", Range::positive(), "the loss at no-load speed"},
-                     {"least_current", "A", Range::positive(), "less turns no motor"}},
+                     {"least_current", "A", Range::positive(), "a smaller current does not turn the motor"}},
       .typical = "",
       .confounded_with = "",
       .example = {},

@@ -95,18 +95,18 @@ std::vector<std::string> forecast_in_words(const Calibration& calibration) {
   std::vector<std::string> words;
   if (calibration.is_forecast_written && !std::ranges::all_of(calibration.figures, &CalibratedParameter::is_identifiable)) {
     words.emplace_back(
-        "values that are not identifiable are written too: the forecast depends on all values together, so take none of these for a "
-        "measurement");
+        "values that are not identifiable are written too: the forecast depends on all values together, so do not use these as "
+        "measurements");
   }
   if (forecast.rivals.empty()) {
     words.push_back(
-        fmt::format("{} of these runs can be left out with heat of their own, at least {} are needed: the network stays as it is, and the "
-                    "90 % band of forecasts is wide because it rests on so few",
+        fmt::format("the network is not extended and the 90 % band of forecasts is wide, because cross-validation can leave out only {} "
+                    "runs that contain heat, and needs at least {}",
                     forecast.pieces, kLeastPieces));
   } else {
     std::vector<std::string> each;
     std::ranges::transform(forecast.rivals, std::back_inserter(each), errors_in_words);
-    words.push_back(fmt::format("left-out pieces ({}) are predicted to, rms: {}", forecast.pieces, fmt::join(each, "; ")));
+    words.push_back(fmt::format("cross-validation error of the left-out pieces ({}), rms: {}", forecast.pieces, fmt::join(each, "; ")));
   }
   if (forecast.source == ForecastSource::file) {
     words.emplace_back(
@@ -121,7 +121,7 @@ std::vector<std::string> forecast_in_words(const Calibration& calibration) {
     std::ranges::transform(forecast.accepted, std::back_inserter(names), &AcceptedExtension::name);
     words.push_back(fmt::format("{} {}; this is no diagnosis: another effect may be the cause (`heatsoak diagnose`)",
                                 calibration.is_forecast_written
-                                    ? "for better forecasts the network has now"
+                                    ? "for better forecasts the network now has"
                                     : "left-out pieces are predicted best by a network that `--forecast` writes, with",
                                 fmt::join(names, ", ")));
   }

@@ -122,10 +122,11 @@ class CheckReader {
       check_.seed = static_cast<std::uint64_t>(*seed);
     }
     if (const auto given_C =
-            table_.quantity({"temperature", "degC", Range::between(-60.0, 1000.0), "that time is counted above"}, Need::optional)) {
+            table_.quantity({"temperature", "degC", Range::between(-60.0, 1000.0), "above which time is counted"}, Need::optional)) {
       check_.temperature_C = *given_C;
     }
-    if (const auto given_C = table_.quantity({"air", "degC", Range::between(-60.0, 200.0), "where a log has none"}, Need::optional)) {
+    if (const auto given_C =
+            table_.quantity({"air", "degC", Range::between(-60.0, 200.0), "of a log that has no air temperature"}, Need::optional)) {
       check_.air_C = *given_C;
     }
   }
@@ -154,10 +155,10 @@ class CheckReader {
     DerateOptions& options = check_.derate;
     take({"ambient", "degC", Range::between(-40.0, 120.0), "hottest air at the motor"}, options.hottest_ambient_C);
     take({"coldest", "degC", Range::between(-60.0, 120.0), "coldest air"}, options.coldest_ambient_C);
-    take({"approach", "s", Range::between(0.01, 100.0), "in which the winding may come near its limit"}, options.approach_s);
+    take({"approach", "s", Range::between(0.01, 100.0), "in which the winding may approach its limit"}, options.approach_s);
     take({"period", "s", Range::between(1e-3, 1.0), "between two calls of the firmware"}, options.period_s);
     take({"confidence", "", Range::between(0.5, 0.999), "share of motors that keep their limits"}, options.guarantee.confidence);
-    if (const auto samples = whole(*table, {"samples", "", Range::between(1.0, 1e5), "motors drawn to find the reserve"})) {
+    if (const auto samples = whole(*table, {"samples", "", Range::between(1.0, 1e5), "motors drawn to find the safety factor on heat"})) {
       options.guarantee.samples = static_cast<int>(*samples);
     }
     if (const auto seed = whole(*table, {"seed", "", Range::between(0.0, 9007199254740992.0), "of the draws"})) {
@@ -188,7 +189,7 @@ class CheckReader {
         limits->pass_over(key);
         limits->problem(
             key, key == "forecast_error"
-                     ? "this program was built without measured data and knows no logs; `./bootstrap build` adds it"
+                     ? "this program was built without support for measured logs; `./bootstrap build` adds it"
                      : fmt::format("there is no such threshold{} (`heatsoak list thresholds` shows them)", did_you_mean(key, known)));
         continue;
       }
@@ -234,7 +235,7 @@ class CheckReader {
     for (std::size_t i = 0; i < all_settings().size(); ++i) {
       const std::string_view key = all_settings()[i].key;
       if (has(key) && !is_used(static_cast<Setting>(i))) {
-        table_.problem(key, "is used by none of this check's limits; take it out or move it to the check that needs it");
+        table_.problem(key, "is not used by any limit of this check; remove it or move it to the check that needs it");
       }
     }
   }
@@ -255,7 +256,7 @@ CheckFile read_check_file(const fs::path& path, const DataFolders& folders) {
   CheckFile file{path, {}};
   std::vector<Reader> tables = top.tables("check");
   if (tables.size() > kMostChecks) {
-    throw bad_input({path.string(), 1, 1}, "check", fmt::format("holds {} checks; expected at most {}", tables.size(), kMostChecks));
+    throw bad_input({path.string(), 1, 1}, "check", fmt::format("contains {} checks; expected at most {}", tables.size(), kMostChecks));
   }
   if (tables.empty() && diagnostics.empty()) {
     diagnostics.add({path.string(), 1, 1}, "", "has no [[check]] table; `heatsoak check --help` shows an example");

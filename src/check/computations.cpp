@@ -65,12 +65,10 @@ const MotorEvaluation& Computations::evaluation(const Check& check, const Motor&
 const MotorEvaluation& Computations::feasible_evaluation(const Check& check) {
   const MotorEvaluation& result = evaluation(check, *check.motor);
   if (result.verdict == Verdict::infeasible) {
-    throw Failure(
-        ExitCode::limit_exceeded,
-        fmt::format("{} cannot deliver what the duty demands ({}): {:.0f} % of the demanded current at the worst moment, too little for "
-                    "{:.0f} % of the time",
-                    result.motor_id, to_string(result.limiting_factor), 100.0 * result.least_torque_share,
-                    100.0 * result.short_time_share));
+    throw Failure(ExitCode::limit_exceeded, fmt::format("{} cannot deliver what the duty demands ({}): it delivers {:.0f} % of the "
+                                                        "demanded current at the worst moment, and too little for {:.0f} % of the time",
+                                                        result.motor_id, to_string(result.limiting_factor),
+                                                        100.0 * result.least_torque_share, 100.0 * result.short_time_share));
   }
   return result;
 }
@@ -87,7 +85,7 @@ const Derating& Computations::derating(const Check& check, const DerateOptions& 
 const GuardedDrive& Computations::guarded_drive(const Check& check) {
   const auto match = std::dynamic_pointer_cast<const MatchDuty>(check.duty->shape_data);
   if (!match) {
-    throw Failure(ExitCode::bad_input, fmt::format("the drive core drives matches; {} is {}. Expected a duty of the shape match",
+    throw Failure(ExitCode::bad_input, fmt::format("the drive core can drive only a match; {} is {}. Expected a duty of the shape match",
                                                    check.duty->id, check.duty->shape));
   }
   if (std::isnan(check.motor->nominal.rotor_inertia_kg_m2)) {

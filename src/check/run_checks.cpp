@@ -29,7 +29,7 @@ void evaluate_one(Outcome& outcome, Computations& computations) {
   try {
     outcome.measured = outcome.limit.type->measure(*outcome.check, computations);
     outcome.is_evaluated = std::isfinite(outcome.measured.value);
-    outcome.reason = outcome.is_evaluated ? "" : "the calculation gave no number";
+    outcome.reason = outcome.is_evaluated ? "" : "the result is not a number";
   } catch (const Failure& failure) {
     outcome.reason = reason_of(failure);
   } catch (const std::bad_alloc&) {

@@ -123,7 +123,7 @@ void add_closed_loop(present::Document& document, const std::vector<ClosedLoopRa
   document.tables.insert(document.tables.begin(), std::move(table));
   document.add_note(
       Severity::note,
-      "The two tables differ: the one without a closed loop takes the torque that an exactly followed plan needs. In the closed loop the "
+      "The two tables differ: the one without a closed loop uses the torque that an exactly followed plan needs. In the closed loop the "
       "drive core works with noisy, delayed sensors and lost packets, wheels slip, and the battery sags. Corrections add heat; grip, "
       "voltage "
       "and current limits take heat away.");

@@ -19,8 +19,8 @@ CLI::Option* add_conditions(CLI::App& app, std::map<std::string, std::string>& c
               conditions[each.substr(0, equals)] = each.substr(equals + 1);
             }
           },
-          "condition of effects that were found under it only, such as cooling=fan; without it their heat counts, their "
-          "cooling does not")
+          "condition that holds, such as cooling=fan, for effects that were found only under it; if not given, their heat counts, but not "
+          "their cooling")
       ->type_name("KEY=VALUE...");
 }
 

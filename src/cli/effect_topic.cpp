@@ -17,12 +17,12 @@ Topic sensor_topic(const SensorEffectType& type) {
   const std::array lines{TopicLine{"equation", "equation", std::string(type.equation)},
                          TopicLine{"typical", "typical size", std::string(type.typical)},
                          TopicLine{"look_alike", "look-alikes", std::string(type.confounded_with)},
-                         TopicLine{"experiment", "to tell apart", std::string(type.experiment)},
+                         TopicLine{"experiment", "experiment", std::string(type.experiment)},
                          TopicLine{"reference", "reference", std::string(type.reference)}};
   const std::string use = fmt::format(
-      "\nat the end of a motor file, whose sensor calibrate and diagnose then take for that; simulate adds what it shows:\n{}{}",
+      "\nat the end of a motor file; calibrate and diagnose then allow for this error, and simulate adds it to the reading:\n{}{}",
       effect_table(type.name), typical_value(type.size.key, type.typical_size, type.size.unit));
-  return effect_topic(fmt::format("what the sensor of {} shows", type.signal), type.name, type.summary, type.size, lines, use);
+  return effect_topic(fmt::format("reading of the sensor of {}", type.signal), type.name, type.summary, type.size, lines, use);
 }
 
 }  // namespace

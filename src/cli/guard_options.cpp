@@ -20,19 +20,21 @@ void add_derate_options(CLI::App& app, DerateOptions& options) {
                {"ambient", "degC", Range::between(-40.0, 120.0), "hottest air at the motor; 40degC unless given"});
   add_quantity(
       app, "--coldest", options.coldest_ambient_C,
-      {"coldest", "degC", Range::between(-60.0, 120.0), "coldest air; a sensor that shows less is taken for broken; 0degC unless given"});
+      {"coldest", "degC", Range::between(-60.0, 120.0), "coldest air; a sensor that reads less is treated as faulty; 0degC unless given"});
   add_quantity(app, "--approach", options.approach_s,
                {"approach", "s", Range::between(0.01, 100.0),
-                "in which the winding may come near its limit: shorter lets peaks through for longer; 0.5 s unless given"});
+                "in which the winding may approach its limit: a shorter time allows peaks for longer; 0.5 s unless given"});
   add_quantity(app, "--confidence", guarantee.confidence,
                {"confidence", "", Range::between(0.5, 0.999),
                 "least share of motors that keep their limits, shown with 95 % certainty; 0.95 unless given"});
-  add_quantity(app, "--error", options.table.shortfall_ratio,
-               {"error", "", Range::between(0.002, 0.5), "most that the table gives away against the exact answer; 1 % unless given"});
-  app.add_option("--size", options.table.most_bytes, "bytes of the table at most: what fits decides where --error needs more")
+  add_quantity(
+      app, "--error", options.table.shortfall_ratio,
+      {"error", "", Range::between(0.002, 0.5), "largest loss of current in the table against the exact result; 1 % unless given"});
+  app.add_option("--size", options.table.most_bytes, "largest size of the table in bytes; it takes precedence over --error")
       ->check(CLI::Range(std::size_t{64}, std::size_t{1} << 20U))
       ->capture_default_str();
-  app.add_option("--samples", guarantee.samples, "motors drawn to find the reserve, and as many fresh ones to show the confidence")
+  app.add_option("--samples", guarantee.samples,
+                 "motors drawn to find the safety factor on heat, and as many fresh ones to show the confidence")
       ->check(whole_number(100'000))
       ->capture_default_str();
   add_seed(app, guarantee.seed, "of the draws; same seed, same bytes");
@@ -43,13 +45,13 @@ void add_derate_options(CLI::App& app, DerateOptions& options) {
 
 Motor guarded_motor(const GuardOptions& options, NamedFiles& named) {
   if (options.motor.empty() && options.model.empty()) {
-    throw Failure(ExitCode::bad_input, "which motor? Expected --motor M or --model FILE");
+    throw Failure(ExitCode::bad_input, "the motor is missing; expected --motor M or --model FILE");
   }
   const std::optional<std::filesystem::path> file = options.motor.empty() ? std::nullopt : named.motor_file(options.motor);
   const std::optional<Motor> motor = named.motor(options.model.empty() ? options.motor : options.model);
   named.throw_if_any();
   if (file && !options.model.empty() && motor->id != file->stem() && (!motor->fit || motor->fit->motor != file->stem())) {
-    throw Failure(ExitCode::bad_input, fmt::format("--model {} is no model of {}: it {}", options.model, file->stem().string(),
+    throw Failure(ExitCode::bad_input, fmt::format("--model {} is not a model of {}: it {}", options.model, file->stem().string(),
                                                    motor->fit ? fmt::format("was fitted from {}", motor->fit->motor)
                                                               : std::string("has another name and no [fit]")));
   }

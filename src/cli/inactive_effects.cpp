@@ -28,7 +28,7 @@ std::string effects_under_conditions(std::span<const Motor> motors) {
   std::string text;
   for (const Motor& motor : motors) {
     for (const auto& [key, value] : motor.assumed) {
-      text += fmt::format("{}: this answer holds only where {} is {}, as --condition says\n", motor.id, key, value);
+      text += fmt::format("{}: this result is valid only if {} is {}, as stated with --condition\n", motor.id, key, value);
     }
     for (const MotorEffect& effect : motor.effects) {
       if (effect.condition.empty()) {
@@ -37,9 +37,9 @@ std::string effects_under_conditions(std::span<const Motor> motors) {
       std::vector<std::string> where;
       std::ranges::transform(effect.condition, std::back_inserter(where),
                              [](const auto& part) { return fmt::format("{}={}", part.first, part.second); });
-      text += fmt::format("{}: {}, known where {}, {}\n", motor.id, effect.name, fmt::join(where, " "),
-                          acts_by_default(effect, effect.values()) ? "acts everywhere unless --condition says otherwise"
-                                                                   : "cools, and acts only where --condition says so");
+      text += fmt::format("{}: {}, found under {}, {}\n", motor.id, effect.name, fmt::join(where, " "),
+                          acts_by_default(effect, effect.values()) ? "acts always unless --condition states otherwise"
+                                                                   : "cools, and acts only if --condition states it");
     }
   }
   return text;
@@ -54,7 +54,7 @@ std::string inactive_effects(std::span<const Motor> motors) {
       const bool needs_neighbour = needs(Signal::neighbour_temperature);
       if (needs_neighbour || needs(Signal::age)) {
         text += fmt::format("{}: {} is left out, because a duty does not state {}\n", motor.id, effect.name,
-                            needs_neighbour ? "the neighbour's temperature" : "the hours that the motor has run");
+                            needs_neighbour ? "the neighbour's temperature" : "the operating hours of the motor");
       }
     }
   }

@@ -63,7 +63,7 @@ Chart picture(const std::vector<StudyResult>& results, const Robot& robot, const
     bool logarithmic = false;
   };
   constexpr Shown kShown[] = {{"Slip of a mean wheel", "slip / mm per m", 1e3, &StudyResult::slip_share, true},
-                              {"Time until within 1 cm of the target for good", "time / s", 1.0, &StudyResult::settled_s},
+                              {"Settling time to within 1 cm of the target", "time / s", 1.0, &StudyResult::settled_s},
                               {"Distance between plan and robot", "distance / mm rms", 1e3, &StudyResult::tracking_rms_m, true},
                               {"Copper heat of all motors", "heat / J per drive", 1.0, &StudyResult::copper_J}};
   Chart chart{.title = fmt::format("{}: jerk limit against bang-bang", robot.name),
@@ -103,11 +103,11 @@ nlohmann::ordered_json json(const std::vector<StudyResult>& results) {
 ExitCode sweep_jerk(const Robot& robot, const Motor& motor, const DriveOptions& drive, const std::string& plot, Session& session) {
   const std::vector<StudyCase> cases = jerk_sweep(robot);
   const std::vector<StudyResult> results = study_planners(robot, motor, cases, drive, 0, progress_bar("driving"));
-  session.say(fmt::format(
-      "{} on {}: simulated drives of 0.5, 1 and 2 m in eight directions, from rest to rest, means\ngrip: the acceleration at which the "
-      "first wheel slides if nothing else is asked of it; contacts creep before, and what the drive core corrects comes on top, so that "
-      "sliding begins somewhat below\n\n{}",
-      motor.id, robot.id, table(results, robot)));
+  session.say(
+      fmt::format("{} on {}: simulated drives of 0.5, 1 and 2 m in eight directions, from rest to rest, means\ngrip: the acceleration at "
+                  "which the first wheel slides if it transmits no other force; contacts creep earlier, and corrections of the drive core "
+                  "add to the force, so sliding begins somewhat below\n\n{}",
+                  motor.id, robot.id, table(results, robot)));
   if (!plot.empty()) {
     session.write(plot, draw_picture(picture(results, robot, motor), plot));
     session.say(fmt::format("picture: {}\n", plot));

@@ -210,7 +210,7 @@ void Session::add_data_option(CLI::App& app) {
 
 void Session::add_json_option(CLI::App& app) {
   const auto names_a_file = [](const std::string& word) {
-    return is_output(word) ? "" : fmt::format("{} is no name of a file; expected one, or - for stdout", word);
+    return is_output(word) ? "" : fmt::format("{} is not the name of a file; expected one, or - for stdout", word);
   };
   app.add_option("--json", json_target_, "write the answer as JSON; - is stdout, the text then goes to stderr")
       ->type_name("FILE")
@@ -258,7 +258,7 @@ void Session::finish() {
   std::vector<Diagnostic> read;
   const auto check = [&read](const std::filesystem::path& path) {
     if (is_input(path)) {
-      read.push_back({{path.string()}, {}, "this command reads the file and would write over it; give the output another name"});
+      read.push_back({{path.string()}, {}, "this command reads the file and would overwrite it; give the output another name"});
     }
   };
   for (const auto& each : streams_) {
@@ -268,8 +268,7 @@ void Session::finish() {
     check(each.path);
   }
   if (read.empty() && !json_target_.empty() && !may_take_json(json_target_)) {
-    read.push_back(
-        {{json_target_}, {}, "holds something else than an answer, which --json would write over; give the answer another name"});
+    read.push_back({{json_target_}, {}, "is not an answer of this program, and --json would overwrite it; give the answer another name"});
   }
   if (!read.empty()) {
     throw Failure(ExitCode::bad_input, "", std::move(read));

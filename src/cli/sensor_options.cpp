@@ -19,7 +19,7 @@ void add_sensor_options(CLI::App& app, SensorFlags& flags) {
                "the guard reads the winding's temperature from its resistance: voltage and current at the terminals");
   add_quantity(app, "--resistance-accuracy", flags.resistance_accuracy_K,
                {"resistance_accuracy", "K", Range::between(0.5, 50.0),
-                "readings are used where current and speed permit this accuracy; 10 K unless given"});
+                "readings are used if current and speed permit this accuracy; 10 K unless given"});
   add_quantity(app, "--voltage-error", flags.voltage_error_V,
                {"voltage_error", "V", Range::between(0.0, 10.0), "offset of the terminal voltage; 20 mV unless given"});
   add_quantity(app, "--current-error", flags.current_error_A,
@@ -51,11 +51,12 @@ std::string sensor_text(const Derating& derating) {
   }
   const SensorPlan& plan = *derating.sensor;
   std::string text = fmt::format(
-      "\nwith {} at the {}, error up to {:.3g} K{}: safety factor on heat {:.2f} (without {:.2f}); of {} drawn motors with drawn sensor "
+      "\n"
+      "with {} at the {}, error up to {:.3g} K{}: safety factor on heat {:.2f} (without {:.2f}); of {} drawn motors with drawn sensor "
       "errors {} exceeded a limit, their windings reached {:.0f} °C (95th percentile), {:.0f} °C (the hottest); the cross-check drops the "
       "correct sensor of {}\n"
-      "a lying sensor allows at most {:.2f} A more than without one: the nominal motor then reaches {:.0f} °C, and {} of {} drawn motors "
-      "exceed a limit\n",
+      "a plausible but wrong sensor allows at most {:.2f} A more than without one: the nominal motor then reaches {:.0f} °C, and {} of {} "
+      "drawn motors exceed a limit\n",
       plan.resistance ? "the resistance from voltage and current" : "a thermistor",
       plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
       plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(),
@@ -65,7 +66,7 @@ std::string sensor_text(const Derating& derating) {
     text += fmt::format("readings need {:.2f} A at rest and {:.3f} A more per rad/s\n", plan.resistance->least_current_A,
                         plan.resistance->current_per_speed_A_s_per_rad);
   }
-  text += "lasting current of the nominal motor, A:\n  speed rad/s   without      with\n";
+  text += "continuous current of the nominal motor, A:\n  speed rad/s   without      with\n";
   for (const LastingCurrent& each : plan.lasting) {
     text += fmt::format("  {:11.0f} {:9.2f} {:9.2f}\n", each.speed_rad_per_s, each.without_A, each.with_A);
   }

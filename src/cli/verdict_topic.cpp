@@ -9,7 +9,7 @@
 namespace heatsoak {
 
 Topic verdict_topic() {
-  std::string text = "verdict: what `evaluate` says of a motor on a duty, from the best to the worst\n";
+  std::string text = "verdict: the result of `evaluate` for a motor on a duty, from the best to the worst\n";
   nlohmann::ordered_json meanings = nlohmann::ordered_json::array();
   for (const present::VerdictMeaning& each : present::verdict_meanings()) {
     text += fmt::format("\n{}\n  {}\n", to_string(each.verdict), each.meaning);

@@ -33,7 +33,7 @@ void require_ascending(const CommittedTable& committed, int line, std::string_vi
   const bool is_finite = std::ranges::all_of(axis, [](double each) { return std::isfinite(each); });
   if (axis.size() < least_count || !is_finite || std::ranges::adjacent_find(axis, std::greater_equal<>()) != axis.end()) {
     throw bad_input({committed.file.string(), line, 1}, std::string(name),
-                    "the axis of the table does not ascend; expected a file that `heatsoak derate` wrote");
+                    "the axis of the table does not increase; expected a file that `heatsoak derate` wrote");
   }
 }
 
@@ -51,10 +51,9 @@ void require_sound(const CommittedTable& committed, const CurrentTable& table, i
   }
   if (!(table.most_current_A > 0.0) || !(table.straight_below_A > 0.0) || !(table.winding_per_stator_K >= 0.0) ||
       !(table.no_current_speed_rad_per_s > table.most_speed_rad_per_s)) {
-    throw bad_input(
-        {committed.file.string(), line, 1}, "",
-        "MOST_CURRENT_A, STRAIGHT_BELOW_A, WINDING_PER_STATOR_K, MOST_SPEED_RAD_PER_S or NO_CURRENT_SPEED_RAD_PER_S is missing or "
-        "cannot be; expected a header that `heatsoak derate` wrote");
+    throw bad_input({committed.file.string(), line, 1}, "",
+                    "MOST_CURRENT_A, STRAIGHT_BELOW_A, WINDING_PER_STATOR_K, MOST_SPEED_RAD_PER_S or NO_CURRENT_SPEED_RAD_PER_S is missing "
+                    "or out of range; expected a header that `heatsoak derate` wrote");
   }
 }
 
@@ -83,7 +82,7 @@ void require_whole(const CommittedTable& committed, const std::string& text) {
   const auto count = [&](const std::regex& each) { return std::distance(std::sregex_iterator(text.begin(), text.end(), each), {}); };
   if (count(kBegin) > count(kEnd)) {
     throw bad_input({committed.file.string(), line_at(text, text.size()), 1}, "",
-                    "the header ends before its #endif: the file is cut off; write it anew with `heatsoak derate --out`");
+                    "the header ends before its #endif: the file is truncated; write it again with `heatsoak derate --out`");
   }
 }
 
@@ -102,7 +101,7 @@ void read_header(const std::string& text, CommittedTable& committed) {
   // A line continuation could hide code in a comment; `heatsoak derate` writes none.
   if (const std::size_t splice = std::min(text.find('\\'), text.find("?\?/")); splice != std::string::npos) {
     throw bad_input({committed.file.string(), line_at(text, splice), 1}, "",
-                    "a backslash or the trigraph for it; expected a header that `heatsoak derate` wrote, which has none");
+                    "contains a backslash or its trigraph; expected a header that `heatsoak derate` wrote, which has none");
   }
   const std::vector<HeaderArray> arrays = header_arrays(text);
   const auto find = [&](const std::string& name) { return std::ranges::find(arrays, name, &HeaderArray::name); };
@@ -121,7 +120,7 @@ void read_header(const std::string& text, CommittedTable& committed) {
     const int line = line_at(text, currents.begin);
     if (currents.values.size() != speeds->values.size() * stators->values.size() * windings->values.size()) {
       throw bad_input({committed.file.string(), line, 1}, currents.name,
-                      fmt::format("holds {} currents; expected {} × {} × {} of them, as many as its axes have places",
+                      fmt::format("contains {} currents; expected {} × {} × {}, the product of the lengths of its axes",
                                   currents.values.size(), speeds->values.size(), stators->values.size(), windings->values.size()));
     }
     committed.table = {.speed_rad_per_s = speeds->values,
@@ -138,7 +137,7 @@ void read_header(const std::string& text, CommittedTable& committed) {
     return;
   }
   throw bad_input({committed.file.string()}, "",
-                  "holds no derating table, or is cut off; expected a C header or a CSV table that `heatsoak derate` wrote");
+                  "contains no derating table or is truncated; expected a C header or a CSV table that `heatsoak derate` wrote");
 }
 
 /// Returns the distinct values of a column, ascending.

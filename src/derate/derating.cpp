@@ -49,10 +49,9 @@ BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateO
     rules.limits.stator_C = lowest_limit_C(motor, "stator_limit", values.stator_limit_C);
   }
   if (!(rules.limits.winding_C > options.hottest_ambient_C)) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{}: the winding limit of {:.1f} °C is not above the hottest air of {:.1f} °C, expected room for heat; check "
-                              "winding_limit, or state cooler air with --ambient",
-                              motor.id, rules.limits.winding_C, options.hottest_ambient_C));
+    throw Failure(ExitCode::bad_input, fmt::format("{}: the winding limit of {:.1f} °C is not above the hottest air of {:.1f} °C, expected "
+                                                   "a higher limit; check winding_limit or state cooler air with --ambient",
+                                                   motor.id, rules.limits.winding_C, options.hottest_ambient_C));
   }
   rules.approach_s = options.approach_s;
   // The stator must approach its limit more slowly than a winding without current gives off its stored heat.
@@ -85,10 +84,9 @@ void require_short_period(const Network& network, const BarrierRules& rules, con
   at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = Lanes::Constant(fastest_rad_per_s);
   const double longest_s = 0.2 * longest_step_s(network, parameters, at, rules.limits.winding_C - options.hottest_ambient_C);
   if (options.period_s > longest_s || options.period_s > 0.1 * options.approach_s) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("a period of {:.3g} s is too long: expected at most {:.3g} s, a twentieth of this motor's "
-                              "fastest time constant and a tenth of --approach",
-                              options.period_s, std::min(longest_s, 0.1 * options.approach_s)));
+    throw Failure(ExitCode::bad_input, fmt::format("a period of {:.3g} s is too long: expected at most {:.3g} s, the smaller of 1/20 of "
+                                                   "this motor's fastest time constant and 1/10 of --approach",
+                                                   options.period_s, std::min(longest_s, 0.1 * options.approach_s)));
   }
 }
 
@@ -187,7 +185,7 @@ class Search {
   [[nodiscard]] Failure too_hot() const {
     return {
         ExitCode::limit_exceeded,
-        fmt::format("{}: fewer than {:.0f} % of the motors with the declared tolerances keep below {:.0f} °C in air of {:.0f} °C, however "
+        fmt::format("{}: fewer than {:.0f} % of the motors with the declared tolerances stay below {:.0f} °C in air of {:.0f} °C, however "
                     "little current is allowed; use a lower --confidence or --ambient, or calibrate the motor",
                     motor_.id, 100.0 * options_.guarantee.confidence, reachable_.limits.winding_C, reachable_.hottest_ambient_C)};
   }

@@ -75,11 +75,11 @@ Json table_json(const CurrentTable& table) {
           {"units",
            {{"speed_rad_per_s", "rad/s"}, {"stator_C", "degC"}, {"winding_C", "degC"}, {"current_A", "A"}, {"current_squared_A2", "A^2"}}},
           {"interpolation",
-           "current_squared_A2 is linear between places (an axis with one place does not matter) and held below the first; the current is "
-           "its root, or current_squared_A2/straight_below_A where that is below straight_below_A, at most most_current_A. A stator above "
-           "its last place adds winding_per_stator_K times the excess to the winding; above the winding's last place 0 A. From "
-           "most_speed_rad_per_s the current falls in a straight line to 0 A at no_current_speed_rad_per_s. current_A, linear between "
-           "places, lies below that."},
+           "Interpolate current_squared_A2 linearly between grid points and hold it below the first one; an axis with one grid point has "
+           "no influence. The current is its square root, or current_squared_A2/straight_below_A if that is below straight_below_A; it is "
+           "at most most_current_A. A stator temperature above the last grid point adds winding_per_stator_K times the excess to the "
+           "winding temperature; above the last grid point of the winding the current is 0 A. Above most_speed_rad_per_s the current falls "
+           "linearly to 0 A at no_current_speed_rad_per_s. Linear interpolation of current_A gives a lower current."},
           {"most_current_A", rounded_down(table.most_current_A)},
           {"straight_below_A", table.straight_below_A},
           {"most_speed_rad_per_s", table.most_speed_rad_per_s},

@@ -52,7 +52,7 @@ std::string provenance_lines(const Derating& derating, std::string_view comment)
       derating.rules.limits.stator_C ? fmt::format(", stator limit {:.6g} degC", *derating.rules.limits.stator_C) : "",
       derating.options.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(), confidence_text(derating));
   for (const auto& [key, value] : derating.assumed) {
-    text += fmt::format("{} Valid only where {} is {} (--condition).\n", comment, in_one_line(key), in_one_line(value));
+    text += fmt::format("{} Valid only if {} is {} (--condition).\n", comment, in_one_line(key), in_one_line(value));
   }
   for (const DefaultSpread& each : derating.default_spreads) {
     text += fmt::format("{} No tolerance in the motor's file, default by origin: {}\n", comment,
@@ -67,8 +67,9 @@ std::string ramp_lines(const Derating& derating, RampSignal signal, const Curren
   const bool is_stator = signal == RampSignal::stator;
   return fmt::format(
       "{0} Ramp over the {1}: below the table for every speed up to {2:.0f} rad/s and every {3} temperature up to the limit.\n"
-      "{0} It loses {4:.2f} A ({5:.1f} %) of {6:.2f} A on average from {7:.0f} to {8:.0f} degC, at most {9:.2f} A at {10:.0f} degC.\n"
-      "{0} Short peaks: the table allows {11:.1f} A to a motor at {12:.0f} degC, the ramp never more than {13:.2f} A.\n"
+      "{0} Less current than the table: {4:.2f} A ({5:.1f} %) of {6:.2f} A on average from {7:.0f} to {8:.0f} degC, at most {9:.2f} A at "
+      "{10:.0f} degC.\n"
+      "{0} Short peaks: the table allows {11:.1f} A for a motor at {12:.0f} degC, the ramp never more than {13:.2f} A.\n"
       "{0} Not covered: a sensor that reads low, a motor that is pushed above {2:.0f} rad/s, d-axis current (field weakening).\n",
       comment, is_stator ? "measured stator temperature" : "observer's winding temperature", derating.rules.most_speed_rad_per_s,
       is_stator ? "winding" : "stator", phase_per_dc_ratio * loss.mean_A(), loss.mean_percent(), phase_per_dc_ratio * loss.bound_mean_A,
@@ -84,7 +85,7 @@ std::string own_effects_text(const Derating& derating) {
                           effect.name == effect.type ? effect.name : fmt::format("{} ({})", effect.name, effect.type));
     }
   }
-  return text.empty() ? "no own effects" : text;
+  return text.empty() ? "no additional effects" : text;
 }
 
 void require_finite(const Derating& derating) {

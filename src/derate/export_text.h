@@ -29,7 +29,7 @@ std::string identifier(std::string_view id);
 std::string ramp_lines(const Derating& derating, RampSignal signal, const CurrentRamp& ramp, double phase_per_dc_ratio,
                        std::string_view comment);
 
-/// Lists the effects that the motor has beyond the data sheet's, such as "chassis (third_node)"; "no own effects" if there are none.
+/// Lists the effects that the motor has beyond the data sheet's, such as "chassis (third_node)"; "no additional effects" if there are none.
 std::string own_effects_text(const Derating& derating);
 
 /// Throws Failure (bad_input) if a value that is exported is not finite.

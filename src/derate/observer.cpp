@@ -10,13 +10,14 @@ namespace firmware {
 
 std::span<const SignalSpec> signals() {
   static constexpr std::array<SignalSpec, kSignalCount> kSignals{{
-      {"current_A", "equivalent DC current (torque per torque constant), rms over the period, with the sign of the speed where it drives"},
-      {"speed_rad_per_s", "of the motor's shaft, signed"},
-      {"ambient_C", "air around the motor; the hottest declared where it is not measured"},
-      {"vehicle_speed_m_per_s", "of the robot through the air, not of its wheels; 0 where it is not known"},
-      {"neighbour_C", "temperature of the motor next to this one; the winding's limit where it is not known"},
-      {"age_h", "hours that the motor has run"},
-      {"acceleration_rad_per_s2", "of the motor's shaft, magnitude"},
+      {"current_A",
+       "equivalent DC current (torque per torque constant), rms over the period, with the sign of the speed when the motor drives"},
+      {"speed_rad_per_s", "speed of the motor's shaft, signed"},
+      {"ambient_C", "air around the motor; the hottest declared air if it is not measured"},
+      {"vehicle_speed_m_per_s", "speed of the robot through the air, not of its wheels; 0 if it is not known"},
+      {"neighbour_C", "temperature of the motor next to this one; the winding's limit if it is not known"},
+      {"age_h", "operating hours of the motor"},
+      {"acceleration_rad_per_s2", "speed of the motor's shaft, magnitude"},
   }};
   return kSignals;
 }

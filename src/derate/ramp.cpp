@@ -85,7 +85,7 @@ void require_stator_is_enough(std::string_view controller, const Derating& derat
   if (!hidden.empty()) {
     throw Failure(
         ExitCode::bad_input,
-        fmt::format("{} cannot express {} ({}): it changes a temperature with a limit, and the controller measures the stator only; "
+        fmt::format("{} cannot express {} ({}): it affects a temperature that has a limit, but the controller measures the stator only; "
                     "use --to c_header",
                     controller, fmt::join(hidden, ", "), own_effects_text(derating)));
   }
@@ -175,10 +175,11 @@ CurrentRamp ramp_for(std::string_view controller, const Derating& derating, Ramp
   }
   const CurrentRamp ramp = fit_ramp(derating, signal, full_beyond_K);
   if (!(ramp.most_current_A > 0.0)) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{}: the table leaves no current to a ramp in air of {:.0f} °C at all speeds up to {:.0f} rad/s; use a lower "
-                              "--ambient or --to c_header",
-                              controller, derating.options.hottest_ambient_C, derating.rules.most_speed_rad_per_s));
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("{}: the table allows no current for a ramp in air of {:.0f} °C at all speeds up to {:.0f} rad/s; use a lower "
+                    "--ambient or --to c_header",
+                    controller, derating.options.hottest_ambient_C, derating.rules.most_speed_rad_per_s));
   }
   return ramp;
 }

@@ -51,7 +51,8 @@ Value read_with_base(const std::filesystem::path& path, int depth = 0) {
     throw bad_input(base->at, "base", fmt::format("is {}; expected the id of a duty in the same folder", to_string(base->kind)));
   }
   if (depth >= kDeepest) {
-    throw bad_input(base->at, "base", "follows on more than four others; does a file name itself?");
+    throw bad_input(base->at, "base",
+                    "refers to a chain of more than four duties, expected at most four; check whether a file refers to itself");
   }
   std::filesystem::path file = path.parent_path() / (base->text.ends_with(".toml") ? base->text : base->text + ".toml");
   if (!std::filesystem::exists(file)) {

@@ -26,7 +26,7 @@ std::string sparse(const ImportReport& report, const RobotName& name) {
     return "";
   }
   return fmt::format(
-      "{}: seen {:.1f} times a second only, so that accelerations are not followed and torques are uncertain; expected {:.0f} or more",
+      "{}: torques are uncertain and accelerations smoothed, because the robot is seen only {:.1f} times a second; expected {:.0f} or more",
       to_string(name), static_cast<double>(robot->points) / robot->seen_s, kFewestSights_Hz);
 }
 
@@ -133,10 +133,9 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
                                            result.player, kLongestAbsence_s, loads.jumps));
   }
   const double all_s = result.wheels.front().duration_s();
-  result.sentences.push_back(
-      fmt::format("{}: {:.0f} s, {:.0f} s of them not seen (taken as standstill); the motion needed more grip than the ground gives in "
-                  "{:.1f} % of the time",
-                  result.player, all_s, loads.unseen_s, 100.0 * result.wheels.front().slip_share));
+  result.sentences.push_back(fmt::format(
+      "{}: {:.0f} s, {:.0f} s of them not seen (taken as standstill); the motion needed more grip than available in {:.1f} % of the time",
+      result.player, all_s, loads.unseen_s, 100.0 * result.wheels.front().slip_share));
   return result;
 }
 

@@ -58,7 +58,7 @@ struct LogBytes::State {
     packed.resize(kChunk);
     zip_open = inflateInit2(&zip, kGzipWindow) == Z_OK;
     if (!zip_open) {
-      throw Failure(ExitCode::bug, "zlib does not start");
+      throw Failure(ExitCode::bug, "zlib cannot be initialized");
     }
   }
 
@@ -76,7 +76,7 @@ struct LogBytes::State {
         zip.avail_in = static_cast<uInt>(read(packed.data(), packed.size()));
         if (zip.avail_in == 0) {
           if (!between_members && broken.empty()) {
-            broken = fmt::format("the packed file ends at its byte {}, before the end of what is packed in it", file_read);
+            broken = fmt::format("the compressed file ends at byte {}, before the end of its data", file_read);
           }
           return false;
         }
@@ -92,7 +92,7 @@ struct LogBytes::State {
       if (result == Z_STREAM_END) {
         between_members = true;
       } else if (result != Z_OK && result != Z_BUF_ERROR) {
-        broken = fmt::format("the packed file is damaged near its byte {} ({}); what follows cannot be unpacked", packed_offset(),
+        broken = fmt::format("the compressed file is damaged near byte {} ({}); the rest cannot be decompressed", packed_offset(),
                              zip.msg != nullptr ? zip.msg : "wrong data");
         break;
       }

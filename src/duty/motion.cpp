@@ -357,13 +357,12 @@ void MotionTrack::for_each(double rate_Hz, const std::function<void(const Motion
 std::string to_string(const SmoothingReport& r) {
   const auto channel = [](const ChannelReport& c, std::string_view name, std::string_view unit) {
     // A share says little where there is hardly anything to take a share of.
-    const std::string trust =
-        c.noise_share < kMostlyNoise_share
-            ? fmt::format("about {:.1f} % of the squared acceleration is noise", 100.0 * c.noise_share)
-            : fmt::format("the acceleration is too small to stand out from the noise, which makes at most {:.2g} {}/s² rms of it",
-                          c.acceleration_noise_m_or_rad_per_s2, unit);
+    const std::string trust = c.noise_share < kMostlyNoise_share
+                                  ? fmt::format("about {:.1f} % of the squared acceleration is noise", 100.0 * c.noise_share)
+                                  : fmt::format("the acceleration is below the noise, which is at most {:.2g} {}/s² rms",
+                                                c.acceleration_noise_m_or_rad_per_s2, unit);
     return fmt::format(
-        "{}: bandwidth {:.1f} Hz (-3 dB; {:.1f} Hz during the {:.0f} % of the time in which nothing but noise is seen), noise {:.1f} m{}, "
+        "{}: bandwidth {:.1f} Hz (-3 dB; {:.1f} Hz during the {:.0f} % of the time that shows only noise), noise {:.1f} m{}, "
         "{}, {} outliers ignored",
         name, c.bandwidth_Hz, c.quiet_bandwidth_Hz, 100.0 * c.quiet_share, 1e3 * c.noise_m_or_rad, unit, trust, c.outliers);
   };

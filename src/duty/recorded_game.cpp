@@ -56,8 +56,9 @@ Failure not_a_game(const std::filesystem::path& file, std::string_view head) {
   const std::array<std::string, 2> known{"SSL_LOG_FILE", "t_s,team,robo"};
   const std::string begin = printable(head.substr(0, 12));
   const std::string meant = did_you_mean(begin, known);
-  return bad_input({file.string()}, "",
-                   fmt::format("is no recorded game: it begins with \"{}\"{} Expected {}", begin, meant.empty() ? "." : meant, expected));
+  return bad_input(
+      {file.string()}, "",
+      fmt::format("is not a recorded game: it begins with \"{}\"{} Expected {}", begin, meant.empty() ? "." : meant, expected));
 }
 
 const LogType& log_type(const std::filesystem::path& file, const std::string& format) {
@@ -130,16 +131,16 @@ std::vector<std::string> sentences(const ImportReport& r) {
   add(counted(r.merged, "detections joined with those of another camera"));
   add(counted(r.doubled, "detections of a robot that one frame holds twice left out"));
   add(counted(r.outliers, "detections left out: too far from where the robot can be"));
-  add(counted(r.implausible, "detections left out: no number, no such robot, outside any field, or not in sight"));
+  add(counted(r.implausible, "detections left out: not a number, no such robot, outside any field, or not in sight"));
   add(counted(r.out_of_order, "detections left out: not after the one before"));
   add(counted(r.bridged_gaps, fmt::format("gaps up to {} s bridged", kLongestBridge_s)));
   add(counted(r.cuts, fmt::format("gaps longer than {} s: tracks cut there", kLongestBridge_s)));
-  add(counted(r.teleports, "times a robot went on elsewhere: tracks cut there"));
+  add(counted(r.teleports, "times a robot reappeared elsewhere: tracks cut there"));
   add(counted(r.short_segments, "track segments left out because they are too short"));
   add(counted(r.clock_jumps, "jumps of the clock: all tracks cut there"));
-  add(counted(r.frames_out_of_time, "frames left out: time of capture that no other frame confirms"));
+  add(counted(r.frames_out_of_time, "frames left out: no other frame confirms their time of capture"));
   if (r.full_at_s) {
-    add(fmt::format("points from {:.0f} s on are not used: they are more than fit into memory; split the log", *r.full_at_s));
+    add(fmt::format("points from {:.0f} s on are not used, because they do not fit into memory; split the log", *r.full_at_s));
   }
   if (r.truncated_at) {
     add(fmt::format("the log ends inside a message that begins at byte {}; what came before is used", *r.truncated_at));

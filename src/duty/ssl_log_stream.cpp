@@ -71,7 +71,7 @@ SslLogStream::SslLogStream(LogBytes& bytes, const std::filesystem::path& file, L
   const std::string_view head = bytes_.peek(kHeader);
   if (head.size() < kHeader || !head.starts_with(kSslMagic)) {
     throw bad_input({file.string()}, "",
-                    fmt::format("is no SSL log: its first {} bytes are not \"{}\" and a version{}", kHeader, kSslMagic,
+                    fmt::format("is not an SSL log: its first {} bytes are not \"{}\" and a version{}", kHeader, kSslMagic,
                                 bytes_.broken().empty() ? "" : "; " + bytes_.broken()));
   }
   const auto version = static_cast<std::int32_t>(big_endian(head, kSslMagic.size(), 4));
@@ -148,7 +148,7 @@ std::optional<SslRecord> SslLogStream::next() {
       return std::nullopt;
     }
     if (idle > kLongestDamage) {
-      events_.problem(last_given_, fmt::format("nothing of use in the {} bytes from here on; the rest of the log is not read", idle));
+      events_.problem(last_given_, fmt::format("no usable message in the {} bytes from here on; the rest of the log is not read", idle));
       return std::nullopt;
     }
     if (head.size() < kHeader) {

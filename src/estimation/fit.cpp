@@ -198,7 +198,7 @@ class Fitting {
     }
     if (!std::isfinite(candidates.front().cost)) {
       throw Failure(ExitCode::cannot_answer,
-                    "no start of the fit leads to a model whose temperatures stay within reason; are the units of the heat inputs right?");
+                    "no start of the fit leads to a model with plausible temperatures; check the units of the heat inputs");
     }
     theta_ = candidates.front().theta;
     starts_ = candidates.front().starts;

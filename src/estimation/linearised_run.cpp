@@ -141,8 +141,8 @@ LinearisedRun named(const MeasuredRun& run, const Make& make) {
     return make();
   } catch (const Failure& failure) {
     throw Failure(failure.code(),
-                  fmt::format("{}: {}; is a column of the log in another unit (milliamperes, a sensor's wrong gain), or a resistance of "
-                              "the model many times what it is? `heatsoak log inspect` shows the log, `heatsoak lint` the motor",
+                  fmt::format("{}: {}; check the units of the log's columns (milliamperes, a sensor's gain) and the resistances of the "
+                              "model; `heatsoak log inspect` shows the log, `heatsoak lint` checks the motor",
                               run.name, failure.message()));
   }
 }

@@ -52,11 +52,9 @@ Eigen::VectorXd without_gaps(Eigen::VectorXd values) {
 
 std::string column_lacking(const std::string& column, std::span<const Recording> recordings) {
   const auto has_it = [&](const Recording& each) { return each.time_s.size() > 1 && columns_along(each, each.time_s).contains(column); };
-  return column.empty() || std::ranges::all_of(recordings, has_it) ? std::string()
-                                                                   : fmt::format(
-                                                                         "not every log has a column {} beside the signals of its own that "
-                                                                         "a model knows: there the hottest of the curve over it is taken",
-                                                                         column);
+  return column.empty() || std::ranges::all_of(recordings, has_it)
+             ? std::string()
+             : fmt::format("the hottest value of the curve is used in logs without a column {}, which not every log has", column);
 }
 
 std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording, const std::vector<double>& time_s) {

@@ -73,7 +73,7 @@ class Builder {
       const Channel* const channel = recording.find(place.key);
       const bool is_taken = std::ranges::find(sensors_, place.node, &Sensor::node) != sensors_.end();
       if (has_values(channel) && !is_taken && is_stuck(*channel)) {
-        all_.notes.push_back(fmt::format("{}: {} shows the same value throughout and is taken as no sensor", recording.name, place.key));
+        all_.notes.push_back(fmt::format("{}: {} is not used as a sensor, because its value never changes", recording.name, place.key));
       } else if (has_values(channel) && !is_taken) {
         Sensor& sensor = sensors_.emplace_back(Sensor{std::string(place.key), std::string(place.node)});
         std::ranges::copy_if(options.faults, std::back_inserter(sensor.faults),
@@ -100,7 +100,7 @@ class Builder {
     if (all_.runs.empty()) {
       throw Failure(
           ExitCode::cannot_answer,
-          fmt::format("{}: no stretch of {} rows or more has temperatures and all of the heat inputs: {}; see `heatsoak log inspect {}`",
+          fmt::format("{}: no interval of {} rows or more has temperatures and all heat inputs: {}; see `heatsoak log inspect {}`",
                       recording_.name, kLeastSamples, fmt::join(reasons_of_loss(), ", "), recording_.file.string()));
     }
     constexpr double kMostUnused_share = 0.1;
@@ -111,7 +111,7 @@ class Builder {
     }
     if (all_.runs.size() > 1) {
       all_.notes.push_back(
-          fmt::format("{} is taken as {} runs: in between, heat or surroundings are not known", recording_.name, all_.runs.size()));
+          fmt::format("{} is split into {} runs: heat or ambient temperature is unknown between them", recording_.name, all_.runs.size()));
     }
     set_noise();
     return std::move(all_);
@@ -149,8 +149,7 @@ class Builder {
       }
     }
     if (!rows_.has_surroundings() && std::isnan(options_.ambient_C)) {
-      lacking.push_back(
-          {{recording_.file.string()}, "ambient_C", "the log has no temperature of the surroundings; state it with --ambient 25degC"});
+      lacking.push_back({{recording_.file.string()}, "ambient_C", "the log has no ambient temperature; state it with --ambient 25degC"});
     }
     if (sensors_.empty()) {
       lacking.push_back({{recording_.file.string()}, "winding_C", "the log has no temperature of winding, stator or housing"});
@@ -164,7 +163,7 @@ class Builder {
     std::vector<std::string> reasons;
     const auto runs = recording_.runs();
     if (runs.size() > 1) {
-      reasons.push_back(fmt::format("gaps split its {} rows into {} runs ([runs] longest_gap of a mapping says what counts as one)",
+      reasons.push_back(fmt::format("gaps split its {} rows into {} runs ([runs] longest_gap of a mapping sets what counts as a gap)",
                                     recording_.rows(), runs.size()));
     }
     const auto tell = [&](std::string_view key, auto&& is_lacking) {
@@ -179,13 +178,13 @@ class Builder {
     for (const Signal signal : options_.needed) {
       tell(column_of(signal), [&](std::size_t row) { return std::isnan(quantity_of(rows_.at(row), signal)); });
     }
-    tell("temperature of the surroundings within a minute", [&](std::size_t row) { return std::isnan(rows_.at(row).ambient_C); });
+    tell("ambient temperature within a minute", [&](std::size_t row) { return std::isnan(rows_.at(row).ambient_C); });
     tell("temperature of winding or stator", [&](std::size_t row) { return !is_sampled(row); });
     if (reasons.empty()) {
       const double whole_s = recording_.time_s.back() - recording_.time_s.front();
       reasons.push_back(all_.runs.empty() ? fmt::format("its {} s make fewer than {} intervals of {} s", significant(whole_s, 2),
                                                         kLeastSamples - 1, significant(options_.longest_step_s, 2))
-                                          : std::string("stretches are too short"));
+                                          : std::string("intervals are too short"));
     }
     return reasons;
   }

@@ -15,6 +15,7 @@ bool may_turn_within_rows(const MeasuredRun& run);
 MeasuredRun turning_within_rows(MeasuredRun run);
 
 inline constexpr std::string_view kTurningRowsReason =
-    "speed changes its sign from row to row: it is interpolated linearly within rows, because that has the larger evidence in these runs";
+    "the speed is interpolated linearly within rows, because it changes its sign from row to row and this has the larger evidence in these "
+    "runs";
 
 }  // namespace heatsoak

@@ -83,7 +83,7 @@ void add_places(Words& words, const std::string& c, const std::string& cpp) {
 std::string limitations(const Robot& robot, const Derating& derating, const std::vector<std::string>& notes) {
   std::string text = fmt::format(
       "- The thermal guard is computed from the files, not measured on this robot: {} thermal data of the motor. Air up to {:.0f} °C.\n"
-      "- The example has run on no board. Its default board functions have no sensors, so the core keeps all bridges open.\n",
+      "- The example has not been run on a board. Its default board functions have no sensors, so the core keeps all bridges open.\n",
       derating.data_quality, derating.rules.hottest_ambient_C);
   text += std::isfinite(robot.current_limit_A)
               ? ""
@@ -144,21 +144,21 @@ std::vector<std::string> notes_on(const Robot& robot, const Motor& motor, const 
   const Observer& observer = derating.observer;
   if (observer.uses(firmware::vehicle_speed)) {
     notes.push_back(
-        fmt::format("{} depends on the robot's speed through the air, which the core does not know: it takes the speed that heats most, "
-                    "still air where wind cools",
+        fmt::format("{} depends on the robot's speed through the air, which the core does not know: it uses the speed with the most "
+                    "heating, still air if wind cools",
                     effects_with(motor, Signal::vehicle_speed)));
   }
   if (observer.uses(firmware::neighbour)) {
-    notes.push_back(fmt::format("{} depends on the motors beside it: the core takes the hottest of the other wheels' guards",
+    notes.push_back(fmt::format("{} depends on the motors beside it: the core uses the hottest of the other wheels' guards",
                                 effects_with(motor, Signal::neighbour_temperature)));
   }
   if (observer.uses(firmware::age)) {
-    notes.push_back(fmt::format("{} depends on operating hours, which the core does not know: it takes the age that heats most",
+    notes.push_back(fmt::format("{} depends on operating hours, which the core does not know: it uses the age with the most heating",
                                 effects_with(motor, Signal::age)));
   }
   for (const MotorEffect& effect : motor.effects) {
     if (!effect.column.empty()) {
-      notes.push_back(fmt::format("{} goes with {} of the logs, which the core does not know: it takes the value that heats most",
+      notes.push_back(fmt::format("{} depends on {} of the logs, which the core does not know: it uses the value with the most heating",
                                   effect.name, effect.column));
     }
   }
@@ -167,7 +167,7 @@ std::vector<std::string> notes_on(const Robot& robot, const Motor& motor, const 
                                 to_string(derating.default_spreads)));
   }
   for (const auto& [key, value] : motor.assumed) {
-    notes.push_back(fmt::format("the guard holds only where {} is {}, as --condition says", key, value));
+    notes.push_back(fmt::format("the guard is valid only if {} is {}, as stated with --condition", key, value));
   }
   return notes;
 }

@@ -153,7 +153,8 @@ std::string friction_note(const Robot& robot) {
     return {};
   }
   return fmt::format(
-      "feed-forward of friction is off, so the wheels lag until their integrators have found it: {} has no [friction]; measure it with "
+      "feed-forward of friction is off, so the wheels lag until their integrators have compensated it: {} has no [friction]; measure it "
+      "with "
       "`heatsoak friction`",
       robot.file.filename().string());
 }

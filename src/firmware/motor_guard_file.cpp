@@ -38,7 +38,7 @@ std::string arrays(const robot_core::GuardModel& guard) {
                      array("kStator_C", table.stator_C.points, table.stator_C.count) +
                      array("kWinding_C", table.winding_C.points, table.winding_C.count) +
                      "// Square of the allowed current in A^2 by speed, then stator, then winding.\n" +
-                     array("kSquare_A2", table.square_A2, squares) + "\n// What a signal may be of which nothing is known.\n";
+                     array("kSquare_A2", table.square_A2, squares) + "\n// Possible values of an unknown signal.\n";
   for (int i = 0; i < robot_core::kGuardSignals; ++i) {
     if (const robot_core::PlausibleRange& plausible_range = guard.plausible_range[i]; plausible_range.is_used) {
       text += array(fmt::format("kPossible_{}", name_of(static_cast<firmware::Signal>(i))), plausible_range.possible,
@@ -80,7 +80,9 @@ std::string effects(const Derating& derating) {
   for (const ActingEffect& effect : derating.effects) {
     text += fmt::format("//   {}{}: {}{}\n", in_one_line(effect.name), effect.name == effect.type ? "" : fmt::format(" ({})", effect.type),
                         in_one_line(effect.equation),
-                        effect.column.empty() ? "" : fmt::format("; over {} of the logs, at its hottest", in_one_line(effect.column)));
+                        effect.column.empty()
+                            ? ""
+                            : fmt::format("; depends on {} of the logs, evaluated at its hottest value", in_one_line(effect.column)));
   }
   return text;
 }
@@ -97,11 +99,11 @@ std::string guarantee(const Derating& derating) {
       derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),
       checked.winding_most_C, confidence_text(derating));
   if (!derating.default_spreads.empty()) {
-    text += fmt::format("// The motor's file gives no tolerance for these values; the drawn motors have defaults by origin:\n//   {}\n",
+    text += fmt::format("// The motor's file gives no tolerance for these values; the drawn motors use defaults by origin:\n//   {}\n",
                         to_string(derating.default_spreads));
   }
   for (const auto& [key, value] : derating.assumed) {
-    text += fmt::format("// ONLY WHERE {} is {}: that was stated (--condition).\n", in_one_line(key), in_one_line(value));
+    text += fmt::format("// VALID ONLY IF {} is {}: stated with --condition.\n", in_one_line(key), in_one_line(value));
   }
   return text;
 }

@@ -91,7 +91,7 @@ std::string suspicion_of_wheel(const SteadyParts& steady, const WheelFriction& w
   }
   const double ratio = damping / back_emf_V_s_per_rad;
   if (!wheel.damping_is_given && (ratio < kLeastOfBackEmf_ratio || ratio > kMostOfBackEmf_ratio)) {
-    return fmt::format("d of wheel {} is {} times the motor's back-EMF, where 1 to 2 is usual: is its speed or modulation in another unit?",
+    return fmt::format("d of wheel {} is {} times the motor's back-EMF, expected 1 to 2 times: is its speed or modulation in another unit?",
                        number, significant(ratio, 2));
   }
   return {};
@@ -104,15 +104,14 @@ std::vector<std::string> friction_suspicions(const SteadyParts& steady, const Fr
   std::vector<std::string> found;
   if (const double off_deg = direction_off_deg(steady, kinematics); off_deg > kFarOff_deg) {
     found.push_back(
-        fmt::format("the direction of travel is {:.0f}° off what the wheels' speeds amount to: are the wheels in another order than in the "
-                    "robot's file, is an angle in degrees, or of another frame?",
+        fmt::format("the direction of travel is {:.0f}° off the direction that follows from the wheels' speeds: are the wheels in another "
+                    "order than in the "
+                    "robot's file, or is an angle in degrees or in another frame?",
                     off_deg));
   }
   if (const double share = contradiction_share(steady, kinematics); share > kContradicting_share) {
-    found.push_back(
-        fmt::format("{:.0f} % of the wheels' speeds fit to no motion of the robot: are they in another order, or of another sign, than in "
-                    "the robot's file?",
-                    100.0 * share));
+    found.push_back(fmt::format(
+        "{:.0f} % of the wheels' speeds fit no motion of the robot: do their order or signs differ from the robot's file?", 100.0 * share));
   }
   std::vector<double> dampings;
   for (const WheelFriction& wheel : fit.wheels) {
@@ -131,8 +130,8 @@ std::vector<std::string> friction_suspicions(const SteadyParts& steady, const Fr
     if (std::isfinite(ratio) && (all([&](double each) { return each < kLeastOfBackEmf_ratio * back_emf_V_s_per_rad; }) ||
                                  all([&](double each) { return each > kMostOfBackEmf_ratio * back_emf_V_s_per_rad; }))) {
       found.push_back(
-          fmt::format("d is {} times the motor's back-EMF, where 1 to 2 is usual: is a speed in rpm or that of the wheel in place of its "
-                      "motor, a modulation in percent, a voltage in millivolts or too high, or the motor another one?",
+          fmt::format("d is {} times the motor's back-EMF, expected 1 to 2 times: is a speed in rpm or that of the wheel instead of its "
+                      "motor, a modulation in percent, a voltage in millivolts or too high, or is it another motor?",
                       significant(ratio, 2)));
     }
   }

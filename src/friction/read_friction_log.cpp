@@ -68,7 +68,7 @@ class ColumnsOfRobot {
         log.voltage_V[wheel] = of_current(*current, log.wheel_speed_rad_per_s[wheel]);
       } else if (needs_.voltage) {
         missing(fmt::format("wheel_pwm_ratio_{}", wheel + 1),
-                current ? "modulation; a current serves in its place only where --motor says the motor's resistance and torque constant"
+                current ? "modulation; a current can replace it only if --motor gives the motor's resistance and torque constant"
                         : "modulation (or wheel_voltage_V, wheel_current_A)");
       }
     }
@@ -77,8 +77,8 @@ class ColumnsOfRobot {
   Column modulated(const Column& modulation) {
     const Column* battery = column("battery_V") ? column("battery_V") : column("bus_V");
     note(battery ? "voltage: modulation × battery voltage"
-                 : fmt::format("voltage: modulation × {} V, the robot's nominal battery voltage; the log has none, and every value in V "
-                               "scales with it, beyond its interval",
+                 : fmt::format("voltage: modulation × {} V, the robot's nominal battery voltage, because the log has none; every value in "
+                               "V scales with it, beyond its interval",
                                significant(robot_.battery_V, 3)));
     Column voltage_V = modulation;
     for (std::size_t row = 0; row < voltage_V.size(); ++row) {
@@ -103,8 +103,8 @@ class ColumnsOfRobot {
 
   Column of_current(const Column& current, const Column& wheel_speed_rad_per_s) {
     const bool sizes_only = has_sizes_only();
-    note(sizes_only ? "voltage: from currents without sign, that of the speed, by the motor's resistance and torque constant"
-                    : "voltage: from currents, by the motor's resistance and torque constant");
+    note(sizes_only ? "voltage: from currents without sign (that of the speed is used), with the motor's resistance and torque constant"
+                    : "voltage: from currents, with the motor's resistance and torque constant");
     Column voltage_V(current.size());
     for (std::size_t row = 0; row < current.size(); ++row) {
       const double speed_rad_per_s = wheel_speed_rad_per_s[row];
@@ -137,7 +137,7 @@ class ColumnsOfRobot {
     }
     if (log.yaw_rad.empty()) {
       diagnostics_.add({recording_.file.string(), 1, 1}, "yaw_rad",
-                       "is missing: directions on the field are known, but not how the robot stands on it");
+                       "is missing: directions on the field are known, but not the orientation of the robot");
       diagnostics_.throw_if_any();
     }
     for (std::size_t row = 0; row < direction_rad.size(); ++row) {
@@ -180,7 +180,7 @@ class ColumnsOfRobot {
       missing(needs_.direction == TravelDirection::commanded ? "heading_rad" : "vx_m_per_s", "direction of travel");
       diagnostics_.throw_if_any();
     }
-    note("direction of travel: of the wheels' speeds");
+    note("direction of travel: from the wheels' speeds");
     return {};
   }
 

@@ -59,8 +59,7 @@ bool is_header_of(const std::string& line, const std::string& table) {
 }
 
 Failure other_form(const Robot& robot, const std::string& table) {
-  return bad_input({robot.file.string()}, table,
-                   fmt::format("is not written as a table [{}], so that it cannot be updated in place", table));
+  return bad_input({robot.file.string()}, table, fmt::format("is not written as a table [{}], so it cannot be updated in place", table));
 }
 
 /// Removes [friction.heading], its wheels and the comments before it; keeps comments that belong to the next table.
@@ -159,13 +158,13 @@ void note_what_is_cut(const FrictionFit& fit, const DriveConstants& drive, std::
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     const WheelFriction& wheel = fit.wheels[i];
     if (wheel.constant_V.value < drag_V) {
-      notes.push_back(
-          fmt::format("wheel {}: the drag of the motor alone, {:.3f} V by its data sheet, is more than b; 0 is written", i + 1, drag_V));
+      notes.push_back(fmt::format(
+          "0 is written for b of wheel {}: the drag of the motor alone, {:.3f} V by its data sheet, is larger than b", i + 1, drag_V));
     }
     if (!wheel.damping_is_given && wheel.damping_V_s_per_rad.value < back_emf_V_s_per_rad) {
       notes.push_back(
-          fmt::format("wheel {}: the back-EMF of the motor alone, {:.4f} V s/rad by its data sheet, is more than d; 0 is written", i + 1,
-                      back_emf_V_s_per_rad));
+          fmt::format("0 is written for d of wheel {}: the back-EMF of the motor alone, {:.4f} V s/rad by its data sheet, is larger than d",
+                      i + 1, back_emf_V_s_per_rad));
     }
   }
 }
@@ -188,8 +187,8 @@ std::string with_measured_friction(const std::string& text, const Robot& robot, 
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     if (!fit.wheels[i].is_learned() || std::isnan(fit.wheels[i].constant_V.value)) {
       throw Failure(ExitCode::cannot_answer,
-                    fmt::format("wheel {} was not learned over the directions, so that no robot file is written: {}", i + 1,
-                                fit.wheels[i].is_learned() ? "its logs only turn on the spot" : fit.wheels[i].problem));
+                    fmt::format("no robot file is written, because the friction of wheel {} over the directions is not identifiable: {}",
+                                i + 1, fit.wheels[i].is_learned() ? "its logs only turn on the spot" : fit.wheels[i].problem));
     }
   }
   note_what_is_cut(fit, drive, notes);

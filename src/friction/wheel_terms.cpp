@@ -116,7 +116,7 @@ ChosenTerms chosen_terms(const std::vector<WheelPoint>& points, int wheel, const
   }
   if (!is_identifiable(design(points, wheel, terms), terms, WheelTerm::damping)) {
     if (!travels || std::isnan(settings.known_damping_V_s_per_rad)) {
-      chosen.problem = "all its legs have one speed, so that damping and friction are indistinguishable; drive at two speeds or more";
+      chosen.problem = "all its legs have one speed, so damping and friction are indistinguishable; drive at two speeds or more";
       return chosen;
     }
     std::erase(terms, WheelTerm::damping);

@@ -67,7 +67,7 @@ Motor under(Motor motor, const std::map<std::string, std::string>& conditions) {
     const bool is_key = std::ranges::any_of(there, [start = key + "="](const std::string& each) { return each.starts_with(start); });
     if (!is_key) {
       throw Failure(ExitCode::bad_input,
-                    there.empty() ? fmt::format("condition {}={}: no effect of {} is under a condition", key, value, motor.id)
+                    there.empty() ? fmt::format("condition {}={}: no effect of {} depends on a condition", key, value, motor.id)
                                   : fmt::format("condition {}={}: expected one of {}'s: {}", key, value, motor.id, fmt::join(there, ", ")));
     }
   }

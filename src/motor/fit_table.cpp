@@ -24,7 +24,7 @@ Eigen::MatrixXd read_correlation(Reader& table, std::size_t count) {
   Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(size, size);
   const std::vector<std::string> rows = table.texts("correlation", Need::required);
   if (rows.size() != count) {
-    table.problem("correlation", fmt::format("has {} rows, expected {}: one per figure of the fit", rows.size(), count));
+    table.problem("correlation", fmt::format("has {} rows, expected {}: one per fitted parameter", rows.size(), count));
     return correlation;
   }
   for (Eigen::Index i = 0; i < size; ++i) {
@@ -48,7 +48,7 @@ Eigen::MatrixXd read_correlation(Reader& table, std::size_t count) {
   }
   constexpr double kRounding = 1e-3;
   if (size > 0 && Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation).eigenvalues().minCoeff() < -kRounding) {
-    table.problem("correlation", "is no correlation matrix: it has a negative eigenvalue");
+    table.problem("correlation", "is not a correlation matrix: it has a negative eigenvalue");
   }
   return correlation;
 }
@@ -68,7 +68,7 @@ std::optional<ForecastBand> read_band(Reader& table) {
   const auto stator = share("forecast_unknown_heat_stator", "rms of slow unknown heat per rms heat of a run");
   const auto heat = share("forecast_heat_factor", "standard deviation of the logarithm of a factor on all heat of a run");
   const auto time_s =
-      table.quantity({"forecast_time_scale", "s", Range::positive(), "over which the unknown heat forgets"}, Need::optional);
+      table.quantity({"forecast_time_scale", "s", Range::positive(), "correlation time of the unknown heat"}, Need::optional);
   const auto width = table.quantity({"forecast_width", "", Range::between(0.01, 100.0), "factor on the band"}, Need::optional);
   if (!winding || !stator || !heat || !time_s || !width) {
     return std::nullopt;
@@ -114,7 +114,7 @@ std::string training_text(const TrainingRange& range) {
 
 std::string band_text(const ForecastBand& band) {
   return fmt::format(
-      "# of forecasts of other runs: rms of slow unknown heat per rms heat of the run, and a factor on all heat\n"
+      "# for forecasts of other runs: rms of slow unknown heat per rms heat of the run, and a factor on all heat\n"
       "forecast_unknown_heat_winding = \"{}\"\nforecast_unknown_heat_stator = \"{}\"\nforecast_time_scale = \"{} s\"\n"
       "forecast_heat_factor = \"{}\"\nforecast_width = \"{}\"\n",
       significant(band.unknown_heat_share[0], 2), significant(band.unknown_heat_share[1], 2), significant(band.time_scale_s, 2),
@@ -141,12 +141,14 @@ MotorFit read_fit(Reader& table, std::span<const std::string> figures) {
     }
     const std::string flux = fmt::format("latent_flux_{}", node);
     fit.latent_flux_W.push_back(
-        table.quantity({flux, "W", Range::between(0.0, kLargest_W), "rms of the heat that stayed unknown"}, Need::optional).value_or(0.0));
+        table.quantity({flux, "W", Range::between(0.0, kLargest_W), "rms of the unknown heat"}, Need::optional).value_or(0.0));
   }
   fit.latent_flux_time_scale_s =
-      table.quantity({"latent_flux_time_scale", "s", Range::positive(), "over which it forgets"}, Need::optional).value_or(0.0);
+      table.quantity({"latent_flux_time_scale", "s", Range::positive(), "its correlation time"}, Need::optional).value_or(0.0);
   fit.free_run_error_K =
-      table.quantity({"free_run_error", "K", Range::between(1e-3, 20.0), "of the free runs that decided the figures"}, Need::optional)
+      table
+          .quantity({"free_run_error", "K", Range::between(1e-3, 20.0), "rms error of the free runs that determined the values"},
+                    Need::optional)
           .value_or(0.0);
   fit.training = read_training(table);
   fit.band = read_band(table);
@@ -159,7 +161,7 @@ std::string to_toml(const MotorFit& fit) {
   text += fmt::format("motor = \"{}\"\n", fit.motor);
   text += fmt::format("runs = [\"{}\"]\n", fmt::join(fit.runs, "\", \""));
   text += fmt::format("figures = [\"{}\"]\n", fmt::join(fit.figures, "\", \""));
-  text += "# of the figures' logarithms: lower triangle\ncorrelation = [\n";
+  text += "# of the parameters' logarithms: lower triangle\ncorrelation = [\n";
   for (Eigen::Index i = 0; i < fit.correlation.rows(); ++i) {
     std::vector<std::string> row;
     for (Eigen::Index j = 0; j < i; ++j) {

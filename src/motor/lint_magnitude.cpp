@@ -59,7 +59,7 @@ void heat_capacities(const Motor& motor, Findings& findings) {
   if (winding_J_per_K >= stator_J_per_K) {
     findings.error("thermal_time_constant_winding",
                    fmt::format("the winding would store {} and the stator {}, expected more in the stator, which is heavier; "
-                               "are the figures of winding and stator swapped?",
+                               "are the values of winding and stator swapped?",
                                shown(winding_J_per_K, "J/K"), shown(stator_J_per_K, "J/K")));
   }
 }
@@ -106,7 +106,7 @@ void rotor_inertia(const Motor& motor, Findings& findings) {
                              shown_inertia(v.rotor_inertia_kg_m2), shown(1e3 * v.mass_kg, "g"), shown(1e3 * v.diameter_m, "mm"),
                              shown_inertia(kLeastExternalInertia * ring_kg_m2),
                              is_external ? "check it, and whether rotor = \"external\" is right"
-                                         : "check it, or say rotor = \"internal\" if this flat motor's rotor runs inside"));
+                                         : "check it, or set rotor = \"internal\" if this flat motor's rotor runs inside"));
   }
 }
 
@@ -119,7 +119,7 @@ void limits(const Motor& motor, Findings& findings) {
                      fmt::format("{} {} is not below the {} {}; check both", lower, shown(lower_C, "degC"), upper, shown(upper_C, "degC")));
     }
   };
-  compare_temperature("winding_limit", kSheetAmbient_C, "the ambient temperature of nominal figures", v.winding_limit_C, "winding limit");
+  compare_temperature("winding_limit", kSheetAmbient_C, "the ambient temperature of nominal values", v.winding_limit_C, "winding limit");
   compare_temperature("ambient_max", v.ambient_max_C, "highest ambient temperature", v.winding_limit_C, "winding limit");
   compare_temperature("ambient_min", v.ambient_min_C, "lowest ambient temperature", v.ambient_max_C, "highest");
   if (v.stator_limit_C > v.winding_limit_C) {

@@ -55,9 +55,9 @@ void confirmations(const Motor& motor, Findings& findings) {
                               : Bounds{figure.value - kSame * std::abs(figure.value), figure.value + kSame * std::abs(figure.value)};
     for (const Confirmation& other : figure.confirmed_by) {
       if (bounds.excludes(other.value)) {
-        findings.error_at(
-            figure.at, fmt::format("{} is {}, but {} says {}, expected to lie within the figure's tolerance; one of the two is wrong", key,
-                                   figure.printed, other.source, other.printed));
+        findings.error_at(figure.at,
+                          fmt::format("{} is {}, but {} says {}, expected agreement within the tolerance; one of the two is wrong", key,
+                                      figure.printed, other.source, other.printed));
       }
     }
   });
@@ -72,9 +72,9 @@ void estimates(const Motor& motor, Findings& findings) {
     const std::string found = fmt::format("{} is estimated ({})", each.spec.key, shown(figure->second.value, each.spec.unit));
     if (each.is_thermal) {
       findings.note(each.spec.key,
-                    found + ": the temperature rests on it, expected a figure of the sheet; measure it or calibrate before you rely on it");
+                    found + ": the temperature depends on it, expected a data sheet value; measure it or calibrate before you rely on it");
     } else if (each.spec.key.starts_with("nominal_")) {
-      findings.note(each.spec.key, found + ": the nominal point rests on it, expected a figure of the sheet; take it from there");
+      findings.note(each.spec.key, found + ": the nominal point depends on it, expected a data sheet value; take it from there");
     }
   }
 }
@@ -82,8 +82,8 @@ void estimates(const Motor& motor, Findings& findings) {
 void spreads(const Motor& motor, Findings& findings) {
   for (const auto& [key, figure] : motor.figures) {
     if (!is_agreed(key) && !figure.spread) {
-      findings.error(
-          key, fmt::format("{} of {} has neither tolerance nor range; expected one of both (see motor_db/README.md)", key, figure.printed));
+      findings.error(key, fmt::format("{} of {} has neither tolerance nor range; expected one of the two (see motor_db/README.md)", key,
+                                      figure.printed));
     }
   }
 }
@@ -92,10 +92,9 @@ void spreads(const Motor& motor, Findings& findings) {
 void exact_values(const Motor& motor, Findings& findings) {
   for_each_parameter(motor, [&](const std::string& key, const ParameterValue& figure) {
     if (is_exact(figure) && !is_agreed(key)) {
-      findings.error_at(figure.at,
-                        fmt::format("{} of {} has a tolerance or range of zero, expected how far a real motor may be from it; state that, "
-                                    "or leave tolerance and range out and a default by its origin is assumed",
-                                    key, figure.printed));
+      findings.error_at(figure.at, fmt::format("{} of {} has a tolerance or range of zero, expected the spread of real motors; state that, "
+                                               "or leave tolerance and range out to assume a default by its origin",
+                                               key, figure.printed));
     }
   });
 }
@@ -107,10 +106,10 @@ void narrow_values(const Motor& motor, Findings& findings) {
     const auto percent = [&](double bound) { return 100.0 * std::abs(bound / figure.value - 1.0); };
     const bool is_measured = figure.origin == Origin::measured;
     const std::string message = fmt::format(
-        "{} of {} ({}) has a spread of -{} to +{} %, expected at least -{} to +{} % of a value of this origin; {}", each.key,
+        "{} of {} ({}) has a spread of -{} to +{} %, expected at least -{} to +{} % for a value of this origin; {}", each.key,
         figure.printed, to_string(figure.origin), significant(percent(figure.spread->low), 2), significant(percent(figure.spread->high), 2),
         significant(percent(each.least.low), 2), significant(percent(each.least.high), 2),
-        is_measured ? "that is assumed" : "state that, or leave tolerance and range out and a default by its origin is assumed");
+        is_measured ? "this spread is assumed" : "state that, or leave tolerance and range out to assume a default by its origin");
     is_measured ? findings.note_at(figure.at, message) : findings.error_at(figure.at, message);
   }
 }
@@ -119,8 +118,8 @@ void heat_counted_twice(const Motor& motor, Findings& findings) {
   for (const MotorEffect& effect : motor.effects) {
     if (is_loss_of_every_motor(*effect.type)) {
       findings.warning_at(effect.parameters.front().at,
-                          fmt::format("effects.{} is a {}, but the file's own figures already make one, and both are added; expected "
-                                      "none, or effects that the network does not have",
+                          fmt::format("effects.{} is a {}, which the file's own parameters already contain, so that it counts twice; "
+                                      "expected none, or effects that the network does not have",
                                       effect.name, effect.type->name));
     }
   }

@@ -36,7 +36,7 @@ constexpr Range kTemperature = Range::between(-60.0, 400.0);
 
 // clang-format off
 constexpr std::array kSpecs = {
-    MotorParameterSpec{{"nominal_voltage", "V", kVoltage, "supply voltage the nominal figures hold for"}, &MotorValues::nominal_voltage_V, Need::required},
+    MotorParameterSpec{{"nominal_voltage", "V", kVoltage, "supply voltage of the nominal values"}, &MotorValues::nominal_voltage_V, Need::required},
     MotorParameterSpec{{"terminal_resistance", "ohm", kResistance, "of the winding at 25 °C"}, &MotorValues::terminal_resistance_ohm, Need::required, true},
     MotorParameterSpec{{"terminal_inductance", "H", kInductance, "of the winding"}, &MotorValues::terminal_inductance_H},
     MotorParameterSpec{{"torque_constant", "N m/A", kTorqueConstant, "torque per ampere"}, &MotorValues::torque_constant_Nm_per_A, Need::required, true},
@@ -68,7 +68,7 @@ constexpr std::array kSpecs = {
     MotorParameterSpec{{"stator_limit", "degC", kTemperature, "highest permissible stator temperature"}, &MotorValues::stator_limit_C, Need::optional, true},
     MotorParameterSpec{{"ambient_min", "degC", kTemperature, "lowest permissible ambient temperature"}, &MotorValues::ambient_min_C},
     MotorParameterSpec{{"ambient_max", "degC", kTemperature, "highest permissible ambient temperature"}, &MotorValues::ambient_max_C},
-    MotorParameterSpec{{"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "of the winding resistance at 25 °C; copper's 0.0039 1/K where absent"}, &MotorValues::temperature_coefficient_per_K},
+    MotorParameterSpec{{"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "of the winding resistance at 25 °C; 0.0039 1/K (copper) unless given"}, &MotorValues::temperature_coefficient_per_K},
 };
 // clang-format on
 constexpr std::array<std::string_view, 8> kAgreed{"nominal_voltage", "assigned_power", "max_speed",   "pole_pairs",

@@ -43,7 +43,7 @@ std::vector<Entry> entries_of(Reader& table) {
   std::vector<Entry> entries;
   for (auto& [name, reader] : table.named_tables()) {
     if (std::ranges::find(kDatasheetEffects, name) != kDatasheetEffects.end()) {
-      table.problem(name, "is the name of an effect that every motor has; give this one another name and say type = \"…\"");
+      table.problem(name, "is the name of an effect that every motor has; give this one another name and set type = \"…\"");
       continue;
     }
     const std::string type_name = reader.text("type", Need::optional).value_or(name);
@@ -55,11 +55,11 @@ std::vector<Entry> entries_of(Reader& table) {
       continue;
     }
     if (!is_word(name)) {
-      table.problem(name, "is no name for an effect; expected small letters, digits and underscores");
+      table.problem(name, "is not a valid name for an effect; expected small letters, digits and underscores");
       continue;
     }
     if (type && brings_node(*type) && std::ranges::find(kNodes, name) != kNodes.end()) {
-      table.problem(name, fmt::format("is the name of a node, and {} brings one of its own; give it another name and say type = \"{}\"",
+      table.problem(name, fmt::format("is the name of a node, and {} adds a node of its own; give it another name and set type = \"{}\"",
                                       type_name, type_name));
       continue;
     }
@@ -78,8 +78,8 @@ void read_nodes(Entry& entry, const std::vector<std::string>& known, MotorEffect
     if (std::ranges::find(known, effect.nodes.back()) == known.end() ||
         effect.nodes.back() == (brings_node(*entry.type) ? entry.name : "")) {
       const std::vector<std::string> before(known.begin(), known.end() - 1);
-      entry.reader.problem(role.role,
-                           fmt::format("'{}' is no node; expected {} or {}", effect.nodes.back(), fmt::join(before, ", "), known.back()));
+      entry.reader.problem(
+          role.role, fmt::format("'{}' is not a node; expected {} or {}", effect.nodes.back(), fmt::join(before, ", "), known.back()));
     }
   }
 }
@@ -180,7 +180,8 @@ void read_effects(Reader& top, Motor& motor) {
     if (goes_with_column(effect)) {
       effect.column = entry.reader.text("column", Need::required).value_or("");
       if (effect.column.empty()) {
-        entry.reader.problem("column", "is no name; expected that of a column of the logs, with its unit, as \"fan_ratio\"");
+        entry.reader.problem("column",
+                             "is not a column name; expected the name of a column of the logs with its unit, such as \"fan_ratio\"");
       } else if (effect.column.ends_with("_C")) {
         entry.reader.problem("column",
                              fmt::format("'{}' is a temperature; expected driver = \"temperature\" and watched = the node", effect.column));
@@ -188,7 +189,7 @@ void read_effects(Reader& top, Motor& motor) {
       const auto other =
           std::ranges::find_if(effects, [&](const MotorEffect& e) { return !e.column.empty() && e.column != effect.column; });
       if (other != effects.end()) {
-        entry.reader.problem("column", fmt::format("is '{}', and {} goes with '{}'; expected one column in all effects of a motor",
+        entry.reader.problem("column", fmt::format("is '{}', but {} uses '{}'; expected the same column in all effects of a motor",
                                                    effect.column, other->name, other->column));
       }
     }

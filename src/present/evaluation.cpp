@@ -306,7 +306,7 @@ Document evaluation_document(std::span<const MotorEvaluation> results, const Eva
   }
   if (std::ranges::any_of(results, [](const MotorEvaluation& each) { return each.data_quality == "estimated"; })) {
     document.add_note(Severity::note,
-                      "The verdicts rest on estimated thermal values where data is \"estimated\": no maker publishes them "
+                      "The verdicts depend on estimated thermal values where data is \"estimated\": no manufacturer publishes them "
                       "(`heatsoak describe MOTOR` shows each derivation). Calibrate on a bench before you rely on them.");
   }
   add_lines(document.notes, slip_text(context.demand), Severity::note);
@@ -322,13 +322,11 @@ Document evaluation_document(std::span<const MotorEvaluation> results, const Eva
   } else if (results.front().samples > 0) {
     document.add_note(Severity::background, sampling_error(results));
   }
-  document.add_note(
-      Severity::background,
-      "Columns: peak of the winding, nominal [5th…95th percentile]; margin to the nearer limit; winding over time, from ambient to limit; "
-      "P over, share of samples over a limit; reached, time until the first limit; more A, rms current that is left; P interval and p95 "
-      "interval, what other samples "
-      "would give (P: 95 % for all looks at the games together, 97.5 % or more for each). `heatsoak describe "
-      "verdict` defines the verdicts.");
+  document.add_note(Severity::background,
+                    "Columns: peak of the winding, nominal [5th…95th percentile]; margin to the nearer limit; winding over time, from "
+                    "ambient to limit; P over, share of samples over a limit; reached, time until the first limit; more A, remaining rms "
+                    "current; P interval and p95 interval, the range that other samples would give (P: 95 % for all looks at the games "
+                    "together, 97.5 % or more for each). `heatsoak describe verdict` defines the verdicts.");
   return document;
 }
 

@@ -12,15 +12,16 @@ Text headline(const SteadyAnswer& answer) {
   const PeriodicState& periodic = answer.periodic;
   const std::string& id = answer.motor.id;
   if (periodic.destroyed_s) {
-    return {fmt::format("{} is destroyed: thermal runaway within one cycle, {:.0f} °C are passed {:.3g} s after the current comes on.", id,
-                        kDestroyed_C, *periodic.destroyed_s),
-            Tone::bad};
+    return {
+        fmt::format("{} is destroyed: thermal runaway within one cycle, {:.0f} °C are exceeded {:.3g} s after the current is switched on.",
+                    id, kDestroyed_C, *periodic.destroyed_s),
+        Tone::bad};
   }
   if (periodic.runaway) {
     return {fmt::format("{} has no steady state: thermal runaway, it gets hotter from cycle to cycle.", id), Tone::bad};
   }
-  return {fmt::format("{} settles at {:.1f} °C at the highest (winding limit {:.0f} °C, {}).", id, periodic.peak_C[states::winding],
-                      answer.motor.nominal.winding_limit_C, answer.is_over_limit ? "exceeded" : "kept"),
+  return {fmt::format("{} reaches at most {:.1f} °C in the steady state (winding limit {:.0f} °C, {}).", id,
+                      periodic.peak_C[states::winding], answer.motor.nominal.winding_limit_C, answer.is_over_limit ? "exceeded" : "kept"),
           answer.is_over_limit ? Tone::bad : Tone::good};
 }
 

@@ -10,12 +10,11 @@ std::string duration_text(double duration_s) {
 
 std::string slip_text(const WheelDemand& wheel) {
   constexpr double kReported_share = 0.01;
-  return wheel.slip_share < kReported_share
-             ? ""
-             : fmt::format(
-                   "the ground cannot pass on the motion in {:.0f} % of the time: a wheel slides there, and may heat its motor more "
-                   "than is shown (`heatsoak simulate` drives it)\n",
-                   100.0 * wheel.slip_share);
+  return wheel.slip_share < kReported_share ? ""
+                                            : fmt::format(
+                                                  "the motion exceeds the grip in {:.0f} % of the time: a wheel slides there, and may heat "
+                                                  "its motor more than is shown (`heatsoak simulate` includes this)\n",
+                                                  100.0 * wheel.slip_share);
 }
 
 std::string why_infeasible(const MotorEvaluation& motor, const Robot& robot) {

@@ -86,7 +86,7 @@ ChannelSource::ChannelSource(const QuantityMapping& mapping, std::span<const std
     }
     if (std::ranges::count(header, mapping.column) > 1) {
       problems.add(mapping.place_of("column"), is_of_mapping ? key + ".column" : key,
-                   fmt::format("'{}' stands twice in the header of {}", mapping.column, log));
+                   fmt::format("'{}' appears twice in the header of {}", mapping.column, log));
       return;
     }
     slot_ = used.slot(*place);

@@ -284,7 +284,7 @@ std::optional<double> bottom_of(std::span<const double> delays_s, const std::vec
 ClockOffset offset_within(double around_s, double reach_s, DelayScan& scan, double noise_K, double period_s) {
   ClockOffset offset;
   if (scan.place_windows(noise_K, std::abs(around_s) + reach_s) < kFewestWindows) {
-    offset.why_not = "the stretches without a gap are too short";
+    offset.why_not = "the intervals without a gap are too short";
     return offset;
   }
   std::vector<double> delays_s;
@@ -305,7 +305,7 @@ ClockOffset offset_within(double around_s, double reach_s, DelayScan& scan, doub
   }
   constexpr double kTooWide_share = 0.25;
   if (!delay_s || found < kParts) {
-    offset.why_not = fmt::format("no delay within ± {} s explains it best", significant(reach_s, 2));
+    offset.why_not = fmt::format("no delay within ± {} s gives a best fit", significant(reach_s, 2));
     return offset;
   }
   const double mean_s = sum_s / kParts;
@@ -372,10 +372,10 @@ std::string early_answer(const ClockOffset& offset, double period_s) {
   constexpr double kAboutOneRow = 0.3;
   const bool is_one_row = std::abs(*offset.delay_s + period_s) < std::max(kAboutOneRow * period_s, offset.delay_uncertainty_s);
   return fmt::format(
-      "{} answers {} before {} changes: the clock of one of them is off; in a mapping give {} and what was logged with it "
-      "clock_offset = \"{:.2g} s\"{}",
+      "{} responds {} before {} changes, so one of their clocks is off; in a mapping give {} and all columns logged with it clock_offset = "
+      "\"{:.2g} s\"{}",
       offset.temperature, shown(offset), offset.heat_input, offset.heat_input, *offset.delay_s,
-      is_one_row ? ", or inputs = \"previous_interval\" where a row's inputs speak of the time before it" : "");
+      is_one_row ? ", or inputs = \"previous_interval\" if a row's inputs describe the interval before it" : "");
 }
 
 std::string late_answer(const ClockOffset& offset, double period_s) {
@@ -383,8 +383,8 @@ std::string late_answer(const ClockOffset& offset, double period_s) {
     return {};
   }
   return fmt::format(
-      "{} follows {} {} late: its sensor lags, or a clock is off (clock_offset of a mapping); figures fitted to the winding (heat "
-      "capacity, time constant, resistance to the stator) take it up, beyond what their intervals say",
+      "{} follows {} {} late: its sensor lags, or a clock is off (clock_offset of a mapping); the values fitted to the winding (heat "
+      "capacity, time constant, resistance to the stator) are biased by more than their intervals",
       offset.temperature, offset.heat_input, shown(offset));
 }
 

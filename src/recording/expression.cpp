@@ -43,7 +43,7 @@ class Rewriter {
       } else if (std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.') {
         number();
       } else if (c == '=' && !is_comparison()) {
-        problem = "'=' changes a value; write == to compare";
+        problem = "'=' is an assignment; write == to compare";
       } else {
         out += c;
         ++at;
@@ -156,7 +156,7 @@ Expression::Expression(std::string_view text, std::span<const std::string> heade
     compiled_->parser.Eval();
     is_ok_ = true;
   } catch (const mu::Parser::exception_type& error) {
-    problems.add(at, key, fmt::format("\"{}\" is no expression: {}", text, error.GetMsg()));
+    problems.add(at, key, fmt::format("\"{}\" is not a valid expression: {}", text, error.GetMsg()));
   }
 }
 

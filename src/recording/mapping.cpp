@@ -42,18 +42,19 @@ TableFormat read_format(Reader& file) {
     } else if (separator->size() == 1 && std::string_view("\"\n\r.#+-").find(*separator) == std::string_view::npos) {
       format.separator = separator->front();
     } else {
-      file.problem("separator", fmt::format(R"('{}' separates no cells; expected one character such as "," or ";", or "tab")", *separator));
+      file.problem("separator",
+                   fmt::format(R"('{}' cannot separate cells; expected one character such as "," or ";", or "tab")", *separator));
     }
   }
   if (const std::optional<std::string> decimal = file.choice("decimal", kDecimals, Need::optional)) {
     format.decimal_point = decimal->front();
     if (format.decimal_point == format.separator) {
-      file.problem("decimal", "is the separator of the cells too");
+      file.problem("decimal", "is also the separator of the cells");
     }
   }
   format.comment = file.text("comment", Need::optional).value_or(format.comment);
   format.header_rows = whole_number(file, "header_rows", 1, 20, "rows of the header").value_or(format.header_rows);
-  format.names_row = whole_number(file, "names_row", 1, 20, "which row of the header names the columns").value_or(1);
+  format.names_row = whole_number(file, "names_row", 1, 20, "row of the header that names the columns").value_or(1);
   if (format.names_row > format.header_rows) {
     file.problem("names_row", fmt::format("{} is not one of the {} header rows", format.names_row, format.header_rows));
   }
@@ -68,7 +69,7 @@ void read_unit(Reader& reader, QuantityMapping& mapping) {
   const ParsedQuantity zero = parse_quantity("0 " + unit, wanted);
   const ParsedQuantity one = parse_quantity("1 " + unit, wanted);
   if (!zero.ok() || !one.ok()) {
-    reader.problem("unit", fmt::format("'{}' is no unit of {}; expected one that converts to {}", unit, mapping.quantity.key,
+    reader.problem("unit", fmt::format("'{}' is not a unit of {}; expected one that converts to {}", unit, mapping.quantity.key,
                                        wanted.empty() ? "a pure number" : wanted));
     return;
   }
@@ -76,7 +77,7 @@ void read_unit(Reader& reader, QuantityMapping& mapping) {
   mapping.scale_factor = one.value - zero.value;
   if (reader.choice("sign", kSigns, Need::optional).value_or("+") == "-") {
     if (wanted == "degC") {
-      reader.problem("sign", "a temperature has none");
+      reader.problem("sign", "a temperature has no sign; expected no key sign");
     }
     mapping.value = -mapping.value;
     mapping.scale_factor = -mapping.scale_factor;
@@ -84,13 +85,13 @@ void read_unit(Reader& reader, QuantityMapping& mapping) {
 }
 
 std::optional<double> limit(Reader& reader, const char* key, const QuantityMapping& mapping) {
-  return reader.quantity({key, mapping.quantity.unit, Range::any(), "value at which the sensor is at its end"}, Need::optional);
+  return reader.quantity({key, mapping.quantity.unit, Range::any(), "value at which the sensor saturates"}, Need::optional);
 }
 
 void read_fills(Reader& reader, QuantityMapping& mapping) {
   for (Reader& fill : reader.tables("fill")) {
     const std::optional<double> value =
-        fill.quantity({"value", mapping.quantity.unit, mapping.quantity.possible, "what a blank cell stands for"}, Need::required);
+        fill.quantity({"value", mapping.quantity.unit, mapping.quantity.possible, "value of a blank cell"}, Need::required);
     const std::optional<std::string> where = fill.text("where", Need::required);
     if (value && where) {
       mapping.fills.push_back({*value, *where});
@@ -102,7 +103,8 @@ void read_fills(Reader& reader, QuantityMapping& mapping) {
 std::optional<QuantityMapping> read_quantity(const std::string& key, Reader& reader) {
   const std::optional<Quantity> quantity = quantity_named(key);
   if (!quantity) {
-    reader.problem("", fmt::format("is no quantity: not of the table, and its name does not end in a unit{}", nearest_quantity(key)));
+    reader.problem("",
+                   fmt::format("is not a quantity: it is not in the table, and its name does not end in a unit{}", nearest_quantity(key)));
     return std::nullopt;
   }
   QuantityMapping mapping;
@@ -157,7 +159,7 @@ bool read_files(Reader& root, const fs::path& log, Mapping& mapping) {
       read_conditions(*table, conditions);
       for (const auto& [key, text] : conditions) {
         if (const auto& [before, is_new] = said.try_emplace({name, key}, text); !is_new && before->second != text) {
-          table->problem(key, fmt::format("contradicts \"{}\", which another [[files]] says of {}", before->second, name));
+          table->problem(key, fmt::format("contradicts \"{}\", which another [[files]] states for {}", before->second, name));
         }
       }
     }
@@ -230,7 +232,7 @@ Mapping read_mapping(const fs::path& file, const fs::path& log) {
   const bool is_named = read_files(root, log, mapping);
   if (!is_named && std::ranges::none_of(patterns, [&log](const std::string& pattern) { return matches(pattern, log); })) {
     root.problem("applies_to",
-                 fmt::format("{} is none of the files of this mapping: {}", log.filename().string(), fmt::join(patterns, ", ")));
+                 fmt::format("{} is not one of the files of this mapping: {}", log.filename().string(), fmt::join(patterns, ", ")));
   }
   root.finish();
   problems.throw_if_any();

@@ -72,15 +72,15 @@ Fitness thermal_fitness(const Recording& recording, std::size_t rows, const Data
   const auto says_nothing = [](const ChannelQuality* channel) { return channel->high - channel->low <= 6.0 * channel->noise; };
   if (!temperatures.empty() && std::ranges::all_of(temperatures, says_nothing)) {
     const ChannelQuality& one = *temperatures.front();
-    fitness.lacks.push_back(one.is_constant()
-                                ? fmt::format("{} is constant, {}", one.quantity.key, shown(one.low, one.quantity))
-                                : fmt::format("no temperature moves beyond its noise: {} from {} to {}, noise {} K", one.quantity.key,
-                                              shown(one.low, one.quantity), shown(one.high, one.quantity), significant(one.noise, 2)));
+    fitness.lacks.push_back(one.is_constant() ? fmt::format("{} is constant, {}", one.quantity.key, shown(one.low, one.quantity))
+                                              : fmt::format("no temperature changes by more than its noise: {} from {} to {}, noise {} K",
+                                                            one.quantity.key, shown(one.low, one.quantity), shown(one.high, one.quantity),
+                                                            significant(one.noise, 2)));
   }
   // Without heat, the time constants are still identifiable from a cool-down.
   if (!inputs.empty() && !cools_down(recording, temperatures) && heat_input_of(recording) == nullptr &&
       std::ranges::all_of(inputs, [](const ChannelQuality* channel) { return channel->high == 0.0 && channel->low == 0.0; })) {
-    fitness.lacks.push_back(fmt::format("no heat goes in: {} is 0 throughout", inputs.front()->quantity.key));
+    fitness.lacks.push_back(fmt::format("there is no heat input: {} is 0 throughout", inputs.front()->quantity.key));
   }
   return fitness;
 }
@@ -258,7 +258,7 @@ DataQuality assess(const Recording& recording, const RecordingReport& report, do
 
 void require_thermal(const Recording& recording, const DataQuality& quality) {
   if (!quality.thermal.is_good()) {
-    throw Failure(ExitCode::cannot_answer, fmt::format("{}: nothing about heat can be learned from this log: {}", recording.file.string(),
+    throw Failure(ExitCode::cannot_answer, fmt::format("{}: this log contains no information about heat: {}", recording.file.string(),
                                                        fmt::join(quality.thermal.lacks, "; ")));
   }
 }

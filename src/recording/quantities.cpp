@@ -32,7 +32,7 @@ constexpr std::array kTypes{
     QuantityType{"driver_C", Kind::surroundings, "degC", kTemperature_C, false, "temperature of the motor's driver"},
     QuantityType{"neighbour_C", Kind::surroundings, "degC", kTemperature_C, false, "temperature of another motor close by"},
     QuantityType{"current_A", Kind::heat_input, "A", kHeatInput, false,
-                 "current as the motor's torque constant counts it: rms over the interval, sign of its mean"},
+                 "equivalent DC current (torque per torque constant): rms over the interval, sign of its mean"},
     QuantityType{"current_d_A", Kind::heat_input, "A", kHeatInput, false, "field-producing current, peak of a phase"},
     QuantityType{"current_q_A", Kind::heat_input, "A", kHeatInput, false, "torque-producing current, peak of a phase"},
     QuantityType{"speed_rad_per_s", Kind::heat_input, "rad/s", kHeatInput, false, "speed of the motor's shaft"},

@@ -5,21 +5,21 @@ namespace heatsoak {
 std::string_view to_string(LeftOutReason reason) {
   switch (reason) {
     case LeftOutReason::wrong_number_of_cells:
-      return "another number of cells than the header has";
+      return "number of cells differs from the header";
     case LeftOutReason::cut_off:
-      return "cut off at the end of the file";
+      return "truncated at the end of the file";
     case LeftOutReason::without_time:
       return "no time";
     case LeftOutReason::time_does_not_increase:
       return "time repeated or running backwards";
     case LeftOutReason::not_valid:
-      return "not valid by the mapping";
+      return "not valid according to the mapping";
     case LeftOutReason::not_recorded:
       return "blank";
     case LeftOutReason::not_a_number:
       return "not a number";
     case LeftOutReason::impossible:
-      return "outside of what is possible";
+      return "outside the possible range";
     case LeftOutReason::saturated:
       return "saturated";
     case LeftOutReason::frozen:

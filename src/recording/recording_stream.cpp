@@ -46,11 +46,11 @@ std::string other_separator(std::span<const std::string> header) {
   const std::string text = header.empty() ? "" : header.front();
   for (const auto& [mark, name] : {std::pair(';', ";"), std::pair('\t', "tab"), std::pair(',', ","), std::pair('|', "|")}) {
     if (text.find(mark) != std::string::npos) {
-      return fmt::format("; this file seems to have {}: read it with --map and a mapping that says [file] separator = \"{}\"",
+      return fmt::format("; this file seems to have {}: read it with --map and a mapping that sets [file] separator = \"{}\"",
                          mark == '\t' ? std::string("tabs") : fmt::format("'{}'", mark), name);
     }
   }
-  return " (a foreign log is read with --map; lines above its header are passed over by [file] header_rows and names_row of the mapping)";
+  return " (a foreign log is read with --map; [file] header_rows and names_row of the mapping skip lines above its header)";
 }
 
 /// Rows of the file before checks.
@@ -149,7 +149,7 @@ class RecordingStream::Intake {
     Diagnostics problems;
     for (const QuantityMapping& quantity : quantities) {
       if (const std::string nearest = nearest_quantity(quantity.quantity.key); quantity.quantity.meaning.empty() && !nearest.empty()) {
-        report_.notes.push_back(fmt::format("{} is taken as one more signal{}", quantity.quantity.key, nearest));
+        report_.notes.push_back(fmt::format("{} is used as an additional signal{}", quantity.quantity.key, nearest));
       }
       ChannelSource source(quantity, table_.header(), log_.string(), used_, problems);
       if (source.is_absent()) {
@@ -338,11 +338,10 @@ class RecordingStream::Intake {
   void refuse_where_time_repeats() const {
     constexpr double kMost_share = 0.5;
     if (static_cast<double>(report_.repeated_times) > kMost_share * static_cast<double>(rows_with_time_)) {
-      throw bad_input(
-          {log_.string(), first_backwards_->line, 1}, time_->quantity().key,
-          fmt::format("{} of {} rows have the time of the row before, the first at {:g} s; expected a time of its own for every "
-                      "row: is it written with too few digits?",
-                      report_.repeated_times, rows_with_time_, first_backwards_->time_s));
+      throw bad_input({log_.string(), first_backwards_->line, 1}, time_->quantity().key,
+                      fmt::format("{} of {} rows have the time of the row before, the first at {:g} s; expected a different time for every "
+                                  "row: is it written with too few digits?",
+                                  report_.repeated_times, rows_with_time_, first_backwards_->time_s));
     }
   }
 
@@ -356,7 +355,7 @@ class RecordingStream::Intake {
     if (static_cast<double>(backwards_) > kUnsorted_share * static_cast<double>(rows_with_time_)) {
       throw bad_input(
           {log_.string(), first_backwards_->line, 1}, time_->quantity().key,
-          fmt::format("time does not increase: {} of {} rows would have to go, the first is at {:g} s after {:g} s; expected rows "
+          fmt::format("time does not increase: {} of {} rows would be left out, the first is at {:g} s after {:g} s; expected rows "
                       "sorted by time, one recording per file",
                       backwards_, rows_with_time_, first_backwards_->time_s, first_backwards_->before_s));
     }
@@ -365,11 +364,11 @@ class RecordingStream::Intake {
       if (!has_numbers(i)) {
         report_.notes.push_back(fmt::format("{} is left out: not one number in {} rows", key, report_.rows_kept));
       } else if (sources_[i].filled() > 0) {
-        report_.notes.push_back(fmt::format("{}: {} blank samples are filled as the mapping says", key, sources_[i].filled()));
+        report_.notes.push_back(fmt::format("{}: {} blank samples are filled as the mapping states", key, sources_[i].filled()));
       }
     }
     if (std::ranges::count(has_numbers_, 1) == 0) {
-      throw Failure(ExitCode::cannot_answer, fmt::format("{}: no quantity beside the time holds a number", log_.string()));
+      throw Failure(ExitCode::cannot_answer, fmt::format("{}: no quantity except the time contains a number", log_.string()));
     }
   }
 

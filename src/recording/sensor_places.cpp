@@ -234,8 +234,9 @@ class Places {
     const Regression of_stator = answer_of(*stator_, heat);
     if (of_stator.points >= kEnoughBlocks && of_stator.correlation_ratio > 0.3 && of_stator.slope > 1.3 * of_winding.slope &&
         swing(*stator_) > kSwing_ratio * swing(*winding_)) {
-      found_.push_back(fmt::format("stator_C answers to {} faster than winding_C and swings more ({} K against {} K): are the two swapped?",
-                                   input->quantity.key, significant(swing(*stator_), 3), significant(swing(*winding_), 3)));
+      found_.push_back(
+          fmt::format("stator_C responds to {} faster than winding_C and varies more ({} K against {} K): are the two swapped?",
+                      input->quantity.key, significant(swing(*stator_), 3), significant(swing(*winding_), 3)));
     }
   }
 
@@ -260,9 +261,8 @@ class Places {
       }
     }
     if (swapped > 0 && sound == 0) {
-      found_.push_back(
-          fmt::format("while nothing heats, stator_C is hotter than winding_C (by {} K) and falls by more: are the two swapped?",
-                      significant(apart_K, 2)));
+      found_.push_back(fmt::format("without heat, stator_C is hotter than winding_C (by {} K) and falls by more: are the two swapped?",
+                                   significant(apart_K, 2)));
     }
   }
 

@@ -119,7 +119,7 @@ class Suspector {
     }
     if (const double ratio = middle_of(ratios); ratio > 1.1) {
       found_.push_back(
-          fmt::format("torque_Nm × speed_rad_per_s is {} times power_in_W, more than goes in: is the speed in rpm (÷ 9.55) or "
+          fmt::format("torque_Nm × speed_rad_per_s is {} times power_in_W, more than the input: is the speed in rpm (÷ 9.55) or "
                       "degrees per second (÷ 57.3)?",
                       significant(ratio, 3)));
     }
@@ -238,7 +238,7 @@ class Suspector {
         return each.quantity.kind == QuantityKind::temperature && swing(each) > kMoves_K;
       });
       if (moving != recording_.channels.end()) {
-        found_.push_back(fmt::format("{} is constant, {} °C, while {} moves by {} K: is its sensor connected?", constant.quantity.key,
+        found_.push_back(fmt::format("{} is constant, {} °C, while {} changes by {} K: is its sensor connected?", constant.quantity.key,
                                      significant(range->low, 4), moving->quantity.key, significant(swing(*moving), 3)));
       }
     }

@@ -210,7 +210,7 @@ class Scales {
     if (all) {
       const double rest = rests_at(recording_, *sensors_.front(), first);
       found_.push_back(fmt::format(
-          "{} comes to rest at {} °C without heat, in air of {} °C: are the motor's temperatures in degrees Fahrenheit ({} °C)?",
+          "{} reaches a steady state of {} °C without heat, in air of {} °C: are the motor's temperatures in degrees Fahrenheit ({} °C)?",
           sensors_.front()->quantity.key, significant(rest, 3), significant(room_C, 3), significant(from_fahrenheit_C(rest), 3)));
     }
   }

@@ -57,7 +57,8 @@ BodyConfig make_body(const Robot& robot, const MotorValues& motor) {
                             given_or(robot.center_of_gravity_y_m, 0.0));
   if (!stands(body.weight)) {
     throw bad_input({robot.file.string()}, "wheels.axis_angles",
-                    "put all wheels to one side of the centre of gravity: the robot tips over where it stands");
+                    "put all wheels on one side of the centre of gravity, so the robot tips over at standstill; expected the centre of "
+                    "gravity between the wheels");
   }
   body.friction = make_friction(robot, body.kinematics);
   body.traction.traction_ratio = robot.traction_ratio;

@@ -69,10 +69,8 @@ Kinematics make_kinematics(const Robot& robot) {
   constexpr double kWorstCondition = 1e3;
   const Eigen::Vector3d squares = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(jacobian.transpose() * jacobian).eigenvalues();
   if (!(squares(2) <= kWorstCondition * kWorstCondition * squares(0))) {
-    throw bad_input(
-        {robot.file.string()}, "wheels.axis_angles",
-        "leave a direction in which no wheel can drive, or next to none; expected axes that do not all lie in one line or circle "
-        "the same way");
+    throw bad_input({robot.file.string()}, "wheels.axis_angles",
+                    "leave a motion that no wheel can drive, or hardly; expected at least three clearly different angles");
   }
   const Eigen::Matrix3Xd inverse = jacobian.completeOrthogonalDecomposition().pseudoInverse();
   for (std::size_t i = 0; i < count; ++i) {

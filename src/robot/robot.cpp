@@ -15,25 +15,26 @@ namespace {
 /// The ranges include any robot for a lab floor and exclude values with a wrong unit.
 constexpr std::array<RobotParameterSpec, 29> kSpecs{{
     {"body",
-     {"yaw_inertia", "kg m2", Range::between(1e-5, 200.0), "about the vertical through the centre of gravity; mind g cm2 and kg m2"},
+     {"yaw_inertia", "kg m2", Range::between(1e-5, 200.0),
+      "about the vertical axis through the centre of gravity; check the unit, g cm2 or kg m2"},
      &Robot::yaw_inertia_kg_m2},
     {"body", {"center_of_gravity_height", "m", Range::between(0.0, 2.0), "above the ground"}, &Robot::center_of_gravity_height_m},
     {"body", {"center_of_gravity_x", "m", Range::between(-1.0, 1.0), "ahead of the robot's axis"}, &Robot::center_of_gravity_x_m},
     {"body", {"center_of_gravity_y", "m", Range::between(-1.0, 1.0), "left of the robot's axis"}, &Robot::center_of_gravity_y_m},
     {"wheels",
-     {"inertia", "kg m2", Range::between(1e-9, 1.0), "of one wheel about its axle, without the rotor; mind g cm2 and kg m2"},
+     {"inertia", "kg m2", Range::between(1e-9, 1.0), "of one wheel about its axle, without the rotor; check the unit, g cm2 or kg m2"},
      &Robot::wheel_inertia_kg_m2},
     {"friction",
-     {"wheel_torque", "N m", Range::between(0.0, 20.0), "against the turning of one wheel, without the motor's own drag"},
+     {"wheel_torque", "N m", Range::between(0.0, 20.0), "resisting torque of one wheel, without the motor's own drag"},
      &Robot::wheel_friction_torque_Nm},
     {"friction",
-     {"wheel_damping", "N m s/rad", Range::between(0.0, 1.0), "torque against the turning of one wheel per speed of the wheel"},
+     {"wheel_damping", "N m s/rad", Range::between(0.0, 1.0), "resisting torque of one wheel per speed of the wheel"},
      &Robot::wheel_damping_Nm_s_per_rad},
     {"friction",
      {"roller_drag", "", Range::between(0.0, 1.0), "force along the axle per normal force while the rollers turn"},
      &Robot::roller_drag_ratio},
     {"friction",
-     {"rolling_efficiency", "", Range::between(0.1, 1.0), "of the wheel's torque that reaches the ground"},
+     {"rolling_efficiency", "", Range::between(0.1, 1.0), "share of the wheel's torque that reaches the ground"},
      &Robot::rolling_efficiency},
     {"friction.heading",
      {"constant", "N m", Range::between(0.0, 20.0), "friction in translation, mean over the directions"},
@@ -51,9 +52,11 @@ constexpr std::array<RobotParameterSpec, 29> kSpecs{{
      {"driver_resistance", "ohm", Range::between(0.0, 10.0), "of switches and traces in series with one motor"},
      &Robot::driver_resistance_ohm},
     {"drive", {"driver_standby_power", "W", Range::between(0.0, 100.0), "of one motor's driver without current"}, &Robot::driver_standby_W},
-    {"drive", {"control_rate", "Hz", Range::between(20.0, 1000.0), "how often the firmware commands the motors"}, &Robot::control_rate_Hz},
     {"drive",
-     {"command_rate", "Hz", Range::between(5.0, 1000.0), "how often the team's computer commands the robot"},
+     {"control_rate", "Hz", Range::between(20.0, 1000.0), "rate at which the firmware commands the motors"},
+     &Robot::control_rate_Hz},
+    {"drive",
+     {"command_rate", "Hz", Range::between(5.0, 1000.0), "rate at which the team's computer commands the robot"},
      &Robot::command_rate_Hz},
     {"battery", {"full_voltage", "V", Range::between(1.0, 5000.0), "open circuit, full"}, &Robot::battery_full_V},
     {"battery", {"empty_voltage", "V", Range::between(1.0, 5000.0), "open circuit, empty"}, &Robot::battery_empty_V},
@@ -74,7 +77,8 @@ constexpr std::array<RobotParameterSpec, 29> kSpecs{{
 constexpr std::array<WheelParameterSpec, 3> kWheelSpecs{{
     {{"constant", "N m", Range::between(0.0, 20.0), "friction of this wheel in translation"}, &HeadingWheel::constant_Nm},
     {{"sine", "N m", Range::between(-20.0, 20.0), "part that grows with the wheel's share of rolling"}, &HeadingWheel::sine_Nm},
-    {{"phase", "rad", Range::any(), "of that part and of the sign, near the negative angle of the wheel's axle"}, &HeadingWheel::phase_rad},
+    {{"phase", "rad", Range::any(), "phase of that part and of the sign, near the negative angle of the wheel's axle"},
+     &HeadingWheel::phase_rad},
 }};
 
 constexpr std::array<std::string_view, 5> kOptionalKeys{"center_of_gravity_x", "center_of_gravity_y", "rolling_efficiency", "control_rate",
@@ -102,7 +106,7 @@ std::string wheel_parameter_key(std::size_t wheel, const WheelParameterSpec& fig
 /// Adds a problem if the friction would drive the wheel in some direction of travel.
 void check_sign(Reader& reader, double constant_Nm, double sine_Nm, double double_angle_Nm) {
   if (constant_Nm + std::min(0.0, sine_Nm) < double_angle_Nm) {
-    reader.problem("constant", "is smaller than what the other parts take off on some direction, so that friction would drive the wheel");
+    reader.problem("constant", "is smaller than the other parts in some direction, so that friction would drive the wheel");
   }
 }
 
@@ -128,7 +132,7 @@ void read_heading(Reader& heading, Robot& robot) {
     if (each.table == "friction.heading") {
       read_figure(heading, each, of_all_wheels && wheels.empty() ? Need::required : Need::optional, robot);
       if (of_all_wheels && !wheels.empty() && !std::isnan(robot.*each.value)) {
-        heading.problem(each.spec.key, "stands beside the same figure of every wheel; expected one of them");
+        heading.problem(each.spec.key, "is given together with the same value for every wheel; expected only one of the two");
       }
     }
   }
@@ -166,12 +170,12 @@ void read_wheels(Reader& top, Robot& robot) {
     return;
   }
   robot.wheel_radius_m =
-      wheels->quantity({"radius", "m", Range::between(0.005, 0.5), "of a wheel; mind mm and m"}, Need::required).value_or(1.0);
-  robot.wheel_contact_radius_m =
-      wheels
-          ->quantity({"contact_radius", "m", Range::between(0.01, 2.0), "from the robot's axis to the contact points; mind mm and m"},
-                     Need::required)
-          .value_or(1.0);
+      wheels->quantity({"radius", "m", Range::between(0.005, 0.5), "of a wheel; check the unit, mm or m"}, Need::required).value_or(1.0);
+  robot.wheel_contact_radius_m = wheels
+                                     ->quantity({"contact_radius", "m", Range::between(0.01, 2.0),
+                                                 "from the robot's axis to the contact points; check the unit, mm or m"},
+                                                Need::required)
+                                     .value_or(1.0);
   robot.wheel_axis_rad = wheels->quantities({"axis_angles", "rad", Range::any(), "of the wheels' axes"}, Need::required);
   if (robot.wheel_axis_rad.size() < 3) {
     wheels->problem("axis_angles", "names fewer than three wheels; an omni-directional robot has at least three");
@@ -189,7 +193,8 @@ void read_drive(Reader& top, Robot& robot) {
   robot.gear_ratio =
       drive->quantity({"gear_ratio", "", Range::between(0.1, 500.0), "motor turns per wheel turn"}, Need::required).value_or(1.0);
   robot.gear_efficiency =
-      drive->quantity({"gear_efficiency", "", Range::between(0.1, 1.0), "torque that the gear hands on"}, Need::optional).value_or(1.0);
+      drive->quantity({"gear_efficiency", "", Range::between(0.1, 1.0), "share of the torque that the gear transmits"}, Need::optional)
+          .value_or(1.0);
   robot.voltage_limit_V =
       drive->quantity({"voltage_limit", "V", Range::between(0.5, 5000.0), "largest command to one motor"}, Need::optional)
           .value_or(robot.voltage_limit_V);
@@ -256,7 +261,8 @@ Robot robot_of(const Value& root, const std::filesystem::path& path) {
   robot.source = top.text("source", Need::required).value_or("");
   top.texts("notes", Need::optional);
   robot.mass_kg =
-      top.quantity({"mass", "kg", Range::between(0.1, 200.0), "of the robot with battery; mind g and kg"}, Need::required).value_or(1.0);
+      top.quantity({"mass", "kg", Range::between(0.1, 200.0), "of the robot with battery; check the unit, g or kg"}, Need::required)
+          .value_or(1.0);
   read_wheels(top, robot);
   read_drive(top, robot);
   if (std::optional<Reader> battery = top.table("battery", Need::required)) {

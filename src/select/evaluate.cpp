@@ -108,20 +108,18 @@ class Block {
       step_s = std::min({step_s, longest_step_s(network_, parameters_, at), longest_step_s(network_, parameters_, at, kHotter_K)});
     }
     if (calm_s < shortest_s) {
-      throw Failure(
-          ExitCode::numerics_failed,
-          fmt::format("{}: a duty of {:.0f} s has too many steps for a thermal network that settles within {:.2g} s; is a thermal "
-                      "resistance or a heat capacity too small?",
-                      name_, demand_.duration_s(), calm_s));
+      throw Failure(ExitCode::numerics_failed,
+                    fmt::format("{}: a duty of {:.0f} s has too many steps for a thermal network with a time constant of {:.2g} s; check "
+                                "whether a thermal resistance or a heat capacity is too small",
+                                name_, demand_.duration_s(), calm_s));
     }
     if (step_s < shortest_s) {
       // The heat that makes the network fast goes with the square of the current.
       const double current_A = point(*by_current).current_rms_A.maxCoeff();
-      throw Failure(
-          ExitCode::bad_input,
-          fmt::format("{}: the duty drives {:.0f} A through it, which heats the winding by its own heat within {:.2g} s; expected "
-                      "at most some {:.0f} A: look at the duty's load and the robot's voltage and current limits",
-                      name_, current_A, step_s, current_A * std::sqrt(step_s / shortest_s)));
+      throw Failure(ExitCode::bad_input,
+                    fmt::format("{}: the duty drives {:.0f} A through it, which heats the winding by its own heat within {:.2g} s; "
+                                "expected at most about {:.0f} A: check the duty's load and the robot's voltage and current limits",
+                                name_, current_A, step_s, current_A * std::sqrt(step_s / shortest_s)));
     }
     return step_s;
   }

@@ -135,7 +135,8 @@ std::string not_driven(const DriveScore& score) {
   constexpr double kRobot_m = 0.18;
   constexpr double kMostLifted_share = 0.01;
   if (score.battery_empty_s > 0.0) {
-    return fmt::format("the battery is empty after {:.0f} s; the rest of the match is a standstill", score.time_s - score.battery_empty_s);
+    return fmt::format("the battery is empty after {:.0f} s; the robot stands still for the rest of the match",
+                       score.time_s - score.battery_empty_s);
   }
   if (score.lifted_s > kMostLifted_share * score.time_s) {
     return fmt::format("wheels are off the ground for {:.0f} s: the robot tips", score.lifted_s);

@@ -70,7 +70,7 @@ constexpr DeclaredNumber<RadioConfig> kRadioNumbers[] = {
      &RadioConfig::push_speed_m_per_s,
      Origin::estimated,
      Range::between(0.02, 0.5),
-     "the creep of wheels that use 0.7 of their grip (slip_speed of the robots' files): what a push costs in speed"}};
+     "the creep of wheels that use 0.7 of their grip (slip_speed of the robots' files): the loss of speed by a push"}};
 
 double wrapped_rad(double angle_rad) { return std::remainder(angle_rad, 2.0 * std::numbers::pi); }
 

@@ -40,7 +40,7 @@ int Network::add_node(std::string name, double heat_capacity_J_per_K) {
 
 int Network::add_state(std::string name, int capacity_index) {
   if (node_count() >= kMostNodes || find_node(name) >= 0) {
-    throw std::logic_error(fmt::format("node '{}': there is one of that name, or there are {} already", name, kMostNodes - 1));
+    throw std::logic_error(fmt::format("node '{}': the name is in use, or there are {} nodes already", name, kMostNodes - 1));
   }
   const int ambient = state_count();
   for (EffectInPlace& effect : effects_) {
@@ -93,7 +93,7 @@ void Network::add_effect(std::string name, const EffectType& type, std::span<con
 void Network::limit_current_by(std::string_view copper_effect) {
   const auto found = std::ranges::find(effects_, copper_effect, &EffectInPlace::name);
   if (found == effects_.end() || found->parameter_index.size() != 2 || found->node_index.size() != 1) {
-    throw std::logic_error(fmt::format("'{}' is no copper loss of this network", copper_effect));
+    throw std::logic_error(fmt::format("'{}' is not a copper loss of this network", copper_effect));
   }
   copper_effect_ = static_cast<int>(found - effects_.begin());
 }

@@ -130,8 +130,7 @@ std::optional<Eigen::VectorXd> repeating_start_C(CycleMap& map, Eigen::VectorXd 
       return start_C;
     }
   }
-  throw Failure(ExitCode::numerics_failed,
-                fmt::format("the temperatures that repeat with every cycle were not found in {} steps", kMostIterations));
+  throw Failure(ExitCode::numerics_failed, fmt::format("the periodic steady state was not found in {} steps", kMostIterations));
 }
 
 }  // namespace

@@ -58,10 +58,9 @@ const NetworkStep& TangentRun::over(std::span<const double> start_C, double dura
   const double fastest_per_s = slope_.by_state.cwiseAbs().rowwise().sum().maxCoeff();
   const double parts = std::max(1.0, std::ceil(duration_s * fastest_per_s / kStepPerTimeConstant));
   if (!(parts <= kMostParts)) {
-    throw Failure(ExitCode::numerics_failed,
-                  fmt::format("a thermal network that settles within {:.2g} s is too fast for an interval of {:.3g} s; is a thermal "
-                              "resistance or a heat capacity too small?",
-                              1.0 / fastest_per_s, duration_s));
+    throw Failure(ExitCode::numerics_failed, fmt::format("a thermal network with a time constant of {:.2g} s is too fast for an interval "
+                                                         "of {:.3g} s; check whether a thermal resistance or a heat capacity is too small",
+                                                         1.0 / fastest_per_s, duration_s));
   }
   for (int part = 0; part < static_cast<int>(parts); ++part) {
     if (part > 0) {
@@ -70,8 +69,8 @@ const NetworkStep& TangentRun::over(std::span<const double> start_C, double dura
     one_step(duration_s / parts, duration_s * fastest_per_s < kShortStep, at);
   }
   if (!(step_.state_C.minCoeff() > kAbsoluteZero_C && step_.state_C.maxCoeff() < kDestroyed_C)) {
-    throw Failure(ExitCode::numerics_failed,
-                  fmt::format("the network leaves {:.0f} … {:.0f} °C under the heat of the log", kAbsoluteZero_C, kDestroyed_C));
+    throw Failure(ExitCode::numerics_failed, fmt::format("the simulated temperature leaves {:.0f} to {:.0f} °C with the logged heat input",
+                                                         kAbsoluteZero_C, kDestroyed_C));
   }
   return step_;
 }

@@ -112,11 +112,9 @@ class Run {
     observe(start_s, index, true);
     while (result_.end_s < stop_s && !result_.destroyed) {
       if (++steps_ > kMostTransientSteps) {
-        throw Failure(
-            ExitCode::numerics_failed,
-            fmt::format(
-                "{} steps took the run only to {:.6g} s; is a thermal resistance or a heat capacity too small, or the duty too long?",
-                kMostTransientSteps, result_.end_s));
+        throw Failure(ExitCode::numerics_failed, fmt::format("{} steps took the run only to {:.6g} s; check whether a thermal resistance "
+                                                             "or a heat capacity is too small, or the duty too long",
+                                                             kMostTransientSteps, result_.end_s));
       }
       const OdeStep step = integrator_.step(stop_s);
       note_crossings(step);

@@ -48,7 +48,7 @@ TEST(OpenDirections, WindingCapacityWhereOnlyTheStatorIsSensed) {
   Case one = short_case();
   one.making.winding_is_sensed = false;
   const CaseResult result = calibrate_case({}, one);
-  EXPECT_THAT(result.calibration.open, Contains(Field(&OpenDirection::why, HasSubstr("only the stator is sensed"))));
+  EXPECT_THAT(result.calibration.open, Contains(Field(&OpenDirection::why, HasSubstr("only the stator is measured"))));
   EXPECT_THAT(result.calibration.next_experiment, HasSubstr("winding"));
   EXPECT_FALSE(figure(result.calibration, "winding_heat_capacity").is_identifiable);
   EXPECT_TRUE(figure(result.calibration, "thermal_resistance_stator_ambient").is_identifiable);
@@ -77,9 +77,9 @@ TEST(OtherMotor, IsSuspectedFromTheVoltageAtItsTerminals) {
     log.channels.push_back({*quantity_named("motor_V"), std::move(motor_V)});
     const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "log.csv"))};
     const Calibration found = calibrate(motor, logs, {}, {});
-    EXPECT_EQ(std::ranges::any_of(found.notes,
-                                  [](const std::string& note) { return note.find("go with a terminal resistance of") != note.npos; }),
-              ratio < 1.0);
+    EXPECT_EQ(
+        std::ranges::any_of(found.notes, [](const std::string& note) { return note.find("give a terminal resistance of") != note.npos; }),
+        ratio < 1.0);
   }
 }
 
@@ -131,7 +131,8 @@ TEST(OpenDirections, CoolingTellsTimeConstantsAndNeverWatts) {
   truth.stator_J_per_K *= 1.1;
   const std::vector<Recording> logs{read_log(write_log(cool_down(truth), folder.path() / "cooling.csv"))};
   const Calibration result = calibrate(Sheet{}.motor(folder), logs, {}, {});
-  EXPECT_THAT(result.open, Contains(Field(&OpenDirection::why, HasSubstr("cooling tells time constants, never watts"))));
+  EXPECT_THAT(result.open,
+              Contains(Field(&OpenDirection::why, HasSubstr("a cool-down determines time constants, but no heat capacity or resistance"))));
   EXPECT_FALSE(figure(result, "thermal_resistance_stator_ambient").is_identifiable);
   EXPECT_THAT(result.next_experiment, HasSubstr("constant current at standstill"));
   const CalibratedParameter& stator = figure(result, "thermal_time_constant_stator");
@@ -230,7 +231,7 @@ TEST(HeldOutLog, MayLackTheSpeedThatTheFittedOnesHave) {
   };
   const Calibration without_speed = calibrated(still, silent);
   const Calibration stands = calibrated(still, said_to_stand);
-  EXPECT_THAT(without_speed.notes, Contains(HasSubstr("held_out has a current but no speed")));
+  EXPECT_THAT(without_speed.notes, Contains(HasSubstr("band of held_out is wider, because its log has a current but no speed")));
   EXPECT_THAT(stands.notes, Not(Contains(HasSubstr("has a current but no speed"))));
   EXPECT_LT(stator_K(without_speed), 0.6 * stator_K(stands));
   EXPECT_EQ(figure(without_speed, "stator_heat_capacity").value, figure(stands, "stator_heat_capacity").value);
@@ -259,7 +260,7 @@ TEST(InputPower, LeavesTheNoLoadLossAtTheStator) {
   log.channels.push_back({*quantity_named("speed_rad_per_s"), std::move(speed_rad_per_s)});
   const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "power.csv"))};
   const Calibration found = calibrate(sheet.motor(folder), logs, {}, {});
-  EXPECT_THAT(found.notes, Contains(HasSubstr("what no_load_current makes of it is taken to arise at the stator")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("the part due to no_load_current is assumed to arise at the stator")));
   const auto is_near = [&](const char* name, double truth) {
     const CalibratedParameter& each = figure(found, name);
     EXPECT_LT(each.low, truth) << name;
@@ -272,7 +273,7 @@ TEST(InputPower, LeavesTheNoLoadLossAtTheStator) {
   Motor guessed = sheet.motor(folder);
   guessed.figures.find("no_load_current")->second.origin = Origin::estimated;
   for (const Motor& motor : {guessed, Sheet{}.motor(folder)}) {
-    EXPECT_THAT(calibrate(motor, logs, {}, {}).notes, Contains(HasSubstr("all of it is taken to arise at the winding")));
+    EXPECT_THAT(calibrate(motor, logs, {}, {}).notes, Contains(HasSubstr("all of it is assumed to arise at the winding")));
   }
 }
 
@@ -299,7 +300,7 @@ TEST(OpenDirections, WhereNothingIsLearnedTheAnswerIsThatAndTheExperiment) {
     FAIL() << "learned something";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), ExitCode::cannot_answer);
-    EXPECT_THAT(failure.what(), HasSubstr("nothing can be learned"));
+    EXPECT_THAT(failure.what(), HasSubstr("no parameter of this motor is identifiable"));
     EXPECT_THAT(failure.what(), HasSubstr("experiment"));
   }
 }

@@ -113,7 +113,8 @@ TEST_F(Recordings, CoolDowns) {
                      {"cooling_slopes__Spike-P80-1700_2020-02-11_162559.csv", "cooling_slopes__Spike-P80-1700_2020-03-09_185035.csv"}, map),
                 {}, {});
   EXPECT_LT(error(found.fit_error, "winding_C").after.rmse_K, 1.0);
-  EXPECT_THAT(found.open, Contains(Field(&OpenDirection::why, HasSubstr("cooling tells time constants, never watts"))));
+  EXPECT_THAT(found.open,
+              Contains(Field(&OpenDirection::why, HasSubstr("a cool-down determines time constants, but no heat capacity or resistance"))));
   for (const char* watts :
        {"thermal_resistance_winding_stator", "thermal_resistance_stator_ambient", "winding_heat_capacity", "stator_heat_capacity"}) {
     EXPECT_FALSE(figure(found, watts).is_identifiable) << watts;

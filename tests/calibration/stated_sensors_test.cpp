@@ -103,7 +103,7 @@ TEST_F(StatedSensors, OfWhichNoLogSpeaksAreSaidToCountForNothing) {
   const Calibration before = calibrate(motor_, logs_, {}, {});
   motor_.sensors = stated();
   const Calibration after = calibrate(motor_, logs_, {}, {});
-  EXPECT_THAT(after.notes, testing::Contains("no log has the stator_C that effects.glued_on speaks of: it counts for nothing"));
+  EXPECT_THAT(after.notes, testing::Contains("no log has the stator_C to which effects.glued_on applies: the effect is not used"));
   EXPECT_EQ(after.fit.theta, before.fit.theta);
 }
 

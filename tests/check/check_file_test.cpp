@@ -69,7 +69,7 @@ TEST_F(CheckFiles, ReportEveryProblemAtItsPlace) {
   for (const char* each : {":3:9: error: check[0].robot: there is no robot 'roboteam_twente_2024'", "did you mean 'roboteam_twente_v2024'?",
                            ":4:11: error: check[0].sampels: is not a key of this table; did you mean 'samples'?",
                            ":5:8: error: check[0].seed: 3 is a bare number", ":6:11: error: check[0].samples: 3.5 is not a whole number",
-                           ":7:10: error: check[0].derate.coldest", "is used by none of this check's limits",
+                           ":7:10: error: check[0].derate.coldest", "is not used by any limit of this check",
                            ":9:20: error: check[0].limits.winding_peak_p95: \"nan degC\" is not a finite number",
                            ":10:18: error: check[0].limits.winding_peak: there is no such threshold; did you mean 'winding_peak_p95'?",
                            "rank needs 'against' in this check", ":12:1: error: check[1].limits: is missing",
@@ -124,7 +124,7 @@ TEST_F(CheckFiles, APercentileIsComparedByItsBound) {
 
 TEST_F(CheckFiles, SettingThatNoLimitUsesIsAProblem) {
   EXPECT_THAT(message_of(kHead + "temperature = \"90 degC\"\n[check.limits]\nrank = \"at most 1\"\n"),
-              testing::AllOf(HasSubstr("check[0].temperature: is used by none"), HasSubstr("needs 'against'")));
+              testing::AllOf(HasSubstr("check[0].temperature: is not used by any limit"), HasSubstr("needs 'against'")));
 }
 
 TEST_F(CheckFiles, WithoutChecksAreRefused) {
@@ -173,7 +173,7 @@ TEST_F(CheckFiles, WhatCannotBeEvaluatedFailsAndTheRestIsEvaluated) {
   EXPECT_FALSE(found[0].passed);
   EXPECT_FALSE(found[0].is_evaluated);
   EXPECT_THAT(found[0].reason, HasSubstr("missing.h: cannot be read: No such file"));
-  EXPECT_THAT(found[1].reason, HasSubstr("the drive core drives matches"));
+  EXPECT_THAT(found[1].reason, HasSubstr("the drive core can drive only a match"));
   EXPECT_TRUE(found[2].passed);
 }
 

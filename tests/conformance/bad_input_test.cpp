@@ -239,7 +239,7 @@ TEST(Endless, recording_of_decades) {
   const TemporaryFolder folder;
   write(folder.path() / "long.csv", "time_s,torque_Nm,speed_rad_per_s\n0,0.05,40\n1700000000,0,0\n");
   write(folder.path() / "duty.toml", recorded("long.csv"));
-  expect_refused(run_duty(folder.path() / "duty.toml"), "expected something like a match");
+  expect_refused(run_duty(folder.path() / "duty.toml"), "expected about the length of a match");
 }
 
 TEST(Endless, effect_that_settles_within_microseconds) {

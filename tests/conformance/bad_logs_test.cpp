@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
                    row.command_heading_rad *= 180.0 / std::numbers::pi;
                    row.yaw_rad *= 180.0 / std::numbers::pi;
                  }),
-                 2, "off what the wheels' speeds amount to", 0, "heading_field_rad spans"},
+                 2, "off the direction that follows from the wheels' speeds", 0, "heading_field_rad spans"},
         BadDrive{"revolutions_per_minute", of_each([](DriveRow& row) {
                    std::ranges::for_each(row.wheel_speed_rad_per_s, [](double& each) { each *= 30.0 / std::numbers::pi; });
                  }),
@@ -93,27 +93,27 @@ INSTANTIATE_TEST_SUITE_P(
                    std::swap(row.wheel_speed_rad_per_s[0], row.wheel_speed_rad_per_s[1]);
                    std::swap(row.pwm_ratio[0], row.pwm_ratio[1]);
                  }),
-                 2, "are they in another order"},
+                 2, "do their order or signs differ from the robot's file"},
         BadDrive{"milliseconds", of_each([](DriveRow& row) { row.time_s *= 1e3; }), 2, "is the time in milliseconds?", 0,
                  "is the time in milliseconds?"},
         BadDrive{"microseconds", of_each([](DriveRow& row) { row.time_s *= 1e6; }), 2, "days at 10000 s per row", 0,
                  "days at 10000 s per row"},
         BadDrive{"unsorted", [](std::vector<DriveRow>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase", 2,
                  "time does not increase"},
-        BadDrive{"too_short", [](std::vector<DriveRow>& rows) { rows.resize(8); }, 3, "in no stretch do the wheels turn steadily", 3,
+        BadDrive{"too_short", [](std::vector<DriveRow>& rows) { rows.resize(8); }, 3, "in no interval do the wheels turn steadily", 3,
                  "it has 8 rows; at least 20 are needed"},
         BadDrive{"no_number", of_each([](DriveRow& row) {
                    row.battery_V = row.command_heading_rad = row.yaw_rad = std::nan("");
                    row.wheel_speed_rad_per_s.fill(std::nan(""));
                    row.pwm_ratio.fill(std::nan(""));
                  }),
-                 3, "no quantity beside the time holds a number", 3, "no quantity beside the time holds a number"},
+                 3, "no quantity except the time contains a number", 3, "no quantity except the time contains a number"},
         BadDrive{"standing", of_each([](DriveRow& row) {
                    row.wheel_speed_rad_per_s.fill(0.0);
                    row.pwm_ratio.fill(0.0);
                  }),
-                 3, "in no stretch do the wheels turn steadily", 3, "no wheel changes its speed beyond the noise"},
-        BadDrive{"one_heading", [](std::vector<DriveRow>& rows) { rows.resize(rows.size() / 24); }, 3, "nothing can be learned", 0,
+                 3, "in no interval do the wheels turn steadily", 3, "no wheel changes its speed beyond the noise"},
+        BadDrive{"one_heading", [](std::vector<DriveRow>& rows) { rows.resize(rows.size() / 24); }, 3, "nothing is identifiable", 0,
                  "usable for wheel models: yes"}),
     [](const auto& each) { return each.param.name; });
 
@@ -171,18 +171,18 @@ INSTANTIATE_TEST_SUITE_P(
                     BadRun{"milliamperes", cells([](Cells& row) { row[4] *= 1000.0; }), 0, "is it in milliamperes?"},
                     BadRun{"minutes", cells([](Cells& row) { row[0] /= 60.0; }), 0, "is the time in minutes?"},
                     BadRun{"wild_current", [](std::vector<Cells>& rows) { rows[70][4] = 1e308; }, 0,
-                           "left out: 1 sample of current_A: outside of what is possible; line 72 (\"1e+308\")"},
+                           "left out: 1 sample of current_A: outside the possible range; line 72 (\"1e+308\")"},
                     BadRun{"swapped", cells([](Cells& row) { std::swap(row[1], row[2]); }), 0, "are the two swapped?"},
                     BadRun{"constant", cells([](Cells& row) {
                              row = {row[0], 22.0, 22.0, 22.0, 0.0};
                            }),
                            3, "winding_C is constant, 22 °C"},
                     BadRun{"too_short", [](std::vector<Cells>& rows) { rows.resize(12); }, 3, "it has 12 rows; at least 20 are needed"},
-                    BadRun{"unexcited", cells([](Cells& row) { row[4] = 0.0; }), 3, "no heat goes in: current_A is 0 throughout"},
+                    BadRun{"unexcited", cells([](Cells& row) { row[4] = 0.0; }), 3, "there is no heat input: current_A is 0 throughout"},
                     BadRun{"no_number", cells([](Cells& row) {
                              row = {row[0], std::nan(""), std::nan(""), std::nan(""), std::nan("")};
                            }),
-                           3, "no quantity beside the time holds a number"},
+                           3, "no quantity except the time contains a number"},
                     BadRun{"unsorted", [](std::vector<Cells>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase"}),
     [](const auto& each) { return each.param.name; });
 

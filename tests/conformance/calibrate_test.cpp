@@ -114,21 +114,21 @@ INSTANTIATE_TEST_SUITE_P(
                                rows[row][4] = rows[row][5] = "0";
                              }
                            },
-                           3, "no heat goes in"},
+                           3, "no heat input"},
                     BadLog{"NothingButNan",
                            [](std::vector<CsvCells>& rows) {
                              for (CsvCells& cells : rows) {
                                std::fill(cells.begin() + 1, cells.end(), "NaN");
                              }
                            },
-                           3, "holds a number"},
+                           3, "contains a number"},
                     BadLog{"BlankCurrent",
                            [](std::vector<CsvCells>& rows) {
                              for (CsvCells& cells : rows) {
                                cells[4] = "nan";
                              }
                            },
-                           2, "is no column of this log, or one without a number"},
+                           2, "is missing in this log or contains no number"},
                     BadLog{"NoTemperatures",
                            [](std::vector<CsvCells>& rows) {
                              for (CsvCells& cells : rows) {
@@ -201,7 +201,7 @@ TEST(Calibrate, CurrentsThatNoMotorSurvivesAreNoAnswer) {
   write(folder.path() / "log.csv", spoilt(each_cell(4, [](double current_A) { return std::to_string(10.0 * current_A); })));
   const ProgramRun found = run({"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml"}, in(folder.path()));
   EXPECT_EQ(found.exit_code, 3) << found.err;
-  EXPECT_THAT(found.err, HasSubstr("are the units of the heat inputs right?"));
+  EXPECT_THAT(found.err, HasSubstr("check the units of the heat inputs"));
 }
 
 TEST(Calibrate, WhatIsLeftOutIsSaidWithItsLines) {

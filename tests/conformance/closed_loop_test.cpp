@@ -91,7 +91,7 @@ TEST(RobotWithoutFriction, is_simulated_with_assumed_friction_and_without_feed_f
 TEST(EvaluateClosedLoop, is_for_matches) {
   const ProgramRun result = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--closed-loop"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("--closed-loop drives matches"));
+  EXPECT_THAT(result.err, HasSubstr("--closed-loop can drive only a match"));
 }
 
 }  // namespace

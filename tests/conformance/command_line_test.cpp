@@ -274,7 +274,7 @@ TEST_P(EffectLines, make_a_motor_file_that_runs) {
   const ProgramRun lint = run({"lint", motor.string()});
   const bool is_doubled = GetParam() == "copper_loss" || GetParam() == "no_load_loss";
   EXPECT_EQ(lint.exit_code, is_doubled ? 1 : 0) << lint.out << lint.err << text;
-  EXPECT_EQ(lint.out.find("both are added") != std::string::npos, is_doubled) << lint.out;
+  EXPECT_EQ(lint.out.find("counts twice") != std::string::npos, is_doubled) << lint.out;
   const ProgramRun evaluated = run({"evaluate", "--motors", motor.string(), "--robot", "roboteam_twente_v2024", "--duty",
                                     "paper_intermittent", "--samples", "8", "--json", "-"});
   EXPECT_TRUE(evaluated.exit_code == 0 || evaluated.exit_code == 1) << evaluated.err;
@@ -459,7 +459,7 @@ TEST(Json, of_friction_says_where_its_law_does_not_hold) {
   const ProgramRun result = run({"friction", "--robot", "roboteam_twente_v2024", "log.csv", "--as-is", "--json", "-"}, inside);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const json answer = result.json();
-  const char* const sentence = "what is left of wheel 2 follows θ: ";
+  const char* const sentence = "the residual of wheel 2 depends on θ: ";
   EXPECT_THAT(result.err, HasSubstr(sentence));
   EXPECT_THAT(answer.at("findings").get<std::vector<std::string>>(), Contains(HasSubstr(sentence)));
   EXPECT_TRUE(answer.at("wheels").at(1).at("lack_of_fit").get<bool>());
@@ -490,7 +490,7 @@ TEST(ExitCode, of_friction_says_what_a_log_cannot_tell) {
   write(standing, text + "\n");
   const ProgramRun result = run({"friction", "--robot", "roboteam_twente_v2024", standing});
   EXPECT_EQ(result.exit_code, 3) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("in no stretch do the wheels turn steadily"));
+  EXPECT_THAT(result.err, HasSubstr("in no interval do the wheels turn steadily"));
 
   const std::string thermal = (folder.path() / "thermal.csv").string();
   write(thermal, "time_s,winding_C,current_A\n0,25,1\n1,26,1\n2,27,1\n");
@@ -666,7 +666,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"unknown_name", {"describe", "conducton"}, "did you mean 'conduction'?"},
         Mistake{"empty_motor",
                 {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", ""},
-                "what follows --motors is empty"},
+                "the value of --motors is empty"},
         Mistake{"current_in_volt",
                 {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6V", "--time-on", "1", "--time-off", "1"},
                 "unit of something else"},
@@ -927,7 +927,7 @@ TEST(Database, two_motors_of_one_id_cannot_be_told_apart) {
   const ProgramRun result = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--motors",
                                  (folder.path() / "b/x.toml").string() + "," + (folder.path() / "a/x.toml").string()});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, testing::HasSubstr("two motors of one id, 'x'"));
+  EXPECT_THAT(result.err, testing::HasSubstr("two motors with the same id, 'x'"));
 }
 
 TEST(Database, a_broken_file_is_told_and_not_passed_over) {

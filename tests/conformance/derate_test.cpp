@@ -75,7 +75,7 @@ TEST(DerateCommand, EffectThatADiagnosisFoundActsInTheFirmware) {
   ASSERT_EQ(after.exit_code, 0) << after.err;
   EXPECT_THAT(before.json()["nodes"], ElementsAre("winding", "stator"));
   EXPECT_THAT(after.json()["nodes"], ElementsAre("winding", "stator", "enclosure_warm_up"));
-  EXPECT_THAT(after.err, HasSubstr("effects of the file that act: enclosure_warm_up"));
+  EXPECT_THAT(after.err, HasSubstr("active effects of the file: enclosure_warm_up"));
   EXPECT_THAT(content_of(folder.path() / "after.h"), HasSubstr("winding stator enclosure_warm_up"));
   // What was measured needs less of a reserve than a data sheet, so more current is allowed.
   EXPECT_LT(after.json()["heat_reserve_ratio"].get<double>(), before.json()["heat_reserve_ratio"].get<double>());
@@ -85,7 +85,8 @@ TEST(DerateCommand, EffectThatADiagnosisFoundActsInTheFirmware) {
 TEST(DerateCommand, WritesTheTableAlone) {
   const TemporaryFolder folder;
   ASSERT_EQ(run(kDerate + Words{"--motor", kMotor, "--to", "csv", "--out", "table.csv"}, here(folder)).exit_code, 0);
-  EXPECT_THAT(content_of(folder.path() / "table.csv"), AllOf(testing::StartsWith("# "), HasSubstr("\nspeed_rad_per_s,stator_C,winding_C,allowed_current_A\n")));
+  EXPECT_THAT(content_of(folder.path() / "table.csv"),
+              AllOf(testing::StartsWith("# "), HasSubstr("\nspeed_rad_per_s,stator_C,winding_C,allowed_current_A\n")));
 }
 
 TEST(DerateCommand, JsonFileIsTheAnswerAndNamesItsInputs) {
@@ -107,7 +108,7 @@ struct WrongLine {
 
 TEST(DerateCommand, SaysWhatIsWrongAndLeavesNothing) {
   const std::vector<WrongLine> wrong{
-      {{"--out", "x.h"}, 2, "which motor?"},
+      {{"--out", "x.h"}, 2, "the motor is missing"},
       {{"--motor", kMotor}, 2, "--out"},
       {{"--motor", kMotor, "--to", "c_heder", "--out", "x.h"}, 2, "did you mean 'c_header'?"},
       {{"--motor", kMotor, "--out", "x.h", "--period", "1s"}, 2, "too long"},
@@ -118,7 +119,7 @@ TEST(DerateCommand, SaysWhatIsWrongAndLeavesNothing) {
       {{"--motor", "maxon_dcx19s_24v", "--out", "x.h", "--ambient", "110degC"}, 2, "is not above the hottest air"},
       {{"--motor", kMotor, "--out", "-"}, 2, "/dev/stdout"},
       {{"--motor", kMotor, "--out", "x.h", "--coldest", "50degC"}, 2, "is not below"},
-      {{"--motor", kMotor, "--model", "maxon_ecx_flat_32l_48v", "--out", "x.h"}, 2, "is no model of"},
+      {{"--motor", kMotor, "--model", "maxon_ecx_flat_32l_48v", "--out", "x.h"}, 2, "is not a model of"},
       {{"--motor", kMotor, "--out", "x.h", "--confidence", "95"}, 2, "--confidence"},
       {{"--motor", kMotor, "--out", "x.h", "--ambient", "120degC", "--condition", "fan=on"}, 2, "no effect of"},
       {{"--motor", kMotor, "--out", "missing/x.h"}, 2, "missing"},

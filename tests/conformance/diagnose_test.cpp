@@ -189,8 +189,8 @@ TEST(Diagnose, NamesTheLogUnderWhichTheModelRunsAway) {
   const ProgramRun done =
       run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("bench.csv"), "--holdout", file, "--as-is"}, in(folder));
   EXPECT_EQ(done.exit_code, 4) << done.out;
-  EXPECT_THAT(done.err, HasSubstr("match_3: the network leaves"));
-  EXPECT_THAT(done.err, HasSubstr("in another unit"));
+  EXPECT_THAT(done.err, HasSubstr("match_3: the simulated temperature leaves"));
+  EXPECT_THAT(done.err, HasSubstr("check the units of the log's columns"));
 }
 
 // Half a log may begin with all of a motor at 68 °C and get warmer, which in a whole one would be degrees Fahrenheit of a room.
@@ -233,7 +233,7 @@ TEST(Diagnose, RefusesAnEmptyName) {
     line.insert(line.end(), words.begin(), words.end());
     const ProgramRun done = run(line, in(folder));
     EXPECT_EQ(done.exit_code, 2) << done.out;
-    EXPECT_THAT(done.err, HasSubstr(fmt::format("what follows {} is empty", words.front().substr(0, words.front().find('=')))));
+    EXPECT_THAT(done.err, HasSubstr(fmt::format("the value of {} is empty", words.front().substr(0, words.front().find('=')))));
   }
 }
 

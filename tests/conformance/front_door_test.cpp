@@ -107,7 +107,7 @@ TEST_F(FrontDoor, new_prints_a_hint_that_can_be_pasted) {
   EXPECT_THAT(run_here("heatsoak new motor a.toml").out, HasSubstr("`heatsoak lint a.toml`"));
   const ProgramRun nameless = run_here("heatsoak new robot .toml");
   EXPECT_EQ(nameless.exit_code, 2);
-  EXPECT_THAT(nameless.err, HasSubstr("what stands before it is the id"));
+  EXPECT_THAT(nameless.err, HasSubstr("the part before .toml is the id"));
 }
 
 TEST_F(FrontDoor, one_motor_is_one_motor_and_few_samples_have_no_range) {

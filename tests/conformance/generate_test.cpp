@@ -317,8 +317,9 @@ TEST(GenerateCore, CurveOverAColumnCountsAtItsHottest) {
   write_motor_with(folder.path() / "gripper.toml", {curve});
   const ProgramRun done = run(generate((folder.path() / "gripper.toml").string(), folder.path() / "core"));
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_THAT(done.out, HasSubstr("note: my_tabulated goes with gripper_ratio of the logs"));
-  EXPECT_THAT(content_of(folder.path() / "core/motor_guard.cpp"), HasSubstr("over gripper_ratio of the logs, at its hottest"));
+  EXPECT_THAT(done.out, HasSubstr("note: my_tabulated depends on gripper_ratio of the logs"));
+  EXPECT_THAT(content_of(folder.path() / "core/motor_guard.cpp"),
+              HasSubstr("depends on gripper_ratio of the logs, evaluated at its hottest value"));
 }
 
 TEST(GenerateCore, WorksWithoutFrictionAndSaysSo) {
@@ -361,7 +362,7 @@ struct WrongLine {
 TEST(GenerateCore, SaysWhatIsWrongAndLeavesNothing) {
   const Words with_motor{"--motor", kEcx};
   const std::vector<WrongLine> wrong{
-      {{"--out", "x"}, 2, "which motor?"},
+      {{"--out", "x"}, 2, "the motor is missing"},
       {with_motor, 2, "--out"},
       {with_motor + Words{"--out", "x", "--period", "50ms"}, 2, "period"},
       {with_motor + Words{"--out", "x", "--period", "1s"}, 2, "--period"},

@@ -113,7 +113,7 @@ TEST(DutyImport, says_why_no_robot_can_be_followed) {
   const ProgramRun result = run({"duty", "--import", "game.csv", "--robot", "tigers_v2020"}, options);
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.err, HasSubstr("no robot is seen long enough"));
-  EXPECT_THAT(result.err, HasSubstr("15 detections left out: no number, no such robot, outside any field"));
+  EXPECT_THAT(result.err, HasSubstr("15 detections left out: not a number, no such robot, outside any field"));
 }
 
 TEST(DutyImport, other_units_are_suspected) {
@@ -182,7 +182,7 @@ TEST(Outputs, an_answer_replaces_answers_only) {
                             Words{"evaluate", "--sampels", "0", "--json", "mine.toml"}, Words{"list", "motors", "--json", "mine.toml"}}) {
     const ProgramRun result = run(line, options);
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.err, HasSubstr("which --json would write over")) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("and --json would overwrite it")) << result.err;
     EXPECT_EQ(content_of(folder.path() / "mine.toml"), robot);
   }
   EXPECT_EQ(run({"lint", "--json", "--db", "."}, options).exit_code, 2);
@@ -200,7 +200,7 @@ TEST(Outputs, never_replace_what_the_command_reads) {
   for (const Words& line : {Words{"duty", "--out", "mine.csv"} + duty, Words{"evaluate"} + duty + evaluate}) {
     const ProgramRun result = run(line, options);
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.err, HasSubstr("would write over"));
+    EXPECT_THAT(result.err, HasSubstr("would overwrite it"));
     EXPECT_EQ(content_of(folder.path() / "mine.toml"), robot);
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "mine.csv"));
   }

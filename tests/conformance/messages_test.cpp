@@ -145,7 +145,7 @@ TEST(Evaluate, an_absurd_current_is_bad_input) {
   const ProgramRun result = run({"evaluate", "--robot", (folder.path() / "robot.toml").string(), "--duty",
                                  (folder.path() / "duty.toml").string(), "--motors", "maxon_ec45_flat_70w_24v"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, AllOf(HasSubstr("maxon_ec45_flat_70w_24v: the duty drives 700 A"), HasSubstr("expected at most some ")));
+  EXPECT_THAT(result.err, AllOf(HasSubstr("maxon_ec45_flat_70w_24v: the duty drives 700 A"), HasSubstr("expected at most about ")));
 }
 
 TEST(Outputs, larger_than_the_limit_of_the_user_are_refused_and_leave_nothing) {

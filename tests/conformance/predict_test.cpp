@@ -61,7 +61,7 @@ TEST(Predict, IsWhereHoldoutErrorsComeFrom) {
     EXPECT_NEAR(rmse_K(before), fitted.json()["holdout"]["before"][0]["error"][signal]["rmse_K"].get<double>(), 1e-4) << signal;
   }
   const ProgramRun own = run({"predict", "--model", "model.toml", log("match_1.csv")}, in(folder));
-  EXPECT_THAT(own.out, HasSubstr("match_1 is among the runs that the model was fitted to"));
+  EXPECT_THAT(own.out, HasSubstr("the error of match_1 is not a forecast error"));
 }
 
 std::string mapping_with(const std::string& fan) {

@@ -82,8 +82,8 @@ TEST(MotorWithoutSpreads, GetsDefaultsThatEveryAnswerStates) {
   EXPECT_EQ(bare.json()["default_spreads"].size(), 7U);
   EXPECT_THAT(honest.json()["default_spreads"], IsEmpty());
   const std::string header = content_of(folder.path() / "bare.h");
-  EXPECT_LT(header.find("DEFAULT SPREADS"), 400U);
-  EXPECT_THAT(content_of(folder.path() / "honest.h"), Not(HasSubstr("DEFAULT SPREADS")));
+  EXPECT_LT(header.find("DEFAULT TOLERANCES"), 400U);
+  EXPECT_THAT(content_of(folder.path() / "honest.h"), Not(HasSubstr("DEFAULT TOLERANCES")));
   EXPECT_GE(bare.json()["heat_reserve_ratio"].get<double>(), honest.json()["heat_reserve_ratio"].get<double>());
   EXPECT_LE(bare.json()["limp_current_A"].get<double>(), honest.json()["limp_current_A"].get<double>());
   // The first place of all tables is a motor as cold as the air.

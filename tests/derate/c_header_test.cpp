@@ -382,19 +382,19 @@ last_knot = { value = "360 rad/s", origin = "estimated", derivation = "a test" }
 TEST(CHeaderText, SaysWhatWasAssumed) {
   Derating derating = guarded_ecx_32();
   const auto text = [&] { return std::ranges::find(all_exporters(), "c_header", &ExporterType::name)->write(derating); };
-  EXPECT_THAT(text(), testing::Not(HasSubstr("ONLY WHERE")));
+  EXPECT_THAT(text(), testing::Not(HasSubstr("VALID ONLY IF")));
   derating.assumed = {{"cooling", "fan"}};
   derating.effects.push_back({"gripper", "tabulated", "P = curve", "gripper_ratio"});
-  EXPECT_THAT(text(), HasSubstr("ONLY WHERE cooling is fan"));
-  EXPECT_THAT(text(), HasSubstr("over gripper_ratio of the logs, at its hottest"));
+  EXPECT_THAT(text(), HasSubstr("VALID ONLY IF cooling is fan"));
+  EXPECT_THAT(text(), HasSubstr("depends on gripper_ratio of the logs, evaluated at its hottest value"));
 }
 
 TEST(CHeaderText, SaysInItsFirstLinesWhichSpreadsItAssumed) {
   Derating derating = guarded_ecx_32();
   const auto text = [&] { return std::ranges::find(all_exporters(), "c_header", &ExporterType::name)->write(derating); };
-  EXPECT_THAT(text(), testing::Not(HasSubstr("DEFAULT SPREADS")));
+  EXPECT_THAT(text(), testing::Not(HasSubstr("DEFAULT TOLERANCES")));
   derating.default_spreads = {{"effects.a */ b.loss", Origin::estimated, 2.0, {Spread::Kind::range, 1.0, 3.0, true}}};
-  EXPECT_LT(text().find("DEFAULT SPREADS"), 300U);
+  EXPECT_LT(text().find("DEFAULT TOLERANCES"), 300U);
   EXPECT_THAT(text(), HasSubstr("effects.a * / b.loss -50 to +50 % (estimated)"));
 }
 

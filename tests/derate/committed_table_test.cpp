@@ -167,9 +167,9 @@ TEST_F(Tampered, HeaderThatIsCutOffIsNeverTakenForACsvTable) {
   for (const std::string_view last : {"#ifndef", "#include", "_square_A2[", "_advance("}) {
     const std::size_t cut = header.find('\n', header.find(last));
     ASSERT_NE(cut, std::string::npos) << last;
-    EXPECT_THAT(message_of(header.substr(0, cut + 1)), HasSubstr("cut off")) << last;
+    EXPECT_THAT(message_of(header.substr(0, cut + 1)), HasSubstr("truncated")) << last;
   }
-  EXPECT_THAT(message_of(header.substr(0, 300)), HasSubstr("cut off"));
+  EXPECT_THAT(message_of(header.substr(0, 300)), HasSubstr("truncated"));
 }
 
 // What a compiler reads as more than the number at its beginning is no table entry.
@@ -208,13 +208,13 @@ TEST_F(Tampered, WhatIsNoTableIsRefused) {
   EXPECT_THAT(message_of("speed,current\n1,2\n"), HasSubstr("speed_rad_per_s"));
   EXPECT_THAT(message_of(std::regex_replace(csv, std::regex("\n0,"), "\n-0.5,", std::regex_constants::format_first_only)),
               HasSubstr("grid"));
-  EXPECT_THAT(message_of("static const float x[2] = {1.0f, 2.0f};\n"), HasSubstr("holds no derating table"));
+  EXPECT_THAT(message_of("static const float x[2] = {1.0f, 2.0f};\n"), HasSubstr("contains no derating table"));
   EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(_winding_C\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$1")),
-              HasSubstr("as many as its axes"));
+              HasSubstr("the product of the lengths of its axes"));
   EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(48v_square_A2\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$1nan,")),
               HasSubstr("a current that is not a finite number"));
   EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(48v_winding_C\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$01999.0f,")),
-              HasSubstr("does not ascend"));
+              HasSubstr("does not increase"));
 }
 
 }  // namespace

@@ -257,7 +257,7 @@ TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
   const double end_C = script.settings.at("'l-temp-motor-end");
   EXPECT_EQ(script.settings.at("'l-current-min"), -most_A);
   for (const char* state : {"hs-state0-C", "hs-state1-C"}) {
-    EXPECT_EQ(script.value(state), 155.0F) << "never started: as hot as its limit";
+    EXPECT_EQ(script.value(state), 155.0F) << "not started: taken as hot as its limit";
     script.set(state, 40.0F);
   }
   ObserverRun<float> observer(ecx_derating().observer, 0.01F, 40.0F);

@@ -97,7 +97,7 @@ TEST(Ramp, RefusesByName) {
   EXPECT_THAT(message(broken, RampSignal::stator), HasSubstr("is not a number"));
   Derating none = ecx_derating();
   std::ranges::fill(none.table.square_A2, 0.0);
-  EXPECT_THAT(message(none, RampSignal::stator), HasSubstr("leaves no current"));
+  EXPECT_THAT(message(none, RampSignal::stator), HasSubstr("allows no current"));
 }
 
 }  // namespace

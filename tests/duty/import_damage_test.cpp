@@ -84,7 +84,7 @@ TEST(ImportDamage, KeepsWhatCameBeforeTheEndOfATruncatedPackedLog) {
     try {
       const RecordedGame game = import_game(file.path());
       expect_sane(game);
-      EXPECT_THAT(sentences(game.report), Contains(HasSubstr("before the end of what is packed in it"))) << size;
+      EXPECT_THAT(sentences(game.report), Contains(HasSubstr("before the end of its data"))) << size;
       EXPECT_GE(game.report.messages, most_messages);
       most_messages = game.report.messages;
     } catch (const Failure& failure) {
@@ -136,7 +136,7 @@ TEST(ImportDamage, PassesOverDamageAndSaysWhere) {
   ASSERT_GE(game.report.problems.size(), 3U);
   EXPECT_EQ(game.report.problems[0].at, log.starts()[50]);
   EXPECT_THAT(sentences(game.report),
-              Contains(HasSubstr("byte " + std::to_string(no_protobuf) + ": message of vision that cannot be decoded")));
+              Contains(HasSubstr("byte " + std::to_string(no_protobuf) + ": vision message that cannot be decoded")));
   EXPECT_THAT(sentences(game.report),
               Contains("byte " + std::to_string(log.starts()[200]) + ": no valid message here; 5000 bytes skipped"));
   ASSERT_EQ(game.tracks.size(), 2U);
@@ -166,7 +166,7 @@ TEST(ImportDamage, SaysWhatAForeignFileIs) {
               HasSubstr("is packed by xz"));
   EXPECT_THAT(failure_of(std::string("\0\0\0\x18\0S\0S\0L\0_", 12)), HasSubstr("version 0"));
   EXPECT_THAT(failure_of(""), HasSubstr("is empty"));
-  EXPECT_THAT(failure_of("hello, world", "game.log.gz"), HasSubstr("is no recorded game"));
+  EXPECT_THAT(failure_of("hello, world", "game.log.gz"), HasSubstr("is not a recorded game"));
   EXPECT_THAT(failure_of(gzip("hello, world"), "game.log.gz"), HasSubstr("begins with \"hello, world\""));
   EXPECT_THAT(failure_of("\x1f\x8b not gzip at all"), HasSubstr("damaged"));
 }
@@ -241,7 +241,7 @@ TEST(ImportHuge, EndsOnAPackedNothingOfManyGigabytes) {
     const long before_kB = peak_memory_kB();
     try {
       const RecordedGame game = import_game(file.path());
-      EXPECT_THAT(sentences(game.report), Contains(HasSubstr("nothing of use in the")));
+      EXPECT_THAT(sentences(game.report), Contains(HasSubstr("no usable message in the")));
       EXPECT_EQ(game.tracks.empty(), begin.size() == 16);
     } catch (const Failure& failure) {
       EXPECT_TRUE(begin.empty()) << failure.what();

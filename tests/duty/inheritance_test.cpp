@@ -64,7 +64,7 @@ TEST_F(Inheritance, states_only_what_differs) {
 TEST_F(Inheritance, follows_a_chain_and_ends_a_circle) {
   write("middle.toml", "base = \"division_a_match\"\nsummary = \"middle\"\n");
   EXPECT_EQ(read_duty(write("last.toml", "base = \"middle.toml\"\n")).summary, "middle");
-  EXPECT_THAT(refusal(write("self.toml", "base = \"self\"\n")), HasSubstr("does a file name itself?"));
+  EXPECT_THAT(refusal(write("self.toml", "base = \"self\"\n")), HasSubstr("check whether a file refers to itself"));
 }
 
 TEST_F(Inheritance, problems_have_their_place) {

@@ -208,7 +208,7 @@ TEST(Smoothing, SeesNoAccelerationOfARobotThatStands) {
   EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.1);
   // All of next to nothing is no finding.
   EXPECT_EQ(to_string(motion.report()).find("100.0 %"), std::string::npos);
-  EXPECT_NE(to_string(motion.report()).find("too small to stand out"), std::string::npos);
+  EXPECT_NE(to_string(motion.report()).find("is below the noise"), std::string::npos);
 }
 
 TEST(Smoothing, GivesTheSameInOnePieceAsInBlocks) {

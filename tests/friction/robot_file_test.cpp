@@ -123,7 +123,7 @@ TEST(RobotFile, is_not_written_with_a_wheel_that_was_not_learned) {
     FAIL();
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), ExitCode::cannot_answer);
-    EXPECT_THAT(failure.what(), HasSubstr("wheel 2 was not learned"));
+    EXPECT_THAT(failure.what(), HasSubstr("the friction of wheel 2 over the directions is not identifiable"));
   }
 }
 

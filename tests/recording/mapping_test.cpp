@@ -158,7 +158,7 @@ conditions = { fan = "off" }
 time_s = { column = "time_s" }
 winding_C = { column = "winding_C" }
 )"),
-              HasSubstr("contradicts \"on\", which another [[files]] says of *.csv"));
+              HasSubstr("contradicts \"on\", which another [[files]] states for *.csv"));
 }
 
 TEST(Mapping, IsFoundBesideTheLog) {
@@ -195,10 +195,10 @@ TEST(Mapping, EveryProblemWithItsPlace) {
       "stator_C = { column = \"T\", expression = \"T\" }\nambient = { column = \"T\" }\n"
       "winding_C = { column = \"T\", sign = \"-\" }\n");
   EXPECT_THAT(all, AllOf(HasSubstr("m.map.toml:1:10: error: inputs: 'hold' is not known"), HasSubstr("did you mean 'held'?"),
-                         HasSubstr(":3:"), HasSubstr("'m' is no unit of time_s")));
+                         HasSubstr(":3:"), HasSubstr("'m' is not a unit of time_s")));
   EXPECT_THAT(all, AllOf(HasSubstr("m.map.toml:4:"), HasSubstr("colum: is not a key of this table; did you mean 'column'?"),
                          HasSubstr("stator_C: expected one of column"), HasSubstr("ambient: is no quantity"),
-                         HasSubstr("did you mean 'ambient_C'?"), HasSubstr("a temperature has none")));
+                         HasSubstr("did you mean 'ambient_C'?"), HasSubstr("a temperature has no sign")));
 }
 
 TEST(Mapping, ColumnsAndExpressionsAreCheckedAgainstTheLog) {
@@ -211,7 +211,7 @@ TEST(Mapping, ColumnsAndExpressionsAreCheckedAgainstTheLog) {
   EXPECT_THAT(all,
               AllOf(HasSubstr("m.map.toml:3:36: error: quantities.winding_C.expression:"), HasSubstr("the log has no column 'offset'")));
   EXPECT_THAT(all, AllOf(HasSubstr("there is no function 'squrt'; did you mean 'sqrt'?"), HasSubstr("write == to compare"),
-                         HasSubstr("quantities.bus_V.expression: \"(power + 1\" is no expression")));
+                         HasSubstr("quantities.bus_V.expression: \"(power + 1\" is not a valid expression")));
 }
 
 }  // namespace

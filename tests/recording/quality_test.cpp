@@ -363,7 +363,7 @@ TEST(Fitness, LogsThatTellNothingAboutHeat) {
               ElementsAre(HasSubstr("winding_C is constant, 25 °C")));
   SyntheticLog off;
   off.current_A = [](double) { return 0.0; };
-  EXPECT_THAT(lacks_of(off.csv()), testing::Contains(HasSubstr("no heat goes in: current_A is 0 throughout")));
+  EXPECT_THAT(lacks_of(off.csv()), testing::Contains(HasSubstr("there is no heat input: current_A is 0 throughout")));
   SyntheticLog shortened;
   shortened.rows = 12;
   EXPECT_THAT(lacks_of(shortened.csv()), testing::Contains(HasSubstr("12 rows; at least 20")));

@@ -84,7 +84,7 @@ TEST(ReadRecording, OtherSeparatorsUnitsAndNamesAreSaid) {
   RecordingReport report;
   read("time_s,winding_C,stator_F,windin_C\n0,20,68,20\n1,21,69,21\n", report);
   EXPECT_THAT(report.notes, testing::Contains(HasSubstr("stator_C = { column = \"stator_F\", unit = … }")));
-  EXPECT_THAT(report.notes, testing::Contains(HasSubstr("windin_C is taken as one more signal; did you mean 'winding_C'?")));
+  EXPECT_THAT(report.notes, testing::Contains(HasSubstr("windin_C is used as an additional signal; did you mean 'winding_C'?")));
 }
 
 TEST(ReadRecording, WithoutTimeSaysWhatToDo) {
@@ -139,13 +139,14 @@ TEST(ReadRecording, FilesThatAreNoLogs) {
   EXPECT_THAT(failure_of("log of 3 May\ntime_s,winding_C\n0,20\n"), HasSubstr("header_rows"));
   EXPECT_THAT(failure_of("time_s;winding_C\n0;20\n"), HasSubstr("the header has one column only"));
   EXPECT_THAT(failure_of(std::string("time_s,winding_C\n0,\0\n", 21)), HasSubstr("binary file"));
-  EXPECT_THAT(failure_of("time_s,winding_C\n0,20,1\n1,20,1\n"), HasSubstr("none of its 2 rows can be used; another number of cells"));
+  EXPECT_THAT(failure_of("time_s,winding_C\n0,20,1\n1,20,1\n"),
+              HasSubstr("none of its 2 rows can be used; number of cells differs from the header"));
   EXPECT_THAT(failure_of("time_s,winding_C\n0,\"20\n1,21\n"), HasSubstr(":2:1: error: a quote in this row is not closed"));
   EXPECT_THAT(failure_of("time_s,winding_C\r0,20\r1,21\r"), HasSubstr(":1:1: error: its lines end with a carriage return alone"));
   EXPECT_THAT(failure_of("time_s,winding_C\n0," + std::string(3 << 20, '1') + "\n"), HasSubstr("a line of more than 1 MB"));
-  EXPECT_THAT(failure_of("time_s,winding_C,winding_C\n0,20,20\n"), HasSubstr("'winding_C' stands twice in the header"));
+  EXPECT_THAT(failure_of("time_s,winding_C,winding_C\n0,20,20\n"), HasSubstr("'winding_C' appears twice in the header"));
   EXPECT_THAT(failure_of("time_s,winding_C\n5,20\n4,20\n3,20\n2,20\n"), HasSubstr(":3:1: error: time_s: time does not increase"));
-  EXPECT_THAT(failure_of("time_s,winding_C\n0,\n1,nan\n"), HasSubstr("no quantity beside the time holds a number"));
+  EXPECT_THAT(failure_of("time_s,winding_C\n0,\n1,nan\n"), HasSubstr("no quantity except the time contains a number"));
 }
 
 TEST(ReadRecording, ExitCodesTellWhatIsWrong) {

@@ -51,7 +51,7 @@ PredictedPiece predicted(const ForecastModel& model, std::span<const MeasuredRun
     fit = fit_forecast(model, others, {}, theta, *rules);
   }
   if (!std::isfinite(fit.cost_nats)) {
-    throw Failure(ExitCode::numerics_failed, "the model cannot be run along the other pieces");
+    throw Failure(ExitCode::numerics_failed, "the model cannot be simulated over the other pieces");
   }
   const Eigen::VectorXd start_C =
       is_block && !fit.starts.empty() ? fit.starts.front().state_C : model.decided_start(run, fit.theta).state_C;

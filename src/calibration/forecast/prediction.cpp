@@ -84,10 +84,10 @@ void predict_one(const Motor& motor, const Recording& recording, const Predictio
   const double most_loss_W = setup.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
   if (most_loss_W > 0.0 && std::ranges::any_of(runs, turns_unseen)) {
     setup.opens_loss_at_speed = true;
-    all.notes.push_back(fmt::format(
-        "{} has a current but no speed: the loss at speed may be anything up to {} W, and the band is wider for it; if the motor stood "
-        "still, add speed_rad_per_s = 0",
-        recording.name, significant(most_loss_W, 2)));
+    all.notes.push_back(
+        fmt::format("the band of {} is wider, because its log has a current but no speed: the loss at speed may be anything up to {} W; if "
+                    "the motor stood still, add speed_rad_per_s = 0",
+                    recording.name, significant(most_loss_W, 2)));
   }
   const ForecastModel model = setup.model();
   const Eigen::MatrixXd& precision = model.prior().precision;
@@ -142,10 +142,10 @@ Prediction predict(const Motor& motor, std::span<const Recording> recordings, co
     predict_one(as_in(recording, motor), recording, options, all);
   }
   if (!motor.fit || !motor.fit->band) {
-    all.notes.push_back(fmt::format(
-        "{} has no band of its own: it is that of its declared uncertainties and of what forecasts are usually off; `heatsoak calibrate` "
-        "finds one",
-        motor.id));
+    all.notes.push_back(
+        fmt::format("the band of {} is only an estimate from its declared uncertainties and the usual error of forecasts; `heatsoak "
+                    "calibrate` determines a band",
+                    motor.id));
   }
   return all;
 }

@@ -25,9 +25,7 @@ ThresholdType core_size() {
   return {.name = {},
           .unit = "byte",
           .range = Range::between(0.0, 1e9),
-          .meaning =
-              "size of the drive core that `generate core` writes for robot and motor: all its source files together, before any "
-              "compiler",
+          .meaning = "size of the drive core that `generate core` writes for robot and motor: all its source files together, not compiled",
           .example = "at most 400 kbyte",
           .needs = {Setting::robot, Setting::motor},
           .takes = {Setting::conditions, Setting::derate},

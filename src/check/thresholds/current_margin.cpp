@@ -21,8 +21,8 @@ ThresholdType current_margin() {
           .direction = Bound::at_least,
           .range = Range::between(-1e3, 1e3),
           .meaning =
-              "how much more rms current the nominal motor bears at the same speeds until winding or stator is at its limit, as far as "
-              "voltage and driver let it through; negative where the limit is exceeded",
+              "rms current that the nominal motor can take in addition at the same speeds until winding or stator reaches its limit, as "
+              "far as voltage and driver allow it; negative if the limit is exceeded",
           .example = "at least 0.5 A",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},

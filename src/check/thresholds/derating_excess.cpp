@@ -6,11 +6,10 @@ namespace {
 Measured measure(const Check& check, Computations& computations) {
   const TableComparison found = compared(check, computations);
   if (found.differing_line > 0) {
-    throw Failure(
-        ExitCode::limit_exceeded,
-        fmt::format("{}:{}: the observer is not the one of a fresh header, so the table means something else: \"{}\", fresh \"{}\"; "
-                    "make the header anew with `heatsoak derate`",
-                    check.table.string(), found.differing_line, found.differing_text, found.differing_fresh_text));
+    throw Failure(ExitCode::limit_exceeded,
+                  fmt::format("{}:{}: the observer differs from that of a fresh header, so the table has another meaning: \"{}\", fresh "
+                              "\"{}\"; generate the header again with `heatsoak derate`",
+                              check.table.string(), found.differing_line, found.differing_text, found.differing_fresh_text));
   }
   std::string detail = place_text(found.excess);
   if (found.lost.difference_A > 0.0) {
@@ -22,20 +21,19 @@ Measured measure(const Check& check, Computations& computations) {
 }  // namespace
 
 ThresholdType derating_excess() {
-  return {
-      .name = {},
-      .unit = "A",
-      .range = Range::between(0.0, 1e3),
-      .least_size_ratio = 1.0,
-      .meaning =
-          "how much more current the committed 'table' allows than a fresh `derate` of the same robot, motor and options, at the "
-          "speed and temperatures where that is most. A C header fails, too, where it is of another motor or its observer differs from a "
-          "fresh one. The default of 400 drawn motors takes 5 to 10 s per motor; write and check the table with derate = { samples = "
-          "\"60\" } for 1 s. The limit of --update leaves 0.05 A where the value is 0",
-      .example = "at most 0 A",
-      .needs = {Setting::robot, Setting::motor, Setting::table},
-      .takes = {Setting::conditions, Setting::derate},
-      .measure = measure};
+  return {.name = {},
+          .unit = "A",
+          .range = Range::between(0.0, 1e3),
+          .least_size_ratio = 1.0,
+          .meaning =
+              "largest excess of the current that the committed 'table' allows over that of a fresh `derate` of the same robot, motor and "
+              "options, over all speeds and temperatures. A C header also fails if it is of another motor or its observer differs from a "
+              "fresh one. The default of 400 drawn motors takes 5 to 10 s per motor; write and check the table with derate = { samples = "
+              "\"60\" } for 1 s. The limit of --update leaves 0.05 A if the value is 0",
+          .example = "at most 0 A",
+          .needs = {Setting::robot, Setting::motor, Setting::table},
+          .takes = {Setting::conditions, Setting::derate},
+          .measure = measure};
 }
 
 }  // namespace heatsoak::thresholds

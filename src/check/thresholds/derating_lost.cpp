@@ -7,8 +7,8 @@ ThresholdType derating_lost() {
           .unit = "A",
           .range = Range::between(0.0, 1e3),
           .meaning =
-              "how much less current the committed 'table' allows than a fresh `derate` of the same robot, motor and options, at the "
-              "speed and temperatures where that is most: safe, but given away",
+              "largest deficit of the current that the committed 'table' allows below that of a fresh `derate` of the same robot, motor "
+              "and options, over all speeds and temperatures: safe, but unused current",
           .example = "at most 0.5 A",
           .needs = {Setting::robot, Setting::motor, Setting::table},
           .takes = {Setting::conditions, Setting::derate},

@@ -18,8 +18,8 @@ ThresholdType guard_missing_charge() {
           .unit = "A s",
           .range = Range::between(0.0, 1e6),
           .meaning =
-              "current over time that the thermal guard would take away in a match, all wheels together; the same drive as of "
-              "guard_active_share",
+              "integral over time of the current that the thermal guard would take away in a match, all wheels together; the same drive as "
+              "for guard_active_share",
           .example = "at most 0 A s",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::seed, Setting::conditions, Setting::derate},

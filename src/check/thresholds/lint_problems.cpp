@@ -59,7 +59,7 @@ ThresholdType lint_problems() {
           .is_whole = true,
           .range = Range::between(0.0, 1e4),
           .room = Room::none,
-          .meaning = "errors and warnings of `lint`, notes apart: of 'files', or of the check's own motor, robot and duty",
+          .meaning = "number of errors and warnings of `lint`, without notes, for 'files' or for the check's own motor, robot and duty",
           .example = "at most 0",
           .needs = {},
           .takes = {Setting::robot, Setting::duty, Setting::motor, Setting::conditions, Setting::files},

@@ -20,10 +20,10 @@ inline Measured measured_peak(const Check& check, Computations& computations, Sp
   const Spread95& peak_C = result.*peak;
   const std::optional<Interval95>& bounds_C = result.*interval;
   if (!bounds_C || !std::isfinite(bounds_C->high)) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("a bound of the 95th percentile needs 72 samples or more, or 160 where the duty is drawn; "
-                              "the check has {}",
-                              check.samples));
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("a bound of the 95th percentile needs 72 samples or more, or 160 if the duty is drawn at random; the check has {}",
+                    check.samples));
   }
   return {
       bounds_C->high, check.duty->ambient_C.value,

@@ -15,11 +15,11 @@ constexpr double kConfidence = 0.95;
 std::string what_would_do(const Check& check, double over_share, double limit_share, int draws) {
   const std::optional<long> needed = draws_needed(over_share, limit_share, kConfidence);
   if (!needed) {
-    return "no number of samples keeps the limit with this share";
+    return "no number of samples can meet the limit with this share";
   }
   const bool is_drawn = draws != check.samples;
   const long per_draw = is_drawn ? (check.samples + draws - 1) / draws : 1;
-  return fmt::format("{} samples or more could keep {} % with this share", *needed * per_draw, significant(100.0 * limit_share, 3));
+  return fmt::format("{} samples or more could meet {} % with this share", *needed * per_draw, significant(100.0 * limit_share, 3));
 }
 
 Measured measure(const Check& check, Computations& computations) {
@@ -52,8 +52,8 @@ ThresholdType probability_over_limit() {
           .range = Range::between(0.0, 1.0),
           .meaning =
               "probability that winding or stator exceeds its limit: the exact upper confidence bound (Clopper and Pearson, 95 %, "
-              "one-sided) of the share of samples that do, so that few samples cannot keep a tight limit. Where the duty is drawn, as "
-              "a match is, its draws count in place of the samples",
+              "one-sided) of the share of samples that do, so that few samples cannot meet a tight limit. If the duty is drawn at random, "
+              "as a match is, its draws count instead of the samples",
           .example = "at most 5 %",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},

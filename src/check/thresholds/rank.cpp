@@ -33,7 +33,7 @@ ThresholdType rank() {
           .range = Range::between(1.0, 1e4),
           .room = Room::none,
           .meaning =
-              "place of the motor among itself and those of 'against' in the order of `evaluate`: verdict, then the nominal margin to "
+              "rank of the motor among itself and those of 'against', in the order of `evaluate`: verdict, then the nominal margin to "
               "the nearer limit. \"at most 1\": it stays first",
           .example = "at most 1",
           .needs = {Setting::robot, Setting::duty, Setting::motor, Setting::against},

@@ -82,7 +82,8 @@ std::vector<CheckFile> read_files(const std::vector<std::string>& names, const D
 /// Throws if the file was found beside the program, because it is not the user's.
 void refuse_shipped(const std::filesystem::path& path, const Options& options) {
   if (std::ranges::find(options.files, path.string()) == options.files.end()) {
-    throw Failure(ExitCode::bad_input, fmt::format("{} came with the program and is not rewritten; copy it first", path.string()));
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{} is part of the installed program and is not rewritten; copy it first", path.string()));
   }
 }
 
@@ -153,12 +154,12 @@ Command check_command() {
                 ->required()
                 ->type_name("FILE.toml");
             app.add_option("--junit", options->junit, "write the result as JUnit XML, for CI services")->type_name("FILE.xml");
-            app.add_flag("--update", options->is_update,
-                         "rewrite the limits in the files: the present values with some room; what cannot be evaluated stays");
-            add_quantity(
-                app, "--margin", options->margin_share,
-                {"margin", "", Range::between(0.0, 10.0),
-                 "of --update: room as a share of the value, of a temperature as a share of its rise over the air; 5 % unless given"})
+            app.add_flag(
+                "--update", options->is_update,
+                "rewrite the limits in the files to the present values with some room; limits that cannot be evaluated stay unchanged");
+            add_quantity(app, "--margin", options->margin_share,
+                         {"margin", "", Range::between(0.0, 10.0),
+                          "of --update: room as a share of the value, or of the rise over the air for a temperature; 5 % unless given"})
                 ->type_name("SHARE");
             app.add_option("--threads", options->threads, "0: all cores; the result does not depend on it")
                 ->check(whole_number(1024))

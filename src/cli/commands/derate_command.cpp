@@ -60,7 +60,7 @@ double current_at_A(const UsePlayed& played, double time_s) {
 }
 
 std::string table_text(const Derating& derating) {
-  std::string text = "allowed current in A if it is fully used, starting at the temperature of the air:\n  speed rad/s";
+  std::string text = "allowed current in A over time if it is always fully used, from a start at air temperature:\n  speed rad/s";
   for (const double time_s : kMoments_s) {
     text += fmt::format(" {:>9}", fmt::format("at {}", duration_text(time_s)));
   }
@@ -92,16 +92,17 @@ std::string report(const Derating& derating) {
                          effect.name == effect.type ? effect.name : fmt::format("{} ({})", effect.name, effect.type));
     }
   }
-  text += own.empty() ? "" : fmt::format("effects of the file that act: {}\n", own);
+  text += own.empty() ? "" : fmt::format("active effects of the file: {}\n", own);
   text += fmt::format(
-      "safety factor on heat {:.2f}. {} ({} draws are the fewest for it)\n"
+      "safety factor on heat {:.2f}. {} (at least {} draws are needed for this)\n"
       "the windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C (the hottest)\n\n",
       derating.observer.heat_safety_factor(), confidence_text(derating), least_samples(derating.options.guarantee), checked.samples,
       checked.winding_p50_C, checked.winding_p95_C, checked.winding_most_C);
   text += table_text(derating);
   if (derating.rules.most_speed_rad_per_s < derating.reachable_speed_rad_per_s) {
     text += fmt::format(
-        "beyond {:.0f} of {:.0f} rad/s the motor may exceed a limit without current: the allowed current falls to 0 A at {:.0f} rad/s\n",
+        "above {:.0f} of {:.0f} rad/s the motor may exceed a limit even without current: the allowed current falls to 0 A at {:.0f} "
+        "rad/s\n",
         derating.rules.most_speed_rad_per_s, derating.reachable_speed_rad_per_s, derating.table.no_current_speed_rad_per_s);
   }
   const TableBound& bound = derating.table.bound;
@@ -116,7 +117,7 @@ std::string report(const Derating& derating) {
       asked += fmt::format("{}{}", asked.empty() ? "" : ", ", firmware::signals()[i].name);
     }
   }
-  return text + (asked.empty() ? "" : fmt::format("besides current, speed and air the firmware is asked for {}\n", asked));
+  return text + (asked.empty() ? "" : fmt::format("besides current, speed and air temperature the firmware must supply {}\n", asked));
 }
 
 std::string place_text(const TablePlace& place) {
@@ -134,7 +135,7 @@ Json json(const TablePlace& place) {
 std::string comparison_text(const CommittedTable& committed, const Derating& derating, const TableComparison& found, bool is_other_motor,
                             bool holds) {
   std::string text =
-      fmt::format("\n{}: {}\n", committed.file.string(), holds ? "still holds" : "no longer holds; write it anew with --out");
+      fmt::format("\n{}: {}\n", committed.file.string(), holds ? "still holds" : "no longer holds; write it again with --out");
   if (is_other_motor) {
     text += fmt::format("unsafe: it is the table of another motor, {}; expected one of {}\n", committed.motor_id, derating.motor_id);
   }
@@ -143,7 +144,7 @@ std::string comparison_text(const CommittedTable& committed, const Derating& der
   }
   if (found.differing_line > 0) {
     text += fmt::format(
-        "unsafe: its observer is not the one of a fresh header, so the table means something else\n  line {}: {}\n  fresh:  {}\n",
+        "unsafe: its observer differs from that of a fresh header, so the table has another meaning\n  line {}: {}\n  fresh:  {}\n",
         found.differing_line, found.differing_text, found.differing_fresh_text);
   }
   if (found.lost.difference_A > 0.0) {
@@ -183,7 +184,7 @@ ExitCode run(const Options& options, Session& session) {
   derate_options.sensor = sensor_options(options.sensor);
   if (derate_options.sensor && exporter.name != "c_header" && exporter.name != "json") {
     throw Failure(ExitCode::bad_input,
-                  fmt::format("--to {} has no place for a sensor: expected --to c_header or json, or no sensor", exporter.name));
+                  fmt::format("--to {} does not support a sensor: expected --to c_header or json, or no sensor", exporter.name));
   }
   if (options.out.empty() && options.committed.empty()) {
     throw Failure(ExitCode::bad_input, "expected --out FILE to write, or --check FILE to compare with");
@@ -220,31 +221,31 @@ ExitCode run(const Options& options, Session& session) {
 }  // namespace
 
 Command derate_command() {
-  return {
-      .name = {},
-      .summary = "How much current the firmware may still give: observer and derating table, checked on motors of every declared tolerance",
-      .example = "heatsoak derate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --to c_header --out motor_guard.h",
-      .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
-        const auto options = std::make_shared<Options>();
-        add_motor_options(app, options->guard);
-        app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
-        app.add_option("--to", options->to, "form (see `heatsoak list formats`)")->capture_default_str()->type_name("FORM");
-        app.add_option("--out", options->out, "file to write")->type_name("FILE");
-        app.add_option("--compiler", options->compiler,
-                       "C compiler, such as cc: adds a binary for this machine to an FMU, which else has its sources only")
-            ->type_name("CC");
-        app.add_option(
-               "--check", options->committed,
-               "a C header or CSV table that was written earlier, with the same options: exit 1 where it allows more than a fresh one")
-            ->type_name("FILE");
-        add_quantity(app, "--period", options->guard.derate.period_s,
-                     {"period", "s", Range::between(1e-3, 1.0), "between two calls of the firmware; 10 ms unless given"});
-        add_derate_options(app, options->guard.derate);
-        add_sensor_options(app, options->sensor);
-        session.add_data_option(app);
-        session.add_json_option(app);
-        return [options, &session] { return run(*options, session); };
-      }};
+  return {.name = {},
+          .summary =
+              "Writes how much current the firmware may allow: observer and derating table, checked on motors of every declared tolerance",
+          .example = "heatsoak derate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --to c_header --out motor_guard.h",
+          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+            const auto options = std::make_shared<Options>();
+            add_motor_options(app, options->guard);
+            app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
+            app.add_option("--to", options->to, "output format (see `heatsoak list formats`)")->capture_default_str()->type_name("FORM");
+            app.add_option("--out", options->out, "file to write")->type_name("FILE");
+            app.add_option("--compiler", options->compiler,
+                           "C compiler, such as cc: adds a binary for this machine to an FMU, which otherwise contains only its sources")
+                ->type_name("CC");
+            app.add_option(
+                   "--check", options->committed,
+                   "a C header or CSV table that was written earlier, with the same options: exit 1 if it allows more than a fresh one")
+                ->type_name("FILE");
+            add_quantity(app, "--period", options->guard.derate.period_s,
+                         {"period", "s", Range::between(1e-3, 1.0), "between two calls of the firmware; 10 ms unless given"});
+            add_derate_options(app, options->guard.derate);
+            add_sensor_options(app, options->sensor);
+            session.add_data_option(app);
+            session.add_json_option(app);
+            return [options, &session] { return run(*options, session); };
+          }};
 }
 
 }  // namespace heatsoak::commands

@@ -23,9 +23,9 @@ namespace heatsoak::commands {
 namespace {
 
 /// Head that every duty file has in addition to its shape.
-const std::string kDutyHead = R"(summary = "what this load is"
-origin = "who says so, or whose judgement it is"
-ambient = { value = "25 degC", origin = "estimated", derivation = "why this figure", range = ["20 degC", "32 degC"] }
+const std::string kDutyHead = R"(summary = "description of this load"
+origin = "source, or whose judgement it is"
+ambient = { value = "25 degC", origin = "estimated", derivation = "why this value", range = ["20 degC", "32 degC"] }
 )";
 
 using Json = nlohmann::ordered_json;
@@ -71,7 +71,7 @@ std::string parameter_text(std::string_view key, std::string_view unit, const Pa
   }
   text += figure.source.empty() ? "\n" : fmt::format("  [{}]\n", figure.source);
   for (const Confirmation& each : figure.confirmed_by) {
-    text += fmt::format("      {} says {}\n", each.source, each.printed);
+    text += fmt::format("      {} states {}\n", each.source, each.printed);
   }
   return figure.derivation.empty() ? text : text + fmt::format("      {}\n", figure.derivation);
 }
@@ -83,7 +83,7 @@ void describe_own_effects(const Motor& motor, Description& result) {
     Json json = {{"name", effect.name}, {"type", effect.type->name}, {"nodes", effect.nodes}, {"condition", effect.condition}};
     std::string where;
     for (const auto& [key, value] : effect.condition) {
-      where += fmt::format(", known where {}={}", key, value);
+      where += fmt::format(", found under {}={}", key, value);
     }
     result.text += fmt::format("  {} ({}) at {}{}\n", effect.name, effect.type->name, fmt::join(effect.nodes, ", "), where);
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
@@ -105,7 +105,7 @@ Description describe_motor(const Motor& motor) {
                       {"manufacturer", motor.manufacturer},
                       {"name", motor.name},
                       {"data_quality", data_quality(motor)}}};
-  result.text += "\nfigures (value, origin, tolerance or range, source)\n";
+  result.text += "\nparameters (value, origin, tolerance or range, source)\n";
   for (const MotorParameterSpec& each : motor_parameter_specs()) {
     if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
       result.text += parameter_text(each.spec.key, each.spec.unit, found->second);
@@ -128,7 +128,7 @@ Description describe_motor(const Motor& motor) {
     }
   }
   describe_own_effects(motor, result);
-  result.text += motor.sensors.empty() ? "" : "\nsensors: errors that they have\n";
+  result.text += motor.sensors.empty() ? "" : "\nsensor errors\n";
   for (const MotorSensor& sensor : motor.sensors) {
     result.text += fmt::format("  {} ({})\n", sensor.name, sensor.type->name) +
                    parameter_text(sensor.type->size.key, sensor.type->size.unit, sensor.size);
@@ -182,7 +182,7 @@ Description describe_robot(const Robot& robot) {
        {"gear_ratio", robot.gear_ratio},
        {"available_V", robot.available_V()},
        {"source", robot.source}}};
-  result.text += robot.figures.empty() ? "" : "\nfigures (value, origin, range, source)\n";
+  result.text += robot.figures.empty() ? "" : "\nparameters (value, origin, range, source)\n";
   for (const auto& [key, figure] : robot.figures) {
     result.text += parameter_text(key, robot_unit(key), figure);
     result.json["figures"].push_back(parameter_json(key, robot_unit(key), figure));
@@ -318,13 +318,13 @@ Description describe_effect(const EffectType& effect) {
   say("needs a log of", has_choice ? "the signal that was chosen" : fmt::format("{}", fmt::join(needs, ", ")));
   if (effect.candidacy.size_parameter >= 0) {
     say("family", effect.candidacy.family);
-    say("to tell apart", effect.candidacy.experiment);
+    say("experiment", effect.candidacy.experiment);
     result.json["family"] = effect.candidacy.family;
     result.json["experiment"] = effect.candidacy.experiment;
   }
   say("reference", effect.reference);
   result.text += fmt::format("\nat the end of a motor file{}:\n{}",
-                             is_loss_of_every_motor(effect) ? ", where it is added to the one that the file's figures already make" : "",
+                             is_loss_of_every_motor(effect) ? ", where it is added to the same loss of the file's own parameters" : "",
                              motor_file_lines(effect));
   return result;
 }
@@ -437,7 +437,9 @@ Description describe(const std::string& name, const DataFolders& folders) {
     known.emplace_back(effect.name);
   }
   if (name == "motors" || name == "robots" || name == "duties" || name == "effects") {
-    throw Failure(ExitCode::bad_input, fmt::format("'{0}' are many: `heatsoak list {0}` shows them, `heatsoak describe NAME` one", name));
+    throw Failure(
+        ExitCode::bad_input,
+        fmt::format("'{0}' is not one name: `heatsoak list {0}` lists the names, `heatsoak describe NAME` describes one of them", name));
   }
   throw Failure(ExitCode::bad_input, fmt::format("there is no '{}' among motors, robots, duties, shapes, effects, thresholds and verdict{}",
                                                  name, did_you_mean(name, known)));
@@ -447,7 +449,7 @@ Description describe(const std::string& name, const DataFolders& folders) {
 
 Command describe() {
   return {.name = {},
-          .summary = "Says what a motor, robot, duty, duty shape, effect, threshold or verdict is: figures with origin, equations, sources",
+          .summary = "Describes a motor, robot, duty, duty shape, effect, threshold or verdict: values with origin, equations, sources",
           .example = "heatsoak describe maxon_ecx_flat_32l_48v",
           .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
             const auto name = std::make_shared<std::string>();

@@ -120,7 +120,7 @@ ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, 
                           load.distance_m / 1e3, duty.origin, role_table(roles)));
   session.say(slip_text(load.wheels.front()));
   if (robot.braking_limit_m_per_s2 > robot.acceleration_limit_m_per_s2) {
-    session.say(fmt::format("a match brakes as it accelerates, with {} m/s²: the robot's {} m/s² of braking are not used\n",
+    session.say(fmt::format("in a match the robot brakes with its acceleration of {} m/s²: its braking limit of {} m/s² is not used\n",
                             significant(robot.acceleration_limit_m_per_s2, 3), significant(robot.braking_limit_m_per_s2, 3)));
   }
   finish_table(rows, options, duty_file(options.out, duty.kind, duty.summary, duty.origin), session);

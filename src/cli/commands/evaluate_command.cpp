@@ -87,8 +87,8 @@ std::vector<Motor> read_motors(const Options& options, NamedFiles& named) {
     const auto same =
         std::ranges::find_if(taken, [&](const std::filesystem::path& other) { return other != *file && other.stem() == file->stem(); });
     if (same != taken.end()) {
-      throw Failure(ExitCode::bad_input, fmt::format("{} and {} are two motors of one id, '{}'; rename one of the files", same->string(),
-                                                     file->string(), file->stem().string()));
+      throw Failure(ExitCode::bad_input, fmt::format("{} and {} are two motors with the same id, '{}'; rename one of the files",
+                                                     same->string(), file->string(), file->stem().string()));
     }
     if (const std::optional<Motor> motor = named.motor(name)) {
       motors.push_back(options.model.empty() ? under(*motor, options.conditions) : *motor);
@@ -148,9 +148,10 @@ ExitCode run(Options& options, Session& session) {
   const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data);
   const Robot robot = match ? with_assumed_friction(*robot_read) : *robot_read;
   if (options.is_closed_loop && !match) {
-    throw Failure(ExitCode::bad_input, fmt::format("--closed-loop drives matches; {} is {}. Expected a duty of the shape match, or no "
-                                                   "--closed-loop",
-                                                   duty.id, duty.shape));
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("--closed-loop can drive only a match; {} is {}. Expected a duty of the shape match, or no "
+                              "--closed-loop",
+                              duty.id, duty.shape));
   }
   if (!options.is_closed_loop && options.guard != Options{}.guard) {
     throw Failure(ExitCode::bad_input, "--guard is for --closed-loop; expected both or none");
@@ -248,9 +249,8 @@ Command evaluate_command() {
             ->type_name("FILE.toml");
         add_conditions(app, options->conditions);
         app.add_option("--samples", options->samples,
-                       "draws of every declared tolerance and range, one game for every eight on a match; 0: nominal only; without it some "
-                       "hundred, "
-                       "and more until the verdicts are decided")
+                       "draws of every declared tolerance and range, one game for every eight on a match; 0: nominal only; if not given, "
+                       "about a hundred, and more until the verdicts are decided")
             ->check(whole_number(1'000'000))
             ->type_name("N");
         app.add_flag("--closed-loop", options->is_closed_loop,

@@ -44,7 +44,7 @@ std::string report(const CoreFolder& folder, const Derating& derating, const Opt
       "control period {:.6g} ms, guard period {:.6g} ms\n"
       "winding below {:.0f} °C in air up to {:.0f} °C, {} thermal data\n"
       "safety factor on heat {:.2f}. {}\n"
-      "a wheel whose speed is unknown gets at most {:.2f} A; {:.1f} K are kept free for one full stop\n",
+      "a wheel whose speed is unknown gets at most {:.2f} A; {:.1f} K are kept as a margin for one full stop\n",
       derating.robot_id, derating.motor_id, counted(folder.files.size(), "file"), bytes_of(folder) / 1024, options.out, kInputHash,
       folder.hash, folder.config_check_sum, 1e3 * options.core.period_s, 1e3 * derating.options.period_s, derating.rules.limits.winding_C,
       derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(), confidence_text(derating),

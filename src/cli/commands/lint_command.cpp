@@ -66,8 +66,7 @@ std::vector<std::string> files_named(const std::string& name, const Session& ses
     }
   }
   if (files.empty()) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("'{}' is no file, no folder, and no motor, robot or duty{}", name, did_you_mean(name, known)));
+    throw Failure(ExitCode::bad_input, fmt::format("'{}' is not a file, folder, motor, robot or duty{}", name, did_you_mean(name, known)));
   }
   return files;
 }
@@ -125,7 +124,8 @@ Command lint_command() {
   return {
       .name = {},
       .summary =
-          "Checks motor, robot and duty files: keys, units, and whether a data sheet's figures agree with each other; exit 1 if there is a "
+          "Checks motor, robot and duty files: keys, units, and whether the values of a data sheet agree with each other; exit 1 if there "
+          "is a "
           "warning or an error",
       .example = "heatsoak lint maxon_ec45_flat_70w_24v roboteam_twente_v2024 division_a_match",
       .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {

@@ -88,7 +88,8 @@ std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
 ExitCode run(const std::string& what, Session& session) {
   if (what.empty()) {
     throw Failure(ExitCode::bad_input,
-                  "list what? Expected one of motors, robots, duties, effects, formats, thresholds: `heatsoak list motors`");
+                  "the kind of names to list is missing; expected one of motors, robots, duties, effects, formats, thresholds: `heatsoak "
+                  "list motors`");
   }
   const std::vector<Row> all = rows(what, session.folders());
   std::string text;

@@ -55,7 +55,7 @@ Command new_command() {
             app.add_option("kind", options->kind, "motor or robot")->required()->check(CLI::IsMember({"motor", "robot"}));
             app.add_option("file", options->file, "name of the new file, which is the id")->required()->check([](const std::string& file) {
               const bool is_named = file.ends_with(".toml") && !std::filesystem::path(file).stem().string().starts_with(".");
-              return is_named ? "" : "expected a name that ends in .toml; what stands before it is the id";
+              return is_named ? "" : "expected a name that ends in .toml; the part before .toml is the id";
             });
             session.add_json_option(app);
             return [options, &session] { return run(*options, session); };

@@ -192,18 +192,17 @@ Command simulate() {
                 ->type_name("P")
                 ->capture_default_str();
             app.add_flag("--jerk-sweep", options->jerk_sweep,
-                         "in place of a duty: short drives over the limit of the jerk against bang-bang; slip, time, precision, heat");
-            add_picture(app, options->plot, "picture of temperatures and what makes them");
+                         "instead of a duty: short drives with several jerk limits, compared with bang-bang: slip, time, precision, heat");
+            add_picture(app, options->plot, "picture of temperatures and heat sources");
             app.add_option("--guard", options->guard,
                            "of a match: the motor's thermal guard as `heatsoak derate` makes it. shadow: counts what it would limit and "
                            "limits nothing; on: limits the currents")
                 ->check(CLI::IsMember({"off", "shadow", "on"}))
                 ->type_name("G")
                 ->capture_default_str();
-            app.add_option(
-                   "--sensing", options->sensing,
-                   "of a match or jerk sweep: real has encoder steps, gyro drift, radio packets that get lost and late, noisy poses; "
-                   "ideal has none of them")
+            app.add_option("--sensing", options->sensing,
+                           "of a match or jerk sweep: real has encoder steps, gyro drift, lost and late radio packets, noisy poses; "
+                           "ideal has none of them")
                 ->check(CLI::IsMember({"ideal", "real"}))
                 ->type_name("S")
                 ->capture_default_str();

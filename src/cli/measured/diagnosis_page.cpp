@@ -29,8 +29,8 @@ std::string row(const std::vector<std::string>& cells, std::string_view tag = "t
 }
 
 std::string error_table(const Diagnosis& diagnosis, const HoldoutScore& score) {
-  std::string text = "<table>" + row({"signal", "runs", "before: rms / K", "own figures refitted: rms / K", "after: rms / K",
-                                      "before: worst / K", "after: worst / K"},
+  std::string text = "<table>" + row({"signal", "runs", "before: rms / K", "model refitted: rms / K", "after: rms / K", "before: worst / K",
+                                      "after: worst / K"},
                                      "th");
   const auto add = [&](const Errors& before, const Errors& refitted, const Errors& after, const char* where) {
     for (const auto& [signal, error] : before) {
@@ -43,7 +43,7 @@ std::string error_table(const Diagnosis& diagnosis, const HoldoutScore& score) {
     }
   };
   add(diagnosis.before_train, diagnosis.refitted_train, diagnosis.after_train, "training");
-  add(score.before, score.refitted, score.after, "never seen");
+  add(score.before, score.refitted, score.after, "hold-out");
   return text + "</table>\n";
 }
 
@@ -58,7 +58,7 @@ std::string named(const FoundEffect& effect) {
 
 std::string effect_table(const Diagnosis& diagnosis) {
   std::string text = "<table>" + row({"effect", "node", "acts", "parameter", "value", "95 % interval", "heat: mean / peak", "evidence",
-                                      "visibility", "look-alikes here"},
+                                      "visibility", "confounded here"},
                                      "th");
   for (const FoundEffect& effect : diagnosis.effects) {
     std::string where = effect.condition.empty() ? "always" : "";
@@ -75,7 +75,7 @@ std::string effect_table(const Diagnosis& diagnosis) {
                    is_first ? heat_in_words(effect) : "", is_first ? fmt::format("{:.0f} nats", effect.gain_nats) : "",
                    is_first && effect.is_from_catalogue ? fmt::format("{:.2f}", effect.visibility_ratio) : "",
                    !is_first                        ? ""
-                   : effect.confusable_with.empty() ? "none comes close"
+                   : effect.confusable_with.empty() ? "none"
                                                     : fmt::format("{}", fmt::join(effect.confusable_with, ", "))});
       is_first = false;
     }
@@ -92,9 +92,9 @@ std::string effect_table(const Diagnosis& diagnosis) {
 
 std::string outcome_of(const Round& round) {
   if (round.taken.empty()) {
-    return "Nothing was taken in: none of these may be named.";
+    return "No candidate was accepted: none of these may be named.";
   }
-  return fmt::format("Taken in{}: {}; {:.0f} nats.", round.taken.size() > 1 ? ", none without the rest" : "", fmt::join(round.taken, ", "),
+  return fmt::format("Accepted{}: {}; {:.0f} nats.", round.taken.size() > 1 ? ", none without the rest" : "", fmt::join(round.taken, ", "),
                      round.taken_nats);
 }
 
@@ -145,7 +145,7 @@ std::string balance_table(const Diagnosis& diagnosis) {
   for (const auto& [node, heat_W] : kept_W) {
     kept += node == Network::kAmbient ? "" : fmt::format("{}{} {:+.3g}", kept.empty() ? "" : ", ", node, heat_W);
   }
-  text += row({"all together: what warms it", kept});
+  text += row({"sum: net heat into the node", kept});
   return text + "</table>\n";
 }
 
@@ -219,7 +219,7 @@ std::string_view heading_of(DiagnosisVerdict verdict) {
     case DiagnosisVerdict::unexplained:
       return "heat that no effect of the catalogue explains";
     case DiagnosisVerdict::not_identifiable:
-      return "these runs cannot tell";
+      return "these runs do not determine it";
   }
   return "";
 }
@@ -245,7 +245,7 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
   text += "</div>\n";
   const std::vector<std::string> train = names_of(input.train, score.runs);
   const std::vector<std::string> holdout = names_of(score.runs, input.train);
-  text += fmt::format("<p>Fitted to {}. Never seen by the fit: {}.</p>\n", xml_text(fmt::format("{}", fmt::join(train, ", "))),
+  text += fmt::format("<p>Fitted to {}. Hold-out runs: {}.</p>\n", xml_text(fmt::format("{}", fmt::join(train, ", "))),
                       holdout.empty() ? "none" : xml_text(fmt::format("{}", fmt::join(holdout, ", "))));
   text +=
       "<h2>Error before and after</h2><p>The model runs freely from the first measured temperatures.</p>" + error_table(diagnosis, score);
@@ -258,19 +258,19 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
     text +=
         fmt::format("<figure id=\"{}\">\n{}\n</figure>\n", xml_text(name), begin == std::string::npos ? picture : picture.substr(begin));
   }
-  text += fmt::format(
-              "<h2>Evidence ladder</h2><p>Each candidate alone: its gain in evidence over the model without any, the mean taken over "
-              "what is probable of the unknown heat. Its probability is that of all sets of effects that contain it; a name needs {:.0f} % "
-              "for all effects of one kind together. Visibility is the share of an effect that no change of the model's own figures could "
-              "pass for.</p>",
-              100.0 * SelectionRules{}.named_probability) +
-          ladder_table(diagnosis);
+  text +=
+      fmt::format(
+          "<h2>Evidence ladder</h2><p>Each candidate alone: its gain in evidence over the model without any candidate, averaged over the "
+          "probable unknown heat. Its probability is that of all sets of effects that contain it; a name needs {:.0f} % for all effects of "
+          "one kind together. Visibility is the share of an effect that no change of the model's own parameters can imitate.</p>",
+          100.0 * SelectionRules{}.named_probability) +
+      ladder_table(diagnosis);
   text += "<h2>Power balance</h2>" + balance_table(diagnosis);
   text += "<h2>Residual tests</h2>" + test_table(diagnosis);
   if (!diagnosis.experiments.empty()) {
     text += "<h2>Next experiment</h2><ul>";
     for (const Experiment& each : diagnosis.experiments) {
-      text += fmt::format("<li>To tell {}: {}{}</li>", xml_text(each.rivals), xml_text(each.what),
+      text += fmt::format("<li>To separate {}: {}{}</li>", xml_text(each.rivals), xml_text(each.what),
                           each.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats)", each.expected_nats) : "");
     }
     text += "</ul>\n";

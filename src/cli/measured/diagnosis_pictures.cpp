@@ -68,7 +68,7 @@ DiagnosisPicture residuals(const Diagnosis& diagnosis, const DiagnosisInput& inp
     chart.panels.push_back(residual_panel(signal, input.model, diagnosis.selection.after.model, input.train, {}, name + ", training runs"));
     if (!score.runs.empty()) {
       chart.panels.push_back(
-          residual_panel(signal, input.model, diagnosis.selection.after.model, score.runs, input.train, name + ", runs never seen"));
+          residual_panel(signal, input.model, diagnosis.selection.after.model, score.runs, input.train, name + ", hold-out runs"));
     }
   }
   chart.panel_height_px = 260;
@@ -121,7 +121,7 @@ std::vector<DiagnosisPicture> diagnosis_pictures(const Diagnosis& diagnosis, con
       continue;
     }
     Chart chart{fmt::format("Curve found at the {}", heat.node),
-                fmt::format("straight between seven knots; band: 95 %{}", heat.is_in_model ? "" : "; the extended model does not have it"),
+                fmt::format("linear between seven knots; band: 95 %{}", heat.is_in_model ? "" : "; the extended model does not have it"),
                 heat.drivers.front() + (heat.driver_unit.empty() ? "" : " / " + heat.driver_unit),
                 {}};
     ChartPanel panel{"", heat.curve_unit.empty() ? "share of the copper loss" : "curve / " + heat.curve_unit, {}, {}, {}};

@@ -23,9 +23,9 @@ std::vector<Topic> effect_topics() {
     const std::array lines{TopicLine{"equation", "equation", std::string(type.equation)},
                            TopicLine{"typical", "typical size", in_units(type.usual, type.size.unit)},
                            TopicLine{"look_alike", "look-alikes", std::string(type.confounded_with)},
-                           TopicLine{"experiment", "to tell apart", std::string(type.experiment)}};
+                           TopicLine{"experiment", "experiment", std::string(type.experiment)}};
     topics.push_back(effect_topic(fmt::format("at the {}, in runs of one condition", type.node), type.name, type.summary, type.size, lines,
-                                  "\nfound by diagnose, no part of a motor file\n"));
+                                  "\nfound by diagnose, not part of a motor file\n"));
   }
   return topics;
 }

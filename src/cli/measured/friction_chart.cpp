@@ -229,8 +229,8 @@ Chart friction_chart(const FrictionFit& fit, const std::string& robot, const std
   });
   const bool is_given =
       std::ranges::any_of(fit.wheels, [](const WheelFriction& wheel) { return wheel.is_learned() && wheel.damping_is_given; });
-  chart.subtitle = subtitle + (has_intervals ? "; upright lines: 95 % intervals of a heading by itself, by the scatter of all" : "") +
-                   (is_given ? "; all at one speed, so that the damping is the expected one" : "");
+  chart.subtitle = subtitle + (has_intervals ? "; vertical lines: 95 % intervals of each heading alone, from the scatter of all" : "") +
+                   (is_given ? "; all at one speed, so the expected damping is used" : "");
   chart.x_label = "direction of travel in the robot's frame / °";
   for (const bool of_damping : {false, true}) {
     if (ChartPanel panel = heading_panel(fit, of_damping); has_points(panel)) {
@@ -244,7 +244,7 @@ Chart voltage_chart(const SteadyParts& steady, const FrictionFit& fit, const Kin
                     const FitSettings& settings) {
   Chart chart;
   chart.title = fmt::format("Voltage over wheel speed of {}", robot);
-  chart.subtitle = fmt::format("{} steady stretches; wheels that should stand are left out", steady.parts.size());
+  chart.subtitle = fmt::format("{} steady intervals; wheels that should stand are left out", steady.parts.size());
   chart.x_label = "wheel speed / rad/s";
   const Drives drives(steady, fit, kinematics, settings);
   for (const std::optional<ChartPanel>& panel : {drives.of_one_heading(), drives.of_rotation()}) {

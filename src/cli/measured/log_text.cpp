@@ -22,8 +22,8 @@ std::string list_of(const std::vector<LineRange>& lines, std::size_t most) {
   std::vector<std::string> words;
   for (const LineRange& range : lines) {
     if (words.size() == most) {
-      words.push_back(fmt::format("and {} more stretch{}{}", lines.size() - most, lines.size() - most == 1 ? "" : "es",
-                                  lines.size() == LeftOut::kMostRanges ? " or so" : ""));
+      words.push_back(fmt::format("and {} more range{}{}", lines.size() - most, lines.size() - most == 1 ? "" : "s",
+                                  lines.size() == LeftOut::kMostRanges ? " at least" : ""));
       break;
     }
     words.push_back(range.first == range.last ? fmt::format("{}", range.first) : fmt::format("{}-{}", range.first, range.last));
@@ -82,7 +82,7 @@ std::string clock_text(const ClockOffset& offset) {
   if (!offset.delay_s) {
     return fmt::format("clock: {} against {}: not determinable, {}\n", offset.temperature, offset.heat_input, offset.why_not);
   }
-  return fmt::format("clock: {} follows {} by {:+.2g} s ± {} s (standard error); a clock offset and a sensor's lag look alike\n",
+  return fmt::format("clock: {} follows {} by {:+.2g} s ± {} s (standard error); a clock offset and a sensor's lag are indistinguishable\n",
                      offset.temperature, offset.heat_input, *offset.delay_s, significant(offset.delay_uncertainty_s, 2));
 }
 

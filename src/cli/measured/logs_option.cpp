@@ -48,11 +48,11 @@ LogPart log_part(const std::string& text) {
 }  // namespace
 
 void add_log_options(CLI::App& app, LogOptions& options) {
-  app.add_option("--map", options.map, "mapping of columns to quantities; LOG.map.toml beside a log is found by itself")
+  app.add_option("--map", options.map, "mapping of columns to quantities; LOG.map.toml beside a log is found automatically")
       ->type_name("FILE.toml");
   add_quantity(app, "--ambient", options.ambient_C,
-               {"ambient", "degC", Range::between(-60.0, 200.0), "temperature of the air where a log has none"});
-  app.add_flag("--as-is", options.takes_logs_as_they_are, "go on where units or sensors of a log look wrong: they are right");
+               {"ambient", "degC", Range::between(-60.0, 200.0), "air temperature of a log that has none"});
+  app.add_flag("--as-is", options.takes_logs_as_they_are, "continue although units or sensors of a log look wrong");
 }
 
 std::vector<Recording> read_logs(const DataFolders& folders, const std::vector<std::string>& texts, const LogOptions& options,

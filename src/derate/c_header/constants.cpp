@@ -17,8 +17,8 @@ std::string constants(const Source& source) {
          define("STRAIGHT_BELOW_A", derating.table.straight_below_A) + define("WINDING_PER_STATOR_K", derating.table.winding_per_stator_K) +
          define("REACHABLE_SPEED_RAD_PER_S", derating.reachable_speed_rad_per_s) +
          define("TORQUE_CONSTANT_NM_PER_A", derating.torque_constant_Nm_per_A) +
-         "/* What the motor bears for good at every speed and in every hot case, for a wheel whose speed nobody knows: the least of the "
-         "currents\n   that the table still gives, held at full allowance until everything has warmed up; 0 where none was played. */\n" +
+         "/* Continuous current at every speed and in every hot case, for a wheel of unknown speed: the lowest current that the table "
+         "allows in the\n   steady state of each continuous use at the full allowed current; 0 if no such use was simulated. */\n" +
          define("LIMP_CURRENT_A", limp_current_A(derating)) + fmt::format("#define {}_STARTED 0x48454154u\n\n", source.capital);
 }
 

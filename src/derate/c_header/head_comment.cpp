@@ -13,7 +13,7 @@ namespace {
 std::string conditions_text(const Derating& derating) {
   std::string text;
   for (const auto& [key, value] : derating.assumed) {
-    text += fmt::format(" * ONLY WHERE {} is {}: that was stated (--condition), and effects of the motor's file were taken by it.\n",
+    text += fmt::format(" * VALID ONLY IF {} is {}: stated with --condition, which selected effects of the motor's file.\n",
                         in_comment(key), in_comment(value));
   }
   return text;
@@ -25,8 +25,9 @@ std::string default_spreads_text(const Derating& derating) {
     return {};
   }
   std::string text =
-      " * DEFAULT SPREADS: the motor's file gives no tolerance for the following values. The drawn motors have these in its place, by the\n"
-      " * origin of the value; state the real ones in the file:\n";
+      " * DEFAULT TOLERANCES: the motor's file gives no tolerance for the following values. The drawn motors use these defaults, which "
+      "depend\n"
+      " * on the origin of the value; state the real tolerances in the file:\n";
   for (const DefaultSpread& each : derating.default_spreads) {
     text += fmt::format(" *   {}\n", in_comment(to_string(std::span<const DefaultSpread>(&each, 1))));
   }
@@ -36,9 +37,10 @@ std::string default_spreads_text(const Derating& derating) {
 std::string laws_text(const Derating& derating) {
   std::string text = " *\n * Laws of the model:\n";
   for (const ActingEffect& effect : derating.effects) {
-    text += fmt::format(" *   {}{}: {}{}\n", in_comment(effect.name), effect.name == effect.type ? "" : fmt::format(" ({})", effect.type),
-                        in_comment(effect.equation),
-                        effect.column.empty() ? "" : fmt::format("; over {} of the logs, at its hottest", in_comment(effect.column)));
+    text += fmt::format(
+        " *   {}{}: {}{}\n", in_comment(effect.name), effect.name == effect.type ? "" : fmt::format(" ({})", effect.type),
+        in_comment(effect.equation),
+        effect.column.empty() ? "" : fmt::format("; depends on {} of the logs, evaluated at its hottest value", in_comment(effect.column)));
   }
   return text;
 }
@@ -47,11 +49,11 @@ std::string guarantee_text(const Derating& derating) {
   const Guarantee& checked = derating.guarantee;
   return fmt::format(
       " * Winding at most {:.0f} degC{}, air from {:.0f} to {:.0f} degC; thermal data: {}.\n"
-      " * While the motor gets no more than allowed_current_A and no hotter air than that, the observer's winding temperature never "
-      "exceeds its limit. "
-      "The\n"
-      " * safety factor on heat is {:.3g}, for a confidence of {:.3g}: of {} motors drawn from the declared tolerances {} exceeded a\n"
-      " * limit in one of the {} hardest uses ({:.1f} %, with other draws {:.1f} to {:.1f} %), the hottest winding reached {:.0f} degC.\n"
+      " * While the current is at most allowed_current_A and the air no hotter than that, the observer's winding temperature never exceeds "
+      "its\n"
+      " * limit. The safety factor on heat is {:.3g}, for a confidence of {:.3g}: of {} motors drawn from the declared tolerances, {} "
+      "exceeded a\n"
+      " * limit in one of the {} hardest uses ({:.1f} %; other draws give {:.1f} to {:.1f} %). The hottest winding reached {:.0f} degC.\n"
       " * Computed, not measured; plausible but wrong sensor readings are not covered.\n",
       derating.rules.limits.winding_C,
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
@@ -75,7 +77,7 @@ std::string head_comment(const Source& source) {
          guarantee_text(derating) + conditions_text(derating) + laws_text(derating) +
          fmt::format(
              " *\n"
-             " * Once, after a long rest:      {0}_start(&motor, board_C);   what was never started counts as hot as its limit\n"
+             " * Once, after a long rest:      {0}_start(&motor, board_C);   a state that was never started counts as hot as its limit\n"
              " * every {1:.9g} s:                out = {0}_step(&motor, &in);   then |current| <= out.allowed_current_A until the next "
              "call\n"
              " * A state that is kept in RAM continues after a reset. */\n",

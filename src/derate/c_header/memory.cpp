@@ -10,12 +10,12 @@ namespace heatsoak::c_header {
 namespace {
 
 constexpr std::string_view kPacked =
-    R"(/* What is kept over power-off: motor and guard (@CAP@_SIGNATURE), temperatures, CRC-32 (IEEE 802.3); little-endian. */
+    R"(/* Data saved over power-off: signature of motor and guard (@CAP@_SIGNATURE), temperatures, CRC-32 (IEEE 802.3); little-endian. */
 #define @CAP@_SAVED_SIZE @SIZE@
 typedef enum {
-  @_restored,        /* cooled for the time that has passed */
+  @_restored,        /* cooled for the elapsed time */
   @_time_unknown,    /* time without power unknown: each node takes its highest safe temperature */
-  @_nothing_restored /* not saved, damaged or of another guard: as hot as the limit */
+  @_nothing_restored /* not saved, damaged or of another guard: starts as hot as the limit */
 } @_restored_from;
 
 static inline uint32_t @_crc_32(const uint8_t *bytes, int count) {
@@ -68,7 +68,7 @@ static inline float @_number(uint32_t word) {
   return x;
 }
 
-/* buffer: @CAP@_SAVED_SIZE bytes. Call it now and then, and before power goes. */
+/* buffer: @CAP@_SAVED_SIZE bytes. Call it at regular intervals and when the supply voltage falls. */
 static inline void @_save(const @_state *state, uint8_t *buffer) {
   int node;
   @_pack(buffer, state->started == @CAP@_STARTED ? @CAP@_SIGNATURE : 0u);
@@ -83,8 +83,8 @@ static inline void @_save(const @_state *state, uint8_t *buffer) {
 
 constexpr std::string_view kCool = R"(typedef void (*@_law)(const @_input *, const float *, float *);
 
-/* Longest Euler step at these temperatures: 1/20 of the shortest time constant, whose rate is at most the largest sum of a row's
-   derivatives (Gershgorin). */
+/* Longest Euler step at these temperatures: 1/20 of a lower bound of the shortest time constant. Its rate is at most the largest row sum
+   of the absolute derivatives (Gershgorin). */
 static inline float @_cooling_step_s(@_law law, const @_input *off, const float *state_C) {
   float moved_C[@NODES@];
   float rate_K_per_s[@NODES@];
@@ -113,8 +113,9 @@ static inline float @_cooling_step_s(@_law law, const @_input *off, const float 
   return fastest_per_s > 0.0f ? 0.05f / fastest_per_s : @CAP@_PERIOD_S;
 }
 
-/* Without current in the hottest air; no more than @CAP@_MOST_COOLING_STEPS steps, what is left of the time counts as no time. An Euler
-   step of 1/20 of a time constant cools as 1/20 + 1/800 of it would, so 3 % of the time are left out. peak_C: hottest on the way. */
+/* Cool-down without current in the hottest air, in at most @CAP@_MOST_COOLING_STEPS steps. Time beyond them is ignored: no cooling. An
+   Euler step of 1/20 of a time constant cools as 1/20 + 1/800 of one would, so only 97 % of the time is used. peak_C: highest
+   temperature of each node during the cool-down. */
 static inline void @_cool(@_law law, float elapsed_s, float *state_C, float *peak_C) {
   @_input off;
   float rate_K_per_s[@NODES@];
@@ -147,7 +148,8 @@ static inline void @_cool(@_law law, float elapsed_s, float *state_C, float *pea
 )";
 
 /// With saves at regular intervals the motor may have run since the last one. Assumes the highest load that the guard can have allowed.
-constexpr std::string_view kUnsaved = R"(/* All that the driver can give at the highest speed, up to the limit that the guard has kept. */
+constexpr std::string_view kUnsaved =
+    R"(/* Worst-case heating: the driver's largest current at the highest speed, up to the limit that the guard has kept. */
 static inline void @_heat(@_law law, float unsaved_s, float *state_C) {
   @_input on;
   float drive_K_per_s[@NODES@];
@@ -178,10 +180,10 @@ static inline void @_heat(@_law law, float unsaved_s, float *state_C) {
 )";
 
 constexpr std::string_view kRestore =
-    R"(/* elapsed_s: without power, by a clock that ran meanwhile; below 0 or no number: unknown. After an unknown time every node is as hot as
-   it was saved or may have become since from the heat of the others: power can have been back at once. unsaved_s: longest time from the
-   last save to the loss of power, 0 where the falling supply starts the save; no number counts as very long. board_C: no node is colder,
-   for the motor stood in the same warmth; what is no temperature counts as the hottest air. */
+    R"(/* elapsed_s: time without power, from a clock that kept running; negative or NaN: unknown. After an unknown time each node takes the
+   highest temperature that it can have had since the save, heat from the other nodes included, because power may have returned at once.
+   unsaved_s: longest time from the last save to the loss of power; 0 if the falling supply triggers the save; NaN counts as very long.
+   board_C: lower bound of every node, because the motor was in the same surroundings; an implausible value counts as the hottest air. */
 static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, float elapsed_s, float unsaved_s, float board_C) {
   float peak_C[@NODES@];
   float nominal_peak_C[@NODES@];

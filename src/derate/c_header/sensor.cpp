@@ -10,40 +10,40 @@ namespace {
 
 constexpr std::string_view kStructures = R"(typedef enum {
   @_sensor_used,       /* the reading corrects the observer */
-  @_sensor_silent,     /* no reading, or none that can be a temperature: after @CAP@_SENSOR_HOLD_S as without a sensor */
-  @_sensor_jumped,     /* changed faster than the motor can; dropped for good after @CAP@_SENSOR_CONTRADICTION_S of that */
-  @_sensor_too_cold,   /* dropped for good: colder than the coldest motor under this load */
-  @_sensor_frozen      /* dropped for good: did not change while the motor must have */
+  @_sensor_silent,     /* no reading or an implausible one: after @CAP@_SENSOR_HOLD_S the guard acts as without a sensor */
+  @_sensor_jumped,     /* changed faster than the motor can; dropped permanently after @CAP@_SENSOR_CONTRADICTION_S of this */
+  @_sensor_too_cold,   /* dropped permanently: colder than the coldest motor under this load */
+  @_sensor_frozen      /* dropped permanently: did not change although the motor must have */
 } @_sensor_status;
 
 typedef struct {
   uint32_t started;
-  @_state model;                /* the guard without the sensor, of the current that flowed */
-  float state_C[@NODES@];             /* corrected by the sensor: counts heat @RESERVE@ times while it is used */
+  @_state model;                /* guard without the sensor, driven by the measured current */
+  float state_C[@NODES@];             /* corrected by the sensor; safety factor on heat @RESERVE@ while it is used */
   float carry_K[@NODES@];
-  float capped_C[@NODES@];            /* the guard without the sensor, of the current that it would have allowed */
+  float capped_C[@NODES@];            /* guard without the sensor, driven by at most the current that it would have allowed */
   float capped_carry_K[@NODES@];
   float capped_A;
   float lag_C;                  /* temperature of the sensor itself */
   float last_C;                 /* last plausible reading */
-  float unread_s;               /* since a reading was used */
-  float gap_s;                  /* since a plausible reading came */
-  float jumped_s;               /* how long the readings have contradicted the motor */
+  float unread_s;               /* time since a reading was used */
+  float gap_s;                  /* time since a plausible reading */
+  float jumped_s;               /* time for which the readings have contradicted the motor */
   float cold_s;
   float frozen_C;
   float frozen_nominal_C;
   uint32_t rejected;            /* readings that were not used */
-  @_sensor_status dropped;      /* why the sensor is not used any more; @_sensor_used: it is */
+  @_sensor_status dropped;      /* reason why the sensor was dropped; @_sensor_used if it was not */
 } @_sensed_state;
 
 typedef struct {
   @_output guard;
-  float model_only_A;     /* A, what the guard without the sensor would allow; |guard.allowed_current_A| is at most this plus
+  float model_only_A;     /* A, current that the guard without the sensor would allow; |guard.allowed_current_A| is at most this plus
                              @CAP@_SENSOR_MOST_GAIN_A */
   @_sensor_status sensor;
 } @_sensed_output;
 
-/* As @_start. The sensor gets another chance. */
+/* As @_start. A dropped sensor is used again. */
 static inline void @_sensed_start(@_sensed_state *state, float body_C) {
   int node;
   @_start(&state->model, body_C);
@@ -70,7 +70,7 @@ static inline void @_sensed_start(@_sensed_state *state, float body_C) {
 )";
 
 constexpr std::string_view kCheck =
-    R"(/* Cross-check of a reading against what the motor can do. The hottest air stands for one that is not measured: it may be the coldest. */
+    R"(/* Checks whether the motor can have this temperature. Hottest air may mean not measured: then the coldest air is assumed. */
 static inline @_sensor_status @_check_reading(@_sensed_state *state, float reading_C, float ambient_C) {
   const float air_C = ambient_C < @CAP@_HOTTEST_AMBIENT_C ? ambient_C : @CAP@_COLDEST_AMBIENT_C;
   const float nominal_C = state->model.nominal_C[@SENSOR_NODE@];
@@ -116,7 +116,7 @@ static inline float @_hottest_body_C(const float *state_C) {
   return hottest_C;
 }
 
-/* The reading counts as high as it may be. */
+/* Corrects the observer with the upper bound of the reading. */
 static inline void @_correct(@_sensed_state *state, float reading_C) {
   const float gain[@NODES@] = {@GAINS@};
   const float innovation_K = reading_C + @CAP@_SENSOR_ACCURACY_K - @PREDICTED@;
@@ -130,7 +130,7 @@ static inline void @_correct(@_sensed_state *state, float reading_C) {
 )";
 
 constexpr std::string_view kStep =
-    R"(/* As without the sensor: after a restart, with an input that is not known, and once the sensor is dropped. */
+    R"(/* Resets to the guard without the sensor: after a restart, with an unknown input, and once the sensor is dropped. */
 static inline void @_forget_sensor(@_sensed_state *state, float allowed_A) {
   int node;
   for (node = 0; node < @NODES@; ++node) {
@@ -158,8 +158,8 @@ static inline bool @_is_sensed_started(const @_sensed_state *state) {
   return is_started;
 }
 
-/* The guard without the sensor, of the current that flowed. With a correct sensor the winding keeps its limit, so its own is taken for no
-   hotter than that limit, or than it was. */
+/* One period of the guard without the sensor, driven by the measured current. A correct sensor keeps the winding within its limit, so each
+   temperature here is capped at that limit, or at its last value if that is higher. */
 static inline @_output @_step_model(@_sensed_state *state, const @_input *measured) {
   @_output out;
   float most_C[@NODES@];
@@ -177,7 +177,7 @@ static inline @_output @_step_model(@_sensed_state *state, const @_input *measur
   return out;
 }
 
-/* One period of both observers; the capped one sees no more than it would have allowed. */
+/* One period of both observers; the current of the capped one is limited to the current that it would have allowed. */
 static inline void @_advance_sensed(@_sensed_state *state, const @_input *measured) {
   @_input capped = *measured;
   float rate_K_per_s[@NODES@];
@@ -193,7 +193,7 @@ static inline void @_advance_sensed(@_sensed_state *state, const @_input *measur
   @_advance(state->state_C, state->carry_K, rate_K_per_s);
 @ADVANCE_LAG@}
 
-/* reading_C: of the sensor; NAN where there is none in this period. In place of @_step. */
+/* Replaces @_step. reading_C: reading of the sensor; NAN if there is none in this period. */
 static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_input *measured, float reading_C) {
   @_sensed_output out;
   float speed_rad_per_s;
@@ -246,19 +246,19 @@ static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_
 constexpr std::string_view kResistance = R"(/* The winding's temperature from its resistance, for @_step_with_sensor. */
 typedef struct {
   float resistance_25C_ohm; /* 0: not calibrated yet */
-  float rest_C;             /* of the whole motor, when the calibration began */
+  float rest_C;             /* temperature of the whole motor when the calibration began */
   float last_A;
 } @_resistance;
 
-/* After a rest at body_C; the first usable reading before the winding has warmed by 1 K calibrates. */
+/* Call after a rest at body_C. The first usable reading calibrates the sensor, if the winding has not yet warmed by 1 K. */
 static inline void @_resistance_start(@_resistance *sensor, float body_C) {
   sensor->resistance_25C_ohm = 0.0f;
   sensor->rest_C = body_C;
   sensor->last_A = 0.0f;
 }
 
-/* voltage_V: equivalent DC voltage at the terminals, mean over the period, > 0 where a current > 0 is driven. NAN where the current is too
-   small, the motor too fast or the current changes too fast for the accuracy. */
+/* voltage_V: equivalent DC voltage at the terminals, mean over the period, > 0 when it drives a current > 0. Returns NAN if the current is
+   too small, the motor too fast or the current changes too fast for the accuracy. */
 static inline float @_resistance_reading_C(@_resistance *sensor, const @_sensed_state *state, const @_input *measured, float voltage_V) {
   const float nothing = (float)NAN;
   const float current_A = measured->current_A;
@@ -305,11 +305,13 @@ std::string constants(const Source& source, const SensorPlan& plan) {
 
 std::string comment(const SensorPlan& plan) {
   return fmt::format(
-      "\n/* With {} at the {} (largest error {:.3g} K{}): safety factor on heat {:.3g} in place of the above while it is used. Of {} "
+      "\n"
+      "/* With {} at the {} (largest error {:.3g} K{}): safety factor on heat {:.3g} instead of the above while the sensor is used. Of {} "
       "drawn\n"
-      " * motors, each with a drawn sensor error, {} exceeded a limit; the cross-check drops the correct sensor of {}. A sensor that lies\n"
-      " * allows at most SENSOR_MOST_GAIN_A more than without one: the nominal motor then reaches {:.0f} degC, and {} of the drawn motors\n"
-      " * exceed a limit. */\n",
+      " * motors, each with a drawn sensor error, {} exceeded a limit; the cross-check drops the correct sensor of {}. A plausible but "
+      "wrong\n"
+      " * sensor allows at most SENSOR_MOST_GAIN_A more than without one: the nominal motor then reaches {:.0f} degC, and {} of the drawn\n"
+      " * motors exceed a limit. */\n",
       plan.resistance ? "the resistance from voltage and current" : "a thermistor",
       plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
       plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(), plan.samples,

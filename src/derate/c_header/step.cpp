@@ -9,11 +9,11 @@
 namespace heatsoak::c_header {
 namespace {
 
-constexpr std::string_view kStart = R"(/* Not for what is no number, and not for what no motor has. */
+constexpr std::string_view kStart = R"(/* Both return false for NaN; the second also for a temperature that no motor can have. */
 static inline bool @_is_between(float low, float x, float high) { return x >= low && x <= high; }
 static inline bool @_is_temperature(float x) { return @_is_between(@CAP@_COLDEST_AMBIENT_C - 1.0f, x, 1000.0f); }
 
-/* body_C: temperature of the whole motor after a rest; what cannot be one counts as the limit. */
+/* body_C: temperature of the whole motor after a rest; an implausible value counts as the limit. */
 static inline void @_start(@_state *state, float body_C) {
   int node;
   const float start_C = @_is_temperature(body_C) ? body_C : @CAP@_WINDING_LIMIT_C;
@@ -29,7 +29,7 @@ static inline void @_start(@_state *state, float body_C) {
 )";
 
 constexpr std::string_view kSweep =
-    R"(/* Every node warms as fast as with the hottest of the possible values; the input takes the one that heats the winding most. */
+    R"(/* Each node takes its largest heating rate over the possible values; the input takes the value that heats the winding most. */
 static inline void @_sweep(const @_input *in, float *input, const float *possible, int count, const float *state_C, float *most_K_per_s) {
   float rate_K_per_s[@NODES@];
   float hottest = possible[0];
@@ -52,7 +52,7 @@ static inline void @_sweep(const @_input *in, float *input, const float *possibl
 
 )";
 
-constexpr std::string_view kStep = R"(/* One period of heating; the rounding of each step is carried to the next (Kahan 1965). */
+constexpr std::string_view kStep = R"(/* One period; the rounding error of each step is carried to the next (Kahan 1965). */
 static inline void @_advance(float *state_C, float *carry_K, const float *rate_K_per_s) {
   int node;
   for (node = 0; node < @NODES@; ++node) {
@@ -149,7 +149,7 @@ std::string candidates(const Source& source) {
     const std::vector<float> values = plausible_range(source.derating, signal).values;
     text += array(fmt::format("{}_possible_{}", source.prefix, name_of(signal)), {values.begin(), values.end()});
   }
-  return text.empty() ? text : "/* what an input may be of which nothing is known */\n" + text + "\n";
+  return text.empty() ? text : "/* possible values of an unknown input */\n" + text + "\n";
 }
 
 std::string step_functions(const Source& source) {

@@ -29,22 +29,30 @@ std::string structures(const Source& source) {
     text += fmt::format(" {}", in_comment(name));
   }
   text += fmt::format(
-      ": counts heat {2:.3g} times */\n  float carry_K[{1}];\n  float nominal_C[{1}]; /* the same of a motor of nominal values */\n"
-      "  float nominal_carry_K[{1}];\n}} {0}_state;\n\n"
+      ": safety factor on heat {2:.3g} */\n"
+      "  float carry_K[{1}];\n"
+      "  float nominal_C[{1}]; /* the same for a motor with nominal values */\n"
+      "  float nominal_carry_K[{1}];\n"
+      "}} {0}_state;\n"
+      "\n"
       "typedef enum {{\n"
-      "  {0}_full,          /* all that the driver can give */\n"
-      "  {0}_derated,       /* less, for the winding or the stator is hot */\n"
-      "  {0}_no_current,    /* at its limit, or faster than the table goes */\n"
-      "  {0}_input_unknown, /* an input was no number, or none that can be: its hottest case was taken */\n"
-      "  {0}_not_started    /* the state was no state: taken for as hot as its limit */\n"
-      "}} {0}_reason;\n\n"
+      "  {0}_full,          /* the driver's largest current */\n"
+      "  {0}_derated,       /* less, because the winding or the stator is hot */\n"
+      "  {0}_no_current,    /* at the limit, or above the highest speed of the table */\n"
+      "  {0}_input_unknown, /* an input was NaN or implausible: its hottest case was used */\n"
+      "  {0}_not_started    /* the state was not started or damaged: taken as hot as the limit */\n"
+      "}} {0}_reason;\n"
+      "\n"
       "typedef struct {{\n"
       "  float allowed_current_A; /* A, equivalent DC current, magnitude, until the next step */\n"
-      "  float guarded_winding_C; /* degC, pessimistic: heat counts {2:.3g} times, as the hottest of the drawn motors need it; decides "
-      "what is allowed */\n"
-      "  float nominal_winding_C; /* degC, of a motor of nominal values, heat counts once; to show and log, decides nothing. An unknown "
-      "input\n                              is as hot as it may be here too */\n"
-      "  {0}_reason reason;\n}} {0}_output;\n\n",
+      "  float guarded_winding_C; /* degC, pessimistic: safety factor on heat {2:.3g}, for the hottest drawn motors; sets the allowed "
+      "current */\n"
+      "  float nominal_winding_C; /* degC, motor with nominal values, safety factor 1; for display and logs only. An unknown input takes "
+      "its\n"
+      "                              hottest case here too */\n"
+      "  {0}_reason reason;\n"
+      "}} {0}_output;\n"
+      "\n",
       source.prefix, observer.state_count(), observer.heat_safety_factor());
   return text;
 }

@@ -19,7 +19,7 @@ constexpr std::string_view kTable = R"(static const heatsoak_current_table @_tab
 
 )";
 
-constexpr std::string_view kAllowed = R"(/* magnitude of the speed; stator_C: the hottest part but the winding */
+constexpr std::string_view kAllowed = R"(/* speed_rad_per_s: magnitude; stator_C: the hottest node other than the winding */
 static inline float @_allowed_A(float speed_rad_per_s, float stator_C, float winding_C) {
   const heatsoak_row row = heatsoak_find_row(&@_table, speed_rad_per_s, stator_C);
   return heatsoak_allowed_A(&@_table, &row, winding_C);
@@ -32,13 +32,13 @@ static inline float @_allowed_A(float speed_rad_per_s, float stator_C, float win
 std::string tables(const Source& source) {
   const CurrentTable& table = source.derating.table;
   const TableBound& bound = table.bound;
-  const std::string at_one_place = " An axis with one place does not matter.";
+  const std::string at_one_place = " An axis with one grid point has no influence.";
   return fmt::format(
-             "/* Squares of the allowed current. The table is never above the exact answer of the network, and at most {:.1f} % below it "
-             "from\n"
-             "   {:.3g} A up, on points that are not its own. The allowed current changes by at most {:.3g} A per K of the winding, {:.3g} "
-             "A per K\n"
-             "   of the stator and {:.3g} A per rad/s.{} */\n",
+             "/* Squares of the allowed current. The table is never above the exact result of the network. Between grid points it is at "
+             "most {:.1f} %\n"
+             "   below it, for currents of {:.3g} A and more. The allowed current changes by at most {:.3g} A per K of the winding, {:.3g} "
+             "A per K of\n"
+             "   the stator and {:.3g} A per rad/s.{} */\n",
              100.0 * bound.shortfall_ratio, table.straight_below_A, bound.winding_slope_A_per_K, bound.stator_slope_A_per_K,
              bound.speed_slope_A_s_per_rad,
              table.speed_rad_per_s.size() == 1 || table.stator_C.size() == 1 ? at_one_place : std::string()) +

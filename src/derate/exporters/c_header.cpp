@@ -40,8 +40,8 @@ std::string write(const Derating& derating) {
   return c_header::head_comment(source) +
          fmt::format("#ifndef {0}\n#define {0}\n\n", fmt::format("HEATSOAK_{}_{:08X}_H", source.capital, signature)) +
          (has_nan ? "#include <math.h>\n" : "") + "#include <stdbool.h>\n#include <stdint.h>\n\n" +
-         "#ifdef __FAST_MATH__\n#error \"without -ffast-math: it takes away what tells a number from none, and the rounding that is "
-         "carried\"\n#endif\n\n" +
+         "#ifdef __FAST_MATH__\n#error \"compile without -ffast-math: it removes the checks for NaN and the carried rounding "
+         "error\"\n#endif\n\n" +
          (rates.calls_thermal_math ? shared_text("thermal_math.h") + "\n" : "") + shared_text("current_table.h") + "\n" +
          c_header::constants(source) + c_header::foc_conversion(source) + c_header::structures(source) + c_header::tables(source) +
          rates.text + c_header::candidates(source) + c_header::allowed_function(source) + c_header::step_functions(source) +

@@ -31,9 +31,9 @@ struct InputField {
   std::string_view meaning;
 };
 constexpr InputField kInputs[] = {
-    {firmware::current, "current_mA", "equivalent DC current, rms over the period, with the sign of the speed where it drives"},
-    {firmware::speed, "speed_mrad_per_s", "of the motor's shaft, signed"},
-    {firmware::ambient, "ambient_mC", "air around the motor in 0.001 degC; the hottest declared where it is not measured"}};
+    {firmware::current, "current_mA", "equivalent DC current, rms over the period, with the sign of the speed when the motor drives"},
+    {firmware::speed, "speed_mrad_per_s", "speed of the motor's shaft, signed"},
+    {firmware::ambient, "ambient_mC", "air around the motor in 0.001 degC; the hottest declared air if it is not measured"}};
 
 std::int64_t thousandths_outward(double value) {
   return static_cast<std::int64_t>(value < 0.0 ? std::floor(1000.0 * value) : std::ceil(1000.0 * value));
@@ -109,7 +109,7 @@ constexpr std::string_view kStep = R"(static inline bool @_is_temperature(int64_
   return (stored >= (((int64_t)@CAP@_COLDEST_AMBIENT_MC - 1000) * @CAP@_STORED_PER_K / 1000)) && (stored <= (1000 * @CAP@_STORED_PER_K));
 }
 
-/* body_mC: temperature of the whole motor after a rest in 0.001 degC; what cannot be one counts as the limit. */
+/* body_mC: temperature of the whole motor after a rest in 0.001 degC; an implausible value counts as the limit. */
 static inline void @_start(@_state *state, int32_t body_mC) {
   const int64_t asked = (int64_t)body_mC * @CAP@_STORED_PER_K / 1000;
   int32_t node;
@@ -119,7 +119,7 @@ static inline void @_start(@_state *state, int32_t body_mC) {
   state->started = @CAP@_STARTED;
 }
 
-/* Every node warms as fast as with the hottest of the possible values; the input takes the one that heats the winding most. */
+/* Each node takes its largest temperature rise over the possible values; the input takes the value that heats the winding most. */
 static inline void @_sweep(const @_input *input, int32_t *which, const int32_t *possible, int32_t count, const int32_t *state_C, int64_t *most) {
   int64_t change[@NODES@];
   int64_t hottest_change = 0;
@@ -212,11 +212,12 @@ std::string head(const Derating& derating, const std::string& prefix, const Inte
   const double table_ratio = integer_form::quantised_shortfall_ratio(derating.table, table);
   std::string text = "/*\n" + comment_lines(provenance_lines(derating, " *"));
   text += fmt::format(
-      " *\n * Thermal observer and derating table in integers. Nominal temperatures and other signals: c_header.\n"
-      " * Temperatures are 0 to {0:.2g} K above those of the form in single precision. At equal temperatures the current is never above "
+      " *\n"
+      " * Thermal observer and derating table in integers. For nominal temperatures and other signals use c_header.\n"
+      " * Temperatures are 0 to {0:.2g} K above those of the header in single precision. At equal temperatures the current is never above "
       "that\n"
-      " * of its table and at most {1:.1f} % below it, from {2:.3g} A up.\n"
-      " * Once, after a long rest:      {3}_start(&motor, board_mC);   what was never started counts as hot as its limit\n"
+      " * of its table and at most {1:.1f} % below it, for currents of {2:.3g} A and more.\n"
+      " * Once, after a long rest:      {3}_start(&motor, board_mC);   a state that was never started counts as hot as its limit\n"
       " * every {4:.9g} s:                out = {3}_step(&motor, &in);   then |current| <= out.allowed_current_mA until the next call\n"
       " */\n",
       temperature_excess_K(derating, lines) + 1e-3 * kReadHotter_mC, 100.0 * table_ratio, derating.table.straight_below_A, prefix,
@@ -229,22 +230,35 @@ std::string structures(const Derating& derating, const std::string& prefix) {
   for (const InputField& field : kInputs) {
     text += fmt::format("  int32_t {}; /* {} */\n", field.name, field.meaning);
   }
-  return text +
-         fmt::format(
-             "}} {0}_input;\n\ntypedef struct {{\n  uint32_t started;\n  int64_t stored[{1}]; /* 2^-{3} K:{4}; counts heat {2:.3g} times "
-             "*/\n"
-             "}} {0}_state;\n\ntypedef enum {{\n  {0}_full,\n  {0}_derated,\n  {0}_no_current,\n  {0}_input_unknown,\n  {0}_not_started\n"
-             "}} {0}_reason;\n\ntypedef struct {{\n  int32_t allowed_current_mA; /* equivalent DC current, magnitude, until the next step "
-             "*/\n"
-             "  int32_t guarded_winding_mC; /* 0.001 degC, pessimistic; decides what is allowed */\n  {0}_reason reason;\n}} "
-             "{0}_output;\n\n",
-             prefix, derating.observer.state_count(), derating.observer.heat_safety_factor(), kStoredBits, [&] {
-               std::string names;
-               for (const std::string& name : derating.observer.state_names()) {
-                 names += " " + c_header::in_comment(name);
-               }
-               return names;
-             }());
+  return text + fmt::format(
+                    "}} {0}_input;\n"
+                    "\n"
+                    "typedef struct {{\n"
+                    "  uint32_t started;\n"
+                    "  int64_t stored[{1}]; /* 2^-{3} K:{4}; safety factor on heat {2:.3g} */\n"
+                    "}} {0}_state;\n"
+                    "\n"
+                    "typedef enum {{\n"
+                    "  {0}_full,\n"
+                    "  {0}_derated,\n"
+                    "  {0}_no_current,\n"
+                    "  {0}_input_unknown,\n"
+                    "  {0}_not_started\n"
+                    "}} {0}_reason;\n"
+                    "\n"
+                    "typedef struct {{\n"
+                    "  int32_t allowed_current_mA; /* equivalent DC current, magnitude, until the next step */\n"
+                    "  int32_t guarded_winding_mC; /* 0.001 degC, pessimistic; sets the allowed current */\n"
+                    "  {0}_reason reason;\n"
+                    "}} {0}_output;\n"
+                    "\n",
+                    prefix, derating.observer.state_count(), derating.observer.heat_safety_factor(), kStoredBits, [&] {
+                      std::string names;
+                      for (const std::string& name : derating.observer.state_names()) {
+                        names += " " + c_header::in_comment(name);
+                      }
+                      return names;
+                    }());
 }
 
 std::string table_text(const QuantisedTable& table, const std::string& prefix) {
@@ -265,7 +279,7 @@ std::string changes_function(const Derating& derating, const std::string& prefix
   const int period_bits = 29 - static_cast<int>(std::floor(std::log2(period_s)));
   const auto period = static_cast<std::int64_t>(std::ceil(std::ldexp(period_s, period_bits)));
   std::string text = fmt::format(
-      "/* what every node warms in a period, with what rounding could hide added */\n"
+      "/* temperature rise of every node in one period, with a bound of the rounding error added */\n"
       "static inline void {0}_changes(const {0}_input *input, const int32_t *state_C, int64_t *change) {{\n{1}",
       prefix, lines.text);
   for (std::size_t node = 0; node < lines.rates.size(); ++node) {

@@ -45,7 +45,7 @@ std::string write(const Derating& derating) {
 
 ExporterType csv() {
   return {.name = {},
-          .summary = "the table, one place a row, for pictures and other tools; its origin in lines that begin with #",
+          .summary = "the table, one grid point per row, for plots and other tools; lines that begin with # state its origin",
           .write = write};
 }
 

@@ -19,7 +19,7 @@ std::string write(const Derating& derating) {
          fmt::format(
              "# Currents are peak phase currents (i_q). Needs a thermistor at the stator on the TEMP pads: set "
              "servo.motor_thermistor_ohm.\n"
-             "# Firmware with servo.motor_temperature_margin. Write it with: moteus_tool --restore-config FILE ('conf set' for each "
+             "# Needs firmware with servo.motor_temperature_margin. Write it with: moteus_tool --restore-config FILE ('conf set' for each "
              "line).\n"
              "servo.max_current_A {:.3f}\n"
              "servo.derate_current_A 0\n"

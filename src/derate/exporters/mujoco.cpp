@@ -55,9 +55,9 @@ std::string write(const Derating& derating) {
           " Add to an actuator: dcmotor class=\"{0}\" joint=\"...\". Current is the equivalent DC current.\n"
           " The winding's temperature rise over the air of {1:.6g} degC is an activation of the actuator. MuJoCo does not limit\n"
           " the current by it: compare it with {2:.6g} K.\n"
-          " Loses against the network: the stator's heat capacity (the winding warms faster here, and cools faster: after a\n"
+          " Not modelled: the stator's heat capacity (the winding warms faster here, and cools faster: after a\n"
           " pause it may be too cold by the stator's temperature rise), and no-load loss ({3:.2f} W and {4:.1f} K at {5:.0f} rad/s).\n"
-          " Exact: a held current at standstill.\n",
+          " Exact for a constant current at standstill.\n",
           in_attribute(derating.motor_id), derating.rules.hottest_ambient_C,
           derating.rules.limits.winding_C - derating.rules.hottest_ambient_C, drag_W,
           derating.observer.heat_safety_factor() * drag_W * stator_K_per_W, derating.rules.most_speed_rad_per_s);

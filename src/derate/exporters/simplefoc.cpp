@@ -14,14 +14,17 @@ std::string write(const Derating& derating) {
   require_three_signals("simplefoc", derating);
   return provenance_lines(derating, "//") +
          fmt::format(
-             "// Limits the current of a SimpleFOC motor by the C header of the same inputs (derate --to c_header --out {0}_guard.h). It\n"
-             "// loses nothing against the table. Call it every {1:.6g} s with a current sense linked. In voltage torque mode no current "
-             "is\n"
-             "// measured: the function then disables the motor. feed_forward_current is added behind the limit: leave it at 0.\n"
-             "#pragma once\n\n"
+             "// Limits the current of a SimpleFOC motor with the C header of the same inputs (derate --to c_header --out {0}_guard.h). "
+             "It\n"
+             "// allows the full current of the table. Call it every {1:.6g} s with a current sense linked. In voltage torque mode no "
+             "current\n"
+             "// is measured: the function then disables the motor. feed_forward_current is added after the limit: leave it at 0.\n"
+             "#pragma once\n"
+             "\n"
              "#include <SimpleFOC.h>\n"
-             "#include \"{0}_guard.h\"\n\n"
-             "// ambient_C: air around the motor; {2:.6g} where it is not measured. Returns what the guard decided, to log.\n"
+             "#include \"{0}_guard.h\"\n"
+             "\n"
+             "// ambient_C: air around the motor; {2:.6g} if it is not measured. Returns the guard's output, for logs.\n"
              "inline {0}_output {0}_limit(FOCMotor &motor, {0}_state &state, float ambient_C) {{\n"
              "  const bool is_measured = motor.current_sense != nullptr && motor.torque_controller != TorqueControlType::voltage;\n"
              "  const float iq_A = motor.current.q, id_A = motor.current.d;\n"
@@ -34,8 +37,9 @@ std::string write(const Derating& derating) {
              "  }}\n"
              "  motor.updateCurrentLimit(is_measured ? {0}_iq_limit_A(output.allowed_current_A) : 0.0f);\n"
              "  return output;\n"
-             "}}\n\n"
-             "// static {0}_state guard;                                 // never started: as hot as its limit\n"
+             "}}\n"
+             "\n"
+             "// static {0}_state guard;                                 // not started: taken as hot as its limit\n"
              "// void setup() {{ ... {0}_start(&guard, board_C); }}       // after a long rest\n"
              "// void loop() {{ motor.loopFOC(); motor.move(); if (every {1:.6g} s) {0}_limit(motor, guard, {2:.1f}f); }}\n",
              identifier(derating.motor_id), derating.options.period_s, derating.rules.hottest_ambient_C);
@@ -44,7 +48,7 @@ std::string write(const Derating& derating) {
 }  // namespace
 
 ExporterType simplefoc() {
-  return {.name = {}, .summary = "Arduino code that limits a SimpleFOC motor by the C header of the same motor", .write = write};
+  return {.name = {}, .summary = "Arduino code that limits a SimpleFOC motor with the C header of the same motor", .write = write};
 }
 
 }  // namespace heatsoak::exporters

@@ -119,7 +119,7 @@ std::string write(const Derating& derating) {
              "every\n"
              "; {:.6g} s and takes the larger of two samples: peaks between them are not seen. If the script stops, the last temperature "
              "stays.\n"
-             "; hs-start-C: after a long rest the temperature of the motor, else its limit: then the motor stays off until it has "
+             "; hs-start-C: temperature of the motor after a long rest; otherwise its limit, so that the motor stays off until it has "
              "cooled.\n",
              derating.is_brushless ? "peak phase currents (i_q)" : "motor currents", derating.options.period_s) +
          fmt::format("(define hs-start-C {})\n", literal(derating.rules.limits.winding_C)) + states(derating) +

@@ -79,7 +79,7 @@ std::vector<FmuFile> with_binary(std::vector<FmuFile> files, const FmuModel& mod
   const std::string_view machine = platform(version);
   if (machine.empty()) {
     throw Failure(ExitCode::bad_input,
-                  "this version of FMI has no name for this machine; leave --compiler out, the file then holds sources");
+                  "this version of FMI has no name for this platform; leave --compiler out, the file then contains sources only");
   }
   const TemporaryFolder folder;
   // File names without a folder, so that the library contains no paths of this machine.
@@ -103,8 +103,9 @@ std::vector<FmuFile> with_binary(std::vector<FmuFile> files, const FmuModel& mod
     const std::string said = fs::exists(folder.path() / kSaid, none) ? read_file(folder.path() / kSaid, kLargest_bytes) : std::string();
     throw Failure(
         ExitCode::bad_input,
-        fmt::format("--compiler {}: {}, expected a C99 compiler such as cc; without --compiler the file holds sources only{}{}", compiler,
-                    code < 0 || said.empty() ? "cannot be run" : fmt::format("ended with code {}", code), said.empty() ? "" : "\n", said));
+        fmt::format("--compiler {}: {}, expected a C99 compiler such as cc; without --compiler the file contains sources only{}{}",
+                    compiler, code < 0 || said.empty() ? "cannot be run" : fmt::format("ended with code {}", code),
+                    said.empty() ? "" : "\n", said));
   }
   files.push_back({fmt::format("binaries/{}/{}.so", machine, model.identifier), read_file(folder.path() / "unit.so", kLargest_bytes)});
   std::ranges::sort(files, {}, &FmuFile::path);

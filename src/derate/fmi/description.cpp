@@ -106,7 +106,7 @@ void for_each_output(const FmuModel& model, const Visit& visit) {
 }
 
 constexpr std::string_view kLogCategories =
-    "  <LogCategories>\n    <Category name=\"logStatusError\" description=\"what is wrong with a call\"/>\n  </LogCategories>\n";
+    "  <LogCategories>\n    <Category name=\"logStatusError\" description=\"errors in a call\"/>\n  </LogCategories>\n";
 
 }  // namespace
 

@@ -10,11 +10,11 @@ namespace heatsoak {
 namespace {
 
 /// Reasons of the C header, in its order.
-constexpr FmuItem kReasons[] = {{"full", "all that the driver can give"},
-                                {"derated", "less, for the winding or the stator is hot"},
-                                {"no_current", "at its limit, or faster than the table goes"},
-                                {"input_unknown", "an input was no number, or none that can be: its hottest case was taken"},
-                                {"not_started", "the state was no state: taken for as hot as its limit"}};
+constexpr FmuItem kReasons[] = {{"full", "the driver's largest current"},
+                                {"derated", "less, because the winding or the stator is hot"},
+                                {"no_current", "at the limit, or above the highest speed of the table"},
+                                {"input_unknown", "an input was NaN or implausible: its hottest case was used"},
+                                {"not_started", "the state was not started or damaged: taken as hot as the limit"}};
 
 std::vector<FmuVariable> variables(const Derating& derating) {
   std::vector<FmuVariable> all{{"time_s", "s", FmuCausality::independent, FmuType::real, 0.0, "simulated time"}};
@@ -29,17 +29,17 @@ std::vector<FmuVariable> variables(const Derating& derating) {
     }
   }
   all.push_back({"start_C", "degC", FmuCausality::parameter, FmuType::real, derating.rules.hottest_ambient_C,
-                 "temperature of the whole motor at the start: of the board, after a long rest"});
+                 "temperature of the whole motor at the start; after a long rest that of the board"});
   const auto output = [&all](std::string name, FmuType type, std::string description) {
     all.push_back({std::move(name), "", FmuCausality::output, type, 0.0, std::move(description), true});
     all.back().unit = type == FmuType::real ? fmu_unit(all.back().name) : std::string_view();
   };
   output("allowed_current_A", FmuType::real, "equivalent DC current, magnitude, until the next call");
-  output("guarded_winding_C", FmuType::real, "pessimistic: decides what is allowed");
-  output("nominal_winding_C", FmuType::real, "of a motor of nominal values; to show, decides nothing");
-  output("reason", FmuType::enumeration, "why no more is allowed");
+  output("guarded_winding_C", FmuType::real, "pessimistic; sets the allowed current");
+  output("nominal_winding_C", FmuType::real, "motor with nominal values; for display only");
+  output("reason", FmuType::enumeration, "reason for the allowed current");
   all.push_back({"limp_current_A", "A", FmuCausality::constant, FmuType::real, limp_current_A(derating),
-                 "borne for good at every speed, for a wheel whose speed nobody knows"});
+                 "continuous current at every speed, for a wheel of unknown speed"});
   return all;
 }
 

@@ -23,8 +23,8 @@ void require_expressible(const Derating& derating, std::string_view exporter) {
   for (const ActingEffect& effect : derating.effects) {
     if (!effect.column.empty()) {
       throw Failure(ExitCode::bad_input,
-                    fmt::format("{} cannot express {} ({}): it goes with {} of the logs, which a simulation does not have; state the "
-                                "condition with --condition, or use --to c_header, which takes its hottest value",
+                    fmt::format("{} cannot express {} ({}): it depends on {} of the logs, which a simulation does not have; state the "
+                                "condition with --condition, or use --to c_header, which uses its hottest value",
                                 exporter, effect.name, effect.type, effect.column));
     }
   }
@@ -37,11 +37,12 @@ std::vector<FmuVariable> variables(const Derating& derating) {
     if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
       const firmware::SignalSpec& signal = firmware::signals()[i];
       const std::string name(signal.name);
-      all.push_back({name, fmu_unit(name), FmuCausality::input, FmuType::real, fmu_unit(name) == "degC" ? kRoom_C : 0.0,
-                     i == firmware::current ? "equivalent DC current (torque per torque constant), rms over the step, with the sign of the "
-                                              "speed where it drives"
-                     : i == firmware::ambient ? "air around the motor"
-                                              : std::string(signal.meaning)});
+      all.push_back(
+          {name, fmu_unit(name), FmuCausality::input, FmuType::real, fmu_unit(name) == "degC" ? kRoom_C : 0.0,
+           i == firmware::current
+               ? "equivalent DC current (torque per torque constant), rms over the step, with the sign of the speed when the motor drives"
+           : i == firmware::ambient ? "air around the motor"
+                                    : std::string(signal.meaning)});
     }
   }
   for (const std::string& node : derating.observer.state_names()) {
@@ -50,8 +51,8 @@ std::vector<FmuVariable> variables(const Derating& derating) {
   for (const std::string& node : derating.observer.state_names()) {
     all.push_back({identifier(node) + "_C", "degC", FmuCausality::output, FmuType::real, 0.0, fmt::format("temperature of {}", node)});
   }
-  all.push_back(
-      {"winding_peak_C", "degC", FmuCausality::output, FmuType::real, 0.0, "hottest winding since the start, inside of steps too"});
+  all.push_back({"winding_peak_C", "degC", FmuCausality::output, FmuType::real, 0.0,
+                 "highest winding temperature since the start, also inside a step"});
   all.push_back({"over_limit", "", FmuCausality::output, FmuType::boolean, 0.0, "whether winding or stator is above its limit"});
   all.push_back(
       {"winding_limit_C", "degC", FmuCausality::constant, FmuType::real, derating.rules.limits.winding_C, "limit of the winding"});
@@ -65,7 +66,7 @@ std::vector<FmuVariable> variables(const Derating& derating) {
 std::string rates_text(const Derating& derating) {
   const RateLines lines(derating.observer, derating.observer.nominal_rate_steps(), kStyle);
   std::string text =
-      "/* dT/dt of every node: the laws of the motor's network as straight lines. */\n#include <math.h>\n\n#include \"model.h\"\n\n";
+      "/* dT/dt of every node: the laws of the motor's network as straight-line code. */\n#include <math.h>\n\n#include \"model.h\"\n\n";
   if (lines.text().find(kStyle.power) != std::string::npos) {
     text += "static double positive_power(double base, double exponent) { return base > 0.0 ? pow(base, exponent) : 0.0; }\n\n";
   }
@@ -99,7 +100,7 @@ FmuModel motor_fmu(const Derating& derating, std::string_view exporter) {
       model,
       fmt::format("#define MODEL_TAKES_UNKNOWN 0\n#define MODEL_NODES {}\n#define MODEL_FIRST_START at_{}_start_C\n"
                   "#define MODEL_FIRST_NODE at_{}_C\n#define MODEL_WINDING_LIMIT_C {}\n#define MODEL_STATOR_LIMIT_C {} /* 0: none */\n\n"
-                  "typedef struct {{\n  double step_s; /* that the last error allows; 0 at the start */\n}} model_part;\n",
+                  "typedef struct {{\n  double step_s; /* step that the last error allows; 0 at the start */\n}} model_part;\n",
                   derating.observer.state_count(), first, first, fmu_number(derating.rules.limits.winding_C),
                   fmu_number(derating.rules.limits.stator_C.value_or(0.0))));
   model.sources.push_back({"rates.c", rates_text(derating)});

@@ -174,7 +174,7 @@ void require_sensible(const Observer& observer, const SensorOptions& options) {
     throw Failure(ExitCode::bad_input, fmt::format("a sensor accuracy of {:.3g} K: expected more than 0 K", options.accuracy_K));
   }
   if (options.node < 0 || static_cast<std::size_t>(options.node) >= observer.state_count()) {
-    throw Failure(ExitCode::bad_input, fmt::format("sensor at node {}: the motor has {}", options.node, observer.state_count()));
+    throw Failure(ExitCode::bad_input, fmt::format("sensor at node {}: expected a node below {}", options.node, observer.state_count()));
   }
 }
 
@@ -200,9 +200,11 @@ SensorPlan plan_sensor(const Motor& as_written, const Robot& robot, const Derati
       return plan;
     }
   }
-  throw Failure(ExitCode::cannot_answer, fmt::format("{}: a sensor of {:.3g} K lowers no safety factor on heat; leave it out or use a "
-                                                     "more accurate one",
-                                                     motor.id, options.accuracy_K));
+  throw Failure(
+      ExitCode::cannot_answer,
+      fmt::format(
+          "{}: a sensor with an error of {:.3g} K does not lower the safety factor on heat; leave it out or use a more accurate one",
+          motor.id, options.accuracy_K));
 }
 
 }  // namespace heatsoak

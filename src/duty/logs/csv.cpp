@@ -64,7 +64,7 @@ class Units {
     if (2 * outside_ > sights_) {
       const std::string far = farthest_m_ < 1e6 ? significant(farthest_m_, 3) : fmt::format("{:.3g}", farthest_m_);
       problems.add({file.string(), 1, 1}, "x_m, y_m",
-                   fmt::format("reach {} m, and most places lie outside any field: are they in millimetres?", far));
+                   fmt::format("reach {} m, and most positions are outside any field: are they in millimetres?", far));
     }
     // Radians seldom leave one turn, and degrees seldom stay within 6.
     if (10 * beyond_a_turn_ > sights_) {
@@ -77,9 +77,9 @@ class Units {
     const double step_s = steps_ > 0 ? std::exp(log_steps_ / static_cast<double>(steps_)) : 0.0;
     if (step_s > kLongestBridge_s) {
       const char* unit = step_s < 1e3 ? "milliseconds" : step_s < 1e6 ? "microseconds" : "nanoseconds";
-      report.notes.push_back(fmt::format(
-          "t_s advances by {:.3g} s from row to row of a robot, which is followed over at most {} s: is it in {}, or are rows missing?",
-          step_s, kLongestBridge_s, unit));
+      report.notes.push_back(
+          fmt::format("t_s advances by {:.3g} s from row to row of a robot, expected at most {} s: is it in {}, or are rows missing?",
+                      step_s, kLongestBridge_s, unit));
     }
   }
 
@@ -115,8 +115,8 @@ class Units {
                    fmt::format("turns at {:.3g} rad/s on average over the game, which no robot does: is it in degrees?", mean_rad_per_s));
     } else if (mean_rad_per_s > kNobodyKeepsTurning_rad_per_s && turned_s_ > 10.0) {
       problems.add({file.string(), 1, 1}, "yaw_rad",
-                   fmt::format("turns at {:.3g} rad/s on average and lies between {:.4g} and {:.4g}: is it in degrees? Radians of a robot "
-                               "that does turn so much are expected between -pi and pi",
+                   fmt::format("turns at {:.3g} rad/s on average, with values from {:.4g} to {:.4g}: is it in degrees? If the robot does "
+                               "turn so much, expected radians from -pi to pi",
                                mean_rad_per_s, lowest_yaw_, highest_yaw_));
     }
   }
@@ -255,7 +255,7 @@ class Rows {
       units_.say_steps(report);
     } else if (2 * repeated_ > report.out_of_order) {
       report.notes.emplace_back(
-          "most times repeat, as if t_s was rounded: expected a time of its own for each row of a robot; write t_s to the millisecond");
+          "most times repeat, as if t_s was rounded; expected increasing times for each robot: write t_s to the millisecond");
     } else {
       report.notes.emplace_back("most rows go back in time: expected the rows of each robot sorted by t_s");
     }
@@ -283,7 +283,7 @@ class Rows {
           },
       .restarted =
           [this](const RobotClock::Row& row, double after_s) {
-            problem(row, after_s, fmt::format(": its clock starts again; what follows is taken as {} s later", RobotClock::kPause_s));
+            problem(row, after_s, fmt::format(": its clock restarts; the following rows are taken as {} s later", RobotClock::kPause_s));
           }};
 };
 
@@ -299,7 +299,7 @@ void read(const std::filesystem::path& file, const ImportOptions& /*options*/, L
   read_csv(
       file, [&columns](std::span<const std::string> /*header*/) { return columns; }, words, [&rows](const CsvRow& row) { rows.take(row); },
       [&report](int line) {
-        report.notes.push_back(fmt::format("line {}, the last, has no line break at its end and may be cut: left out", line));
+        report.notes.push_back(fmt::format("line {}, the last, has no line break at its end and may be truncated: left out", line));
       });
   rows.finish();
   std::error_code error;

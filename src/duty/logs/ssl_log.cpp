@@ -157,7 +157,7 @@ class Import {
   void take(const SslRecord& record) {
     if (is_vision(record.type)) {
       if (!decode(vision_, record.message)) {
-        stream_.reject("message of vision that cannot be decoded; left out");
+        stream_.reject("vision message that cannot be decoded; left out");
       } else {
         learn_cameras(vision_.geometry());
         if (vision_.has_detection()) {
@@ -166,7 +166,7 @@ class Import {
       }
     } else if (record.type == SslMessageType::tracker_2020) {
       if (!decode(tracked_, record.message)) {
-        stream_.reject("message of a tracker that cannot be decoded; left out");
+        stream_.reject("tracker message that cannot be decoded; left out");
       } else if (source_.tracked && tracked_.uuid() == source_.uuid) {
         take(tracked_.tracked_frame(), record);
       } else {
@@ -253,12 +253,12 @@ class Import {
 
   void take_referee(const SslRecord& record) {
     if (!decode(referee_, record.message)) {
-      stream_.reject("message of the referee that cannot be decoded; left out");
+      stream_.reject("referee message that cannot be decoded; left out");
       return;
     }
     if (!referee_.has_command() || !referee_.has_stage() || referee_.command() >= kPhaseOfCommand.size() || referee_.stage() > kLastStage) {
       events_.problem(record.offset,
-                      fmt::format("referee's message with stage {} and command {}; left out", referee_.stage(), referee_.command()));
+                      fmt::format("referee message with stage {} and command {}; left out", referee_.stage(), referee_.command()));
       return;
     }
     const GamePhase of_stage = phase_of_stage(referee_.stage());

@@ -24,11 +24,11 @@ using robot_core::Trajectory;
 std::string_view in_words(PlanResult result) {
   switch (result) {
     case PlanResult::ok:
-      return "nothing is wrong";
+      return "no error";
     case PlanResult::not_finite:
       return "a state, target or limit is not finite";
     case PlanResult::limit_without_room:
-      return "a limit leaves no room to move";
+      return "a limit allows no motion";
     case PlanResult::target_velocity_beyond_limit:
       return "the target moves faster than the limits allow";
     case PlanResult::target_acceleration_beyond_limit:
@@ -38,9 +38,9 @@ std::string_view in_words(PlanResult result) {
     case PlanResult::out_of_range:
       return "limits and distances are too many orders of magnitude apart";
     case PlanResult::not_that_many_axes:
-      return "no axis, or more than the planner takes";
+      return "no axis, or more axes than the planner supports";
   }
-  return "the planner says no more";
+  return "the planner gives no reason";
 }
 
 double least(double a, double b) { return std::isfinite(b) ? std::min(a, b) : a; }

@@ -19,7 +19,7 @@ constexpr std::array kSpecs = {
     MatchInputSpec{{"running_mean", "s", kSeconds, "mean interval of play between interruptions, unless the half ends first"}, &MatchValues::running_mean_s},
     MatchInputSpec{{"stop_mean", "s", kSeconds, "mean length of a stop"}, &MatchValues::stop_mean_s},
     MatchInputSpec{{"stop_shortest", "s", Range::between(0.0, 600.0), "length of the shortest stop, part of the mean"}, &MatchValues::stop_shortest_s},
-    MatchInputSpec{{"placement_share", "", kShare, "part of interruptions with ball placement"}, &MatchValues::placement_share},
+    MatchInputSpec{{"placement_share", "", kShare, "share of the interruptions with ball placement"}, &MatchValues::placement_share},
     MatchInputSpec{{"placement_mean", "s", Range::between(0.1, 29.0), "mean length of a ball placement, each at most 30 s"}, &MatchValues::placement_mean_s},
     MatchInputSpec{{"halt_count", "", Range::between(0.0, 20.0), "mean number of halts in a half of 300 s"}, &MatchValues::halt_count},
     MatchInputSpec{{"halt_mean", "s", kSeconds, "mean length of a halt"}, &MatchValues::halt_mean_s},
@@ -28,16 +28,16 @@ constexpr std::array kSpecs = {
     MatchInputSpec{{"distance_median", "m", Range::between(0.01, 12.0), "median distance to a new target in play, attacker"}, &MatchValues::distance_median_m},
     MatchInputSpec{{"distance_spread", "", Range::between(0.0, 3.0), "spread of these distances: standard deviation of their natural logarithm"}, &MatchValues::distance_spread_ratio},
     MatchInputSpec{{"turn", "rad", kAngle, "largest turn from one target to the next, either way"}, &MatchValues::turn_rad},
-    MatchInputSpec{{"aggressiveness", "", Range::between(0.1, 1.0), "part of the robot's limits that is used"}, &MatchValues::aggressiveness},
+    MatchInputSpec{{"aggressiveness", "", Range::between(0.1, 1.0), "share of the robot's limits that is used"}, &MatchValues::aggressiveness},
     MatchInputSpec{{"duels_per_min", "1/min", Range::between(0.0, 30.0), "pushing duels per minute of play, attacker"}, &MatchValues::duels_per_min},
     MatchInputSpec{{"duel_mean", "s", kSeconds, "mean length of a duel, unless play ends first"}, &MatchValues::duel_mean_s},
-    MatchInputSpec{{"duel_push_share", "", kShare, "force of a duel, part of the largest that the robot can hold in its direction before a wheel slides"}, &MatchValues::duel_push_share},
+    MatchInputSpec{{"duel_push_share", "", kShare, "force of a duel, as a share of the largest force that the robot can hold in its direction before a wheel slides"}, &MatchValues::duel_push_share},
     MatchInputSpec{{"duel_angle", "rad", kAngle, "largest angle between a push and the robot's front, either way"}, &MatchValues::duel_angle_rad},
-    MatchInputSpec{{"role_distance", "", kFactor, "a defender's distances in play, part of an attacker's; a keeper's are half of a defender's"}, &MatchValues::role_distance_share},
-    MatchInputSpec{{"role_duels", "", Range::between(0.0, 4.0), "a defender's duels, part of an attacker's; a keeper has a fifth of a defender's"}, &MatchValues::role_duels_share},
-    MatchInputSpec{{"role_zone", "", Range::between(0.1, 1.6), "size of a role's zone: times 6 % of the field's length and 25 % of its width for a keeper, 32 % and 60 % for a defender"}, &MatchValues::role_zone_factor},
-    MatchInputSpec{{"outside_distance", "", kFactor, "ways outside play: times 0.3 m at a free kick, 0.5 m out of the way of ball placement, 0.7 m in a stop, 1 m to a kick-off, 2 m with the ball in its placement, half the field at half-time"}, &MatchValues::outside_distance_factor},
-    MatchInputSpec{{"outside_speed", "", kFactor, "speed outside play: times 1.5 m/s, but 1 m/s with the ball in its placement and at half-time; never above the rules' limit, and at a free kick as fast as the robot can"}, &MatchValues::outside_speed_factor},
+    MatchInputSpec{{"role_distance", "", kFactor, "a defender's distances in play, as a share of an attacker's; a keeper's are half of a defender's"}, &MatchValues::role_distance_share},
+    MatchInputSpec{{"role_duels", "", Range::between(0.0, 4.0), "a defender's duels, as a share of an attacker's; a keeper has a fifth of a defender's"}, &MatchValues::role_duels_share},
+    MatchInputSpec{{"role_zone", "", Range::between(0.1, 1.6), "factor on the size of a role's zone: 6 % of the field's length and 25 % of its width for a keeper, 32 % and 60 % for a defender"}, &MatchValues::role_zone_factor},
+    MatchInputSpec{{"outside_distance", "", kFactor, "factor on distances outside play: 0.3 m at a free kick, 0.5 m to clear a ball placement, 0.7 m in a stop, 1 m to a kick-off, 2 m with the ball in its placement, half the field at half-time"}, &MatchValues::outside_distance_factor},
+    MatchInputSpec{{"outside_speed", "", kFactor, "factor on the speed outside play: 1.5 m/s, but 1 m/s with the ball in its placement and at half-time; never above the rules' limit; at a free kick the robot drives as fast as it can"}, &MatchValues::outside_speed_factor},
 };
 // clang-format on
 static_assert(kSpecs.size() == std::tuple_size_v<decltype(MatchInputs::figures)>);
@@ -75,7 +75,7 @@ MatchInputs read_match_inputs(Reader& table) {
   }
   const MatchValues values = inputs.nominal();
   if (values.stop_shortest_s > values.stop_mean_s) {
-    table.problem("stop_shortest", fmt::format("{} s is longer than stop_mean, {} s, which it is part of; expected at most that",
+    table.problem("stop_shortest", fmt::format("{} s is longer than stop_mean, {} s, which includes it; expected at most stop_mean",
                                                values.stop_shortest_s, values.stop_mean_s));
   }
   return inputs;

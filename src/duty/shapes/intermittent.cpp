@@ -69,7 +69,7 @@ void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
     return;
   }
   if ((*on_s + *off_s) * *repeats > kLongest_s) {
-    table.problem("repeats", "makes the duty longer than 1 000 000 s; expected something like a match");
+    table.problem("repeats", "makes the duty longer than 1 000 000 s; expected about the length of a match");
     return;
   }
   duty.kind = torque_on ? DutyKind::torque : DutyKind::current;
@@ -88,10 +88,10 @@ void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
 
 ShapeType intermittent() {
   return {.name = {},
-          .summary = "on and off by turns: a torque (or a current) and a speed for time_on, standstill without current for time_off",
+          .summary = "alternately on and off: a torque (or a current) and a speed for time_on, standstill without current for time_off",
           .example = R"(shape = "intermittent"
 [intermittent]
-torque_on = { value = "120 mN m", origin = "estimated", derivation = "why this figure" }
+torque_on = { value = "120 mN m", origin = "estimated", derivation = "why this value" }
 speed_on = "40 rad/s"
 time_on = "4 s"
 time_off = "6 s"

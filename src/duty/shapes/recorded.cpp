@@ -90,9 +90,10 @@ class Recording {
   void refuse_both_kinds(std::span<const std::string> header) const {
     const auto has = [&](int wheel) { return std::ranges::find(header, column(kind_, wheel, true)) != header.end(); };
     if (names_.size() > 1 && names_[1] != column(kind_, 0, true) && has(0)) {
-      throw bad_input({file_.string(), 1, 1}, "",
-                      fmt::format("has {} and {}; expected the columns of one wheel without a number, or of several with numbers",
-                                  column(kind_, 0, true), names_[1]));
+      throw bad_input(
+          {file_.string(), 1, 1}, "",
+          fmt::format("has {} and {}; expected the columns of one wheel without a number in their names, or of several wheels with numbers",
+                      column(kind_, 0, true), names_[1]));
     }
   }
 
@@ -103,7 +104,7 @@ class Recording {
     if (pieces_ > kMostPieces) {
       throw bad_input(
           {file_.string(), row.line, 1}, "",
-          fmt::format("has more than {:.0f} rows, those shorter than {} s counted as parts of one; expected something like a match",
+          fmt::format("has more than {:.0f} rows (a row shorter than {} s counts as a fraction); expected about the length of a match",
                       kMostPieces, kMerged_s));
     }
     if (duration_s <= 0.0) {
@@ -113,7 +114,8 @@ class Recording {
       first_s_ = now_s;
     }
     if (now_s - first_s_ > kLongest_s) {
-      problem(row, 0, fmt::format("{} s is more than {:.0f} s after the first row; expected something like a match", now_s, kLongest_s));
+      problem(row, 0,
+              fmt::format("{} s is more than {:.0f} s after the first row; expected about the length of a match", now_s, kLongest_s));
     }
     for (std::size_t i = 1; i < row.values.size(); ++i) {
       if (std::abs(row.values[i]) > kLargest) {
@@ -215,7 +217,7 @@ void read(Reader& table, const std::filesystem::path& folder, Duty& duty) {
     return;
   }
   if (static_cast<double>(wheels.front().bins.size()) * repeats > kMostPieces) {
-    table.problem("repeats", fmt::format("makes more than {:.0f} rows; expected something like a match", kMostPieces));
+    table.problem("repeats", fmt::format("makes more than {:.0f} rows; expected about the length of a match", kMostPieces));
     return;
   }
   duty.notes.push_back(fmt::format("{} of {}, run {} time{}", *quantity, (folder / *file).string(), repeats, repeats == 1.0 ? "" : "s"));

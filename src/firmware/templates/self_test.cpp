@@ -1,6 +1,6 @@
 // Test of the generated core on the host: `self_test` checks it, `self_test replay INPUTS OUTPUTS` runs recorded inputs through it.
 //
-// INPUTS: heatsoak_core_input after heatsoak_core_input, as they lie in memory. OUTPUTS: for each a heatsoak_core_output and the 64 bits of
+// INPUTS: a sequence of heatsoak_core_input, as in memory. OUTPUTS: for each input a heatsoak_core_output and the 64 bits of
 // FNV-1a (Fowler, Noll, Vo) over the bytes of the state after it.
 #include <cmath>
 #include <cstdint>

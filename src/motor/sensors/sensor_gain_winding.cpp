@@ -5,7 +5,7 @@ namespace heatsoak::sensors {
 SensorEffectType sensor_gain_winding() {
   return {
       .name = {},
-      .summary = "The sensor at the winding shows too much or too little of every rise above 25 °C.",
+      .summary = "Gain error: the sensor at the winding scales every temperature rise above 25 °C by a constant factor.",
       .equation = "shown = T_winding + ε·(T_winding − 25 °C)",
       .reference = "JCGM 100 (GUM), systematic error of an instrument; wrong beta of a thermistor",
       .signal = "winding_C",
@@ -13,8 +13,9 @@ SensorEffectType sensor_gain_winding() {
       .typical_size = 0.03,
       .typical = "0.01 to 0.05 for a thermistor with a nominal beta",
       .confounded_with =
-          "A different thermal resistance between winding and stator: where heat comes from speed alone, only the gain remains.",
-      .experiment = "warm the motor by speed alone: winding and stator then differ by little, and a gain shows",
+          "Confounded with a different thermal resistance between winding and stator. Heat from speed alone separates them: then only the "
+          "gain shows.",
+      .experiment = "warm the motor by speed alone: winding and stator then differ by little, and a gain error shows",
       // 25 + 1.1·(75 − 25) = 80 °C; 25 °C is unchanged
       .example = {.size = 0.1, .time_s = {0.0, 10.0}, .true_C = {25.0, 75.0}, .sensor_C = {25.0, 80.0}},
       .law = sensor_gain_law(),

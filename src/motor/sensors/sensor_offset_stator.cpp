@@ -13,9 +13,11 @@ SensorEffectType sensor_offset_stator() {
       .typical_size = 1.0,
       .typical = "0.5 to 2 K for thermistors and thermocouples",
       .confounded_with =
-          "constant_heat at the stator, almost the same where only the stator is measured; an offset is there from the first sample.",
+          "Confounded with constant_heat at the stator, almost completely if only the stator is measured. An offset is present from the "
+          "first sample.",
       .experiment =
-          "let the motor rest for an hour: winding, stator and ambient then have one temperature, and what they show apart is offset",
+          "let the motor rest for an hour: winding, stator and ambient then have one temperature, and the difference between their "
+          "readings is the offset",
       // 21 − 0.5 = 20.5 °C and 60 − 0.5 = 59.5 °C
       .example = {.size = -0.5, .time_s = {0.0, 10.0}, .true_C = {21.0, 60.0}, .sensor_C = {20.5, 59.5}},
       .law = sensor_offset_law(),

@@ -13,10 +13,11 @@ SensorEffectType sensor_offset_winding() {
       .typical_size = 1.0,
       .typical = "0.5 to 2 K for thermistors and thermocouples",
       .confounded_with =
-          "A constant heat moves the temperature itself and so takes its time constants to appear; an offset is there from the first "
-          "sample.",
+          "Confounded with a constant heat, which changes the temperature itself and appears with the thermal time constants. An offset is "
+          "present from the first sample.",
       .experiment =
-          "let the motor rest for an hour: winding, stator and ambient then have one temperature, and what they show apart is offset",
+          "let the motor rest for an hour: winding, stator and ambient then have one temperature, and the difference between their "
+          "readings is the offset",
       // 21 + 1.5 = 22.5 °C and 60 + 1.5 = 61.5 °C
       .example = {.size = 1.5, .time_s = {0.0, 10.0}, .true_C = {21.0, 60.0}, .sensor_C = {22.5, 61.5}},
       .law = sensor_offset_law(),

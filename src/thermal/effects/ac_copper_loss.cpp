@@ -29,8 +29,8 @@ EffectType ac_copper_loss() {
       .parameters = {{"share", "", Range::between(0.0, 10.0), "extra copper loss per copper loss, at 500 rad/s"}},
       .typical = "0.05 to 0.4 of the copper loss at 500 rad/s",
       .confounded_with =
-          "armature_iron_loss has the same product of current and speed at the stator; winding_through_flow cools the winding with speed, "
-          "with the opposite sign.",
+          "Confounded with armature_iron_loss, the same product of current and speed at the stator, and with winding_through_flow of the "
+          "opposite sign, which cools the winding with speed.",
       // 0.2 · 8 W · (250/500)² = 0.4 W
       .example = {.parameters = {0.2},
                   .at = {.speed_rms_rad_per_s = 250.0, .copper_loss_W = 8.0},
@@ -41,7 +41,7 @@ EffectType ac_copper_loss() {
       .candidacy = {.size_parameter = share,
                     .variants = {{0.35}},
                     .family = "extra copper loss",
-                    .experiment = "the same current at two speeds, each until the winding settles"},
+                    .experiment = "the same current at two speeds, each until the winding reaches a steady state"},
   };
 }
 

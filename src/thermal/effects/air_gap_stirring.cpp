@@ -24,11 +24,12 @@ EffectType air_gap_stirring() {
       .equation = "P_hot→cold = G_500 · |ω|/(500 rad/s) · (T_hot − T_cold)",
       .reference =
           "K. M. Becker, J. Kaye, Measurements of diabatic flow in an annulus with an inner rotating cylinder, J. Heat Transfer 84 (1962); "
-          "straight in speed as the simplest of its regimes",
+          "linear in speed as the simplest of its regimes",
       .nodes = {{"hot", "winding"}, {"cold", "stator"}},
-      .parameters = {{"conductance", "W/K", Range::non_negative(), "at 500 rad/s, beside that at rest"}},
+      .parameters = {{"conductance", "W/K", Range::non_negative(), "at 500 rad/s, in addition to that at rest"}},
       .typical = "0.02 to 0.08 W/K at 500 rad/s: 10 to 25 % smaller difference between winding and stator",
-      .confounded_with = "winding_through_flow takes the heat to ambient instead: the stator's temperature tells.",
+      .confounded_with =
+          "Confounded with winding_through_flow, which takes the heat to ambient instead. The stator's temperature separates them.",
       // 0.1 W/K · 250/500 · (90 − 60) K = 1.5 W
       .example = {.parameters = {0.1},
                   .at = {.speed_mean_rad_per_s = 250.0},

@@ -19,16 +19,16 @@ EffectType airflow() {
   return {
       .name = {},
       .summary =
-          "Air that something else moves past the motor, a fan, a draught, the way it is mounted: heat leaves in proportion to the excess.",
+          "Additional cooling by air that something else moves past the motor, such as a fan or a draught: heat flow in proportion to the "
+          "temperature difference.",
       .equation = "P_hot→cold = G · (T_hot − T_cold)",
       .reference = "Newton's law of cooling; VDI Heat Atlas, forced convection at a constant speed of the air",
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
-      .parameters = {{"conductance", "W/K", Range::non_negative(), "beside what still air leads away"}},
+      .parameters = {{"conductance", "W/K", Range::non_negative(), "in addition to the conductance in still air"}},
       .typical = "0.05 to 0.3 W/K for a motor of 0.1 kg; a fan on a large one some W/K",
       .confounded_with =
-          "The resistance to ambient itself: only runs with and without the air, all else equal, tell. At the winding: "
-          "winding_through_flow, where "
-          "the rotor moves the air.",
+          "Confounded with the resistance to ambient itself: only runs with and without the air, all else equal, separate them. At the "
+          "winding, also with winding_through_flow, where the rotor moves the air.",
       // 0.2 W/K · (60 − 25) K = 7 W
       .example = {.parameters = {0.2}, .at = {}, .temperature_C = {60.0, 25.0}, .expected_heat_W = {-7.0, 7.0}},
       .laws = laws<Airflow>(),

@@ -28,7 +28,7 @@ EffectType armature_iron_loss() {
       .nodes = {{"stator", "stator"}},
       .parameters = {{"loss", "W", Range::non_negative(), "at 5 A and 500 rad/s"}},
       .typical = "0.5 to 2 W at 5 A and 500 rad/s",
-      .confounded_with = "load_friction (|I·ω|) at the same node; ac_copper_loss (I²·ω²) in the winding.",
+      .confounded_with = "Confounded with load_friction (|I·ω|) at the same node and ac_copper_loss (I²·ω²) in the winding.",
       // 2 W · 2.5/5 · (250/500)² = 0.25 W
       .example = {.parameters = {2.0},
                   .at = {.current_rms_A = 2.5, .speed_rms_rad_per_s = 250.0},
@@ -39,7 +39,7 @@ EffectType armature_iron_loss() {
       .candidacy = {.size_parameter = loss,
                     .variants = {{1.5}},
                     .family = "heat with load at the stator",
-                    .experiment = "one mechanical power as slow with much torque and as fast with little"},
+                    .experiment = "one mechanical power at low speed with high torque and at high speed with low torque"},
   };
 }
 

@@ -33,8 +33,8 @@ EffectType bearing_friction() {
                       "relative fall of the viscous part per kelvin; mineral grease 0.02 to 0.04"}},
       .typical = "0.2 to 1 W at 500 rad/s",
       .confounded_with =
-          "iron_loss_hysteresis and iron_loss_eddy have the same dependence on speed; only the fall with temperature differs, and without "
-          "it no temperature tells them apart.",
+          "Confounded with iron_loss_hysteresis and iron_loss_eddy, which depend on speed in the same way. Only the decrease with "
+          "temperature differs; without it no temperature separates them.",
       // 1 W · (0.5 · 0.5 + 0.5 · e^(−0.02/K · 50 K) · 0.25) = 0.25 + 0.125·e^(−1) = 0.25 + 0.04598493014643030 = 0.2959849301464303 W
       .example = {.parameters = {1.0, 0.5, 0.02},
                   .at = {.speed_mean_rad_per_s = 250.0, .speed_rms_rad_per_s = 250.0},
@@ -42,11 +42,12 @@ EffectType bearing_friction() {
                   .expected_heat_W = {0.2959849301464303}},
       .laws = laws<BearingFriction>(),
       .needs = {Signal::speed},
-      .candidacy = {.size_parameter = loss,
-                    .variants = {{0.5, 0.7, 0.02}},
-                    .family = "speed loss at the stator",
-                    .experiment =
-                        "turn the motor from outside with the supply off and the magnets out, cold and warm: what is left is friction"},
+      .candidacy =
+          {.size_parameter = loss,
+           .variants = {{0.5, 0.7, 0.02}},
+           .family = "speed loss at the stator",
+           .experiment =
+               "turn the motor from outside with the supply off and the magnets out, cold and warm: the remaining loss is friction"},
   };
 }
 

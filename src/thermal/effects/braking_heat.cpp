@@ -19,13 +19,14 @@ struct BrakingHeat {
 EffectType braking_heat() {
   return {
       .name = {},
-      .summary = "What the shaft gives back while braking and no battery takes: burnt in the motor or in a brake on it.",
+      .summary = "Braking power that does not return to the battery: it becomes heat in the motor or in a brake on it.",
       .equation = "P_node = k · max(0, −P_shaft)",
       .reference = "conservation of energy",
       .nodes = {{"heated", "stator"}},
       .parameters = {{"share", "", Range::between(0.0, 1.0), "of the braking power that heats the node"}},
       .typical = "0.1 to 1 of the braking power: hard stops make more heat than driving",
-      .confounded_with = "load_friction acts while driving too; copper loss of the braking current is in copper_loss already.",
+      .confounded_with =
+          "Confounded with load_friction, which acts while driving too. The copper loss of the braking current is already in copper_loss.",
       // 0.5 · max(0, 30 W) = 15 W
       .example = {.parameters = {0.5}, .at = {.shaft_power_W = -30.0}, .temperature_C = {40.0}, .expected_heat_W = {15.0}},
       .laws = laws<BrakingHeat>(),

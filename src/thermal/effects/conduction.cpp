@@ -25,8 +25,8 @@ EffectType conduction() {
       .parameters = {{"thermal_resistance", "K/W", Range::between(1e-3, std::numeric_limits<double>::infinity()), "between the two nodes"}},
       .typical = "winding to stator 1 to 8 K/W, stator to ambient 1.5 to 18 K/W",
       .confounded_with =
-          "Natural convection and radiation: over one narrow range of temperature they are a resistance too; "
-          "a cool-down from 80 K to 5 K above ambient tells.",
+          "Confounded with natural_convection and radiation, which over a narrow temperature range act as a resistance too. A cool-down "
+          "from 80 K to 5 K above ambient separates them.",
       // (80 °C − 30 °C) / 2.5 K/W = 20 W leave the hot node and reach the cold one
       .example = {.parameters = {2.5}, .at = {}, .temperature_C = {80.0, 30.0}, .expected_heat_W = {-20.0, 20.0}},
       .laws = laws<Conduction>(),

@@ -18,20 +18,21 @@ struct ConstantHeat {
 EffectType constant_heat() {
   return {
       .name = {},
-      .summary = "A constant heat from outside: electronics in standby, a lamp, the sun, a hot neighbour that nobody measured.",
+      .summary = "A constant heat from outside: electronics in standby, a lamp, the sun, a hot neighbour that is not measured.",
       .equation = "P_node = P",
       .reference = "definition",
       .nodes = {{"heated", "stator"}},
-      .parameters = {{"power", "W", Range::non_negative(), "that the node takes up"}},
+      .parameters = {{"power", "W", Range::non_negative(), "that the node absorbs"}},
       .typical = "0.5 to 3 W",
-      .confounded_with = "An offset of the node's sensor or of the ambient's: the first minutes before power tell.",
+      .confounded_with =
+          "Confounded with an offset of the node's sensor or of the ambient sensor. The first minutes before power separate them.",
       // 1.5 W, independent of the operating point
       .example = {.parameters = {1.5}, .at = {}, .temperature_C = {40.0}, .expected_heat_W = {1.5}},
       .laws = laws<ConstantHeat>(),
       .needs = {},
       .candidacy = {.size_parameter = power,
                     .variants = {{1.0}},
-                    .family = "heat that no signal drives",
+                    .family = "heat that depends on no signal",
                     .experiment = "half an hour at rest in the same place, from equal temperatures of motor and surroundings",
                     .is_anywhere = true},
   };

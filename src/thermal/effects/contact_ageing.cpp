@@ -22,21 +22,22 @@ EffectType contact_ageing() {
   return {
       .name = {},
       .summary =
-          "A thermal contact that changes with hours of running: glue that cracks, paste that dries, a clamp that settles. It is the part "
-          "of the contact that comes or goes; the rest stays in the resistance beside it.",
+          "A thermal contact that changes with hours of running: glue that cracks, paste that dries, a clamp that settles. This is the "
+          "part of the contact that appears or disappears; the rest stays in the parallel resistance.",
       .equation = "P_hot→cold = G·(f·e^(−a/τ) + (1 − f)·(1 − e^(−a/τ)))·(T_hot − T_cold), age a",
       .reference =
           "D. Staton, A. Boglietti, A. Cavagnino, Solving the more difficult aspects of electric motor thermal analysis, IEEE Trans. "
           "Energy "
-          "Convers. 20 (2005): gaps between parts decide; the exponential is a choice",
+          "Convers. 20 (2005): gaps between parts determine the contact; the exponential is a modelling choice",
       .nodes = {{"hot", "winding"}, {"cold", "stator"}},
-      .parameters = {{"conductance", "W/K", Range::non_negative(), "that comes or goes, beside the resistance of the settled contact"},
+      .parameters = {{"conductance", "W/K", Range::non_negative(), "part that appears or disappears, in parallel to the settled contact"},
                      {"time_constant", "h", Range::positive(), "of the change"},
                      {"fresh_share", "", Range::between(0.0, 1.0),
-                      "1: there when fresh, lost with age; 0: absent when fresh, comes with age"}},
+                      "1: present when fresh, lost with age; 0: absent when fresh, appears with age"}},
       .typical = "0.03 to 0.1 W/K: 10 to 30 % of the conductance between winding and stator, over hours to hundreds of hours",
       .confounded_with =
-          "contact_temperature_dependence where runs got hotter one after the other; a repeated run at equal temperature tells.",
+          "Confounded with contact_temperature_dependence if each run is hotter than the one before. A repeated run at equal temperature "
+          "separates them.",
       // new motor, so e^0 = 1: 0.1 W/K · (0.75·1 + 0.25·0) · (80 − 60) K = 1.5 W
       .example = {.parameters = {0.1, 10.0, 0.75}, .at = {.age_h = 0.0}, .temperature_C = {80.0, 60.0}, .expected_heat_W = {-1.5, 1.5}},
       .laws = laws<ContactAgeing>(),

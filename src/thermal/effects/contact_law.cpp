@@ -32,15 +32,15 @@ EffectType contact_law() {
       .equation = "P_hot→cold = G · r_m^((T_mean − 60 °C)/100 K) · r_d^((ΔT − 30 K)/100 K) · ΔT",
       .reference =
           "an empirical law; D. Staton, A. Boglietti, A. Cavagnino, Solving the more difficult aspects of electric motor thermal analysis, "
-          "IEEE Trans. Energy Convers. 20 (2005): gaps between parts decide and change with temperature",
+          "IEEE Trans. Energy Convers. 20 (2005): gaps between parts determine the contact and change with temperature",
       .nodes = {{"hot", "winding"}, {"cold", "stator"}},
       .parameters = {{"conductance", "W/K", Range::non_negative(), "at a mean of 60 °C and a difference of 30 K"},
                      {"mean_ratio", "", Range::between(0.01, 100.0), "of the conductance, per 100 K more of the mean temperature"},
                      {"difference_ratio", "", Range::between(0.01, 100.0), "of the conductance, per 100 K more of the difference"}},
       .typical = "half of the conductance between winding and stator, with ratios of 0.3 to 3",
       .confounded_with =
-          "contact_temperature_dependence, a contact that comes in one step; a winding of several bodies. An effect for forecasts: it "
-          "stands for whatever bends the conductance.",
+          "Confounded with contact_temperature_dependence, a contact that appears in one step, and with a winding of several bodies. This "
+          "effect is for forecasts: it represents any cause of a nonlinear conductance.",
       // mean 110 °C, difference 80 K: 0.5 W/K · 4^0.5 · 4^0.5 · 80 K = 0.5 · 4 · 80 = 160 W
       .example = {.parameters = {0.5, 4.0, 4.0}, .at = {}, .temperature_C = {150.0, 70.0}, .expected_heat_W = {-160.0, 160.0}},
       .laws = laws<ContactLaw>(),

@@ -23,19 +23,21 @@ EffectType contact_temperature_dependence() {
       .name = {},
       .summary =
           "A thermal contact that changes with its own temperature: parts that expand into each other, potting that softens, a gap that "
-          "opens. It is the part of the contact that comes or goes; the rest stays in the resistance beside it.",
+          "opens. This is the part of the contact that appears or disappears; the rest stays in the parallel resistance.",
       .equation = "P_hot→cold = G/(1 + e^(−κ·(T_mean − T_mid)))·(T_hot − T_cold), T_mean of both nodes",
       .reference =
           "D. Staton, A. Boglietti, A. Cavagnino, Solving the more difficult aspects of electric motor thermal analysis, IEEE Trans. "
           "Energy "
-          "Convers. 20 (2005): gaps between parts decide; the step is a choice",
+          "Convers. 20 (2005): gaps between parts determine the contact; the step is a modelling choice",
       .nodes = {{"hot", "winding"}, {"cold", "stator"}},
-      .parameters = {{"conductance", "W/K", Range::non_negative(), "that comes or goes"},
-                     {"midpoint", "degC", Range::between(-60.0, 400.0), "mean temperature at which half of it is there"},
+      .parameters = {{"conductance", "W/K", Range::non_negative(), "part that appears or disappears"},
+                     {"midpoint", "degC", Range::between(-60.0, 400.0), "mean temperature at which half of it is present"},
                      {"steepness", "1/K", Range::between(-1.0, 1.0),
-                      "more than 0: comes with temperature, less: goes; 1/κ is the width of the step"}},
+                      "above 0: appears with rising temperature, below 0: disappears; 1/κ is the width of the step"}},
       .typical = "0.03 to 0.1 W/K with 1/κ of 20 K: 5 to 15 % of the conductance between winding and stator over 30 K",
-      .confounded_with = "A wrong temperature coefficient of the copper; contact_ageing. Hot and cold runs in turns tell.",
+      .confounded_with =
+          "Confounded with a wrong temperature coefficient of the copper and with contact_ageing. Alternating hot and cold runs separate "
+          "them.",
       // mean of 80 and 60 °C is the midpoint: half of 0.1 W/K · 20 K = 1 W
       .example = {.parameters = {0.1, 70.0, 0.05}, .at = {}, .temperature_C = {80.0, 60.0}, .expected_heat_W = {-1.0, 1.0}},
       .laws = laws<ContactTemperatureDependence>(),
@@ -43,7 +45,7 @@ EffectType contact_temperature_dependence() {
       .candidacy = {.size_parameter = conductance,
                     .variants = {{0.1, 60.0, 0.05}, {0.1, 60.0, -0.05}},
                     .family = "contact between winding and stator",
-                    .experiment = "locked-rotor pulses of one current at a cold and at a preheated stator, in turns"},
+                    .experiment = "locked-rotor pulses of one current at a cold and at a preheated stator, alternating"},
   };
 }
 

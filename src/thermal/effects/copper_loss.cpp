@@ -29,8 +29,8 @@ EffectType copper_loss() {
                      {"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "of the resistance, at 25 °C; copper 0.0039 1/K"}},
       .typical = "5 to 10 W at nominal current",
       .confounded_with =
-          "A wrong resistance or current gain scales all heat and cannot be told from heat capacities and "
-          "thermal resistances; a 4-wire resistance measurement tells.",
+          "Confounded with all heat capacities and thermal resistances together: a wrong resistance or current gain scales all heat. A "
+          "4-wire resistance measurement separates them.",
       // (3 A)² · 0.6 Ω · (1 + 0.004 /K · 100 K) = 9 · 0.6 · 1.4 = 7.56 W
       .example = {.parameters = {0.6, 0.004},
                   .at = {.current_rms_A = 3.0, .speed_mean_rad_per_s = 0.0, .speed_rms_rad_per_s = 0.0, .ambient_C = 25.0},

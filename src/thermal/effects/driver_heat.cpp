@@ -23,16 +23,17 @@ EffectType driver_heat() {
   return {
       .name = {},
       .summary =
-          "Electronics on or near the motor warm it: conduction through diodes and switching go with |I|, switches' resistance with I².",
+          "Electronics on or near the motor warm it: conduction through diodes and switching loss grow with |I|, the loss in the switches' "
+          "resistance with I².",
       .equation = "P_stator = P_5 · ((1 − q)·|I|/(5 A) + q·(I/(5 A))²)",
       .reference = "N. Mohan, T. Undeland, W. Robbins, Power Electronics: conduction and switching loss of semiconductors",
       .nodes = {{"stator", "stator"}},
       .parameters = {{"loss", "W", Range::non_negative(), "that reaches the node at 5 A"},
-                     {"quadratic_share", "", Range::between(0.0, 1.0), "of it that goes with I²"}},
+                     {"quadratic_share", "", Range::between(0.0, 1.0), "of it that grows with I²"}},
       .typical = "0.5 to 2 W at 5 A",
       .confounded_with =
-          "connection_resistance (I²) at the same node; a constant standby is constant_heat; a driver that is a lump of metal of its own "
-          "answers late, which third_node shows.",
+          "Confounded with connection_resistance (I²) at the same node. Constant standby power is constant_heat. A driver with a large "
+          "heat capacity of its own responds late; third_node describes that.",
       // 2 W · (0.75 · 2.5/5 + 0.25 · (2.5/5)²) = 2 · (0.375 + 0.0625) = 0.875 W
       .example = {.parameters = {2.0, 0.25}, .at = {.current_rms_A = 2.5}, .temperature_C = {40.0}, .expected_heat_W = {0.875}},
       .laws = laws<DriverHeat>(),

@@ -25,7 +25,7 @@ EffectType enclosure_warm_up() {
       .equation =
           "P_enclosure = G·h·P_copper, P_stator→enclosure = G·(T_stator − T_enclosure), "
           "P_enclosure→ambient = r·G·(T_enclosure − T_ambient)",
-      .reference = "energy balance of the enclosed air; the other motors' heat is taken in proportion to this one's copper loss",
+      .reference = "energy balance of the enclosed air; the other motors' heat is assumed in proportion to this one's copper loss",
       .nodes = {{"stator", "stator"}, {"enclosure", "enclosure_warm_up", heat_capacity}, {"ambient", "ambient"}},
       .parameters = {{"conductance", "W/K", Range::non_negative(), "between stator and enclosed air"},
                      {"leak_ratio", "", Range::between(0.0, 100.0),
@@ -34,9 +34,9 @@ EffectType enclosure_warm_up() {
                      {"heat_capacity", "J/K", Range::positive(), "of enclosed air and shell"}},
       .typical = "0.05 to 0.2 W/K, r = 5, h = 10 K/W: the air rises 5 to 20 K within some ten minutes",
       .confounded_with =
-          "third_node is the same without the others' heat; heat that goes with I² and reaches the stator late, through a driver or a "
-          "connection of its own mass, has this equation; a drift of the ambient sensor. A sensor in the enclosed air tells, or lifting "
-          "the cover.",
+          "Confounded with third_node (the same without the others' heat), with I² heat that reaches the stator late through a driver or "
+          "connection of its own heat capacity, and with a drift of the ambient sensor. A sensor in the enclosed air or lifting the cover "
+          "separates them.",
       // others: 0.1 W/K · 10 K/W · 8 W = 8 W; from the stator 0.1 · (60 − 35) = 2.5 W; to ambient 0.1 · 5 · (35 − 25) = 5 W
       .example = {.parameters = {0.1, 5.0, 10.0, 300.0},
                   .at = {.copper_loss_W = 8.0},

@@ -19,16 +19,14 @@ struct InputPowerLoss {
 EffectType input_power_loss() {
   return {
       .name = {},
-      .summary =
-          "All that goes in and does not come out at the shaft, from measured electrical power: for motors whose losses are not known one "
-          "by one.",
+      .summary = "All loss, as measured electrical input power minus shaft power: for motors whose losses are not known one by one.",
       .equation = "P_node = k · max(0, P_input − P_shaft)",
       .reference = "conservation of energy; IEC 60034-2-1, direct measurement of input and output",
       .nodes = {{"heated", "stator"}},
       .parameters = {{"share", "", Range::between(0.0, 1.0),
                       "of the lost power that heats the node; the rest heats the driver or another node"}},
       .typical = "0.2 to 1; the power of a propeller or a wheel counts as shaft power",
-      .confounded_with = "copper_loss and the speed losses are its parts: either them or this, at one node.",
+      .confounded_with = "Confounded with copper_loss and the speed losses, which are its parts: use either them or this at one node.",
       // 0.8 · (30 W − 20 W) = 8 W
       .example = {.parameters = {0.8},
                   .at = {.shaft_power_W = 20.0, .input_power_W = 30.0},

@@ -21,7 +21,8 @@ struct IronLossEddy {
 EffectType iron_loss_eddy() {
   return {
       .name = {},
-      .summary = "Eddy currents in stator iron (or in magnets and housing): driven by the rate of the field, so a loss with ω².",
+      .summary =
+          "Eddy currents in stator iron (or in magnets and housing): driven by the rate of change of the field, so the loss grows with ω².",
       .equation = "P_stator = P_500 · (ω_rms / (500 rad/s))^p, p = 2",
       .reference =
           "G. Bertotti, General properties of power losses in soft ferromagnetic materials, IEEE Trans. Magn. 24 (1988): classical loss "
@@ -31,8 +32,8 @@ EffectType iron_loss_eddy() {
                      {"exponent", "", Range::between(1.2, 3.0), "of the speed; 2 for eddy currents, 1.5 for excess loss"}},
       .typical = "1 to 3 W at 500 rad/s",
       .confounded_with =
-          "iron_loss_hysteresis and dry friction are straight in speed, windage grows with ω³; a machine's whole loss may follow one "
-          "exponent between them. Eddy currents of the magnets heat the rotor first: third_node with a lag.",
+          "Confounded with iron_loss_hysteresis and dry friction (linear in speed) and windage (ω³); the total loss of a machine may "
+          "follow one exponent between them. Eddy currents of the magnets heat the rotor first, like third_node with a lag.",
       // 2 W · (250/500)² = 0.5 W
       .example = {.parameters = {2.0, 2.0}, .at = {.speed_rms_rad_per_s = 250.0}, .temperature_C = {40.0}, .expected_heat_W = {0.5}},
       .laws = laws<IronLossEddy>(),
@@ -40,8 +41,8 @@ EffectType iron_loss_eddy() {
       .candidacy = {.size_parameter = loss,
                     .variants = {{2.0, 2.0}},
                     .family = "speed loss at the stator",
-                    .experiment =
-                        "a staircase of speeds without load, each step until the stator settles: does the loss grow with ω, ω² or ω³?"},
+                    .experiment = "a staircase of speeds without load, each step until the stator reaches a steady state: does the loss "
+                                  "grow with ω, ω² or ω³?"},
   };
 }
 

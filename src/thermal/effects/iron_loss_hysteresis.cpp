@@ -19,7 +19,7 @@ struct IronLossHysteresis {
 EffectType iron_loss_hysteresis() {
   return {
       .name = {},
-      .summary = "Hysteresis of the iron: the same energy for every reversal of the field, so a loss in proportion to speed.",
+      .summary = "Hysteresis of the iron: the same energy for every reversal of the field, so the loss is proportional to speed.",
       .equation = "P_stator = P_500 · |ω| / (500 rad/s)",
       .reference =
           "C. P. Steinmetz, On the law of hysteresis, Trans. AIEE 9 (1892): energy per cycle at one induction; G. Bertotti, General "
@@ -28,8 +28,9 @@ EffectType iron_loss_hysteresis() {
       .parameters = {{"loss", "W", Range::non_negative(), "at 500 rad/s"}},
       .typical = "1 to 3 W at 500 rad/s",
       .confounded_with =
-          "iron_loss_eddy and windage bend upwards with speed; the dry part of bearing_friction is the same term and cannot be told from "
-          "temperatures; no_load_loss of a data sheet is the same term too, and this one then is what the sheet leaves out.",
+          "Confounded with the dry part of bearing_friction, which is the same term and cannot be separated by temperatures, and with "
+          "iron_loss_eddy and windage, which curve upwards with speed. The no_load_loss of a data sheet is the same term too; this effect "
+          "is then the part that the sheet omits.",
       // 2 W · 250/500 = 1 W
       .example = {.parameters = {2.0}, .at = {.speed_mean_rad_per_s = 250.0}, .temperature_C = {40.0}, .expected_heat_W = {1.0}},
       .laws = laws<IronLossHysteresis>(),
@@ -37,8 +38,8 @@ EffectType iron_loss_hysteresis() {
       .candidacy = {.size_parameter = loss,
                     .variants = {{2.0}},
                     .family = "speed loss at the stator",
-                    .experiment =
-                        "a staircase of speeds without load, each step until the stator settles: does the loss grow with ω, ω² or ω³?"},
+                    .experiment = "a staircase of speeds without load, each step until the stator reaches a steady state: does the loss "
+                                  "grow with ω, ω² or ω³?"},
   };
 }
 

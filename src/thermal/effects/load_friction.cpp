@@ -19,13 +19,13 @@ struct LoadFriction {
 EffectType load_friction() {
   return {
       .name = {},
-      .summary = "Friction that grows with load, of gear teeth, wheel bearings and rollers: a share of the power that passes them.",
+      .summary = "Friction that grows with load, of gear teeth, wheel bearings and rollers: a share of the power transmitted through them.",
       .equation = "P_stator = k · |P_shaft|",
       .reference = "Coulomb friction: a force in proportion to the load; 1 − efficiency of a gear stage in the catalogues",
       .nodes = {{"stator", "stator"}},
       .parameters = {{"share", "", Range::between(0.0, 1.0), "of the shaft's power that heats the node"}},
       .typical = "0.03 to 0.08 of the mechanical power",
-      .confounded_with = "speed_dependent_convection with the opposite sign; armature_iron_loss (|I|·ω²).",
+      .confounded_with = "Confounded with speed_dependent_convection of the opposite sign and armature_iron_loss (|I|·ω²).",
       // 0.05 · |−40 W| = 2 W; braking counts like driving
       .example = {.parameters = {0.05}, .at = {.shaft_power_W = -40.0}, .temperature_C = {40.0}, .expected_heat_W = {2.0}},
       .laws = laws<LoadFriction>(),

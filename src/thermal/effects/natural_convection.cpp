@@ -22,7 +22,7 @@ struct NaturalConvection {
 EffectType natural_convection() {
   return {
       .name = {},
-      .summary = "Warm air rises by itself, the faster the warmer: cooling grows more than in proportion to the difference in temperature.",
+      .summary = "Buoyancy-driven convection: cooling grows more than in proportion to the temperature difference.",
       .equation = "P_hot→cold = G_40 · (|T_hot − T_cold|/(40 K))^p · (T_hot − T_cold), p = 1/4",
       .reference = "W. H. McAdams, Heat Transmission (1954): h ∝ ΔT^¼ laminar, ΔT^⅓ turbulent; VDI Heat Atlas, natural convection",
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
@@ -30,8 +30,8 @@ EffectType natural_convection() {
                      {"exponent", "", Range::between(0.1, 0.5), "of the difference; 1/4 laminar, 1/3 turbulent"}},
       .typical = "0.03 to 0.1 W/K at 40 K: ±8 % of the resistance to ambient between 20 and 60 K",
       .confounded_with =
-          "A smaller resistance to ambient and radiation: over one range of temperature 99 % of it is such a resistance. A cool-down from "
-          "80 K to 5 K above ambient tells.",
+          "Confounded with a smaller resistance to ambient and with radiation: over one temperature range such a resistance reproduces 99 "
+          "% of it. A cool-down from 80 K to 5 K above ambient separates them.",
       // (2.5/40)^0.25 = (1/16)^0.25 = 0.5; 0.1 W/K · 0.5 · 2.5 K = 0.125 W
       .example = {.parameters = {0.1, 0.25}, .at = {}, .temperature_C = {27.5, 25.0}, .expected_heat_W = {-0.125, 0.125}},
       .laws = laws<NaturalConvection>(),

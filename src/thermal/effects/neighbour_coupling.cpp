@@ -19,14 +19,14 @@ EffectType neighbour_coupling() {
   return {
       .name = {},
       .summary =
-          "Heat from or to the motor next to this one, through the chassis or the air between. Where its temperature is unknown nothing is "
-          "booked.",
+          "Heat from or to the motor next to this one, through the chassis or the air between. If the neighbour's temperature is unknown, "
+          "no heat is counted.",
       .equation = "P_node→surroundings = G·(T_node − T_neighbour)",
-      .reference = "Newton's law of cooling; the neighbour's temperature is given and counts to the surroundings",
+      .reference = "Newton's law of cooling; the neighbour's temperature is given and is part of the surroundings",
       .nodes = {{"node", "stator"}, {"surroundings", "ambient"}},
       .parameters = {{"conductance", "W/K", Range::non_negative(), "between the two motors"}},
       .typical = "0.02 to 0.1 W/K between motors on one plate",
-      .confounded_with = "third_node and enclosure_warm_up: running the neighbour alone tells.",
+      .confounded_with = "Confounded with third_node and enclosure_warm_up. Running the neighbour alone separates them.",
       // 0.05 W/K · (40 − 60) K = −1 W: the hotter neighbour adds 1 W to the node
       .example = {.parameters = {0.05},
                   .at = {.neighbour_C = 60.0, .neighbour_share = 1.0},

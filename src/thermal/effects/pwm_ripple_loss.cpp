@@ -35,7 +35,8 @@ EffectType pwm_ripple_loss() {
                      {"stator_share", "", Range::between(0.0, 1.0), "of it that heats the stator; 0: all in the winding"}},
       .typical = "0.3 to 2 W at half modulation of 24 V",
       .confounded_with =
-          "iron_loss_hysteresis at one supply voltage, where modulation follows speed; another supply voltage at the same speed tells.",
+          "Confounded with iron_loss_hysteresis at a single supply voltage, where modulation follows speed. Another supply voltage at the "
+          "same speed separates them.",
       // 1.6 W · 4 · 0.25 · 0.75 · (12/24)² = 1.6 · 0.75 · 0.25 = 0.3 W, three quarters of it to the winding
       .example = {.parameters = {1.6, 0.25},
                   .at = {.bus_V = 12.0, .modulation_ratio = 0.25},

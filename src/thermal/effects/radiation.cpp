@@ -32,8 +32,8 @@ EffectType radiation() {
                       "emissivity times surface; bare metal 0.1, paint and plastics 0.9"}},
       .typical = "0.004 to 0.01 m²: 0.03 to 0.06 W/K",
       .confounded_with =
-          "A smaller resistance to ambient: 99.9 % of it over one range of temperature. natural_convection bends the same way; a coat of "
-          "matt paint changes radiation alone.",
+          "Confounded with a smaller resistance to ambient, which reproduces 99.9 % of it over one temperature range, and with "
+          "natural_convection, which curves the same way. A coat of matt paint changes radiation alone.",
       // 400 K to 300 K over 0.01 m²: 5.670374419e-8 · 0.01 · (2.56e10 − 8.1e9) = 5.670374419e-10 · 1.75e10 = 9.92315523325 W
       .example = {.parameters = {0.01}, .at = {}, .temperature_C = {126.85, 26.85}, .expected_heat_W = {-9.92315523325, 9.92315523325}},
       .laws = laws<Radiation>(),

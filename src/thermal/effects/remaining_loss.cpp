@@ -22,16 +22,18 @@ EffectType remaining_loss() {
   return {
       .name = {},
       .summary =
-          "All loss beside the copper loss, from measured power: what goes in electrically less what comes out at the shaft and less I²R. "
-          "It "
-          "replaces the no-load loss in runs that have the power balance.",
+          "All loss other than copper loss, from measured power: electrical input power minus shaft power minus I²R. It replaces the "
+          "no-load loss in runs that have the power balance.",
       .equation = "P = K · max(0, P_input − P_shaft − P_copper); the share ψ of it heats the winding, 1 − ψ the stator",
       .reference = "conservation of energy; IEC 60034-2-1, direct measurement of input and output",
       .nodes = {{"winding", "winding"}, {"stator", "stator"}},
-      .parameters = {{"share", "", Range::between(0.0, 2.0), "of the measured remainder: 1 but for errors of the power measurement"},
-                     {"winding_share", "", Range::between(0.0, 1.0), "of it that heats the winding; 0.5 where nothing is known"}},
+      .parameters = {{"share", "", Range::between(0.0, 2.0),
+                      "of the measured remaining loss: 1 except for errors of the power measurement"},
+                     {"winding_share", "", Range::between(0.0, 1.0), "of it that heats the winding; 0.5 if nothing is known"}},
       .typical = "share 1; 0.3 to 0.7 of it near the winding",
-      .confounded_with = "input_power_loss takes the whole balance into one node; iron and friction losses are parts of this.",
+      .confounded_with =
+          "Confounded with input_power_loss, which puts the whole balance into one node. Iron and friction losses are parts of this "
+          "effect.",
       // 0.9 · (50 − 30 − 5) W = 13.5 W; 0.4 · 13.5 W = 5.4 W into the winding, 8.1 W into the stator
       .example = {.parameters = {0.9, 0.4},
                   .at = {.shaft_power_W = 30.0, .input_power_W = 50.0, .copper_loss_W = 5.0},

@@ -20,17 +20,18 @@ struct Saturation {
 EffectType saturation() {
   return {
       .name = {},
-      .summary = "Above the knee of the iron an ampere makes less torque: where a torque is asked for, more current flows than K_t says.",
+      .summary = "Above the knee of the iron an ampere gives less torque: for a demanded torque more current flows than K_t gives.",
       .equation = "P_winding = P_copper · k / (1 + e^(−(I/I_knee − 1)/w))",
       .reference = "J. R. Hendershot, T. J. E. Miller, Design of Brushless Permanent-Magnet Machines: torque constant over current",
       .nodes = {{"winding", "winding"}},
       .parameters = {{"excess", "", Range::between(0.0, 5.0), "extra copper loss per copper loss, well above the knee"},
-                     {"knee_current", "A", Range::between(0.01, 1e4), "equivalent DC current at which half of it is there"},
-                     {"knee_width", "", Range::between(0.01, 1.0), "share of the knee current over which it comes; an ordinary knee: 0.1"}},
+                     {"knee_current", "A", Range::between(0.01, 1e4), "equivalent DC current at which half of it is reached"},
+                     {"knee_width", "", Range::between(0.01, 1.0),
+                      "width of the knee as a share of the knee current; an ordinary knee: 0.1"}},
       .typical = "0.1 to 0.5 above two to four times the nominal current",
       .confounded_with =
-          "A temperature coefficient of the resistance that is too low: both act where the current is high. Where the current was measured "
-          "it is in the measurement already.",
+          "Confounded with a temperature coefficient of the resistance that is too low: both act at high current. If the current was "
+          "measured, the measurement already contains the effect.",
       // half of the excess at the knee current: 0.5 · 0.4 · 30 W = 6 W
       .example = {.parameters = {0.4, 12.0, 0.1},
                   .at = {.current_rms_A = 12.0, .copper_loss_W = 30.0},

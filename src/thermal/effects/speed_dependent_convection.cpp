@@ -26,12 +26,12 @@ EffectType speed_dependent_convection() {
       .equation = "P_hot→cold = G_500 · (|ω|/(500 rad/s))^p · (T_hot − T_cold)",
       .reference = "Nu ∝ Re^p with p from 0.5 (laminar) to 0.8 (turbulent): VDI Heat Atlas, forced convection; R. Hilpert (1933)",
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
-      .parameters = {{"conductance", "W/K", Range::non_negative(), "at 500 rad/s, beside what cools at rest"},
+      .parameters = {{"conductance", "W/K", Range::non_negative(), "at 500 rad/s, in addition to the cooling at rest"},
                      {"exponent", "", Range::between(0.2, 1.2), "of the speed; 0.5 laminar, 0.8 turbulent"}},
       .typical = "0.05 to 0.2 W/K at 500 rad/s: 20 to 60 % less resistance to ambient",
       .confounded_with =
-          "A speed loss with the opposite sign: only its growth with the difference in temperature tells, so both spinning while hot and "
-          "spinning while cold are needed. vehicle_airflow where the wheels drive.",
+          "Confounded with a speed loss of the opposite sign: only the growth with the temperature difference separates them, so the runs "
+          "need spinning both hot and cold. Also confounded with vehicle_airflow if the wheels drive.",
       // 0.1 W/K · (125/500)^0.5 = 0.05 W/K; · (70 − 30) K = 2 W
       .example = {.parameters = {0.1, 0.5},
                   .at = {.speed_mean_rad_per_s = 125.0},

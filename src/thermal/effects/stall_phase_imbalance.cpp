@@ -21,14 +21,16 @@ struct StallPhaseImbalance {
 EffectType stall_phase_imbalance() {
   return {
       .name = {},
-      .summary = "A motor that holds without turning heats its phases unevenly: the worst one gets up to twice the mean copper loss.",
+      .summary = "A motor that holds without turning heats its phases unevenly: the hottest one gets up to twice the mean copper loss.",
       .equation = "P_winding = P_copper · k / (1 + e^(−5·(1 − |ω|/ω_s))): a step as wide as a fifth of ω_s",
       .reference = "sinusoidal currents at standstill: peak² against mean square is 2; block commutation: two of three phases carry all",
       .nodes = {{"winding", "winding"}},
       .parameters = {{"excess", "", Range::between(0.0, 1.0), "of the hottest phase over the mean copper loss, at standstill"},
                      {"stall_speed", "rad/s", Range::between(0.1, 1000.0), "below which phases no longer share the heat"}},
-      .typical = "0.3 to 1 below some 10 rad/s",
-      .confounded_with = "third_node while runs begin with a stall; turning the rotor by 60 electrical degrees between stalls tells.",
+      .typical = "0.3 to 1 below about 10 rad/s",
+      .confounded_with =
+          "Confounded with third_node if runs begin with a stall. Turning the rotor by 60 electrical degrees between stalls separates "
+          "them.",
       // half of the excess at the stall speed: 0.5 · 0.8 · 10 W = 4 W
       .example = {.parameters = {0.8, 10.0},
                   .at = {.speed_mean_rad_per_s = 10.0, .copper_loss_W = 10.0},

@@ -38,11 +38,11 @@ constexpr std::array kDrivers{
     Choice{"modulation", "", "|V_motor|/V_bus"},
     Choice{"bus_voltage", "V", "supply"},
     Choice{"vehicle_speed", "m/s", "magnitude"},
-    Choice{"age", "h", "hours of running"},
+    Choice{"age", "h", "operating hours"},
     Choice{"temperature", "degC", "of the node 'watched'"},
     Choice{"temperature_difference", "K", "of the node 'watched' above 'reference'"},
     Choice{"neighbour_difference", "K", "of the next motor above the node 'watched'"},
-    Choice{kColumnChoice, "", "of a log, the one that 'column' names; where it is not known the curve's hottest value counts"},
+    Choice{kColumnChoice, "", "column of a log, named by 'column'; if it is not known, the hottest value of the curve is used"},
 };
 
 enum Form { heat_into, per_copper_loss, per_difference, per_current, per_speed };
@@ -161,10 +161,10 @@ std::vector<Signal> needs_of(std::span<const double> values) {
 
 std::vector<ParameterSpec> parameters() {
   std::vector<ParameterSpec> specs{
-      ParameterSpec::choice("driver", kDrivers, "the signal that the curve is drawn over"),
-      ParameterSpec::choice("form", kForms, "what the curve's values are"),
-      {"first_knot", "", Range::any(), "value of the driver at value_1", {}, driver},
-      {"last_knot", "", Range::any(), "value of the driver at value_7; the others stand evenly between", {}, driver}};
+      ParameterSpec::choice("driver", kDrivers, "input signal of the curve"),
+      ParameterSpec::choice("form", kForms, "meaning of the curve's values"),
+      {"first_knot", "", Range::any(), "input signal at value_1", {}, driver},
+      {"last_knot", "", Range::any(), "input signal at value_7; the others are evenly spaced between", {}, driver}};
   constexpr std::array<std::string_view, kKnots> kKeys{"value_1", "value_2", "value_3", "value_4", "value_5", "value_6", "value_7"};
   for (const std::string_view key : kKeys) {
     specs.push_back({key, "", Range::non_negative(), "of the curve", {}, form});
@@ -177,15 +177,16 @@ std::vector<ParameterSpec> parameters() {
 EffectType tabulated() {
   return {
       .name = {},
-      .summary = "A measured curve over one signal, for an effect that has no law yet. Outside its knots the curve stays at its ends.",
+      .summary = "A measured curve over one signal, for an effect that has no law yet. Outside its knots the curve keeps its end values.",
       .equation =
-          "P = g(d), g(d)·P_copper, g(d)·I, g(d)·|ω| or g(d)·(T_hot − T_cold); g ≥ 0 is straight between seven knots and constant outside",
-      .reference = "linear interpolation; a curve that is nowhere negative can only make heat, or move it downhill",
+          "P = g(d), g(d)·P_copper, g(d)·I, g(d)·|ω| or g(d)·(T_hot − T_cold); g ≥ 0 is linear between seven knots and constant outside",
+      .reference = "linear interpolation; a curve that is nowhere negative can only generate heat, or move it from hot to cold",
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}, {"watched", "stator"}, {"reference", "ambient"}},
       .parameters = parameters(),
       .typical = "0.1 to 3 W, 0.05 to 1 of the copper loss, 0.02 to 0.3 W/K",
       .confounded_with =
-          "Every effect over the same signal: the curve fits where a law does, but says nothing beyond the values it was measured at.",
+          "Confounded with every effect over the same signal: the curve fits where a law does, but is not valid beyond the values at which "
+          "it was measured.",
       // 2.5 rad/s of 10 lie at knot 1.5 of 6, half way between value_2 = 1 W/K and value_3 = 3 W/K: 2 W/K · (60 − 50) K = 20 W
       .example = {.parameters = {speed, per_difference, 0.0, 10.0, 0.0, 1.0, 3.0, 3.0, 3.0, 3.0, 3.0},
                   .at = {.speed_mean_rad_per_s = 2.5},

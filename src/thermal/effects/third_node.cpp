@@ -21,7 +21,8 @@ EffectType third_node() {
   return {
       .name = {},
       .summary = "A body of its own that the motor warms: mount, chassis, rotor, end winding. It makes the tail of a cool-down long.",
-      .equation = "P_node→body = G·(T_node − T_body), P_body→ambient = r·G·(T_body − T_ambient), C_body·dT_body/dt = what is left",
+      .equation =
+          "P_node→body = G·(T_node − T_body), P_body→ambient = r·G·(T_body − T_ambient), C_body·dT_body/dt = P_node→body − P_body→ambient",
       .reference =
           "P. H. Mellor, D. Roberts, D. R. Turner, Lumped parameter thermal model for electrical machines of TEFC design, IEE Proc. B 138 "
           "(1991)",
@@ -31,7 +32,8 @@ EffectType third_node() {
                      {"heat_capacity", "J/K", Range::positive(), "of the body"}},
       .typical = "0.05 to 0.3 W/K and 30 to 500 J/K (aluminium 900 J/(kg K), steel 460 J/(kg K))",
       .confounded_with =
-          "enclosure_warm_up, a drift of a sensor; a body of another capacity. A long soak with cool-down tells, and weighing the part.",
+          "Confounded with enclosure_warm_up, a drift of a sensor, and a body of another heat capacity. A long soak with cool-down and "
+          "weighing the part separate them.",
       // into the body 0.2 W/K · (60 − 40) K = 4 W; out of it 0.5 · 0.2 W/K · (40 − 20) K = 2 W
       .example = {.parameters = {0.2, 0.5, 100.0}, .at = {}, .temperature_C = {60.0, 40.0, 20.0}, .expected_heat_W = {-4.0, 2.0, 2.0}},
       .laws = laws<ThirdNode>(),

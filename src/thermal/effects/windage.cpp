@@ -21,13 +21,15 @@ struct Windage {
 EffectType windage() {
   return {
       .name = {},
-      .summary = "Air drag of the rotor (or of a fan on its shaft): a torque with ω², so a loss with ω³.",
+      .summary = "Air drag of the rotor (or of a fan on its shaft): the torque grows with ω², so the loss grows with ω³.",
       .equation = "P_stator = P_500 · |ω|·ω_rms² / (500 rad/s)³",
       .reference = "J. E. Vrancik, Prediction of windage power loss in alternators, NASA TN D-4849 (1968)",
       .nodes = {{"stator", "stator"}},
       .parameters = {{"loss", "W", Range::non_negative(), "at 500 rad/s"}},
       .typical = "below 0.1 W at 500 rad/s for a smooth rotor, 0.5 W with a fan",
-      .confounded_with = "iron_loss_eddy (ω²): only the highest speeds tell; a cover over the rotor's openings changes windage alone.",
+      .confounded_with =
+          "Confounded with iron_loss_eddy (ω²): only the highest speeds separate them. A cover over the rotor's openings changes windage "
+          "alone.",
       // 0.5 W · (250/500)³ = 0.0625 W
       .example = {.parameters = {0.5},
                   .at = {.speed_mean_rad_per_s = 250.0, .speed_rms_rad_per_s = 250.0},

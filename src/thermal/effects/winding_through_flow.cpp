@@ -22,13 +22,13 @@ EffectType winding_through_flow() {
       .name = {},
       .summary = "Open motors pump air through the winding: it cools to ambient directly, with speed.",
       .equation = "P_hot→cold = G_500 · |ω|/(500 rad/s) · (T_hot − T_cold)",
-      .reference = "Newton's law of cooling; a centrifugal fan's flow is straight in its speed (fan laws)",
+      .reference = "Newton's law of cooling; the flow of a centrifugal fan is linear in its speed (fan laws)",
       .nodes = {{"hot", "winding"}, {"cold", "ambient"}},
       .parameters = {{"conductance", "W/K", Range::non_negative(), "at 500 rad/s"}},
       .typical = "0.03 to 0.1 W/K at 500 rad/s in outrunners, none in closed motors",
       .confounded_with =
-          "air_gap_stirring takes the heat to the stator instead; ac_copper_loss heats the winding with speed. Tape over the openings "
-          "tells.",
+          "Confounded with air_gap_stirring, which takes the heat to the stator instead, and with ac_copper_loss, which heats the winding "
+          "with speed. Tape over the openings separates them.",
       // 0.1 W/K · 250/500 · (90 − 30) K = 3 W
       .example = {.parameters = {0.1},
                   .at = {.speed_mean_rad_per_s = 250.0},

@@ -44,17 +44,16 @@ Measured measure(const Check& check, Computations& /*computations*/) {
 }  // namespace
 
 ThresholdType forecast_error() {
-  return {
-      .name = {},
-      .unit = "K",
-      .range = Range::between(0.0, 1e3),
-      .meaning =
-          "how far the motor's model is off committed logs (root mean square, the worst of the runs and measured temperatures): it runs "
-          "freely over each run with the log's currents, speeds and air from the start that its first samples decide",
-      .example = "at most 5 K",
-      .needs = {Setting::motor, Setting::logs},
-      .takes = {Setting::conditions, Setting::mapping, Setting::air},
-      .measure = measure};
+  return {.name = {},
+          .unit = "K",
+          .range = Range::between(0.0, 1e3),
+          .meaning =
+              "error of the motor's model on committed logs (root mean square, the worst of the runs and measured temperatures): a "
+              "free-running simulation of each run with the log's currents, speeds and air, started from its first samples",
+          .example = "at most 5 K",
+          .needs = {Setting::motor, Setting::logs},
+          .takes = {Setting::conditions, Setting::mapping, Setting::air},
+          .measure = measure};
 }
 
 }  // namespace heatsoak::thresholds

@@ -91,7 +91,7 @@ std::vector<present::Text> headline_of(const Motor& motor, const Calibration& re
 
 present::Document document_of(const Motor& motor, const Calibration& result, std::span<const std::string> of_logs) {
   present::Document document{.headline = headline_of(motor, result)};
-  document.paragraphs.push_back(fmt::format("Heat that no term of the model explains: winding {} W rms, stator {} W rms, over some {} s.",
+  document.paragraphs.push_back(fmt::format("Unmodelled heat: winding {} W rms, stator {} W rms, correlated over about {} s.",
                                             significant(result.fit.flux.rms_W[0], 2), significant(result.fit.flux.rms_W[1], 2),
                                             significant(result.fit.flux.time_scale_s, 1)));
   if (result.fit.rejected_share > 0.0) {
@@ -245,34 +245,34 @@ ExitCode run(const Options& options, Session& session) {
 }  // namespace
 
 Command calibrate_command() {
-  return {
-      .name = {},
-      .summary = "Fits the thermal parameters of a motor to measured runs, with intervals and what the runs cannot tell; exit 3 if nothing",
-      .example =
-          "heatsoak simulate --motor maxon_ec45_flat_70w_24v --robot roboteam_twente_v2024 --duty paper_intermittent --out log.csv && "
-          "heatsoak calibrate --motor maxon_ec45_flat_70w_24v log.csv --out model.toml --plot calibration.svg",
-      .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
-        const auto options = std::make_shared<Options>();
-        app.add_option("--motor", options->motor,
-                       "id (see `heatsoak list motors`) or file: where the fit begins, and what was known before")
-            ->required()
-            ->type_name("M");
-        app.add_option("logs", options->logs, "measured runs (CSV)")->required()->type_name("LOG");
-        app.add_option("--holdout", options->holdout, "runs to test on, not fitted to")->type_name("LOG");
-        app.add_option("--out", options->out, "the calibrated motor, a motor file")->required()->type_name("FILE.toml");
-        app.add_flag("--forecast", options->is_for_forecasts,
-                     "write the model that predicts left-out runs best, also where that takes effects which no diagnosis named");
-        add_picture(app, options->plot, "picture of measured and fitted temperatures");
-        add_log_options(app, options->how);
-        add_seed(app, options->fit.seed, "of the starting points; same seed, same bytes");
-        app.add_option("--threads", options->fit.threads, "0: all cores; the result does not depend on it")
-            ->check(whole_number(1024))
-            ->capture_default_str();
-        session.add_data_option(app);
-        session.add_text_options(app);
-        session.add_json_option(app);
-        return [options, &session] { return run(*options, session); };
-      }};
+  return {.name = {},
+          .summary =
+              "Fits the thermal parameters of a motor to measured runs, with confidence intervals and what the runs do not determine; exit "
+              "3 if nothing is identifiable",
+          .example =
+              "heatsoak simulate --motor maxon_ec45_flat_70w_24v --robot roboteam_twente_v2024 --duty paper_intermittent --out log.csv && "
+              "heatsoak calibrate --motor maxon_ec45_flat_70w_24v log.csv --out model.toml --plot calibration.svg",
+          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+            const auto options = std::make_shared<Options>();
+            app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file: start of the fit and prior knowledge")
+                ->required()
+                ->type_name("M");
+            app.add_option("logs", options->logs, "measured runs (CSV)")->required()->type_name("LOG");
+            app.add_option("--holdout", options->holdout, "runs to test on, not fitted to")->type_name("LOG");
+            app.add_option("--out", options->out, "the calibrated motor, a motor file")->required()->type_name("FILE.toml");
+            app.add_flag("--forecast", options->is_for_forecasts,
+                         "write the model that predicts left-out runs best, even if it needs effects that no diagnosis named");
+            add_picture(app, options->plot, "picture of measured and fitted temperatures");
+            add_log_options(app, options->how);
+            add_seed(app, options->fit.seed, "of the starting points; same seed, same bytes");
+            app.add_option("--threads", options->fit.threads, "0: all cores; the result does not depend on it")
+                ->check(whole_number(1024))
+                ->capture_default_str();
+            session.add_data_option(app);
+            session.add_text_options(app);
+            session.add_json_option(app);
+            return [options, &session] { return run(*options, session); };
+          }};
 }
 
 }  // namespace heatsoak::commands

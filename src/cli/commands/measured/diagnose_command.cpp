@@ -47,12 +47,11 @@ void refuse_where_nothing_follows(const Diagnosis& diagnosis, const DiagnosisInp
   for (const auto& [signal, error] : diagnosis.after_train) {
     const double moves_K = standard_deviation_K(input.train, signal);
     if (error.rmse_K > std::max(kFar_K, moves_K)) {
-      throw Failure(
-          ExitCode::cannot_answer,
-          fmt::format("no effect makes the model follow these logs: {} is {} K rms off, more than it moves (standard deviation {} "
-                      "K)\n  is it another motor, a wrong unit (degrees Fahrenheit, minutes, milliamperes) or a sensor elsewhere? "
-                      "`heatsoak log inspect` shows each channel",
-                      signal, significant(error.rmse_K, 2), significant(moves_K, 2)));
+      throw Failure(ExitCode::cannot_answer,
+                    fmt::format("no effect makes the model follow these logs: {} has an error of {} K rms, more than its variation "
+                                "(standard deviation {} K)\n  check for another motor, a wrong unit (degrees Fahrenheit, minutes, "
+                                "milliamperes) or a misplaced sensor; `heatsoak log inspect` shows each channel",
+                                signal, significant(error.rmse_K, 2), significant(moves_K, 2)));
     }
   }
 }
@@ -91,8 +90,9 @@ ExitCode run(const Options& options, Session& session) {
     notes.push_back(std::move(told));
   }
   if (const std::vector<std::string> rare = keep_common_columns(input.train, input.model.column); !rare.empty()) {
-    notes.push_back(fmt::format("not every log has {}: no heat is looked for that follows {}, unless the logs without are left out",
-                                fmt::join(rare, ", "), rare.size() == 1 ? "it" : "them"));
+    notes.push_back(
+        fmt::format("not every log has {}: heat that depends on {} is not searched for; to search for it, leave out the other logs",
+                    fmt::join(rare, ", "), rare.size() == 1 ? "it" : "them"));
   }
   Diagnosis diagnosis = heatsoak::diagnose(input, {});
   set_column(input.train, diagnosis.selection.after.model.column);
@@ -136,10 +136,11 @@ Command diagnose_command() {
         app.add_option("--model", options->model, "motor file, best from `heatsoak calibrate`, or an id")
             ->required()
             ->type_name("MODEL.toml");
-        app.add_option("--train", options->train, "logs that the model is extended by; LOG@0-60% takes the first 60 % of its time")
+        app.add_option("--train", options->train, "logs that the extended model is fitted to; LOG@0-60% takes the first 60 % of its time")
             ->required()
             ->type_name("LOG...");
-        app.add_option("--holdout", options->holdout, "logs that the fit never sees; for the error before and after")->type_name("LOG...");
+        app.add_option("--holdout", options->holdout, "hold-out logs that the fit does not use; for the error before and after")
+            ->type_name("LOG...");
         app.add_option("--out", options->out, "folder for the extended model, page, pictures and JSON")->type_name("DIR");
         add_log_options(app, options->logs);
         session.add_data_option(app);

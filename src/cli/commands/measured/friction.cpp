@@ -60,7 +60,7 @@ void find_motor(const Options& options, const DataFolders& folders, Input& input
     if (!options.motor.empty()) {
       throw;
     }
-    input.findings.push_back(fmt::format("the robot's motor '{}' is in no file; --motor names one", input.motor_id));
+    input.findings.push_back(fmt::format("there is no file of the robot's motor '{}'; name a motor with --motor", input.motor_id));
   }
 }
 
@@ -83,8 +83,8 @@ void refuse_repeated(const Recording& recording, std::vector<std::pair<std::file
 void refuse_what_looks_wrong(const Options& options, const Input& input) {
   if (!input.blocking.empty() && !options.takes_logs_as_they_are) {
     throw Failure(ExitCode::bad_input,
-                  "units, signs or wheels of the logs look wrong; correct them in a mapping (--map) or in the robot's file, or if they are "
-                  "right go on with --as-is",
+                  "units, signs or wheels of the logs look wrong; correct them in a mapping (--map) or in the robot's file, or use --as-is "
+                  "if they are right",
                   input.blocking);
   }
 }
@@ -156,7 +156,7 @@ std::string suspicions_text(const std::vector<std::string>& suspicions) {
   for (std::size_t i = 0; i < std::min(kMost, suspicions.size()); ++i) {
     lines += fmt::format("suspicious: {}\n", suspicions[i]);
   }
-  return suspicions.size() > kMost ? lines + fmt::format("suspicious: {} more of the like\n", suspicions.size() - kMost) : lines;
+  return suspicions.size() > kMost ? lines + fmt::format("suspicious: {} more like these\n", suspicions.size() - kMost) : lines;
 }
 
 std::string source_of(const Options& options) {
@@ -177,7 +177,7 @@ std::string table(const FrictionFit& fit, std::size_t rows) {
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     const WheelFriction& wheel = fit.wheels[i];
     if (!wheel.is_learned()) {
-      lines += fmt::format("{:>5}  not learned: {}\n", i + 1, wheel.problem);
+      lines += fmt::format("{:>5}  not identifiable: {}\n", i + 1, wheel.problem);
       continue;
     }
     lines +=
@@ -198,26 +198,25 @@ std::string table(const FrictionFit& fit, std::size_t rows) {
       }
     }
     lines += fmt::format(
-        "d (given) is the motor's back-EMF by its file, which the legs do not tell; intervals hold for this d only: 10 % more of it takes "
-        "{} "
-        "from a; legs at a second speed on the same headings tell both\n",
+        "d (given) is the motor's back-EMF from its file, because the legs do not determine d; the intervals hold for this d only: a d 10 "
+        "% larger takes {} from a; legs at a second speed on the same headings determine both\n",
         fmt::join(moves, ", "));
   }
   if (std::ranges::any_of(fit.wheels, &WheelFriction::phase_is_given)) {
     lines += fmt::format(
-        "phase (given) is a wheel's rolling direction, as its headings are too few to tell; the intervals allow for {:.0f}° to either "
-        "side; six directions or more all around tell it\n",
+        "phase (given) is a wheel's rolling direction, because its headings are too few to determine it; the intervals allow for {:.0f}° "
+        "to either side; six or more directions all around determine it\n",
         FitSettings{}.phase_uncertainty_rad * 180.0 / std::numbers::pi);
   }
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     if (fit.wheels[i].phase_is_bounded) {
       lines += fmt::format(
-          "wheel {}: past this phase it would have to turn another way than it did; its friction hardly follows a sin(θ+φ) + b sign\n",
-          i + 1);
+          "wheel {}: the phase is limited by the measured sense of rotation; the friction hardly follows a sin(θ+φ) + b sign\n", i + 1);
     }
   }
   if (std::ranges::any_of(fit.wheels, [](const WheelFriction& wheel) { return wheel.rotation_V.high < 0.0; })) {
-    lines += "below 0 V is no friction: the voltage is not in proportion to the modulation, or not to the battery's taken\n";
+    lines +=
+        "a friction below 0 V is impossible: the voltage is not proportional to the modulation, or the assumed battery voltage is wrong\n";
   }
   return lines;
 }
@@ -228,8 +227,8 @@ Findings of_another_law(const FrictionFit& fit) {
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     if (const LackOfFit& lack = fit.wheels[i].lack; lack.is_found) {
       found.push_back(
-          fmt::format("what is left of wheel {} follows θ: {} V rms beyond the {} V by which {} differ; a sin(θ+φ) + b sign does not hold "
-                      "there, and its intervals are wider by what of it may hide in a and b",
+          fmt::format("the residual of wheel {} depends on θ: {} V rms beyond the {} V by which {} differ; a sin(θ+φ) + b sign does not "
+                      "hold there, and the intervals are wider by the part that may be in a and b",
                       i + 1, significant(lack.left_V, 2), significant(lack.repeats_V, 2), lack.repeats));
     }
   }
@@ -242,11 +241,11 @@ Failure nothing_learned(const SteadyParts& steady, const FrictionFit& fit, const
   if (steady.parts.empty()) {
     return {
         ExitCode::cannot_answer,
-        "nothing can be learned: in no stretch do the wheels turn steadily; legs of one speed and direction must last a second or more" +
+        "nothing is identifiable: in no interval do the wheels turn steadily; legs of one speed and direction must last a second or more" +
             suspected};
   }
   return {ExitCode::cannot_answer,
-          fmt::format("nothing can be learned from {} on {}: of wheel 1, {}{}", counted(steady.parts.size(), "steady leg"),
+          fmt::format("nothing is identifiable from {} on {}: of wheel 1, {}{}", counted(steady.parts.size(), "steady leg"),
                       counted(static_cast<std::size_t>(fit.headings), "heading"), fit.wheels.front().problem, suspected)};
 }
 
@@ -343,13 +342,12 @@ ExitCode steady_state(const Options& options, Input& input, Session& session) {
                           settings.use_return_legs ? "used too" : "left out", findings_text(input.findings), table(fit, steady.rows)));
   session.say(suspicions_text(input.suspicions));
   if (std::isfinite(error.after_V)) {
-    session.say(fmt::format("error on {} of {} headings, left out of a fit for this: {}{:.3f} V after it\n", error.headings,
-                            error.all_headings, before.voltages ? fmt::format("{:.3f} V by {}, ", error.before_V, before.from) : "",
-                            error.after_V));
+    session.say(fmt::format("hold-out error on {} of {} headings: {}{:.3f} V after the fit\n", error.headings, error.all_headings,
+                            before.voltages ? fmt::format("{:.3f} V by {}, ", error.before_V, before.from) : "", error.after_V));
   }
   if (!options.out.empty()) {
     if (!input.motor) {
-      throw Failure(ExitCode::bad_input, "--out: a robot's file has torques; --motor must name the motor that turns volts into them");
+      throw Failure(ExitCode::bad_input, "--out: a robot's file has torques; --motor must name the motor that converts volts to torques");
     }
     Findings notes;
     const std::string content = with_measured_friction(read_file(input.robot.file, 1'000'000), input.robot,
@@ -380,12 +378,12 @@ ExitCode by_roll_out(const Options& options, Input& input, Session& session) {
   const RollOutResult result = roll_out(input.logs, input.robot, *input.motor, options.is_lifted);
   if (result.runs.empty()) {
     throw Failure(ExitCode::cannot_answer,
-                  "nothing can be learned: in no stretch of 15 rows do the wheels roll out with their drivers off");
+                  "nothing is identifiable: in no interval of 15 rows do the wheels roll out with their drivers off");
   }
   DriveConstants drive = drive_constants(input.robot, *input.motor);
   drive.drag_torque_Nm = 0.0;
   Json wheels = Json::array();
-  session.say(fmt::format("{}: {} in {}, motors taken as open\n{}", input.robot.id, counted(result.runs.size(), "roll-out"),
+  session.say(fmt::format("{}: {} in {}, motors assumed open\n{}", input.robot.id, counted(result.runs.size(), "roll-out"),
                           counted(input.logs.size(), "log"), findings_text(input.findings) + suspicions_text(input.suspicions)));
   for (const RollOutRun& run : result.runs) {
     session.say(run_text(run));
@@ -435,7 +433,7 @@ ExitCode run(const Options& options, Session& session) {
     throw Failure(ExitCode::bad_input, "--plot draws the steady-state test; a roll-out has no picture");
   }
   if (options.method != "roll_out" && options.is_lifted) {
-    throw Failure(ExitCode::bad_input, "--lifted is of roll-outs; expected --method roll_out beside it");
+    throw Failure(ExitCode::bad_input, "--lifted applies to roll-outs only; expected --method roll_out with it");
   }
   Input input = read_input(options, session);
   return options.method == "steady_state" ? steady_state(options, input, session) : by_roll_out(options, input, session);
@@ -447,7 +445,7 @@ Command friction() {
   return {.name = {},
           .summary =
               "Damping and friction of every wheel over the direction of travel, from logs of a steady-state test; exit 3 if nothing is "
-              "learned",
+              "identifiable",
           .example =
               "heatsoak friction --robot roboteam_twente_v2024 reports/friction_test/steady_state_test.csv --out my_robot.toml "
               "--plot friction.svg",
@@ -455,7 +453,7 @@ Command friction() {
             const auto options = std::make_shared<Options>();
             app.add_option("logs", options->logs,
                            "logs of the drives: wheel_speed_rad_per_s_1 …, wheel_pwm_ratio_1 … with battery_V (or "
-                           "wheel_current_A_1 …), heading_rad or what else tells the direction")
+                           "wheel_current_A_1 …), heading_rad or another signal of the direction")
                 ->required()
                 ->type_name("LOG");
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
@@ -464,14 +462,13 @@ Command friction() {
             app.add_option("--method", options->method, "steady_state, or roll_out: damping alone, from decelerations with open motors")
                 ->check(CLI::IsMember({"steady_state", "roll_out"}))
                 ->capture_default_str();
-            app.add_option("--direction", options->direction, "whose direction of travel counts; best: the first that the logs have")
+            app.add_option("--direction", options->direction, "source of the direction of travel; best: the first that the logs have")
                 ->check(CLI::IsMember({"best", "commanded", "measured", "wheels"}))
                 ->capture_default_str();
             app.add_option("--return-legs", options->return_legs, "legs that bring the robot back")
                 ->check(CLI::IsMember({"leave_out", "use"}))
                 ->capture_default_str();
-            app.add_flag("--as-is", options->takes_logs_as_they_are,
-                         "go on where units, signs or the order of wheels look wrong: they are right");
+            app.add_flag("--as-is", options->takes_logs_as_they_are, "continue although units, signs or the order of wheels look wrong");
             app.add_flag("--lifted", options->is_lifted, "roll_out: the wheels were off the ground");
             app.add_option("--out", options->out, "the robot's file with the friction found in it")->type_name("ROBOT.toml");
             add_picture(app, options->plot, "offset and damping over the headings; voltage over speed goes beside it, FILE_voltage.svg");

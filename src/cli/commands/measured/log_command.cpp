@@ -103,7 +103,7 @@ Command log_command() {
             ->required()
             ->type_name("FILE...");
         app.add_option("--map", options->map,
-                       "mapping of columns to quantities; FILE.map.toml beside the log is found by itself (README, \"Measured logs\")")
+                       "mapping of columns to quantities; FILE.map.toml beside the log is found automatically (README, \"Measured logs\")")
             ->type_name("FILE.toml");
         add_picture(app, options->plot, "all channels over time, rejected samples marked");
         add_table(app, options->out, "of convert: the canonical form");

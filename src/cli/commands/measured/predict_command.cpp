@@ -37,8 +37,7 @@ ExitCode run(const Options& options, Session& session) {
       std::ranges::move(outside(motor.fit->training, log), std::back_inserter(warnings));
     }
     if (motor.fit && was_fitted_to(*motor.fit, log)) {
-      warnings.push_back(
-          fmt::format("{} is among the runs that the model was fitted to: its error says nothing about forecasts", log.name));
+      warnings.push_back(fmt::format("the error of {} is not a forecast error, because the model was fitted to this run", log.name));
     }
   }
   Prediction prediction = predict(motor, logs, {.ambient_C = options.how.ambient_C});

@@ -137,13 +137,13 @@ VALUES(fmi2Boolean, fmi2GetBoolean, fmi2SetBoolean, type_boolean)
 FMI2_Export fmi2Status fmi2GetString(fmi2Component of, const fmi2ValueReference references[], size_t count, fmi2String values[]) {
   (void)references;
   (void)values;
-  return count == 0 ? fmi2OK : not_there(of, "there are no texts among the variables");
+  return count == 0 ? fmi2OK : not_there(of, "this FMU has no string variables");
 }
 
 FMI2_Export fmi2Status fmi2SetString(fmi2Component of, const fmi2ValueReference references[], size_t count, const fmi2String values[]) {
   (void)references;
   (void)values;
-  return count == 0 ? fmi2OK : not_there(of, "there are no texts among the variables");
+  return count == 0 ? fmi2OK : not_there(of, "this FMU has no string variables");
 }
 
 FMI2_Export fmi2Status fmi2GetFMUstate(fmi2Component of, fmi2FMUstate *kept) {
@@ -215,7 +215,9 @@ FMI2_Export fmi2Status fmi2DoStep(fmi2Component of, fmi2Real current_s, fmi2Real
   return told(me, instance_step(&me->state, current_s, step_s));
 }
 
-FMI2_Export fmi2Status fmi2CancelStep(fmi2Component of) { return not_there(of, "steps are over when they return"); }
+FMI2_Export fmi2Status fmi2CancelStep(fmi2Component of) {
+  return not_there(of, "a step is complete when fmi2DoStep returns: there is nothing to cancel");
+}
 
 FMI2_Export fmi2Status fmi2GetStatus(fmi2Component of, const fmi2StatusKind kind, fmi2Status *value) {
   (void)kind;

@@ -132,7 +132,7 @@ FMI3_Export fmi3Status fmi3Reset(fmi3Instance of) {
       }                                                                                                                                 \
       values[i] = (Type)value;                                                                                                          \
     }                                                                                                                                   \
-    return fmi3_told(of, count == value_count ? 0 : "there are as many values as references, for no variable is an array");             \
+    return fmi3_told(of, count == value_count ? 0 : "expected as many values as references, because no variable is an array");          \
   }                                                                                                                                     \
   FMI3_Export fmi3Status set(fmi3Instance of, const fmi3ValueReference references[], size_t count, const Type values[],                 \
                              size_t value_count) {                                                                                      \
@@ -144,7 +144,7 @@ FMI3_Export fmi3Status fmi3Reset(fmi3Instance of) {
         return fmi3_told(of, problem);                                                                                                  \
       }                                                                                                                                 \
     }                                                                                                                                   \
-    return fmi3_told(of, count == value_count ? 0 : "there are as many values as references, for no variable is an array");             \
+    return fmi3_told(of, count == value_count ? 0 : "expected as many values as references, because no variable is an array");          \
   }
 
 VALUES(fmi3Float64, fmi3GetFloat64, fmi3SetFloat64, type_real)

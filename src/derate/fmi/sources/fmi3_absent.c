@@ -1,4 +1,4 @@
-/* What FMI 3.0 has and this FMU has not: its binary must define it all the same. */
+/* Functions of FMI 3.0 that this FMU does not support; its binary must still define them. */
 #include "fmi3.h"
 #include "fmi3_component.h"
 

@@ -3,7 +3,7 @@
 
 #include "fmi3.h"
 
-/* Logs the problem of an instance, if there is one, and says what to return. */
+/* Logs the problem of an instance, if there is one. Returns the FMI status. */
 fmi3Status fmi3_refuse(fmi3Instance of, const char *problem);
 
 #endif

@@ -17,7 +17,7 @@ const char *model_begin(model_state *state) {
   guard_start(&state->part.guard, (float)state->value[at_start_C]);
   state->part.calls = 0.0;
   state->part.start_s = state->value[at_time_s];
-  /* what the first call will allow */
+  /* outputs of the first call */
   memcpy(&tried, &state->part.guard, sizeof tried);
   guard_read(state->value, &input);
   show(state, guard_step(&tried, &input));
@@ -25,7 +25,7 @@ const char *model_begin(model_state *state) {
 }
 
 const char *model_step(model_state *state, double until_s) {
-  /* a communication point a rounding error before a call belongs to it */
+  /* treats a communication point that is a rounding error early as the time of the call */
   const double due_calls = floor((until_s - state->part.start_s) / GUARD_PERIOD_S + 1e-6);
   guard_input input;
   guard_read(state->value, &input);

@@ -6,7 +6,7 @@
 
 void instance_reset(instance_state *state) {
   int i;
-  /* the gaps between the members too: equal states have equal bytes */
+  /* also sets the padding between the members: equal states have equal bytes */
   memset(state, 0, sizeof *state);
   strcpy(state->token, MODEL_TOKEN);
   for (i = 0; i < MODEL_VARIABLES; ++i) {
@@ -19,7 +19,7 @@ const char *instance_begin(instance_state *state, double start_s) {
     return "initialization mode is entered once, after instantiation or reset";
   }
   if (!isfinite(start_s)) {
-    return "the start time is no number";
+    return "the start time is not a number";
   }
   state->mode = mode_initialization;
   state->model.value[at_time_s] = start_s;
@@ -36,13 +36,13 @@ const char *instance_end_initialization(instance_state *state) {
 
 const char *instance_terminate(instance_state *state) {
   if (state->mode != mode_stepping) {
-    return "only a simulation that runs can be terminated";
+    return "only a running simulation can be terminated";
   }
   state->mode = mode_terminated;
   return 0;
 }
 
-/* The caller frees it. 0 without memory. */
+/* The caller frees it. Returns 0 if out of memory. */
 static instance_state *copy_of(const instance_state *state) {
   instance_state *const copy = malloc(sizeof *copy);
   if (copy) {
@@ -56,13 +56,13 @@ const char *instance_step(instance_state *state, double current_s, double step_s
   instance_state *next;
   const char *problem;
   if (state->mode != mode_stepping) {
-    return "a step needs a simulation that runs: after initialization, before termination, and without an error before";
+    return "a step needs a running simulation: after initialization, before termination and without an earlier error";
   }
   if (!(fabs(current_s - now_s) <= 1e-9 * (1.0 + fabs(now_s)))) {
-    return "the step does not begin where the last one ended; expected that, or a state that was set before";
+    return "the step does not begin at the end of the last one; expected that time, or that of a state that was set before";
   }
   if (!(step_s > 0.0) || !isfinite(step_s)) {
-    return "the step is not longer than 0 s";
+    return "the step size is not above 0 s";
   }
   next = copy_of(state);
   if (!next) {
@@ -92,7 +92,7 @@ const char *instance_set(instance_state *state, unsigned reference, model_type t
     return "a parameter is fixed once the simulation runs";
   }
   if (!isfinite(value) && !(MODEL_TAKES_UNKNOWN && model_variables[reference].kind == kind_input)) {
-    return "the value is no finite number";
+    return "the value is not a finite number";
   }
   state->model.value[reference] = value;
   return 0;
@@ -104,7 +104,7 @@ const char *instance_get(instance_state *state, unsigned reference, model_type t
     return "there is no variable of this type and value reference";
   }
   if (state->mode == mode_initialization && model_variables[reference].kind == kind_output) {
-    /* parameters may have been set since */
+    /* parameters may have been set since then */
     problem = model_begin(&state->model);
   }
   *value = state->model.value[reference];
@@ -113,7 +113,7 @@ const char *instance_get(instance_state *state, unsigned reference, model_type t
 
 const char *instance_restore(instance_state *state, const void *bytes, size_t size) {
   if (size != sizeof *state || memcmp(bytes, MODEL_TOKEN, sizeof MODEL_TOKEN) != 0) {
-    return "the bytes are no state of this FMU";
+    return "the bytes are not a state of this FMU";
   }
   memcpy(state, bytes, size);
   return 0;
@@ -130,7 +130,7 @@ const char *instance_keep(const instance_state *state, void **kept) {
 
 const char *instance_serialize(const void *kept, void *bytes, size_t size) {
   if (size < sizeof(instance_state)) {
-    return "the place for the state is too small";
+    return "the buffer for the state is too small";
   }
   memcpy(bytes, kept, sizeof(instance_state));
   return 0;

@@ -1,4 +1,4 @@
-/* What an instance of the FMU is, whatever the version of FMI. */
+/* An instance of the FMU, for every version of FMI. */
 #ifndef INSTANCE_H
 #define INSTANCE_H
 
@@ -8,14 +8,14 @@
 
 typedef enum { mode_made, mode_initialization, mode_stepping, mode_terminated, mode_failed } instance_mode;
 
-/* All that a rollback has to bring back. Copied as bytes. */
+/* The state that a rollback restores. Copied as bytes. */
 typedef struct {
   char token[MODEL_TOKEN_SIZE];
   instance_mode mode;
   model_state model;
 } instance_state;
 
-/* All functions that return a text return 0, or what is wrong. */
+/* All functions that return a text return 0, or the error message. */
 void instance_reset(instance_state *state);
 const char *instance_begin(instance_state *state, double start_s);
 const char *instance_end_initialization(instance_state *state);

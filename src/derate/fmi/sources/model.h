@@ -1,5 +1,5 @@
-/* What the FMI functions know of a model. Every variable has one number for both versions of FMI, and one double for its value: a Boolean
-   is 0 or 1, an enumeration its item. */
+/* Interface between the FMI functions and a model. Every variable has one number for both versions of FMI, and one double for its value: a
+   Boolean is 0 or 1, an enumeration its item. */
 #ifndef MODEL_H
 #define MODEL_H
 
@@ -22,9 +22,9 @@ typedef struct {
 /* In the order of their numbers. */
 extern const model_variable model_variables[MODEL_VARIABLES];
 
-/* Outputs from start values and inputs at the first moment. Returns 0, or what is wrong. */
+/* Calculates the outputs from start values and inputs at the start time. Returns 0, or the error message. */
 const char *model_begin(model_state *state);
-/* From value[at_time_s] to `until_s` with held inputs; sets the time. Returns 0, or what is wrong. */
+/* Simulates from value[at_time_s] to `until_s` with held inputs; sets the time. Returns 0, or the error message. */
 const char *model_step(model_state *state, double until_s);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "model.h"
 
-/* K per step; a tenth of a kelvin is what this model is compared to */
+/* K per step; the model is compared to a tenth of a kelvin */
 #define TOLERANCE_K 1e-4
 #define MOST_STEPS 10000000L
 
@@ -15,7 +15,7 @@ static const char *outputs(model_state *state) {
   int node;
   for (node = 0; node < MODEL_NODES; ++node) {
     if (!isfinite(state->value[MODEL_FIRST_NODE + node])) {
-      return "a temperature is no number: the motor is far above its limit, or an input is";
+      return "a temperature is not finite: the motor is far above its limit, or an input is not finite";
     }
   }
   if (state->value[MODEL_FIRST_NODE] > state->value[at_winding_peak_C]) {
@@ -78,7 +78,7 @@ const char *model_step(model_state *state, double until_s) {
     const double error_ratio = attempt(state->value, tried_s, now_C, rate, next_C, next_rate);
     const double factor = error_ratio > 0.0 ? 0.9 / cbrt(error_ratio) : 5.0;
     if (steps > MOST_STEPS || !(step_s > 1e-12 * duration_s)) {
-      return "the temperatures change too fast to be followed: is an input in another unit?";
+      return "the temperatures change too fast for the integration; check the units of the inputs";
     }
     if (error_ratio <= 1.0) {
       int node;
@@ -91,7 +91,7 @@ const char *model_step(model_state *state, double until_s) {
         state->value[at_winding_peak_C] = now_C[0];
       }
     }
-    /* a step that only the end cut short says nothing about the next */
+    /* a step shortened only by the end does not set the size of the next */
     if (error_ratio > 1.0 || tried_s >= step_s || factor * tried_s > step_s) {
       step_s = tried_s * (factor > 5.0 ? 5.0 : factor > 0.2 ? factor : 0.2);
     }

@@ -1,5 +1,5 @@
 /* Weak board functions for an STM32F767 that runs on its internal oscillator of 16 MHz: timer, time and watchdog work, sensors have no
- * samples, and nothing drives a bridge. Addresses: STM32F76xxx reference manual (RM0410) and Armv7-M architecture reference manual. */
+ * samples, and no bridge is driven. Addresses: STM32F76xxx reference manual (RM0410) and Armv7-M architecture reference manual. */
 #include "board.h"
 
 #define WEAK __attribute__((weak))

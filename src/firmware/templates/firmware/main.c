@@ -2,8 +2,8 @@
 #include "board.h"
 #include "heatsoak_core.h"
 
-/* Start-up does not touch this memory, so after a reset by the watchdog the guard goes on with the temperatures that it knew. After a power
- * loss it holds anything: the core notices by its check sums and begins as hot as the limit. */
+/* Start-up does not touch this memory, so after a reset by the watchdog the guard continues with its last temperatures. After a power
+ * loss its contents are random: the core detects this by its check sums and begins as hot as the limit. */
 __attribute__((section(".noinit"))) static heatsoak_core_state state;
 
 static void read_inputs(heatsoak_core_input *input) {
@@ -30,7 +30,7 @@ static void start_core(void) {
 int main(void) {
   heatsoak_core_input input;
   heatsoak_core_output output;
-  /* How long a restart took is not known: for a gap of one second the guard assumes the largest current. */
+  /* The duration of a restart is unknown: for a gap of one second the guard assumes the largest current. */
   float elapsed_s = 1.0F;
   uint32_t last_us;
   int wheel;

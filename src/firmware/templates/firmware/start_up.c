@@ -4,7 +4,7 @@
 
 int main(void);
 
-/* From the linker script; only their addresses mean something. */
+/* From the linker script; only their addresses are meaningful. */
 extern uint32_t data_begin[];
 extern uint32_t data_end[];
 extern const uint32_t data_contents[];
