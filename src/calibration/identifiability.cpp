@@ -208,16 +208,16 @@ Answer answer_to(const MotorModel& motor, const CalibratedValue& figure, const F
   return not_excited();
 }
 
-/// Adds a reason for every parameter that is not identifiable and that the open directions do not explain. `told` has these directions as
-/// columns.
+/// Adds a reason for every parameter that is not identifiable and that the open directions do not explain. `explained` has these directions
+/// as columns.
 void name_the_rest(const MotorModel& motor, const Fit& fit, const Look& seen, std::span<const CalibratedParameter> figures,
-                   const Eigen::MatrixXd& told, std::vector<OpenDirection>& open) {
+                   const Eigen::MatrixXd& explained, std::vector<OpenDirection>& open) {
   const bool has_unlogged_speed = !motor.nuisances.empty();
   for (std::size_t i = 0; i < figures.size(); ++i) {
     const CalibratedValue& figure = motor.figures[i];
     const double variance = figure.exponents.dot(fit.covariance * figure.exponents);
     constexpr double kMostly = 0.5;
-    if (figures[i].is_identifiable || (told.transpose() * figure.exponents).squaredNorm() > kMostly * variance) {
+    if (figures[i].is_identifiable || (explained.transpose() * figure.exponents).squaredNorm() > kMostly * variance) {
       continue;
     }
     const Answer answer = has_unlogged_speed && is_of_stator(motor, figure) ? speed_unlogged() : answer_to(motor, figure, fit, seen);
@@ -294,7 +294,7 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& f
     // Rank this first, because the information in the other runs depends on it.
     open.back().left_sd = std::numeric_limits<double>::infinity();
   }
-  Eigen::MatrixXd told(count, 0);
+  Eigen::MatrixXd explained(count, 0);
   for (Eigen::Index i = 0; i < solver.eigenvalues().size(); ++i) {
     const double information = std::max(0.0, solver.eigenvalues()[i]);
     // Remaining uncertainty along this direction. An earlier fit may have determined what these runs do not.
@@ -305,11 +305,11 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& f
     if (1.0 / (1.0 + information) > kIdentifiableShare && !is_known) {
       open.push_back(open_direction(movement(motor.model, left.normalized()), answer_to(motor, left.normalized(), seen)));
       open.back().left_sd = left.norm();
-      told.conservativeResize(Eigen::NoChange, told.cols() + 1);
-      told.rightCols(1) = left;
+      explained.conservativeResize(Eigen::NoChange, explained.cols() + 1);
+      explained.rightCols(1) = left;
     }
   }
-  name_the_rest(motor, fit, seen, figures, told, open);
+  name_the_rest(motor, fit, seen, figures, explained, open);
   return open;
 }
 

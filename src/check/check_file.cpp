@@ -21,9 +21,9 @@ constexpr std::size_t kMostChecks = 1000;
 
 class CheckReader {
  public:
-  /// `told`: problems of other files that were reported before; several checks may name one file.
-  CheckReader(Reader table, fs::path folder, const DataFolders& folders, std::set<std::string>& told)
-      : table_(std::move(table)), folder_(std::move(folder)), folders_(folders), told_(told) {}
+  /// `reported`: problems of other files that were reported before; several checks may name one file.
+  CheckReader(Reader table, fs::path folder, const DataFolders& folders, std::set<std::string>& reported)
+      : table_(std::move(table)), folder_(std::move(folder)), folders_(folders), reported_(reported) {}
 
   Check read() {
     check_.name = table_.text("name", Need::required).value_or("");
@@ -61,7 +61,7 @@ class CheckReader {
         if (each.at.line == 0 && !each.key.empty()) {
           each.at = place_of(each.at.file, each.key);
         }
-        if (told_.insert(to_string(each)).second) {
+        if (reported_.insert(to_string(each)).second) {
           table_.add(each);
         }
       }
@@ -243,7 +243,7 @@ class CheckReader {
   Reader table_;
   fs::path folder_;
   const DataFolders& folders_;
-  std::set<std::string>& told_;
+  std::set<std::string>& reported_;
   Check check_;
 };
 
@@ -262,10 +262,10 @@ CheckFile read_check_file(const fs::path& path, const DataFolders& folders) {
     diagnostics.add({path.string(), 1, 1}, "", "has no [[check]] table; `heatsoak check --help` shows an example");
   }
   std::set<std::string> names;
-  std::set<std::string> told;
+  std::set<std::string> reported;
   for (Reader& each : tables) {
     const Location at = each.at("name");
-    file.checks.push_back(CheckReader(std::move(each), path.parent_path(), folders, told).read());
+    file.checks.push_back(CheckReader(std::move(each), path.parent_path(), folders, reported).read());
     const std::string& name = file.checks.back().name;
     if (!name.empty() && !names.insert(name).second) {
       diagnostics.add(at, "check.name", fmt::format("\"{}\" is the name of another check, too; give each its own", name));

@@ -44,12 +44,12 @@ std::optional<std::filesystem::path> NamedFiles::motor_file(const std::string& n
 void NamedFiles::throw_if_any() const {
   std::string message;
   std::vector<Diagnostic> diagnostics;
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   for (const Failure& each : problems_) {
-    if (std::ranges::find(told, each.what()) != told.end()) {
+    if (std::ranges::find(reported, each.what()) != reported.end()) {
       continue;
     }
-    told.emplace_back(each.what());
+    reported.emplace_back(each.what());
     message += (message.empty() || each.message().empty() ? "" : "\n") + each.message();
     diagnostics.insert(diagnostics.end(), each.diagnostics().begin(), each.diagnostics().end());
   }

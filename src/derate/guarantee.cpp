@@ -134,10 +134,10 @@ UsePlayed play(const Observer& observer, const CurrentTable& table, const Barrie
     const float allowed_A =
         is_on ? table.allowed_A(static_cast<float>(speed_rad_per_s), run.hottest_body_C(), run.state_C()[states::winding]) : 0.0F;
     intervals.take(time_s, allowed_A, speed_rad_per_s, period_s);
-    std::array<float, firmware::kSignalCount> told{};
-    std::ranges::transform(use.hot_case.signals(rules, allowed_A, speed_rad_per_s), told.begin(),
+    std::array<float, firmware::kSignalCount> signals{};
+    std::ranges::transform(use.hot_case.signals(rules, allowed_A, speed_rad_per_s), signals.begin(),
                            [](double value) { return static_cast<float>(value); });
-    run.step(told);
+    run.step(signals);
     result.winding_peak_C = std::max<double>(result.winding_peak_C, run.state_C()[states::winding]);
     result.stator_peak_C = std::max<double>(result.stator_peak_C, run.state_C()[states::stator]);
   }

@@ -146,7 +146,7 @@ void DemandGatherer::coarsen(Axis axis) {
   };
   step_[axis] *= 2.0;
   cell_ = halved(cell_);
-  // In order, so that sums do not hang on how the cells lie in memory.
+  // In order, so that sums do not depend on how the cells lie in memory.
   const std::map<Cell, double> fine(time_at_s_.begin(), time_at_s_.end());
   time_at_s_.clear();
   for (const auto& [cell, time_s] : fine) {

@@ -69,7 +69,7 @@ LinearisedRun Averaging::run() const {
   out.residual_K = average(run_.residual_K);
   out.residual_K = (weight_.array() > 0.0).select(out.residual_K, std::numeric_limits<double>::quiet_NaN());
   out.by_start = average(run_.by_start);
-  auto doubt = run_.state_uncertainties.begin();
+  auto uncertainty = run_.state_uncertainties.begin();
   for (Eigen::Index segment = 0; segment < segments_; ++segment) {
     out.state_C.col(segment) = run_.state_C.col(middle_of(segment));
     if (segment + 1 == segments_) {
@@ -85,14 +85,14 @@ LinearisedRun Averaging::run() const {
       transition = step * transition.eval();
       injection = step * injection.eval() + Eigen::Map<const RowMajor>(run_.injection.data() + k * x * q, x, q);
       duration_s += run_.duration_s[static_cast<std::size_t>(k)];
-      while (doubt != run_.state_uncertainties.end() && doubt->interval < k) {
-        ++doubt;
+      while (uncertainty != run_.state_uncertainties.end() && uncertainty->interval < k) {
+        ++uncertainty;
       }
       if (has_uncertainty) {
         covariance_K2 = step * covariance_K2.eval() * step.transpose();
       }
-      if (doubt != run_.state_uncertainties.end() && doubt->interval == k) {
-        covariance_K2 += doubt->covariance_K2;
+      if (uncertainty != run_.state_uncertainties.end() && uncertainty->interval == k) {
+        covariance_K2 += uncertainty->covariance_K2;
         has_uncertainty = true;
       }
     }

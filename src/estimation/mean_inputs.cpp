@@ -43,7 +43,7 @@ void MeanInputs::add(const OperatingPoint<double>& at, double duration_s) {
   for_each_quantity([&](double& sum, const double& value) { sum += duration_s * value; }, sum_, squares);
 }
 
-void MeanInputs::doubt(const OperatingPoint<double>& at, const OperatingPoint<double>& other, double duration_s) {
+void MeanInputs::add_uncertainty(const OperatingPoint<double>& at, const OperatingPoint<double>& other, double duration_s) {
   const OperatingPoint<double> known = squared(at);
   const OperatingPoint<double> possible = squared(other);
   for_each_quantity(

@@ -11,7 +11,7 @@ class MeanInputs {
   void add(const OperatingPoint<double>& at, double duration_s);
   /// Adds uncertainty: for `duration_s` of the added time the inputs may have been `other` instead of `at`, or equally far in the other
   /// direction.
-  void doubt(const OperatingPoint<double>& at, const OperatingPoint<double>& other, double duration_s);
+  void add_uncertainty(const OperatingPoint<double>& at, const OperatingPoint<double>& other, double duration_s);
   [[nodiscard]] double duration_s() const { return duration_s_; }
   /// Appends the mean and its uncertainty to the run as the next interval, then resets.
   void take(MeasuredRun& run);

@@ -76,11 +76,11 @@ void SegmentInputs::add_gap(const Gap& gap, MeanInputs& mean, const Ends& ends) 
     }
     add_middle(gap, cells, blank_s, mean);
     if (lacks_speed_only) {
-      doubt(gap, cells, blank_s, mean);
+      add_uncertainty(gap, cells, blank_s, mean);
     }
   }
   if (!lacks_speed_only) {
-    doubt(gap, always, gap.unknown_s, mean);
+    add_uncertainty(gap, always, gap.unknown_s, mean);
   }
   ends(gap.next);
 }
@@ -96,16 +96,16 @@ void SegmentInputs::add_middle(const Gap& gap, const Point& cells, double middle
 }
 
 /// Adds the uncertainty of a gap: the inputs may change at any time within it, or more often than the rows around it show.
-void SegmentInputs::doubt(const Gap& gap, const Point& cells, double uncertain_s, MeanInputs& mean) {
+void SegmentInputs::add_uncertainty(const Gap& gap, const Point& cells, double uncertain_s, MeanInputs& mean) {
   const auto lost_rows = static_cast<std::size_t>(std::lround(gap.unknown_s / steps_.usual_s));
   const GapStatistics& of_current = square_A2_.over(lost_rows);
   const GapStatistics& of_speed = speed_rad_per_s_.over(lost_rows);
   const Point from = with_cells(gap.before, cells);
-  mean.doubt(from, with_cells(gap.after, cells), std::max(of_current.step_share, of_speed.step_share) * uncertain_s);
+  mean.add_uncertainty(from, with_cells(gap.after, cells), std::max(of_current.step_share, of_speed.step_share) * uncertain_s);
   Point burst = from;
   burst.current_rms_A = std::sqrt(square_A2(from) + (std::isnan(cells.current_rms_A) ? of_current.beyond_sd : 0.0));
   burst.speed_mean_rad_per_s += std::isnan(cells.speed_mean_rad_per_s) ? of_speed.beyond_sd : 0.0;
-  mean.doubt(from, burst, uncertain_s);
+  mean.add_uncertainty(from, burst, uncertain_s);
 }
 
 OperatingPoint<double> SegmentInputs::always_known(const Gap& gap) const {

@@ -35,7 +35,7 @@ class SegmentInputs {
   };
   void add_gap(const Gap& gap, MeanInputs& mean, const Ends& ends);
   void add_middle(const Gap& gap, const Point& cells, double middle_s, MeanInputs& mean) const;
-  void doubt(const Gap& gap, const Point& cells, double uncertain_s, MeanInputs& mean);
+  void add_uncertainty(const Gap& gap, const Point& cells, double uncertain_s, MeanInputs& mean);
   /// Quantities that every row of a gap has; NaN for those that at least one row lacks.
   [[nodiscard]] Point always_known(const Gap& gap) const;
   /// Operating point of a row with 0 for unknown quantities (the model does not need them), so that means are not NaN.

@@ -18,7 +18,7 @@ MeasuredRun thinned(const MeasuredRun& run, int merged) {
     const double duration_s = run.time_s[k + 1] - run.time_s[k];
     mean.add(run.at[k], duration_s);
     for (; unknown != run.unknown_inputs.end() && unknown->interval == static_cast<Eigen::Index>(k); ++unknown) {
-      mean.doubt(run.at[k], unknown->other, duration_s);
+      mean.add_uncertainty(run.at[k], unknown->other, duration_s);
     }
     if ((k + 1) % static_cast<std::size_t>(merged) == 0 || k + 2 == run.time_s.size()) {
       mean.take(thin);

@@ -151,9 +151,9 @@ void Whitening::add_unknown(Eigen::Index interval, Matrix& covariance) const {
     const double rms_W = flux_.rms_W[static_cast<std::size_t>(f)];
     covariance(run_->states + f, run_->states + f) += of_flux * rms_W * rms_W;
   }
-  const auto doubt = std::ranges::lower_bound(run_->state_uncertainties, interval, {}, &StateUncertainty::interval);
-  if (doubt != run_->state_uncertainties.end() && doubt->interval == interval) {
-    covariance.topLeftCorner(run_->states, run_->states) += doubt->covariance_K2;
+  const auto uncertainty = std::ranges::lower_bound(run_->state_uncertainties, interval, {}, &StateUncertainty::interval);
+  if (uncertainty != run_->state_uncertainties.end() && uncertainty->interval == interval) {
+    covariance.topLeftCorner(run_->states, run_->states) += uncertainty->covariance_K2;
   }
   if (drifts_) {
     const double of_drift = gained_ratio(drift_forget_ratio_);

@@ -205,18 +205,18 @@ void Assessment::report_channels(const RecordingReport& report) {
   for (std::size_t c = 0; c < gauges_.size(); ++c) {
     const Gauge& gauge = gauges_[c];
     const NoiseLevel noise = gauge.noise.level();
-    ChannelQuality& told = quality_.channels.emplace_back();
-    told.quantity = condensed_.rows().channels[c].quantity;
-    told.samples = gauge.samples;
-    told.low = gauge.low;
-    told.high = gauge.high;
-    told.at_low = gauge.at_low;
-    told.at_high = gauge.at_high;
-    told.distinct = noise.distinct;
-    told.step = noise.step;
-    told.noise = noise.noise;
+    ChannelQuality& channel = quality_.channels.emplace_back();
+    channel.quantity = condensed_.rows().channels[c].quantity;
+    channel.samples = gauge.samples;
+    channel.low = gauge.low;
+    channel.high = gauge.high;
+    channel.at_low = gauge.at_low;
+    channel.at_high = gauge.at_high;
+    channel.distinct = noise.distinct;
+    channel.step = noise.step;
+    channel.noise = noise.noise;
     for (const auto& [what, entry] : report.left_out) {
-      told.left_out += what.first == told.quantity.key ? entry.count : 0;
+      channel.left_out += what.first == channel.quantity.key ? entry.count : 0;
     }
   }
 }

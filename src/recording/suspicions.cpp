@@ -22,12 +22,12 @@ namespace {
 
 class Suspector {
  public:
-  Suspector(const Recording& recording, const DataQuality& told, double ambient_C)
-      : recording_(recording), told_(told), ambient_C_(ambient_C) {}
+  Suspector(const Recording& recording, const DataQuality& data, double ambient_C)
+      : recording_(recording), quality_(data), ambient_C_(ambient_C) {}
 
   Suspicions run() {
     found_ = suspicious_scales(recording_, ambient_C_);
-    std::ranges::move(suspicious_places(recording_, told_.channels), std::back_inserter(found_));
+    std::ranges::move(suspicious_places(recording_, quality_.channels), std::back_inserter(found_));
     currents();
     speeds();
     early_answers();
@@ -45,8 +45,8 @@ class Suspector {
 
  private:
   [[nodiscard]] const ChannelQuality* quality(const std::string& key) const {
-    const auto found = std::ranges::find_if(told_.channels, [&key](const ChannelQuality& each) { return each.quantity.key == key; });
-    return found == told_.channels.end() ? nullptr : &*found;
+    const auto found = std::ranges::find_if(quality_.channels, [&key](const ChannelQuality& each) { return each.quantity.key == key; });
+    return found == quality_.channels.end() ? nullptr : &*found;
   }
 
   void currents() {
@@ -126,7 +126,7 @@ class Suspector {
   }
 
   void angles() {
-    for (const ChannelQuality& channel : told_.channels) {
+    for (const ChannelQuality& channel : quality_.channels) {
       const double span = channel.high - channel.low;
       const bool is_angle = channel.quantity.key.starts_with("yaw") || channel.quantity.key.starts_with("heading");
       if (channel.quantity.unit == "rad" && is_angle && span > 100.0 && span <= 721.0) {
@@ -171,8 +171,8 @@ class Suspector {
 
   /// Reports temperatures that respond before their heat input.
   void early_answers() {
-    for (const ClockOffset& offset : told_.clock_offsets) {
-      if (std::string early = early_answer(offset, told_.sampling.usual_period_s); !early.empty()) {
+    for (const ClockOffset& offset : quality_.clock_offsets) {
+      if (std::string early = early_answer(offset, quality_.sampling.usual_period_s); !early.empty()) {
         found_.push_back(std::move(early));
       }
     }
@@ -268,15 +268,15 @@ class Suspector {
   static constexpr double kLongest_s = 2.0 * 86400.0;
 
   const Recording& recording_;
-  const DataQuality& told_;
+  const DataQuality& quality_;
   double ambient_C_;
   std::vector<std::string> found_;
 };
 
 }  // namespace
 
-Suspicions suspicions(const Recording& recording, const DataQuality& told, double ambient_C) {
-  return Suspector(recording, told, ambient_C).run();
+Suspicions suspicions(const Recording& recording, const DataQuality& quality, double ambient_C) {
+  return Suspector(recording, quality, ambient_C).run();
 }
 
 }  // namespace heatsoak

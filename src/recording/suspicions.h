@@ -14,8 +14,8 @@ struct Suspicions {
   std::vector<std::string> blocking;             ///< subset about units, signs and sensors that, if true, prevents any fit
   std::vector<std::string> blocking_for_wheels;  ///< subset about a robot's wheels and angles, and about the clock
 };
-/// Returns the suspicions as sentences. `told` must contain sampling, channels and clock offsets. `ambient_C`: air temperature stated by
+/// Returns the suspicions as sentences. `quality` must contain sampling, channels and clock offsets. `ambient_C`: air temperature stated by
 /// the user, NaN if not stated.
-Suspicions suspicions(const Recording& recording, const DataQuality& told, double ambient_C);
+Suspicions suspicions(const Recording& recording, const DataQuality& quality, double ambient_C);
 
 }  // namespace heatsoak

@@ -81,9 +81,9 @@ std::string effect_table(const Diagnosis& diagnosis) {
     }
   }
   text += "</table>\n";
-  std::set<std::string> told;
+  std::set<std::string> printed;
   for (const FoundEffect& effect : diagnosis.effects) {
-    if (!effect.confounded_with.empty() && effect.is_from_catalogue && told.insert(effect.id).second) {
+    if (!effect.confounded_with.empty() && effect.is_from_catalogue && printed.insert(effect.id).second) {
       text += fmt::format("<p>{} in general: {}</p>\n", xml_text(effect.id), xml_text(effect.confounded_with));
     }
   }
@@ -101,8 +101,8 @@ std::string outcome_of(const Round& round) {
 /// Keeps the best variant of each effect; variants differ only in the start of their refit.
 std::vector<JudgedCandidate> best_of_each(std::vector<JudgedCandidate> ladder) {
   std::ranges::stable_sort(ladder, std::greater(), &JudgedCandidate::gain_nats);
-  std::set<std::string> told;
-  std::erase_if(ladder, [&](const JudgedCandidate& each) { return !told.insert(each.candidate.id).second; });
+  std::set<std::string> printed;
+  std::erase_if(ladder, [&](const JudgedCandidate& each) { return !printed.insert(each.candidate.id).second; });
   return ladder;
 }
 

@@ -129,12 +129,12 @@ class Import {
       : options_(options), events_(events), source_(choose(probe(file), options.source)), bytes_(file), stream_(bytes_, file, events) {}
 
   void run() {
-    std::uint64_t told = 0;
+    std::uint64_t reported_offset = 0;
     while (const std::optional<SslRecord> record = stream_.next()) {
       ++events_.report().messages;
       take(*record);
-      if (options_.progress && record->offset - told >= kProgressBytes) {
-        told = record->offset;
+      if (options_.progress && record->offset - reported_offset >= kProgressBytes) {
+        reported_offset = record->offset;
         options_.progress(bytes_.share());
       }
       if (events_.done()) {

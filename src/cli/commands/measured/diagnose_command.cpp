@@ -9,12 +9,12 @@
 
 #include "attribution/model_file.h"
 #include "base/quantity.h"
+#include "calibration/admission.h"
 #include "cli/command.h"
 #include "cli/measured/diagnosis_answer.h"
 #include "cli/measured/effect_topics.h"
 #include "cli/measured/logs_option.h"
 #include "cli/named_files.h"
-#include "calibration/admission.h"
 #include "estimation/log_columns.h"
 #include "estimation/open_loop.h"
 #include "motor/write_motor.h"
@@ -86,8 +86,8 @@ ExitCode run(const Options& options, Session& session) {
   DiagnosisInput input;
   input.model = model.model;
   input.train = runs_of(train, how, notes);
-  if (std::string told = settle_turning_rows(input); !told.empty()) {
-    notes.push_back(std::move(told));
+  if (std::string note = settle_turning_rows(input); !note.empty()) {
+    notes.push_back(std::move(note));
   }
   if (const std::vector<std::string> rare = keep_common_columns(input.train, input.model.column); !rare.empty()) {
     notes.push_back(

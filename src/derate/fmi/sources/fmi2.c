@@ -12,7 +12,7 @@ typedef struct {
   char *name;
 } component;
 
-static fmi2Status told(const component *of, const char *problem) {
+static fmi2Status refuse(const component *of, const char *problem) {
   if (!problem) {
     return fmi2OK;
   }
@@ -22,7 +22,7 @@ static fmi2Status told(const component *of, const char *problem) {
   return fmi2Error;
 }
 
-static fmi2Status not_there(fmi2Component of, const char *what) { return told((const component *)of, what); }
+static fmi2Status not_there(fmi2Component of, const char *what) { return refuse((const component *)of, what); }
 
 FMI2_Export const char *fmi2GetTypesPlatform(void) { return "default"; }
 FMI2_Export const char *fmi2GetVersion(void) { return "2.0"; }
@@ -54,7 +54,7 @@ FMI2_Export fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2St
   instance_reset(&made->state);
   if (!made->name || type != fmi2CoSimulation || !guid || strcmp(guid, MODEL_TOKEN) != 0) {
     if (made->name) {
-      told(made, type != fmi2CoSimulation ? "this FMU is for co-simulation" : "the guid is not the one of this FMU");
+      refuse(made, type != fmi2CoSimulation ? "this FMU is for co-simulation" : "the guid is not the one of this FMU");
     }
     free(made->name);
     free(made);
@@ -78,7 +78,7 @@ FMI2_Export fmi2Status fmi2SetupExperiment(fmi2Component of, fmi2Boolean has_tol
   (void)has_stop;
   (void)stop_s;
   if (me->state.mode != mode_made) {
-    return told(me, "the experiment is set up once, before initialization mode");
+    return refuse(me, "the experiment is set up once, before initialization mode");
   }
   me->state.model.value[at_time_s] = start_s;
   return fmi2OK;
@@ -86,17 +86,17 @@ FMI2_Export fmi2Status fmi2SetupExperiment(fmi2Component of, fmi2Boolean has_tol
 
 FMI2_Export fmi2Status fmi2EnterInitializationMode(fmi2Component of) {
   component *const me = of;
-  return told(me, instance_begin(&me->state, me->state.model.value[at_time_s]));
+  return refuse(me, instance_begin(&me->state, me->state.model.value[at_time_s]));
 }
 
 FMI2_Export fmi2Status fmi2ExitInitializationMode(fmi2Component of) {
   component *const me = of;
-  return told(me, instance_end_initialization(&me->state));
+  return refuse(me, instance_end_initialization(&me->state));
 }
 
 FMI2_Export fmi2Status fmi2Terminate(fmi2Component of) {
   component *const me = of;
-  return told(me, instance_terminate(&me->state));
+  return refuse(me, instance_terminate(&me->state));
 }
 
 FMI2_Export fmi2Status fmi2Reset(fmi2Component of) {
@@ -112,7 +112,7 @@ FMI2_Export fmi2Status fmi2Reset(fmi2Component of) {
       double value = 0.0;                                                                                                  \
       const char *const problem = instance_get(&me->state, references[i], type, &value);                                   \
       if (problem) {                                                                                                       \
-        return told(me, problem);                                                                                          \
+        return refuse(me, problem);                                                                                          \
       }                                                                                                                    \
       values[i] = (Type)value;                                                                                             \
     }                                                                                                                      \
@@ -124,7 +124,7 @@ FMI2_Export fmi2Status fmi2Reset(fmi2Component of) {
     for (i = 0; i < count; ++i) {                                                                                          \
       const char *const problem = instance_set(&me->state, references[i], type, (double)values[i]);                        \
       if (problem) {                                                                                                       \
-        return told(me, problem);                                                                                          \
+        return refuse(me, problem);                                                                                          \
       }                                                                                                                    \
     }                                                                                                                      \
     return fmi2OK;                                                                                                         \
@@ -148,12 +148,12 @@ FMI2_Export fmi2Status fmi2SetString(fmi2Component of, const fmi2ValueReference 
 
 FMI2_Export fmi2Status fmi2GetFMUstate(fmi2Component of, fmi2FMUstate *kept) {
   component *const me = of;
-  return told(me, instance_keep(&me->state, kept));
+  return refuse(me, instance_keep(&me->state, kept));
 }
 
 FMI2_Export fmi2Status fmi2SetFMUstate(fmi2Component of, fmi2FMUstate kept) {
   component *const me = of;
-  return told(me, instance_restore(&me->state, kept, sizeof me->state));
+  return refuse(me, instance_restore(&me->state, kept, sizeof me->state));
 }
 
 FMI2_Export fmi2Status fmi2FreeFMUstate(fmi2Component of, fmi2FMUstate *kept) {
@@ -171,12 +171,12 @@ FMI2_Export fmi2Status fmi2SerializedFMUstateSize(fmi2Component of, fmi2FMUstate
 }
 
 FMI2_Export fmi2Status fmi2SerializeFMUstate(fmi2Component of, fmi2FMUstate kept, fmi2Byte bytes[], size_t size) {
-  return told(of, instance_serialize(kept, bytes, size));
+  return refuse(of, instance_serialize(kept, bytes, size));
 }
 
 FMI2_Export fmi2Status fmi2DeSerializeFMUstate(fmi2Component of, const fmi2Byte bytes[], size_t size, fmi2FMUstate *kept) {
   component *const me = of;
-  return told(me, instance_deserialize(&me->state, bytes, size, kept));
+  return refuse(me, instance_deserialize(&me->state, bytes, size, kept));
 }
 
 FMI2_Export fmi2Status fmi2GetDirectionalDerivative(fmi2Component of, const fmi2ValueReference unknowns[], size_t unknown_count,
@@ -212,7 +212,7 @@ FMI2_Export fmi2Status fmi2GetRealOutputDerivatives(fmi2Component of, const fmi2
 FMI2_Export fmi2Status fmi2DoStep(fmi2Component of, fmi2Real current_s, fmi2Real step_s, fmi2Boolean is_final) {
   component *const me = of;
   (void)is_final;
-  return told(me, instance_step(&me->state, current_s, step_s));
+  return refuse(me, instance_step(&me->state, current_s, step_s));
 }
 
 FMI2_Export fmi2Status fmi2CancelStep(fmi2Component of) {

@@ -13,7 +13,7 @@ typedef struct {
   fmi3LogMessageCallback log;
 } component;
 
-fmi3Status fmi3_told(fmi3Instance of, const char *problem) {
+fmi3Status fmi3_refuse(fmi3Instance of, const char *problem) {
   const component *const me = of;
   if (!problem) {
     return fmi3OK;
@@ -55,7 +55,7 @@ FMI3_Export fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String
   made->log = log;
   instance_reset(&made->state);
   if (!token || strcmp(token, MODEL_TOKEN) != 0 || required_count > 0) {
-    fmi3_told(made, required_count > 0 ? "this FMU gives no intermediate values" : "the instantiation token is not the one of this FMU");
+    fmi3_refuse(made, required_count > 0 ? "this FMU gives no intermediate values" : "the instantiation token is not the one of this FMU");
     free(made);
     return 0;
   }
@@ -101,17 +101,17 @@ FMI3_Export fmi3Status fmi3EnterInitializationMode(fmi3Instance of, fmi3Boolean 
   (void)tolerance;
   (void)has_stop;
   (void)stop_s;
-  return fmi3_told(of, instance_begin(&me->state, start_s));
+  return fmi3_refuse(of, instance_begin(&me->state, start_s));
 }
 
 FMI3_Export fmi3Status fmi3ExitInitializationMode(fmi3Instance of) {
   component *const me = of;
-  return fmi3_told(of, instance_end_initialization(&me->state));
+  return fmi3_refuse(of, instance_end_initialization(&me->state));
 }
 
 FMI3_Export fmi3Status fmi3Terminate(fmi3Instance of) {
   component *const me = of;
-  return fmi3_told(of, instance_terminate(&me->state));
+  return fmi3_refuse(of, instance_terminate(&me->state));
 }
 
 FMI3_Export fmi3Status fmi3Reset(fmi3Instance of) {
@@ -128,11 +128,11 @@ FMI3_Export fmi3Status fmi3Reset(fmi3Instance of) {
       double value = 0.0;                                                                                                               \
       const char *const problem = instance_get(&me->state, references[i], type, &value);                                                \
       if (problem) {                                                                                                                    \
-        return fmi3_told(of, problem);                                                                                                  \
+        return fmi3_refuse(of, problem);                                                                                                  \
       }                                                                                                                                 \
       values[i] = (Type)value;                                                                                                          \
     }                                                                                                                                   \
-    return fmi3_told(of, count == value_count ? 0 : "expected as many values as references, because no variable is an array");          \
+    return fmi3_refuse(of, count == value_count ? 0 : "expected as many values as references, because no variable is an array");          \
   }                                                                                                                                     \
   FMI3_Export fmi3Status set(fmi3Instance of, const fmi3ValueReference references[], size_t count, const Type values[],                 \
                              size_t value_count) {                                                                                      \
@@ -141,10 +141,10 @@ FMI3_Export fmi3Status fmi3Reset(fmi3Instance of) {
     for (i = 0; i < count && i < value_count; ++i) {                                                                                    \
       const char *const problem = instance_set(&me->state, references[i], type, (double)values[i]);                                     \
       if (problem) {                                                                                                                    \
-        return fmi3_told(of, problem);                                                                                                  \
+        return fmi3_refuse(of, problem);                                                                                                  \
       }                                                                                                                                 \
     }                                                                                                                                   \
-    return fmi3_told(of, count == value_count ? 0 : "expected as many values as references, because no variable is an array");          \
+    return fmi3_refuse(of, count == value_count ? 0 : "expected as many values as references, because no variable is an array");          \
   }
 
 VALUES(fmi3Float64, fmi3GetFloat64, fmi3SetFloat64, type_real)
@@ -153,12 +153,12 @@ VALUES(fmi3Boolean, fmi3GetBoolean, fmi3SetBoolean, type_boolean)
 
 FMI3_Export fmi3Status fmi3GetFMUState(fmi3Instance of, fmi3FMUState *kept) {
   component *const me = of;
-  return fmi3_told(of, instance_keep(&me->state, kept));
+  return fmi3_refuse(of, instance_keep(&me->state, kept));
 }
 
 FMI3_Export fmi3Status fmi3SetFMUState(fmi3Instance of, fmi3FMUState kept) {
   component *const me = of;
-  return fmi3_told(of, instance_restore(&me->state, kept, sizeof me->state));
+  return fmi3_refuse(of, instance_restore(&me->state, kept, sizeof me->state));
 }
 
 FMI3_Export fmi3Status fmi3FreeFMUState(fmi3Instance of, fmi3FMUState *kept) {
@@ -176,18 +176,18 @@ FMI3_Export fmi3Status fmi3SerializedFMUStateSize(fmi3Instance of, fmi3FMUState 
 }
 
 FMI3_Export fmi3Status fmi3SerializeFMUState(fmi3Instance of, fmi3FMUState kept, fmi3Byte bytes[], size_t size) {
-  return fmi3_told(of, instance_serialize(kept, bytes, size));
+  return fmi3_refuse(of, instance_serialize(kept, bytes, size));
 }
 
 FMI3_Export fmi3Status fmi3DeserializeFMUState(fmi3Instance of, const fmi3Byte bytes[], size_t size, fmi3FMUState *kept) {
   component *const me = of;
-  return fmi3_told(of, instance_deserialize(&me->state, bytes, size, kept));
+  return fmi3_refuse(of, instance_deserialize(&me->state, bytes, size, kept));
 }
 
 FMI3_Export fmi3Status fmi3DoStep(fmi3Instance of, fmi3Float64 current_s, fmi3Float64 step_s, fmi3Boolean no_earlier_state,
                                   fmi3Boolean *event_needed, fmi3Boolean *terminate, fmi3Boolean *early_return, fmi3Float64 *last_s) {
   component *const me = of;
-  const fmi3Status status = fmi3_told(of, instance_step(&me->state, current_s, step_s));
+  const fmi3Status status = fmi3_refuse(of, instance_step(&me->state, current_s, step_s));
   (void)no_earlier_state;
   *event_needed = fmi3False;
   *terminate = fmi3False;

@@ -2,7 +2,7 @@
 #include "fmi3.h"
 #include "fmi3_component.h"
 
-static fmi3Status none_of(fmi3Instance of, size_t count) { return fmi3_told(of, count == 0 ? 0 : "there are no variables of this type"); }
+static fmi3Status none_of(fmi3Instance of, size_t count) { return fmi3_refuse(of, count == 0 ? 0 : "there are no variables of this type"); }
 
 #define NO_VALUES(Type, get, set)                                                                                                       \
   FMI3_Export fmi3Status get(fmi3Instance of, const fmi3ValueReference references[], size_t count, Type values[], size_t value_count) { \
@@ -62,7 +62,7 @@ FMI3_Export fmi3Status fmi3SetClock(fmi3Instance of, const fmi3ValueReference re
 FMI3_Export fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance of, fmi3ValueReference reference, size_t *count) {
   (void)reference;
   (void)count;
-  return fmi3_told(of, "this FMU gives no derivatives and no dependencies");
+  return fmi3_refuse(of, "this FMU gives no derivatives and no dependencies");
 }
 
 FMI3_Export fmi3Status fmi3GetVariableDependencies(fmi3Instance of, fmi3ValueReference reference, size_t elements[],
@@ -74,7 +74,7 @@ FMI3_Export fmi3Status fmi3GetVariableDependencies(fmi3Instance of, fmi3ValueRef
   (void)independent_elements;
   (void)kinds;
   (void)count;
-  return fmi3_told(of, "this FMU gives no derivatives and no dependencies");
+  return fmi3_refuse(of, "this FMU gives no derivatives and no dependencies");
 }
 
 FMI3_Export fmi3Status fmi3GetDirectionalDerivative(fmi3Instance of, const fmi3ValueReference unknowns[], size_t unknown_count,
@@ -88,7 +88,7 @@ FMI3_Export fmi3Status fmi3GetDirectionalDerivative(fmi3Instance of, const fmi3V
   (void)seed_count;
   (void)sensitivity;
   (void)sensitivity_count;
-  return fmi3_told(of, "this FMU gives no derivatives and no dependencies");
+  return fmi3_refuse(of, "this FMU gives no derivatives and no dependencies");
 }
 
 FMI3_Export fmi3Status fmi3GetAdjointDerivative(fmi3Instance of, const fmi3ValueReference unknowns[], size_t unknown_count,
@@ -102,7 +102,7 @@ FMI3_Export fmi3Status fmi3GetAdjointDerivative(fmi3Instance of, const fmi3Value
   (void)seed_count;
   (void)sensitivity;
   (void)sensitivity_count;
-  return fmi3_told(of, "this FMU gives no derivatives and no dependencies");
+  return fmi3_refuse(of, "this FMU gives no derivatives and no dependencies");
 }
 
 FMI3_Export fmi3Status fmi3GetOutputDerivatives(fmi3Instance of, const fmi3ValueReference references[], size_t count,
@@ -112,19 +112,19 @@ FMI3_Export fmi3Status fmi3GetOutputDerivatives(fmi3Instance of, const fmi3Value
   (void)orders;
   (void)values;
   (void)value_count;
-  return fmi3_told(of, "this FMU gives no derivatives and no dependencies");
+  return fmi3_refuse(of, "this FMU gives no derivatives and no dependencies");
 }
 
-FMI3_Export fmi3Status fmi3EnterEventMode(fmi3Instance of) { return fmi3_told(of, "this FMU has no events, clocks or configuration"); }
+FMI3_Export fmi3Status fmi3EnterEventMode(fmi3Instance of) { return fmi3_refuse(of, "this FMU has no events, clocks or configuration"); }
 
-FMI3_Export fmi3Status fmi3EnterStepMode(fmi3Instance of) { return fmi3_told(of, "this FMU has no events, clocks or configuration"); }
+FMI3_Export fmi3Status fmi3EnterStepMode(fmi3Instance of) { return fmi3_refuse(of, "this FMU has no events, clocks or configuration"); }
 
 FMI3_Export fmi3Status fmi3EnterConfigurationMode(fmi3Instance of) {
-  return fmi3_told(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
 }
 
 FMI3_Export fmi3Status fmi3ExitConfigurationMode(fmi3Instance of) {
-  return fmi3_told(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
 }
 
 FMI3_Export fmi3Status fmi3GetIntervalDecimal(fmi3Instance of, const fmi3ValueReference references[], size_t count, fmi3Float64 intervals[],
@@ -133,7 +133,7 @@ FMI3_Export fmi3Status fmi3GetIntervalDecimal(fmi3Instance of, const fmi3ValueRe
   (void)count;
   (void)intervals;
   (void)qualifiers;
-  return fmi3_told(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
 }
 
 FMI3_Export fmi3Status fmi3GetIntervalFraction(fmi3Instance of, const fmi3ValueReference references[], size_t count, fmi3UInt64 counters[],
@@ -143,14 +143,14 @@ FMI3_Export fmi3Status fmi3GetIntervalFraction(fmi3Instance of, const fmi3ValueR
   (void)counters;
   (void)resolutions;
   (void)qualifiers;
-  return fmi3_told(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
 }
 
 FMI3_Export fmi3Status fmi3GetShiftDecimal(fmi3Instance of, const fmi3ValueReference references[], size_t count, fmi3Float64 shifts[]) {
   (void)references;
   (void)count;
   (void)shifts;
-  return fmi3_told(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
 }
 
 FMI3_Export fmi3Status fmi3GetShiftFraction(fmi3Instance of, const fmi3ValueReference references[], size_t count, fmi3UInt64 counters[],
@@ -159,7 +159,7 @@ FMI3_Export fmi3Status fmi3GetShiftFraction(fmi3Instance of, const fmi3ValueRefe
   (void)count;
   (void)counters;
   (void)resolutions;
-  return fmi3_told(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
 }
 
 FMI3_Export fmi3Status fmi3SetIntervalDecimal(fmi3Instance of, const fmi3ValueReference references[], size_t count,
@@ -167,7 +167,7 @@ FMI3_Export fmi3Status fmi3SetIntervalDecimal(fmi3Instance of, const fmi3ValueRe
   (void)references;
   (void)count;
   (void)intervals;
-  return fmi3_told(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
 }
 
 FMI3_Export fmi3Status fmi3SetIntervalFraction(fmi3Instance of, const fmi3ValueReference references[], size_t count,
@@ -176,7 +176,7 @@ FMI3_Export fmi3Status fmi3SetIntervalFraction(fmi3Instance of, const fmi3ValueR
   (void)count;
   (void)counters;
   (void)resolutions;
-  return fmi3_told(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
 }
 
 FMI3_Export fmi3Status fmi3SetShiftDecimal(fmi3Instance of, const fmi3ValueReference references[], size_t count,
@@ -184,7 +184,7 @@ FMI3_Export fmi3Status fmi3SetShiftDecimal(fmi3Instance of, const fmi3ValueRefer
   (void)references;
   (void)count;
   (void)shifts;
-  return fmi3_told(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
 }
 
 FMI3_Export fmi3Status fmi3SetShiftFraction(fmi3Instance of, const fmi3ValueReference references[], size_t count,
@@ -193,11 +193,11 @@ FMI3_Export fmi3Status fmi3SetShiftFraction(fmi3Instance of, const fmi3ValueRefe
   (void)count;
   (void)counters;
   (void)resolutions;
-  return fmi3_told(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
 }
 
 FMI3_Export fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance of) {
-  return fmi3_told(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
 }
 
 FMI3_Export fmi3Status fmi3UpdateDiscreteStates(fmi3Instance of, fmi3Boolean *need_update, fmi3Boolean *terminate,
@@ -209,66 +209,66 @@ FMI3_Export fmi3Status fmi3UpdateDiscreteStates(fmi3Instance of, fmi3Boolean *ne
   (void)values_changed;
   (void)has_next_event;
   (void)next_event_s;
-  return fmi3_told(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
 }
 
 FMI3_Export fmi3Status fmi3ActivateModelPartition(fmi3Instance of, fmi3ValueReference clock, fmi3Float64 time_s) {
   (void)clock;
   (void)time_s;
-  return fmi3_told(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
 }
 
-FMI3_Export fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance of) { return fmi3_told(of, "this FMU is for co-simulation"); }
+FMI3_Export fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance of) { return fmi3_refuse(of, "this FMU is for co-simulation"); }
 
 FMI3_Export fmi3Status fmi3CompletedIntegratorStep(fmi3Instance of, fmi3Boolean no_earlier_state, fmi3Boolean *enter_event_mode,
                                                    fmi3Boolean *terminate) {
   (void)no_earlier_state;
   (void)enter_event_mode;
   (void)terminate;
-  return fmi3_told(of, "this FMU is for co-simulation");
+  return fmi3_refuse(of, "this FMU is for co-simulation");
 }
 
 FMI3_Export fmi3Status fmi3SetTime(fmi3Instance of, fmi3Float64 time_s) {
   (void)time_s;
-  return fmi3_told(of, "this FMU is for co-simulation");
+  return fmi3_refuse(of, "this FMU is for co-simulation");
 }
 
 FMI3_Export fmi3Status fmi3SetContinuousStates(fmi3Instance of, const fmi3Float64 states[], size_t count) {
   (void)states;
   (void)count;
-  return fmi3_told(of, "this FMU is for co-simulation");
+  return fmi3_refuse(of, "this FMU is for co-simulation");
 }
 
 FMI3_Export fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance of, fmi3Float64 derivatives[], size_t count) {
   (void)derivatives;
   (void)count;
-  return fmi3_told(of, "this FMU is for co-simulation");
+  return fmi3_refuse(of, "this FMU is for co-simulation");
 }
 
 FMI3_Export fmi3Status fmi3GetEventIndicators(fmi3Instance of, fmi3Float64 indicators[], size_t count) {
   (void)indicators;
   (void)count;
-  return fmi3_told(of, "this FMU is for co-simulation");
+  return fmi3_refuse(of, "this FMU is for co-simulation");
 }
 
 FMI3_Export fmi3Status fmi3GetContinuousStates(fmi3Instance of, fmi3Float64 states[], size_t count) {
   (void)states;
   (void)count;
-  return fmi3_told(of, "this FMU is for co-simulation");
+  return fmi3_refuse(of, "this FMU is for co-simulation");
 }
 
 FMI3_Export fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance of, fmi3Float64 nominals[], size_t count) {
   (void)nominals;
   (void)count;
-  return fmi3_told(of, "this FMU is for co-simulation");
+  return fmi3_refuse(of, "this FMU is for co-simulation");
 }
 
 FMI3_Export fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance of, size_t *count) {
   (void)count;
-  return fmi3_told(of, "this FMU is for co-simulation");
+  return fmi3_refuse(of, "this FMU is for co-simulation");
 }
 
 FMI3_Export fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance of, size_t *count) {
   (void)count;
-  return fmi3_told(of, "this FMU is for co-simulation");
+  return fmi3_refuse(of, "this FMU is for co-simulation");
 }
