@@ -6,13 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "base/copper.h"
 #include "base/diagnostic.h"
 #include "base/quantity.h"
 #include "recording/clock_offset.h"
 #include "recording/fingerprint.h"
 #include "recording/quality.h"
 #include "recording/spread.h"
-#include "base/copper.h"
 
 namespace heatsoak {
 namespace {

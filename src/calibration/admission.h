@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "motor/motor.h"
 #include "recording/quality.h"
 #include "recording/recording.h"
-#include "motor/motor.h"
 
 namespace heatsoak {
 

@@ -9,19 +9,19 @@
 #include <limits>
 #include <utility>
 
+#include "base/copper.h"
 #include "base/diagnostic.h"
 #include "base/quantity.h"
 #include "calibration/identifiability.h"
 #include "calibration/profile.h"
+#include "calibration/training_range.h"
 #include "calibration/unlogged_speed.h"
 #include "calibration/written_forecast.h"
 #include "estimation/interval.h"
 #include "estimation/log_columns.h"
+#include "estimation/turning_rows.h"
 #include "recording/fingerprint.h"
 #include "recording/quality.h"
-#include "calibration/training_range.h"
-#include "estimation/turning_rows.h"
-#include "base/copper.h"
 
 namespace heatsoak {
 namespace {
@@ -106,11 +106,42 @@ class Calibrating {
   }
 
  private:
-  /// Runs the forecast fit to whole runs, and writes its parameters if asked for.
+  /// Scores the innovations fit as a rival of the forecast, on the same left-out pieces.
+  void score_innovations() {
+    if (all_.forecast->rivals.empty()) {
+      return;
+    }
+    Model near = all_.motor_model.model;
+    near.values = near.values_at(all_.fit.theta);
+    FitOptions options = options_.fit;
+    options.starts = 0;
+    const auto fit_without = [&](const Piece& piece) {
+      Fit others = fit(near, runs_without(all_.runs, piece), options);
+      ForecastFit found;
+      found.theta = std::move(others.theta);
+      found.covariance = std::move(others.covariance);
+      found.starts = std::move(others.starts);
+      return found;
+    };
+    const PieceScore score = score_pieces(setup_.model(), all_.runs, all_.forecast->pieces, fit_without);
+    all_.forecast->rivals.push_back(rival_score(ForecastSource::innovations, score, all_.runs));
+  }
+
+  [[nodiscard]] bool is_forecast_better() const {
+    if (options_.written != WrittenFit::best) {
+      return options_.written == WrittenFit::forecast;
+    }
+    const std::vector<RivalScore>& rivals = all_.forecast->rivals;
+    const auto score_nats = [&](ForecastSource source) { return std::ranges::find(rivals, source, &RivalScore::source)->score_nats; };
+    return !rivals.empty() && score_nats(ForecastSource::innovations) > score_nats(all_.forecast->source) + kLeastGain_nats;
+  }
+
+  /// Runs the forecast fit to whole runs, and writes its parameters if they predict better.
   void forecast() {
     const ForecastModel base = setup_.model();
     all_.forecast = forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads);
-    if (options_.is_for_forecasts) {
+    score_innovations();
+    if (is_forecast_better()) {
       write_forecast(all_);
       all_.effects = all_.forecast->setup.motor.effects;
       widen_by_rows();

@@ -8,20 +8,22 @@
 #include <vector>
 
 #include "calibration/error_before_after.h"
-#include "calibration/motor_model.h"
-#include "estimation/fit.h"
 #include "calibration/forecast/forecast.h"
 #include "calibration/forecast/prediction.h"
-#include "recording/recording.h"
+#include "calibration/motor_model.h"
+#include "estimation/fit.h"
 #include "motor/motor.h"
+#include "recording/recording.h"
 
 namespace heatsoak {
+
+/// Fit whose parameters are written. `best`: innovations, unless the forecast predicts left-out pieces better by kLeastGain_nats.
+enum class WrittenFit { best, forecast, innovations };
 
 struct CalibrationOptions {
   FitOptions fit;
   double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< ambient temperature of logs without one
-  /// true: writes the parameters of the forecast fit, which predicts left-out pieces best; false: those of the innovations fit.
-  bool is_for_forecasts = false;
+  WrittenFit written = WrittenFit::best;
 };
 
 struct CalibratedParameter {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "recording/recording.h"
 #include "motor/fit_table.h"
+#include "recording/recording.h"
 
 namespace heatsoak {
 

@@ -21,6 +21,8 @@ std::string_view name_of(ForecastSource source) {
       return "least squares of free runs";
     case ForecastSource::tempered:
       return "forecast fit";
+    case ForecastSource::innovations:
+      return "innovations fit";
   }
   return "?";
 }
@@ -102,17 +104,20 @@ std::vector<std::string> forecast_in_words(const Calibration& calibration) {
     words.push_back(
         fmt::format("the network is not extended and the 90 % band of forecasts is wide, because cross-validation can leave out only {} "
                     "runs that contain heat, and needs at least {}",
-                    forecast.pieces, kLeastPieces));
+                    forecast.pieces.size(), kLeastPieces));
   } else {
     std::vector<std::string> each;
     std::ranges::transform(forecast.rivals, std::back_inserter(each), errors_in_words);
-    words.push_back(fmt::format("cross-validation error of the left-out pieces ({}), rms: {}", forecast.pieces, fmt::join(each, "; ")));
+    words.push_back(
+        fmt::format("cross-validation error of the left-out pieces ({}), rms: {}", forecast.pieces.size(), fmt::join(each, "; ")));
+  }
+  if (calibration.is_forecast_written && forecast.source == ForecastSource::tempered) {
+    words.emplace_back("the parameters of the forecast fit are written: they follow whole runs best, not the response within seconds");
   }
   if (forecast.source == ForecastSource::file) {
-    words.emplace_back(
-        calibration.is_forecast_written
-            ? "no fit predicts left-out pieces better than the file: its values are written as they are"
-            : "no fit predicts left-out pieces better than the file: for forecasts its values are better than the written ones");
+    words.emplace_back(calibration.is_forecast_written
+                           ? "no fit predicts left-out pieces better than the file: its values are written as they are"
+                           : "no fit predicts left-out pieces better than the file, but the written values predict them as well");
   } else if (forecast.source == ForecastSource::ordinary) {
     words.push_back(fmt::format("least squares of free runs predicts left-out pieces best: {}",
                                 calibration.is_forecast_written ? "its parameters are written" : "`--forecast` writes its parameters"));

@@ -11,10 +11,10 @@
 #include "base/unknown.h"
 #include "estimation/log_columns.h"
 #include "estimation/log_rows.h"
-#include "recording/noise.h"
-#include "recording/row_order.h"
 #include "estimation/row_steps.h"
 #include "estimation/segment_inputs.h"
+#include "recording/noise.h"
+#include "recording/row_order.h"
 
 namespace heatsoak {
 namespace {

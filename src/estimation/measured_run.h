@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "recording/recording.h"
 #include "motor/sensor_effect.h"
+#include "recording/recording.h"
 #include "thermal/network.h"
 
 namespace heatsoak {

@@ -8,11 +8,11 @@
 #include <numbers>
 #include <vector>
 
+#include "base/copper.h"
 #include "motor/datasheet_network.h"
 #include "motor/default_spread.h"
 #include "robot/assumed_friction.h"
 #include "robot/driver.h"
-#include "base/copper.h"
 
 namespace heatsoak {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <set>
 
+#include "base/copper.h"
 #include "base/quantity.h"
 #include "motor/lint_checks.h"
-#include "base/copper.h"
 
 namespace heatsoak {
 namespace lint_checks {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/copper.h"
 #include "input/document.h"
 #include "motor/motor_effects.h"
 #include "motor/read_motor.h"
-#include "base/copper.h"
 
 namespace heatsoak {
 namespace {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "input/number_table.h"
 #include "recording/expression.h"
 #include "recording/mapping.h"
 #include "recording/recording_report.h"
-#include "input/number_table.h"
 
 namespace heatsoak {
 

@@ -9,11 +9,11 @@
 #include <random>
 #include <string_view>
 
+#include "base/copper.h"
 #include "base/quantity.h"
 #include "base/unknown.h"
 #include "recording/noise.h"
 #include "recording/row_order.h"
-#include "base/copper.h"
 
 namespace heatsoak {
 namespace {

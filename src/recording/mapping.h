@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "input/number_table.h"
 #include "recording/quantities.h"
 #include "recording/recording.h"
-#include "input/number_table.h"
 
 namespace heatsoak {
 

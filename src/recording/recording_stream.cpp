@@ -8,12 +8,12 @@
 #include <span>
 
 #include "base/diagnostic.h"
+#include "input/number_table.h"
 #include "recording/channel_source.h"
 #include "recording/interval_values.h"
 #include "recording/noise.h"
 #include "recording/row_order.h"
 #include "recording/screening.h"
-#include "input/number_table.h"
 
 namespace heatsoak {
 namespace {

@@ -4,9 +4,9 @@
 #include <array>
 #include <limits>
 
+#include "base/copper.h"
 #include "motor/motor.h"
 #include "robot/wheels.h"
-#include "base/copper.h"
 
 namespace heatsoak {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "motor/datasheet_network.h"
 #include "base/copper.h"
+#include "motor/datasheet_network.h"
 
 namespace heatsoak {
 namespace {

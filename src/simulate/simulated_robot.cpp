@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motor/datasheet_network.h"
 #include "base/copper.h"
+#include "motor/datasheet_network.h"
 
 namespace heatsoak {
 namespace {

@@ -3,8 +3,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "base/diagnostic.h"
 #include "base/copper.h"
+#include "base/diagnostic.h"
 
 namespace heatsoak {
 namespace {

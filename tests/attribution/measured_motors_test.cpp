@@ -92,7 +92,7 @@ Drone drone(const std::filesystem::path& folder, bool is_for_forecasts = true, c
   }
   const Motor start = guessed_otherwise(read_motor(kReports / "uav_motor.toml"), factor);
   all.motor = calibrated_motor(start, calibrate(start, std::vector{all.run["run1"], all.run["run3"], all.run["run5"]}, {},
-                                                {.fit = {}, .is_for_forecasts = is_for_forecasts}));
+                                                {.fit = {}, .written = is_for_forecasts ? WrittenFit::forecast : WrittenFit::innovations}));
   return all;
 }
 

@@ -8,9 +8,9 @@
 #include "../support/measured_data.h"
 #include "attribution/model_file.h"
 #include "attribution/selection.h"
+#include "estimation/model_screening.h"
 #include "recording/mapping.h"
 #include "recording/read_recording.h"
-#include "estimation/model_screening.h"
 #include "support/source_folder.h"
 
 namespace heatsoak {

@@ -9,11 +9,11 @@
 #include <fstream>
 #include <iterator>
 
+#include "input/csv.h"
+#include "input/number_table.h"
 #include "recording/quality.h"
 #include "recording/read_recording.h"
 #include "recording/recording_stream.h"
-#include "input/csv.h"
-#include "input/number_table.h"
 
 namespace heatsoak {
 namespace {

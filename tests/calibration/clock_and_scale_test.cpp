@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "calibration/admission.h"
-#include "recording/clock_offset.h"
 #include "read_log.h"
+#include "recording/clock_offset.h"
 #include "support/shipped.h"
 
 namespace heatsoak {

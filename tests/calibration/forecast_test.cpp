@@ -93,7 +93,7 @@ TEST(Forecast, KeepsANetworkThatIsRight) {
   const std::vector<MeasuredRun> runs = runs_of(setup, logs);
   const Forecast found = forecast_of(setup, runs, {}, 0);
   EXPECT_THAT(found.accepted, testing::IsEmpty());
-  EXPECT_EQ(found.pieces, 4U);
+  EXPECT_EQ(found.pieces.size(), 4U);
   EXPECT_NE(found.source, ForecastSource::file);
   const ForecastModel model = found.model();
   for (const MeasuredRun& run : runs_of(setup, logs_of(truth, long_enough(), folder, 10, 2))) {
@@ -214,7 +214,7 @@ TEST(Prediction, OfAWrittenFileIsThatOfTheCalibration) {
   const Motor motor = sheet.motor(folder);
   const std::vector<Recording> logs = logs_of_better_contact(sheet.truth, folder, 0, 4);
   const std::vector<Recording> others = logs_of_better_contact(sheet.truth, folder, 10, 1);
-  const Calibration found = calibrate(motor, logs, others, {.fit = {}, .is_for_forecasts = true});
+  const Calibration found = calibrate(motor, logs, others, {.fit = {}, .written = WrittenFit::forecast});
   ASSERT_TRUE(found.is_forecast_written);
   const auto file = folder.path() / "written.toml";
   std::ofstream(file) << to_toml(calibrated_motor(motor, found));

@@ -76,7 +76,7 @@ TEST_F(Recordings, DroneMotorIsForecastTo2K) {
   const fs::path map = kMappings / "tasrv_uav_motor.map.toml";
   const Calibration found =
       calibrate(read_motor(kReports / "diagnosis/uav_motor.toml"), read("tasrv_uav_motor", {"run1.csv", "run3.csv", "run5.csv"}, map),
-                read("tasrv_uav_motor", {"run2.csv"}, map), {.fit = {}, .is_for_forecasts = true});
+                read("tasrv_uav_motor", {"run2.csv"}, map), {.fit = {}, .written = WrittenFit::forecast});
   ASSERT_TRUE(found.is_forecast_written);
   double contact_W_per_K = 1.0 / figure(found, "thermal_resistance_winding_stator").value;
   for (const CalibratedParameter& each : found.figures) {

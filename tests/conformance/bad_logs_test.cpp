@@ -5,8 +5,8 @@
 
 #include <functional>
 
-#include "../recording/synthetic_log.h"
 #include "../friction/test_drive.h"
+#include "../recording/synthetic_log.h"
 #include "motor/motor.h"
 #include "program_run.h"
 #include "robot/robot.h"

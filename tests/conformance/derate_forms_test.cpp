@@ -37,8 +37,7 @@ TEST(DerateForms, RefuseALimitThatIsNotAboveTheAir) {
     here.folder = folder.path();
     const ProgramRun done = run(kDerate + Words{"--motor", "maxon_dcx19s_24v", "--ambient", "100degC", "--to", form, "--out", "x"}, here);
     EXPECT_EQ(done.exit_code, 2) << form;
-    EXPECT_THAT(done.err,
-                AllOf(HasSubstr("the winding limit of 90.0 °C is not above the hottest air of 100.0 °C"), HasSubstr("--ambient")))
+    EXPECT_THAT(done.err, AllOf(HasSubstr("the winding limit of 90.0 °C is not above the hottest air of 100.0 °C"), HasSubstr("--ambient")))
         << form;
     EXPECT_THAT(folder.names(), IsEmpty()) << form;
   }

@@ -9,8 +9,8 @@
 #include <iterator>
 
 #include "base/diagnostic.h"
-#include "recording/read_recording.h"
 #include "log_files.h"
+#include "recording/read_recording.h"
 #include "support/source_folder.h"
 
 namespace heatsoak {

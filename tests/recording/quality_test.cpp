@@ -7,8 +7,8 @@
 #include <functional>
 
 #include "base/diagnostic.h"
-#include "recording/noise.h"
 #include "read_log.h"
+#include "recording/noise.h"
 
 namespace heatsoak {
 namespace {

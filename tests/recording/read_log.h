@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "log_files.h"
 #include "recording/quality.h"
 #include "recording/read_recording.h"
-#include "log_files.h"
 #include "synthetic_log.h"
 
 namespace heatsoak {

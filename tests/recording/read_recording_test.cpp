@@ -10,9 +10,9 @@
 
 #include "base/diagnostic.h"
 #include "base/random.h"
+#include "log_files.h"
 #include "recording/quality.h"
 #include "recording/write_recording.h"
-#include "log_files.h"
 
 namespace heatsoak {
 namespace {

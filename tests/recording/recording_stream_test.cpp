@@ -10,9 +10,9 @@
 #include <iterator>
 
 #include "base/random.h"
+#include "log_files.h"
 #include "recording/quality.h"
 #include "recording/read_recording.h"
-#include "log_files.h"
 
 namespace heatsoak {
 namespace {

@@ -9,7 +9,8 @@ namespace {
 std::atomic<long> count = 0;
 }
 extern "C" {
-// NOLINTBEGIN(bugprone-reserved-identifier, cert-dcl37-c, cert-dcl51-cpp, readability-inconsistent-declaration-parameter-name): glibc's names
+// NOLINTBEGIN(bugprone-reserved-identifier, cert-dcl37-c, cert-dcl51-cpp, readability-inconsistent-declaration-parameter-name): glibc's
+// names
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t items, std::size_t size);
 void* __libc_realloc(void* old, std::size_t size);

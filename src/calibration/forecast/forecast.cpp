@@ -12,8 +12,6 @@
 namespace heatsoak {
 namespace {
 
-/// Required decrease of the score per parameter of an extension.
-constexpr double kLeastGain_nats = 0.05;
 constexpr std::size_t kRefitted = 4;
 constexpr int kMostExtensions = 4;
 constexpr int kScreeningSteps = 8;
@@ -45,11 +43,10 @@ class Search {
       return std::move(out_);
     }
     base_.emplace(*model_);
-    pieces_ = pieces_of(*model_, out_.fit, runs_);
-    out_.pieces = pieces_.size();
+    out_.pieces = pieces_of(*model_, out_.fit, runs_);
     const ForecastRules rules = of_piece();
-    score_ = score_pieces(*model_, runs_, pieces_, out_.fit.theta, &rules);
-    if (pieces_.size() >= kLeastPieces) {
+    score_ = score_pieces(*model_, runs_, out_.pieces, out_.fit.theta, &rules);
+    if (out_.pieces.size() >= kLeastPieces) {
       for (int round = 0; round < kMostExtensions && could_gain() && extend(); ++round) {
       }
       choose();
@@ -97,7 +94,7 @@ class Search {
   [[nodiscard]] bool could_gain() const {
     double least_nats = 0.0;
     double count = 0.0;
-    for (const Piece& piece : pieces_) {
+    for (const Piece& piece : out_.pieces) {
       for (const Sensor& sensor : runs_[piece.run].sensors) {
         least_nats += 0.5 * std::log(2.0 * sensor.noise_K * sensor.noise_K);
         count += 1.0;
@@ -116,7 +113,7 @@ class Search {
       Candidate& each = candidates[i];
       each.fit = fit_forecast(*each.model, runs_, {}, each.fit.theta, rules());
       const ForecastRules rules = of_piece();
-      PieceScore score = score_pieces(*each.model, runs_, pieces_, each.fit.theta, &rules);
+      PieceScore score = score_pieces(*each.model, runs_, out_.pieces, each.fit.theta, &rules);
       const double gain_nats = score_.score_nats - score.score_nats - kLeastGain_nats * each.extension->free_count;
       const double best_nats = best ? score_.score_nats - best_score->score_nats - kLeastGain_nats * best->extension->free_count : 0.0;
       if (gain_nats > best_nats) {
@@ -159,8 +156,8 @@ class Search {
     const ForecastFit plain = fit_forecast(*base_, runs_, {}, base_->start(), ordinary);
     const ForecastFit near = fit_forecast(*base_, runs_, {}, carried_over(*model_, out_.fit.theta, *base_), ordinary);
     const ForecastFit& best_plain = near.error_K < plain.error_K ? near : plain;
-    const PieceScore of_plain = score_pieces(*base_, runs_, pieces_, best_plain.theta, &ordinary);
-    const PieceScore of_file = score_pieces(*base_, runs_, pieces_, base_->start(), nullptr);
+    const PieceScore of_plain = score_pieces(*base_, runs_, out_.pieces, best_plain.theta, &ordinary);
+    const PieceScore of_file = score_pieces(*base_, runs_, out_.pieces, base_->start(), nullptr);
     add_rival(ForecastSource::tempered, score_);
     add_rival(ForecastSource::ordinary, of_plain);
     add_rival(ForecastSource::file, of_file);
@@ -184,24 +181,7 @@ class Search {
     }
   }
 
-  void add_rival(ForecastSource source, const PieceScore& score) {
-    RivalScore rival{source, score.score_nats, {}};
-    std::map<std::string, std::pair<double, double>> sums;
-    for (const PredictedPiece& piece : score.pieces) {
-      const MeasuredRun& run = runs_[piece.run];
-      for (Eigen::Index row = 0; row < piece.path.residual_K.size(); ++row) {
-        if (const double error_K = piece.path.residual_K[row]; !std::isnan(error_K)) {
-          auto& [squares_K2, count] = sums[run.sensors[static_cast<std::size_t>(row % piece.path.sensors())].signal];
-          squares_K2 += error_K * error_K;
-          count += 1.0;
-        }
-      }
-    }
-    for (const auto& [signal, sum] : sums) {
-      rival.rmse_K.emplace_back(signal, std::sqrt(sum.first / sum.second));
-    }
-    out_.rivals.push_back(std::move(rival));
-  }
+  void add_rival(ForecastSource source, const PieceScore& score) { out_.rivals.push_back(rival_score(source, score, runs_)); }
 
   /// Fits the band. Without left-out pieces it uses the fitted runs, with one degree of freedom, and does not narrow the band.
   void set_band() {
@@ -216,20 +196,38 @@ class Search {
         score_.pieces.push_back(own);
       }
     }
-    out_.band = fit_band(*model_, runs_, score_.pieces, std::max<std::size_t>(1, pieces_.size()));
-    out_.band.width_ratio = pieces_.empty() ? std::max(1.0, out_.band.width_ratio) : out_.band.width_ratio;
+    out_.band = fit_band(*model_, runs_, score_.pieces, std::max<std::size_t>(1, out_.pieces.size()));
+    out_.band.width_ratio = out_.pieces.empty() ? std::max(1.0, out_.band.width_ratio) : out_.band.width_ratio;
   }
 
   std::span<const MeasuredRun> runs_;
   int threads_;
   std::optional<ForecastModel> model_, base_;
   ForecastSetup base_setup_;
-  std::vector<Piece> pieces_;
   PieceScore score_;
   Forecast out_;
 };
 
 }  // namespace
+
+RivalScore rival_score(ForecastSource source, const PieceScore& score, std::span<const MeasuredRun> runs) {
+  RivalScore rival{source, score.score_nats, {}};
+  std::map<std::string, std::pair<double, double>> sums;
+  for (const PredictedPiece& piece : score.pieces) {
+    const MeasuredRun& run = runs[piece.run];
+    for (Eigen::Index row = 0; row < piece.path.residual_K.size(); ++row) {
+      if (const double error_K = piece.path.residual_K[row]; !std::isnan(error_K)) {
+        auto& [squares_K2, count] = sums[run.sensors[static_cast<std::size_t>(row % piece.path.sensors())].signal];
+        squares_K2 += error_K * error_K;
+        count += 1.0;
+      }
+    }
+  }
+  for (const auto& [signal, sum] : sums) {
+    rival.rmse_K.emplace_back(signal, std::sqrt(sum.first / sum.second));
+  }
+  return rival;
+}
 
 Forecast forecast_of(ForecastSetup setup, std::span<const MeasuredRun> runs, std::span<const Eigen::VectorXd> hints, int threads) {
   return Search(std::move(setup), runs, threads).run(hints);

@@ -9,8 +9,9 @@
 
 namespace heatsoak {
 
-/// Origin of a forecast's parameters. `ordinary` is the simple alternative: least squares of free runs without extensions.
-enum class ForecastSource { file, ordinary, tempered };
+/// Origin of a forecast's parameters. `ordinary` is the simple alternative: least squares of free runs without extensions. `innovations`
+/// explains the response within seconds; Forecast::source is never that.
+enum class ForecastSource { file, ordinary, tempered, innovations };
 
 struct AcceptedExtension {
   std::string name;
@@ -29,12 +30,18 @@ struct Forecast {
   ForecastSource source = ForecastSource::tempered;
   ForecastFit fit;
   std::vector<AcceptedExtension> accepted;
-  std::size_t pieces = 0;          ///< number of left-out pieces; with fewer than kLeastPieces nothing is selected
+  std::vector<Piece> pieces;       ///< left-out pieces; with fewer than kLeastPieces nothing is selected
   std::vector<RivalScore> rivals;  ///< empty if there are too few pieces
   ForecastBand band;
 
   [[nodiscard]] ForecastModel model() const { return setup.model(); }
 };
+
+/// Summarises the prediction of the left-out pieces.
+RivalScore rival_score(ForecastSource source, const PieceScore& score, std::span<const MeasuredRun> runs);
+
+/// Decrease of the score per parameter from which one model counts as better: 5 % of the RMS error.
+inline constexpr double kLeastGain_nats = 0.05;
 
 /// Finds the best forecast model. `hints` are additional starting points in θ of the setup's model. Deterministic.
 Forecast forecast_of(ForecastSetup setup, std::span<const MeasuredRun> runs, std::span<const Eigen::VectorXd> hints, int threads);

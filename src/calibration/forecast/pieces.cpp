@@ -34,25 +34,28 @@ Piece block_of(const MeasuredRun& run, Eigen::Index from, Eigen::Index to) {
   return piece;
 }
 
-/// Predicts the piece with a fit to everything else (or with `theta` if `rules` is null).
-PredictedPiece predicted(const ForecastModel& model, std::span<const MeasuredRun> runs, const Piece& piece, const Eigen::VectorXd& theta,
-                         const ForecastRules* rules) {
-  const MeasuredRun& run = runs[piece.run];
-  PredictedPiece out{piece.run, {}, {}, {}};
+/// Parameters `theta` with the covariance of the prior: nothing is fitted.
+ForecastFit unfitted(const ForecastModel& model, const Eigen::VectorXd& theta) {
   ForecastFit fit;
   fit.theta = theta;
   fit.covariance = model.prior().precision.ldlt().solve(Eigen::MatrixXd::Identity(theta.size(), theta.size()));
-  const bool is_block = !piece.seen.empty();
-  if (rules != nullptr && is_block) {
-    fit = fit_forecast(model, runs, std::vector<RowMask>{piece.seen}, theta, *rules);
-  } else if (rules != nullptr) {
-    std::vector<MeasuredRun> others(runs.begin(), runs.end());
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(piece.run));
-    fit = fit_forecast(model, others, {}, theta, *rules);
-  }
+  return fit;
+}
+
+ForecastFit fitted_without(const ForecastModel& model, std::span<const MeasuredRun> runs, const Piece& piece, const Eigen::VectorXd& theta,
+                           const ForecastRules& rules) {
+  ForecastFit fit = piece.seen.empty() ? fit_forecast(model, runs_without(runs, piece), {}, theta, rules)
+                                       : fit_forecast(model, runs, std::vector<RowMask>{piece.seen}, theta, rules);
   if (!std::isfinite(fit.cost_nats)) {
     throw Failure(ExitCode::numerics_failed, "the model cannot be simulated over the other pieces");
   }
+  return fit;
+}
+
+PredictedPiece predicted(const ForecastModel& model, std::span<const MeasuredRun> runs, const Piece& piece, const ForecastFit& fit) {
+  const MeasuredRun& run = runs[piece.run];
+  PredictedPiece out{piece.run, {}, {}, {}};
+  const bool is_block = !piece.seen.empty();
   const Eigen::VectorXd start_C =
       is_block && !fit.starts.empty() ? fit.starts.front().state_C : model.decided_start(run, fit.theta).state_C;
   out.path = model.along(run, fit.theta, 0.0, {start_C.data(), static_cast<std::size_t>(start_C.size())});
@@ -104,15 +107,37 @@ std::vector<Piece> pieces_of(const ForecastModel& model, const ForecastFit& base
   return pieces;
 }
 
+std::vector<MeasuredRun> runs_without(std::span<const MeasuredRun> runs, const Piece& piece) {
+  std::vector<MeasuredRun> others(runs.begin(), runs.end());
+  if (piece.seen.empty()) {
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(piece.run));
+    return others;
+  }
+  Eigen::MatrixXd& measured_C = others[piece.run].measured_C;
+  for (Eigen::Index row = 0; row < measured_C.size(); ++row) {
+    if (piece.seen[static_cast<std::size_t>(row)] == 0) {
+      measured_C(row / measured_C.cols(), row % measured_C.cols()) = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return others;
+}
+
 PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const Piece> pieces,
                         const Eigen::VectorXd& theta, const ForecastRules* rules) {
+  return score_pieces(model, runs, pieces, [&](const Piece& piece) {
+    return rules ? fitted_without(model, runs, piece, theta, *rules) : unfitted(model, theta);
+  });
+}
+
+PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const Piece> pieces,
+                        const FitWithout& fit_without) {
   PieceScore score;
   double count = 0.0;
   for (const Piece& piece : pieces) {
     try {
-      score.pieces.push_back(predicted(model, runs, piece, theta, rules));
+      score.pieces.push_back(predicted(model, runs, piece, fit_without(piece)));
     } catch (const Failure& failure) {
-      if (failure.code() != ExitCode::numerics_failed) {
+      if (failure.code() != ExitCode::numerics_failed && failure.code() != ExitCode::cannot_answer) {
         throw;
       }
       score.score_nats = std::numeric_limits<double>::infinity();

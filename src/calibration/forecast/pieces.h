@@ -1,6 +1,7 @@
 // Cross-validation: networks are scored on left-out pieces, each predicted by a fit to the other data.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,9 +35,18 @@ struct PieceScore {
   std::vector<PredictedPiece> pieces;
 };
 
-/// Fits without each piece, starting at `theta`, and scores its prediction. If `rules` is null, nothing is fitted and the parameters are
-/// `theta`. The score is infinite if a simulation fails.
+/// Returns the parameters, found without a piece, that predict it. `starts` may be empty if the piece is a whole run. Throws Failure
+/// (numerics_failed or cannot_answer) if there are none.
+using FitWithout = std::function<ForecastFit(const Piece& piece)>;
+
+/// Scores the prediction of each piece. The score is infinite if a fit or a simulation fails.
+PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const Piece> pieces,
+                        const FitWithout& fit_without);
+/// Fits the forecast model without each piece, starting at `theta`. If `rules` is null, nothing is fitted and the parameters are `theta`.
 PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const Piece> pieces,
                         const Eigen::VectorXd& theta, const ForecastRules* rules);
+
+/// Returns the runs without the piece: without its run, or with its samples not measured.
+std::vector<MeasuredRun> runs_without(std::span<const MeasuredRun> runs, const Piece& piece);
 
 }  // namespace heatsoak

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "estimation/measured_run.h"
-#include "recording/recording.h"
 #include "input/data_folders.h"
+#include "recording/recording.h"
 
 namespace heatsoak {
 

@@ -15,7 +15,7 @@ typedef struct {
   heatsoak_integer_axis speed_mrad_per_s;
   heatsoak_integer_axis stator_mC;
   heatsoak_integer_axis winding_mC;
-  const int16_t *square;  /* [speed][stator][winding] in unit_mA2; negative: no current is too much already */
+  const int16_t *square; /* [speed][stator][winding] in unit_mA2; negative: no current is too much already */
   uint32_t unit_mA2;
   int32_t most_current_mA;
   int32_t straight_below_mA; /* a smaller current is square/straight_below, so that it falls to 0 with a finite slope */
@@ -52,7 +52,8 @@ static inline int32_t heatsoak_integer_between(const heatsoak_integer_axis *axis
 }
 
 /* Square of the current at one winding temperature, in unit_mA2. */
-static inline int32_t heatsoak_integer_square(const heatsoak_integer_table *table, int32_t speed_mrad_per_s, int32_t stator_mC, int32_t winding_mC) {
+static inline int32_t heatsoak_integer_square(const heatsoak_integer_table *table, int32_t speed_mrad_per_s, int32_t stator_mC,
+                                              int32_t winding_mC) {
   const int32_t windings = table->winding_mC.count;
   const int32_t stators = table->stator_mC.count;
   int32_t speed = speed_mrad_per_s;
@@ -113,7 +114,8 @@ static inline int32_t heatsoak_integer_allowed_mA(const heatsoak_integer_table *
     return 0;
   }
   square_mA2 = (int64_t)square * (int64_t)table->unit_mA2;
-  current_mA = (square_mA2 < (straight_mA * straight_mA)) ? (square_mA2 / straight_mA) : (int64_t)heatsoak_integer_root((uint64_t)square_mA2);
+  current_mA =
+      (square_mA2 < (straight_mA * straight_mA)) ? (square_mA2 / straight_mA) : (int64_t)heatsoak_integer_root((uint64_t)square_mA2);
   current_mA = (current_mA < table->most_current_mA) ? current_mA : table->most_current_mA;
   if (speed_mrad_per_s > table->most_speed_mrad_per_s) {
     current_mA = (current_mA * ((int64_t)table->no_current_speed_mrad_per_s - speed_mrad_per_s)) /

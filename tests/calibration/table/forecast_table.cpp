@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "../../support/measured_data.h"
-#include "estimation/fit.h"
 #include "calibration/forecast/forecast.h"
 #include "calibration/forecast/prediction.h"
+#include "estimation/fit.h"
 #include "recording/mapping.h"
 #include "recording/read_recording.h"
 #include "support/source_folder.h"

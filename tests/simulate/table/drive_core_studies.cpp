@@ -66,10 +66,8 @@ struct Study {
   std::string_view name;
   void (*run)(const Subject& subject, const Report& report);
 };
-constexpr Study kStudies[] = {{"low_speed", study_low_speed},
-                             {"planners", study_planners_in_match},
-                             {"guard", study_guard},
-                             {"costs", study_costs}};
+constexpr Study kStudies[] = {
+    {"low_speed", study_low_speed}, {"planners", study_planners_in_match}, {"guard", study_guard}, {"costs", study_costs}};
 
 int run(const std::vector<std::string>& words) {
   const Report report{words.empty() ? kSource / "reports" / "drive_core" : std::filesystem::path(words.front())};

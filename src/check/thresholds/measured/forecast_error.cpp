@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "check/computations.h"
 #include "calibration/forecast/prediction.h"
+#include "check/computations.h"
 #include "recording/read_recording.h"
 
 namespace heatsoak::thresholds {

@@ -9,14 +9,14 @@
 #include <nlohmann/json.hpp>
 
 #include "base/quantity.h"
+#include "calibration/admission.h"
+#include "calibration/calibrate.h"
 #include "cli/command.h"
 #include "cli/measured/calibration_chart.h"
 #include "cli/measured/logs_option.h"
 #include "cli/measured/prediction_answer.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
-#include "calibration/admission.h"
-#include "calibration/calibrate.h"
 #include "motor/motor.h"
 #include "motor/write_motor.h"
 
@@ -31,7 +31,8 @@ struct Options {
   std::string plot;
   LogOptions how;
   FitOptions fit;
-  bool is_for_forecasts = false;
+  bool writes_forecast = false;
+  bool writes_innovations = false;
 };
 
 /// Formats a value with the digits that its interval supports: half the interval width has two.
@@ -138,8 +139,9 @@ nlohmann::ordered_json error_json(const std::vector<ErrorBeforeAfter>& errors, b
 /// Rounds to six significant digits, which are the same on every machine.
 nlohmann::ordered_json number(double value) { return std::stod(fmt::format("{:.6g}", value)); }
 
-nlohmann::ordered_json forecast_json(const Forecast& forecast) {
-  constexpr std::array kSources{"file", "least_squares", "forecast_fit"};
+nlohmann::ordered_json forecast_json(const Calibration& calibration) {
+  const Forecast& forecast = *calibration.forecast;
+  constexpr std::array kSources{"file", "least_squares", "forecast_fit", "innovations_fit"};
   nlohmann::ordered_json left_out = nlohmann::ordered_json::object();
   for (const RivalScore& rival : forecast.rivals) {
     for (const auto& [signal, rmse_K] : rival.rmse_K) {
@@ -151,7 +153,8 @@ nlohmann::ordered_json forecast_json(const Forecast& forecast) {
     extensions.push_back({{"id", each.name}, {"nats", rounded(each.gain_nats, 3)}});
   }
   return {{"best", kSources[static_cast<std::size_t>(forecast.source)]},
-          {"left_out_pieces", forecast.pieces},
+          {"written", calibration.is_forecast_written ? kSources[static_cast<std::size_t>(forecast.source)] : kSources.back()},
+          {"left_out_pieces", forecast.pieces.size()},
           {"left_out_error", left_out},
           {"extensions", extensions},
           {"band",
@@ -195,7 +198,7 @@ nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, co
           {"holdout_error", error_json(result.holdout_error, true)},
           {"holdout_error_before", error_json(result.holdout_error, false)},
           {"holdout", {{"before", runs_json(result.holdout_before)}, {"after", runs_json(result.holdout_after)}}},
-          {"forecast", forecast_json(*result.forecast)},
+          {"forecast", forecast_json(result)},
           {"latent_flux",
            {{"winding_W", number(result.fit.flux.rms_W[0])},
             {"stator_W", number(result.fit.flux.rms_W[1])},
@@ -228,7 +231,10 @@ ExitCode run(const Options& options, Session& session) {
   }
   Admission admission = admit(motor, logs, holdout, options.how.takes_logs_as_they_are, options.how.ambient_C);
   std::ranges::move(admission.notes, std::back_inserter(notes));
-  Calibration result = calibrate(motor, logs, holdout, {options.fit, options.how.ambient_C, options.is_for_forecasts});
+  const WrittenFit written = options.writes_forecast      ? WrittenFit::forecast
+                             : options.writes_innovations ? WrittenFit::innovations
+                                                          : WrittenFit::best;
+  Calibration result = calibrate(motor, logs, holdout, {options.fit, options.how.ambient_C, written});
   report_next_steps(admission.next_steps, result.next_experiment);
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   session.write(options.out, to_toml(calibrated_motor(motor, result)));
@@ -260,8 +266,13 @@ Command calibrate_command() {
             app.add_option("logs", options->logs, "measured runs (CSV)")->required()->type_name("LOG");
             app.add_option("--holdout", options->holdout, "runs to test on, not fitted to")->type_name("LOG");
             app.add_option("--out", options->out, "the calibrated motor, a motor file")->required()->type_name("FILE.toml");
-            app.add_flag("--forecast", options->is_for_forecasts,
-                         "write the model that predicts left-out runs best, even if it needs effects that no diagnosis named");
+            CLI::Option* const forecast = app.add_flag(
+                "--forecast", options->writes_forecast,
+                "always write the model that predicts left-out runs best, even if it needs effects that no diagnosis named; default: only "
+                "if it predicts them better by 5 % than the innovations fit");
+            app.add_flag("--innovations", options->writes_innovations,
+                         "always write the fit that explains the response within seconds of a load change, for `heatsoak diagnose`")
+                ->excludes(forecast);
             add_picture(app, options->plot, "picture of measured and fitted temperatures");
             add_log_options(app, options->how);
             add_seed(app, options->fit.seed, "of the starting points; same seed, same bytes");

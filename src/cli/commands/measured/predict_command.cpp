@@ -5,13 +5,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "calibration/admission.h"
+#include "calibration/training_range.h"
 #include "cli/command.h"
 #include "cli/measured/logs_option.h"
 #include "cli/measured/prediction_answer.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
-#include "calibration/admission.h"
-#include "calibration/training_range.h"
 
 namespace heatsoak::commands {
 namespace {
