@@ -130,14 +130,14 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
                    "resistances and capacities. No effect is named.");
 }
 
-std::string changed_in_words(const ChangedParameter& figure) {
+std::string changed_in_words(const ChangedParameter& parameter) {
   // The interval includes a common factor on all heat. If it contains the file's value it would be misleading, so it is not printed.
-  const bool is_beyond_scale = figure.before < figure.low || figure.before > figure.high;
+  const bool is_beyond_scale = parameter.before < parameter.low || parameter.before > parameter.high;
   return fmt::format(
       "Does not hold here: {}, {:.3g} {} in the file, {:.3g} {} in these runs{}; with the file's value the runs would be e^{:.0f} times "
       "less probable.",
-      figure.name, figure.before, figure.unit, figure.value, figure.unit,
-      is_beyond_scale ? fmt::format(" (95 %: {:.3g} to {:.3g})", figure.low, figure.high) : std::string(), figure.gain_nats);
+      parameter.name, parameter.before, parameter.unit, parameter.value, parameter.unit,
+      is_beyond_scale ? fmt::format(" (95 %: {:.3g} to {:.3g})", parameter.low, parameter.high) : std::string(), parameter.gain_nats);
 }
 
 /// A positive conductance means heat out of the node, a positive source means heat into it.
@@ -225,8 +225,8 @@ std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore
       all.push_back(effect_in_words(effect));
     }
   }
-  for (const ChangedParameter& figure : diagnosis.changed) {
-    all.push_back(changed_in_words(figure));
+  for (const ChangedParameter& parameter : diagnosis.changed) {
+    all.push_back(changed_in_words(parameter));
   }
   if (!diagnosis.changed.empty() && diagnosis.verdict != DiagnosisVerdict::not_identifiable) {
     all.emplace_back("These runs do not determine whether this has changed, or whether a missing effect acts like such a change.");

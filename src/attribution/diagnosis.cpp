@@ -68,14 +68,14 @@ class DiagnosisReport {
   void report_changed_parameters() {
     const Model& model = after().model.model;
     const Eigen::VectorXd theta = model.theta();
-    for (ChangedParameter figure : out_.selection.changed) {
-      const Eigen::Index own = figure.coordinate;
+    for (ChangedParameter parameter : out_.selection.changed) {
+      const Eigen::Index own = parameter.coordinate;
       const double reach = kInterval_sd * std::sqrt(after().covariance(own, own));
-      figure.before = input_.model.model.values[static_cast<std::size_t>(model.free[static_cast<std::size_t>(own)].place)];
-      figure.value = model.value_of(own, theta[own]);
-      figure.low = model.value_of(own, theta[own] - reach);
-      figure.high = model.value_of(own, theta[own] + reach);
-      out_.changed.push_back(std::move(figure));
+      parameter.before = input_.model.model.values[static_cast<std::size_t>(model.free[static_cast<std::size_t>(own)].place)];
+      parameter.value = model.value_of(own, theta[own]);
+      parameter.low = model.value_of(own, theta[own] - reach);
+      parameter.high = model.value_of(own, theta[own] + reach);
+      out_.changed.push_back(std::move(parameter));
     }
   }
 
@@ -237,8 +237,9 @@ class DiagnosisReport {
     if (out_.selection.is_as_usual) {
       return DiagnosisVerdict::nothing_missing;
     }
-    const bool is_same_mounting = std::ranges::none_of(
-        out_.changed, [](const ChangedParameter& figure) { return std::abs(std::log(figure.value / figure.before)) > kOtherMounting; });
+    const bool is_same_mounting = std::ranges::none_of(out_.changed, [](const ChangedParameter& parameter) {
+      return std::abs(std::log(parameter.value / parameter.before)) > kOtherMounting;
+    });
     const bool would_show = out_.selection.seen_share >= rules_.least_seen_share;
     return !out_.selection.is_undecided(rules_) && is_same_mounting && would_show ? DiagnosisVerdict::nothing_missing
                                                                                   : DiagnosisVerdict::not_identifiable;

@@ -102,14 +102,14 @@ void add_conditional_effects(const Motor& motor, const std::vector<Recording>& r
 constexpr const char* kSource = "diagnosis";
 
 ParameterValue measured(double value, double low, double high, const Range& range) {
-  ParameterValue figure;
-  figure.value = value;
-  figure.origin = Origin::measured;
-  figure.source = kSource;
+  ParameterValue parameter;
+  parameter.value = value;
+  parameter.origin = Origin::measured;
+  parameter.source = kSource;
   if (low < value && high > value && low > 0.0) {
-    figure.spread = Spread{Spread::Kind::range, std::max(low, range.low), std::min(high, range.high), true};
+    parameter.spread = Spread{Spread::Kind::range, std::max(low, range.low), std::min(high, range.high), true};
   }
-  return figure;
+  return parameter;
 }
 
 MotorSensor motor_sensor(const SensorEffectType& type, const FittedParameter& size) {
@@ -167,7 +167,7 @@ void set_parameters(Motor& motor, const ModelOfLogs& model, const Diagnosis& dia
   const Eigen::VectorXd moved = fit.model.model.theta().head(free) - model.model.model.theta();
   const Eigen::MatrixXd covariance = fit.covariance.topLeftCorner(free, free);
   std::vector<const CalibratedValue*> of_file;
-  for (const CalibratedValue& each : model.figures) {
+  for (const CalibratedValue& each : model.parameters) {
     if (each.is_of_file) {
       of_file.push_back(&each);
     }
@@ -181,19 +181,19 @@ void set_parameters(Motor& motor, const ModelOfLogs& model, const Diagnosis& dia
     const CalibratedValue& each = *of_file[i];
     exponents.row(static_cast<Eigen::Index>(i)) = each.exponents.transpose();
     const double sd = std::sqrt(std::max(0.0, each.exponents.dot(covariance * each.exponents)));
-    ParameterValue& figure = *find_parameter(motor, each.name);
+    ParameterValue& parameter = *find_parameter(motor, each.name);
     const double value = each.before * std::exp(each.exponents.dot(moved));
-    const std::string source = figure.source;
-    const Origin origin = figure.origin;
-    figure = measured(value, value * std::exp(-kInterval_sd * sd), value * std::exp(kInterval_sd * sd), Range::positive());
-    figure.derivation =
+    const std::string source = parameter.source;
+    const Origin origin = parameter.origin;
+    parameter = measured(value, value * std::exp(-kInterval_sd * sd), value * std::exp(kInterval_sd * sd), Range::positive());
+    parameter.derivation =
         source.empty() ? "fit to measured temperatures" : fmt::format("fit to measured temperatures; before the fit: {}", source);
     if (!is_identifiable(sd, each)) {
-      figure.origin = origin;
-      figure.source += source.empty() ? "" : fmt::format(", {}", source);
-      figure.derivation = "fit to measured temperatures, which do not determine it alone";
+      parameter.origin = origin;
+      parameter.source += source.empty() ? "" : fmt::format(", {}", source);
+      parameter.derivation = "fit to measured temperatures, which do not determine it alone";
     }
-    together.figures.push_back(each.name);
+    together.parameters.push_back(each.name);
   }
   Eigen::MatrixXd correlation = exponents * covariance * exponents.transpose();
   const Eigen::VectorXd sd = correlation.diagonal().cwiseSqrt().cwiseMax(1e-9);
@@ -220,12 +220,12 @@ void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vec
   if (!motor.fit || std::ranges::none_of(recordings, is_fitted)) {
     return;
   }
-  for (const std::string& name : motor.fit->figures) {
-    ParameterValue* const figure = find_parameter(motor, name);
+  for (const std::string& name : motor.fit->parameters) {
+    ParameterValue* const parameter = find_parameter(motor, name);
     // The other parameters were not identifiable in that fit and kept their own uncertainty.
-    if (figure && figure->origin == Origin::measured && figure->value > 0.0) {
-      figure->spread =
-          Spread{Spread::Kind::range, figure->value * std::exp(-2.0 * kSheet_sd), figure->value * std::exp(2.0 * kSheet_sd), true};
+    if (parameter && parameter->origin == Origin::measured && parameter->value > 0.0) {
+      parameter->spread =
+          Spread{Spread::Kind::range, parameter->value * std::exp(-2.0 * kSheet_sd), parameter->value * std::exp(2.0 * kSheet_sd), true};
     }
   }
   motor.fit.reset();
@@ -263,7 +263,7 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   out.model.model = std::move(built.model);
   out.model.usual_error_K = everywhere.fit ? everywhere.fit->free_run_error_K : 0.0;
   out.model.usual_flux_W = everywhere.fit && !everywhere.fit->latent_flux_W.empty() ? std::ranges::max(everywhere.fit->latent_flux_W) : 0.0;
-  out.figures = std::move(built.figures);
+  out.parameters = std::move(built.parameters);
   out.notes.insert(out.notes.end(), built.held.begin(), built.held.end());
   std::ranges::move(held_sensors(motor, recordings), std::back_inserter(out.notes));
   add_conditional_effects(motor, recordings, out);

@@ -13,11 +13,11 @@ namespace heatsoak {
 /// A motor's model as the logs require it.
 struct ModelOfLogs {
   ExtendedModel model;
-  std::vector<CalibratedValue> figures;  ///< parameters of the motor file, as functions of the model's coordinates
-  MeasuredRunOptions how;                ///< required signals and options for reading the runs, except for the ambient temperature
-  std::vector<std::string> fitted;       ///< logs that the file's parameters were fitted to, as name_and_fingerprint()
-  TrainingRange training;                ///< range of the signals in those logs and in these
-  std::vector<std::string> notes;        ///< assumptions for signals that no log has
+  std::vector<CalibratedValue> parameters;  ///< parameters of the motor file, as functions of the model's coordinates
+  MeasuredRunOptions how;                   ///< required signals and options for reading the runs, except for the ambient temperature
+  std::vector<std::string> fitted;          ///< logs that the file's parameters were fitted to, as name_and_fingerprint()
+  TrainingRange training;                   ///< range of the signals in those logs and in these
+  std::vector<std::string> notes;           ///< assumptions for signals that no log has
 };
 
 /// Builds the motor's network with the same free parameters as a calibration and with the file's uncertainties as priors. If not every

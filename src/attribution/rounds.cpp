@@ -130,10 +130,10 @@ void Rounds::begin() {
     std::erase_if(list_.candidates, [](const Candidate& each) { return each.type && each.nodes.front() == "stator"; });
   }
   out_.not_judged = list_.not_judged;
-  figures_ = well_known_values(input_.model, kSheet_sd);
+  parameters_ = well_known_values(input_.model, kSheet_sd);
   set_rules_ = rules_of(candidates(), rules_);
-  for (const Eigen::Index figure : figures_) {
-    const std::string name = "figure " + input_.model.model.name(figure);
+  for (const Eigen::Index parameter : parameters_) {
+    const std::string name = "parameter " + input_.model.model.name(parameter);
     set_rules_.push_back({false, rules_.inclusion_nats, name, name});
   }
   bodies_ = candidates_with_body(candidates());
@@ -166,8 +166,8 @@ Judged Rounds::judge() {
     for (Eigen::Index body = 0; body < bodies; ++body) {
       extra[r].col(own + body * runs + static_cast<Eigen::Index>(r)) = columns.col(count + body);
     }
-    for (std::size_t i = 0; i < figures_.size(); ++i) {
-      extra[r].col(static_cast<Eigen::Index>(candidates().size() + i)) = kSheet_sd * judged.fitted[r].by_parameter.col(figures_[i]);
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+      extra[r].col(static_cast<Eigen::Index>(candidates().size() + i)) = kSheet_sd * judged.fitted[r].by_parameter.col(parameters_[i]);
     }
   });
   judged.designs = design(base.model.network, judged.fitted, input_.runs, out_.weights, merged_, extra);
@@ -257,10 +257,11 @@ ExtendedModel Rounds::with_members(const std::vector<int>& members, const SetSea
   model.set_theta(theta);
   for (std::size_t m = 0; m < members.size(); ++m) {
     if (is_parameter(members[m])) {
-      const Eigen::Index figure = parameter_of(members[m]);
-      model.model.prior = with_prior_sd(model.model.prior, figure, kSheet_sd);
+      const Eigen::Index parameter = parameter_of(members[m]);
+      model.model.prior = with_prior_sd(model.model.prior, parameter, kSheet_sd);
       Eigen::VectorXd moved = model.theta();
-      moved[figure] = std::clamp(moved[figure] + kSheet_sd * at.sizes[static_cast<Eigen::Index>(m)], model.low(figure), model.high(figure));
+      moved[parameter] =
+          std::clamp(moved[parameter] + kSheet_sd * at.sizes[static_cast<Eigen::Index>(m)], model.low(parameter), model.high(parameter));
       model.set_theta(moved);
     }
   }

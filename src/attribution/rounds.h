@@ -33,7 +33,7 @@ class Rounds {
   Judged run_rounds();
   [[nodiscard]] const std::vector<Candidate>& candidates() const { return list_.candidates; }
   [[nodiscard]] bool is_parameter(int member) const { return member >= static_cast<int>(candidates().size()); }
-  [[nodiscard]] Eigen::Index parameter_of(int member) const { return figures_[static_cast<std::size_t>(member) - candidates().size()]; }
+  [[nodiscard]] Eigen::Index parameter_of(int member) const { return parameters_[static_cast<std::size_t>(member) - candidates().size()]; }
   [[nodiscard]] Eigen::Index free_count() const { return input_.model.free_count(); }
   void begin();
   /// Returns the base model with the parameter values of the last fit.
@@ -85,7 +85,7 @@ class Rounds {
   FluxGrid grid_;
   FluxPlace place_, best_place_;
   CandidateList list_;
-  std::vector<Eigen::Index> figures_;
+  std::vector<Eigen::Index> parameters_;
   std::vector<CandidateRule> set_rules_;
   std::vector<int> bodies_;  ///< candidates with a body of their own
   std::vector<int> best_;

@@ -88,14 +88,14 @@ class Calibrating {
     settle_turning_rows();
     warn();
     widen_by_rows();
-    figures();
-    all_.open = open_directions(all_.motor_model, all_.fit, all_.runs, all_.figures);
+    parameters();
+    all_.open = open_directions(all_.motor_model, all_.fit, all_.runs, all_.parameters);
     all_.next_experiment = next_experiment(all_.open);
     forecast();
     report_large_changes();
     all_.fit_error = errors();
     refuse_where_nothing_is_explained();
-    std::ranges::move(outside_declared_ranges(motor, all_.figures), std::back_inserter(all_.notes));
+    std::ranges::move(outside_declared_ranges(motor, all_.parameters), std::back_inserter(all_.notes));
     report_common_factor();
     report_terminal_resistance(motor);
     report_grown_errors("the fitted runs", all_.fit_error);
@@ -146,9 +146,9 @@ class Calibrating {
       all_.effects = all_.forecast->setup.motor.effects;
       widen_by_rows();
       // The forecast fit assumes no unknown heat; parameters that are not identifiable beside such heat stay so.
-      const std::vector<CalibratedParameter> before = std::exchange(all_.figures, {});
-      figures();
-      keep_unidentifiable(before, all_.figures);
+      const std::vector<CalibratedParameter> before = std::exchange(all_.parameters, {});
+      parameters();
+      keep_unidentifiable(before, all_.parameters);
     }
     std::ranges::move(forecast_in_words(all_), std::back_inserter(all_.notes));
   }
@@ -256,8 +256,8 @@ class Calibrating {
       }
     }
     const Eigen::VectorXd& capacity =
-        std::ranges::find(all_.motor_model.figures, "winding_heat_capacity", &CalibratedValue::name)->exponents;
-    const auto& constant = *std::ranges::find(all_.motor_model.figures, "thermal_time_constant_winding", &CalibratedValue::name);
+        std::ranges::find(all_.motor_model.parameters, "winding_heat_capacity", &CalibratedValue::name)->exponents;
+    const auto& constant = *std::ranges::find(all_.motor_model.parameters, "thermal_time_constant_winding", &CalibratedValue::name);
     const double winding_s = constant.before * std::exp(constant.exponents.dot(all_.fit.theta - all_.motor_model.model.theta()));
     const double sd_share = cubes_s3 / time_s / (12.0 * winding_s * winding_s);
     all_.fit.covariance += sd_share * sd_share * capacity * capacity.transpose();
@@ -270,13 +270,13 @@ class Calibrating {
     for (const auto& [name, sign] :
          {std::pair("winding_heat_capacity", 1.0), std::pair("stator_heat_capacity", 1.0),
           std::pair("thermal_resistance_winding_stator", -1.0), std::pair("thermal_resistance_stator_ambient", -1.0)}) {
-      const auto found = std::ranges::find(all_.figures, name, &CalibratedParameter::name);
+      const auto found = std::ranges::find(all_.parameters, name, &CalibratedParameter::name);
       const double moved = sign * std::log(found->value / found->before);
       least = std::min(least, moved);
       most = std::max(most, moved);
     }
     // Clearly more than the prior makes plausible.
-    const auto across = std::ranges::find(all_.motor_model.figures, "thermal_resistance_winding_stator", &CalibratedValue::name);
+    const auto across = std::ranges::find(all_.motor_model.parameters, "thermal_resistance_winding_stator", &CalibratedValue::name);
     const double plain = std::max(0.22, 1.5 * across->prior_sd);
     if (least > plain || most < -plain) {
       const bool is_much = least > 0.0;
@@ -348,7 +348,7 @@ class Calibrating {
 
   void report_large_changes() {
     constexpr double kUnlikely_sd = 3.0;
-    for (const CalibratedValue& each : all_.motor_model.figures) {
+    for (const CalibratedValue& each : all_.motor_model.parameters) {
       const double moved = each.exponents.dot(all_.fit.theta - all_.motor_model.model.theta());
       const double sd = std::sqrt(each.exponents.dot(all_.fit.covariance * each.exponents));
       if (each.is_of_file && std::abs(moved) > kUnlikely_sd * std::hypot(each.prior_sd, sd)) {
@@ -360,18 +360,18 @@ class Calibrating {
     }
   }
 
-  void figures() {
+  void parameters() {
     const MotorModel& motor = all_.motor_model;
     const Model& model = motor.model;
     const Fit& fit = all_.fit;
     std::vector<std::optional<std::pair<double, double>>> profiles(static_cast<std::size_t>(model.free_count()));
     Eigen::Index of_file = 0;
-    for (const CalibratedValue& each : motor.figures) {
+    for (const CalibratedValue& each : motor.parameters) {
       of_file += each.is_of_file ? 1 : 0;
       const double moved = each.exponents.dot(fit.theta - model.theta());
       const double sd = std::sqrt(each.exponents.dot(fit.covariance * each.exponents));
-      CalibratedParameter figure{.name = each.name, .unit = each.unit, .is_of_file = each.is_of_file, .before = each.before};
-      figure.value = each.before * std::exp(moved);
+      CalibratedParameter parameter{.name = each.name, .unit = each.unit, .is_of_file = each.is_of_file, .before = each.before};
+      parameter.value = each.before * std::exp(moved);
       double below = kInterval_sd * sd;
       double above = kInterval_sd * sd;
       Eigen::Index only = 0;
@@ -382,18 +382,18 @@ class Calibrating {
         const double widened = sd / std::max(1e-9, std::sqrt(fit.hypotheses.front().covariance(only, only)));
         below = (fit.theta[only] - low) * std::max(1.0, widened);
         above = (high - fit.theta[only]) * std::max(1.0, widened);
-        figure.by_profile = true;
+        parameter.by_profile = true;
       }
-      figure.low = figure.value * std::exp(-below);
-      figure.high = figure.value * std::exp(above);
+      parameter.low = parameter.value * std::exp(-below);
+      parameter.high = parameter.value * std::exp(above);
       // Without heat in the runs, values in watts rest on the file, however well the data determine the time constants.
       const bool has_watts = each.origin == Origin::measured || !rests_on_watts(motor, each) || is_heated(motor, all_.runs);
-      figure.is_identifiable = has_watts && is_identifiable(sd, each);
-      all_.figures.push_back(std::move(figure));
+      parameter.is_identifiable = has_watts && is_identifiable(sd, each);
+      all_.parameters.push_back(std::move(parameter));
     }
     Eigen::MatrixXd exponents(of_file, model.free_count());
     for (Eigen::Index i = 0; i < of_file; ++i) {
-      exponents.row(i) = motor.figures[static_cast<std::size_t>(i)].exponents.transpose();
+      exponents.row(i) = motor.parameters[static_cast<std::size_t>(i)].exponents.transpose();
     }
     const Eigen::MatrixXd covariance = exponents * fit.covariance * exponents.transpose();
     const Eigen::VectorXd inverse_sd = covariance.diagonal().cwiseSqrt().cwiseInverse();
@@ -402,7 +402,7 @@ class Calibrating {
 
   void refuse_where_nothing_was_learned() const {
     const bool is_file_kept = all_.is_forecast_written && all_.forecast->source == ForecastSource::file;
-    if (is_file_kept || std::ranges::any_of(all_.figures, &CalibratedParameter::is_identifiable)) {
+    if (is_file_kept || std::ranges::any_of(all_.parameters, &CalibratedParameter::is_identifiable)) {
       return;
     }
     std::string why = "no parameter of this motor is identifiable from these logs";
@@ -491,26 +491,26 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
   std::ranges::copy(calibration.fitted, std::back_inserter(fit.runs));
   fit.training = calibration.training;
   result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(names_of(calibration.runs), ", "));
-  for (const CalibratedParameter& each : calibration.figures) {
+  for (const CalibratedParameter& each : calibration.parameters) {
     if (!each.is_of_file) {
       continue;
     }
-    fit.figures.push_back(each.name);
-    ParameterValue* const figure = find_parameter(result, each.name);
-    figure->value = each.value;
-    figure->printed.clear();
+    fit.parameters.push_back(each.name);
+    ParameterValue* const parameter = find_parameter(result, each.name);
+    parameter->value = each.value;
+    parameter->printed.clear();
     if (each.is_identifiable) {
-      figure->origin = Origin::measured;
-      figure->source = kSource;
-      figure->derivation = "fit to measured temperatures";
+      parameter->origin = Origin::measured;
+      parameter->source = kSource;
+      parameter->derivation = "fit to measured temperatures";
     } else {
       // The value changed together with the others, but its origin is still the earlier one.
-      figure->source += figure->source.empty() ? kSource : fmt::format(", {}", kSource);
-      figure->derivation +=
-          fmt::format("{}fit to measured temperatures, which do not determine it alone", figure->derivation.empty() ? "" : "; ");
+      parameter->source += parameter->source.empty() ? kSource : fmt::format(", {}", kSource);
+      parameter->derivation +=
+          fmt::format("{}fit to measured temperatures, which do not determine it alone", parameter->derivation.empty() ? "" : "; ");
     }
     const Range declared = declared_range(result, each.name);
-    figure->spread = Spread{Spread::Kind::range, std::max(each.low, declared.low), std::min(each.high, declared.high), true};
+    parameter->spread = Spread{Spread::Kind::range, std::max(each.low, declared.low), std::min(each.high, declared.high), true};
   }
   fit.correlation = calibration.correlation;
   fit.latent_flux_W = calibration.fit.flux.rms_W;

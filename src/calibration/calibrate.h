@@ -53,13 +53,13 @@ struct Calibration {
   std::vector<MeasuredRun> runs;
   std::vector<std::string> fitted;  ///< name_and_fingerprint() of each recording
   TrainingRange training;           ///< their conditions and input ranges
-  std::vector<CalibratedParameter> figures;
-  Eigen::MatrixXd correlation;  ///< of the logarithms of the motor file's parameters, in the order of `figures`
+  std::vector<CalibratedParameter> parameters;
+  Eigen::MatrixXd correlation;  ///< of the logarithms of the motor file's parameters, in the order of `parameters`
   std::vector<OpenDirection> open;
   std::string next_experiment;  ///< empty if nothing is open
   std::vector<ErrorBeforeAfter> fit_error;
   std::optional<Forecast> forecast;  ///< forecast fit, its rivals and its error band
-  bool is_forecast_written = false;  ///< true: `figures` are from the forecast fit; false: from the innovations fit
+  bool is_forecast_written = false;  ///< true: `parameters` are from the forecast fit; false: from the innovations fit
   std::vector<MotorEffect> effects;  ///< effects of the written file
   std::vector<PredictedRun> fitted_before,
       fitted_after;  ///< fitted runs, predicted by the original and by the written file; bands not valid

@@ -170,16 +170,16 @@ Answer answer_to(const MotorModel& motor, const Eigen::VectorXd& direction, cons
   return std::abs(component(direction, roles.drag)) > kMostly ? loss_hidden(seen) : not_excited();
 }
 
-bool is_of_stator(const MotorModel& motor, const CalibratedValue& figure) {
+bool is_of_stator(const MotorModel& motor, const CalibratedValue& parameter) {
   const Roles roles = roles_of(motor.model);
-  return component(figure.exponents, roles.stator_capacity) != 0.0 || component(figure.exponents, roles.stator_ambient) != 0.0;
+  return component(parameter.exponents, roles.stator_capacity) != 0.0 || component(parameter.exponents, roles.stator_ambient) != 0.0;
 }
 
 /// Reason why a single parameter is not identifiable although no open direction contains it.
-Answer answer_to(const MotorModel& motor, const CalibratedValue& figure, const Fit& fit, const Look& seen) {
+Answer answer_to(const MotorModel& motor, const CalibratedValue& parameter, const Fit& fit, const Look& seen) {
   const Roles roles = roles_of(motor.model);
-  const auto holds = [&](int place) { return component(figure.exponents, place) != 0.0; };
-  if (!seen.has_heat && (holds(roles.resistance) || holds(roles.drag) || rests_on_watts(motor, figure))) {
+  const auto holds = [&](int place) { return component(parameter.exponents, place) != 0.0; };
+  if (!seen.has_heat && (holds(roles.resistance) || holds(roles.drag) || rests_on_watts(motor, parameter))) {
     return no_heat();
   }
   if (holds(roles.resistance)) {
@@ -188,10 +188,10 @@ Answer answer_to(const MotorModel& motor, const CalibratedValue& figure, const F
   if (holds(roles.drag)) {
     return loss_hidden(seen);
   }
-  if (is_of_stator(motor, figure) && !seen.stator_is_sensed) {
+  if (is_of_stator(motor, parameter) && !seen.stator_is_sensed) {
     return stator_unseen();
   }
-  if (is_of_stator(motor, figure)) {
+  if (is_of_stator(motor, parameter)) {
     const double stator_s = std::exp(fit.theta[roles.stator_capacity] + fit.theta[roles.stator_ambient]);
     return {fmt::format("the runs neither reach a steady state nor cool down far enough: the longest lasts {} min, the stator's time "
                         "constant is about {} min",
@@ -210,24 +210,24 @@ Answer answer_to(const MotorModel& motor, const CalibratedValue& figure, const F
 
 /// Adds a reason for every parameter that is not identifiable and that the open directions do not explain. `explained` has these directions
 /// as columns.
-void name_the_rest(const MotorModel& motor, const Fit& fit, const Look& seen, std::span<const CalibratedParameter> figures,
+void name_the_rest(const MotorModel& motor, const Fit& fit, const Look& seen, std::span<const CalibratedParameter> parameters,
                    const Eigen::MatrixXd& explained, std::vector<OpenDirection>& open) {
   const bool has_unlogged_speed = !motor.nuisances.empty();
-  for (std::size_t i = 0; i < figures.size(); ++i) {
-    const CalibratedValue& figure = motor.figures[i];
-    const double variance = figure.exponents.dot(fit.covariance * figure.exponents);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const CalibratedValue& parameter = motor.parameters[i];
+    const double variance = parameter.exponents.dot(fit.covariance * parameter.exponents);
     constexpr double kMostly = 0.5;
-    if (figures[i].is_identifiable || (explained.transpose() * figure.exponents).squaredNorm() > kMostly * variance) {
+    if (parameters[i].is_identifiable || (explained.transpose() * parameter.exponents).squaredNorm() > kMostly * variance) {
       continue;
     }
-    const Answer answer = has_unlogged_speed && is_of_stator(motor, figure) ? speed_unlogged() : answer_to(motor, figure, fit, seen);
+    const Answer answer = has_unlogged_speed && is_of_stator(motor, parameter) ? speed_unlogged() : answer_to(motor, parameter, fit, seen);
     const auto same = std::ranges::find_if(
         open, [&](const OpenDirection& each) { return each.why == answer.why && each.experiment == answer.experiment; });
     if (same != open.end()) {
-      same->what += fmt::format(", {}", figure.name);
+      same->what += fmt::format(", {}", parameter.name);
       same->left_sd = std::max(same->left_sd, std::sqrt(variance));
     } else {
-      open.push_back(open_direction(figure.name, answer));
+      open.push_back(open_direction(parameter.name, answer));
       open.back().left_sd = std::sqrt(variance);
     }
   }
@@ -258,15 +258,15 @@ bool is_heated(const MotorModel& motor, std::span<const MeasuredRun> runs) {
   });
 }
 
-bool rests_on_watts(const MotorModel& motor, const CalibratedValue& figure) {
+bool rests_on_watts(const MotorModel& motor, const CalibratedValue& parameter) {
   const Roles roles = roles_of(motor.model);
-  const double by_scale = component(figure.exponents, roles.winding_capacity) - component(figure.exponents, roles.winding_stator) +
-                          component(figure.exponents, roles.stator_capacity) - component(figure.exponents, roles.stator_ambient);
+  const double by_scale = component(parameter.exponents, roles.winding_capacity) - component(parameter.exponents, roles.winding_stator) +
+                          component(parameter.exponents, roles.stator_capacity) - component(parameter.exponents, roles.stator_ambient);
   return std::abs(by_scale) > 0.5;
 }
 
 std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& fit, std::span<const MeasuredRun> runs,
-                                           std::span<const CalibratedParameter> figures) {
+                                           std::span<const CalibratedParameter> parameters) {
   const Eigen::Index count = motor.model.free_count();
   const Eigen::MatrixXd triangle = fit.data_triangle.topLeftCorner(count, count);
   Eigen::MatrixXd data = triangle.transpose() * triangle;
@@ -287,7 +287,7 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& f
   const Eigen::MatrixXd root = prior_covariance.llt().matrixL();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(root.transpose() * data(asked, asked) * root);
   const Look seen = look(motor, runs);
-  const bool was_fitted = std::ranges::find(motor.figures, Origin::measured, &CalibratedValue::origin) != motor.figures.end();
+  const bool was_fitted = std::ranges::find(motor.parameters, Origin::measured, &CalibratedValue::origin) != motor.parameters.end();
   std::vector<OpenDirection> open;
   if (!motor.nuisances.empty()) {
     open.push_back(open_direction(std::string(kLossAtUnloggedSpeed), speed_unlogged()));
@@ -309,7 +309,7 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& f
       explained.rightCols(1) = left;
     }
   }
-  name_the_rest(motor, fit, seen, figures, explained, open);
+  name_the_rest(motor, fit, seen, parameters, explained, open);
   return open;
 }
 

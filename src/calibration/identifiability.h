@@ -13,12 +13,12 @@ namespace heatsoak {
 bool is_heated(const MotorModel& motor, std::span<const MeasuredRun> runs);
 
 /// Returns true if the parameter scales with a common factor on all heat. True for K/W and J/K, false for time constants.
-bool rests_on_watts(const MotorModel& motor, const CalibratedValue& figure);
+bool rests_on_watts(const MotorModel& motor, const CalibratedValue& parameter);
 
 /// Returns the combinations of parameters that the data determine less well than the prior, and parameters that are not identifiable for
-/// another reason. `figures` must be in the order of motor.figures.
+/// another reason. `parameters` must be in the order of motor.parameters.
 std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& fit, std::span<const MeasuredRun> runs,
-                                           std::span<const CalibratedParameter> figures);
+                                           std::span<const CalibratedParameter> parameters);
 
 /// Returns the cheapest experiment for the most uncertain directions; empty if nothing is open.
 std::string next_experiment(std::span<const OpenDirection> open);

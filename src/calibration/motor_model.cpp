@@ -66,7 +66,7 @@ class ModelBuilder {
                                     std::vector<double>{implicit_power_share(motor)});
       // An estimated no-load current is too uncertain for this split.
       if (with_speed && motor.nominal.no_load_current_A > 0.0 &&
-          motor.figures.find("no_load_current")->second.origin != Origin::estimated) {
+          motor.parameters.find("no_load_current")->second.origin != Origin::estimated) {
         add_loss_at_stator(all_.model.network, drag_torque_Nm(motor.nominal));
       }
     }
@@ -86,17 +86,17 @@ class ModelBuilder {
     const int across = free("winding_stator.thermal_resistance");
     const int stator = free("stator.heat_capacity");
     const int out = free("stator_ambient.thermal_resistance");
-    figure("thermal_resistance_winding_stator", {{across, 1.0}});
-    figure("thermal_resistance_stator_ambient", {{out, 1.0}});
-    figure("thermal_time_constant_winding", {{winding, 1.0}, {across, 1.0}});
-    figure("thermal_time_constant_stator", {{stator, 1.0}, {out, 1.0}});
+    add_parameter("thermal_resistance_winding_stator", {{across, 1.0}});
+    add_parameter("thermal_resistance_stator_ambient", {{out, 1.0}});
+    add_parameter("thermal_time_constant_winding", {{winding, 1.0}, {across, 1.0}});
+    add_parameter("thermal_time_constant_stator", {{stator, 1.0}, {out, 1.0}});
     if (all_.heat == HeatInput::input_power) {
       heat_of_power();
     } else {
       heat_of_current();
     }
     effects();
-    const auto file_parameters = all_.figures.size();
+    const auto file_parameters = all_.parameters.size();
     capacity("winding_heat_capacity", winding);
     capacity("stator_heat_capacity", stator);
     set_prior(file_parameters, winding, stator);
@@ -113,30 +113,31 @@ class ModelBuilder {
     return static_cast<int>(all_.model.free.size()) - 1;
   }
 
-  void figure(std::string_view key, const std::vector<std::pair<int, double>>& exponents) {
-    const ParameterValue& figure = motor_.figures.find(key)->second;
+  void add_parameter(std::string_view key, const std::vector<std::pair<int, double>>& exponents) {
+    const ParameterValue& parameter = motor_.parameters.find(key)->second;
     const auto specs = motor_parameter_specs();
     const auto spec = std::ranges::find(specs, key, [](const MotorParameterSpec& each) { return each.spec.key; });
-    add(std::string(key), std::string(spec->spec.unit), figure, exponents);
+    add(std::string(key), std::string(spec->spec.unit), parameter, exponents);
   }
-  void add(std::string name, std::string unit, const ParameterValue& figure, const std::vector<std::pair<int, double>>& exponents) {
+  void add(std::string name, std::string unit, const ParameterValue& parameter, const std::vector<std::pair<int, double>>& exponents) {
     // A result of an earlier fit holds for this mounting, so it is not widened.
-    const double prior_sd = is_of_fit(name) && figure.spread ? prior_sd_of_spread(figure) : prior_sd_of(figure);
-    CalibratedValue fitted{std::move(name), std::move(unit), true, Eigen::VectorXd::Zero(kMostFree), figure.value, prior_sd, figure.origin};
+    const double prior_sd = is_of_fit(name) && parameter.spread ? prior_sd_of_spread(parameter) : prior_sd_of(parameter);
+    CalibratedValue fitted{std::move(name), std::move(unit), true, Eigen::VectorXd::Zero(kMostFree), parameter.value,
+                           prior_sd,        parameter.origin};
     for (const auto& [place, exponent] : exponents) {
       fitted.exponents[place] = exponent;
     }
-    all_.figures.push_back(std::move(fitted));
+    all_.parameters.push_back(std::move(fitted));
   }
 
   void heat_of_current() {
-    const ParameterValue& resistance = motor_.figures.find("terminal_resistance")->second;
+    const ParameterValue& resistance = motor_.parameters.find("terminal_resistance")->second;
     // A published or measured resistance sets the scale of all heat and is held; an estimate is fitted.
     if (resistance.spread || resistance.origin == Origin::estimated) {
-      figure("terminal_resistance", {{free("copper_loss.terminal_resistance"), 1.0}});
+      add_parameter("terminal_resistance", {{free("copper_loss.terminal_resistance"), 1.0}});
       // A resistance does not depend on the mounting, so its spread is not widened.
       if (resistance.spread) {
-        all_.figures.back().prior_sd = std::min(all_.figures.back().prior_sd, prior_sd_of_spread(resistance));
+        all_.parameters.back().prior_sd = std::min(all_.parameters.back().prior_sd, prior_sd_of_spread(resistance));
       }
     } else {
       all_.held.emplace_back("terminal_resistance is held at its stated value: all heat capacities and resistances scale with it");
@@ -147,7 +148,7 @@ class ModelBuilder {
       all_.held.emplace_back("no_load_current is held: its loss depends on speed, which not every log has");
     } else if (motor_.nominal.no_load_current_A > 0.0) {
       all_.needed.push_back(Signal::speed);
-      figure("no_load_current", {{free("no_load_loss.drag_torque"), 1.0}});
+      add_parameter("no_load_current", {{free("no_load_loss.drag_torque"), 1.0}});
     }
   }
 
@@ -161,7 +162,7 @@ class ModelBuilder {
         has_loss_at_stator ? "beyond that " : ""));
     if (has_loss_at_stator) {
       all_.needed.push_back(Signal::speed);
-      figure("no_load_current", {{free(std::string(kDragAtStator)), 1.0}});
+      add_parameter("no_load_current", {{free(std::string(kDragAtStator)), 1.0}});
     }
   }
 
@@ -196,15 +197,17 @@ class ModelBuilder {
 
   void capacity(const std::string& name, int place) {
     const double before = all_.model.values[static_cast<std::size_t>(all_.model.free[static_cast<std::size_t>(place)].place)];
-    all_.figures.push_back(
+    all_.parameters.push_back(
         {name, "J/K", false, Eigen::VectorXd::Zero(kMostFree), before, 0.0, motor_.fit ? Origin::measured : Origin::derived});
-    all_.figures.back().exponents[place] = 1.0;
+    all_.parameters.back().exponents[place] = 1.0;
   }
 
-  static double prior_sd_of_spread(const ParameterValue& figure) { return 0.25 * std::log(figure.spread->high / figure.spread->low); }
+  static double prior_sd_of_spread(const ParameterValue& parameter) {
+    return 0.25 * std::log(parameter.spread->high / parameter.spread->low);
+  }
 
   [[nodiscard]] bool is_of_fit(const std::string& name) const {
-    return motor_.fit && std::ranges::find(motor_.fit->figures, name) != motor_.fit->figures.end();
+    return motor_.fit && std::ranges::find(motor_.fit->parameters, name) != motor_.fit->parameters.end();
   }
 
   /// Prior precision of the logarithms of the file's parameters. They are independent, except for those from one earlier fit, which have
@@ -214,10 +217,10 @@ class ModelBuilder {
     Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(count, count);
     std::vector<Eigen::Index> in_fit(static_cast<std::size_t>(count), -1);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const CalibratedValue& each = all_.figures[static_cast<std::size_t>(i)];
+      const CalibratedValue& each = all_.parameters[static_cast<std::size_t>(i)];
       inverse_sd[i] = 1.0 / each.prior_sd;
       if (is_of_fit(each.name)) {
-        in_fit[static_cast<std::size_t>(i)] = std::ranges::find(motor_.fit->figures, each.name) - motor_.fit->figures.begin();
+        in_fit[static_cast<std::size_t>(i)] = std::ranges::find(motor_.fit->parameters, each.name) - motor_.fit->parameters.begin();
       }
     }
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -239,13 +242,13 @@ class ModelBuilder {
   void set_prior(std::size_t file_parameters, int winding, int stator) {
     Model& model = all_.model;
     const Eigen::Index count = model.free_count();
-    for (CalibratedValue& each : all_.figures) {
+    for (CalibratedValue& each : all_.parameters) {
       each.exponents.conservativeResize(count);
     }
     model.prior.mean = model.theta();
     Eigen::MatrixXd exponents(static_cast<Eigen::Index>(file_parameters), count);
     for (std::size_t i = 0; i < file_parameters; ++i) {
-      exponents.row(static_cast<Eigen::Index>(i)) = all_.figures[i].exponents.transpose();
+      exponents.row(static_cast<Eigen::Index>(i)) = all_.parameters[i].exponents.transpose();
     }
     model.prior.precision = exponents.transpose() * precision_of_parameters(exponents.rows()) * exponents;
     // An earlier fit has already used the mass.
@@ -262,7 +265,7 @@ class ModelBuilder {
       model.prior.mean += model.prior.precision.ldlt().solve(share) * off / (kMassPrior_sd * kMassPrior_sd);
     }
     const Eigen::MatrixXd covariance = model.prior.precision.inverse();
-    for (CalibratedValue& each : all_.figures) {
+    for (CalibratedValue& each : all_.parameters) {
       if (!each.is_of_file) {
         each.prior_sd = std::sqrt(each.exponents.dot(covariance * each.exponents));
       }
@@ -277,20 +280,20 @@ class ModelBuilder {
 
 }  // namespace
 
-bool is_identifiable(double sd_share, const CalibratedValue& figure) {
+bool is_identifiable(double sd_share, const CalibratedValue& parameter) {
   // Not identifiable: an interval of a factor of two to each side, or less than 30 % reduction of the prior standard deviation.
   constexpr double kIdentifiable_sd = 0.35;
   constexpr double kNews_share = 0.7;
-  return sd_share < kIdentifiable_sd && (figure.origin == Origin::measured || sd_share < kNews_share * figure.prior_sd);
+  return sd_share < kIdentifiable_sd && (parameter.origin == Origin::measured || sd_share < kNews_share * parameter.prior_sd);
 }
 
-double prior_sd_of(const ParameterValue& figure) {
-  const auto* const trust = std::ranges::find(kTrust, figure.origin, &Trust::origin);
-  if (!figure.spread || !(figure.spread->low > 0.0) || !(figure.spread->high > figure.spread->low)) {
+double prior_sd_of(const ParameterValue& parameter) {
+  const auto* const trust = std::ranges::find(kTrust, parameter.origin, &Trust::origin);
+  if (!parameter.spread || !(parameter.spread->low > 0.0) || !(parameter.spread->high > parameter.spread->low)) {
     return trust->unstated_sd;
   }
   // Both kinds of spread are taken as 95 % intervals, ±2 standard deviations.
-  return trust->widening * 0.25 * std::log(figure.spread->high / figure.spread->low);
+  return trust->widening * 0.25 * std::log(parameter.spread->high / parameter.spread->low);
 }
 
 static ShaftTorque shaft_torque_of(const Motor& motor) {

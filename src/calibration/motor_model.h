@@ -39,13 +39,13 @@ struct CalibratedValue {
 
 /// Returns true if the data, not only the prior, determine the parameter to a factor of two or better. `sd_share` is the standard deviation
 /// of its logarithm.
-bool is_identifiable(double sd_share, const CalibratedValue& figure);
+bool is_identifiable(double sd_share, const CalibratedValue& parameter);
 
 struct MotorModel {
   Model model;
   HeatInput heat = HeatInput::current;
   std::vector<Signal> needed;
-  std::vector<CalibratedValue> figures;
+  std::vector<CalibratedValue> parameters;
   std::vector<int> nuisances;     ///< indices of free parameters that are not parameters of the motor
   std::vector<std::string> held;  ///< sentences: parameters that are not fitted, and why
 };
@@ -75,6 +75,6 @@ MotorModel motor_model(const Motor& motor, HeatInput heat, bool with_speed);
 
 /// Returns the prior standard deviation of a parameter's logarithm: from its spread, widened according to its origin, or a default for the
 /// origin if it has no spread.
-double prior_sd_of(const ParameterValue& figure);
+double prior_sd_of(const ParameterValue& parameter);
 
 }  // namespace heatsoak

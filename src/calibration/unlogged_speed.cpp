@@ -82,7 +82,7 @@ void open_loss_at_speed(MotorModel& model, const Motor& motor) {
     constexpr double kFar = 10.0;
     opened.set_free({.place = static_cast<int>(first) + share, .by_log = false, .scale = 1.0, .low = -kFar, .high = kFar}, kMean_sd_share);
   }
-  for (CalibratedValue& each : model.figures) {
+  for (CalibratedValue& each : model.parameters) {
     each.exponents.conservativeResizeLike(Eigen::VectorXd::Zero(opened.free_count()));
   }
   opened.least_flux_W = {0.0, kComesAndGoes_share * most_W};

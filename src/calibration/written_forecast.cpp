@@ -50,24 +50,24 @@ Range declared_range(const Motor& motor, std::string_view key) {
   return found == specs.end() ? Range::positive() : found->spec.range;
 }
 
-std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> figures) {
+std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> parameters) {
   std::vector<std::string> notes;
   Motor declared = motor;
-  for (const CalibratedParameter& each : figures) {
-    const ParameterValue* const figure = each.is_of_file ? find_parameter(declared, each.name) : nullptr;
-    if (figure && figure->spread && (each.value < figure->spread->low || each.value > figure->spread->high)) {
+  for (const CalibratedParameter& each : parameters) {
+    const ParameterValue* const parameter = each.is_of_file ? find_parameter(declared, each.name) : nullptr;
+    if (parameter && parameter->spread && (each.value < parameter->spread->low || each.value > parameter->spread->high)) {
       notes.push_back(
           fmt::format("{} becomes {} {}, outside of its declared range of {} to {} {}: check the units of the logs, or whether "
                       "the range still holds for this motor and its mounting",
-                      each.name, significant(each.value, 3), unit_for_display(each.unit), significant(figure->spread->low, 3),
-                      significant(figure->spread->high, 3), unit_for_display(each.unit)));
+                      each.name, significant(each.value, 3), unit_for_display(each.unit), significant(parameter->spread->low, 3),
+                      significant(parameter->spread->high, 3), unit_for_display(each.unit)));
     }
   }
   return notes;
 }
 
-void keep_unidentifiable(std::span<const CalibratedParameter> before, std::vector<CalibratedParameter>& figures) {
-  for (CalibratedParameter& each : figures) {
+void keep_unidentifiable(std::span<const CalibratedParameter> before, std::vector<CalibratedParameter>& parameters) {
+  for (CalibratedParameter& each : parameters) {
     const auto same = std::ranges::find(before, each.name, &CalibratedParameter::name);
     each.is_identifiable = each.is_identifiable && (same == before.end() || same->is_identifiable);
   }
@@ -95,7 +95,7 @@ std::string what_does_not_describe(const Calibration& calibration) {
 std::vector<std::string> forecast_in_words(const Calibration& calibration) {
   const Forecast& forecast = *calibration.forecast;
   std::vector<std::string> words;
-  if (calibration.is_forecast_written && !std::ranges::all_of(calibration.figures, &CalibratedParameter::is_identifiable)) {
+  if (calibration.is_forecast_written && !std::ranges::all_of(calibration.parameters, &CalibratedParameter::is_identifiable)) {
     words.emplace_back(
         "values that are not identifiable are written too: the forecast depends on all values together, so do not use these as "
         "measurements");

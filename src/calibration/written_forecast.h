@@ -11,10 +11,10 @@
 namespace heatsoak {
 
 /// Returns one sentence per fitted value outside its declared range. Verbs that need a sound motor may refuse such a file.
-std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> figures);
+std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> parameters);
 
 /// Marks a value as not identifiable if it was not identifiable in `before`.
-void keep_unidentifiable(std::span<const CalibratedParameter> before, std::vector<CalibratedParameter>& figures);
+void keep_unidentifiable(std::span<const CalibratedParameter> before, std::vector<CalibratedParameter>& parameters);
 
 /// Replaces model, parameters and covariance of the innovations fit by those of the forecast fit. Needs calibration.forecast.
 void write_forecast(Calibration& calibration);

@@ -34,8 +34,8 @@ namespace {
 
 /// Returns the lower end of a limit that the file gives as a range, because its true value is unknown.
 double lowest_limit_C(const Motor& motor, std::string_view key, double nominal_C) {
-  const auto figure = motor.figures.find(key);
-  return figure != motor.figures.end() && figure->second.spread ? std::min(nominal_C, figure->second.spread->low) : nominal_C;
+  const auto parameter = motor.parameters.find(key);
+  return parameter != motor.parameters.end() && parameter->second.spread ? std::min(nominal_C, parameter->second.spread->low) : nominal_C;
 }
 
 }  // namespace

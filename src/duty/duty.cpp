@@ -23,7 +23,7 @@ const std::vector<ShapeType>& all_shapes() {
 
 namespace {
 
-/// `own` over `base`: tables are merged key by key, but a figure is replaced as a whole.
+/// `own` over `base`: tables are merged key by key, but a parameter is replaced as a whole.
 Value merged(Value base, const Value& own) {
   for (const Member& member : own.members) {
     const auto same = std::ranges::find(base.members, member.key, &Member::key);
@@ -76,7 +76,7 @@ Duty read_duty(const std::filesystem::path& path) {
   duty.origin = top.text("origin", Need::required).value_or("");
   duty.notes = top.texts("notes", Need::optional);
   duty.ambient_C =
-      top.figure({"ambient", "degC", Range::between(-40.0, 100.0), "air around the motor"}, Need::required).value_or(ParameterValue{});
+      top.parameter({"ambient", "degC", Range::between(-40.0, 100.0), "air around the motor"}, Need::required).value_or(ParameterValue{});
   std::vector<std::string_view> names;
   for (const ShapeType& shape : all_shapes()) {
     names.push_back(shape.name);

@@ -17,15 +17,15 @@ using Origins = std::map<std::string, std::string, std::less<>>;
 
 /// "robot file: body.yaw_inertia (estimated)".
 std::string of_robot(const Robot& robot, std::string_view key) {
-  const auto found = robot.figures.find(key);
-  return found == robot.figures.end() ? fmt::format("robot file: {}", key)
-                                      : fmt::format("robot file: {} ({})", key, to_string(found->second.origin));
+  const auto found = robot.parameters.find(key);
+  return found == robot.parameters.end() ? fmt::format("robot file: {}", key)
+                                         : fmt::format("robot file: {} ({})", key, to_string(found->second.origin));
 }
 
 std::string of_motor(const Motor& motor, std::string_view key) {
-  const auto found = motor.figures.find(key);
-  return found == motor.figures.end() ? fmt::format("motor file: {}", key)
-                                      : fmt::format("motor file: {} ({})", key, to_string(found->second.origin));
+  const auto found = motor.parameters.find(key);
+  return found == motor.parameters.end() ? fmt::format("motor file: {}", key)
+                                         : fmt::format("motor file: {} ({})", key, to_string(found->second.origin));
 }
 
 Origins wheel_origins(bool has_friction) {

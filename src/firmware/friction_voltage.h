@@ -27,7 +27,7 @@ struct FrictionVoltage {
 /// file. A curve with double angle, and roller drag, do not have it: for these the steady torque of each wheel at 72 directions of travel
 /// follows from inverse_dynamics() without damping, and a_i and b_i from linear least squares, φ_i being the phase of the file or, where it
 /// has none, that of the wheel's rolling direction.
-/// Needs the figures that make_body() needs, [friction] apart; throws Failure (bad_input) that names those that are missing.
+/// Needs the parameters that make_body() needs, [friction] apart; throws Failure (bad_input) that names those that are missing.
 FrictionVoltage friction_voltage(const Robot& robot, const MotorValues& motor);
 
 /// The body with the friction of the file, or without any where the file has none.

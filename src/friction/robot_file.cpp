@@ -34,8 +34,8 @@ std::string joined(const Lines& lines) {
 std::string quoted(const std::string& text) { return fmt::format("{:?}", text); }
 
 /// Formats a value and its range as TOML, with two digits more than the first uncertain one. `least` is a lower bound.
-std::string figure(const Estimate& estimate, double scale, const std::string& unit, double least, const std::string& source,
-                   const std::string& derivation) {
+std::string parameter(const Estimate& estimate, double scale, const std::string& unit, double least, const std::string& source,
+                      const std::string& derivation) {
   const auto kept = [&](double value) { return std::max(value, least) * scale; };
   const double width = estimate.is_known() ? kept(estimate.high) - kept(estimate.low) : 0.0;
   const double smallest = width > 0.0 ? width : std::max(std::abs(kept(estimate.value)), 1e-3) * 0.01;
@@ -86,7 +86,7 @@ Lines::iterator end_of_friction(Lines& lines, const Robot& robot) {
   static const std::regex kHeader(R"(^\s*\[\s*friction\s*\])");
   const auto header = std::ranges::find_if(lines, [](const std::string& line) { return std::regex_search(line, kHeader); });
   if (header == lines.end()) {
-    if (std::ranges::any_of(robot.figures, [](const auto& each) { return each.first.starts_with("friction."); })) {
+    if (std::ranges::any_of(robot.parameters, [](const auto& each) { return each.first.starts_with("friction."); })) {
       throw other_form(robot, "friction");
     }
     lines.insert(lines.end(), {"", "[friction]"});
@@ -101,8 +101,8 @@ Lines::iterator end_of_friction(Lines& lines, const Robot& robot) {
 
 void set_damping(Lines& lines, const Robot& robot, const std::string& value) {
   const std::string line = "wheel_damping = " + value;
-  const auto place = robot.figures.find("friction.wheel_damping");
-  if (place == robot.figures.end()) {
+  const auto place = robot.parameters.find("friction.wheel_damping");
+  if (place == robot.parameters.end()) {
     lines.insert(end_of_friction(lines, robot), line);
     return;
   }
@@ -145,11 +145,11 @@ Lines wheel_table(const WheelFriction& wheel, const DriveConstants& drive, const
   const auto degrees = [&](double angle_rad) { return angle_rad * 180.0 / std::numbers::pi; };
   const double none = -std::numeric_limits<double>::infinity();
   return {"", "[[friction.heading.wheel]]",
-          "constant = " +
-              figure(constant, 1e3, "mN m", 0.0, source, "b = " + volts(wheel.constant_V) + "; " + conversion + ", less the motor's drag"),
-          "sine = " + figure(sine, 1e3, "mN m", none, source, "a = " + volts(wheel.sine_V) + "; " + conversion),
-          "phase = " + figure(converted(wheel.phase_rad, degrees), 1.0, "deg", none, source,
-                              wheel.phase_is_given ? "the wheel's rolling direction: too few headings to determine it" : "fitted")};
+          "constant = " + parameter(constant, 1e3, "mN m", 0.0, source,
+                                    "b = " + volts(wheel.constant_V) + "; " + conversion + ", less the motor's drag"),
+          "sine = " + parameter(sine, 1e3, "mN m", none, source, "a = " + volts(wheel.sine_V) + "; " + conversion),
+          "phase = " + parameter(converted(wheel.phase_rad, degrees), 1.0, "deg", none, source,
+                                 wheel.phase_is_given ? "the wheel's rolling direction: too few headings to determine it" : "fitted")};
 }
 
 void note_what_is_cut(const FrictionFit& fit, const DriveConstants& drive, std::vector<std::string>& notes) {
@@ -198,9 +198,9 @@ std::string with_measured_friction(const std::string& text, const Robot& robot, 
   if (is_known && !has_heading) {
     throw other_form(robot, "friction.heading");
   }
-  const auto old_rotation = robot.figures.find("friction.heading.rotation");
+  const auto old_rotation = robot.parameters.find("friction.heading.rotation");
   const std::string rotation_line =
-      old_rotation == robot.figures.end() ? "" : lines[static_cast<std::size_t>(old_rotation->second.at.line - 1)];
+      old_rotation == robot.parameters.end() ? "" : lines[static_cast<std::size_t>(old_rotation->second.at.line - 1)];
   const std::string conversion =
       fmt::format("as voltage at the driver, / {:.4g} ohm x {:.4g} mN m/A{}", drive.resistance_ohm, 1e3 * drive.torque_constant_Nm_per_A,
                   drive.gear_ratio == 1.0 ? "" : fmt::format(" x {:.4g} of the gear", drive.gear_ratio * drive.gear_efficiency));
@@ -211,8 +211,8 @@ std::string with_measured_friction(const std::string& text, const Robot& robot, 
     }
     const Estimate all = over_wheels(dampings);
     set_damping(lines, robot,
-                figure(all, 1e3, "mN m s/rad", 0.0, source,
-                       "mean of the wheels, the interval covers those of all; " + conversion + ", without the back-EMF"));
+                parameter(all, 1e3, "mN m s/rad", 0.0, source,
+                          "mean of the wheels, the interval covers those of all; " + conversion + ", without the back-EMF"));
   }
   remove_heading(lines);
   Lines table{"", "# f = a sin(heading + phase) + b sign(sin(heading + phase)); torques at the wheel, without the drag of the motor",
@@ -223,7 +223,8 @@ std::string with_measured_friction(const std::string& text, const Robot& robot, 
         wheel.rotation_V, [&](double value_V) { return std::isnan(value_V) ? value_V : friction_torque_of_voltage_Nm(drive, value_V); }));
   }
   if (const Estimate all = over_wheels(rotations); std::isfinite(all.value)) {
-    table.push_back("rotation = " + figure(all, 1e3, "mN m", 0.0, source, "mean of the wheels; " + conversion + ", less the motor's drag"));
+    table.push_back("rotation = " +
+                    parameter(all, 1e3, "mN m", 0.0, source, "mean of the wheels; " + conversion + ", less the motor's drag"));
   } else if (!rotation_line.empty()) {
     table.push_back(rotation_line);
   }
@@ -239,8 +240,8 @@ std::string with_measured_damping(const std::string& text, const Robot& robot, c
                                   const std::string& source) {
   Lines lines = lines_of(text);
   set_damping(lines, robot,
-              figure(over_wheels(wheel_damping_Nm_s_per_rad), 1e3, "mN m s/rad", 0.0, source,
-                     "mean of the wheels over roll-outs with open motors"));
+              parameter(over_wheels(wheel_damping_Nm_s_per_rad), 1e3, "mN m s/rad", 0.0, source,
+                        "mean of the wheels over roll-outs with open motors"));
   return checked(lines, robot);
 }
 

@@ -186,7 +186,7 @@ std::vector<std::pair<std::string, Reader>> Reader::named_tables() {
   return result;
 }
 
-std::optional<ParameterValue> Reader::figure(const ParameterSpec& spec, Need need) {
+std::optional<ParameterValue> Reader::parameter(const ParameterSpec& spec, Need need) {
   const Value* value = find(spec, need);
   if (!value) {
     return std::nullopt;
@@ -197,8 +197,8 @@ std::optional<ParameterValue> Reader::figure(const ParameterSpec& spec, Need nee
     return std::nullopt;
   }
   Reader inner(*value, full(spec.key), *diagnostics_);
-  ParameterValue figure;
-  figure.at = value->at;
+  ParameterValue parameter;
+  parameter.at = value->at;
   const std::optional<double> parsed = inner.quantity({"value", spec.unit, spec.range, spec.meaning}, Need::required);
   const std::optional<std::string> origin = inner.text("origin", Need::required);
   if (origin) {
@@ -206,49 +206,49 @@ std::optional<ParameterValue> Reader::figure(const ParameterSpec& spec, Need nee
     if (!known) {
       inner.problem("origin", fmt::format("'{}' is not known; expected measured, datasheet, third_party, derived or estimated", *origin));
     }
-    figure.origin = known.value_or(Origin::estimated);
+    parameter.origin = known.value_or(Origin::estimated);
   }
   const bool has_origin = origin && origin_from(*origin);  // without a valid origin the other required keys are unknown
-  const bool calculated = figure.origin == Origin::derived || figure.origin == Origin::estimated;
-  figure.derivation = inner.text("derivation", has_origin && calculated ? Need::required : Need::optional).value_or("");
+  const bool calculated = parameter.origin == Origin::derived || parameter.origin == Origin::estimated;
+  parameter.derivation = inner.text("derivation", has_origin && calculated ? Need::required : Need::optional).value_or("");
   const Value* source = value->find("source");
   if (source && source->kind == Value::Kind::array) {
-    figure.source = fmt::format("{}", fmt::join(inner.texts("source", Need::required), ", "));
+    parameter.source = fmt::format("{}", fmt::join(inner.texts("source", Need::required), ", "));
   } else {
-    figure.source = inner.text("source", calculated ? Need::optional : Need::required).value_or("");
+    parameter.source = inner.text("source", calculated ? Need::optional : Need::required).value_or("");
   }
   // An empty source would give the value an origin that nobody can check.
-  if (source && figure.source.empty() && (source->kind == Value::Kind::text || source->items.empty())) {
+  if (source && parameter.source.empty() && (source->kind == Value::Kind::text || source->items.empty())) {
     inner.problem("source", "is empty; expected ids of [sources]");
   }
-  if (value->find("derivation") && value->find("derivation")->kind == Value::Kind::text && figure.derivation.empty()) {
-    inner.problem("derivation", "is empty; expected how the figure was found");
+  if (value->find("derivation") && value->find("derivation")->kind == Value::Kind::text && parameter.derivation.empty()) {
+    inner.problem("derivation", "is empty; expected how the value was found");
   }
   if (parsed) {
-    figure.value = *parsed;
-    figure.printed = value->find("value")->text;
-    inner.read_spread(spec, figure);
+    parameter.value = *parsed;
+    parameter.printed = value->find("value")->text;
+    inner.read_spread(spec, parameter);
   } else {
     inner.asked_.insert({"tolerance", "range"});
   }
-  inner.read_confirmations(spec, figure);
+  inner.read_confirmations(spec, parameter);
   inner.finish();
-  return parsed && origin ? std::optional(figure) : std::nullopt;
+  return parsed && origin ? std::optional(parameter) : std::nullopt;
 }
 
-void Reader::read_confirmations(const ParameterSpec& spec, ParameterValue& figure) {
+void Reader::read_confirmations(const ParameterSpec& spec, ParameterValue& parameter) {
   std::optional<Reader> others = table("confirmed_by", Need::optional);
   if (!others) {
     return;
   }
   for (const std::string& source : others->keys()) {
     if (const std::optional<double> value = others->quantity({source, spec.unit, spec.range, spec.meaning}, Need::required)) {
-      figure.confirmed_by.push_back({source, *value, others->table_->find(source)->text});
+      parameter.confirmed_by.push_back({source, *value, others->table_->find(source)->text});
     }
   }
 }
 
-void Reader::read_spread(const ParameterSpec& spec, ParameterValue& figure) {
+void Reader::read_spread(const ParameterSpec& spec, ParameterValue& parameter) {
   const bool is_temperature = spec.unit == "degC";
   asked_.insert({"tolerance", "range"});
   const Value* range = table_->find("range");
@@ -260,8 +260,8 @@ void Reader::read_spread(const ParameterSpec& spec, ParameterValue& figure) {
                                                   "± part of the value that no part exceeds"},
                                                  Need::required);
     if (share) {
-      const double half = is_temperature ? *share : *share * std::abs(figure.value);
-      figure.spread = {Spread::Kind::tolerance, figure.value - half, figure.value + half, !is_temperature};
+      const double half = is_temperature ? *share : *share * std::abs(parameter.value);
+      parameter.spread = {Spread::Kind::tolerance, parameter.value - half, parameter.value + half, !is_temperature};
     }
     return;
   }
@@ -277,12 +277,12 @@ void Reader::read_spread(const ParameterSpec& spec, ParameterValue& figure) {
   if (!low || !high) {
     return;
   }
-  if (!(*low <= figure.value && figure.value <= *high)) {
+  if (!(*low <= parameter.value && parameter.value <= *high)) {
     problem("range", "does not enclose the value; expected lowest ≤ value ≤ highest");
   } else if (!spec.range.contains(*low) || !spec.range.contains(*high)) {
     problem("range", fmt::format("is outside the possible range; expected {}", to_string(spec.range, spec.unit)));
   } else {
-    figure.spread = {Spread::Kind::range, *low, *high, !is_temperature && *low > 0.0};
+    parameter.spread = {Spread::Kind::range, *low, *high, !is_temperature && *low > 0.0};
   }
 }
 

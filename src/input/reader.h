@@ -34,7 +34,7 @@ class Reader {
   /// Returns a list of such quantities. An invalid element is reported as key[index] and returned as 0, so that the length is kept.
   std::vector<double> quantities(const ParameterSpec& spec, Need need);
   /// Reads `{ value = "…", origin = "…", source = "…", tolerance = "…" }`; see motor_db/README.md.
-  std::optional<ParameterValue> figure(const ParameterSpec& spec, Need need);
+  std::optional<ParameterValue> parameter(const ParameterSpec& spec, Need need);
   std::optional<Reader> table(std::string_view key, Need need);
   std::vector<Reader> tables(std::string_view key);  ///< the elements of [[key]]; empty if there are none
   /// Returns every member of this table as a table, with its key.
@@ -56,8 +56,8 @@ class Reader {
   const Value* find(const ParameterSpec& spec, Need need);
   [[nodiscard]] std::string full(std::string_view key) const;
   std::optional<double> parse(const Value& value, std::string_view key, std::string_view unit);
-  void read_spread(const ParameterSpec& spec, ParameterValue& figure);
-  void read_confirmations(const ParameterSpec& spec, ParameterValue& figure);
+  void read_spread(const ParameterSpec& spec, ParameterValue& parameter);
+  void read_confirmations(const ParameterSpec& spec, ParameterValue& parameter);
 
   const Value* table_;
   std::string path_;

@@ -71,10 +71,11 @@ const DefaultRow* row_of(std::string_view key) {
 }
 
 /// Returns the spread around the value, clipped to the declared range so that no sample leaves it.
-Spread spread_by(const Ratios& by, const ParameterValue& figure, const Range& range) {
-  const double one = figure.value * by.low;
-  const double other = figure.value * by.high;
-  return {Spread::Kind::range, std::max(std::min(one, other), range.low), std::min(std::max(one, other), range.high), figure.value > 0.0};
+Spread spread_by(const Ratios& by, const ParameterValue& parameter, const Range& range) {
+  const double one = parameter.value * by.low;
+  const double other = parameter.value * by.high;
+  return {Spread::Kind::range, std::max(std::min(one, other), range.low), std::min(std::max(one, other), range.high),
+          parameter.value > 0.0};
 }
 
 /// Returns the narrowest credible bounds. Well documented files of motor_db state at least 27 % of the default spread. A measurement can be
@@ -90,31 +91,31 @@ Ratios least_ratios(const DefaultRow& row, Origin origin) {
 }
 
 /// Returns whether the stated spread is too narrow. A bound at the end of the declared range is always wide enough.
-bool is_narrow(const ParameterValue& figure, const Spread& least, const Range& range) {
+bool is_narrow(const ParameterValue& parameter, const Spread& least, const Range& range) {
   constexpr double kRounding = 1e-3;  // rounding of a printed tolerance
-  const double slack = kRounding * std::abs(figure.value);
-  return figure.spread && ((figure.spread->low > least.low + slack && figure.spread->low > range.low) ||
-                           (figure.spread->high < least.high - slack && figure.spread->high < range.high));
+  const double slack = kRounding * std::abs(parameter.value);
+  return parameter.spread && ((parameter.spread->low > least.low + slack && parameter.spread->low > range.low) ||
+                              (parameter.spread->high < least.high - slack && parameter.spread->high < range.high));
 }
 
 /// Returns the spread that replaces the stated one; nothing if the stated one is credible.
-std::optional<Spread> replacement(const DefaultRow& row, const ParameterValue& figure, const Range& range) {
-  if (figure.value == 0.0) {
+std::optional<Spread> replacement(const DefaultRow& row, const ParameterValue& parameter, const Range& range) {
+  if (parameter.value == 0.0) {
     return std::nullopt;
   }
-  const Spread usual = spread_by(ratios(row, figure.origin), figure, range);
-  if (!figure.spread || is_exact(figure)) {
+  const Spread usual = spread_by(ratios(row, parameter.origin), parameter, range);
+  if (!parameter.spread || is_exact(parameter)) {
     return usual;
   }
-  const Spread least = spread_by(least_ratios(row, figure.origin), figure, range);
-  if (!is_narrow(figure, least, range)) {
+  const Spread least = spread_by(least_ratios(row, parameter.origin), parameter, range);
+  if (!is_narrow(parameter, least, range)) {
     return std::nullopt;
   }
-  if (figure.origin != Origin::measured) {
+  if (parameter.origin != Origin::measured) {
     return usual;
   }
-  return Spread{Spread::Kind::range, std::min(figure.spread->low, least.low), std::max(figure.spread->high, least.high),
-                figure.value > 0.0};
+  return Spread{Spread::Kind::range, std::min(parameter.spread->low, least.low), std::max(parameter.spread->high, least.high),
+                parameter.value > 0.0};
 }
 
 /// False for the knots of a curve and for temperatures: these are chosen, so no relative uncertainty applies.
@@ -123,13 +124,13 @@ bool takes_default(const EffectType& type, std::size_t place) {
   return spec.choices.empty() && spec.unit != "degC" && !spec.key.ends_with("_knot");
 }
 
-/// Calls `visit(key, figure, row, range)` for every value that temperatures depend on.
+/// Calls `visit(key, parameter, row, range)` for every value that temperatures depend on.
 template <class AnyMotor, class Visit>
 void for_each_value(AnyMotor& motor, const Visit& visit) {
   for (const MotorParameterSpec& each : motor_parameter_specs()) {
     const DefaultRow* const row = row_of(each.spec.key);
-    const auto found = motor.figures.find(each.spec.key);
-    if (row && found != motor.figures.end()) {
+    const auto found = motor.parameters.find(each.spec.key);
+    if (row && found != motor.parameters.end()) {
       visit(std::string(each.spec.key), found->second, *row, each.spec.range);
     }
   }
@@ -145,15 +146,17 @@ void for_each_value(AnyMotor& motor, const Visit& visit) {
 
 }  // namespace
 
-bool is_exact(const ParameterValue& figure) { return figure.spread && figure.value != 0.0 && !(figure.spread->high > figure.spread->low); }
+bool is_exact(const ParameterValue& parameter) {
+  return parameter.spread && parameter.value != 0.0 && !(parameter.spread->high > parameter.spread->low);
+}
 
 bool needs_spread(std::string_view key) { return row_of(key) != nullptr; }
 
 std::vector<DefaultSpread> default_spreads(const Motor& motor) {
   std::vector<DefaultSpread> missing;
-  for_each_value(motor, [&](const std::string& key, const ParameterValue& figure, const DefaultRow& row, const Range& range) {
-    if (const std::optional<Spread> spread = replacement(row, figure, range)) {
-      missing.push_back({key, figure.origin, figure.value, *spread});
+  for_each_value(motor, [&](const std::string& key, const ParameterValue& parameter, const DefaultRow& row, const Range& range) {
+    if (const std::optional<Spread> spread = replacement(row, parameter, range)) {
+      missing.push_back({key, parameter.origin, parameter.value, *spread});
     }
   });
   return missing;
@@ -161,28 +164,28 @@ std::vector<DefaultSpread> default_spreads(const Motor& motor) {
 
 std::vector<NarrowSpread> narrow_spreads(const Motor& motor) {
   std::vector<NarrowSpread> narrow;
-  for_each_value(motor, [&](const std::string& key, const ParameterValue& figure, const DefaultRow& row, const Range& range) {
-    const Spread least = spread_by(least_ratios(row, figure.origin), figure, range);
-    if (figure.value != 0.0 && !is_exact(figure) && is_narrow(figure, least, range)) {
-      narrow.push_back({key, &figure, least});
+  for_each_value(motor, [&](const std::string& key, const ParameterValue& parameter, const DefaultRow& row, const Range& range) {
+    const Spread least = spread_by(least_ratios(row, parameter.origin), parameter, range);
+    if (parameter.value != 0.0 && !is_exact(parameter) && is_narrow(parameter, least, range)) {
+      narrow.push_back({key, &parameter, least});
     }
   });
   return narrow;
 }
 
 Motor with_default_spreads(Motor motor) {
-  for_each_value(motor, [](const std::string&, ParameterValue& figure, const DefaultRow& row, const Range& range) {
-    if (const std::optional<Spread> spread = replacement(row, figure, range)) {
-      figure.spread = spread;
+  for_each_value(motor, [](const std::string&, ParameterValue& parameter, const DefaultRow& row, const Range& range) {
+    if (const std::optional<Spread> spread = replacement(row, parameter, range)) {
+      parameter.spread = spread;
     }
   });
   return motor;
 }
 
 std::optional<Spread> spread_or_default(const Motor& motor, std::string_view key) {
-  const auto found = motor.figures.find(key);
+  const auto found = motor.parameters.find(key);
   const auto spec = std::ranges::find(motor_parameter_specs(), key, [](const MotorParameterSpec& each) { return each.spec.key; });
-  if (found == motor.figures.end() || spec == motor_parameter_specs().end()) {
+  if (found == motor.parameters.end() || spec == motor_parameter_specs().end()) {
     return std::nullopt;
   }
   const DefaultRow* const row = row_of(key);

@@ -22,7 +22,7 @@ struct DefaultSpread {
 
 /// Returns true if the stated spread has zero width, such as a tolerance of 0 %. False for a value of 0, whose relative spread is always
 /// zero.
-bool is_exact(const ParameterValue& figure);
+bool is_exact(const ParameterValue& parameter);
 
 /// Returns true if temperatures depend on the value of this key, so that its spread affects the probability of exceeding a limit.
 bool needs_spread(std::string_view key);
@@ -37,7 +37,7 @@ std::vector<DefaultSpread> default_spreads(const Motor& motor);
 /// key and origin. For a measured value: less than 1 % and less than a quarter of the default of a data sheet value.
 struct NarrowSpread {
   std::string key;
-  const ParameterValue* figure = nullptr;
+  const ParameterValue* parameter = nullptr;
   Spread least;  ///< narrowest credible range, in the unit of the declaration
 };
 std::vector<NarrowSpread> narrow_spreads(const Motor& motor);

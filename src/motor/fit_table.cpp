@@ -123,17 +123,17 @@ std::string band_text(const ForecastBand& band) {
 
 }  // namespace
 
-MotorFit read_fit(Reader& table, std::span<const std::string> figures) {
+MotorFit read_fit(Reader& table, std::span<const std::string> parameters) {
   MotorFit fit;
   fit.motor = table.text("motor", Need::required).value_or("");
   fit.runs = table.texts("runs", Need::optional);
-  fit.figures = table.texts("figures", Need::required);
-  for (const std::string& each : fit.figures) {
-    if (std::ranges::find(figures, each) == figures.end()) {
-      table.problem("figures", fmt::format("'{}' is not a parameter of this file{}", each, did_you_mean(each, figures)));
+  fit.parameters = table.texts("figures", Need::required);
+  for (const std::string& each : fit.parameters) {
+    if (std::ranges::find(parameters, each) == parameters.end()) {
+      table.problem("figures", fmt::format("'{}' is not a parameter of this file{}", each, did_you_mean(each, parameters)));
     }
   }
-  fit.correlation = read_correlation(table, fit.figures.size());
+  fit.correlation = read_correlation(table, fit.parameters.size());
   for (const std::string_view node : kHeatedNodes) {
     const std::string noise = fmt::format("noise_{}", node);
     if (const std::optional<double> noise_K = table.quantity({noise, "K", Range::non_negative(), "of one sample"}, Need::optional)) {
@@ -160,7 +160,7 @@ std::string to_toml(const MotorFit& fit) {
   std::string text = "\n[fit]\n";
   text += fmt::format("motor = \"{}\"\n", fit.motor);
   text += fmt::format("runs = [\"{}\"]\n", fmt::join(fit.runs, "\", \""));
-  text += fmt::format("figures = [\"{}\"]\n", fmt::join(fit.figures, "\", \""));
+  text += fmt::format("figures = [\"{}\"]\n", fmt::join(fit.parameters, "\", \""));
   text += "# of the parameters' logarithms: lower triangle\ncorrelation = [\n";
   for (Eigen::Index i = 0; i < fit.correlation.rows(); ++i) {
     std::vector<std::string> row;

@@ -37,10 +37,10 @@ struct TrainingRange {
 
 /// The [fit] table, which a calibration writes.
 struct MotorFit {
-  std::string motor;                 ///< id of the motor file that the fit started from
-  std::vector<std::string> runs;     ///< names with the used part: "match_1 (5f0c31d2a7e94b68 0-1800 s)"
-  std::vector<std::string> figures;  ///< keys of the fitted parameters: "thermal_resistance_winding_stator", "effects.fan.conductance"
-  Eigen::MatrixXd correlation;       ///< of the logarithms of these parameters, in that order
+  std::string motor;                    ///< id of the motor file that the fit started from
+  std::vector<std::string> runs;        ///< names with the used part: "match_1 (5f0c31d2a7e94b68 0-1800 s)"
+  std::vector<std::string> parameters;  ///< keys of the fitted parameters: "thermal_resistance_winding_stator", "effects.fan.conductance"
+  Eigen::MatrixXd correlation;          ///< of the logarithms of these parameters, in that order
   std::vector<std::pair<std::string, double>> noise_K;  ///< per node with a sensor: standard deviation of the noise of one sample
   std::vector<double> latent_flux_W;                    ///< rms of the unknown heat flux into winding and stator
   double latent_flux_time_scale_s = 0.0;
@@ -51,8 +51,8 @@ struct MotorFit {
   std::optional<ForecastBand> band = {};  ///< estimated by the calibration from left-out runs; may be absent
 };
 
-/// Reads the table; `figures` are the keys of the file. Adds problems to the reader's diagnostics.
-MotorFit read_fit(Reader& table, std::span<const std::string> figures);
+/// Reads the table; `parameters` are the keys of the file. Adds problems to the reader's diagnostics.
+MotorFit read_fit(Reader& table, std::span<const std::string> parameters);
 std::string to_toml(const MotorFit& fit);
 
 /// Returns the factor on all heat of a run at the quantile `uniform` in (0, 1). It combines the heat factor of the band with the unknown

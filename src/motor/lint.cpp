@@ -15,15 +15,15 @@ namespace heatsoak {
 namespace lint_checks {
 
 void Findings::add(LintFinding::Level level, std::string_view key, std::string message) {
-  const auto figure = motor_.figures.find(key);
-  Location at = figure != motor_.figures.end() ? figure->second.at : Location{motor_.file.string(), 0, 0};
+  const auto parameter = motor_.parameters.find(key);
+  Location at = parameter != motor_.parameters.end() ? parameter->second.at : Location{motor_.file.string(), 0, 0};
   add_at(level, std::move(at), std::move(message));
 }
 
 LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_list<std::string_view> keys) {
   const bool rests_on_estimate = std::ranges::any_of(keys, [&](std::string_view key) {
-    const auto figure = motor.figures.find(key);
-    return figure != motor.figures.end() && figure->second.origin == Origin::estimated;
+    const auto parameter = motor.parameters.find(key);
+    return parameter != motor.parameters.end() && parameter->second.origin == Origin::estimated;
   });
   return rests_on_estimate ? LintFinding::Level::warning : LintFinding::Level::error;
 }

@@ -14,11 +14,11 @@ namespace {
 /// Relative tolerance of agreed values, which have no spread.
 constexpr double kSame = 1e-6;
 
-/// Calls visit(name, figure) for every value of the file, including those of its effects and sensors.
+/// Calls visit(name, parameter) for every value of the file, including those of its effects and sensors.
 template <class Visit>
 void for_each_parameter(const Motor& motor, const Visit& visit) {
-  for (const auto& [key, figure] : motor.figures) {
-    visit(std::string(key), figure);
+  for (const auto& [key, parameter] : motor.parameters) {
+    visit(std::string(key), parameter);
   }
   for (const MotorEffect& effect : motor.effects) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
@@ -36,28 +36,29 @@ void for_each_parameter(const Motor& motor, const Visit& visit) {
 }  // namespace
 
 void sources(const Motor& motor, Findings& findings) {
-  for_each_parameter(motor, [&](const std::string& key, const ParameterValue& figure) {
+  for_each_parameter(motor, [&](const std::string& key, const ParameterValue& parameter) {
     // The derivation of an estimate replaces its source.
-    const bool is_derived = figure.origin == Origin::estimated && !figure.derivation.empty();
-    if (figure.source.empty() && !is_derived) {
-      findings.error_at(figure.at, fmt::format("{} of {} names no source; expected the ids of what it was derived from, or one whose text "
-                                               "says that it is your own judgement",
-                                               key, figure.printed));
+    const bool is_derived = parameter.origin == Origin::estimated && !parameter.derivation.empty();
+    if (parameter.source.empty() && !is_derived) {
+      findings.error_at(parameter.at,
+                        fmt::format("{} of {} names no source; expected the ids of what it was derived from, or one whose text "
+                                    "says that it is your own judgement",
+                                    key, parameter.printed));
     }
   });
 }
 
 /// Two independent sources must agree within the tolerance of the value, else one of them is wrong.
 void confirmations(const Motor& motor, Findings& findings) {
-  for_each_parameter(motor, [&](const std::string& key, const ParameterValue& figure) {
-    const Bounds bounds = figure.spread
-                              ? Bounds{figure.spread->low, figure.spread->high}
-                              : Bounds{figure.value - kSame * std::abs(figure.value), figure.value + kSame * std::abs(figure.value)};
-    for (const Confirmation& other : figure.confirmed_by) {
+  for_each_parameter(motor, [&](const std::string& key, const ParameterValue& parameter) {
+    const Bounds bounds =
+        parameter.spread ? Bounds{parameter.spread->low, parameter.spread->high}
+                         : Bounds{parameter.value - kSame * std::abs(parameter.value), parameter.value + kSame * std::abs(parameter.value)};
+    for (const Confirmation& other : parameter.confirmed_by) {
       if (bounds.excludes(other.value)) {
-        findings.error_at(figure.at,
+        findings.error_at(parameter.at,
                           fmt::format("{} is {}, but {} says {}, expected agreement within the tolerance; one of the two is wrong", key,
-                                      figure.printed, other.source, other.printed));
+                                      parameter.printed, other.source, other.printed));
       }
     }
   });
@@ -65,11 +66,11 @@ void confirmations(const Motor& motor, Findings& findings) {
 
 void estimates(const Motor& motor, Findings& findings) {
   for (const MotorParameterSpec& each : motor_parameter_specs()) {
-    const auto figure = motor.figures.find(each.spec.key);
-    if (figure == motor.figures.end() || figure->second.origin != Origin::estimated) {
+    const auto parameter = motor.parameters.find(each.spec.key);
+    if (parameter == motor.parameters.end() || parameter->second.origin != Origin::estimated) {
       continue;
     }
-    const std::string found = fmt::format("{} is estimated ({})", each.spec.key, shown(figure->second.value, each.spec.unit));
+    const std::string found = fmt::format("{} is estimated ({})", each.spec.key, shown(parameter->second.value, each.spec.unit));
     if (each.is_thermal) {
       findings.note(each.spec.key,
                     found + ": the temperature depends on it, expected a data sheet value; measure it or calibrate before you rely on it");
@@ -80,21 +81,22 @@ void estimates(const Motor& motor, Findings& findings) {
 }
 
 void spreads(const Motor& motor, Findings& findings) {
-  for (const auto& [key, figure] : motor.figures) {
-    if (!is_agreed(key) && !figure.spread) {
+  for (const auto& [key, parameter] : motor.parameters) {
+    if (!is_agreed(key) && !parameter.spread) {
       findings.error(key, fmt::format("{} of {} has neither tolerance nor range; expected one of the two (see motor_db/README.md)", key,
-                                      figure.printed));
+                                      parameter.printed));
     }
   }
 }
 
 /// Real parts have a tolerance, so a spread of zero width is an error.
 void exact_values(const Motor& motor, Findings& findings) {
-  for_each_parameter(motor, [&](const std::string& key, const ParameterValue& figure) {
-    if (is_exact(figure) && !is_agreed(key)) {
-      findings.error_at(figure.at, fmt::format("{} of {} has a tolerance or range of zero, expected the spread of real motors; state that, "
-                                               "or leave tolerance and range out to assume a default by its origin",
-                                               key, figure.printed));
+  for_each_parameter(motor, [&](const std::string& key, const ParameterValue& parameter) {
+    if (is_exact(parameter) && !is_agreed(key)) {
+      findings.error_at(parameter.at,
+                        fmt::format("{} of {} has a tolerance or range of zero, expected the spread of real motors; state that, "
+                                    "or leave tolerance and range out to assume a default by its origin",
+                                    key, parameter.printed));
     }
   });
 }
@@ -102,15 +104,15 @@ void exact_values(const Motor& motor, Findings& findings) {
 /// A spread of 0.001 % is as unlikely as none. A fit may produce one for a measured value, so there it is a note and the spread is widened.
 void narrow_values(const Motor& motor, Findings& findings) {
   for (const NarrowSpread& each : narrow_spreads(motor)) {
-    const ParameterValue& figure = *each.figure;
-    const auto percent = [&](double bound) { return 100.0 * std::abs(bound / figure.value - 1.0); };
-    const bool is_measured = figure.origin == Origin::measured;
+    const ParameterValue& parameter = *each.parameter;
+    const auto percent = [&](double bound) { return 100.0 * std::abs(bound / parameter.value - 1.0); };
+    const bool is_measured = parameter.origin == Origin::measured;
     const std::string message = fmt::format(
         "{} of {} ({}) has a spread of -{} to +{} %, expected at least -{} to +{} % for a value of this origin; {}", each.key,
-        figure.printed, to_string(figure.origin), significant(percent(figure.spread->low), 2), significant(percent(figure.spread->high), 2),
-        significant(percent(each.least.low), 2), significant(percent(each.least.high), 2),
+        parameter.printed, to_string(parameter.origin), significant(percent(parameter.spread->low), 2),
+        significant(percent(parameter.spread->high), 2), significant(percent(each.least.low), 2), significant(percent(each.least.high), 2),
         is_measured ? "this spread is assumed" : "state that, or leave tolerance and range out to assume a default by its origin");
-    is_measured ? findings.note_at(figure.at, message) : findings.error_at(figure.at, message);
+    is_measured ? findings.note_at(parameter.at, message) : findings.error_at(parameter.at, message);
   }
 }
 

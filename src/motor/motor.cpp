@@ -98,37 +98,37 @@ double convention_factor(Reader& conventions, std::string_view key, const Conven
   return 1.0;
 }
 
-void scale(ParameterValue& figure, double factor) {
-  figure.value *= factor;
-  if (figure.spread) {
-    figure.spread->low *= factor;
-    figure.spread->high *= factor;
+void scale(ParameterValue& parameter, double factor) {
+  parameter.value *= factor;
+  if (parameter.spread) {
+    parameter.spread->low *= factor;
+    parameter.spread->high *= factor;
   }
-  for (Confirmation& other : figure.confirmed_by) {
+  for (Confirmation& other : parameter.confirmed_by) {
     other.value *= factor;
   }
 }
 
-void read_figures(Reader& top, Motor& motor, double resistance_factor, double torque_factor) {
-  std::optional<Reader> figures = top.table("figures", Need::required);
-  if (!figures) {
+void read_file_parameters(Reader& top, Motor& motor, double resistance_factor, double torque_factor) {
+  std::optional<Reader> parameters = top.table("figures", Need::required);
+  if (!parameters) {
     return;
   }
   for (const MotorParameterSpec& each : kSpecs) {
-    if (std::optional<ParameterValue> figure = figures->figure(each.spec, each.need)) {
+    if (std::optional<ParameterValue> parameter = parameters->parameter(each.spec, each.need)) {
       if (each.value == &MotorValues::terminal_resistance_ohm || each.value == &MotorValues::terminal_inductance_H) {
-        scale(*figure, resistance_factor);
+        scale(*parameter, resistance_factor);
       } else if (each.value == &MotorValues::torque_constant_Nm_per_A) {
-        scale(*figure, torque_factor);
+        scale(*parameter, torque_factor);
       }
-      if (each.value == &MotorValues::pole_pairs && figure->value != std::round(figure->value)) {
-        figures->problem("pole_pairs", "is not a whole number");
+      if (each.value == &MotorValues::pole_pairs && parameter->value != std::round(parameter->value)) {
+        parameters->problem("pole_pairs", "is not a whole number");
       }
-      motor.nominal.*each.value = figure->value;
-      motor.figures.emplace(each.spec.key, std::move(*figure));
+      motor.nominal.*each.value = parameter->value;
+      motor.parameters.emplace(each.spec.key, std::move(*parameter));
     }
   }
-  figures->finish();
+  parameters->finish();
 }
 
 /// Every source id that a value names must be explained in [sources], so that its origin can be checked.
@@ -137,23 +137,23 @@ void check_sources(const Motor& motor, Diagnostics& diagnostics) {
   for (const auto& [id, text] : motor.sources) {
     known.push_back(id);
   }
-  const auto look_up = [&](const ParameterValue& figure, const std::string& key, const std::string& id) {
+  const auto look_up = [&](const ParameterValue& parameter, const std::string& key, const std::string& id) {
     if (!motor.sources.contains(id)) {
-      diagnostics.add(figure.at, key, fmt::format("'{}' is not in [sources]{}", id, did_you_mean(id, known)));
+      diagnostics.add(parameter.at, key, fmt::format("'{}' is not in [sources]{}", id, did_you_mean(id, known)));
     }
   };
-  const auto check = [&](const std::string& key, const ParameterValue& figure) {
-    for (std::size_t at = 0; at < figure.source.size();) {
-      const std::size_t end = std::min(figure.source.find(", ", at), figure.source.size());
-      look_up(figure, key + ".source", figure.source.substr(at, end - at));
+  const auto check = [&](const std::string& key, const ParameterValue& parameter) {
+    for (std::size_t at = 0; at < parameter.source.size();) {
+      const std::size_t end = std::min(parameter.source.find(", ", at), parameter.source.size());
+      look_up(parameter, key + ".source", parameter.source.substr(at, end - at));
       at = end + 2;
     }
-    for (const Confirmation& other : figure.confirmed_by) {
-      look_up(figure, key + ".confirmed_by", other.source);
+    for (const Confirmation& other : parameter.confirmed_by) {
+      look_up(parameter, key + ".confirmed_by", other.source);
     }
   };
-  for (const auto& [key, figure] : motor.figures) {
-    check(fmt::format("figures.{}", key), figure);
+  for (const auto& [key, parameter] : motor.parameters) {
+    check(fmt::format("figures.{}", key), parameter);
   }
   for (const MotorEffect& effect : motor.effects) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
@@ -169,7 +169,7 @@ void check_sources(const Motor& motor, Diagnostics& diagnostics) {
 std::vector<std::string> parameter_keys(const Motor& motor) {
   std::vector<std::string> keys;
   for (const MotorParameterSpec& each : kSpecs) {
-    if (motor.figures.contains(each.spec.key)) {
+    if (motor.parameters.contains(each.spec.key)) {
       keys.emplace_back(each.spec.key);
     }
   }
@@ -185,7 +185,7 @@ std::vector<std::string> parameter_keys(const Motor& motor) {
 std::vector<std::pair<const ParameterValue*, double*>> places(const Motor& motor, MotorSample& sample) {
   std::vector<std::pair<const ParameterValue*, double*>> all;
   for (const MotorParameterSpec& each : kSpecs) {
-    if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
+    if (const auto found = motor.parameters.find(each.spec.key); found != motor.parameters.end()) {
       all.emplace_back(&found->second, &(sample.values.*each.value));
     }
   }
@@ -200,7 +200,7 @@ std::vector<std::pair<const ParameterValue*, double*>> places(const Motor& motor
 }  // namespace
 
 ParameterValue* find_parameter(Motor& motor, std::string_view key) {
-  if (const auto found = motor.figures.find(key); found != motor.figures.end()) {
+  if (const auto found = motor.parameters.find(key); found != motor.parameters.end()) {
     return &found->second;
   }
   for (MotorEffect& effect : motor.effects) {
@@ -230,7 +230,7 @@ std::vector<SensorFault> faults_of(const Motor& motor, std::string_view signal) 
 
 void refresh_values(Motor& motor) {
   for (const MotorParameterSpec& each : kSpecs) {
-    if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
+    if (const auto found = motor.parameters.find(each.spec.key); found != motor.parameters.end()) {
       motor.nominal.*each.value = found->second.value;
     }
   }
@@ -274,7 +274,7 @@ Motor read_motor(const std::filesystem::path& path, Diagnostics& diagnostics) {
     conventions->finish();
   }
   motor.nominal.temperature_coefficient_per_K = kCopper_per_K;
-  read_figures(top, motor, resistance_factor, torque_factor);
+  read_file_parameters(top, motor, resistance_factor, torque_factor);
   read_effects(top, motor);
   if (std::optional<Reader> table = top.table("fit", Need::optional)) {
     motor.fit = read_fit(*table, parameter_keys(motor));
@@ -305,12 +305,12 @@ MotorSample draw_sample(const Motor& motor, Random& random) {
     const std::vector<std::string> keys = parameter_keys(motor);
     const auto place = [&](const std::string& key) { return static_cast<std::size_t>(std::ranges::find(keys, key) - keys.begin()); };
     std::vector<double> fitted;
-    for (const std::string& key : motor.fit->figures) {
+    for (const std::string& key : motor.fit->parameters) {
       fitted.push_back(uniforms[place(key)]);
     }
     correlate(*motor.fit, fitted);
     for (std::size_t i = 0; i < fitted.size(); ++i) {
-      uniforms[place(motor.fit->figures[i])] = fitted[i];
+      uniforms[place(motor.fit->parameters[i])] = fitted[i];
     }
   }
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -337,8 +337,8 @@ std::string_view quality_of_fit(const Motor& motor) {
     }
   }
   for (const MotorParameterSpec& each : kSpecs) {
-    const auto found = motor.figures.find(each.spec.key);
-    if (each.is_thermal && found != motor.figures.end()) {
+    const auto found = motor.parameters.find(each.spec.key);
+    if (each.is_thermal && found != motor.parameters.end()) {
       const Origin origin = found->second.origin;
       is_measured = is_measured && (each.spec.key.starts_with("thermal_") ? origin == Origin::measured : origin != Origin::estimated);
     }
@@ -355,19 +355,19 @@ std::string_view data_quality(const Motor& motor) {
   bool all_of_sheet = true;
   for (const MotorEffect& effect : motor.effects) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      const ParameterValue& figure = effect.parameters[i];
+      const ParameterValue& parameter = effect.parameters[i];
       if (!effect.type->parameters[i].choices.empty()) {
         continue;
       }
-      if (figure.origin == Origin::estimated) {
+      if (parameter.origin == Origin::estimated) {
         return "estimated";
       }
-      all_of_sheet = all_of_sheet && (figure.origin == Origin::datasheet || figure.origin == Origin::measured);
+      all_of_sheet = all_of_sheet && (parameter.origin == Origin::datasheet || parameter.origin == Origin::measured);
     }
   }
   for (const MotorParameterSpec& each : kSpecs) {
-    const auto found = motor.figures.find(each.spec.key);
-    if (!each.is_thermal || found == motor.figures.end()) {
+    const auto found = motor.parameters.find(each.spec.key);
+    if (!each.is_thermal || found == motor.parameters.end()) {
       continue;
     }
     const Origin origin = found->second.origin;

@@ -105,7 +105,7 @@ struct Motor {
   std::vector<std::string> notes;
   std::map<std::string, std::string, std::less<>> sources;
   bool stall_includes_saturation = false;
-  std::map<std::string_view, ParameterValue> figures;  ///< by key, in this program's conventions
+  std::map<std::string_view, ParameterValue> parameters;  ///< by key, in this program's conventions
   std::vector<MotorEffect> effects;
   std::vector<MotorSensor> sensors;
   std::optional<MotorFit> fit;  ///< present if a calibration wrote the file
@@ -117,7 +117,7 @@ Motor read_motor(const std::filesystem::path& path);
 
 /// Finds a value by key, "thermal_resistance_winding_stator" or "effects.fan.conductance"; null if the motor has none.
 ParameterValue* find_parameter(Motor& motor, std::string_view key);
-/// Updates `nominal` after values in `figures` were changed.
+/// Updates `nominal` after values in `parameters` were changed.
 void refresh_values(Motor& motor);
 
 /// Returns the faults that the file states for the sensor of a signal such as "winding_C".

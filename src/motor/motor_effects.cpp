@@ -89,7 +89,7 @@ void read_parameters(Reader& reader, const EffectType& type, MotorEffect& effect
   bool chosen = true;
   for (std::size_t i = 0; i < type.parameters.size(); ++i) {
     ParameterSpec spec = type.parameters[i];
-    ParameterValue figure;
+    ParameterValue parameter;
     if (!spec.choices.empty()) {
       std::vector<std::string_view> names;
       for (const Choice& choice : spec.choices) {
@@ -97,16 +97,16 @@ void read_parameters(Reader& reader, const EffectType& type, MotorEffect& effect
       }
       const std::optional<std::string> name = reader.choice(spec.key, names, Need::required);
       chosen = chosen && name;
-      figure.printed = name.value_or("");
-      figure.value = name ? static_cast<double>(std::ranges::find(names, *name) - names.begin()) : 0.0;
+      parameter.printed = name.value_or("");
+      parameter.value = name ? static_cast<double>(std::ranges::find(names, *name) - names.begin()) : 0.0;
     } else if (spec.unit_of >= 0 && !chosen) {
       reader.pass_over(spec.key);
     } else {
       spec.unit = unit_of(type.parameters, i, values);
-      figure = reader.figure(spec, Need::required).value_or(ParameterValue{});
+      parameter = reader.parameter(spec, Need::required).value_or(ParameterValue{});
     }
-    values.push_back(figure.value);
-    effect.parameters.push_back(std::move(figure));
+    values.push_back(parameter.value);
+    effect.parameters.push_back(std::move(parameter));
   }
 }
 
@@ -151,7 +151,7 @@ void read_effects(Reader& top, Motor& motor) {
   for (Entry& entry : entries) {
     if (entry.sensor) {
       motor.sensors.push_back(
-          {entry.name, entry.sensor, entry.reader.figure(entry.sensor->size, Need::required).value_or(ParameterValue{})});
+          {entry.name, entry.sensor, entry.reader.parameter(entry.sensor->size, Need::required).value_or(ParameterValue{})});
       entry.reader.finish();
     }
   }

@@ -35,34 +35,34 @@ std::string amount(double value, const std::string& unit) {
   return unit.empty() ? significant(value, kDigits) : fmt::format("{} {}", significant(value, kDigits), unit);
 }
 
-std::string parameter_text(const ParameterValue& figure, const std::string& unit) {
-  const ParsedQuantity printed = parse_quantity(figure.printed, unit);
-  const bool is_as_printed = printed.ok() && std::abs(printed.value - figure.value) <= 1e-9 * std::abs(figure.value);
-  std::string text = fmt::format("{{ value = {}, origin = {}", toml_text(is_as_printed ? figure.printed : amount(figure.value, unit)),
-                                 toml_text(to_string(figure.origin)));
-  if (!figure.source.empty()) {
+std::string parameter_text(const ParameterValue& parameter, const std::string& unit) {
+  const ParsedQuantity printed = parse_quantity(parameter.printed, unit);
+  const bool is_as_printed = printed.ok() && std::abs(printed.value - parameter.value) <= 1e-9 * std::abs(parameter.value);
+  std::string text = fmt::format("{{ value = {}, origin = {}", toml_text(is_as_printed ? parameter.printed : amount(parameter.value, unit)),
+                                 toml_text(to_string(parameter.origin)));
+  if (!parameter.source.empty()) {
     std::vector<std::string> ids;
-    for (std::size_t at = 0; at < figure.source.size();) {
-      const std::size_t end = std::min(figure.source.find(", ", at), figure.source.size());
-      ids.push_back(toml_text(figure.source.substr(at, end - at)));
+    for (std::size_t at = 0; at < parameter.source.size();) {
+      const std::size_t end = std::min(parameter.source.find(", ", at), parameter.source.size());
+      ids.push_back(toml_text(parameter.source.substr(at, end - at)));
       at = end + 2;
     }
     text += ids.size() == 1 ? fmt::format(", source = {}", ids.front()) : fmt::format(", source = [{}]", fmt::join(ids, ", "));
   }
   // A percentage of zero is zero: the tolerance of a value of 0 cannot be written.
-  if (figure.spread && (figure.spread->kind == Spread::Kind::range || unit == "degC" || figure.value != 0.0)) {
-    const Spread& spread = *figure.spread;
+  if (parameter.spread && (parameter.spread->kind == Spread::Kind::range || unit == "degC" || parameter.value != 0.0)) {
+    const Spread& spread = *parameter.spread;
     const double half = 0.5 * (spread.high - spread.low);
     if (spread.kind == Spread::Kind::range) {
       text += fmt::format(", range = [{}, {}]", toml_text(amount(spread.low, unit)), toml_text(amount(spread.high, unit)));
     } else if (unit == "degC") {
       text += fmt::format(", tolerance = {}", toml_text(amount(half, "K")));
     } else {
-      text += fmt::format(", tolerance = {}", toml_text(amount(100.0 * half / std::abs(figure.value), "%")));
+      text += fmt::format(", tolerance = {}", toml_text(amount(100.0 * half / std::abs(parameter.value), "%")));
     }
   }
-  if (!figure.derivation.empty()) {
-    text += fmt::format(", derivation = {}", toml_text(figure.derivation));
+  if (!parameter.derivation.empty()) {
+    text += fmt::format(", derivation = {}", toml_text(parameter.derivation));
   }
   return text + " }";
 }
@@ -122,7 +122,7 @@ std::string to_toml(const Motor& motor) {
       motor.stall_includes_saturation);
   text += "\n[figures]\n";
   for (const MotorParameterSpec& each : motor_parameter_specs()) {
-    if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
+    if (const auto found = motor.parameters.find(each.spec.key); found != motor.parameters.end()) {
       text += fmt::format("{} = {}\n", each.spec.key, parameter_text(found->second, std::string(each.spec.unit)));
     }
   }

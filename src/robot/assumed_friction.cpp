@@ -48,12 +48,12 @@ Robot with_assumed_friction(Robot robot) {
   const double load_Nm = robot.mass_kg * kGravity_m_per_s2 * robot.wheel_radius_m;
   for (const Assumed& each : kAssumed) {
     const double scale = each.is_per_load ? load_Nm : 1.0;
-    ParameterValue figure;
-    figure.value = scale * each.nominal;
-    figure.derivation = "assumed: that of other robots, per weight and wheel radius";
-    figure.spread = Spread{Spread::Kind::range, scale * each.low, scale * each.high, each.low > 0.0};
-    robot.*each.value = figure.value;
-    robot.figures.insert_or_assign(fmt::format("friction.{}", key_of(each.value)), figure);
+    ParameterValue parameter;
+    parameter.value = scale * each.nominal;
+    parameter.derivation = "assumed: that of other robots, per weight and wheel radius";
+    parameter.spread = Spread{Spread::Kind::range, scale * each.low, scale * each.high, each.low > 0.0};
+    robot.*each.value = parameter.value;
+    robot.parameters.insert_or_assign(fmt::format("friction.{}", key_of(each.value)), parameter);
   }
   robot.is_friction_assumed = true;
   return robot;

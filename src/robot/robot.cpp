@@ -84,23 +84,23 @@ constexpr std::array<WheelParameterSpec, 3> kWheelSpecs{{
 constexpr std::array<std::string_view, 5> kOptionalKeys{"center_of_gravity_x", "center_of_gravity_y", "rolling_efficiency", "control_rate",
                                                         "command_rate"};
 
-void read_figure(Reader& reader, const RobotParameterSpec& each, Need need, Robot& robot) {
-  if (std::optional<ParameterValue> figure = reader.figure(each.spec, need)) {
-    robot.*each.value = figure->value;
-    robot.figures.emplace(fmt::format("{}.{}", each.table, each.spec.key), std::move(*figure));
+void read_parameter(Reader& reader, const RobotParameterSpec& each, Need need, Robot& robot) {
+  if (std::optional<ParameterValue> parameter = reader.parameter(each.spec, need)) {
+    robot.*each.value = parameter->value;
+    robot.parameters.emplace(fmt::format("{}.{}", each.table, each.spec.key), std::move(*parameter));
   }
 }
 
-void read_figures(Reader& reader, std::string_view table, Robot& robot) {
+void read_file_parameters(Reader& reader, std::string_view table, Robot& robot) {
   for (const RobotParameterSpec& each : kSpecs) {
     if (each.table == table) {
-      read_figure(reader, each, Need::optional, robot);
+      read_parameter(reader, each, Need::optional, robot);
     }
   }
 }
 
-std::string wheel_parameter_key(std::size_t wheel, const WheelParameterSpec& figure) {
-  return fmt::format("friction.heading.wheel[{}].{}", wheel, figure.spec.key);
+std::string wheel_parameter_key(std::size_t wheel, const WheelParameterSpec& parameter) {
+  return fmt::format("friction.heading.wheel[{}].{}", wheel, parameter.spec.key);
 }
 
 /// Adds a problem if the friction would drive the wheel in some direction of travel.
@@ -115,9 +115,9 @@ void read_heading_wheels(std::vector<Reader>& wheels, Robot& robot, double doubl
   for (Reader& reader : wheels) {
     HeadingWheel& wheel = robot.heading_wheels.emplace_back();
     for (const WheelParameterSpec& each : kWheelSpecs) {
-      if (std::optional<ParameterValue> figure = reader.figure(each.spec, Need::required)) {
-        wheel.*each.value = figure->value;
-        robot.figures.emplace(wheel_parameter_key(robot.heading_wheels.size() - 1, each), std::move(*figure));
+      if (std::optional<ParameterValue> parameter = reader.parameter(each.spec, Need::required)) {
+        wheel.*each.value = parameter->value;
+        robot.parameters.emplace(wheel_parameter_key(robot.heading_wheels.size() - 1, each), std::move(*parameter));
       }
     }
     check_sign(reader, wheel.constant_Nm, wheel.sine_Nm, double_angle_Nm);
@@ -130,7 +130,7 @@ void read_heading(Reader& heading, Robot& robot) {
   for (const RobotParameterSpec& each : kSpecs) {
     const bool of_all_wheels = each.spec.key == "constant" || each.spec.key == "sine";
     if (each.table == "friction.heading") {
-      read_figure(heading, each, of_all_wheels && wheels.empty() ? Need::required : Need::optional, robot);
+      read_parameter(heading, each, of_all_wheels && wheels.empty() ? Need::required : Need::optional, robot);
       if (of_all_wheels && !wheels.empty() && !std::isnan(robot.*each.value)) {
         heading.problem(each.spec.key, "is given together with the same value for every wheel; expected only one of the two");
       }
@@ -157,7 +157,7 @@ void read_friction(Reader& top, Robot& robot) {
   if (!friction) {
     return;
   }
-  read_figures(*friction, "friction", robot);
+  read_file_parameters(*friction, "friction", robot);
   if (std::optional<Reader> heading = friction->table("heading", Need::optional)) {
     read_heading(*heading, robot);
   }
@@ -180,7 +180,7 @@ void read_wheels(Reader& top, Robot& robot) {
   if (robot.wheel_axis_rad.size() < 3) {
     wheels->problem("axis_angles", "names fewer than three wheels; an omni-directional robot has at least three");
   }
-  read_figures(*wheels, "wheels", robot);
+  read_file_parameters(*wheels, "wheels", robot);
   wheels->finish();
 }
 
@@ -204,7 +204,7 @@ void read_drive(Reader& top, Robot& robot) {
   constexpr std::array<std::string_view, 2> kCommutations{"block", "sinusoidal"};
   robot.commutation =
       drive->choice("commutation", kCommutations, Need::required) == "sinusoidal" ? Commutation::sinusoidal : Commutation::block;
-  read_figures(*drive, "drive", robot);
+  read_file_parameters(*drive, "drive", robot);
   drive->finish();
 }
 
@@ -229,8 +229,8 @@ void require_parameters(const Robot& robot, std::span<const std::string_view> ta
 Robot draw_sample(const Robot& robot, Random& random) {
   Robot drawn = robot;
   const auto draw = [&](const std::string& key, double& value) {
-    const auto found = robot.figures.find(key);
-    if (found != robot.figures.end() && found->second.spread) {
+    const auto found = robot.parameters.find(key);
+    if (found != robot.parameters.end() && found->second.spread) {
       value = found->second.quantile(random.uniform());
     }
   };
@@ -268,12 +268,12 @@ Robot robot_of(const Value& root, const std::filesystem::path& path) {
   if (std::optional<Reader> battery = top.table("battery", Need::required)) {
     robot.battery_V =
         battery->quantity({"nominal_voltage", "V", Range::between(1.0, 5000.0), "of the battery"}, Need::required).value_or(1.0);
-    read_figures(*battery, "battery", robot);
+    read_file_parameters(*battery, "battery", robot);
     battery->finish();
   }
   for (const std::string_view name : {"body", "traction", "limits"}) {
     if (std::optional<Reader> table = top.table(name, Need::optional)) {
-      read_figures(*table, name, robot);
+      read_file_parameters(*table, name, robot);
       table->finish();
     }
   }

@@ -75,12 +75,12 @@ struct Robot {
   // Measured friction curve over the direction of travel; friction.h has its formula.
   double heading_constant_Nm = kAbsent;  ///< for all wheels; absent if each wheel has its own
   double heading_sine_Nm = kAbsent;
-  double heading_double_angle_Nm = kAbsent;                    ///< 0 if absent
-  double heading_rotation_Nm = kAbsent;                        ///< equals wheel_friction_torque if absent
-  std::vector<double> heading_double_angle_phase_rad;          ///< per wheel; empty without the double-angle term
-  std::vector<HeadingWheel> heading_wheels;                    ///< one per wheel, or none
-  std::map<std::string, ParameterValue, std::less<>> figures;  ///< by "table.key" or "friction.heading.wheel[0].key"
-  bool is_friction_assumed = false;                            ///< set by with_assumed_friction(); the file states none
+  double heading_double_angle_Nm = kAbsent;                       ///< 0 if absent
+  double heading_rotation_Nm = kAbsent;                           ///< equals wheel_friction_torque if absent
+  std::vector<double> heading_double_angle_phase_rad;             ///< per wheel; empty without the double-angle term
+  std::vector<HeadingWheel> heading_wheels;                       ///< one per wheel, or none
+  std::map<std::string, ParameterValue, std::less<>> parameters;  ///< by "table.key" or "friction.heading.wheel[0].key"
+  bool is_friction_assumed = false;                               ///< set by with_assumed_friction(); the file states none
 
   [[nodiscard]] double available_V() const;
   /// Resistance between the battery and a motor's terminals in ohm; 0 if the file does not give it.

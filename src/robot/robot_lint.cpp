@@ -96,7 +96,7 @@ std::vector<LintFinding> lint(const Robot& robot, std::span<const std::string> k
     any.rotor_inertia_kg_m2 = 0.0;
     make_body(robot, any);
   } catch (const Failure& failure) {
-    if (std::ranges::any_of(robot.figures, [](const auto& each) { return each.first.starts_with("body."); })) {
+    if (std::ranges::any_of(robot.parameters, [](const auto& each) { return each.first.starts_with("body."); })) {
       throw;
     }
     for (const Diagnostic& each : failure.diagnostics()) {

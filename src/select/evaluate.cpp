@@ -40,7 +40,7 @@ class Block {
     std::vector<Network> networks;
     for (int lane = 0; lane < kLanes; ++lane) {
       Random random(options.seed, static_cast<std::uint64_t>(first_sample + lane));
-      // The duty first: every motor, however many figures it has, then meets the same air and load.
+      // The duty first: every motor, however many parameters it has, then meets the same air and load.
       duties_.push_back(draw_sample(duty, random));
       Random of_robot(options.seed, kRobotStreams + static_cast<std::uint64_t>(first_sample + lane));
       robots_.push_back(draw_sample(robot, of_robot));

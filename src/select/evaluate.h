@@ -39,7 +39,7 @@ struct EvaluateOptions {
   std::span<const WheelDemand> draws{};
 };
 
-/// The figure without uncertainty and the 5th, 50th and 95th percentile of the samples (NaN without samples).
+/// The parameter without uncertainty and the 5th, 50th and 95th percentile of the samples (NaN without samples).
 struct Spread95 {
   double nominal = 0.0;
   double p05 = 0.0;
@@ -114,9 +114,9 @@ double nearest_margin_K(const MotorEvaluation& motor);
 /// Best first: pass, marginal, fail, infeasible; within them by margin.
 void sort_by_verdict(std::vector<MotorEvaluation>& results);
 
-/// Sorted by sort_by_verdict(). Without draws the nominal figures decide fail and
+/// Sorted by sort_by_verdict(). Without draws the nominal parameters decide fail and
 /// infeasible; with draws, where the nominal run is one of many games, more than half of the samples do. `wheels` is the duty's demand;
-/// every figure is of the wheel whose winding gets hottest. Values of a motor without a spread are drawn from a default one
+/// every parameter is of the wheel whose winding gets hottest. Values of a motor without a spread are drawn from a default one
 /// (motor/default_spread.h), never as exact. `progress` is called from one thread at a time.
 std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
                                       std::span<const Motor> motors, const EvaluateOptions& options, const Progress& progress = {});

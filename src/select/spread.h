@@ -12,7 +12,7 @@ namespace heatsoak {
 /// Between the two samples next to the place, linearly; `sorted_C` is not empty.
 double quantile(std::span<const double> sorted_C, double share);
 
-/// NaN but for the nominal figure where there are no samples.
+/// NaN but for the nominal parameter where there are no samples.
 Spread95 spread(double nominal_C, std::vector<double> samples_C);
 
 /// Samples came in blocks, and block b shares draw b mod draw_count with all others of that draw.

@@ -31,7 +31,7 @@ MatchInputs forty_minutes(MatchValues& values) {
       length_s += span.duration_s;
     }
   }
-  inputs.figures[1].value = values.stop_mean_s;
+  inputs.parameters[1].value = values.stop_mean_s;
   return inputs;
 }
 

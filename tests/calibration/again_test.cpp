@@ -32,7 +32,7 @@ class Again : public testing::Test {
     return read_motor(file);
   }
   static double half_width(const Calibration& calibration, std::string_view name) {
-    const auto found = std::ranges::find(calibration.figures, name, &CalibratedParameter::name);
+    const auto found = std::ranges::find(calibration.parameters, name, &CalibratedParameter::name);
     return 0.5 * std::log(found->high / found->low);
   }
 
@@ -56,7 +56,7 @@ TEST_F(Again, CommonScaleIsNotLearnedByRepetition) {
   // Time constants are told, by three times the runs better.
   EXPECT_LT(half_width(third, "thermal_time_constant_winding"), 0.9 * half_width(first, "thermal_time_constant_winding"));
   EXPECT_GT(half_width(third, "thermal_time_constant_winding"), 0.4 * half_width(first, "thermal_time_constant_winding"));
-  for (const CalibratedParameter& each : third.figures) {
+  for (const CalibratedParameter& each : third.parameters) {
     if (each.name == "thermal_time_constant_winding" || each.name == "thermal_time_constant_stator") {
       EXPECT_TRUE(each.is_identifiable) << each.name << ": known as well as before";
     }

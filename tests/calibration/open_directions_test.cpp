@@ -22,7 +22,7 @@ using testing::IsEmpty;
 using testing::Not;
 
 const CalibratedParameter& figure(const Calibration& calibration, std::string_view name) {
-  return *std::ranges::find(calibration.figures, name, &CalibratedParameter::name);
+  return *std::ranges::find(calibration.parameters, name, &CalibratedParameter::name);
 }
 
 Case short_case() {
@@ -271,7 +271,7 @@ TEST(InputPower, LeavesTheNoLoadLossAtTheStator) {
   is_near("winding_heat_capacity", sheet.truth.winding_J_per_K);
   EXPECT_NEAR(figure(found, "no_load_current").value, 0.2, 0.005);
   Motor guessed = sheet.motor(folder);
-  guessed.figures.find("no_load_current")->second.origin = Origin::estimated;
+  guessed.parameters.find("no_load_current")->second.origin = Origin::estimated;
   for (const Motor& motor : {guessed, Sheet{}.motor(folder)}) {
     EXPECT_THAT(calibrate(motor, logs, {}, {}).notes, Contains(HasSubstr("all of it is assumed to arise at the winding")));
   }
@@ -281,8 +281,8 @@ TEST(GuessedResistance, IsNoScaleToRelyOn) {
   for (const char* const origin : {"datasheet", "estimated"}) {
     const CaseResult result = calibrate_case({.truth = {}, .resistance_spread = {}, .resistance_origin = origin}, short_case());
     const bool is_relied_on = std::string_view(origin) == "datasheet";
-    EXPECT_EQ(std::ranges::find(result.calibration.figures, "terminal_resistance", &CalibratedParameter::name) ==
-                  result.calibration.figures.end(),
+    EXPECT_EQ(std::ranges::find(result.calibration.parameters, "terminal_resistance", &CalibratedParameter::name) ==
+                  result.calibration.parameters.end(),
               is_relied_on);
     const CalibratedParameter& out = figure(result.calibration, "thermal_resistance_stator_ambient");
     EXPECT_EQ(out.high / out.low < 1.1, is_relied_on);
@@ -333,11 +333,11 @@ TEST(CalibratedMotor, IsReadBackAsItWasWritten) {
   std::ofstream(file) << to_toml(written);
   const Motor read = read_motor(file);
   ASSERT_TRUE(read.fit);
-  EXPECT_EQ(read.fit->figures, written.fit->figures);
+  EXPECT_EQ(read.fit->parameters, written.fit->parameters);
   EXPECT_EQ(read.fit->free_run_error_K, 0.45);
   EXPECT_LT((read.fit->correlation - written.fit->correlation).cwiseAbs().maxCoeff(), 1e-4);
-  for (const auto& [key, each] : written.figures) {
-    EXPECT_NEAR(read.figures.at(key).value, each.value, 1e-5 * std::abs(each.value)) << key;
+  for (const auto& [key, each] : written.parameters) {
+    EXPECT_NEAR(read.parameters.at(key).value, each.value, 1e-5 * std::abs(each.value)) << key;
   }
   // What hangs together in the fit does so in what is drawn from the file.
   Random random(3, 0);
@@ -354,7 +354,7 @@ TEST(CalibratedMotor, IsReadBackAsItWasWritten) {
     squares_a += a * a;
     squares_b += b * b;
   }
-  const auto place = [&](const char* key) { return std::ranges::find(written.fit->figures, key) - written.fit->figures.begin(); };
+  const auto place = [&](const char* key) { return std::ranges::find(written.fit->parameters, key) - written.fit->parameters.begin(); };
   const double expected = written.fit->correlation(place("thermal_resistance_stator_ambient"), place("thermal_resistance_winding_stator"));
   EXPECT_GT(expected, 0.8);
   EXPECT_NEAR(product / std::sqrt(squares_a * squares_b), expected, 0.08);

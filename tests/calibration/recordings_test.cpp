@@ -36,7 +36,7 @@ class Recordings : public testing::Test {
     return all;
   }
   static const CalibratedParameter& figure(const Calibration& calibration, std::string_view name) {
-    return *std::ranges::find(calibration.figures, name, &CalibratedParameter::name);
+    return *std::ranges::find(calibration.parameters, name, &CalibratedParameter::name);
   }
   static const ErrorBeforeAfter& error(const std::vector<ErrorBeforeAfter>& errors, std::string_view signal) {
     return *std::ranges::find(errors, signal, &ErrorBeforeAfter::signal);
@@ -79,7 +79,7 @@ TEST_F(Recordings, DroneMotorIsForecastTo2K) {
                 read("tasrv_uav_motor", {"run2.csv"}, map), {.fit = {}, .written = WrittenFit::forecast});
   ASSERT_TRUE(found.is_forecast_written);
   double contact_W_per_K = 1.0 / figure(found, "thermal_resistance_winding_stator").value;
-  for (const CalibratedParameter& each : found.figures) {
+  for (const CalibratedParameter& each : found.parameters) {
     contact_W_per_K += each.name == "effects.contact_law.conductance" ? each.value : 0.0;
   }
   EXPECT_GT(1.0 / contact_W_per_K, 0.08);

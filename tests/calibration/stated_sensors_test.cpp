@@ -63,7 +63,7 @@ class StatedSensors : public testing::Test {
     }
   }
   [[nodiscard]] double off(const Calibration& calibration, std::string_view name, double truth) const {
-    const auto found = std::ranges::find(calibration.figures, name, &CalibratedParameter::name);
+    const auto found = std::ranges::find(calibration.parameters, name, &CalibratedParameter::name);
     return std::abs(found->value / truth - 1.0);
   }
   [[nodiscard]] double stator_off(const Calibration& calibration) const {

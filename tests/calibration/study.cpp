@@ -75,7 +75,7 @@ TwoNodeTruth drawn_truth(const Sheet& sheet, const Motor& motor, std::uint64_t s
   Random random(seed, 1000);
   TwoNodeTruth truth = sheet.truth;
   const auto factor = [&](std::string_view key) {
-    return std::exp(prior_sd_of(motor.figures.find(key)->second) * standard_normal(random));
+    return std::exp(prior_sd_of(motor.parameters.find(key)->second) * standard_normal(random));
   };
   const double across_ratio = factor("thermal_resistance_winding_stator");
   const double out_ratio = factor("thermal_resistance_stator_ambient");
@@ -84,7 +84,7 @@ TwoNodeTruth drawn_truth(const Sheet& sheet, const Motor& motor, std::uint64_t s
   truth.winding_J_per_K *= factor("thermal_time_constant_winding") / across_ratio;
   truth.stator_J_per_K *= factor("thermal_time_constant_stator") / out_ratio;
   if (!sheet.resistance_spread.empty()) {
-    const Spread& spread = *motor.figures.find("terminal_resistance")->second.spread;
+    const Spread& spread = *motor.parameters.find("terminal_resistance")->second.spread;
     truth.resistance_25C_ohm *= std::exp(0.25 * std::log(spread.high / spread.low) * standard_normal(random));
   }
   return truth;
@@ -139,7 +139,7 @@ CaseResult calibrate_case(const Sheet& sheet, const Case& one) {
   const auto begin = std::chrono::steady_clock::now();
   CaseResult result{{}, calibrate(prepared.motor, prepared.logs, {}, options)};
   result.seconds_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  for (const CalibratedParameter& figure : result.calibration.figures) {
+  for (const CalibratedParameter& figure : result.calibration.parameters) {
     result.marks.push_back({figure.name, truth_of(figure.name, prepared.truth), figure});
   }
   return result;

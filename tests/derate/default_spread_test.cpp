@@ -23,7 +23,7 @@ DerateOptions few_samples() {
 /// so without them the remaining values would be other draws.
 Motor stripped(Motor motor, unsigned seed) {
   std::mt19937 engine(seed);
-  for (auto& [key, figure] : motor.figures) {
+  for (auto& [key, figure] : motor.parameters) {
     if (needs_spread(key) && (seed == 0 || engine() % 2 == 0)) {
       figure.spread.reset();
     }
@@ -72,13 +72,13 @@ TEST(DerateWithoutSpreads, AllowsNoMoreThanTheHonestFile) {
 
 TEST(DerateWithoutSpreads, TakesAZeroToleranceForAMissingOne) {
   Motor exact = ecx_32();
-  for (auto& [key, figure] : exact.figures) {
+  for (auto& [key, figure] : exact.parameters) {
     if (needs_spread(key)) {
       figure.spread = Spread{Spread::Kind::tolerance, figure.value, figure.value, true};
     }
   }
   Motor missing = ecx_32();
-  for (auto& [key, figure] : missing.figures) {
+  for (auto& [key, figure] : missing.parameters) {
     if (needs_spread(key)) {
       figure.spread.reset();
     }
@@ -92,10 +92,10 @@ TEST(DerateWithoutSpreads, TakesAZeroToleranceForAMissingOne) {
 TEST(DerateWithoutSpreads, TakesATinyToleranceForAMissingOne) {
   Motor tiny = ecx_32();
   Motor missing = ecx_32();
-  for (auto& [key, figure] : tiny.figures) {
+  for (auto& [key, figure] : tiny.parameters) {
     if (needs_spread(key)) {
       figure.spread = Spread{Spread::Kind::tolerance, figure.value * (1.0 - 1e-5), figure.value * (1.0 + 1e-5), true};
-      missing.figures.at(key).spread.reset();
+      missing.parameters.at(key).spread.reset();
     }
   }
   EXPECT_EQ(derate(tiny, twente(), few_samples()).table.square_A2, derate(missing, twente(), few_samples()).table.square_A2);
@@ -103,7 +103,7 @@ TEST(DerateWithoutSpreads, TakesATinyToleranceForAMissingOne) {
 
 TEST(Derate, KeepsALimitThatIsARangeAtItsLowerEnd) {
   Motor wide = ecx_32();
-  ParameterValue& limit = wide.figures.at("winding_limit");
+  ParameterValue& limit = wide.parameters.at("winding_limit");
   limit.spread = Spread{Spread::Kind::range, 135.0, 165.0, false};
   EXPECT_EQ(barrier_rules(wide, twente(), {}).limits.winding_C, 135.0);
   EXPECT_EQ(barrier_rules(ecx_32(), twente(), {}).limits.winding_C, 155.0);

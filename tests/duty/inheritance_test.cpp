@@ -81,8 +81,8 @@ TEST_F(Inheritance, division_b_differs_from_division_a_by_field_and_distance) {
   EXPECT_EQ(inputs_of(a).division, Division::a);
   EXPECT_EQ(inputs_of(b).division, Division::b);
   int differences = 0;
-  for (std::size_t i = 0; i < inputs_of(a).figures.size(); ++i) {
-    differences += inputs_of(a).figures[i].value != inputs_of(b).figures[i].value ? 1 : 0;
+  for (std::size_t i = 0; i < inputs_of(a).parameters.size(); ++i) {
+    differences += inputs_of(a).parameters[i].value != inputs_of(b).parameters[i].value ? 1 : 0;
   }
   EXPECT_EQ(differences, 1);
   EXPECT_EQ(inputs_of(a).nominal().distance_median_m, 1.2);

@@ -189,11 +189,11 @@ TEST(Behaviour, every_input_matters) {
     }
     return total;
   };
-  for (std::size_t i = 0; i < inputs.figures.size(); ++i) {
+  for (std::size_t i = 0; i < inputs.parameters.size(); ++i) {
     const std::string_view key = match_input_specs()[i].spec.key;
-    ASSERT_TRUE(inputs.figures[i].spread) << key << " has no range";
+    ASSERT_TRUE(inputs.parameters[i].spread) << key << " has no range";
     MatchInputs other = inputs;
-    other.figures[i].value = inputs.figures[i].spread->low;
+    other.parameters[i].value = inputs.parameters[i].spread->low;
     if (key != "aggressiveness") {  // which is the planner's
       EXPECT_NE(sum(other), sum(inputs)) << key;
     }
@@ -280,7 +280,7 @@ TEST(Match, a_duel_pushes_with_its_share_of_the_grip) {
   double before_Nm = 0.0;
   for (const double share : {0.2, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0}) {
     MatchInputs inputs = division_a();
-    inputs.figures.at(input).value = share;
+    inputs.parameters.at(input).value = share;
     double largest_Nm = 0.0;
     int duels = 0;
     play_match(inputs, inputs.nominal(), twente(), 1, Planner::jerk_limited, 0.25, [&](const MatchMoment& now) {

@@ -70,14 +70,14 @@ TEST(RobotFile, keeps_everything_else_as_it_stands) {
   EXPECT_THAT(text, HasSubstr("rotation = { value = \"1 mN m\", origin = \"derived\""));
   EXPECT_THAT(text, Not(HasSubstr("double_angle")));
   const Robot after = parse_robot(text, kFile);
-  for (const auto& [key, figure] : before.figures) {
+  for (const auto& [key, figure] : before.parameters) {
     if (key != "friction.wheel_damping" && !key.starts_with("friction.heading")) {
-      ASSERT_TRUE(after.figures.contains(key)) << key;
-      EXPECT_EQ(after.figures.at(key).printed, figure.printed) << key;
+      ASSERT_TRUE(after.parameters.contains(key)) << key;
+      EXPECT_EQ(after.parameters.at(key).printed, figure.printed) << key;
     }
   }
-  EXPECT_EQ(after.figures.at("friction.wheel_damping").origin, Origin::measured);
-  const ParameterValue& constant = after.figures.at("friction.heading.wheel[1].constant");
+  EXPECT_EQ(after.parameters.at("friction.wheel_damping").origin, Origin::measured);
+  const ParameterValue& constant = after.parameters.at("friction.heading.wheel[1].constant");
   EXPECT_EQ(constant.origin, Origin::measured);
   ASSERT_TRUE(constant.spread.has_value());
   EXPECT_LT(constant.spread->low, constant.value);

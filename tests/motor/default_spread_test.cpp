@@ -57,7 +57,7 @@ TEST(DefaultSpread, StandsOutsideOfEveryHonestSpreadThatItReplaces) {
     for (int round = 0; round < 20; ++round) {
       Motor stripped = honest;
       std::size_t count = 0;
-      for (auto& [key, figure] : stripped.figures) {
+      for (auto& [key, figure] : stripped.parameters) {
         if (needs_spread(key) && (round == 0 || engine() % 2 == 0)) {
           figure.spread.reset();
           ++count;
@@ -65,14 +65,14 @@ TEST(DefaultSpread, StandsOutsideOfEveryHonestSpreadThatItReplaces) {
       }
       EXPECT_THAT(default_spreads(stripped), SizeIs(count));
       const Motor filled = with_default_spreads(stripped);
-      for (const auto& [key, figure] : honest.figures) {
+      for (const auto& [key, figure] : honest.parameters) {
         if (!needs_spread(key)) {
           continue;
         }
         for (int i = 1; i < 100; ++i) {
           const double uniform = 0.01 * i;
           const double distance = std::abs(figure.quantile(uniform) - figure.value);
-          EXPECT_GE(std::abs(filled.figures.at(key).quantile(uniform) - figure.value), distance * (1.0 - 1e-12))
+          EXPECT_GE(std::abs(filled.parameters.at(key).quantile(uniform) - figure.value), distance * (1.0 - 1e-12))
               << honest.id << ", " << key << " at " << uniform;
         }
       }
@@ -82,13 +82,13 @@ TEST(DefaultSpread, StandsOutsideOfEveryHonestSpreadThatItReplaces) {
 
 TEST(DefaultSpread, WorseOriginsGetNoNarrowerOnes) {
   Motor motor = ecx_32();
-  for (auto& [key, figure] : motor.figures) {
+  for (auto& [key, figure] : motor.parameters) {
     figure.spread.reset();
   }
   std::vector<DefaultSpread> before;
   // A value called measured without an interval is no measurement.
   for (const Origin origin : {Origin::datasheet, Origin::third_party, Origin::derived, Origin::estimated, Origin::measured}) {
-    for (auto& [key, figure] : motor.figures) {
+    for (auto& [key, figure] : motor.parameters) {
       figure.origin = origin;
     }
     const std::vector<DefaultSpread> now = default_spreads(motor);
@@ -112,10 +112,10 @@ TEST(DefaultSpread, OfEverythingThatTemperaturesDependOn) {
 TEST(DefaultSpread, AZeroToleranceCountsAsMissingAndIsRefused) {
   for (const std::string_view key : {"thermal_resistance_stator_ambient", "terminal_resistance", "no_load_current"}) {
     Motor motor = ecx_32();
-    ParameterValue& figure = motor.figures.at(key);
+    ParameterValue& figure = motor.parameters.at(key);
     figure.spread = Spread{Spread::Kind::tolerance, figure.value, figure.value, true};
     ASSERT_THAT(default_spreads(motor), SizeIs(1)) << key;
-    EXPECT_LT(with_default_spreads(motor).figures.at(key).spread->low, figure.value);
+    EXPECT_LT(with_default_spreads(motor).parameters.at(key).spread->low, figure.value);
     EXPECT_THAT(message_of_refusal(motor), AllOf(HasSubstr(".toml:"), HasSubstr("exact_values"), HasSubstr(key), HasSubstr("state that")));
   }
 }
@@ -129,18 +129,18 @@ TEST(DefaultSpread, ANarrowerSpreadThanItsOriginSupportsIsRefusedAndNotUsed) {
   for (const std::string_view key : {"thermal_resistance_stator_ambient", "terminal_resistance", "no_load_current"}) {
     for (const Origin origin : {Origin::datasheet, Origin::third_party, Origin::derived, Origin::estimated}) {
       Motor missing = ecx_32();
-      missing.figures.at(key).origin = origin;
-      missing.figures.at(key).spread.reset();
-      const Spread usual = *with_default_spreads(missing).figures.at(key).spread;
+      missing.parameters.at(key).origin = origin;
+      missing.parameters.at(key).spread.reset();
+      const Spread usual = *with_default_spreads(missing).parameters.at(key).spread;
       for (const auto& [below_percent, above_percent] : {std::pair(1e-3, 1e-3), std::pair(40.0, 0.01), std::pair(0.5, 100.0)}) {
         Motor motor = missing;
-        ParameterValue& figure = motor.figures.at(key);
+        ParameterValue& figure = motor.parameters.at(key);
         figure.spread = of_percent(figure, below_percent, above_percent);
         EXPECT_THAT(message_of_refusal(motor),
                     AllOf(HasSubstr(".toml:"), HasSubstr("narrow_values"), HasSubstr(key), HasSubstr("state that")))
             << to_string(origin) << " " << below_percent;
-        EXPECT_EQ(with_default_spreads(motor).figures.at(key).spread->low, usual.low);
-        EXPECT_EQ(with_default_spreads(motor).figures.at(key).spread->high, usual.high);
+        EXPECT_EQ(with_default_spreads(motor).parameters.at(key).spread->low, usual.low);
+        EXPECT_EQ(with_default_spreads(motor).parameters.at(key).spread->high, usual.high);
       }
     }
   }
@@ -148,7 +148,7 @@ TEST(DefaultSpread, ANarrowerSpreadThanItsOriginSupportsIsRefusedAndNotUsed) {
 
 TEST(DefaultSpread, AFitThatIsSurerThanItsSensorsIsWidenedAndNotRefused) {
   Motor motor = ecx_32();
-  ParameterValue& figure = motor.figures.at("thermal_resistance_stator_ambient");
+  ParameterValue& figure = motor.parameters.at("thermal_resistance_stator_ambient");
   figure.origin = Origin::measured;
   figure.spread = of_percent(figure, 0.02, 3.0);
   EXPECT_EQ(message_of_refusal(motor), "");
@@ -162,7 +162,7 @@ TEST(DefaultSpread, AFitThatIsSurerThanItsSensorsIsWidenedAndNotRefused) {
 
 TEST(DefaultSpread, MissingOnesAreNoReasonToRefuse) {
   Motor motor = ecx_32();
-  for (auto& [key, figure] : motor.figures) {
+  for (auto& [key, figure] : motor.parameters) {
     figure.spread.reset();
   }
   EXPECT_EQ(message_of_refusal(motor), "");

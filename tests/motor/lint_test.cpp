@@ -236,7 +236,7 @@ TEST(WrongFigures, are_found_at_their_line) {
   const auto density = std::ranges::find(findings, "density", &LintFinding::check);
   ASSERT_NE(density, findings.end());
   EXPECT_THAT(density->at.file, HasSubstr("lint_df45l_wiki.toml"));
-  EXPECT_EQ(density->at.line, wrong_motor("df45l_wiki").figures.at("mass").at.line);
+  EXPECT_EQ(density->at.line, wrong_motor("df45l_wiki").parameters.at("mass").at.line);
   EXPECT_THAT(density->message, HasSubstr("320 g"));
 }
 
@@ -352,7 +352,7 @@ TEST(Lint, notes_estimates_and_missing_spreads) {
   EXPECT_EQ(said_by("spreads", estimated), "");
   Motor without_spread = motor_of_database("maxon_ec45_flat_70w_24v");
   EXPECT_EQ(said_by("spreads", without_spread), "");
-  without_spread.figures.at("terminal_resistance").spread.reset();
+  without_spread.parameters.at("terminal_resistance").spread.reset();
   EXPECT_THAT(said_by("spreads", without_spread), HasSubstr("terminal_resistance of 0.608 ohm has neither tolerance nor range"));
   EXPECT_THAT(errors(without_spread), ElementsAre("spreads"));
 }
@@ -360,12 +360,12 @@ TEST(Lint, notes_estimates_and_missing_spreads) {
 // What is agreed has no spread, what is built has one; nothing is without a source.
 TEST(Lint, asks_every_figure_for_a_source_and_every_built_one_for_a_spread) {
   const Motor good = motor_of_database("maxon_ec45_flat_70w_24v");
-  for (const auto& [key, figure] : good.figures) {
+  for (const auto& [key, figure] : good.parameters) {
     Motor motor = good;
-    motor.figures.at(key).source.clear();
+    motor.parameters.at(key).source.clear();
     EXPECT_THAT(errors(motor), ElementsAre("sources")) << key;
     motor = good;
-    motor.figures.at(key).spread.reset();
+    motor.parameters.at(key).spread.reset();
     EXPECT_EQ(errors(motor).contains("spreads"), !is_agreed(key)) << key;
   }
 }

@@ -54,7 +54,7 @@ TEST(MotorConventions, phase_values_are_two_in_series) {
   const Motor motor = motor_with("phase_to_star", "per_dc_ampere");
   EXPECT_DOUBLE_EQ(motor.nominal.terminal_resistance_ohm, 1.0);
   EXPECT_DOUBLE_EQ(motor.nominal.terminal_inductance_H, 0.4e-3);
-  const ParameterValue& figure = motor.figures.at("terminal_resistance");
+  const ParameterValue& figure = motor.parameters.at("terminal_resistance");
   EXPECT_DOUBLE_EQ(figure.spread->low, 0.9);
   EXPECT_DOUBLE_EQ(figure.spread->high, 1.1);
 }
@@ -233,14 +233,14 @@ offset = { value = "1 K", origin = "measured", source = "nobody" }
 TEST(DataQuality, is_that_of_the_worst_thermal_figure) {
   Motor motor = motor_with("between_terminals", "per_dc_ampere");
   EXPECT_EQ(data_quality(motor), "datasheet");
-  motor.figures.at("terminal_resistance").origin = Origin::measured;
+  motor.parameters.at("terminal_resistance").origin = Origin::measured;
   EXPECT_EQ(data_quality(motor), "datasheet");
-  motor.figures.at("terminal_resistance").origin = Origin::third_party;
+  motor.parameters.at("terminal_resistance").origin = Origin::third_party;
   EXPECT_EQ(data_quality(motor), "mixed");
-  motor.figures.at("thermal_time_constant_stator").origin = Origin::estimated;
+  motor.parameters.at("thermal_time_constant_stator").origin = Origin::estimated;
   EXPECT_EQ(data_quality(motor), "estimated");
-  motor.figures.at("thermal_time_constant_stator").origin = Origin::datasheet;
-  motor.figures.at("winding_limit").origin = Origin::estimated;
+  motor.parameters.at("thermal_time_constant_stator").origin = Origin::datasheet;
+  motor.parameters.at("winding_limit").origin = Origin::estimated;
   EXPECT_EQ(data_quality(motor), "estimated");
 }
 

@@ -40,7 +40,7 @@ TEST(AssumedFriction, ranges_include_the_measured_robots) {
     EXPECT_FALSE(has_friction(assumed));
     for (const RobotParameterSpec& each : robot_parameter_specs()) {
       if (each.table == "friction" && !std::isnan(stated.*each.value)) {
-        const Spread& range = assumed.figures.at("friction." + std::string(each.spec.key)).spread.value();
+        const Spread& range = assumed.parameters.at("friction." + std::string(each.spec.key)).spread.value();
         EXPECT_GE(stated.*each.value, range.low) << id << " " << each.spec.key;
         EXPECT_LE(stated.*each.value, range.high) << id << " " << each.spec.key;
       }
@@ -50,7 +50,7 @@ TEST(AssumedFriction, ranges_include_the_measured_robots) {
 
 TEST(AssumedFriction, draws_stay_in_their_ranges) {
   const Robot assumed = with_assumed_friction(without_friction(read_robot(kRobots / "tigers_v2020.toml")));
-  const Spread drag = assumed.figures.at("friction.roller_drag").spread.value();
+  const Spread drag = assumed.parameters.at("friction.roller_drag").spread.value();
   Random random(1, 0);
   double least = 1.0;
   double most = 0.0;

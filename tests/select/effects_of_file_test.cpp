@@ -155,7 +155,7 @@ TEST_F(EffectsOfAFile, samples_agree_with_the_reference_where_nothing_is_uncerta
     }
   }
   Motor motor = MotorFile(everything).read();
-  for (auto& [key, figure] : motor.figures) {
+  for (auto& [key, figure] : motor.parameters) {
     make_certain(figure);
   }
   for (MotorEffect& effect : motor.effects) {

@@ -29,7 +29,7 @@ constexpr double kInner_K_per_W = 4.0;
 constexpr double kOuter_K_per_W = 2.0;
 
 void give(Motor& motor, std::string_view key, double MotorValues::*value, const ParameterValue& figure) {
-  motor.figures[key] = figure;
+  motor.parameters[key] = figure;
   motor.nominal.*value = figure.value;
 }
 
@@ -511,7 +511,7 @@ TEST(Evaluate, declared_range_of_the_driver_s_resistance_is_propagated) {
   ParameterValue figure;
   figure.value = 0.3;
   figure.spread = Spread{Spread::Kind::range, 0.1, 0.6, false};
-  robot.figures["drive.driver_resistance"] = figure;
+  robot.parameters["drive.driver_resistance"] = figure;
   EXPECT_GT(spread_K(), 5.0);
 }
 

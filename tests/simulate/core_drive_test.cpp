@@ -201,7 +201,7 @@ TEST(GuardedCore, shadow_counts_and_on_limits) {
 // Winding and stator so badly coupled that iron loss alone is too much: derate() refuses, and the core drives without guard.
 TEST(GuardedCore, a_motor_that_cannot_be_guarded_says_why) {
   Motor motor = ecx_32();
-  ParameterValue& figure = motor.figures.at("winding_limit");
+  ParameterValue& figure = motor.parameters.at("winding_limit");
   figure.value = 41.0;
   refresh_values(motor);
   const MotorGuard guard = make_guard(motor, twente(), 25.0, 2);

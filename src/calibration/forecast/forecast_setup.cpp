@@ -30,18 +30,18 @@ bool all_have(std::span<const Recording> recordings, Signal signal) {
 }
 
 ParameterValue held(double value) {
-  ParameterValue figure;
-  figure.value = value;
-  figure.derivation = "held by the fit";
-  return figure;
+  ParameterValue parameter;
+  parameter.value = value;
+  parameter.derivation = "held by the fit";
+  return parameter;
 }
 
 /// Free parameter with prior standard deviation `sd` of its logarithm. The range follows from prior_sd_of() for the origin "estimated".
 ParameterValue free_parameter(double value, double sd) {
-  ParameterValue figure = held(value);
-  figure.derivation = "start of the fit";
-  figure.spread = Spread{Spread::Kind::range, value * std::exp(-sd), value * std::exp(sd), true};
-  return figure;
+  ParameterValue parameter = held(value);
+  parameter.derivation = "start of the fit";
+  parameter.spread = Spread{Spread::Kind::range, value * std::exp(-sd), value * std::exp(sd), true};
+  return parameter;
 }
 
 MotorEffect effect(std::string name, std::string_view type, std::vector<std::string> nodes, std::vector<ParameterValue> parameters) {

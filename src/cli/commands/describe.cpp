@@ -39,16 +39,17 @@ std::string with_unit(double value, std::string_view unit) {
   return unit.empty() ? significant(value, 4) : fmt::format("{} {}", significant(value, 4), unit_for_display(unit));
 }
 
-Json parameter_json(std::string_view key, std::string_view unit, const ParameterValue& figure) {
-  Json json{{"key", key}, {"value", figure.value}, {"unit", unit}, {"origin", to_string(figure.origin)}, {"source", figure.source}};
-  if (figure.spread) {
-    json["range"] = {figure.spread->low, figure.spread->high};
+Json parameter_json(std::string_view key, std::string_view unit, const ParameterValue& parameter) {
+  Json json{
+      {"key", key}, {"value", parameter.value}, {"unit", unit}, {"origin", to_string(parameter.origin)}, {"source", parameter.source}};
+  if (parameter.spread) {
+    json["range"] = {parameter.spread->low, parameter.spread->high};
   }
-  for (const Confirmation& each : figure.confirmed_by) {
+  for (const Confirmation& each : parameter.confirmed_by) {
     json["confirmed_by"][each.source] = each.value;
   }
-  if (!figure.derivation.empty()) {
-    json["derivation"] = figure.derivation;
+  if (!parameter.derivation.empty()) {
+    json["derivation"] = parameter.derivation;
   }
   return json;
 }
@@ -59,21 +60,23 @@ std::string percent_off(double bound, double value) {
   return (percent < 0.0 ? "" : "+") + (std::abs(percent) < 1.0 ? significant(percent, 1) : fmt::format("{:.0f}", percent));
 }
 
-std::string parameter_text(std::string_view key, std::string_view unit, const ParameterValue& figure) {
-  std::string text = fmt::format("  {:36} {:>22}  {:12}", key, figure.printed, to_string(figure.origin));
-  if (figure.spread && unit == "rad") {
-    text += fmt::format(" {} … {} °", significant(convert(figure.spread->low, "rad", "deg"), 3),
-                        significant(convert(figure.spread->high, "rad", "deg"), 3));
-  } else if (figure.spread && unit != "degC" && figure.value != 0.0) {
-    text += fmt::format(" {} … {} %", percent_off(figure.spread->low, figure.value), percent_off(figure.spread->high, figure.value));
-  } else if (figure.spread) {
-    text += fmt::format(" {} … {} {}", significant(figure.spread->low, 3), significant(figure.spread->high, 3), unit_for_display(unit));
+std::string parameter_text(std::string_view key, std::string_view unit, const ParameterValue& parameter) {
+  std::string text = fmt::format("  {:36} {:>22}  {:12}", key, parameter.printed, to_string(parameter.origin));
+  if (parameter.spread && unit == "rad") {
+    text += fmt::format(" {} … {} °", significant(convert(parameter.spread->low, "rad", "deg"), 3),
+                        significant(convert(parameter.spread->high, "rad", "deg"), 3));
+  } else if (parameter.spread && unit != "degC" && parameter.value != 0.0) {
+    text += fmt::format(" {} … {} %", percent_off(parameter.spread->low, parameter.value),
+                        percent_off(parameter.spread->high, parameter.value));
+  } else if (parameter.spread) {
+    text +=
+        fmt::format(" {} … {} {}", significant(parameter.spread->low, 3), significant(parameter.spread->high, 3), unit_for_display(unit));
   }
-  text += figure.source.empty() ? "\n" : fmt::format("  [{}]\n", figure.source);
-  for (const Confirmation& each : figure.confirmed_by) {
+  text += parameter.source.empty() ? "\n" : fmt::format("  [{}]\n", parameter.source);
+  for (const Confirmation& each : parameter.confirmed_by) {
     text += fmt::format("      {} states {}\n", each.source, each.printed);
   }
-  return figure.derivation.empty() ? text : text + fmt::format("      {}\n", figure.derivation);
+  return parameter.derivation.empty() ? text : text + fmt::format("      {}\n", parameter.derivation);
 }
 
 /// Describes the effects that the file adds to those of every motor.
@@ -107,7 +110,7 @@ Description describe_motor(const Motor& motor) {
                       {"data_quality", data_quality(motor)}}};
   result.text += "\nparameters (value, origin, tolerance or range, source)\n";
   for (const MotorParameterSpec& each : motor_parameter_specs()) {
-    if (const auto found = motor.figures.find(each.spec.key); found != motor.figures.end()) {
+    if (const auto found = motor.parameters.find(each.spec.key); found != motor.parameters.end()) {
       result.text += parameter_text(each.spec.key, each.spec.unit, found->second);
       result.json["figures"].push_back(parameter_json(each.spec.key, each.spec.unit, found->second));
     }
@@ -182,10 +185,10 @@ Description describe_robot(const Robot& robot) {
        {"gear_ratio", robot.gear_ratio},
        {"available_V", robot.available_V()},
        {"source", robot.source}}};
-  result.text += robot.figures.empty() ? "" : "\nparameters (value, origin, range, source)\n";
-  for (const auto& [key, figure] : robot.figures) {
-    result.text += parameter_text(key, robot_unit(key), figure);
-    result.json["figures"].push_back(parameter_json(key, robot_unit(key), figure));
+  result.text += robot.parameters.empty() ? "" : "\nparameters (value, origin, range, source)\n";
+  for (const auto& [key, parameter] : robot.parameters) {
+    result.text += parameter_text(key, robot_unit(key), parameter);
+    result.json["figures"].push_back(parameter_json(key, robot_unit(key), parameter));
   }
   return result;
 }
@@ -223,21 +226,21 @@ Description describe_duty(const Duty& duty) {
                       {"shape", duty.shape},
                       {"ambient_C", duty.ambient_C.value},
                       {"notes", duty.notes}}};
-  result.text += duty.figures.empty() ? "" : "\nload\n";
-  for (const auto& [spec, figure] : duty.figures) {
-    const bool is_bare = figure.printed.empty();
-    result.text += is_bare ? fmt::format("  {:36} {:>22}\n", spec.key, with_unit(figure.value, spec.unit))
-                           : parameter_text(spec.key, spec.unit, figure);
-    result.json["figures"].push_back(is_bare ? Json{{"key", spec.key}, {"value", figure.value}, {"unit", spec.unit}}
-                                             : parameter_json(spec.key, spec.unit, figure));
+  result.text += duty.parameters.empty() ? "" : "\nload\n";
+  for (const auto& [spec, parameter] : duty.parameters) {
+    const bool is_bare = parameter.printed.empty();
+    result.text += is_bare ? fmt::format("  {:36} {:>22}\n", spec.key, with_unit(parameter.value, spec.unit))
+                           : parameter_text(spec.key, spec.unit, parameter);
+    result.json["figures"].push_back(is_bare ? Json{{"key", spec.key}, {"value", parameter.value}, {"unit", spec.unit}}
+                                             : parameter_json(spec.key, spec.unit, parameter));
   }
   if (const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data)) {
     result.text += "\ninputs (value, origin, range, meaning)\n";
-    for (std::size_t i = 0; i < match->inputs().figures.size(); ++i) {
+    for (std::size_t i = 0; i < match->inputs().parameters.size(); ++i) {
       const ParameterSpec& spec = match_input_specs()[i].spec;
-      const ParameterValue& figure = match->inputs().figures[i];
-      result.text += parameter_text(spec.key, spec.unit, figure) + fmt::format("      {}\n", wrapped(spec.meaning, 6));
-      Json json = parameter_json(spec.key, spec.unit, figure);
+      const ParameterValue& parameter = match->inputs().parameters[i];
+      result.text += parameter_text(spec.key, spec.unit, parameter) + fmt::format("      {}\n", wrapped(spec.meaning, 6));
+      Json json = parameter_json(spec.key, spec.unit, parameter);
       json["meaning"] = spec.meaning;
       result.json["figures"].push_back(json);
     }

@@ -146,13 +146,13 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input, con
   json["residual_tests"] = {{"before", tests_json(diagnosis.tests_before)}, {"after", tests_json(diagnosis.tests_after)}};
   json["description"] = diagnosis.description;
   json["figures_contradicted"] = Json::array();
-  for (const ChangedParameter& figure : diagnosis.changed) {
-    json["figures_contradicted"].push_back({{"name", figure.name},
-                                            {"unit", figure.unit},
-                                            {"before", figure.before},
-                                            {"value", figure.value},
-                                            {"ci95", {figure.low, figure.high}},
-                                            {"nats", rounded(figure.gain_nats, 2)}});
+  for (const ChangedParameter& parameter : diagnosis.changed) {
+    json["figures_contradicted"].push_back({{"name", parameter.name},
+                                            {"unit", parameter.unit},
+                                            {"before", parameter.before},
+                                            {"value", parameter.value},
+                                            {"ci95", {parameter.low, parameter.high}},
+                                            {"nats", rounded(parameter.gain_nats, 2)}});
   }
   if (!diagnosis.unexplained.empty()) {
     json["unexplained"] = unexplained_json(*std::ranges::max_element(diagnosis.unexplained, {}, &Unexplained::mean_W));

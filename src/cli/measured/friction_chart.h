@@ -1,4 +1,4 @@
-// Charts of a friction test, after figures 4, 6, 7 and 8 of ETDP 2025; one colour per wheel in all of them.
+// Charts of a friction test, after parameters 4, 6, 7 and 8 of ETDP 2025; one colour per wheel in all of them.
 #pragma once
 
 #include <string>

@@ -40,7 +40,7 @@ constexpr std::array kSpecs = {
     MatchInputSpec{{"outside_speed", "", kFactor, "factor on the speed outside play: 1.5 m/s, but 1 m/s with the ball in its placement and at half-time; never above the rules' limit; at a free kick the robot drives as fast as it can"}, &MatchValues::outside_speed_factor},
 };
 // clang-format on
-static_assert(kSpecs.size() == std::tuple_size_v<decltype(MatchInputs::figures)>);
+static_assert(kSpecs.size() == std::tuple_size_v<decltype(MatchInputs::parameters)>);
 
 }  // namespace
 
@@ -49,7 +49,7 @@ std::span<const MatchInputSpec> match_input_specs() { return kSpecs; }
 MatchValues MatchInputs::nominal() const {
   MatchValues values;
   for (std::size_t i = 0; i < kSpecs.size(); ++i) {
-    values.*kSpecs[i].value = figures[i].value;
+    values.*kSpecs[i].value = parameters[i].value;
   }
   return values;
 }
@@ -57,7 +57,7 @@ MatchValues MatchInputs::nominal() const {
 MatchValues MatchInputs::draw(Random& random) const {
   MatchValues values;
   for (std::size_t i = 0; i < kSpecs.size(); ++i) {
-    values.*kSpecs[i].value = figures[i].quantile(random.uniform());
+    values.*kSpecs[i].value = parameters[i].quantile(random.uniform());
   }
   return values;
 }
@@ -71,7 +71,7 @@ MatchInputs read_match_inputs(Reader& table) {
   }
   inputs.overtime = table.flag("overtime", Need::optional).value_or(false);
   for (std::size_t i = 0; i < kSpecs.size(); ++i) {
-    inputs.figures[i] = table.figure(kSpecs[i].spec, Need::required).value_or(ParameterValue{});
+    inputs.parameters[i] = table.parameter(kSpecs[i].spec, Need::required).value_or(ParameterValue{});
   }
   const MatchValues values = inputs.nominal();
   if (values.stop_shortest_s > values.stop_mean_s) {

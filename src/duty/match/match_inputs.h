@@ -1,4 +1,4 @@
-// What nobody has measured of a match, as named inputs with ranges. The rules' own figures are constants.
+// What nobody has measured of a match, as named inputs with ranges. The rules' own parameters are constants.
 #pragma once
 
 #include <array>
@@ -52,7 +52,7 @@ struct MatchInputs {
   Division division = Division::a;
   Role role = Role::attacker;
   bool overtime = false;
-  std::array<ParameterValue, 22> figures;  ///< in the order of match_input_specs()
+  std::array<ParameterValue, 22> parameters;  ///< in the order of match_input_specs()
 
   [[nodiscard]] MatchValues nominal() const;
   [[nodiscard]] MatchValues draw(Random& random) const;

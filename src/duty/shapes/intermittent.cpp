@@ -6,13 +6,13 @@
 namespace heatsoak::shapes {
 namespace {
 
-/// The spread of a figure as a spread of a factor around 1.
-ParameterValue as_factor(const ParameterValue& figure) {
-  ParameterValue factor = figure;
+/// The spread of a parameter as a spread of a factor around 1.
+ParameterValue as_factor(const ParameterValue& parameter) {
+  ParameterValue factor = parameter;
   factor.value = 1.0;
-  if (factor.spread && figure.value != 0.0) {
-    factor.spread->low /= figure.value;
-    factor.spread->high /= figure.value;
+  if (factor.spread && parameter.value != 0.0) {
+    factor.spread->low /= parameter.value;
+    factor.spread->high /= parameter.value;
     factor.spread->by_ratio = factor.spread->low > 0.0;
   }
   return factor;
@@ -45,8 +45,8 @@ void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   constexpr double kLongest_s = 1e6;
   const ParameterSpec torque{"torque_on", "N m", Range::positive(), "at one wheel, while it is on"};
   const ParameterSpec current{"current_on", "A", Range::positive(), "through the motor, while it is on"};
-  const std::optional<ParameterValue> torque_on = table.figure(torque, Need::optional);
-  const std::optional<ParameterValue> current_on = table.figure(current, Need::optional);
+  const std::optional<ParameterValue> torque_on = table.parameter(torque, Need::optional);
+  const std::optional<ParameterValue> current_on = table.parameter(current, Need::optional);
   const ParameterSpec speed{"speed_on", "rad/s", Range::non_negative(), "of the wheel, while it is on"};
   const ParameterSpec time_on{"time_on", "s", Range::positive(), "of one cycle"};
   const ParameterSpec time_off{"time_off", "s", Range::non_negative(), "of one cycle"};
@@ -74,9 +74,9 @@ void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   }
   duty.kind = torque_on ? DutyKind::torque : DutyKind::current;
   duty.load = as_factor(torque_on ? *torque_on : *current_on);
-  duty.figures.emplace_back(torque_on ? torque : current, torque_on ? *torque_on : *current_on);
+  duty.parameters.emplace_back(torque_on ? torque : current, torque_on ? *torque_on : *current_on);
   for (const auto& [spec, value] : {std::pair(speed, *speed_on), {time_on, *on_s}, {time_off, *off_s}, {cycles, *repeats}}) {
-    duty.figures.emplace_back(spec, ParameterValue{}).second.value = value;
+    duty.parameters.emplace_back(spec, ParameterValue{}).second.value = value;
   }
   const double torque_Nm = torque_on ? torque_on->value : 0.0;
   const double current_A = current_on ? current_on->value : 0.0;

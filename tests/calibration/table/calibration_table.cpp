@@ -49,7 +49,7 @@ void tabulate(const std::string& title, const Sheet& sheet, const Case& like, in
       const double half = 0.5 * std::log(mark.figure.high / mark.figure.low);
       widths.push_back(half);
       squares += std::pow(std::log(mark.figure.value / mark.truth) / (half / 1.96), 2);
-      const Eigen::VectorXd& exponents = each.calibration.motor_model.figures[f].exponents;
+      const Eigen::VectorXd& exponents = each.calibration.motor_model.parameters[f].exponents;
       const Fit& fit = each.calibration.fit;
       averaged.push_back(
           std::sqrt(exponents.dot(fit.covariance * exponents) / exponents.dot(fit.hypotheses.front().covariance * exponents)));

@@ -92,7 +92,7 @@ std::vector<Network> drawn(const Subject& subject, std::uint64_t first_stream) {
 Network at_the_ends(const Subject& subject, std::uint64_t corner) {
   Motor motor = subject.motor;
   unsigned bit = 0;
-  for (auto& [key, figure] : motor.figures) {
+  for (auto& [key, figure] : motor.parameters) {
     if (needs_spread(key) && figure.spread) {
       figure.value = ((corner >> bit++) & 1U) != 0 ? figure.spread->high : figure.spread->low;
     }
@@ -213,7 +213,7 @@ void run_class(Tally& tally, const Subject& subject, std::uint64_t trials, std::
 /// All corners of the tolerances under the hottest uses and random ones.
 void run_corners(Tally& tally, const Subject& subject, std::uint64_t trials, Clock& clock, const Adversary& adversary) {
   const auto values = static_cast<unsigned>(
-      std::ranges::count_if(subject.motor.figures, [](const auto& each) { return needs_spread(each.first) && each.second.spread; }));
+      std::ranges::count_if(subject.motor.parameters, [](const auto& each) { return needs_spread(each.first) && each.second.spread; }));
   const std::uint64_t corners = std::uint64_t{1} << values;
   std::vector<Network> networks;
   for (std::uint64_t corner = 0; corner < corners; ++corner) {

@@ -64,7 +64,7 @@ HardMatch make_hard_match(const Robot& robot, double share) {
     if (spec == specs.end()) {
       throw Failure(ExitCode::bug, fmt::format("a match has no input {}", harder.key));
     }
-    ParameterValue& figure = match.inputs.figures.at(static_cast<std::size_t>(spec - specs.begin()));
+    ParameterValue& figure = match.inputs.parameters.at(static_cast<std::size_t>(spec - specs.begin()));
     const std::string unit(spec->spec.unit);
     const double value = std::lerp(figure.value, harder.value, share);
     match.changed.push_back(

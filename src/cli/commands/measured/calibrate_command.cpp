@@ -50,7 +50,7 @@ present::Table parameter_table(const Calibration& result) {
                                    {"unit", "", 0, present::Alignment::left},
                                    {"identifiable", "", 1, present::Alignment::left}},
                        .rows = {}};
-  for (const CalibratedParameter& each : result.figures) {
+  for (const CalibratedParameter& each : result.parameters) {
     const double half = 0.5 * (each.high - each.low);
     table.rows.push_back({{each.name},
                           {significant(each.before, 3)},
@@ -76,14 +76,14 @@ void add_errors(present::Table& table, const std::string& what, const std::vecto
 
 std::vector<present::Text> headline_of(const Motor& motor, const Calibration& result) {
   std::vector<std::string> open;
-  for (const CalibratedParameter& each : result.figures) {
+  for (const CalibratedParameter& each : result.parameters) {
     if (!each.is_identifiable) {
       open.push_back(each.name);
     }
   }
   std::vector<present::Text> sentences{{fmt::format(
-      "{} of {} values of {} are identifiable from {} run{}{}{}.", result.figures.size() - open.size(), result.figures.size(), motor.id,
-      result.runs.size(), result.runs.size() == 1 ? "" : "s", open.empty() ? "" : ", all but ", fmt::join(open, ", "))}};
+      "{} of {} values of {} are identifiable from {} run{}{}{}.", result.parameters.size() - open.size(), result.parameters.size(),
+      motor.id, result.runs.size(), result.runs.size() == 1 ? "" : "s", open.empty() ? "" : ", all but ", fmt::join(open, ", "))}};
   if (!result.next_experiment.empty()) {
     sentences.push_back({fmt::format("Next experiment: {}.", result.next_experiment)});
   }
@@ -167,7 +167,7 @@ nlohmann::ordered_json forecast_json(const Calibration& calibration) {
 
 nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, const std::string& out) {
   nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
-  for (const CalibratedParameter& each : result.figures) {
+  for (const CalibratedParameter& each : result.parameters) {
     parameters.push_back({{"name", each.name},
                           {"value", number(each.value)},
                           {"unit", each.unit},
