@@ -16,7 +16,7 @@ namespace {
 Topic sensor_topic(const SensorEffectType& type) {
   const std::array lines{TopicLine{"equation", "equation", std::string(type.equation)},
                          TopicLine{"typical", "typical size", std::string(type.typical)},
-                         TopicLine{"look_alike", "look-alikes", std::string(type.confounded_with)},
+                         TopicLine{"look_alike", "confounded", std::string(type.confounded_with)},
                          TopicLine{"experiment", "experiment", std::string(type.experiment)},
                          TopicLine{"reference", "reference", std::string(type.reference)}};
   const std::string use = fmt::format(

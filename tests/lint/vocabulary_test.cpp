@@ -1,5 +1,4 @@
-// Words that a second reading needs are not written any more. Each folder may keep as many as it still has; a folder that is not listed
-// has none, and a number may only fall.
+// Rejects the words of the left-behind vocabulary. A folder that is not listed may have none.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -22,11 +21,16 @@ const std::map<std::string, std::string> kInstead{
     {"counted, included", "reckon(s|ed)?"},
     {"residual", "leaves over|left over"},
     {"unmodelled heat", "nobody logs"},
+    {"parameter, value", "figures?"},
+    {"confounded with", "look-alikes?"},
+    {"accepted, validated", "believ(e|es|ed)"},
+    {"safety factor on heat", "heat reserves?"},
 };
 
-/// What was there when this test was written.
-const std::map<std::string, int> kMost{{"src/check", 5}, {"src/cli", 22},   {"src/derate", 16}, {"src/duty", 15},   {"src/identify", 330},
-                                       {"src/motor", 4}, {"src/report", 1}, {"src/robot", 1},   {"src/thermal", 6}, {"robot_core", 10}};
+/// Allowed counts: `figures` is a table of motor files and a key of answers, <figure> an element of HTML, and two sensors lie next to each
+/// other.
+const std::map<std::string, int> kMost{{"docs", 4},         {"src/cli", 11},  {"src/duty", 1},
+                                       {"src/firmware", 1}, {"src/motor", 6}, {"src/robot", 1}};
 
 std::regex any_of_them() {
   std::string words;

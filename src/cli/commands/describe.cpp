@@ -316,7 +316,7 @@ Description describe_effect(const EffectType& effect) {
   };
   result.text += "\n";
   say("typical size", effect.typical);
-  say("look-alikes", effect.confounded_with);
+  say("confounded", effect.confounded_with);
   const bool has_choice = std::ranges::any_of(effect.parameters, [](const ParameterSpec& spec) { return !spec.choices.empty(); });
   say("needs a log of", has_choice ? "the signal that was chosen" : fmt::format("{}", fmt::join(needs, ", ")));
   if (effect.candidacy.size_parameter >= 0) {

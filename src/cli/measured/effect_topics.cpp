@@ -22,7 +22,7 @@ std::vector<Topic> effect_topics() {
   for (const RunDeviationType& type : all_run_deviations()) {
     const std::array lines{TopicLine{"equation", "equation", std::string(type.equation)},
                            TopicLine{"typical", "typical size", in_units(type.usual, type.size.unit)},
-                           TopicLine{"look_alike", "look-alikes", std::string(type.confounded_with)},
+                           TopicLine{"look_alike", "confounded", std::string(type.confounded_with)},
                            TopicLine{"experiment", "experiment", std::string(type.experiment)}};
     topics.push_back(effect_topic(fmt::format("at the {}, in runs of one condition", type.node), type.name, type.summary, type.size, lines,
                                   "\nfound by diagnose, not part of a motor file\n"));
