@@ -1,4 +1,4 @@
-// Every form that `heatsoak derate` writes, with inputs that no file can be made from: a clear error, and nothing written.
+// All output forms of `heatsoak derate`, with inputs from which no file can be made. Each must give a clear error and write nothing.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,14 +37,13 @@ TEST(DerateForms, RefuseALimitThatIsNotAboveTheAir) {
     here.folder = folder.path();
     const ProgramRun done = run(kDerate + Words{"--motor", "maxon_dcx19s_24v", "--ambient", "100degC", "--to", form, "--out", "x"}, here);
     EXPECT_EQ(done.exit_code, 2) << form;
-    EXPECT_THAT(done.err,
-                AllOf(HasSubstr("the winding limit of 90.0 °C is not above the hottest air of 100.0 °C"), HasSubstr("--ambient")))
+    EXPECT_THAT(done.err, AllOf(HasSubstr("the winding limit of 90.0 °C is not above the hottest air of 100.0 °C"), HasSubstr("--ambient")))
         << form;
     EXPECT_THAT(folder.names(), IsEmpty()) << form;
   }
 }
 
-// Its own drag heats it over its limit at every useful speed, without a current.
+// At every useful speed the motor's own drag heats it over its limit without any current.
 TEST(DerateForms, RefuseAMotorThatCannotBearItsOwnFriction) {
   const std::string shipped = content_of(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
   for (const std::string& form : forms()) {
@@ -78,7 +77,7 @@ TEST(DerateForms, RefuseANumberThatIsNone) {
   }
 }
 
-// Root may write anywhere, so the target is one that nobody can write to.
+// root may write to every folder, so the target is one that no user can write to.
 TEST(DerateForms, LeaveNothingWhereTheTargetCannotBeWritten) {
   for (const std::string form : {"c_header", "json", "fmi3_guard"}) {
     const TemporaryFolder folder;

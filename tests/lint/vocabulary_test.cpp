@@ -1,5 +1,5 @@
-// Words that a second reading needs are not written any more. Each folder may keep as many as it still has; a folder that is not listed
-// has none, and a number may only fall.
+// Words that are hard to read are not used any more. Each folder may keep its present number of them, which may only fall. Folders that are
+// not listed have none.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -11,7 +11,7 @@
 namespace heatsoak::lint {
 namespace {
 
-/// The left column says what to write in place of the right one.
+/// Replacement, and pattern of the word to avoid.
 const std::map<std::string, std::string> kInstead{
     {"uncertainty, prior standard deviation", "doubts?"},
     {"drift", "wander(s|ed|ing)?"},
@@ -24,7 +24,7 @@ const std::map<std::string, std::string> kInstead{
     {"unmodelled heat", "nobody logs"},
 };
 
-/// What was there when this test was written.
+/// Counts when this test was written.
 const std::map<std::string, int> kMost{{"src/check", 5}, {"src/cli", 22},   {"src/derate", 16}, {"src/duty", 15},   {"src/identify", 330},
                                        {"src/motor", 4}, {"src/report", 1}, {"src/robot", 1},   {"src/thermal", 6}, {"robot_core", 10}};
 
@@ -46,7 +46,7 @@ int count_in(const std::string& text, const std::regex& words, std::string& plac
   int line = 1;
   for (std::size_t begin = 0; begin < text.size(); ++line) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    // A long line is data; std::regex recurses for each character.
+    // Long lines are data, and std::regex recurses for each character.
     const std::string part = text.substr(begin, std::min<std::size_t>(end - begin, 2000));
     for (auto at = std::sregex_iterator(part.begin(), part.end(), words); at != std::sregex_iterator(); ++at) {
       ++count;

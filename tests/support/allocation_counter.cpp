@@ -3,13 +3,14 @@
 #include <atomic>
 #include <cstddef>
 
-// SUNDIALS allocates in C, which operator new does not see.
+// SUNDIALS allocates in C, so operator new does not count it.
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 namespace {
 std::atomic<long> count = 0;
 }
 extern "C" {
-// NOLINTBEGIN(bugprone-reserved-identifier, cert-dcl37-c, cert-dcl51-cpp, readability-inconsistent-declaration-parameter-name): glibc's names
+// NOLINTBEGIN(bugprone-reserved-identifier, cert-dcl37-c, cert-dcl51-cpp, readability-inconsistent-declaration-parameter-name): glibc's
+// names
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t items, std::size_t size);
 void* __libc_realloc(void* old, std::size_t size);
@@ -26,7 +27,7 @@ void* realloc(void* old, std::size_t size) {
   ++count;
   return __libc_realloc(old, size);
 }
-void* aligned_alloc(std::size_t alignment, std::size_t size) {  // what operator new uses for Lanes
+void* aligned_alloc(std::size_t alignment, std::size_t size) {  // operator new calls it for Lanes
   ++count;
   return __libc_memalign(alignment, size);
 }

@@ -1,6 +1,6 @@
-// Makes the tables and pictures of reports/drive_core anew: simulated, with real sensing; the same bytes on every run.
+// Regenerates the tables and charts of reports/drive_core from simulations with realistic sensors. Every run writes the same bytes.
 //   heatsoak_drive_core_studies [FOLDER [low_speed|planners|guard|costs]]
-// FOLDER: reports/drive_core of the checkout unless given. Without a study's name all four run.
+//   FOLDER: reports/drive_core of the checkout by default. Without a study's name all four run.
 #include "drive_core_studies.h"
 
 #include <fmt/format.h>
@@ -66,10 +66,8 @@ struct Study {
   std::string_view name;
   void (*run)(const Subject& subject, const Report& report);
 };
-constexpr Study kStudies[] = {{"low_speed", study_low_speed},
-                             {"planners", study_planners_in_match},
-                             {"guard", study_guard},
-                             {"costs", study_costs}};
+constexpr Study kStudies[] = {
+    {"low_speed", study_low_speed}, {"planners", study_planners_in_match}, {"guard", study_guard}, {"costs", study_costs}};
 
 int run(const std::vector<std::string>& words) {
   const Report report{words.empty() ? kSource / "reports" / "drive_core" : std::filesystem::path(words.front())};
