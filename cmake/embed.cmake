@@ -1,12 +1,12 @@
-# embed_texts(name FILES file…): a static library <name> that holds the text of the files as they are when it is built, and its header
-# <embedded/name.h>:
+# embed_texts(name FILES file…): a static library <name> that holds the text of the files as they are at build time, and its
+# header <embedded/name.h>:
 #
 #   namespace heatsoak::embedded {
 #   struct Text { std::string_view path; std::string_view text; };   // path from the project's folder; in the order of FILES
 #   std::span<const Text> name();
 #   }
 #
-# FILES are paths in the project; who globs them uses CONFIGURE_DEPENDS. A layer HIDES <name>.
+# FILES are paths in the project. Callers that glob them use CONFIGURE_DEPENDS. A layer lists <name> under HIDES.
 set(HEATSOAK_EMBED_SCRIPT "${CMAKE_CURRENT_LIST_DIR}/embed_script.cmake")
 
 function(embed_texts name)

@@ -1,4 +1,4 @@
-# Run by embed_texts() at build time: FILES (separated by |) of ROOT become string literals in OUT.
+# embed_texts() runs this script at build time. It writes FILES (paths below ROOT, separated by |) as string literals to OUT.
 string(REPLACE "|" ";" FILES "${FILES}")
 set(rows "")
 set(count 0)

@@ -1,5 +1,5 @@
-# What `cmake --install` puts where. The program looks for the rest beside itself: ../share/heatsoak and
-# ../lib/heatsoak, the latter whatever this system calls its folder of libraries.
+# Install rules for `cmake --install`. The program finds its data relative to itself, in ../share/heatsoak and ../lib/heatsoak.
+# The second path is lib/heatsoak on every system, even where library folders have another name.
 include(GNUInstallDirs)
 
 set(HEATSOAK_SHARE "${CMAKE_INSTALL_DATADIR}/heatsoak")
@@ -10,9 +10,9 @@ install(TARGETS heatsoak_charts LIBRARY DESTINATION "${CMAKE_INSTALL_BINDIR}/../
 install(DIRECTORY motor_db/ DESTINATION "${HEATSOAK_SHARE}/motor_db" ${DATA_ONLY})
 install(DIRECTORY duty_profiles/ DESTINATION "${HEATSOAK_SHARE}/duty_profiles" ${DATA_ONLY})
 install(DIRECTORY robot_core/robots/ DESTINATION "${HEATSOAK_SHARE}/robots" ${DATA_ONLY})
-# The logs and the check file that the examples of the help begin from.
+# Logs and check file that the examples in the help texts use.
 install(DIRECTORY reports/soak reports/friction_test reports/check DESTINATION "${HEATSOAK_SHARE}/reports" ${DATA_ONLY})
-# The page of the project, and what it links to where it links to it.
+# README.md and the files that it links to, in the folders that the links expect.
 install(FILES LICENSE README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY docs reports DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY "${PROJECT_BINARY_DIR}/man1" DESTINATION "${CMAKE_INSTALL_MANDIR}")

@@ -1,7 +1,7 @@
-# add_layer(name USES … HIDES … ROOMS folder … REGISTERS folder:Type … OPTION option): one static library from src/<name> and
-# its rooms. A folder that a layer registers is its registry: every file x.cpp in it, or in a room of it, defines `Type x()` in
-# the namespace heatsoak::<folder>, and a table of them is generated as <name>/<folder>_registry.h.
-# A layer with an option that is off is not built; who uses it goes without it and without the rooms written folder@layer.
+# add_layer(name USES … HIDES … ROOMS folder … REGISTERS folder:Type … OPTION option): one static library from src/<name> and its
+# rooms (subfolders). A registered folder is a registry: every file x.cpp in it, or in a room of it, defines `Type x()` in the
+# namespace heatsoak::<folder>. A table of these functions is generated as <name>/<folder>_registry.h. If the option is off, the
+# layer is not built. Dependents then omit it, and rooms written as folder@layer.
 set_property(GLOBAL PROPERTY heatsoak_layers "")
 set_property(GLOBAL PROPERTY heatsoak_left_out "")
 
@@ -44,7 +44,7 @@ function(add_layer name)
     list(FILTER in_rooms INCLUDE REGEX "/src/${name}/${folder}/.+/[^/]+\\.cpp$")
     list(APPEND entries ${in_rooms})
     list(SORT entries COMPARE FILE_BASENAME)
-    # They are written alike, down to the names inside, so none can share a file with another.
+    # Registry files use the same local names, so they cannot share a translation unit.
     set_source_files_properties(${entries} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     generate_registry(${name} ${folder} ${type} ${entries})
   endforeach()
@@ -57,8 +57,8 @@ function(add_layer name)
   set_property(GLOBAL PROPERTY heatsoak_layer_${name}_uses "${below}")
 endfunction()
 
-# A library of the embedded core: freestanding, no exceptions, no run-time types, the same arithmetic everywhere; a
-# square root is an instruction, not a call that may set errno.
+# A library of the embedded core: freestanding, without exceptions and run-time types, and with the same arithmetic on every
+# machine. -fno-math-errno turns a square root into one instruction instead of a call that may set errno.
 set(HEATSOAK_CORE_OPTIONS -ffreestanding -fno-exceptions -fno-rtti -fno-math-errno -ffp-contract=off -Wdouble-promotion)
 
 function(add_core name)
@@ -66,7 +66,7 @@ function(add_core name)
   add_library(heatsoak_${name} STATIC ${sources})
   target_include_directories(heatsoak_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
   target_compile_options(heatsoak_${name} PRIVATE ${HEATSOAK_CORE_OPTIONS})
-  # File by file as on the controller: files choose their own optimisation.
+  # No unity build, as on the controller: some files choose their own optimisation.
   set_target_properties(heatsoak_${name} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(heatsoak_${name} PRIVATE heatsoak_settings)
   set_property(GLOBAL APPEND PROPERTY heatsoak_layers ${name})
@@ -98,8 +98,8 @@ inline constexpr std::array<Entry, @count@> registry{{
 ")
 endfunction()
 
-# add_messages(name file.proto): protobuf messages as a library of their own, free of the warnings of hand-written code.
-# A layer that HIDES it includes "<file>.pb.h".
+# add_messages(name file.proto): protobuf messages as a separate library without the warning flags of hand-written code. A layer
+# that lists it under HIDES includes "<file>.pb.h".
 function(add_messages name file)
   get_filename_component(folder "${PROJECT_SOURCE_DIR}/${file}" DIRECTORY)
   get_filename_component(stem "${file}" NAME_WE)

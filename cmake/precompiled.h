@@ -1,5 +1,5 @@
-// The headers of libraries that most files include, and templates of them that are compiled once, in precompiled.cpp. The
-// compiler includes this before every file; no file includes it, and without it everything compiles too, in twice the time.
+// Library headers that most files include, and declarations of templates that precompiled.cpp instantiates once. The compiler includes this
+// header before every file; no file includes it explicitly. Everything also compiles without it, in twice the time.
 #pragma once
 
 #include <fmt/format.h>

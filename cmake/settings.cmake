@@ -1,4 +1,4 @@
-# How everything is compiled; one place for flags.
+# Compiler settings for all targets. All flags are set here.
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -20,22 +20,22 @@ option(HEATSOAK_PRECOMPILE "Compile the headers of libraries once for all files;
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # The sloppiness is what ccache asks for where headers are precompiled; no source says __TIME__ or __DATE__.
+  # ccache requires this sloppiness for precompiled headers. No source uses __TIME__ or __DATE__.
   set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros "${CCACHE_PROGRAM}")
 endif()
 
 add_library(heatsoak_settings INTERFACE)
 target_compile_options(heatsoak_settings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
-  # GCC 12 reports these inside std::string and std::vector where nothing is wrong (its bugs 105651 and 105562).
+  # False positives of GCC 12 inside std::string and std::vector (GCC bugs 105651 and 105562).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized> $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>
   $<$<BOOL:${HEATSOAK_WERROR}>:-Werror>
-  # Same seed, same bytes on every machine: no fused multiply-add where the compiler happens to like it.
+  # Without fused multiply-add the same seed gives the same bytes on every machine.
   -ffp-contract=off)
 if(HEATSOAK_SANITIZE)
   target_compile_options(heatsoak_settings INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(heatsoak_settings INTERFACE -fsanitize=address,undefined)
-  # Ceres is compiled without them, and shares templates of Eigen with this: both have to allocate alike.
+  # Ceres is built without sanitizers and shares templates of Eigen with this code. Both must allocate in the same way.
   target_compile_definitions(heatsoak_settings INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 if(HEATSOAK_COVERAGE)
@@ -43,8 +43,8 @@ if(HEATSOAK_COVERAGE)
   target_link_options(heatsoak_settings INTERFACE --coverage)
 endif()
 
-# add_headers(name header FILES file… LIBRARIES library…): a header of these libraries that is parsed once for every target
-# that says use_headers(target name), and the files with the templates that it declares to be compiled elsewhere.
+# add_headers(name header FILES file… LIBRARIES library…): a precompiled header for these libraries. It is parsed once for all
+# targets that call use_headers(target name). FILES instantiate the templates that the header declares extern.
 function(add_headers name header)
   cmake_parse_arguments(HEADERS "" "" "FILES;LIBRARIES" ${ARGN})
   if(HEATSOAK_PRECOMPILE)
@@ -55,7 +55,7 @@ function(add_headers name header)
   endif()
 endfunction()
 
-# ccache can only tell what a precompiled header holds where the preprocessor's output says that it is used.
+# ccache detects the contents of a precompiled header only if the preprocessor's output mentions it.
 set(HEATSOAK_PRECOMPILED_OPTIONS $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 
 function(use_headers target name)
@@ -65,7 +65,7 @@ function(use_headers target name)
     target_compile_options(${target} PRIVATE ${HEATSOAK_PRECOMPILED_OPTIONS})
     get_target_property(type ${target} TYPE)
     if(type STREQUAL EXECUTABLE)
-      # A precompiled header serves one kind of position-independent code.
+      # A precompiled header is valid for one kind of position-independent code only.
       set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
       target_compile_options(${target} PRIVATE -fPIC)
     endif()

@@ -1,15 +1,15 @@
-# The drive core for its controller, a Cortex-M7 with an FPU for single precision, and programs that QEMU runs with it.
-# Where the cross compiler or QEMU is missing, everything else builds as always and the tests on the target are skipped.
+# The drive core for its controller, a Cortex-M7 with a single-precision FPU, and programs that QEMU runs with it. If the cross
+# compiler or QEMU is missing, the rest builds as usual and the tests on the target are skipped.
 find_program(HEATSOAK_TARGET_COMPILER arm-none-eabi-g++)
 find_program(HEATSOAK_TARGET_ARCHIVER arm-none-eabi-ar)
 find_program(HEATSOAK_EMULATOR qemu-system-arm)
 
-# Empty, or what has to be installed before anything can be built or run for the target.
+# Empty, or the package to install before the target can be built or emulated.
 set(HEATSOAK_TARGET_MISSING "")
 if(NOT HEATSOAK_TARGET_COMPILER OR NOT HEATSOAK_TARGET_ARCHIVER)
   set(HEATSOAK_TARGET_MISSING "arm-none-eabi-g++ is not installed")
 else()
-  # Debian's compiler comes without <limits>, which is in libstdc++-arm-none-eabi-dev.
+  # Debian's compiler lacks <limits>; the package libstdc++-arm-none-eabi-dev has it.
   execute_process(COMMAND "${HEATSOAK_TARGET_COMPILER}" -mcpu=cortex-m7 -mfloat-abi=hard -mfpu=fpv5-sp-d16 -ffreestanding -include limits
                           -include cstdint -include cstddef -x c++ -fsyntax-only /dev/null
                   RESULT_VARIABLE result OUTPUT_QUIET ERROR_QUIET)
@@ -24,13 +24,13 @@ elseif(NOT HEATSOAK_EMULATOR)
 endif()
 
 set(HEATSOAK_TARGET_PROCESSOR -mcpu=cortex-m7 -mthumb -mfpu=fpv5-sp-d16 -mfloat-abi=hard)
-# In the order of the source GCC needs fewer registers and loads two words with one instruction: 1.5 % fewer instructions per step.
+# In source order GCC needs fewer registers and can load two words with one instruction: 1.5 % fewer instructions per step.
 set(HEATSOAK_TARGET_OPTIONS ${HEATSOAK_TARGET_PROCESSOR} -std=c++${CMAKE_CXX_STANDARD} -O2 -fno-schedule-insns ${HEATSOAK_CORE_OPTIONS}
     -Wall -Wextra -Werror -ffunction-sections -fdata-sections -fstack-usage -fcallgraph-info=su -DROBOT_CORE_WITHOUT_DOUBLE)
 set(HEATSOAK_TARGET_FOLDER "${PROJECT_BINARY_DIR}/target")
 
-# Compiles the files into <build>/target/<name>. Beside every object GCC writes the stack that each function needs (.su) and who calls
-# whom (.ci). Sets <out> to the objects.
+# compile_for_target(out name …): compiles the files into <build>/target/<name> and sets <out> to the objects. Beside every object
+# GCC writes the stack size of each function (.su) and the call graph (.ci).
 function(compile_for_target out name)
   cmake_parse_arguments(PARSE_ARGV 2 COMPILE "" "" "SOURCES;FOLDERS;DEPENDS")
   list(TRANSFORM COMPILE_FOLDERS PREPEND "-I")
@@ -38,7 +38,7 @@ function(compile_for_target out name)
   foreach(source IN LISTS COMPILE_SOURCES)
     get_filename_component(stem "${source}" NAME_WE)
     set(object "${HEATSOAK_TARGET_FOLDER}/${name}/${stem}.o")
-    # Without the compiler's cache, which does not know of .ci files.
+    # The compiler cache is bypassed because it does not keep .ci files.
     add_custom_command(
       OUTPUT "${object}"
       COMMAND "${CMAKE_COMMAND}" -E make_directory "${HEATSOAK_TARGET_FOLDER}/${name}"
@@ -50,7 +50,7 @@ function(compile_for_target out name)
   set(${out} "${objects}" PARENT_SCOPE)
 endfunction()
 
-# add_target_core(name): lib<name>_m7.a in <build>/lib from <name>/*.cpp, as add_core makes it for the host.
+# add_target_core(name): lib<name>_m7.a in <build>/lib from <name>/*.cpp, with the same sources as add_core uses for the host.
 function(add_target_core name)
   if(HEATSOAK_TARGET_MISSING)
     return()
@@ -66,7 +66,7 @@ function(add_target_core name)
     DEPENDS ${objects} COMMENT "Linking target library lib${name}_m7.a" VERBATIM)
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${name}/port/*.cpp")
   compile_for_target(port ${name}_port SOURCES ${sources})
-  # The port is built here, too: commands of another folder find only files that a target makes.
+  # The port is built here, too, because commands of another folder find only files that a target makes.
   add_custom_target(${name}_m7 ALL DEPENDS "${library}" ${port})
   set_target_properties(${name}_m7 PROPERTIES LIBRARY_FILE "${library}" OBJECT_FILES "${objects}" PORT_FILES "${port}"
                         PORT_SCRIPT "${PROJECT_SOURCE_DIR}/${name}/port/mps2_an500.ld")
@@ -83,7 +83,7 @@ function(add_target_image name core)
   get_target_property(port ${core}_m7 PORT_FILES)
   get_target_property(script ${core}_m7 PORT_SCRIPT)
   set(image "${HEATSOAK_TARGET_FOLDER}/${name}.elf")
-  # No library of the compiler: what the core needs besides the port is an error.
+  # Links without the compiler's libraries: if the core needs anything besides the port, linking fails.
   add_custom_command(
     OUTPUT "${image}"
     COMMAND "${HEATSOAK_TARGET_COMPILER}" ${HEATSOAK_TARGET_PROCESSOR} -nostdlib "-Wl,--gc-sections,--fatal-warnings" "-T${script}"
@@ -94,8 +94,8 @@ function(add_target_image name core)
   set_target_properties(${name} PROPERTIES IMAGE_FILE "${image}" OBJECT_FILES "${objects}")
 endfunction()
 
-# Tells the test program about the tools, the core's library and these images: HEATSOAK_<IMAGE> (the program, of planner_image for one)
-# and HEATSOAK_<IMAGE>_CALL_GRAPHS (its .ci files).
+# Passes the tools, the core's library and these images to the test program: HEATSOAK_<IMAGE> (for example the program
+# planner_image) and HEATSOAK_<IMAGE>_CALL_GRAPHS (its .ci files).
 function(use_target_images test core)
   target_compile_definitions(${test} PRIVATE HEATSOAK_TARGET_MISSING="${HEATSOAK_TARGET_MISSING}")
   string(REPLACE ";" " " processor "${HEATSOAK_TARGET_PROCESSOR}")
@@ -129,7 +129,7 @@ function(use_target_images test core)
   endforeach()
 endfunction()
 
-# The .ci files of objects, separated by ':'.
+# Sets <out> to the .ci files of the objects, separated by ':'.
 function(call_graphs out)
   list(TRANSFORM ARGN REPLACE "\\.o$" ".ci" OUTPUT_VARIABLE files)
   string(REPLACE ";" ":" files "${files}")

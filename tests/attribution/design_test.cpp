@@ -1,4 +1,4 @@
-// Linear algebra of an attribution: products against the decomposition that fits use, equations about a path against free runs.
+// Linear algebra of an attribution. Products are compared with the matrix decomposition of the fit, linearised equations with free runs.
 #include "attribution/design.h"
 
 #include <gtest/gtest.h>
@@ -60,14 +60,14 @@ TEST(Design, ProductsAreTheSquareOfTheTrianglesThatFitsUse) {
   const Eigen::MatrixXd expected = triangle.transpose() * triangle;
   EXPECT_LT((products.square - expected).cwiseAbs().maxCoeff(), 1e-9 * expected.cwiseAbs().maxCoeff());
   EXPECT_NEAR(products.log_determinant, log_determinant, 1e-9 * std::abs(log_determinant));
-  // A few columns in another order are the same products.
+  // A subset of columns in another order must give the same products.
   const Products few = products_of(designs, flux, {3, 0});
   const Eigen::Index last = products.square.cols() - 1;
   EXPECT_NEAR(few.square(0, 1), products.square(3, 0), 1e-9 * std::abs(products.square(3, 0)));
   EXPECT_NEAR(few.square(2, 1), products.square(last, 0), 1e-9 * std::abs(products.square(last, 0)));
 }
 
-/// With nothing added the base's evidence is that of the least squares that fits use, up to a constant.
+/// Without added effects the evidence of the base model equals the evidence of the linear least-squares fit, up to a constant.
 TEST(Design, EvidenceOfTheBaseIsThatOfItsLinearFit) {
   const ExtendedModel model = model_of();
   const std::vector<MeasuredRun> runs{run_of(3, 200)};
@@ -97,8 +97,9 @@ TEST(Design, EquationsAboutTheFreeRunAreTheFreeRun) {
   EXPECT_LT((along.by_parameter - freely.by_parameter).cwiseAbs().maxCoeff(), 1e-9 * freely.by_parameter.cwiseAbs().maxCoeff());
 }
 
-/// About a path that is off by e the linear equations foretell the free run from the path's start to e²: copper loss bends, little.
-TEST(Design, EquationsAboutAnotherPathForetellTheFreeRun) {
+/// Equations linearised about a path with error e predict the free run from the path's start. Their error is of order e², because copper
+/// loss is slightly non-linear.
+TEST(Design, EquationsAboutAnotherPathPredictTheFreeRun) {
   const ExtendedModel model = model_of();
   const MeasuredRun run = run_of(5, 300);
   const LinearisedRun freely = linearise(model, std::vector<double>{25.0, 26.0}, run);
@@ -114,7 +115,7 @@ TEST(Design, EquationsAboutAnotherPathForetellTheFreeRun) {
   EXPECT_LT(off_K[1], 0.3 * off_K[0] + 1e-6);
 }
 
-/// 2 W that nobody told of, for 100 s of 300: the smoothed path is where the motor was.
+/// 2 W of unmodelled heat for 100 of 300 s: the smoothed path must follow the true temperatures.
 TEST(Design, SmoothedPathFollowsUnknownHeat) {
   const ExtendedModel model = model_of();
   MeasuredRun run = run_of(6, 300);

@@ -1,4 +1,4 @@
-// A short form of the examination; heatsoak_attribution_table runs the long one.
+// Short form of the examination. The program heatsoak_attribution_table runs the long form.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ Case sealed(const Missing& missing, std::uint64_t seed) {
 
 const Subject& subject(std::string_view name) { return *std::ranges::find(subjects(), name, &Subject::name); }
 
-/// The model fitted to the runs, and sure of all figures.
+/// Returns the model fitted to the runs, with a standard deviation of sd_share for every parameter.
 ExtendedModel known_to(double sd_share, const DiagnosisInput& input) {
   ExtendedModel known = diagnose(input, {}).selection.before.model;
   const Eigen::Index count = known.model.free_count();
@@ -29,8 +29,8 @@ ExtendedModel known_to(double sd_share, const DiagnosisInput& input) {
   return known;
 }
 
-/// Either alone makes whole runs worse: heat that is always there, and air that is there at a low supply and takes as much away. Neither is
-/// found, and nothing wrong is named.
+/// Constant heat is balanced by air cooling at low supply voltage. Either effect alone makes the fit of whole runs worse, so neither is
+/// accepted. No wrong effect may be named.
 TEST(Examination, ACurveAndALawThatBalanceEachOtherAreUnexplainedHeat) {
   Missing missing;
   missing.heat.emplace_back([](const Moment& now, PerPart& q) {
@@ -45,17 +45,17 @@ TEST(Examination, ACurveAndALawThatBalanceEachOtherAreUnexplainedHeat) {
   EXPECT_THAT(answer.named, testing::IsEmpty());
 }
 
-/// No operating point has the sign of the current, only the log.
+/// Operating points have no sign of the current, only the log has it.
 TEST(Examination, CurveOverAColumnOfTheLogIsPartOfTheModel) {
   Missing missing;
   missing.heat.emplace_back([](const Moment& now, PerPart& q) { q[slot] += now.in.current_A > 0.0 ? 0.5 * now.copper_loss_W : 0.0; });
   const Answer answer = examine(sealed(missing, 12));
-  const Diagnosis& told = answer.diagnosis;
-  ASSERT_EQ(told.effects.size(), 1U) << account(answer);
-  EXPECT_EQ(told.effects.front().drivers, std::vector<std::string>{"current_A"}) << account(answer);
-  EXPECT_EQ(told.selection.after.model.column, "current_A");
-  ASSERT_FALSE(told.unexplained.empty());
-  EXPECT_TRUE(told.unexplained.front().is_in_model);
+  const Diagnosis& found_diagnosis = answer.diagnosis;
+  ASSERT_EQ(found_diagnosis.effects.size(), 1U) << account(answer);
+  EXPECT_EQ(found_diagnosis.effects.front().drivers, std::vector<std::string>{"current_A"}) << account(answer);
+  EXPECT_EQ(found_diagnosis.selection.after.model.column, "current_A");
+  ASSERT_FALSE(found_diagnosis.unexplained.empty());
+  EXPECT_TRUE(found_diagnosis.unexplained.front().is_in_model);
   EXPECT_LT(rms_K(answer.score.after), 0.3 * rms_K(answer.score.refitted)) << account(answer);
 }
 
@@ -103,15 +103,15 @@ TEST(Examination, HeatThatNoLawHasIsUnexplainedButDescribed) {
   const Answer answer = examine(sealed(resonance.make(1.0), 3));
   EXPECT_TRUE(names_outsider(answer, resonance)) << account(answer);
   ASSERT_FALSE(answer.diagnosis.unexplained.empty());
-  // 3 W at 300 rad/s, hardly any at standstill: the curve's top is there.
+  // The true curve has its peak of 3 W at 300 rad/s and hardly any heat at standstill.
   const Unexplained& heat = answer.diagnosis.unexplained.front();
   const auto top = std::ranges::max_element(heat.curve) - heat.curve.begin();
   EXPECT_NEAR(heat.knots[static_cast<std::size_t>(top)], 300.0, 50.0) << account(answer);
   EXPECT_NEAR(heat.curve[static_cast<std::size_t>(top)], 3.0, 1.0) << account(answer);
 }
 
-/// Through |I| alone or |ω| alone it looks like the heat of a driver; the curve is what an ampere makes at a speed.
-TEST(Examination, HeatThatGoesWithTwoSignalsIsToldAsThat) {
+/// If it is modelled over |I| or |ω| alone, it looks like heat that follows one signal. The curve is the heat per ampere over speed.
+TEST(Examination, HeatThatFollowsTwoSignalsIsReportedAsSuch) {
   const auto two = std::ranges::find(outsiders(), "current", &Outsider::times);
   const Answer answer = examine(sealed(two->make(1.0), 40004));
   ASSERT_TRUE(names_outsider(answer, *two)) << account(answer);
@@ -124,15 +124,15 @@ TEST(Examination, HeatThatGoesWithTwoSignalsIsToldAsThat) {
       << account(answer) << ", floor " << least_K;
 }
 
-// 4·ε·σ·A·T³ is a conductance to the air that hardly changes: the base model has nearly all of it.
-TEST(Examination, WhatTheBaseParametersNearlySwallowGetsNoOtherName) {
+// 4·ε·σ·A·T³ is a nearly constant conductance to the air, so the base model explains nearly all of it.
+TEST(Examination, EffectsThatTheBaseParametersNearlyExplainGetNoOtherName) {
   for (const std::string_view name : {"radiation", "natural_convection"}) {
     const Answer answer = examine(sealed(subject(name).make(1.0), 21));
     EXPECT_THAT(answer.named, testing::AnyOf(testing::IsEmpty(), testing::ElementsAre(std::string(name)))) << account(answer);
   }
 }
 
-// Heat that follows the speed, and logs whose speed is that of other seconds: no name that speaks of speed is true.
+// Heat follows the speed, but the logs contain speeds of other rows. Every name that refers to speed is therefore wrong.
 TEST(Examination, HeatThatNoMeasuredSignalFollowsRarelyGetsAName) {
   int named = 0;
   for (std::uint64_t seed = 31; seed < 39; ++seed) {
@@ -143,8 +143,8 @@ TEST(Examination, HeatThatNoMeasuredSignalFollowsRarelyGetsAName) {
   EXPECT_LE(named, 2);
 }
 
-/// Heat into the stator, which alone has a sensor, may be heat into the winding that got there.
-TEST(Examination, WithoutASensorInTheWindingNobodyKnowsWhichNodeHeats) {
+/// The only sensor is in the stator. Heat into the stator may then also be heat into the winding that has flowed to the stator.
+TEST(Examination, WithoutASensorInTheWindingTheHeatedNodeIsUnknown) {
   for (const int seed : {1, 2, 3}) {
     const auto lamp = std::ranges::find(strangers(), "a lamp that somebody turns on and off", &Outsider::name);
     Case one = sealed(lamp->make(1.0), static_cast<std::uint64_t>(seed));
@@ -156,8 +156,8 @@ TEST(Examination, WithoutASensorInTheWindingNobodyKnowsWhichNodeHeats) {
   }
 }
 
-/// Whatever happens to go with such heat on these runs is not why.
-TEST(Examination, HeatThatNothingLoggedFollowsIsToldInWattsAndRarelyGetsAName) {
+/// A logged signal that happens to correlate with this heat is not its cause.
+TEST(Examination, HeatThatFollowsNoLoggedSignalIsReportedInWattsAndRarelyNamed) {
   int cases = 0;
   int unnamed = 0;
   for (const Outsider& one : strangers()) {
@@ -178,8 +178,8 @@ TEST(Examination, HeatThatNothingLoggedFollowsIsToldInWattsAndRarelyGetsAName) {
   EXPECT_GE(unnamed, 0.8 * cases);
 }
 
-// A motor that was known to 2 % and then screwed to something else: 1.4 times the resistance to the air in its file.
-TEST(Examination, AFigureThatNoLongerHoldsIsToldAndRefittedAndIsNoEffect) {
+// The motor's file states 1.4 times the true resistance to the air with an uncertainty of 2 %, as if the motor had been mounted elsewhere.
+TEST(Examination, AnOutdatedParameterIsReportedAndRefittedAndIsNoEffect) {
   const Case one = sealed({}, 5);
   const Runs runs = record(one);
   DiagnosisInput input = question(one, runs);
@@ -208,9 +208,9 @@ TEST(Examination, AFigureThatNoLongerHoldsIsToldAndRefittedAndIsNoEffect) {
   EXPECT_THAT(found.description, testing::HasSubstr("Does not hold here: stator_ambient.thermal_resistance"));
 }
 
-/// Heat that crosses to the iron gets easier by a seventh in 30 K now, and the file is sure to 1 % of a resistance from days when it did
-/// not: the law goes through nothing at 25 °C, the file's figure is right at 45 °C.
-TEST(Examination, LawIsFoundThoughTheFileIsSureOfAFigureThatMovesWithIt) {
+/// The conductance from winding to iron now rises by a seventh in 30 K, while the file has 1 % uncertainty for a constant resistance. The
+/// law has no effect at 25 °C, but the file's value is right at 45 °C.
+TEST(Examination, LawIsFoundDespiteANarrowPriorOfACorrelatedParameter) {
   Case one = sealed({}, 63);
   const Runs runs_before = record(one);
   DiagnosisInput input = question(one, runs_before);
@@ -233,9 +233,9 @@ TEST(Examination, LawIsFoundThoughTheFileIsSureOfAFigureThatMovesWithIt) {
   EXPECT_LT(rms_K(score_holdout(input, found, holdout(runs)).after), 1.1 * nothing_missing_K) << found.description;
 }
 
-/// A cover in one of four runs keeps three tenths of the heat in that the air took away: the resistance is 1 / 0.7 of what it was. Unseen
-/// runs have no cover.
-TEST(Examination, WorseCoolingInOneRunIsToldAsThatAndStaysThere) {
+/// In one of four runs a cover reduces the heat to the air by three tenths. The resistance is then 1 / 0.7 of its former value. Unseen runs
+/// have no cover.
+TEST(Examination, WorseCoolingInOneRunIsReportedAndStaysThere) {
   Case one = sealed({}, 61);
   Runs runs = record(one);
   one.missing.heat.push_back([air_K_per_W = runs.make.iron_to_air_K_per_W](const Moment& now, PerPart& heat_W) {
@@ -254,7 +254,7 @@ TEST(Examination, WorseCoolingInOneRunIsToldAsThatAndStaysThere) {
   EXPECT_LT(rms_K(score.after), rms_K(score.before) + 0.02) << found.description;
 }
 
-/// A winding that has come loose in one run: a fifth less crosses to the iron, so that the contact has 1 / 0.8 of its resistance.
+/// A winding has come loose in one run: the contact conductance falls by a fifth, so the contact resistance is 1 / 0.8 of its former value.
 TEST(Examination, LooseWindingInOneRunIsAnotherContactThere) {
   Case one = sealed({}, 62);
   Runs runs = record(one);
@@ -274,7 +274,8 @@ TEST(Examination, LooseWindingInOneRunIsAnotherContactThere) {
   EXPECT_LT(rms_K(score.after), rms_K(score.before) + 0.02) << found.description;
 }
 
-/// Half as wide as a seventh of what the stator does: knots over all of that would not see where the fan begins.
+/// The effect is less than half as wide as a seventh of the stator's temperature range. Knots spread over the whole range would not resolve
+/// where the fan starts.
 TEST(Examination, KnotsAreDrawnToWhereSomethingHappens) {
   const auto fan = std::ranges::find(outsiders(), "a fan that starts at 45 °C of the stator", &Outsider::name);
   const Answer answer = examine(sealed(fan->make(1.0), 40003));
@@ -286,7 +287,7 @@ TEST(Examination, KnotsAreDrawnToWhereSomethingHappens) {
   EXPECT_LT(answer.after_K, 0.25 * answer.before_K) << account(answer);
 }
 
-TEST(Examination, LookAlikesComeWithAnExperimentThatTellsThemApart) {
+TEST(Examination, ConfoundedEffectsComeWithAnExperimentThatSeparatesThem) {
   const Answer answer = examine(sealed(subject("connection_resistance").make(1.0), 60906));
   ASSERT_EQ(answer.diagnosis.effects.size(), 1U) << account(answer);
   ASSERT_FALSE(answer.diagnosis.effects.front().confusable_with.empty()) << account(answer);
@@ -298,8 +299,8 @@ TEST(Examination, LookAlikesComeWithAnExperimentThatTellsThemApart) {
   EXPECT_GT(answer.diagnosis.experiments.front().expected_nats, 1.0);
 }
 
-/// The eight parts of the truth are not of one temperature each: without a doubt about that the intervals of these held 2 of 6. Where
-/// that doubt takes most of the effect it gets no name.
+/// The copper and iron of the true motor are not isothermal. Without a term for this uncertainty the intervals of these cases held 2 of 6.
+/// Where the term explains most of the effect, the effect gets no name.
 TEST(Examination, IntervalsHoldTheTruthThoughBodiesAreUneven) {
   int held = 0, unnamed = 0;
   for (const std::uint64_t seed : {434028, 434035, 434042, 434049, 434056, 434070}) {
@@ -318,7 +319,7 @@ TEST(Examination, IntervalsHoldTheTruthThoughBodiesAreUneven) {
   EXPECT_LE(unnamed, 1);
 }
 
-/// A peak of one row is no level for minutes: ten minutes of it would melt the motor.
+/// An experiment must not hold a single-row peak for minutes: ten minutes of it would destroy the motor.
 TEST(Examination, ExperimentsStayAsCoolAsTheRuns) {
   const Case one = sealed(subject("connection_resistance").make(1.0), 60906);
   DiagnosisInput input = question(one, record(one));
@@ -330,7 +331,7 @@ TEST(Examination, ExperimentsStayAsCoolAsTheRuns) {
   EXPECT_GT(experiments.front().expected_nats, 1.0);
 }
 
-/// The same copper wound for ten times the voltage takes a tenth of the current: the same heat, hence the same answer.
+/// A winding for ten times the voltage with equal copper takes a tenth of the current and makes equal heat. The answer must not change.
 TEST(Examination, WindingsForAnotherVoltageGetTheSameNames) {
   constexpr double kTurns_ratio = 10.0;
   for (const std::string_view name : {"connection_resistance", "saturation", "load_friction"}) {
@@ -354,7 +355,7 @@ TEST(Examination, WindingsForAnotherVoltageGetTheSameNames) {
   }
 }
 
-TEST(Examination, TheBoundOfASearchIsOneOfTheFigure) {
+TEST(Examination, TheBoundOfASearchIsReachedExactly) {
   Model model = model_before(record(sealed({}, 1)).make, 1).model;
   Eigen::VectorXd theta = model.theta();
   for (const double bound : {3.0, 0.7, 1.9}) {
@@ -382,7 +383,7 @@ TEST(Examination, OrderOfRunsChangesNothing) {
   EXPECT_EQ(a.terms.front().candidate->id, b.terms.front().candidate->id);
 }
 
-/// The examiner itself: steps that are four times as short change nothing that a sensor would see, however light the parts.
+/// Checks the truth motor's integrator: steps four times as short change no sensor value noticeably, however light the parts.
 TEST(TruthMotor, StepsAreShortEnoughForEveryMake) {
   Surprise quiet;
   quiet.flux_W = quiet.noise_K = quiet.step_K = quiet.outlier_probability = quiet.gap_probability = 0.0;
@@ -401,7 +402,7 @@ TEST(TruthMotor, StepsAreShortEnoughForEveryMake) {
   }
 }
 
-/// Against the sum of what goes in and out: at rest under a constant current all copper loss leaves through the iron.
+/// Energy balance: at standstill with constant current all copper loss leaves through the iron.
 TEST(TruthMotor, LosesInTheEndWhatItTakesIn) {
   Surprise quiet;
   quiet.flux_W = quiet.noise_K = quiet.step_K = quiet.outlier_probability = quiet.gap_probability = 0.0;
@@ -411,7 +412,7 @@ TEST(TruthMotor, LosesInTheEndWhatItTakesIn) {
   make.copper_per_K = 0.0;
   const TrueRun run = run_motor(make, {}, quiet, std::vector<RowInputs>(7200, held), 0.0, 1, "held");
   const double heat_W = 9.0 * make.resistance_25C_ohm;
-  // Iron parts are within 0.1 K of each other, so that the sleeve is where the two-node formula has the iron, to 1 %.
+  // Iron parts are within 0.1 K of each other, so the sleeve matches the iron of the two-node formula within 1 %.
   EXPECT_NEAR(run.stator_C.back() - 25.0, heat_W * make.iron_to_air_K_per_W, 0.01 * heat_W * make.iron_to_air_K_per_W);
   EXPECT_NEAR(run.winding_C.back() - run.stator_C.back(), heat_W * make.copper_to_iron_K_per_W,
               0.02 * heat_W * make.copper_to_iron_K_per_W);

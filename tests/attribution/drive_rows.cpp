@@ -9,7 +9,7 @@ namespace {
 constexpr double kVoltage_V_s_per_rad = 0.034;
 constexpr double kResistance_ohm = 0.45;
 
-/// Fills in what follows from speed and current: battery, duty, the vehicle, its air, and the motor next to this one.
+/// Fills in the columns that follow from speed and current: battery, duty, vehicle, air and the neighbouring motor.
 void finish(std::vector<RowInputs>& rows, Dice& dice, bool drives) {
   const double air_C = dice.uniform(19.0, 27.0);
   const double air_rise_K = dice.uniform(-1.0, 4.0);

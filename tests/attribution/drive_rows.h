@@ -1,4 +1,4 @@
-// What a robot asks of a wheel's motor, second by second, and what a patient person asks of it on a bench.
+// Synthetic loads, one row per second: a wheel motor of a robot, and a long bench test.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace heatsoak::truth {
 
-/// Sprints, cruises, pushes against others, rests; with a battery that sags, air that warms, and a neighbour at work.
+/// Returns a load with sprints, cruises, pushes and rests. The battery voltage sags, the air warms up, and a neighbouring motor works.
 std::vector<RowInputs> robot_rows(int count, std::uint64_t seed);
 
-/// A staircase of speeds without load in both directions, pulses at standstill, a hot spin, a long rest.
+/// Returns a bench load: a staircase of no-load speeds in both directions, pulses at standstill, a hot spin, a long rest.
 std::vector<RowInputs> bench_rows(int count, std::uint64_t seed);
 
 }  // namespace heatsoak::truth

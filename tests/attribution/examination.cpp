@@ -14,7 +14,7 @@
 namespace heatsoak::truth {
 namespace {
 
-/// As reading a log does: a sample that stands out of its neighbours by six of their deviations is no measurement.
+/// Removes outliers as the log reader does: samples that differ from their neighbours by more than six standard deviations.
 void leave_out_outliers(std::vector<double>& values) {
   const std::vector<double> all = values;
   for (std::size_t k = 3; k + 3 < all.size(); ++k) {
@@ -40,7 +40,7 @@ void leave_out_outliers(std::vector<double>& values) {
   }
 }
 
-/// Everything that says how the motor turns, each row with that of another row.
+/// Replaces all signals of the motion in each row by those of another row.
 void shuffle_speed(Recording& log, Dice& dice) {
   for (std::size_t row = log.rows(); row > 1; --row) {
     const auto other = static_cast<std::size_t>(dice.below(static_cast<int>(row)));

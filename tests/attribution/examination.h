@@ -1,4 +1,4 @@
-// Sealed cases: a motor with something missing in its model, the runs it was recorded in, and what the tool says about them.
+// Blind test cases: a motor with an effect missing in its model, its recorded runs, and the tool's answer.
 #pragma once
 
 #include <cstdint>
@@ -12,60 +12,61 @@
 
 namespace heatsoak::truth {
 
-/// What the examiner knows.
+/// Ground truth of a case, hidden from the analysed code.
 struct Case {
   Missing missing;
   Surprise surprise;
-  int rows = 1800;             ///< of each run, one second each
-  int training_runs = 4;       ///< of several the last is on the bench
-  double metal_ratio = 1.0;    ///< of MotorMake
-  bool is_calibrated = false;  ///< the model's figures are those of earlier runs in which nothing was missing
+  int rows = 1800;             ///< rows of each run, one per second
+  int training_runs = 4;       ///< if there are several, the last is a bench run
+  double metal_ratio = 1.0;    ///< value for MotorMake
+  bool is_calibrated = false;  ///< true if the model was calibrated with earlier runs without the missing effect
   bool has_winding_sensor = true;
-  bool has_right_speed = true;  ///< otherwise the logs' speeds are those of other seconds, drawn by lot
+  bool has_right_speed = true;  ///< if false, the logs contain speeds of randomly drawn other rows
   std::uint64_t seed = 1;
 };
 
 struct Runs {
   std::vector<TrueRun> training;
-  std::vector<TrueRun> unseen;   ///< the last of them on the bench
-  std::vector<TrueRun> earlier;  ///< of those that a model was calibrated with
+  std::vector<TrueRun> unseen;   ///< the last one is a bench run
+  std::vector<TrueRun> earlier;  ///< runs of the earlier calibration
   MotorMake make;
 };
-/// Every make has capacities and resistances within ±25 % of the usual.
+/// Simulates the runs of a case. Capacities and resistances of the motor are drawn within ±25 % of the usual values.
 Runs record(const Case& sealed);
 
-/// What a calibration knows beforehand: copper's resistance is right, everything else is off by up to 25 %.
+/// Model before a calibration: the copper resistance is right, every other parameter is off by up to 25 %.
 ExtendedModel model_before(const MotorMake& make, std::uint64_t seed);
 
 struct Calibrated {
   ExtendedModel model;
   Fit fit;
 };
-/// model_before() and what a calibration makes of it with runs of that motor.
+/// Calibrates model_before() with runs of that motor.
 Calibrated calibrated(const Case& sealed, const MotorMake& make, const std::vector<TrueRun>& runs);
 
-/// The log as the tool takes it.
+/// Converts a run to the log format of the tool.
 MeasuredRun measured(const TrueRun& run);
 
-/// What the analyser is given: nothing in it says what was left out.
+/// Input of the diagnosis, without any hint of the missing effect.
 DiagnosisInput question(const Case& sealed, const Runs& runs);
-/// The runs that only score.
+/// Runs for scoring only.
 std::vector<MeasuredRun> holdout(const Runs& runs);
 
 struct Answer {
   Diagnosis diagnosis;
   HoldoutScore score;
-  std::vector<std::string> named;  ///< ids of effects of the catalogue, curves as "node~driver"
+  std::vector<std::string> named;  ///< ids of catalogue effects, and curves as "node~driver"
   double seconds_s = 0.0;
-  double before_K = 0.0;  ///< rms error on unseen runs against true temperatures, winding and stator together
+  double before_K = 0.0;  ///< RMS error on unseen runs against true temperatures, winding and stator together
   double after_K = 0.0;
 };
 Answer examine(const Case& sealed);
 
-/// On unseen runs, of the same model fitted to the same motor with nothing missing: what noise and unknown heat leave to the best.
+/// RMS error on unseen runs for the model fitted to the same motor without a missing effect. It is the error floor from noise and unknown
+/// heat.
 double floor_K(Case sealed);
 
-/// Open-loop rms error of the model on runs against the true temperatures.
+/// Open-loop RMS error of the model against the true temperatures of the runs.
 double rms_error_K(const ExtendedModel& model, const std::vector<TrueRun>& runs);
 
 }  // namespace heatsoak::truth

@@ -1,5 +1,5 @@
-// A motor whose parts lie so far apart that two nodes do not stand for them: what follows the load at once asks for other figures than
-// whole runs do. The figures are for foretelling, and what two nodes leave there is no missing effect.
+// A motor with poor thermal contact between its parts, which two nodes approximate badly. Fast and slow transients need different
+// parameters. The fit favours forecasts of whole runs, and the remaining error must not be reported as a missing effect.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,14 +20,14 @@ Case loose(std::uint64_t seed) {
 
 Calibrated calibrated(const Case& one, const std::vector<TrueRun>& runs) { return calibrated(one, record(one).make, runs); }
 
-TEST(ManyParts, FreeRunsDecideTheFiguresWhereTwoNodesDoNotStandForAll) {
+TEST(ManyParts, FreeRunsDecideTheParametersIfTwoNodesAreTooFew) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Case one = loose(seed);
     const Runs runs = record(one);
     const Calibrated found = calibrated(one, runs.training);
     EXPECT_GT(found.fit.free_run_error_K, 0.0) << seed;
     EXPECT_LT(rms_error_K(found.model, runs.unseen), 1.5 * found.fit.free_run_error_K) << seed;
-    // The covariance holds what these figures can be off: the same motor from other runs.
+    // The covariance must cover the difference between two calibrations of one motor with different runs.
     const Calibrated other = calibrated(one, runs.unseen);
     const Eigen::VectorXd apart = other.fit.theta - found.fit.theta;
     const Eigen::MatrixXd allowed = other.fit.covariance + found.fit.covariance;
@@ -35,7 +35,7 @@ TEST(ManyParts, FreeRunsDecideTheFiguresWhereTwoNodesDoNotStandForAll) {
   }
 }
 
-TEST(ManyParts, OtherwiseTheMostProbableFiguresStay) {
+TEST(ManyParts, OtherwiseTheMostProbableParametersStay) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     Case one = loose(seed);
     one.metal_ratio = 1.0;
@@ -43,7 +43,7 @@ TEST(ManyParts, OtherwiseTheMostProbableFiguresStay) {
   }
 }
 
-// Averages over rows would take a load that repeats for figures that are wrong.
+// Averaging over rows would mistake a periodic load for wrong parameters.
 TEST(ManyParts, ALoadThatRepeatsIsNone) {
   for (const int period_rows : {5, 10}) {
     std::vector<TrueRun> runs;

@@ -1,4 +1,5 @@
-// Motors that others measured, with effects that nobody declared. The recordings are no part of the product; without them the tests say so.
+// Measured motors with effects that the recordings do not describe. The recordings are not part of the repository; without them the tests
+// are skipped.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +35,7 @@ std::vector<MeasuredRun> runs_of(const ModelOfLogs& model, const std::vector<Rec
   return all;
 }
 
-/// A diagnosis of some recordings, and its score on others.
+/// Diagnosis of some recordings and its score on others.
 struct Diagnosed {
   ModelOfLogs model;
   DiagnosisInput input;
@@ -51,12 +52,12 @@ Diagnosed diagnosed(const Motor& motor, const std::vector<Recording>& train, con
   return out;
 }
 
-/// Of a signal over all samples of the runs, free-running.
+/// RMS error of a free-running simulation over all samples of one signal.
 double rms_K(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const char* signal) {
   return open_loop_errors(model, runs, {}).at(signal).rmse_K;
 }
 
-/// What a recording folder holds, or nothing where it is not at hand.
+/// Skips the test if the recording folder is not available.
 #define SKIP_WITHOUT(folder)                                                   \
   if (!(folder)) {                                                             \
     GTEST_SKIP() << "the recordings are not at hand (HEATSOAK_MEASURED_DATA)"; \
@@ -69,10 +70,10 @@ const FoundEffect* effect_of(const Diagnosis& diagnosis, std::string_view id) {
 
 struct Drone {
   std::map<std::string, Recording> run;
-  Motor motor;  ///< calibrated on runs 1, 3 and 5
+  Motor motor;  ///< calibrated with runs 1, 3 and 5
 };
 
-/// A motor whose start of a fit was guessed otherwise.
+/// Returns the motor with its initial parameter values multiplied by the factors.
 Motor guessed_otherwise(Motor motor, const std::map<std::string, double>& factor) {
   for (const auto& [key, by] : factor) {
     ParameterValue& figure = *find_parameter(motor, key);
@@ -96,13 +97,13 @@ Drone drone(const std::filesystem::path& folder, bool is_for_forecasts = true, c
   return all;
 }
 
-/// Of run 4 the first part is among the training runs.
+/// Trains with the first part of run 4, among others, and scores its second part.
 Diagnosed diagnosed(Drone& all, double cut) {
   return diagnosed(all.motor, {all.run["run1"], all.run["run3"], all.run["run5"], part_of(all.run["run4"], 0.0, cut)},
                    {part_of(all.run["run4"], cut, 1.0), all.run["run2"]});
 }
 
-/// Of run 4 the first part, which was fitted, and the rest.
+/// Checks the fitted first part of run 4 and the unseen second part.
 void expect_follows_the_fan(Drone& all, const Diagnosed& found) {
   const ExtendedModel& after = found.diagnosis.selection.after.model;
   const std::vector<MeasuredRun> run4 = runs_of(found.model, {all.run["run4"]});
@@ -114,7 +115,7 @@ void expect_follows_the_fan(Drone& all, const Diagnosed& found) {
   }
 }
 
-TEST(MeasuredMotors, a_fan_that_nobody_told_of_is_found_in_the_run_that_had_it) {
+TEST(MeasuredMotors, an_undocumented_fan_is_found_in_the_run_that_had_it) {
   const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
   SKIP_WITHOUT(folder);
   Drone all = drone(*folder, false);
@@ -137,8 +138,8 @@ TEST(MeasuredMotors, a_fan_is_found_from_another_start_too) {
   expect_follows_the_fan(all, diagnosed(all, 0.6));
 }
 
-/// The law that brings the whole set together is hardly visible here, and without it whole runs are followed six times worse.
-TEST(MeasuredMotors, what_hangs_on_a_hardly_visible_law_is_kept_where_no_figure_could_be_it) {
+/// The law that the whole set needs is hardly visible in this part. Without it the error on whole runs is six times as large.
+TEST(MeasuredMotors, a_hardly_visible_law_is_kept_if_no_parameter_could_replace_it) {
   const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
   SKIP_WITHOUT(folder);
   Drone all = drone(*folder);
@@ -166,7 +167,7 @@ TEST_P(DroneWithFan, is_named_wherever_its_run_is_cut) {
 INSTANTIATE_TEST_SUITE_P(MeasuredMotors, DroneWithFan, testing::Values(50, 60, 70),
                          [](const auto& each) { return "first_" + std::to_string(each.param) + "_percent"; });
 
-/// Of a bench: the outrunner "Mega" under a propeller on two days.
+/// Two recordings of the outrunner "Mega" with a propeller on a bench, on two days.
 struct PropellerBench {
   Recording january;
   Recording march;
@@ -181,7 +182,8 @@ PropellerBench propeller_bench(const std::filesystem::path& folder) {
   return {of_bench(folder, "Mega-1700_2020-01-27_105922"), of_bench(folder, "Mega-1700_2020-03-05_145559")};
 }
 
-/// The probe at the coils lies in the air that the propeller drives; the copper behind it is hotter, and after switch-off the probe rises.
+/// The probe at the coils is in the propeller's air flow. The copper behind it is hotter, so the probe's temperature rises after
+/// switch-off.
 TEST(MeasuredMotors, a_propeller_cools_while_it_turns_and_what_is_hot_inside_comes_out_after_switch_off) {
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
@@ -195,14 +197,14 @@ TEST(MeasuredMotors, a_propeller_cools_while_it_turns_and_what_is_hot_inside_com
   EXPECT_LE(score.after.at("stator_C").rmse_K, 1.0);
   const MeasuredRun& run = score.runs.front();
   const auto turns = [](const OperatingPoint<double>& at) { return at.speed_mean_rad_per_s > 10.0; };
-  const Eigen::MatrixXd foretold_C = open_loop_C(diagnosis.selection.after.model, run, {});
+  const Eigen::MatrixXd predicted_C = open_loop_C(diagnosis.selection.after.model, run, {});
   const Eigen::Index stopped = std::ranges::find_if(run.at.rbegin(), run.at.rend(), turns).base() - run.at.begin();
   const double measured_rise_K = run.measured_C.col(0).tail(run.samples() - stopped).maxCoeff() - run.measured_C(stopped, 0);
   EXPECT_GT(measured_rise_K, 4.0);
-  EXPECT_NEAR(foretold_C.col(0).tail(run.samples() - stopped).maxCoeff() - foretold_C(stopped, 0), measured_rise_K, 1.0);
+  EXPECT_NEAR(predicted_C.col(0).tail(run.samples() - stopped).maxCoeff() - predicted_C(stopped, 0), measured_rise_K, 1.0);
 }
 
-/// Calibrated without the propeller's air the figures carry what they can of it; the run shows that it is there all the same.
+/// A calibration without the propeller's air flow absorbs part of it in the parameters. The run must still reveal the effect.
 TEST(MeasuredMotors, a_calibrated_motor_gets_the_air_of_its_propeller_from_the_one_run_that_it_was_fitted_to) {
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
@@ -214,7 +216,7 @@ TEST(MeasuredMotors, a_calibrated_motor_gets_the_air_of_its_propeller_from_the_o
   EXPECT_LE(score.after.at("stator_C").rmse_K, 1.05 * score.before.at("stator_C").rmse_K);
 }
 
-/// From the guess no step along the whitened errors leads anywhere: the way goes past the figures that follow the runs as they are.
+/// From this initial guess no step along the whitened errors improves the fit. The fit must first match the simulated runs directly.
 TEST(MeasuredMotors, two_recordings_far_from_the_guess_are_followed_before_anything_is_looked_for) {
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
@@ -227,8 +229,8 @@ TEST(MeasuredMotors, two_recordings_far_from_the_guess_are_followed_before_anyth
   EXPECT_TRUE(effect_of(diagnosis, "speed_dependent_convection")) << diagnosis.description;
 }
 
-/// With nothing added the model is the one with its own figures refitted, wherever a law that did not stay had led them.
-TEST(MeasuredMotors, where_no_law_stays_its_own_figures_are_what_they_were_without_it) {
+/// If no effect is accepted, the result must be the base model with refitted parameters. Rejected laws must not influence it.
+TEST(MeasuredMotors, rejected_laws_do_not_change_the_refitted_parameters) {
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
   const auto [january, march, start] = propeller_bench(*folder);
@@ -245,7 +247,7 @@ TEST(MeasuredMotors, where_no_law_stays_its_own_figures_are_what_they_were_witho
   }
 }
 
-/// A second motor of the bench, which was no one's example while the tool was made: the speed was recorded once only.
+/// A second motor of the bench, not used during development of the tool. Its speed was recorded once only.
 TEST(MeasuredMotors, another_outrunner_of_the_bench_gets_the_air_of_its_propeller) {
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
@@ -271,7 +273,7 @@ TEST(MeasuredMotors, locked_and_free_runs_of_a_frameless_motor_come_under_one_mo
   EXPECT_LE(score.after.at("winding_C").rmse_K, 0.4) << diagnosis.description;
   EXPECT_LE(score.after.at("stator_C").rmse_K, 0.2) << diagnosis.description;
   EXPECT_LT(diagnosis.after_train.at("winding_C").rmse_K, 0.7 * diagnosis.before_train.at("winding_C").rmse_K);
-  // Of 37 samples at steps of 1 K.
+  // The data are 37 samples with a resolution of 1 K, so a tiny p-value would be wrong.
   EXPECT_THAT(diagnosis.effects, testing::Each(testing::Field(&FoundEffect::p_value, testing::Gt(1e-60))));
 }
 
@@ -280,7 +282,7 @@ Diagnosed of_traction_motor(const std::filesystem::path& folder, double cut) {
   return diagnosed(read_motor(kReports / "traction_motor/start.toml"), {part_of(all, 0.0, cut)}, {part_of(all, cut, 1.0)});
 }
 
-TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_is_foretold_once_two_loads_were_seen) {
+TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_is_predicted_after_two_loads) {
   const std::optional<std::filesystem::path> folder = measured_data("paderborn_pmsm");
   SKIP_WITHOUT(folder);
   const auto [model, input, diagnosis, score] = of_traction_motor(*folder, 0.65);

@@ -31,7 +31,7 @@ void to_air(const Moment& m, PerPart& q, double conductance_W_per_K) {
   q[shield_front] -= 0.15 * conductance_W_per_K * (m.part_C[shield_front] - m.in.ambient_C);
   q[shield_back] -= 0.15 * conductance_W_per_K * (m.part_C[shield_back] - m.in.ambient_C);
 }
-/// Across the gap between copper and iron.
+/// Moves heat across the gap between copper and iron.
 void across(const Moment& m, PerPart& q, double conductance_W_per_K) {
   const double flow_W = conductance_W_per_K * (m.copper_C - m.iron_C);
   into_copper(q, -flow_W);
@@ -50,7 +50,7 @@ Missing third_node(double size) {
 }
 
 Missing enclosure(double size) {
-  // The air that the motor stands in gets warmer by what the motor gives off; the log has the room outside.
+  // The motor's heat warms its surrounding air, while the log contains the temperature of the room.
   Missing missing = heat([size](const Moment& m, PerPart& q) {
     const double air_rise_K = m.part_C[lump_b] - m.in.ambient_C;
     const double taken_W = 0.18 * air_rise_K;
@@ -117,7 +117,7 @@ const std::vector<Subject> kSubjects{
      [](double s) {
        return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.08 * s * std::pow(m.in.vehicle_speed_m_per_s / 3.0, 0.58)); });
      }},
-    // A body behind the stator and air that warms around it are one equation: only the share that the base keeps differs.
+    // A body behind the stator and warming air obey the same equation. They differ only in the share that the base model absorbs.
     {"third_node", Visibility::visible, {"enclosure_warm_up"}, third_node},
     {"neighbour_coupling",
      Visibility::visible,
@@ -184,14 +184,14 @@ const std::vector<Subject> kSubjects{
     {"sensor_lag_winding", Visibility::visible, {}, [](double s) { return sensor({.winding_lag_s = 6.0 * s}); }, 6.0},
     {"sensor_lag_stator", Visibility::visible, {}, [](double s) { return sensor({.stator_lag_s = 10.0 * s}); }, 10.0},
     {"sensor_gain_winding", Visibility::visible, {}, [](double s) { return sensor({.winding_gain_ratio = 1.0 + 0.05 * s}); }, 0.05},
-    // h ∝ ΔT^0.25 against a fitted constant: 0.6 % of the response is left.
+    // h ∝ ΔT^0.25: a fitted constant explains all but 0.6 % of the response.
     {"natural_convection",
      Visibility::faint,
      {"radiation"},
      [](double s) {
        return heat([s](const Moment& m, PerPart& q) { to_air(m, q, 0.03 * s * std::pow(std::abs(m.iron_C - m.in.ambient_C), 0.27)); });
      }},
-    // 4 ε σ A T³ against a fitted constant: 0.1 % is left.
+    // 4 ε σ A T³: a fitted constant explains all but 0.1 % of the response.
     {"radiation",
      Visibility::faint,
      {"natural_convection"},
@@ -282,16 +282,16 @@ const std::vector<Outsider> kOutsiders{
      [](double s) { return heat([s](const Moment& m, PerPart& q) { across(m, q, -0.3 * s * smooth_step((m.copper_C - 50.0) / 2.0)); }); }},
 };
 
-/// Between 0 and 1, another for every segment of running time and every purpose.
+/// Returns a pseudo-random number between 0 and 1, constant over each segment of running time and independent for each purpose.
 double drawn(const Moment& m, double segment_s, std::uint64_t purpose, int later = 0) {
   const auto segment = static_cast<std::uint64_t>(m.age_h * 3600.0 / segment_s) + static_cast<std::uint64_t>(later);
-  // The finaliser of splitmix64: asked at every step of the integration.
+  // The finaliser of splitmix64 needs no state, so the integrator can call this at every step.
   std::uint64_t bits = (segment * 1000003 + purpose) * 0x9e3779b97f4a7c15U;
   bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9U;
   bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebU;
   return static_cast<double>((bits ^ (bits >> 31)) >> 11) * 0x1p-53;
 }
-/// Of mean 0 and rms 1, smooth, over the length of a segment.
+/// Returns a smooth pseudo-random signal with mean 0 and RMS 1, which varies over the length of a segment.
 double drifting(const Moment& m, double segment_s, std::uint64_t purpose) {
   const double share = std::fmod(m.age_h * 3600.0 / segment_s, 1.0);
   const double here = drawn(m, segment_s, purpose), next = drawn(m, segment_s, purpose, 1);
@@ -310,7 +310,8 @@ Missing unlogged_neighbour(double size) {
   return missing;
 }
 
-/// On above 45 °C until 38 °C: a latch x' = x − x³ + d, thrown over where |d| passes 0.385, that a lump keeps as tens of kelvin.
+/// A fan that switches on above 45 °C and off below 38 °C. The latch x' = x − x³ + d switches where |d| exceeds 0.385; a lump stores x as
+/// tens of kelvin.
 Missing thermostat_fan(double size) {
   Missing missing = heat([size](const Moment& m, PerPart& q) {
     const double x = (m.part_C[lump_b] - 25.0) / 10.0;

@@ -10,7 +10,7 @@
 namespace heatsoak {
 namespace {
 
-/// An hour in which the winding of the model gets hotter than anything that is.
+/// One hour with a current that heats the model's winding beyond any real temperature.
 MeasuredRun hour_at(double current_A) {
   MeasuredRun run;
   run.name = "hour";

@@ -10,7 +10,7 @@
 namespace heatsoak::truth {
 namespace {
 
-/// "iron_loss_eddy@stator" is iron_loss_eddy.
+/// Returns the id without the node: iron_loss_eddy for "iron_loss_eddy@stator".
 std::string plain(const std::string& id) { return id.substr(0, id.find('@')); }
 
 bool is_name_of(const std::string& id, const Subject& subject) {
@@ -50,7 +50,7 @@ bool names_outsider(const Answer& answer, const Outsider& outsider) {
     return curve.term.node == outsider.node && second_signal(curve.term.multiplier) == outsider.times &&
            std::ranges::find(outsider.drivers, driver) != outsider.drivers.end();
   };
-  // What is said first is the answer; what else remains may follow.
+  // Only the first term counts as the answer; further terms may follow.
   const bool leads = !selection.terms.empty() && selection.terms.front().curve && is_right(*selection.terms.front().curve);
   return leads && answer.diagnosis.verdict == DiagnosisVerdict::unexplained;
 }

@@ -1,4 +1,4 @@
-// Both passes of the screening on logs of an independent program that tells which samples are wrong. Scored only: nothing is tuned on them.
+// Tests both passes of the screening with logs of an independent simulator that labels wrong samples. No threshold was tuned on these logs.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,13 +33,13 @@ Intervals wrong_s(const nlohmann::json& motor, const std::string& log, const std
 }
 
 struct Score {
-  int wrong = 0;        ///< by more than five standard deviations of the noise
-  int wrong_found = 0;  ///< of those
+  int wrong = 0;        ///< samples off by more than five standard deviations of the noise
+  int wrong_found = 0;  ///< rejected samples among them
   int good = 0;
   int good_rejected = 0;
 };
 
-/// What the file itself says, unscreened: time and signal.
+/// Returns the raw samples of one signal by time, without screening.
 std::map<double, double> cells_of(const std::filesystem::path& log, const std::string& signal) {
   std::ifstream file(log);
   std::string line;
@@ -68,8 +68,8 @@ std::map<double, double> cells_of(const std::filesystem::path& log, const std::s
   return cells;
 }
 
-/// A sample is found where it is missing in the run or has no weight. How far a wrong one is off is told by a straight line between its
-/// good neighbours.
+/// Counts a sample as found if it is missing in the run or has no weight. The error of a wrong sample is its distance to a straight line
+/// between its good neighbours.
 void add(const MeasuredRun& run, const Eigen::VectorXd& weights, const std::filesystem::path& log, const nlohmann::json& motor,
          Score& score) {
   constexpr double kOff_sd = 5.0;
@@ -102,7 +102,7 @@ void add(const MeasuredRun& run, const Eigen::VectorXd& weights, const std::file
         continue;
       }
       const auto before = std::prev(after);
-      // Over long intervals a straight line says nothing of where the temperature was.
+      // Over longer gaps a straight line is no estimate of the temperature.
       constexpr double kStraight_s = 6.0;
       if (after->first - before->first > kStraight_s) {
         continue;
@@ -116,7 +116,7 @@ void add(const MeasuredRun& run, const Eigen::VectorXd& weights, const std::file
   }
 }
 
-/// Samples of stuck intervals, by intervals of at least 18 s in which the file repeats one value.
+/// Scores the samples of stuck intervals. Only intervals of at least 18 s in which the file repeats one value count.
 void add_stuck(const MeasuredRun& run, const Eigen::VectorXd& weights, const std::filesystem::path& log, const nlohmann::json& motor,
                const Eigen::MatrixXd& expected_C, Score& score) {
   constexpr double kOff_sd = 5.0;

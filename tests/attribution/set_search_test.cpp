@@ -1,4 +1,4 @@
-// The evidence of sets of effects against integrals that are done another way: dense covariances, and sums over a fine grid of sizes.
+// The evidence of sets of effects, compared with integrals by other methods: dense covariances, and sums over a fine grid of sizes.
 #include "attribution/set_search.h"
 
 #include <gtest/gtest.h>
@@ -11,13 +11,13 @@ namespace heatsoak {
 namespace {
 
 struct Problem {
-  Eigen::MatrixXd theta;       ///< n × t
-  Eigen::MatrixXd candidates;  ///< n × e
+  Eigen::MatrixXd theta;       ///< matrix, n × t
+  Eigen::MatrixXd candidates;  ///< matrix, n × e
   Eigen::VectorXd residual;
   ThetaPrior prior;
 };
 
-/// White noise of variance 1, so that nothing has to be whitened.
+/// Linear problem with white noise of variance 1, so no whitening is needed.
 Problem problem(std::uint32_t seed, double size) {
   constexpr Eigen::Index kRows = 60;
   std::mt19937 random(seed);
@@ -45,7 +45,7 @@ Reduced reduced_of(const Problem& of) {
   return reduced({all.transpose() * all, 0.0}, of.prior);
 }
 
-/// ln N(residual | mean of θ, 1 + Θ Λ⁻¹ Θᵀ + Z S Zᵀ), the sizes around 0 with covariance S.
+/// ln N(residual | mean of θ, 1 + Θ Λ⁻¹ Θᵀ + Z S Zᵀ), with sizes of mean 0 and covariance S.
 double dense_nats(const Problem& of, const std::vector<int>& members, double sd) {
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(of.residual.size(), of.residual.size());
   covariance += of.theta * of.prior.precision.inverse() * of.theta.transpose();
@@ -70,7 +70,7 @@ TEST(SetSearch, EvidenceOfSizesOfEitherSignIsThatOfTheDenseCovariance) {
   }
 }
 
-/// Midpoint sum over φ ≥ 0 of 2·N(φ; 0, s²)·N(residual − z·φ), θ integrated out.
+/// Reference: midpoint sum over φ ≥ 0 of 2·N(φ; 0, s²)·N(residual − z·φ), with θ integrated out.
 TEST(SetSearch, EvidenceOfASizeWithASignIsTheIntegralOverIt) {
   constexpr double kSize_sd = 2.0;
   const std::vector<CandidateRule> rules(4, CandidateRule{.has_sign = true, .id = "", .family = ""});
@@ -102,7 +102,7 @@ TEST(SetSearch, NamesWhatIsThereAndItsProbabilityAddsUp) {
   for (const char* const id : {"a", "b", "c", "d"}) {
     rules.push_back({true, -4.5, id, id, {}, 1.0});
   }
-  rules[1].family = "a";  // almost the same column
+  rules[1].family = "a";  // nearly collinear with column a
   const SelectionRules defaults;
   const SetSearch found({reduced_of(problem(3, 2.0))}, rules, defaults);
   ASSERT_FALSE(found.sets().front().members.empty());
@@ -117,8 +117,8 @@ TEST(SetSearch, NamesWhatIsThereAndItsProbabilityAddsUp) {
   EXPECT_TRUE(nothing.sets().front().members.empty());
 }
 
-/// Two columns that are nearly the same share what is known of them; the family is still sure.
-TEST(SetSearch, WhatCannotBeToldApartIsSureAsAFamily) {
+/// Two identical columns share their probability; the probability of the family stays high.
+TEST(SetSearch, IndistinguishableEffectsAreCertainAsAFamily) {
   Problem one = problem(5, 1.0);
   one.candidates.col(1) = one.candidates.col(0);
   std::vector<CandidateRule> rules;
@@ -134,7 +134,8 @@ TEST(SetSearch, WhatCannotBeToldApartIsSureAsAFamily) {
   EXPECT_EQ(found.stand_ins(best, 0, 5.0), std::vector<int>{best.members.front() == 0 ? 1 : 0});
 }
 
-/// The linear evidence of the best set was too good: the one that keeps its own is the best then, and what was not fitted moves with it.
+/// The linear evidence of the best set was too high. The set whose non-linear fit confirms its evidence becomes the best. Sets without a
+/// fit get the same correction.
 TEST(SetSearch, FitsDecideAmongTheBestSets) {
   std::vector<CandidateRule> rules;
   for (const char* const id : {"a", "b", "c", "d"}) {

@@ -1,5 +1,5 @@
-// A fault of a sensor that the motor's file states is part of the base model: nothing is missing, and what is found goes into a file that
-// states it.
+// The base model includes sensor faults that the motor's file states: no missing effect is reported for them. New sensor faults are written
+// to the file.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST(StatedSensors, AreNotMissing) {
   }
 }
 
-// What a file states may be wrong as well: the rest is found on top of it.
+// If the stated fault is wrong, the difference is found in addition to it.
 TEST(StatedSensors, LeaveRoomForWhatTheyDoNotTell) {
   const Case one = with_late_stator();
   DiagnosisInput input = question(one, record(one));
@@ -64,7 +64,7 @@ TEST(StatedSensors, LeaveRoomForWhatTheyDoNotTell) {
   EXPECT_NEAR(effect("sensor_offset_stator")->parameters.front().value, -3.0, 1.0);
 }
 
-/// What candidates would do to sensors with stated faults, against the model with a little of each of them.
+/// Candidate columns of sensors with stated faults, compared with differences of a model that contains a small amount of each candidate.
 TEST(StatedSensors, CandidatesAreSeenThroughThem) {
   const Case one = with_late_stator();
   DiagnosisInput input = question(one, record(one));
@@ -88,7 +88,7 @@ TEST(StatedSensors, CandidatesAreSeenThroughThem) {
   }
 }
 
-/// The motor of the examination as a sheet would have it.
+/// Writes a data sheet for the examination's motor.
 Motor sheet_of(const MotorMake& make, const std::filesystem::path& file) {
   std::ofstream out(file);
   out << "manufacturer = \"none\"\nname = \"made up\"\ntype = \"brushless\"\n[sources]\ns = \"made up\"\n[conventions]\n"
@@ -157,7 +157,7 @@ TEST(StatedSensors, AreWrittenWhereTheyWereFoundAndThenNothingIsMissing) {
   EXPECT_EQ(second.diagnosis.verdict, DiagnosisVerdict::nothing_missing) << second.diagnosis.description;
   EXPECT_THAT(second.model.notes, testing::Contains(testing::HasSubstr("effects.sensor_lag_stator.time_constant is held")));
 
-  // What the file has already keeps its name.
+  // Entries that the file already contains keep their names.
   Motor named = motor;
   named.sensors.push_back({"sensor_lag_stator", find_sensor_effect("sensor_offset_winding"), {}});
   const Motor both = extended_motor(named, first.model, first.diagnosis);

@@ -9,7 +9,7 @@
 namespace heatsoak::truth {
 namespace {
 
-/// Shares of copper and iron: parts of one kind sit close together, so that two nodes can stand for all eight to 0.1 K.
+/// Shares of copper and iron. Parts of one material are so closely coupled that two nodes approximate all eight within 0.1 K.
 constexpr PerPart kCopperShare{0.66, 0.17, 0.17};
 constexpr PerPart kIronShare{0, 0, 0, 0.26, 0.38, 0.20, 0.08, 0.08};
 struct Bridge {
@@ -90,7 +90,8 @@ class Machine {
   }
 
  private:
-  /// Gershgorin's bound of the eigenvalues: the method bears a step of 2.78 over it, and is exact to 1e-4 of what changes at half of that.
+  /// Gershgorin bound of the eigenvalues. The method is stable for steps up to 2.78 divided by it; half of that gives a relative error of
+  /// 1e-4.
   [[nodiscard]] double fastest_per_s() const {
     PerPart conductance_W_per_K{};
     const auto add = [&](int a, int b, double each_W_per_K) {
@@ -119,7 +120,7 @@ class Machine {
   int steps_per_row_ = 20;
 };
 
-/// A sensor with its fault, noise, steps, and now and then no sensible reading at all.
+/// Sensor with its fault, noise, resolution, and occasional wrong samples.
 class Sensor {
  public:
   Sensor(const Surprise& surprise, double offset_K, double gain_ratio, double lag_s, double start_C)
@@ -139,7 +140,7 @@ class Sensor {
   }
 
  private:
-  /// The second since the last reading in small steps of the sensor's own equation, along a straight line of temperature.
+  /// Integrates the sensor's equation over the last second in small steps, with linear interpolation of the temperature.
   void feel(double true_C) {
     constexpr int kSteps = 100;
     for (int i = 0; i < kSteps && lag_s_ > 0.0; ++i) {

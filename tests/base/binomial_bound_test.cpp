@@ -1,4 +1,4 @@
-// Exact bounds of a probability, against their definition and closed forms.
+// Exact bounds of a probability, compared with their definition and closed forms.
 #include "base/binomial_bound.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ TEST(BinomialBound, WithoutAHitIsTheClosedForm) {
   EXPECT_EQ(upper_bound_share(7.0, 7.0, 0.95), 1.0);
 }
 
-// By definition: with a probability at the bound, as few hits as were seen have a chance of 5 %.
+// Definition: if the probability equals the bound, so few hits have a chance of 5 %.
 TEST(BinomialBound, LeavesAChanceOfFivePercent) {
   constexpr int kDraws = 40;
   for (int over = 0; over < kDraws; over += 7) {

@@ -34,7 +34,7 @@ class Files : public testing::Test {
 
 constexpr std::size_t kMost_bytes = 100'000;
 
-/// How a process of its own ends that writes ten times as much to `file` as it may; SIGXFSZ kills in the middle of it.
+/// Starts a child process that writes ten times its limit to `file`, so that SIGXFSZ kills it while writing, and returns its status.
 int status_of_writer_beyond_its_limit(const fs::path& file) {
   const pid_t writer = ::fork();
   if (writer == 0) {

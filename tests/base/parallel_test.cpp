@@ -15,18 +15,18 @@ namespace {
 TEST(InParallel, RunsEveryJobOnceForAnyNumberOfThreads) {
   for (const int threads : {0, 1, 2, 64}) {
     std::vector<int> runs(1000, 0);
-    std::vector<std::size_t> told;
+    std::vector<std::size_t> reported;
     in_parallel(
         runs.size(), threads, 5, 1005,
         [&](std::size_t done, std::size_t total) {
-          told.push_back(done);
+          reported.push_back(done);
           EXPECT_EQ(total, 1005U);
         },
         [&](std::size_t i) { ++runs[i]; });
     EXPECT_EQ(runs, std::vector<int>(1000, 1)) << threads;
-    ASSERT_EQ(told.size(), 1000U);
-    EXPECT_EQ(told.front(), 6U);
-    EXPECT_EQ(told.back(), 1005U);
+    ASSERT_EQ(reported.size(), 1000U);
+    EXPECT_EQ(reported.front(), 6U);
+    EXPECT_EQ(reported.back(), 1005U);
   }
 }
 
@@ -47,7 +47,7 @@ TEST(InParallel, ThrowsWhatAJobThrows) {
   EXPECT_LT(begun, 1000000);
 }
 
-/// A thread that waits for the jobs of its job must not begin another one, which would wait for its own lock.
+/// A thread that waits for nested jobs must not start an outer job, which would wait for a lock that the thread holds.
 TEST(InParallel, JobsMayHoldALockWhileTheirOwnJobsRun) {
   std::mutex mutex;
   std::atomic<int> done = 0;
@@ -58,7 +58,7 @@ TEST(InParallel, JobsMayHoldALockWhileTheirOwnJobsRun) {
   EXPECT_EQ(done, 4000);
 }
 
-/// Whoever goes on after its own jobs counts on their results.
+/// A caller that continues after its own jobs relies on their results.
 TEST(InParallel, AJobThatThrowsDoesNotCutShortTheJobsOfAnother) {
   std::atomic<bool> has_thrown = false;
   std::atomic<bool> is_begun = false;

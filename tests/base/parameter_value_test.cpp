@@ -24,7 +24,7 @@ ParameterValue range(double value, double low, double high, bool by_ratio) {
   return figure;
 }
 
-/// Share of draws below `bound`.
+/// Returns the share of draws below `bound`.
 double share_below(const ParameterValue& figure, double bound, int draws = 200000) {
   Random random(1000, 0);
   int below = 0;
@@ -34,11 +34,11 @@ double share_below(const ParameterValue& figure, double bound, int draws = 20000
   return static_cast<double>(below) / draws;
 }
 
-const std::vector<ParameterValue> kFigures{tolerance(1.07, 0.1),          tolerance(30.0, 0.9),           range(3.8, 2.2, 6.0, true),
-                                           range(0.25, 0.15, 0.45, true), range(25.0, 20.0, 32.0, false), range(0.0, -5.0, 3.0, false),
-                                           range(2.0, 2.0, 3.0, true),    range(2.0, 1.0, 2.0, true)};
+const std::vector<ParameterValue> kParameterValues{
+    tolerance(1.07, 0.1),           tolerance(30.0, 0.9),         range(3.8, 2.2, 6.0, true), range(0.25, 0.15, 0.45, true),
+    range(25.0, 20.0, 32.0, false), range(0.0, -5.0, 3.0, false), range(2.0, 2.0, 3.0, true), range(2.0, 1.0, 2.0, true)};
 
-TEST(FigureQuantile, without_spread_is_the_figure) {
+TEST(ParameterQuantile, without_spread_is_the_value) {
   ParameterValue figure;
   figure.value = 4.2;
   for (const double uniform : {1e-12, 0.3, 0.5, 1.0 - 1e-12}) {
@@ -46,14 +46,14 @@ TEST(FigureQuantile, without_spread_is_the_figure) {
   }
 }
 
-TEST(FigureQuantile, median_is_the_figure) {
-  for (const ParameterValue& figure : kFigures) {
+TEST(ParameterQuantile, median_is_the_value) {
+  for (const ParameterValue& figure : kParameterValues) {
     EXPECT_NEAR(figure.quantile(0.5), figure.value, 1e-14 * std::abs(figure.value) + 1e-15);
   }
 }
 
-TEST(FigureQuantile, never_leaves_the_bounds_and_reaches_them) {
-  for (const ParameterValue& figure : kFigures) {
+TEST(ParameterQuantile, never_leaves_the_bounds_and_reaches_them) {
+  for (const ParameterValue& figure : kParameterValues) {
     const double width = figure.spread->high - figure.spread->low;
     Random random(1001, 0);
     for (int i = 0; i < 10000; ++i) {
@@ -66,8 +66,8 @@ TEST(FigureQuantile, never_leaves_the_bounds_and_reaches_them) {
   }
 }
 
-TEST(FigureQuantile, rises) {
-  for (const ParameterValue& figure : kFigures) {
+TEST(ParameterQuantile, rises) {
+  for (const ParameterValue& figure : kParameterValues) {
     double before = figure.quantile(1e-6);
     for (double uniform = 0.001; uniform < 1.0; uniform += 0.001) {
       const double value = figure.quantile(uniform);
@@ -77,30 +77,30 @@ TEST(FigureQuantile, rises) {
   }
 }
 
-// A normal distribution of which 95 % keep the tolerance has a standard deviation of half of it; cut off at two of
-// them, one standard deviation holds 0.6827/0.9545 = 71.52 % of the draws and half of one 38.29/95.45 = 40.12 %.
-TEST(FigureQuantile, tolerance_is_two_standard_deviations) {
+// A normal distribution with 95 % within the tolerance has half of it as standard deviation. Truncated at two standard deviations, one
+// holds 0.6827/0.9545 = 71.52 % of the draws. Half a standard deviation holds 38.29/95.45 = 40.12 %.
+TEST(ParameterQuantile, tolerance_is_two_standard_deviations) {
   const ParameterValue figure = tolerance(100.0, 0.1);
   EXPECT_NEAR(share_below(figure, 105.0) - share_below(figure, 95.0), 0.7152, 0.005);
   EXPECT_NEAR(share_below(figure, 102.5) - share_below(figure, 97.5), 0.4012, 0.005);
   EXPECT_NEAR(share_below(figure, 100.0), 0.5, 0.005);
 }
 
-TEST(FigureQuantile, tolerance_is_symmetric) {
+TEST(ParameterQuantile, tolerance_is_symmetric) {
   const ParameterValue figure = tolerance(100.0, 0.1);
   for (double uniform = 0.01; uniform < 0.5; uniform += 0.01) {
     EXPECT_NEAR(figure.quantile(uniform) + figure.quantile(1.0 - uniform), 200.0, 1e-9);
   }
 }
 
-TEST(FigureQuantile, range_is_as_likely_above_as_below_and_every_ratio_alike) {
+TEST(ParameterQuantile, range_is_as_likely_above_as_below_and_every_ratio_alike) {
   const ParameterValue figure = range(3.8, 2.2, 6.0, true);
   EXPECT_NEAR(share_below(figure, 3.8), 0.5, 0.005);
   EXPECT_NEAR(share_below(figure, std::sqrt(2.2 * 3.8)), 0.25, 0.005);
   EXPECT_NEAR(share_below(figure, std::sqrt(3.8 * 6.0)), 0.75, 0.005);
 }
 
-TEST(FigureQuantile, range_of_temperatures_takes_every_difference_alike) {
+TEST(ParameterQuantile, range_of_temperatures_takes_every_difference_alike) {
   const ParameterValue figure = range(25.0, 20.0, 32.0, false);
   EXPECT_NEAR(share_below(figure, 22.5), 0.25, 0.005);
   EXPECT_NEAR(share_below(figure, 25.0), 0.5, 0.005);
@@ -115,7 +115,7 @@ TEST(Origin, names_are_read_back) {
   EXPECT_FALSE(origin_from("").has_value());
 }
 
-// --- chance -----------------------------------------------------------------------------------------------
+// --- random numbers ---------------------------------------------------------------------------------------
 
 TEST(Random, is_uniform_in_the_open_interval) {
   Random random(1, 2);

@@ -30,7 +30,7 @@ TEST_P(SheetSpelling, is_read) {
   EXPECT_NEAR(parsed.value, value, 1e-12 * std::abs(value) + 1e-300) << text;
 }
 
-// Values computed by hand from the definitions of the units.
+// Reference values calculated by hand from the definitions of the units.
 INSTANTIATE_TEST_SUITE_P(
     Sheets, SheetSpelling,
     testing::Values(
@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Texts, Refused,
                                          std::pair{"inf", ""}, std::pair{"1,5 A", "A"}, std::pair{"1.5.2 A", "A"}, std::pair{"5 A A", "A"},
                                          std::pair{"5 A 6", "A"}, std::pair{"+-5 A", "A"}, std::pair{"--5 A", "A"},
                                          std::pair{"0x10 A", "A"},
-                                         // A sheet's "1/min" means rpm; as a unit it is 2π less.
+                                         // On a data sheet "1/min" means rpm. As a plain unit it would be smaller by 2π.
                                          std::pair{"6000 1/min", "rad/s"}, std::pair{"6000 min-1", "rad/s"}, std::pair{"100 Hz", "rad/s"},
                                          std::pair{"100 1/s", "rad/s"}, std::pair{"5 K", "K/W"}, std::pair{"155 deg", "degC"}));
 

@@ -10,7 +10,7 @@
 namespace heatsoak {
 namespace {
 
-/// Parses a document with Expat and returns the text of its element and the value of its attribute; false if it is not well-formed.
+/// Result of parsing a document with Expat: the text of its element and the value of its attribute, or a flag that it is not well-formed.
 struct Parsed {
   bool is_well_formed = false;
   std::string text;

@@ -1,4 +1,4 @@
-// One diagnosis as users run it: every effect of the catalogue, the driver scan and all that is told about the answer, on four
+// One diagnosis with user settings: all effects of the catalogue, the scan of input signals and the description of the answer, for four
 // half-hour runs at 1 Hz.
 #include <benchmark/benchmark.h>
 

@@ -1,4 +1,4 @@
-// A calibration of five runs of 30 minutes at 1 Hz, two sensors, as it comes from reading to intervals.
+// One calibration of five runs of 30 minutes at 1 Hz with two sensors, from reading the logs to the intervals.
 #include <benchmark/benchmark.h>
 
 #include "../calibration/study.h"

@@ -1,4 +1,4 @@
-// The search for a reserve, and one step of the observer beside the network's own laws.
+// The search for a safety factor on heat, and one step of the observer compared with the network's equations.
 #include <benchmark/benchmark.h>
 
 #include "derate/derating.h"

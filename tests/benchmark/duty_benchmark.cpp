@@ -1,6 +1,5 @@
-// A 40-minute duty whose current jumps every 0.1 s: the methods side by side at equal accuracy.
-// error_K is the largest distance of winding or stator from the exact solution at any of the 24 000 jumps;
-// every method runs with the coarsest tolerance that keeps it below 1e-3 K.
+// A 40-minute duty whose current changes every 0.1 s: compares the methods at equal accuracy. error_K is the largest error of winding or
+// stator against the exact solution at any of the 24 000 steps. Every method uses the coarsest tolerance that keeps it below 1e-3 K.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Dense>
@@ -33,7 +32,7 @@ const std::vector<Interval>& duty() {
   return kDuty;
 }
 
-/// R 1.07 Ω, R_th1 3.8 K/W, R_th2 2.8 K/W, 3.2 and 28.6 J/K: the ECX FLAT 32 L.
+/// The ECX FLAT 32 L: R 1.07 Ω, R_th1 3.8 K/W, R_th2 2.8 K/W, 3.2 and 28.6 J/K.
 Network motor() {
   Network network;
   network.add_node("winding", 12.0 / 3.8);
@@ -48,8 +47,8 @@ Network motor() {
   return network;
 }
 
-/// Within a piece the network is linear: T(t) = exp(M·t)·(T, 1), one matrix exponential for every piece. It knows
-/// the two-node network and nothing else, which is why it is not the program's method.
+/// Exact solution. The network is linear within a piece: T(t) = exp(M·t)·(T, 1), with one matrix exponential per piece. It supports the
+/// two-node network only and therefore cannot be the program's method.
 class ExactMap {
  public:
   template <class Visit>
@@ -65,7 +64,7 @@ class ExactMap {
   }
 
  private:
-  /// The affine law from three calls of the rate.
+  /// Identifies the affine law from three calls of the rate function.
   static Eigen::Matrix3d piece(const Network& network, const std::vector<double>& values, const Interval& interval) {
     Eigen::Matrix3d generator = Eigen::Matrix3d::Zero();
     const auto rate = [&](double winding_C, double stator_C) {
@@ -82,7 +81,7 @@ class ExactMap {
   }
 };
 
-/// Exact winding and stator at the end of every piece.
+/// Exact winding and stator temperatures at the end of every piece.
 const std::vector<Eigen::Vector2d>& exact_C() {
   static const std::vector<Eigen::Vector2d> kExact = [] {
     std::vector<Eigen::Vector2d> all;
@@ -124,7 +123,7 @@ void through_sundials(benchmark::State& state, OdeMethod method, OdeTolerances t
   state.counters["tolerance"] = tolerances.relative;
 }
 
-/// The coarsest power of ten below 1e-3 K.
+/// Returns the coarsest power of ten with an error below 1e-3 K.
 OdeTolerances coarsest(OdeMethod method) {
   OdeTolerances tolerances{1e-2, 1e-2};
   for (; tolerances.relative > 1e-13; tolerances.relative /= 10.0, tolerances.absolute /= 10.0) {
@@ -157,7 +156,7 @@ void duty_24000_matrix_exponential(benchmark::State& state) {
 }
 BENCHMARK(duty_24000_matrix_exponential)->Unit(benchmark::kMillisecond);
 
-/// Eight samples at once, of which one is compared: what the Monte-Carlo runs on. Time for all eight.
+/// Eight samples at once, as in Monte Carlo runs; one of them is compared. The time is for all eight.
 void duty_24000_eight_lanes(benchmark::State& state) {
   const Network network = motor();
   std::vector<Lanes> values;

@@ -1,4 +1,4 @@
-// The whole database on the duty of the paper.
+// Evaluates the whole database for the duty of the paper.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
@@ -34,7 +34,7 @@ BENCHMARK_CAPTURE(evaluate_database, nominal, 0, false)->Unit(benchmark::kMillis
 BENCHMARK_CAPTURE(evaluate_database, samples_500, 500, false)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(evaluate_database, samples_500_with_curves, 500, true)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-/// 40 minutes in pieces of 0.1 s, as a recorded duty has them, with everything that a picture needs.
+/// A duty of 40 minutes in pieces of 0.1 s, like a recorded one, with all curves that a picture needs.
 void evaluate_long_recording(benchmark::State& state, bool with_curves) {
   constexpr int kPieces = 24'000;
   const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");

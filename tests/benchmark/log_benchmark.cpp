@@ -1,4 +1,4 @@
-// Reading measured logs: own splitting against libcsv alone, and with everything that is checked.
+// Reading measured logs: our parser compared with libcsv alone, and with all checks.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Two million rows of eight columns as a logger prints them, some 120 MB.
+/// Two million rows of eight columns in a logger's format, about 120 MB.
 class LongLog {
  public:
   LongLog() : path_(fs::temp_directory_path() / fmt::format("heatsoak_benchmark_{}.csv", ::getpid())) {
@@ -97,7 +97,7 @@ void log_read_recording(benchmark::State& state) {
 }
 BENCHMARK(log_read_recording)->Unit(benchmark::kMillisecond);
 
-/// What `log inspect` does, from the file's bytes to what it tells.
+/// The work of `log inspect`, from the bytes of the file to the report.
 void log_inspect(benchmark::State& state) {
   const LongLog& log = long_log();
   for (auto _ : state) {

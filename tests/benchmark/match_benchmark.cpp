@@ -1,5 +1,5 @@
-// A 40-minute match of one robot at 1 kHz, 2.4 million steps of four wheels: as the game's generator plays it (inverse
-// dynamics), and in the closed loop (drive core and plant with slip, battery and warming motors); and where the time of the loop goes.
+// A 40-minute match of one robot at 1 kHz, 2.4 million steps of four wheels. Measures the game's generator (inverse dynamics) and the
+// closed loop (drive core and plant with slip, battery and warming motors). Also splits the time of the loop into its parts.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLength_s = 2400.0;
 
-/// Division A with overtime, its stops stretched until the game has the length.
+/// Division A with overtime; stoppages are lengthened until the game has the required duration.
 MatchInputs forty_minutes(MatchValues& values) {
   const Duty duty = read_duty(kSource / "duty_profiles/division_a_match.toml");
   MatchInputs inputs = dynamic_cast<const MatchDuty&>(*duty.shape_data).inputs();
@@ -71,7 +71,7 @@ BENCHMARK(match_40_minutes_closed_loop)->Unit(benchmark::kMillisecond);
 
 constexpr double kLoop_s = 60.0;
 
-/// A target every 1.5 s, so that most plans are cut short, as in play.
+/// A target every 1.5 s, so that most plans are interrupted, as in play.
 std::vector<ScheduledCommand> restless() {
   std::vector<ScheduledCommand> script;
   for (int i = 0; 1.5 * i < kLoop_s; ++i) {
@@ -84,7 +84,7 @@ std::vector<ScheduledCommand> restless() {
   return script;
 }
 
-/// What one run of the loop handed to the core and to the plant.
+/// Inputs that one run of the loop passed to the core and to the plant.
 struct Record {
   std::vector<robot_core::Input> inputs;
   std::vector<std::array<MotorCommand, kMostWheels>> commands;
@@ -140,8 +140,8 @@ double shortest_ns(double steps, Run&& run) {
   return 1e9 * least_s / steps;
 }
 
-/// Of one core. The parts are the same run replayed part by part, because clocks inside the loop would cost as much as the parts; `rest` is
-/// planner, radio and the loop itself.
+/// Uses one CPU core. The parts are measured by replaying the same run, because clocks inside the loop would cost as much as the parts. The
+/// counter `rest` covers planner, radio and the loop itself.
 void closed_loop_1kHz(benchmark::State& state) {
   const Robot robot = twente();
   const Motor motor = ecx_32();

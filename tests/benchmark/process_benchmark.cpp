@@ -1,4 +1,4 @@
-// What a user waits for: whole processes, from fork to exit.
+// Waiting time of a user: whole processes, from fork to exit.
 #include <benchmark/benchmark.h>
 #include <fcntl.h>
 #include <spawn.h>
@@ -11,7 +11,7 @@
 
 namespace {
 
-/// Runs the program without output; false where it does not end with `expected`.
+/// Runs the program without output; returns false if its exit code is not `expected`.
 bool ends_with(std::vector<std::string> arguments, int expected) {
   std::string program = HEATSOAK_PROGRAM;
   std::vector<char*> argv{program.data()};
@@ -41,7 +41,7 @@ void process(benchmark::State& state, const std::vector<std::string>& arguments,
 
 const std::string kPicture =
     (std::filesystem::temp_directory_path() / ("heatsoak_benchmark_" + std::to_string(getpid()) + ".svg")).string();
-// The motor is too hot, which the exit code 1 says.
+// This motor exceeds its limit, so the exit code is 1.
 const std::vector<std::string> kEvaluate{
     "evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--motors", "maxon_ecx_flat_32l_48v", "--samples", "0"};
 

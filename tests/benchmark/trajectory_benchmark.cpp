@@ -1,6 +1,6 @@
-// The planner on random problems with full states, distributed as in Ruckig's own benchmark: there one axis takes 0.56 us
-// on such a machine, three synchronised ones 2.9 us. Each item is one plan. The worst case is the slowest problem of a
-// fixed set, each taken as its fastest run of several: an interrupt is no property of a problem.
+// The planner on random problems with full states, distributed as in Ruckig's own benchmark. Ruckig takes 0.56 us for one axis on such a
+// machine and 2.9 us for three synchronised ones. Each item is one plan. The worst case is the slowest problem of a fixed set. Each problem
+// counts with its fastest run of several, which removes interrupts.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -21,8 +21,8 @@ struct Problem {
   AxisLimits<Real> limits[3];
 };
 
-/// Normal positions, normal or vanishing velocities and accelerations, uniform limits beyond those of the target, which can be
-/// approached; starts may be outside of them.
+/// Draws normally distributed positions, and velocities and accelerations that are normally distributed or zero. Limits are uniform and
+/// larger than the target's state, so that it is reachable; starts may exceed them.
 template <typename Real>
 std::vector<Problem<Real>> random_problems(int count) {
   std::mt19937_64 random(42);
@@ -69,7 +69,7 @@ void run(benchmark::State& bench, const Plan& plan) {
   double empty_us = 1e9;
   constexpr int kRuns = 25;
   for (int k = 0; k < kRuns; ++k) {
-    plan(problems.back());  // the first of a round is no colder than the others
+    plan(problems.back());  // warm-up: the first plan of a round must find a warm cache
     for (std::size_t p = 0; p < problems.size(); ++p) {
       const auto before = Clock::now();
       const auto begin = Clock::now();
@@ -86,7 +86,7 @@ void run(benchmark::State& bench, const Plan& plan) {
   }
   const double mean_us = sum_us / static_cast<double>(fastest_us.size());
   const double worst_us = *std::max_element(fastest_us.begin(), fastest_us.end());
-  bench.counters["mean_us"] = mean_us;  // of the fastest runs, so that a busy machine tells the same as an idle one
+  bench.counters["mean_us"] = mean_us;  // mean of the fastest runs, so that load from other processes has no influence
   bench.counters["worst_us"] = worst_us;
   bench.counters["worst_per_mean"] = worst_us / mean_us;
 }
@@ -133,7 +133,7 @@ void trajectory_bang_bang(benchmark::State& bench) {
 }
 BENCHMARK(trajectory_bang_bang<double>)->Unit(benchmark::kMicrosecond);
 
-/// A robot's x, y and yaw with limits that are a circle in the plane.
+/// A robot's x, y and yaw; the limits are a circle in the plane.
 void trajectory_plane(benchmark::State& bench) {
   run<double>(bench, [](const Problem<double>& p) {
     AxisState<double> start[3] = {p.start[0], p.start[1], p.start[2]};
@@ -148,7 +148,7 @@ void trajectory_plane(benchmark::State& bench) {
 }
 BENCHMARK(trajectory_plane)->Unit(benchmark::kMicrosecond);
 
-/// The same while it runs, with a target elsewhere: the split has to yield.
+/// The robot is moving and the target is elsewhere, so the split between the axes must change.
 void trajectory_plane_turn(benchmark::State& bench) {
   run<double>(bench, [](const Problem<double>& p) {
     const AxisState<double> target[3] = {{p.target[0].position, 0, 0}, {p.target[1].position, 0, 0}, p.target[2]};

@@ -1,4 +1,4 @@
-// A calibrated file is calibrated once more: what the first runs told is known, and no more than that.
+// Repeated calibration of a calibrated file: the knowledge from the first runs is kept and not counted twice.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 class Again : public testing::Test {
  protected:
-  /// Runs of 20 minutes of a motor that is a few percent off its sheet.
+  /// Returns logs of 20 minutes for a motor that is a few per cent off its data sheet.
   std::vector<Recording> logs(int first) {
     LogMaking making;
     making.duration_s = 1200.0;
@@ -48,12 +48,12 @@ TEST_F(Again, CommonScaleIsNotLearnedByRepetition) {
   const Calibration second = calibrate(motor, logs(2), {}, {});
   motor = rewritten(motor, second);
   const Calibration third = calibrate(motor, logs(4), {}, {});
-  // No temperature tells the common scale of all heat.
+  // Temperatures alone do not determine the common scale of all heat.
   EXPECT_NEAR(half_width(second, "terminal_resistance"), half_width(first, "terminal_resistance"),
               0.1 * half_width(first, "terminal_resistance"));
   EXPECT_NEAR(half_width(third, "terminal_resistance"), half_width(first, "terminal_resistance"),
               0.1 * half_width(first, "terminal_resistance"));
-  // Time constants are told, by three times the runs better.
+  // Time constants are identifiable, and three times the runs narrow their intervals.
   EXPECT_LT(half_width(third, "thermal_time_constant_winding"), 0.9 * half_width(first, "thermal_time_constant_winding"));
   EXPECT_GT(half_width(third, "thermal_time_constant_winding"), 0.4 * half_width(first, "thermal_time_constant_winding"));
   for (const CalibratedParameter& each : third.parameters) {
@@ -63,7 +63,7 @@ TEST_F(Again, CommonScaleIsNotLearnedByRepetition) {
   }
 }
 
-/// By what they hold: a name may be another run's, and a run may have another name or clock.
+/// Runs are compared by content, because a run may have another name or clock, and names may repeat.
 TEST_F(Again, RunsThatTheFileKnowsAreRefused) {
   const std::vector<Recording> known = logs(0);
   Motor motor = rewritten(motor_, calibrate(motor_, known, {}, {}));
@@ -86,7 +86,7 @@ TEST_F(Again, RunsThatTheFileKnowsAreRefused) {
   EXPECT_TRUE(is_refused(read_log(write_log(later, file("later.csv")))));
   const std::vector<Recording> others = logs(2);
   EXPECT_FALSE(is_refused(read_log(write_log(others[0], file("run_0.csv")))));
-  // What it knew before it was fitted once more, it still knows; of files that kept names alone the names count.
+  // Runs of earlier fits are still known after another fit. Files that list only names are compared by name.
   motor = rewritten(motor, calibrate(motor, others, {}, {}));
   EXPECT_TRUE(is_refused(known[1]));
   motor.fit->runs = {"run_1"};

@@ -1,4 +1,4 @@
-// Clocks that are off, scales that only the end of a run gives away, and samples that are wild or only look so.
+// Clock errors, unit scales that show only at the end of a run, and samples that are outliers or only look like outliers.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// A sensor of 1 K in a calm room, between two of its steps now and then.
+/// A sensor with a resolution of 1 K in a calm room occasionally changes by one or two steps.
 TEST(Screening, CoarseSensorAtRestKeepsItsNeighbouringSteps) {
   for (const double step_K : {1.0, -1.0}) {
     for (const int steps : {1, 2}) {
@@ -68,7 +68,7 @@ TEST(ClockOffsets, TemperatureAfterItsHeatIsSaidByTheAdmission) {
   }
 }
 
-/// Without another temperature the heat that the winding gives away passes for an offset.
+/// Without a second temperature, the heat that leaves the winding is confounded with an offset.
 TEST(ClockOffsets, WindingAloneIsNotJudged) {
   ClockOffset offset{.temperature = "winding_C",
                      .heat_input = "current_A",
@@ -87,7 +87,7 @@ TEST(ClockOffsets, WindingAloneIsNotJudged) {
   EXPECT_EQ(early_answer(offset, 1.0), "") << "less than a sample tells";
 }
 
-/// A motor that turns for minutes without load: the iron heats the winding, which is never the hottest and follows no current.
+/// The motor turns for minutes without load. The iron heats the winding, which is never the hottest node and does not follow the current.
 TEST(ClockOffsets, WindingThatFollowsTheIronIsNotJudged) {
   std::string text = "time_s,winding_C,stator_C,ambient_C,current_A\n";
   double winding_C = 22.0;
@@ -107,7 +107,7 @@ TEST(ClockOffsets, WindingThatFollowsTheIronIsNotJudged) {
   EXPECT_TRUE(std::ranges::any_of(read_text(unsteady(0.0).csv()).quality.clock_offsets, &ClockOffset::explains_flow));
 }
 
-/// After heat of so long, seen from `from_s` on; motor and air each in its scale.
+/// Log of a cool-down from `from_s` on, after heating for `heated_s`. Motor temperatures may be in Fahrenheit; the air is in Celsius.
 std::string cooling(double heated_s, int from_s, bool is_fahrenheit) {
   SyntheticLog log;
   log.rows = from_s + 1800;

@@ -1,4 +1,4 @@
-// Short form of what heatsoak_calibration_table prints: do intervals hold the truth, and does unknown heat fool them?
+// Short form of heatsoak_calibration_table: do intervals hold the truth, also with unknown heat?
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +41,8 @@ TEST_P(Intervals, hold_the_truth_and_are_no_wider_than_they_must_be) {
       EXPECT_TRUE(mark.figure.is_identifiable) << name;
     }
     std::ranges::sort(errors);
-    // Of 20 intervals that hold with 95 %, fewer than 16 do once in 400 times; χ² with 20 degrees of freedom as rarely leaves these.
+    // If 20 intervals have 95 % coverage, fewer than 16 hold with a probability of 1/400. The bounds for χ² with 20 degrees of freedom are
+    // equally rare.
     EXPECT_GE(covered, 16) << name;
     EXPECT_GT(std::sqrt(squares / kCases), 0.6) << name;
     EXPECT_LT(std::sqrt(squares / kCases), 1.45) << name;
@@ -52,7 +53,8 @@ TEST_P(Intervals, hold_the_truth_and_are_no_wider_than_they_must_be) {
 INSTANTIATE_TEST_SUITE_P(Calibration, Intervals, testing::Values(0.0, 0.05),
                          [](const auto& param) { return param.param > 0.0 ? "with_rows_lost" : "of_whole_logs"; });
 
-/// Ten rows a second of a winding that settles within six: merged to means of more than a second their intervals of τ_w held in 5 of 12.
+/// Ten rows per second of a winding that settles within 6 s. If rows are averaged over more than one second, the intervals of τ_w hold the
+/// truth in only 5 of 12 cases.
 TEST(Calibration, FastLogsOfSmallMotorsAreTakenFinely) {
   constexpr std::size_t kCases = 12;
   Sheet small;
@@ -89,7 +91,7 @@ TEST(Calibration, UnknownHeatDoesNotFoolIt) {
   };
   constexpr int kAll = kCases * 6;
   EXPECT_GE(covered(true), kAll * 3 / 4);
-  // Least squares that takes the measured heat for all heat claims far narrower ones, and is wrong most of the time.
+  // Least squares without unknown heat reports far narrower intervals, and most of them miss the truth.
   EXPECT_LE(covered(false), kAll / 2);
 }
 

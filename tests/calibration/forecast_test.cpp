@@ -1,4 +1,5 @@
-// Forecasts: the fit to whole runs against what is known of it, the choice of a network, the band, and a motor file run along a log.
+// Forecasts: the fit to whole runs compared with its known properties, the choice of a network and the band. Also simulates a motor file
+// along a log.
 #include "calibration/forecast/forecast.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +21,7 @@ LogMaking long_enough() {
   return making;
 }
 
-/// Logs of one motor from files.
+/// Writes logs of one motor to files and reads them.
 std::vector<Recording> logs_of(const TwoNodeTruth& truth, const LogMaking& making, const Folder& folder, int first, int count) {
   std::vector<Recording> all;
   for (int run = first; run < first + count; ++run) {
@@ -35,7 +36,7 @@ std::vector<MeasuredRun> runs_of(const ForecastSetup& setup, const std::vector<R
   return forecast_runs(setup, logs, MeasuredRunOptions::kNotStated_C, notes);
 }
 
-/// Of white noise every sample counts; of x(k+1) = a·x(k) + noise the share (1 − a)/(1 + a) does.
+/// White noise has as many independent samples as samples. For x(k+1) = a·x(k) + noise the share is (1 − a)/(1 + a).
 TEST(IndependentSamples, AreThoseOfKnownProcesses) {
   constexpr int kSamples = 20'000;
   Random random(4, 1);
@@ -49,11 +50,11 @@ TEST(IndependentSamples, AreThoseOfKnownProcesses) {
     const double expected = kSamples * (1.0 - kept) / (1.0 + kept);
     EXPECT_NEAR(independent_samples(error_K) / expected, 1.0, 0.15) << kept;
   }
-  // An error that never changes is one sample.
+  // A constant error counts as one independent sample.
   EXPECT_LT(independent_samples(Eigen::VectorXd::Ones(kSamples)), 2.1);
 }
 
-/// Columns of θ, of the heat factor and of a free sensor lag against differences of the simulation.
+/// Columns of θ, of the heat factor and of a free sensor lag, compared with differences of the simulation.
 TEST(ForecastModel, SlopesAreDifferences) {
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = ", tolerance = \"5 %\""};
@@ -82,7 +83,7 @@ TEST(ForecastModel, SlopesAreDifferences) {
   }
 }
 
-/// A motor of two nodes needs no other network, and its forecasts are as good as the unknown heat lets them be.
+/// A motor with two nodes needs no extended network. Only the unknown heat limits its forecasts.
 TEST(Forecast, KeepsANetworkThatIsRight) {
   const Folder folder;
   const Sheet sheet;
@@ -99,14 +100,14 @@ TEST(Forecast, KeepsANetworkThatIsRight) {
   for (const MeasuredRun& run : runs_of(setup, logs_of(truth, long_enough(), folder, 10, 2))) {
     const PredictedRun predicted = predict(model, found.fit.theta, found.fit.covariance, found.band, run);
     for (const PredictedSignal& each : predicted.signals) {
-      // 0.06 W of unknown heat at each node over 180 s move it by some tenths of a kelvin.
+      // 0.06 W of unknown heat at each node with a time constant of 180 s changes it by some tenths of a kelvin.
       EXPECT_LT(each.rmse_K, 0.6) << each.signal;
       EXPECT_GT(each.coverage_share, 0.6) << each.signal;
     }
   }
 }
 
-/// Logs of a motor whose contact conductance rises by 1 % per K, hot enough to show it.
+/// Logs of a motor whose contact conductance rises by 1 % per K, hot enough to make it visible.
 std::vector<Recording> logs_of_better_contact(TwoNodeTruth truth, const Folder& folder, int first, int count) {
   truth.contact_change_per_K = 0.01;
   LogMaking making = long_enough();
@@ -115,7 +116,8 @@ std::vector<Recording> logs_of_better_contact(TwoNodeTruth truth, const Folder& 
   return logs_of(truth, making, folder, first, count);
 }
 
-/// A contact that gets better by 1 % per K, by a law that no candidate has: left-out runs ask for one that bends alike.
+/// The contact conductance rises by 1 % per K, by a law that no candidate has. The hold-out runs require a candidate with a similar
+/// curvature.
 TEST(Forecast, ExtendsANetworkThatIsWrong) {
   const Folder folder;
   const Sheet sheet;
@@ -138,7 +140,7 @@ TEST(Forecast, ExtendsANetworkThatIsWrong) {
   }
 }
 
-/// Without ten-fold data for one run, the priors of the data sheet count: a single steady state cannot tell two resistances apart.
+/// With only one run the priors of the data sheet matter: a single steady state cannot separate two resistances.
 TEST(ForecastFit, TemperedLikelihoodLeavesThePriorItsSay) {
   const Folder folder;
   const Sheet sheet;
@@ -149,13 +151,13 @@ TEST(ForecastFit, TemperedLikelihoodLeavesThePriorItsSay) {
   const ForecastFit fit = fit_forecast(model, runs, {}, model.start(), {});
   EXPECT_GT(fit.weight, 0.0);
   EXPECT_LT(fit.weight, 0.5) << "errors of slow unknown heat are correlated";
-  // The covariance is wider by the same share.
+  // The covariance must be wider by the same factor.
   ForecastRules all_count{.held_error_K = fit.error_K, .held_weight = 1.0};
   const ForecastFit sure = fit_forecast(model, runs, {}, fit.theta, all_count);
   EXPECT_GT(fit.covariance(0, 0), 1.5 * sure.covariance(0, 0));
 }
 
-/// A log of torque and speed has the heat of one with the current that the torque takes.
+/// A torque and speed log must give the same heat as a log with the current for that torque.
 TEST(Prediction, TakesATorqueForACurrent) {
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
@@ -179,7 +181,7 @@ TEST(Prediction, TakesATorqueForACurrent) {
   }
 }
 
-/// With nothing but a power, all of it heat: the temperature at rest is what P·R says.
+/// If the input is a constant power that is all heat, the steady state is P·R.
 TEST(Prediction, OfAConstantPowerEndsWhereTheResistancesSay) {
   const Folder folder;
   const Sheet sheet;
@@ -194,7 +196,7 @@ TEST(Prediction, OfAConstantPowerEndsWhereTheResistancesSay) {
   EXPECT_NEAR(run.signals[0].predicted_C.back(), stator_C + kPower_W * sheet.truth.winding_stator_K_per_W, 0.1);
 }
 
-/// The band of a data sheet holds what the tolerances of its figures allow; it is wide, and wider the less is known.
+/// The band of a data sheet covers the tolerances of its parameters. It must grow with them.
 TEST(Prediction, BandWidensWithTheToleranceOfTheFile) {
   const Folder folder;
   const std::vector<Recording> logs = logs_of({}, long_enough(), folder, 0, 1);
@@ -229,14 +231,14 @@ TEST(Prediction, OfAWrittenFileIsThatOfTheCalibration) {
     EXPECT_NEAR(of_file.signals[s].high_C[last] - of_file.signals[s].low_C[last],
                 at_once.signals[s].high_C[last] - at_once.signals[s].low_C[last], 0.05);
   }
-  // The same as the library's own, before anything was written.
+  // The written file must give the same result as the library.
   const ForecastModel model = found.forecast->model();
   const MeasuredRun run = runs_of(found.forecast->setup, others).front();
   const PredictedRun direct = predict(model, found.forecast->fit.theta, found.forecast->fit.covariance, found.forecast->band, run);
   EXPECT_NEAR(direct.signals.front().rmse_K, of_file.signals.front().rmse_K, 0.05);
 }
 
-/// What forecasts of runs are off beside the parameters is part of what a duty may do: all heat has the factor of the band.
+/// Forecast errors beyond the parameter uncertainty also widen the result of a duty: the heat gets the band's factor.
 TEST(ForecastBand, WidensTheDrawsOfACalibratedMotor) {
   const Folder folder;
   const Sheet sheet;

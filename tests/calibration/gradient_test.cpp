@@ -1,5 +1,5 @@
-// Slopes of the prediction by start temperatures and parameters, against differences of the same code and against the complex step
-// through equations and an integrator written here.
+// Derivatives of the prediction with respect to start temperatures and parameters. References are differences of the same code, and
+// complex-step derivatives of equations and an integrator in this file.
 #include <gtest/gtest.h>
 
 #include <complex>
@@ -12,11 +12,11 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// winding capacity, winding-stator, stator capacity, stator-ambient, then start of winding and stator.
+/// Parameters: winding capacity, winding-stator, stator capacity, stator-ambient, then the start temperatures of winding and stator.
 template <class S>
 using Unknowns = std::array<S, 6>;
 
-/// Sensors' values at the end of the run, by fourth-order Runge-Kutta steps of a 100th of an interval.
+/// Returns the sensors' values at the end of the run, by fourth-order Runge-Kutta steps of a hundredth of an interval.
 template <class S>
 std::array<S, 2> at_end(const Unknowns<S>& u, const TwoNodeTruth& truth, const MeasuredRun& run) {
   S w = u[4];
@@ -84,7 +84,7 @@ TEST_F(Gradient, AgreesWithTheComplexStepThroughOtherEquations) {
       const double expected = end[static_cast<std::size_t>(sensor)].imag() / kStep;
       const auto column = static_cast<Eigen::Index>(i);
       const double slope = i < 4 ? found.by_parameter(last + sensor, column) : found.by_start(last + sensor, column - 4);
-      // The tool's step through an interval has an error of its own.
+      // The tolerance covers the discretisation error of the tool's step.
       EXPECT_NEAR(slope, expected, 1e-4 * std::abs(expected) + 1e-9) << i << ' ' << sensor;
       EXPECT_NEAR(found.state_C(sensor, found.samples() - 1), end[static_cast<std::size_t>(sensor)].real(), 1e-3);
     }

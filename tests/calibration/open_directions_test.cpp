@@ -1,4 +1,4 @@
-// What runs leave open, in words; profile intervals; the file that a calibration writes.
+// Descriptions of directions that the runs leave undetermined, profile intervals, and the file that a calibration writes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ TEST(OpenDirections, WindingCapacityWhereOnlyTheStatorIsSensed) {
   EXPECT_TRUE(figure(result.calibration, "thermal_resistance_stator_ambient").is_identifiable);
 }
 
-/// The same log as of a motor of another resistance, with the voltage at its terminals.
+/// A log of a motor with another resistance, with the voltage at its terminals.
 TEST(OtherMotor, IsSuspectedFromTheVoltageAtItsTerminals) {
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = ", tolerance = \"5 %\""};
@@ -83,7 +83,7 @@ TEST(OtherMotor, IsSuspectedFromTheVoltageAtItsTerminals) {
   }
 }
 
-/// A log of its own: the motor turns whenever current flows, which heats its stator by `drag_W`.
+/// Log of a motor that turns whenever current flows, which heats its stator by `drag_W`.
 Recording log_of(const TwoNodeTruth& truth, double hot_C, double duration_s, double drag_W,
                  const std::function<double(double time_s)>& current_A) {
   LogMaking making;
@@ -125,7 +125,7 @@ void add_speed(Recording& log, double speed_rad_per_s) {
   log.channels.push_back({*quantity_named("speed_rad_per_s"), std::vector<double>(log.rows(), speed_rad_per_s)});
 }
 
-TEST(OpenDirections, CoolingTellsTimeConstantsAndNeverWatts) {
+TEST(OpenDirections, CoolingDeterminesTimeConstantsButNoHeat) {
   const Folder folder;
   TwoNodeTruth truth;
   truth.stator_J_per_K *= 1.1;
@@ -140,7 +140,7 @@ TEST(OpenDirections, CoolingTellsTimeConstantsAndNeverWatts) {
   EXPECT_NEAR(stator.value, truth.stator_J_per_K * truth.stator_ambient_K_per_W, 0.03 * stator.value);
 }
 
-TEST(OpenDirections, NoFigureInWattsComesFromCoolingHoweverWellTheTimeConstantsAreTold) {
+TEST(OpenDirections, CoolingGivesNoHeatHoweverWellItDeterminesTimeConstants) {
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = ", tolerance = \"10 %\"", .no_load_current_A = 0.2};
   Recording log = cool_down({}, 40.0, 900.0);
@@ -156,8 +156,8 @@ TEST(OpenDirections, NoFigureInWattsComesFromCoolingHoweverWellTheTimeConstantsA
   EXPECT_THAT(result.open, Contains(Field(&OpenDirection::what, HasSubstr("no_load_current"))));
 }
 
-TEST(OpenDirections, FigureThatIsNotToldHasAReasonAndAnExperiment) {
-  // One minute of warming up.
+TEST(OpenDirections, UnidentifiableParameterHasAReasonAndAnExperiment) {
+  // One minute of heating.
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = {}, .thermal_spread = ", tolerance = \"60 %\"", .no_load_current_A = 0.2};
   Recording log = log_of({}, 0.0, 60.0, 0.0, [](double) { return 4.0; });
@@ -171,7 +171,7 @@ TEST(OpenDirections, FigureThatIsNotToldHasAReasonAndAnExperiment) {
   EXPECT_THAT(result.next_experiment, Not(IsEmpty()));
 }
 
-/// Half an hour of two currents with rests; `drag_W` while current flows.
+/// Half an hour with two currents and rests; `drag_W` heats the stator while current flows.
 Recording two_currents(double drag_W) {
   return log_of({}, 0.0, 2400.0, drag_W, [](double time_s) {
     const double within_s = std::fmod(time_s, 1200.0);
@@ -179,10 +179,10 @@ Recording two_currents(double drag_W) {
   });
 }
 
-/// The motor turns at three quarters of its no-load speed, or stands still.
+/// Speed of the motor: three quarters of its no-load speed, or standstill.
 class UnloggedSpeed : public testing::TestWithParam<double> {};
 
-TEST_P(UnloggedSpeed, WidensTheStatorsFiguresUntilTheyHoldTheTruth) {
+TEST_P(UnloggedSpeed, WidensTheStatorsIntervalsUntilTheyHoldTheTruth) {
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
   const double most_W = sheet.no_load_current_A * 24.0;
@@ -204,15 +204,15 @@ TEST_P(UnloggedSpeed, WidensTheStatorsFiguresUntilTheyHoldTheTruth) {
   if (GetParam() == 0.0) {
     const Calibration stood_still = calibrated(still);
     EXPECT_THAT(stood_still.next_experiment, Not(HasSubstr("speed logged")));
-    const CalibratedParameter& told = figure(stood_still, "thermal_resistance_stator_ambient");
+    const CalibratedParameter& narrowed = figure(stood_still, "thermal_resistance_stator_ambient");
     const CalibratedParameter& open = figure(unlogged, "thermal_resistance_stator_ambient");
-    EXPECT_LT(told.high / told.low, open.high / open.low);
+    EXPECT_LT(narrowed.high / narrowed.low, open.high / open.low);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(StillAndTurning, UnloggedSpeed, testing::Values(0.0, 0.75));
 
-/// On average over the log that is held out its loss at speed is what is expected where no log tells.
+/// The hold-out log's mean loss at speed equals the value that is assumed for logs without speed.
 TEST(HeldOutLog, MayLackTheSpeedThatTheFittedOnesHave) {
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
@@ -238,7 +238,7 @@ TEST(HeldOutLog, MayLackTheSpeedThatTheFittedOnesHave) {
   EXPECT_GT(stator_K(calibrated(silent, still)), 0.0);
 }
 
-/// At 529 rad/s the drag of 0.2 A is 3.6 W.
+/// At 529 rad/s the drag current of 0.2 A causes 3.6 W.
 TEST(InputPower, LeavesTheNoLoadLossAtTheStator) {
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
@@ -290,7 +290,7 @@ TEST(GuessedResistance, IsNoScaleToRelyOn) {
 }
 
 TEST(OpenDirections, WhereNothingIsLearnedTheAnswerIsThatAndTheExperiment) {
-  // Two noisy minutes against a sheet that is good to 1 %.
+  // Two noisy minutes and a data sheet with an uncertainty of 1 %.
   Case one = short_case();
   one.runs = 1;
   one.making.duration_s = 120.0;
@@ -339,7 +339,7 @@ TEST(CalibratedMotor, IsReadBackAsItWasWritten) {
   for (const auto& [key, each] : written.parameters) {
     EXPECT_NEAR(read.parameters.at(key).value, each.value, 1e-5 * std::abs(each.value)) << key;
   }
-  // What hangs together in the fit does so in what is drawn from the file.
+  // Samples drawn from the file must have the correlations of the fit.
   Random random(3, 0);
   double product = 0.0;
   double squares_a = 0.0;

@@ -1,5 +1,5 @@
-// Recordings of others, fitted from rough starts; bounds are what physics and a plain look at the recordings allow. Skipped where the
-// recordings are not at hand.
+// Fits of third-party recordings from rough initial values. The bounds follow from physics and from the raw recordings. Skipped if the
+// recordings are not available.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ class Recordings : public testing::Test {
   static const ErrorBeforeAfter& error(const std::vector<ErrorBeforeAfter>& errors, std::string_view signal) {
     return *std::ranges::find(errors, signal, &ErrorBeforeAfter::signal);
   }
-  /// Mean over the signals of squares, as a root.
+  /// Root of the mean square over the signals.
   static double total_K(const std::vector<ErrorBeforeAfter>& errors, SignalError ErrorBeforeAfter::*when) {
     double squares = 0.0;
     for (const ErrorBeforeAfter& each : errors) {
@@ -56,22 +56,22 @@ TEST_F(Recordings, DroneMotorNearStandstill) {
   const Calibration found =
       calibrate(read_motor(kReports / "diagnosis/uav_motor.toml"), read("tasrv_uav_motor", {"run1.csv", "run3.csv", "run5.csv"}, map),
                 read("tasrv_uav_motor", {"run2.csv"}, map), {});
-  // 600 W raise the winding by 1.1 K/s over the first half minute of run 5, before much of it flows on: some 520 J/K.
+  // 600 W raise the winding by 1.1 K/s in the first half minute of run 5, before much heat reaches the stator: about 520 J/K.
   const CalibratedParameter& winding = figure(found, "winding_heat_capacity");
   EXPECT_TRUE(winding.is_identifiable);
   EXPECT_GT(winding.value, 350.0);
   EXPECT_LT(winding.value, 650.0);
-  // The stator rises by 0.55 K/s at the end of run 3, with some 60 K below the winding.
+  // The stator rises by 0.55 K/s at the end of run 3 and is about 60 K below the winding.
   EXPECT_GT(figure(found, "thermal_resistance_winding_stator").value, 0.08);
   EXPECT_LT(figure(found, "thermal_resistance_winding_stator").value, 0.35);
   EXPECT_LT(total_K(found.fit_error, &ErrorBeforeAfter::after), 0.5 * total_K(found.fit_error, &ErrorBeforeAfter::before));
   EXPECT_LT(total_K(found.holdout_error, &ErrorBeforeAfter::after), total_K(found.holdout_error, &ErrorBeforeAfter::before));
-  // Runs of minutes, none of which cools down: what leaves the stator hardly counts.
+  // The runs take minutes and contain no cool-down, so the heat that leaves the stator is not identifiable.
   EXPECT_FALSE(figure(found, "thermal_resistance_stator_ambient").is_identifiable);
   EXPECT_THAT(found.notes, Contains(HasSubstr("the share of the stated power that becomes heat is held")));
 }
 
-/// The network that predicts left-out runs best also predicts the run that nothing of it has seen.
+/// The network that predicts the left-out runs best must also predict a run that was not used for its choice.
 TEST_F(Recordings, DroneMotorIsForecastTo2K) {
   const fs::path map = kMappings / "tasrv_uav_motor.map.toml";
   const Calibration found =
@@ -94,12 +94,12 @@ TEST_F(Recordings, StallStaircase) {
   options.ambient_C = 22.0;
   const Calibration found =
       calibrate(read_motor(kReports / "calibration/ri50.toml"), read("umich_ri50", {"stall_staircase.csv"}, map), {}, options);
-  // 8 A through 0.52 ohm raise the winding by 5.3 K/s: 6.3 J/K, and no more than 8 or so with what flows on meanwhile.
+  // 8 A through 0.52 ohm raise the winding by 5.3 K/s: 6.3 J/K, or at most about 8 J/K including the heat that reaches the stator.
   const CalibratedParameter& winding = figure(found, "winding_heat_capacity");
   EXPECT_LT(winding.low, 6.6);
   EXPECT_GT(winding.high, 6.0);
   EXPECT_LT(error(found.fit_error, "winding_C").after.rmse_K, 0.25 * error(found.fit_error, "winding_C").before.rmse_K);
-  // 72 s tell nothing of the way from the housing to the air, and the loss at speed is not in a locked rotor.
+  // A run of 72 s does not determine the path from housing to air, and a locked rotor has no loss at speed.
   EXPECT_FALSE(figure(found, "thermal_resistance_stator_ambient").is_identifiable);
   EXPECT_FALSE(figure(found, "no_load_current").is_identifiable);
   EXPECT_THAT(found.open, Contains(Field(&OpenDirection::why, HasSubstr("common factor on all heat"))));
@@ -119,7 +119,7 @@ TEST_F(Recordings, CoolDowns) {
        {"thermal_resistance_winding_stator", "thermal_resistance_stator_ambient", "winding_heat_capacity", "stator_heat_capacity"}) {
     EXPECT_FALSE(figure(found, watts).is_identifiable) << watts;
   }
-  // From 44.1 °C, 170 s after the stop, to 38.1 °C, 520 s after it, in air of 24.5 °C: 990 s would be the slowest decay alone.
+  // From 44.1 °C, 170 s after the stop, to 38.1 °C, 520 s after it, in air of 24.5 °C: 990 s if only the slowest decay remained.
   const CalibratedParameter& stator = figure(found, "thermal_time_constant_stator");
   EXPECT_TRUE(stator.is_identifiable);
   EXPECT_LT(stator.low, 990.0);
@@ -133,10 +133,10 @@ TEST_F(Recordings, TractionMotorHourByHour) {
                                       read("paderborn_pmsm", {"profile24_2.5s.csv"}, folder / "paderborn_second_hour.map.toml"), {});
   EXPECT_LT(total_K(found.fit_error, &ErrorBeforeAfter::after), 2.0);
   EXPECT_LT(total_K(found.holdout_error, &ErrorBeforeAfter::after), total_K(found.holdout_error, &ErrorBeforeAfter::before));
-  // 3 to 8 kg of copper.
+  // The limits correspond to 3 to 8 kg of copper.
   EXPECT_GT(figure(found, "winding_heat_capacity").value, 1000.0);
   EXPECT_LT(figure(found, "winding_heat_capacity").value, 3500.0);
-  // Iron loss is not in the model: that something is missing must be seen.
+  // The model lacks iron loss. The result must show that an effect is missing.
   EXPECT_GT(found.fit.drift_K.size() + found.notes.size(), 1U);
 }
 

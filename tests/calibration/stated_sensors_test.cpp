@@ -1,4 +1,4 @@
-// A sensor with a fault that the motor's file states: the fit then finds the motor, and without it something else.
+// The motor's file states a sensor fault. With this statement the fit must find the true parameters, and without it other values.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 constexpr double kLag_s = 25.0;
 constexpr double kOffset_K = 4.0;
 
-/// A probe in glue and a converter that is off, as ten small steps per row have it.
+/// Adds a probe in glue (lag) and a converter offset, in ten small steps per row.
 void spoil(Recording& log) {
   for (Channel& channel : log.channels) {
     if (channel.quantity.key != "stator_C") {
@@ -107,7 +107,7 @@ TEST_F(StatedSensors, OfWhichNoLogSpeaksAreSaidToCountForNothing) {
   EXPECT_EQ(after.fit.theta, before.fit.theta);
 }
 
-/// Slopes of what is shown, by start temperatures and parameters, against differences of what is shown.
+/// Derivatives of displayed temperatures with respect to start temperatures and parameters, compared with differences.
 TEST_F(StatedSensors, SlopesAreThoseOfWhatIsShown) {
   motor_.sensors = stated();
   MeasuredRunOptions how = how_to_read(motor_, HeatInput::current);
@@ -148,7 +148,7 @@ TEST_F(StatedSensors, SlopesAreThoseOfWhatIsShown) {
     down[static_cast<std::size_t>(node)] -= 1e-3;
     expect_slopes(here.by_start, node, at(model.values, up), at(model.values, down), 2e-3);
   }
-  // Begins where the sensor's first sample says that the stator is, and shows what the sensor does.
+  // The simulation starts at the stator temperature that the sensor's first sample implies, and displays the faulty sensor's value.
   EXPECT_NEAR(start_of(model.network, run).state_C[1], run.measured_C(0, stator) - kOffset_K, 1e-12);
   const Eigen::MatrixXd off_K = run.measured_C - open_loop_C(model.network, model.values, run);
   for (const double each_K : off_K.col(stator)) {
@@ -156,7 +156,7 @@ TEST_F(StatedSensors, SlopesAreThoseOfWhatIsShown) {
   }
 }
 
-// A lag looks like a clock that is off: nobody needs to be told of what the file states.
+// A lag looks like a clock offset. A fault that the file states needs no note.
 TEST_F(StatedSensors, LateAnswerThatIsStatedIsNoNews) {
   const SyntheticLog late{.delay_s = 6.0};
   const auto file = folder_.path() / "late.csv";

@@ -117,7 +117,7 @@ struct Prepared {
   std::vector<Recording> logs;
 };
 
-/// Files are read one after the other: the parser of units knows no threads.
+/// Reads files one after the other, because the parser of units is not thread-safe.
 Prepared prepare(const Sheet& sheet, const Case& one) {
   static std::mutex reading;
   const std::lock_guard lock(reading);

@@ -1,5 +1,5 @@
-// Motors of which everything is known, their logs as files, and what a calibration makes of them. The truth has its own equations
-// and its own integrator (runs_for_tests.h); it shares nothing with the analyser.
+// Synthetic motors with known parameters, their logs as files, and calibrations of them. The truth has its own equations and its own
+// integrator (runs_for_tests.h) and shares no code with the analyser.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace heatsoak::study {
 
-/// A folder that is gone with it.
+/// Temporary folder, deleted by the destructor.
 class Folder {
  public:
   Folder();
@@ -24,20 +24,20 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// What a sheet says of the motor; the truth of a case is drawn around it.
+/// Data sheet of a motor. The true parameters of a case are drawn around it.
 struct Sheet {
   TwoNodeTruth truth;
-  std::string resistance_spread;  ///< ", tolerance = \"5 %\"": then the resistance is fitted too
+  std::string resistance_spread;  ///< for example ", tolerance = \"5 %\"", which makes the resistance a free parameter
   std::string resistance_origin = "datasheet";
   std::string thermal_spread = ", tolerance = \"25 %\"";
-  double no_load_current_A = 0.0;  ///< the truth has no loss at speed, and most logs have no speed
+  double no_load_current_A = 0.0;  ///< the true motor has no loss at speed, and most logs have no speed
   [[nodiscard]] Motor motor(const Folder& folder) const;
 };
 
-/// The four thermal figures of the sheet off by what their prior says.
+/// Draws the true values of the data sheet's four thermal parameters from their prior.
 TwoNodeTruth drawn_truth(const Sheet& sheet, const Motor& motor, std::uint64_t seed);
 
-/// The log as a CSV file, as a logger would have written it.
+/// Writes the log as a CSV file in a logger's format.
 std::filesystem::path write_log(const Recording& log, const std::filesystem::path& file);
 Recording read_log(const std::filesystem::path& file);
 
@@ -49,7 +49,7 @@ struct Case {
   bool with_flux = true;
 };
 
-/// One figure of one case.
+/// Result for one parameter of one case.
 struct Mark {
   std::string name;
   double truth = 0.0;

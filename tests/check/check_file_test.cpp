@@ -1,4 +1,4 @@
-// Check files: what they mean, everything that is wrong with one at once, and limits that are rewritten in place.
+// Check files: their meaning, the report of all mistakes in one pass, and limits that are rewritten in place.
 #include "check/check_file.h"
 
 #include <fmt/format.h>
@@ -40,7 +40,7 @@ class CheckFiles : public testing::Test {
     }
     return "nothing was wrong";
   }
-  /// Of the only check.
+  /// Returns the outcomes of the only check in the text.
   [[nodiscard]] std::vector<Outcome> outcomes(const std::string& text) {
     file_ = read(text);
     return run_checks(file_, 1);
@@ -78,7 +78,7 @@ TEST_F(CheckFiles, ReportEveryProblemAtItsPlace) {
   }
 }
 
-// What no machine of this world can have is a slip of the pen, and no limit.
+// A limit that no machine can reach is a typing mistake and is refused.
 TEST_F(CheckFiles, SenselessLimitsAreRefusedAtTheirPlace) {
   const std::string said = message_of(kHead +
                                       "[check.limits]\n"                               // 6
@@ -108,7 +108,7 @@ TEST_F(CheckFiles, SenselessLimitsAreRefusedAtTheirPlace) {
   }
 }
 
-// The percentile itself is under its true value in every other file; its bound is in 2.5 % of them.
+// A percentile estimate is below the true value in half of all files. Its 97.5 % bound is below it in 2.5 % of them.
 TEST_F(CheckFiles, APercentileIsComparedByItsBound) {
   const auto found = [&](int samples) {
     return outcomes(kHead + fmt::format("samples = \"{}\"\n[check.limits]\nwinding_peak_p95 = \"at most 120 degC\"\n", samples)).front();
@@ -190,7 +190,7 @@ TEST_F(CheckFiles, FewSamplesCannotKeepATightProbability) {
   EXPECT_FALSE(with(64, "at most 4 %").passed);
 }
 
-// Samples of one game share its load, so games count.
+// All samples of one game share its load, so the number of games counts.
 TEST_F(CheckFiles, ProbabilityOnAMatchCountsGames) {
   const auto with = [&](const std::string& limit) {
     return outcomes(
@@ -205,7 +205,7 @@ TEST_F(CheckFiles, ProbabilityOnAMatchCountsGames) {
   EXPECT_THAT(with("at most 0.1 %").measured.detail, HasSubstr("23960 samples or more"));
 }
 
-// The guard reckons with the hottest air that it is made for, whatever air the match has.
+// The guard assumes the hottest air that it is made for, whatever air the match has.
 TEST_F(CheckFiles, GuardMadeForHotAirEngages) {
   const std::vector<Outcome> found = outcomes(
       "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"division_a_match\"\nmotor = "
@@ -282,7 +282,7 @@ TEST_F(CheckFiles, ResultsDoNotDependOnThreads) {
   }
 }
 
-// Comments, blanks, quotes, line ends and what cannot be evaluated stay.
+// Comments, spaces, quotes, line ends and limits that cannot be evaluated stay unchanged.
 TEST_F(CheckFiles, NewLimitsChangeNothingElse) {
   std::string text = "# été\r\n" + kHead +
                      "samples = \"80\"\r\n[check.limits] # limits\r\n"
@@ -302,7 +302,7 @@ TEST_F(CheckFiles, NewLimitsChangeNothingElse) {
   }
   EXPECT_EQ(after, expected);
   EXPECT_NE(after, text);
-  // Once more: the same file, and all of its limits hold.
+  // A second run writes the same file, and all its limits hold.
   std::vector<Outcome> again = outcomes(after);
   EXPECT_TRUE(again[0].passed);
   EXPECT_TRUE(again[1].passed);

@@ -1,4 +1,4 @@
-// What people, CI services and GitHub get to read.
+// Text output of checks for people, CI services and GitHub.
 #include "check/check_text.h"
 
 #include <expat.h>
@@ -21,7 +21,7 @@ struct Element {
   std::string text;
 };
 
-/// Every element in document order; throws where the text is not well-formed XML.
+/// Returns all elements in document order; throws if the text is not well-formed XML.
 std::vector<Element> parsed(const std::string& xml) {
   std::vector<Element> elements;
   XML_Parser parser = XML_ParserCreate(nullptr);
@@ -45,7 +45,7 @@ std::vector<Element> parsed(const std::string& xml) {
   return elements;
 }
 
-/// Two checks: one limit that holds and one that does not, and one that nothing is known of. Names are as nasty as a user's may be.
+/// Two checks with three limits: one met, one exceeded, one not evaluated. The names contain difficult characters.
 class Outcomes : public testing::Test {
  protected:
   Outcomes() {
@@ -110,7 +110,7 @@ TEST_F(Outcomes, AreAMarkdownTable) {
   int rows = 0;
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with('|')) {
-      // Bars inside of a cell are escaped.
+      // Bars inside a table cell must be escaped.
       std::size_t bars = 0;
       for (std::size_t i = 0; i < line.size(); ++i) {
         bars += line[i] == '|' && (i == 0 || line[i - 1] != '\\') ? 1 : 0;

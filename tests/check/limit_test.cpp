@@ -1,4 +1,4 @@
-// Limits as text, and how --update sets them.
+// Limits as text, and the values that --update writes.
 #include "check/limit.h"
 
 #include <gmock/gmock.h>
@@ -49,7 +49,7 @@ TEST(Limit, BothSidesOfAValue) {
 }
 
 TEST(UpdatedLimit, GivesATemperatureASharesOfItsRise) {
-  // 25 °C of air and a rise of 100 K: 5 K of room.
+  // Air of 25 °C and a rise of 100 K: the new limit has a margin of 5 K.
   EXPECT_EQ(updated_limit({125.0, 25.0}, threshold("winding_peak_p95"), "degC", 0.05), "at most 130 degC");
   EXPECT_EQ(updated_limit({125.0, 25.0}, threshold("winding_peak_p95"), "degF", 0.05), "at most 266 degF");
   EXPECT_EQ(updated_limit({4.0, 0.0}, threshold("current_margin"), "A", 0.1), "at least 3.6 A");
@@ -59,7 +59,7 @@ TEST(UpdatedLimit, GivesATemperatureASharesOfItsRise) {
   EXPECT_EQ(updated_limit({1.0, 0.0}, threshold("probability_over_limit"), "%", 0.05), "at most 100 %");
 }
 
-// Whatever is measured, the new limit is one and is kept.
+// For every measured value the new limit must be valid and met.
 TEST(UpdatedLimit, IsKeptByTheValueItWasMadeFrom) {
   for (const ThresholdType& type : all_thresholds()) {
     const std::string_view unit = type.is_share ? "%" : type.unit;

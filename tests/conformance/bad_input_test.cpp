@@ -1,7 +1,7 @@
-// One wrong file is one test: tests/data/bad_<kind>s/bad_<kind>_*.toml. Its first lines say what is expected,
+// One faulty file is one test: tests/data/bad_<kind>s/bad_<kind>_*.toml. Its first lines state the expected messages,
 //   # expect: 7:23: error: figures.torque_constant.value: 'N m' is a unit of something else
 //   # expect: bad_csv_short_row.csv:3:1: error: has 2 cells
-// place and beginning of the message; a file that cannot hold a comment has them in <file>.expect.
+// with the place and the beginning of each message. Files that cannot hold a comment have these lines in <file>.expect.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,13 +28,13 @@ using testing::UnorderedElementsAre;
 
 const fs::path kData = kSource / "tests" / "data";
 
-/// The folder of a file's kind.
+/// Returns the data folder for the file's kind.
 fs::path folder_of(const std::string& file) {
   return kData / (file.starts_with("bad_motor_") ? "bad_motors" : file.starts_with("bad_robot_") ? "bad_robots" : "bad_duties");
 }
 fs::path path_of(const std::string& file) { return folder_of(file) / file; }
 
-/// Whole lines of stderr that are expected to begin so.
+/// Returns the expected beginnings of complete lines of stderr.
 std::vector<std::string> expectations(const std::string& file) {
   const fs::path aside = path_of(file + ".expect");
   std::istringstream lines(content_of(fs::exists(aside) ? aside : path_of(file)));
@@ -45,7 +45,7 @@ std::vector<std::string> expectations(const std::string& file) {
     const bool names_a_file = rest.starts_with("bad_");
     result.push_back(names_a_file ? path_of(rest).string() : path_of(file).string() + (rest.starts_with("error") ? ": " : ":") + rest);
   }
-  // A path inside a message is written relative to the data folder.
+  // Paths inside a message are relative to the data folder.
   for (std::string& line : result) {
     if (const std::size_t at = line.find(": ./"); at != std::string::npos) {
       line.replace(at + 2, 1, folder_of(file).string());
@@ -63,7 +63,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// As stderr has it.
+/// Formats a diagnostic like a line of stderr.
 std::string line_of(const json& diagnostic) {
   return to_string(
       Diagnostic{{diagnostic.at("file"), diagnostic.at("line"), diagnostic.at("column")}, diagnostic.at("key"), diagnostic.at("message")});
@@ -91,7 +91,7 @@ void expect_lines(const std::vector<std::string>& expected, const std::vector<st
   }
 }
 
-/// The file in its role beside good ones.
+/// Returns arguments that combine the faulty file with valid ones.
 std::vector<std::string> roles(const std::string& verb, const std::string& file) {
   std::string motor = "maxon_ec45_flat_70w_24v";
   std::string robot = "roboteam_twente_v2024";
@@ -115,12 +115,12 @@ TEST_P(BadFile, is_refused_by_lint_in_the_same_words) {
   const ProgramRun result = run({"lint", path_of(GetParam()).string(), "--json", "-"});
   EXPECT_EQ(result.exit_code, 2);
   expect_error_object(result.json());
-  if (GetParam() != "bad_robot_empty.toml" && GetParam() != "bad_duty_empty.toml") {  // these do not say what they are
+  if (GetParam() != "bad_robot_empty.toml" && GetParam() != "bad_duty_empty.toml") {  // an empty file does not state its kind
     expect_lines(expectations(GetParam()), lines_of(result.err));
   }
 }
 
-TEST_P(BadFile, is_told_as_json) {
+TEST_P(BadFile, is_reported_as_json) {
   std::vector<std::string> words = roles("evaluate", GetParam());
   words.insert(words.end(), {"--json", "-"});
   const ProgramRun result = run(words);
@@ -155,7 +155,7 @@ std::vector<std::string> bad_files() {
 INSTANTIATE_TEST_SUITE_P(tests_data, BadFile, testing::ValuesIn(bad_files()),
                          [](const auto& instance) { return test_name(instance.param); });
 
-// Files that are made when the test runs: too large to store, or no files at all.
+// Files that are created at run time because they are too large to store or are no regular files.
 
 std::string good_motor() { return content_of(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml"); }
 
@@ -166,7 +166,7 @@ std::string recorded(const std::string& csv) {
          csv + "\"\n";
 }
 
-/// Ends quickly, within bounds, with a reason.
+/// Checks that the program ends quickly, within its memory limit, and reports the reason.
 void expect_refused(const ProgramRun& result, const std::string& reason) {
   EXPECT_EQ(result.exit_code, 2) << result.err.substr(0, 1000);
   EXPECT_THAT(result.err.substr(0, 1000), HasSubstr(reason));
@@ -234,7 +234,7 @@ TEST(HugeFile, csv_with_nothing_but_problems) {
   EXPECT_THAT(result.err, HasSubstr("more problems; the rest was not read"));
 }
 
-// A time stamp since 1970 in one row makes a duty of decades.
+// A Unix time stamp in one row would make a duty of decades.
 TEST(Endless, recording_of_decades) {
   const TemporaryFolder folder;
   write(folder.path() / "long.csv", "time_s,torque_Nm,speed_rad_per_s\n0,0.05,40\n1700000000,0,0\n");
@@ -263,7 +263,7 @@ TEST(HugeFile, recording_repeated_without_end) {
   expect_refused(run_duty(folder.path() / "duty.toml"), "recorded.repeats");
 }
 
-/// What stands where a file should be.
+/// An object in place of a regular file.
 struct Oddity {
   std::string name;
   std::string reason;
@@ -297,13 +297,13 @@ INSTANTIATE_TEST_SUITE_P(odd, NoFile,
                                          Oddity{"link_to_nothing", "No such file"}),
                          [](const auto& instance) { return instance.param.name; });
 
-TEST(NoPermission, is_identifiable) {
+TEST(NoPermission, is_reported) {
   const TemporaryFolder folder;
   write(folder.path() / "secret.toml", good_motor());
   fs::permissions(folder.path() / "secret.toml", fs::perms::none);
   fs::permissions(folder.path(), fs::perms::all);
   write(folder.path() / "open.toml", good_motor());
-  // root may read everything, so it becomes somebody who may not; where that one does not even see the program there is no test
+  // root may read every file, so the test runs as another user. It is skipped if that user cannot reach the program.
   const std::string lint = fmt::format(
       "{}heatsoak lint '{}/", ::geteuid() != 0 ? "" : "setpriv --reuid 65534 --regid 65534 --clear-groups ", folder.path().string());
   const ProgramRun readable = run_line(lint + "open.toml'");
@@ -314,7 +314,7 @@ TEST(NoPermission, is_identifiable) {
   expect_refused(result, "Permission denied");
 }
 
-// Good files that look odd.
+// Valid files with unusual contents.
 
 TEST(OddButGood, carriage_returns_and_byte_order_mark) {
   const TemporaryFolder folder;

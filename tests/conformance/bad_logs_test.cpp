@@ -1,4 +1,4 @@
-// Drives and runs with one thing wrong: what is said, and the exit code.
+// Faulty recordings of drives and runs: messages and exit codes.
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ std::function<void(std::vector<DriveRow>&)> of_each(Change change) {
 
 class BadDrives : public testing::TestWithParam<BadDrive> {};
 
-TEST_P(BadDrives, are_told) {
+TEST_P(BadDrives, are_reported) {
   const BadDrive& bad = GetParam();
   const TemporaryFolder folder;
   const fs::path log = folder.path() / "drive.csv";
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "usable for wheel models: yes"}),
     [](const auto& each) { return each.param.name; });
 
-/// A run of a motor, cell by cell: time, winding, stator, ambient, current.
+/// Rows of a run, cell by cell: time, winding, stator, ambient, current.
 using Cells = std::vector<double>;
 struct BadRun {
   std::string name;
@@ -145,7 +145,7 @@ std::string run_text(const std::function<void(std::vector<Cells>&)>& spoil) {
 
 class BadRuns : public testing::TestWithParam<BadRun> {};
 
-TEST_P(BadRuns, are_told_by_log_inspect) {
+TEST_P(BadRuns, are_reported_by_log_inspect) {
   const TemporaryFolder folder;
   const fs::path log = folder.path() / "run.csv";
   write(log, run_text(GetParam().spoil));

@@ -1,4 +1,4 @@
-// `heatsoak calibrate` as a user meets it: shipped logs, spoilt logs, and the file it writes in every other verb.
+// User's view of `heatsoak calibrate`: shipped logs, damaged logs, and its output file in all other verbs.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ using testing::HasSubstr;
 
 using CsvCells = std::vector<std::string>;
 
-/// A shipped log with its rows changed: time_s, winding_C, stator_C, ambient_C, current_A, speed_rad_per_s.
-std::string spoilt(const std::function<void(std::vector<CsvCells>&)>& change, const char* log = "match_1.csv") {
+/// Returns a shipped log with changed rows: time_s, winding_C, stator_C, ambient_C, current_A, speed_rad_per_s.
+std::string damaged_log(const std::function<void(std::vector<CsvCells>&)>& change, const char* log = "match_1.csv") {
   std::istringstream lines(content_of(kSoak / log));
   std::string line;
   std::getline(lines, line);
@@ -72,7 +72,7 @@ class BadLogs : public testing::TestWithParam<BadLog> {};
 
 TEST_P(BadLogs, AreRefusedWithTheReason) {
   const TemporaryFolder folder;
-  write(folder.path() / "log.csv", spoilt(GetParam().change));
+  write(folder.path() / "log.csv", damaged_log(GetParam().change));
   const ProgramRun found = run({"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml"}, in(folder.path()));
   EXPECT_EQ(found.exit_code, GetParam().exit_code) << found.err;
   EXPECT_THAT(found.err, HasSubstr("log.csv"));
@@ -141,7 +141,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Calibrate, LogsThatLookWrongAreTakenAsTheyAreWhereAsked) {
   const TemporaryFolder folder;
-  write(folder.path() / "log.csv", spoilt(each_cell(5, [](double speed) { return std::to_string(9.55 * speed); })));
+  write(folder.path() / "log.csv", damaged_log(each_cell(5, [](double speed) { return std::to_string(9.55 * speed); })));
   EXPECT_EQ(run({"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml"}, in(folder.path())).exit_code, 2);
   const ProgramRun found = run({"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml", "--as-is"}, in(folder.path()));
   EXPECT_EQ(found.exit_code, 0) << found.err;
@@ -151,7 +151,7 @@ TEST(Calibrate, LogsThatLookWrongAreTakenAsTheyAreWhereAsked) {
 TEST(Calibrate, OneLogDoesNotCountTwiceNorTestItself) {
   const TemporaryFolder folder;
   const std::string log = (kSoak / "match_1.csv").string();
-  write(folder.path() / "copy.csv", spoilt(each_cell(0, [](double time_s) { return std::to_string(time_s + 86400.0); })));
+  write(folder.path() / "copy.csv", damaged_log(each_cell(0, [](double time_s) { return std::to_string(time_s + 86400.0); })));
   for (const std::vector<std::string>& logs :
        {std::vector<std::string>{log, "copy.csv"}, std::vector<std::string>{log, "--holdout", "copy.csv"}}) {
     std::vector<std::string> arguments{"calibrate", "--motor", kMotor, "--out", "model.toml"};
@@ -169,18 +169,18 @@ TEST(Calibrate, RowsCutOutOfALogDoNotTestIt) {
     cut(rows);
     each_cell(0, [](double time_s) { return std::to_string(time_s - 299.0); })(rows);
   };
-  write(folder.path() / "cut.csv", spoilt(on_its_own_clock));
+  write(folder.path() / "cut.csv", damaged_log(on_its_own_clock));
   const std::string log = (kSoak / "match_1.csv").string();
   const ProgramRun found = run({"calibrate", "--motor", kMotor, "--out", "model.toml", log, "--holdout", "cut.csv"}, in(folder.path()));
   EXPECT_EQ(found.exit_code, 2);
   EXPECT_THAT(found.err, HasSubstr("cut.csv: error: holds the same rows as"));
 }
 
-/// A motor that starts warm gives degrees Fahrenheit away by nothing but what no model of it follows.
+/// For a motor that starts warm, only the large error of every model reveals temperatures in degrees Fahrenheit.
 TEST(Calibrate, ModelThatIsTensOfKelvinOffIsRefused) {
   for (const auto& [scale_ratio, exit_code] : {std::pair(1.0, 0), std::pair(2.2, 3)}) {
     const TemporaryFolder folder;
-    write(folder.path() / "log.csv", spoilt(
+    write(folder.path() / "log.csv", damaged_log(
                                          [scale_ratio = scale_ratio](std::vector<CsvCells>& rows) {
                                            rows.erase(rows.begin(), rows.begin() + 20);
                                            each_cell(1, [=](double winding_C) {
@@ -195,10 +195,10 @@ TEST(Calibrate, ModelThatIsTensOfKelvinOffIsRefused) {
   }
 }
 
-/// The data cannot answer, and nothing is wrong with the arithmetic.
+/// The numerics work, but the data do not determine the parameters.
 TEST(Calibrate, CurrentsThatNoMotorSurvivesAreNoAnswer) {
   const TemporaryFolder folder;
-  write(folder.path() / "log.csv", spoilt(each_cell(4, [](double current_A) { return std::to_string(10.0 * current_A); })));
+  write(folder.path() / "log.csv", damaged_log(each_cell(4, [](double current_A) { return std::to_string(10.0 * current_A); })));
   const ProgramRun found = run({"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml"}, in(folder.path()));
   EXPECT_EQ(found.exit_code, 3) << found.err;
   EXPECT_THAT(found.err, HasSubstr("check the units of the heat inputs"));
@@ -206,7 +206,7 @@ TEST(Calibrate, CurrentsThatNoMotorSurvivesAreNoAnswer) {
 
 TEST(Calibrate, WhatIsLeftOutIsSaidWithItsLines) {
   const TemporaryFolder folder;
-  write(folder.path() / "log.csv", spoilt([](std::vector<CsvCells>& rows) {
+  write(folder.path() / "log.csv", damaged_log([](std::vector<CsvCells>& rows) {
           rows.insert(rows.begin() + 10, rows[9]);
           rows[500][1] = "nonsense";
         }));
@@ -228,14 +228,14 @@ TEST(Calibrate, WhatIsLeftOutIsSaidWithItsLines) {
 
 TEST(Calibrate, HeldOutLogsAreLookedAtToo) {
   const TemporaryFolder folder;
-  write(folder.path() / "log.csv", spoilt(each_cell(4, [](double current_A) { return std::to_string(1e3 * current_A); })));
+  write(folder.path() / "log.csv", damaged_log(each_cell(4, [](double current_A) { return std::to_string(1e3 * current_A); })));
   const ProgramRun found = run(
       {"calibrate", "--motor", kMotor, (kSoak / "bench.csv").string(), "--holdout", "log.csv", "--out", "model.toml"}, in(folder.path()));
   EXPECT_EQ(found.exit_code, 2);
   EXPECT_THAT(found.err, HasSubstr("in milliamperes"));
 }
 
-/// The example of the README.
+/// Model of the README's example.
 class CalibratedModel : public testing::Test {
  protected:
   ProgramRun calibrate(const std::string& more) const {

@@ -1,4 +1,4 @@
-// `heatsoak check` and the gates of single verbs, as a CI job meets them.
+// `heatsoak check` and the exit codes of single verbs in a CI job.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ class CheckCommand : public testing::Test {
  protected:
   CheckCommand() {
     options_.folder = folder_.path();
-    options_.environment = {"GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY", "GITHUB_WORKSPACE"};  // also where these tests run in a CI job
+    options_.environment = {"GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY", "GITHUB_WORKSPACE"};  // these tests may themselves run in a CI job
   }
 
   [[nodiscard]] ProgramRun check(const std::string& text, const Words& more = {}) const {
@@ -63,7 +63,7 @@ TEST_F(CheckCommand, AnswersByTheContract) {
   EXPECT_EQ(first.at("line"), 9);
   EXPECT_NEAR(first.at("margin").get<double>(), 120.0 - first.at("value").get<double>(), 1e-5);
   EXPECT_THAT(done.err, HasSubstr("2 limits hold"));
-  // evaluate says the same.
+  // `evaluate` must give the same values.
   const json evaluated = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--motors",
                               "maxon_ecx_flat_42m_24v,maxon_ecx_flat_32l_48v", "--samples", "80", "--json", "-"})
                              .json()
@@ -127,7 +127,7 @@ TEST_F(CheckCommand, UpdateRewritesTheLimitsInPlace) {
 TEST_F(CheckCommand, UpdateOfAFileThatMayNotBeWrittenChangesNothing) {
   write(folder_.path() / "robot.check.toml", check_with(30.0, 1.0));
   fs::permissions(folder_.path(), fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
-  // root may write everywhere, so it becomes somebody who may not; where that one does not even see the program there is no test
+  // root may write to every folder, so the test runs as another user. It is skipped if that user cannot reach the program.
   const std::string check_line =
       fmt::format("{}heatsoak check robot.check.toml", ::geteuid() != 0 ? "" : "setpriv --reuid 65534 --regid 65534 --clear-groups ");
   const ProgramRun readable = run_line(check_line, options_);
@@ -148,7 +148,7 @@ TEST_F(CheckCommand, OutputsNeverReplaceTheCheckFile) {
   EXPECT_EQ(content_of(folder_.path() / "robot.check.toml"), text);
 }
 
-// The model's error on a log is what `calibrate` says of the file it begins with.
+// The model's error on a log equals the error that `calibrate` reports for its initial file.
 TEST_F(CheckCommand, ForecastErrorIsThatOfCalibrate) {
   const std::string log = (kSoak / "bench.csv").string();
   const ProgramRun done =
@@ -180,7 +180,7 @@ TEST(Thresholds, AreListedAndDescribed) {
   }
 }
 
-// Gates of single verbs.
+// Exit codes of single verbs.
 
 TEST(FailOn, ChangesTheExitCodeOnly) {
   const Words marginal{
@@ -207,7 +207,7 @@ TEST(DerateCheck, FindsATableThatNoLongerHolds) {
   const ProgramRun wrote = run(derate + Words{"--to", "csv", "--out", "table.csv"}, options);
   ASSERT_EQ(wrote.exit_code, 0) << wrote.err;
   std::string table = content_of(folder.path() / "table.csv");
-  // One current in the middle of the table.
+  // Replaces one current in the middle of the table.
   const std::size_t row = table.find('\n', table.size() / 3) + 1;
   const std::size_t comma = table.rfind(',', table.find('\n', row));
   write(folder.path() / "unsafe.csv", table.replace(comma + 1, table.find('\n', comma) - comma - 1, "70.25"));
@@ -223,7 +223,7 @@ TEST(DerateCheck, FindsATableThatNoLongerHolds) {
   EXPECT_THAT(folder.names(), ElementsAre("table.csv", "unsafe.csv"));
 }
 
-// An upgrade of the program can be told from a change of the numbers.
+// A consumer can distinguish an upgrade of the program from a change of the numbers.
 TEST(Version, StandsInEveryAnswer) {
   const std::string version = run({"--version"}).out;
   std::set<std::string> seen;

@@ -1,4 +1,4 @@
-// The drive core on the command line: its guard, and motors ranked by games that it drives.
+// The drive core on the command line: its guard, and motors ranked by games in closed loop.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ TEST(SimulateGuard, shadow_says_what_it_would_limit_and_changes_no_temperature) 
   EXPECT_THAT(off.err, HasSubstr("thermal guard: off"));
   EXPECT_EQ(with.at("winding_peak_C"), without.at("winding_peak_C"));
   EXPECT_EQ(without.at("planners").at(0).at("guard_limited_s"), 0.0);
-  // Its observer counts heat more than once, in hotter air.
+  // The guard's observer multiplies the heat by a safety factor and assumes hotter air.
   EXPECT_GT(with.at("planners").at(0).at("guard_winding_peak_C").get<double>(), with.at("winding_peak_C").get<double>());
 }
 
@@ -55,7 +55,8 @@ TEST(EvaluateClosedLoop, ranks_by_games_and_does_not_depend_on_threads) {
       EXPECT_LE(loop.at(key).at("nominal"), loop.at(key).at("high")) << key;
     }
     EXPECT_LT(loop.at("winding_peak_C").at("low"), loop.at("winding_peak_C").at("high"));
-    // The same games by inverse dynamics: the closed loop adds corrections, slip and warm windings, not another order of heat.
+    // Compared with inverse dynamics, the closed loop adds corrections, slip and warm windings. The temperature rise must not change by
+    // more than 35 %.
     EXPECT_NEAR(loop.at("winding_peak_C").at("nominal").get<double>() - 25.0, each.at("winding_peak_C").at("nominal").get<double>() - 25.0,
                 0.35 * (each.at("winding_peak_C").at("nominal").get<double>() - 25.0));
     const double margin_K = each.at("winding_limit_C").get<double>() - loop.at("winding_peak_C").at("high").get<double>();
@@ -64,7 +65,7 @@ TEST(EvaluateClosedLoop, ranks_by_games_and_does_not_depend_on_threads) {
   }
 }
 
-/// Shipped robot without its [friction].
+/// Writes the shipped robot without its [friction].
 fs::path bare_robot(const TemporaryFolder& folder) {
   std::string robot = content_of(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
   const std::size_t begin = robot.find("[friction]");

@@ -1,4 +1,4 @@
-// What every verb keeps to (interfaces.md), found through the program's own help.
+// Rules for all verbs (interfaces.md). The test finds the verbs in the program's own help.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -38,8 +38,6 @@ const Words kSimulate{"simulate", "--motor", "maxon_ec45_flat_70w_24v", "--robot
 
 const fs::path kFrictionLog = kSource / "reports/friction_test/steady_state_test.csv";
 
-// Verbs.
-
 std::vector<std::string> verbs() {
   std::istringstream help(run({"--help"}).out);
   std::vector<std::string> result;
@@ -56,7 +54,7 @@ std::vector<std::string> verbs() {
   return result;
 }
 
-/// The lines below "Example:".
+/// Returns the lines below "Example:" in the help.
 std::vector<std::string> examples(const std::string& verb) {
   std::istringstream help(run({verb, "--help"}).out);
   std::vector<std::string> result;
@@ -82,7 +80,7 @@ TEST_P(Verb, has_help_on_stdout) {
   }
 }
 
-// Anywhere: what it needs came with the program.
+// The examples must run in any folder, because all files that they need are installed.
 TEST_P(Verb, has_an_example_that_runs) {
   const std::vector<std::string> lines = examples(GetParam());
   ASSERT_THAT(lines, Not(IsEmpty()));
@@ -96,7 +94,7 @@ TEST_P(Verb, has_an_example_that_runs) {
     const ProgramRun result = run_line(line, options);
     EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 1) << line << "\nends with " << result.exit_code << "\n" << result.err;
     EXPECT_THAT(folder.names(), Not(Contains(HasSubstr("partial"))));
-    // what the example says it writes is there
+    // The example must have written its declared output files.
     std::istringstream words(line);
     std::string before;
     for (std::string word; words >> word; before = word) {
@@ -134,10 +132,10 @@ TEST_P(Verb, bears_a_full_disk) {
 
 INSTANTIATE_TEST_SUITE_P(help, Verb, testing::ValuesIn(verbs()), [](const auto& instance) { return test_name(instance.param); });
 
-// The data folders: one test for every file.
+// One test for every file of the data folders.
 
 struct DataFile {
-  std::string kind;  ///< as `list` calls it
+  std::string kind;  ///< name of the kind in `list`
   fs::path file;
 };
 
@@ -198,8 +196,6 @@ TEST(List, formats_name_the_importers_of_games) {
   EXPECT_THAT(formats.out, HasSubstr("duty --import LOG"));
 }
 
-// Lint.
-
 TEST(Lint, takes_files_folders_and_ids_of_every_kind) {
   const fs::path motors = kSource / "motor_db";
   const json of_folder = run({"lint", motors.string(), "--json", "-"}).json();
@@ -233,10 +229,10 @@ TEST(Lint, fails_for_errors_and_for_warnings) {
   EXPECT_THAT(warned.out, HasSubstr("1 file: 0 errors, 1 warning\n"));
 }
 
-/// One figure of a wiki in the file of the DF45L, whose other sources are left out.
-class WikiFigureOfDf45l : public testing::TestWithParam<std::pair<std::string, std::string>> {};
+/// A motor file of the DF45L with one parameter value from a wiki and without its other sources.
+class WikiValueOfDf45l : public testing::TestWithParam<std::pair<std::string, std::string>> {};
 
-TEST_P(WikiFigureOfDf45l, is_caught) {
+TEST_P(WikiValueOfDf45l, is_caught) {
   const auto& [sound, wiki] = GetParam();
   const TemporaryFolder folder;
   std::string text = content_of(kSource / "motor_db" / "nanotec_df45l024048_a2.toml");
@@ -250,7 +246,7 @@ TEST_P(WikiFigureOfDf45l, is_caught) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    each, WikiFigureOfDf45l,
+    each, WikiValueOfDf45l,
     testing::Values(std::pair{"nominal_current = { value = \"3.26 A\"", "nominal_current = { value = \"6.4 A\""},
                     std::pair{"\"65 W\"", "\"151 W\""}, std::pair{"\"0.64 ohm\"", "\"1.2 ohm\""},
                     std::pair{"\"150 g\", origin = \"estimated\", source = [\"own\", \"maxon_2019\"], range = [\"120 g\", \"180 g\"]",
@@ -261,7 +257,7 @@ INSTANTIATE_TEST_SUITE_P(
                               "\"13 g cm2\", origin = \"third_party\", source = \"own\", tolerance = \"10 %\""}),
     [](const auto& instance) { return "figure_" + std::to_string(instance.index); });
 
-/// What `describe` prints is ready to paste: an effect's lines behind a motor's.
+/// The output of `describe` must be valid when it is pasted into a motor file.
 class EffectLines : public testing::TestWithParam<std::string> {};
 
 TEST_P(EffectLines, make_a_motor_file_that_runs) {
@@ -294,12 +290,10 @@ INSTANTIATE_TEST_SUITE_P(catalogue, EffectLines, testing::ValuesIn([] {
                          }()),
                          [](const auto& instance) { return instance.param; });
 
-// Exit codes and JSON.
-
 TEST(ExitCode, says_whether_a_limit_is_exceeded) {
   EXPECT_EQ(run(kSteady).exit_code, 0);
   EXPECT_EQ(run({"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "30", "--time-on", "1", "--time-off", "0"}).exit_code, 1);
-  EXPECT_EQ(run(kEvaluate + Words{"--samples", "0"}).exit_code, 1);  // the paper's motor fails
+  EXPECT_EQ(run(kEvaluate + Words{"--samples", "0"}).exit_code, 1);  // the paper's motor exceeds its limit
 }
 
 void expect_number_or_null(const json& value, const std::string& key) {
@@ -314,7 +308,7 @@ TEST(Json, of_steady_keeps_the_contract) {
     EXPECT_TRUE(answer.at(key).is_number()) << key;
   }
   EXPECT_EQ(answer.at("runaway"), false);
-  EXPECT_THAT(result.err, HasSubstr("winding"));  // the text for people
+  EXPECT_THAT(result.err, HasSubstr("winding"));  // the report for people goes to stderr
 }
 
 Words steady(const std::string& motor, const std::string& current_on, const std::string& time_on, const std::string& time_off) {
@@ -345,7 +339,7 @@ TEST(Steady, destroyed_within_one_time_on_is_a_runaway) {
   EXPECT_THAT(result.err, testing::ContainsRegex("1000[ \n]°C[ \n]are[ \n]passed"));
 }
 
-// The closed equations know nothing of a body that an effect adds.
+// The closed-form solution does not include the additional node of an effect.
 TEST(Steady, with_effects_mean_and_peak_are_of_one_network) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "mine.toml";
@@ -392,7 +386,7 @@ TEST(Json, of_friction_keeps_the_contract) {
   }
   EXPECT_TRUE(answer.at("before").at("rmse").is_number());
   EXPECT_TRUE(answer.at("after").at("rmse").is_number());
-  // The file that was written is a robot that every other verb takes.
+  // The written file must be a robot that all other verbs accept.
   EXPECT_EQ(run({"lint", out}).exit_code, 0);
   EXPECT_THAT(run({"describe", out}).out, HasSubstr("friction test, steady_state_test.csv"));
   const std::string trace = (folder.path() / "trace.csv").string();
@@ -403,7 +397,7 @@ TEST(Json, of_friction_keeps_the_contract) {
       2);
 }
 
-/// One roll-out has no scatter: what is fitted to it has no interval, but was not given by any file either.
+/// A single roll-out has no scatter, so its fitted parameters have no interval. They must not be reported as given by a file.
 TEST(Friction, of_one_roll_out_has_no_intervals_and_is_not_called_given) {
   constexpr double kHeading_rad = 0.1;
   constexpr double kDrag_m_per_s2 = 0.8;
@@ -436,7 +430,7 @@ TEST(Friction, of_one_roll_out_has_no_intervals_and_is_not_called_given) {
   }
 }
 
-/// The example with 1.5 V sin 2θ more at wheel 2: columns are time, battery, heading on the field, yaw, then speed and modulation.
+/// The example with an additional 1.5 V sin 2θ at wheel 2. Columns are time, battery, heading on the field, yaw, then speed and modulation.
 TEST(Json, of_friction_says_where_its_law_does_not_hold) {
   std::istringstream log(content_of(kFrictionLog));
   std::string changed;
@@ -571,7 +565,7 @@ TEST(Json, goes_to_stdout_alone_or_to_its_file) {
   EXPECT_THAT(folder.names(), UnorderedElementsAre("answer.json"));
 }
 
-TEST(Json, tells_errors_of_usage_too) {
+TEST(Json, reports_errors_of_usage_too) {
   const TemporaryFolder folder;
   RunOptions inside;
   inside.folder = folder.path();
@@ -588,7 +582,7 @@ TEST(Json, tells_errors_of_usage_too) {
   }
 }
 
-// Chance.
+// Random numbers.
 
 TEST(Seed, gives_the_same_bytes_for_any_number_of_threads) {
   const Words sampled = kEvaluate + Words{"--samples", "100", "--seed", "42", "--json", "-"};
@@ -601,7 +595,7 @@ TEST(Seed, gives_the_same_bytes_for_any_number_of_threads) {
   EXPECT_NE(run(kEvaluate + Words{"--samples", "100", "--seed", "43", "--json", "-"}).out, one.out);
 }
 
-TEST(Seed, gives_a_motor_the_same_figures_in_any_company) {
+TEST(Seed, gives_a_motor_the_same_values_beside_any_others) {
   const auto of = [](const std::string& motors) {
     const json answer = run({"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--samples", "60", "--json",
                              "-", "--motors", motors})
@@ -617,8 +611,6 @@ TEST(Seed, gives_a_motor_the_same_figures_in_any_company) {
   EXPECT_EQ(of("maxon_ecx_flat_32l_48v,maxon_ec45_flat_70w_24v"), alone);
   EXPECT_EQ(of("maxon_ec45_flat_70w_24v,nanotec_df45l024048_a2"), alone);
 }
-
-// Usage.
 
 TEST(Usage, version) {
   const ProgramRun result = run({"--version"});
@@ -722,7 +714,7 @@ TEST(UsageOf, negative_temperature_needs_no_quoting) {
   EXPECT_EQ(run(kSteady + Words{"--ambient", "-10"}).out, run(kSteady + Words{"--ambient=-10 degC"}).out);
 }
 
-// Where output cannot go.
+// Outputs to places that are not writable.
 
 TEST(Unwritable, one_of_several_outputs_leaves_none_of_them) {
   const TemporaryFolder folder;
@@ -738,7 +730,7 @@ TEST(Unwritable, one_of_several_outputs_leaves_none_of_them) {
   }
 }
 
-TEST(Unwritable, target_is_told_and_leaves_nothing) {
+TEST(Unwritable, target_is_reported_and_leaves_nothing) {
   const TemporaryFolder folder;
   fs::create_directory(folder.path() / "taken.svg");
   RunOptions inside;
@@ -755,7 +747,7 @@ TEST(Unwritable, target_is_told_and_leaves_nothing) {
   EXPECT_TRUE(fs::is_empty(folder.path() / "taken.svg"));
 }
 
-TEST(Unwritable, full_disk_is_told_and_the_device_survives) {
+TEST(Unwritable, full_disk_is_reported_and_the_device_survives) {
   RunOptions full;
   full.stdout_file = "/dev/full";
   for (const Words& words : {kSteady, kSteady + Words{"--json", "-"}, Words{"list", "motors"}, Words{"completion"}, Words{"--version"}}) {
@@ -818,7 +810,7 @@ TEST(Output, of_two_options_is_not_one_file) {
   EXPECT_EQ(run(friction + Words{"--out", "/dev/null", "--json", "/dev/null"}, inside).exit_code, 0);
 }
 
-// Surroundings.
+// Environment of the process.
 
 TEST(Surroundings, no_display_no_home_no_colours) {
   const TemporaryFolder folder;
@@ -827,7 +819,7 @@ TEST(Surroundings, no_display_no_home_no_colours) {
   bare.environment = {"DISPLAY", "WAYLAND_DISPLAY", "HOME", "TERM", "LANG", "NO_COLOR=1", "LC_ALL=C"};
   const ProgramRun result = run(kEvaluate + Words{"--samples", "5", "--plot", "verdict.svg"}, bare);
   EXPECT_EQ(result.exit_code, 1) << result.err;
-  EXPECT_EQ(result.err, "");  // no progress where there is no terminal
+  EXPECT_EQ(result.err, "");  // no progress bar without a terminal
   EXPECT_THAT(result.out, Not(HasSubstr("\x1b[")));
   EXPECT_THAT(content_of(folder.path() / "verdict.svg"), HasSubstr("<svg"));
   EXPECT_THAT(folder.names(), UnorderedElementsAre("verdict.svg"));
@@ -867,7 +859,7 @@ TEST(Database, may_be_a_copied_tree) {
   EXPECT_THAT(ids(run(Words{"list", "motors", "--json", "-"} + database).json()), UnorderedElementsAre("mine"));
   EXPECT_THAT(ids(run(Words{"list", "duties", "--json", "-"} + database).json()), UnorderedElementsAre("my_duty"));
   EXPECT_THAT(ids(run(Words{"list", "robots", "--json", "-"} + database).json()),
-              Contains("tigers_v2020"));  // not in the copy: the usual ones
+              Contains("tigers_v2020"));  // folders that are missing in the copy use the shipped data
   const ProgramRun result =
       run(Words{"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "my_duty", "--samples", "0", "--json", "-"} + database);
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -918,7 +910,7 @@ TEST(Database, a_comma_may_be_part_of_a_path) {
   EXPECT_EQ(result.json().at("motors").at(0).at("id"), "small, fast");
 }
 
-TEST(Database, two_motors_of_one_id_cannot_be_told_apart) {
+TEST(Database, two_motors_of_one_id_are_ambiguous) {
   const TemporaryFolder folder;
   for (const char* name : {"a", "b"}) {
     fs::create_directory(folder.path() / name);
@@ -930,7 +922,7 @@ TEST(Database, two_motors_of_one_id_cannot_be_told_apart) {
   EXPECT_THAT(result.err, testing::HasSubstr("two motors with the same id, 'x'"));
 }
 
-TEST(Database, a_broken_file_is_told_and_not_passed_over) {
+TEST(Database, a_broken_file_is_reported_and_not_skipped) {
   const TemporaryFolder folder;
   fs::copy_file(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml", folder.path() / "good.toml");
   write(folder.path() / "broken.toml", "x =");

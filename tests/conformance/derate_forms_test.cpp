@@ -1,4 +1,4 @@
-// Every form that `heatsoak derate` writes, with inputs that no file can be made from: a clear error, and nothing written.
+// All output forms of `heatsoak derate`, with inputs from which no file can be made. Each must give a clear error and write nothing.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(DerateForms, RefuseALimitThatIsNotAboveTheAir) {
   }
 }
 
-// Its own drag heats it over its limit at every useful speed, without a current.
+// At every useful speed the motor's own drag heats it over its limit without any current.
 TEST(DerateForms, RefuseAMotorThatCannotBearItsOwnFriction) {
   const std::string shipped = content_of(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
   for (const std::string& form : forms()) {
@@ -77,7 +77,7 @@ TEST(DerateForms, RefuseANumberThatIsNone) {
   }
 }
 
-// Root may write anywhere, so the target is one that nobody can write to.
+// root may write to every folder, so the target is one that no user can write to.
 TEST(DerateForms, LeaveNothingWhereTheTargetCannotBeWritten) {
   for (const std::string form : {"c_header", "json", "fmi3_guard"}) {
     const TemporaryFolder folder;

@@ -1,4 +1,4 @@
-// `heatsoak derate` as a user meets it: the shipped robot, a model that a diagnosis extended, and wrong command lines.
+// User's view of `heatsoak derate`: the shipped robot, a model that a diagnosis extended, and wrong command lines.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST(DerateCommand, TellsWhatItGuarantees) {
   EXPECT_THAT(content_of(folder.path() / "guard.h"), HasSubstr("maxon_ecx_flat_32l_48v_step"));
 }
 
-// The loop closed: logs -> effect that the model lacked -> firmware.
+// Complete chain: logs, diagnosis of a missing effect, firmware that includes it.
 TEST(DerateCommand, EffectThatADiagnosisFoundActsInTheFirmware) {
   const TemporaryFolder folder;
   const auto log = [](const char* name) { return (kSoak / name).string(); };
@@ -77,7 +77,7 @@ TEST(DerateCommand, EffectThatADiagnosisFoundActsInTheFirmware) {
   EXPECT_THAT(after.json()["nodes"], ElementsAre("winding", "stator", "enclosure_warm_up"));
   EXPECT_THAT(after.err, HasSubstr("active effects of the file: enclosure_warm_up"));
   EXPECT_THAT(content_of(folder.path() / "after.h"), HasSubstr("winding stator enclosure_warm_up"));
-  // What was measured needs less of a reserve than a data sheet, so more current is allowed.
+  // A calibrated motor needs a smaller safety factor than a data sheet, so more current is allowed.
   EXPECT_LT(after.json()["heat_reserve_ratio"].get<double>(), before.json()["heat_reserve_ratio"].get<double>());
   EXPECT_GT(lasting_A(after.json()), 1.02 * lasting_A(before.json()));
 }
@@ -94,7 +94,7 @@ TEST(DerateCommand, JsonFileIsTheAnswerAndNamesItsInputs) {
   const ProgramRun done = run(kDerate + Words{"--motor", kMotor, "--to", "json", "--out", "table.json", "--json", "-"}, here(folder));
   ASSERT_EQ(done.exit_code, 0) << done.err;
   nlohmann::json answer = done.json();
-  answer.erase("version");  // every answer of the program has it; the file has "program"
+  answer.erase("version");  // every answer on stdout has this key; the file has "program" instead
   EXPECT_EQ(nlohmann::json::parse(content_of(folder.path() / "table.json")), answer);
   EXPECT_THAT(done.json()["program"].get<std::string>(), testing::StartsWith("heatsoak "));
   EXPECT_EQ(done.json()["input_hash"]["value"].get<std::string>().size(), 16U);

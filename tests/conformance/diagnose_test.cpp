@@ -1,4 +1,4 @@
-// `heatsoak diagnose` as a user meets it: the shipped logs, short ones, and the extended model in another verb.
+// User's view of `heatsoak diagnose`: shipped logs, short logs, and the extended model in another verb.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-// The logs are of a motor in a chassis that soaks heat; the third match was never trained on.
+// The logs come from a motor in a chassis that absorbs heat. The third match is a hold-out run.
 TEST(Diagnose, FindsTheChassisOfTheShippedExample) {
   const TemporaryFolder folder;
   const ProgramRun done = run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("match_2.csv"), log("bench.csv"),
@@ -32,7 +32,7 @@ TEST(Diagnose, FindsTheChassisOfTheShippedExample) {
   EXPECT_EQ(answer["verdict"], "effect_found");
   ASSERT_EQ(answer["effects"].size(), 1U) << done.out;
   const nlohmann::json& effect = answer["effects"][0];
-  // A body of its own behind the stator; whether the motor's copper loss reaches it directly too these runs cannot tell.
+  // A body behind the stator. The runs do not show whether copper loss also reaches it directly.
   EXPECT_EQ(effect["id"], "enclosure_warm_up");
   EXPECT_THAT(effect["confusable_with"].dump(), HasSubstr("third_node"));
   EXPECT_EQ(effect["node"], "stator");
@@ -53,7 +53,7 @@ TEST(Diagnose, FindsTheChassisOfTheShippedExample) {
   EXPECT_LE(used.exit_code, 1) << used.err;
 }
 
-// A held-out file of the same name as a fitted one, in another folder.
+// The hold-out file has the name of a fitted file in another folder.
 TEST(Diagnose, NamesOfHeldOutFilesDoNotChangeTheModel) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path() / "other");
@@ -69,7 +69,7 @@ TEST(Diagnose, NamesOfHeldOutFilesDoNotChangeTheModel) {
   EXPECT_EQ(models[0], models[1]);
 }
 
-// Too few samples for any curve over a signal: that is an answer, not a crash.
+// Too few samples for any curve over a signal must give an answer instead of a crash.
 TEST(Diagnose, AnswersOnLogsOfSeconds) {
   for (const char* part : {"@0-1%", "@0-2%", "@0-4%"}) {
     const TemporaryFolder folder;
@@ -80,7 +80,7 @@ TEST(Diagnose, AnswersOnLogsOfSeconds) {
   }
 }
 
-/// The shipped log with every line's cells changed; line 0 is the header.
+/// Writes the shipped log with changed cells in every line; line 0 is the header.
 std::string changed_log(const TemporaryFolder& folder, const std::string& name,
                         const std::function<void(int line, std::vector<std::string>& cells)>& change) {
   std::istringstream logged(content_of(kSoak / name));
@@ -98,9 +98,9 @@ std::string changed_log(const TemporaryFolder& folder, const std::string& name,
   std::ofstream(file) << text;
   return file.string();
 }
-constexpr std::size_t kCurrent = 4;  // of time_s, winding_C, stator_C, ambient_C, current_A, speed_rad_per_s
+constexpr std::size_t kCurrent = 4;  // columns: time_s, winding_C, stator_C, ambient_C, current_A, speed_rad_per_s
 
-/// match_3 with temperature rises that are `ratio` times the measured ones.
+/// Writes match_3 with temperature rises that are `ratio` times the measured ones.
 std::string with_rises(const TemporaryFolder& folder, double ratio) {
   std::map<std::size_t, double> first_C;
   return changed_log(folder, "match_3.csv", [&](int line, std::vector<std::string>& cells) {
@@ -114,7 +114,7 @@ std::string with_rises(const TemporaryFolder& folder, double ratio) {
   });
 }
 
-/// Whatever a hold-out run shows, here rises that are too small or too large, decides nothing.
+/// A hold-out run must not influence the result. Here its rises are too small or too large.
 TEST(Diagnose, HoldoutRunsOnlyScore) {
   std::string model, calibrated;
   nlohmann::json decided;
@@ -146,7 +146,7 @@ TEST(Diagnose, HoldoutRunsOnlyScore) {
   }
 }
 
-// A motor that warms by 60 K on a current of 0 A lacks no effect.
+// If a motor warms by 60 K at a current of 0 A, no missing effect can explain it.
 TEST(Diagnose, RefusesRunsThatNoExtendedModelFollows) {
   const TemporaryFolder folder;
   const std::string file = changed_log(
@@ -157,8 +157,8 @@ TEST(Diagnose, RefusesRunsThatNoExtendedModelFollows) {
   EXPECT_FALSE(fs::exists(folder.path() / "found"));
 }
 
-// What the motor lost at speeds that nobody logged goes with the current: a curve over the current would be a wrong model.
-TEST(Diagnose, NamesNothingInPlaceOfASpeedThatNobodyLogged) {
+// The loss at unlogged speeds correlates with the current. A curve over the current would be a wrong model.
+TEST(Diagnose, NamesNoEffectInPlaceOfAnUnloggedSpeed) {
   const TemporaryFolder folder;
   const auto without_speed = [&](const char* name) {
     return changed_log(folder, name, [](int, std::vector<std::string>& cells) { cells.resize(kCurrent + 1); });
@@ -173,7 +173,7 @@ TEST(Diagnose, NamesNothingInPlaceOfASpeedThatNobodyLogged) {
   for (const nlohmann::json& effect : answer["effects"]) {
     EXPECT_NE(effect["node"], "stator") << effect;
   }
-  // Of the two sensors together: the loss that nobody can tell shifts heat from one to the other.
+  // Both sensors together, because the unknown split of the loss shifts heat from one to the other.
   const auto error_K = [&](const char* when) {
     const nlohmann::json& of = answer[when]["holdout"];
     return std::hypot(of["winding_C"]["rmse_K"].get<double>(), of["stator_C"]["rmse_K"].get<double>());
@@ -193,7 +193,8 @@ TEST(Diagnose, NamesTheLogUnderWhichTheModelRunsAway) {
   EXPECT_THAT(done.err, HasSubstr("check the units of the log's columns"));
 }
 
-// Half a log may begin with all of a motor at 68 °C and get warmer, which in a whole one would be degrees Fahrenheit of a room.
+// The second half of a log may start with the whole motor at 68 °C and get warmer. In a whole log this would indicate room temperature in
+// degrees Fahrenheit.
 TEST(Diagnose, TakesAHotHalfOfASoundLog) {
   const TemporaryFolder folder;
   const auto warm_by_half = [&](bool in_fahrenheit) {
@@ -207,13 +208,13 @@ TEST(Diagnose, TakesAHotHalfOfASoundLog) {
       }
     });
   };
-  const auto told_of = [&](const std::string& file) {
+  const auto diagnosed_with_holdout = [&](const std::string& file) {
     return run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("match_2.csv"), file + "@50-100%", "--json", "-"},
                in(folder));
   };
-  const ProgramRun sound = told_of(warm_by_half(false));
+  const ProgramRun sound = diagnosed_with_holdout(warm_by_half(false));
   EXPECT_THAT(sound.err, testing::Not(HasSubstr("in degrees Fahrenheit (")));
-  const ProgramRun wrong = told_of(warm_by_half(true));
+  const ProgramRun wrong = diagnosed_with_holdout(warm_by_half(true));
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.err, HasSubstr("in degrees Fahrenheit ("));
 }

@@ -1,4 +1,4 @@
-// Every command that README.md and docs/ show is run, and what they show of its output is compared.
+// Runs every command in README.md and docs/ and compares its output with the shown output.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,10 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// A fenced block of Markdown.
+/// Fenced block of a Markdown document.
 struct Block {
   std::string language;
-  int line = 0;  ///< of the first line inside
+  int line = 0;  ///< line number of its first line
   std::vector<std::string> lines;
 };
 
@@ -41,7 +41,7 @@ std::vector<Block> blocks_of(const std::string& markdown) {
   return blocks;
 }
 
-/// A command with the output that the document shows below it.
+/// Command with the output that the document shows below it.
 struct Shown {
   std::string command;
   int line = 0;
@@ -69,13 +69,13 @@ std::vector<Shown> commands_of(const Block& block) {
   return all;
 }
 
-/// What installs, builds or tests the whole project cannot run inside one of its tests.
+/// Commands that install, build or test the whole project cannot run inside one of its tests.
 bool is_for_the_checkout(const std::string& command) {
   return std::ranges::any_of(std::vector<std::string>{"./bootstrap", "cmake ", "git ", "ctest "},
                              [&](const std::string& begin) { return command.starts_with(begin); });
 }
 
-/// The lines stand in the text in this order and without a gap but where one of them is "…".
+/// True if the lines occur in the text in this order. Gaps are allowed only at a line "…".
 bool shows(const std::string& text, const std::vector<std::string>& expected) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
@@ -109,7 +109,7 @@ std::vector<std::string> documents() {
 
 class Document : public testing::TestWithParam<std::string> {
  protected:
-  /// A folder that looks like the checkout to a command that reads from it.
+  /// Links the checkout's folders, so that the commands find the files that they read.
   void SetUp() override {
     for (const char* name : {"reports", "motor_db", "robot_core", "duty_profiles", "tests"}) {
       fs::create_directory_symlink(kSource / name, folder_.path() / name);
@@ -187,7 +187,7 @@ TEST(Documents, reference_is_what_the_help_says) {
   }
 }
 
-// The checks above find what they look for.
+// The checks above must find planted mistakes.
 TEST(Documents, planted_mistakes_are_found) {
   const std::vector<Block> blocks =
       blocks_of("text\n```console\n$ heatsoak a \\\n  --b\none\n…\nthree\n```\n```sh\n# x\nheatsoak c\n```\n");

@@ -1,4 +1,4 @@
-// Inputs of the drive core from a robot with sensors that fail.
+// Inputs of the drive core from a robot with faulty sensors.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@
 
 namespace heatsoak {
 
-/// A robot that follows the core roughly, and lets it meet every mode and most faults.
+/// Simple robot that follows the core and exercises every mode and most faults.
 class FaultyDrive {
  public:
   explicit FaultyDrive(const robot_core::Config& config) : config_(config) {
     robot_core::start(config_, state_, {.is_rested = true, .body_C = 25.0F});
   }
 
-  /// The next input; take_step() answers it.
+  /// Returns the next input; take_step() applies the core's answer.
   const robot_core::Input& next() {
     if (step_ % 40 == 0) {
       command();

@@ -1,4 +1,4 @@
-// What the README shows of `./bootstrap demo` is what the demo prints and draws.
+// The README's output and picture of `./bootstrap demo` must match the demo.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The command of the demo, from the script itself, with another name for its picture.
+/// Returns the command of the demo from the script itself, with another name for its picture.
 std::vector<std::string> demo_words(const fs::path& picture) {
   const std::string script = content_of(kSource / "bootstrap");
   const std::string opening = "job=(\"$program\" ";
@@ -28,7 +28,7 @@ std::vector<std::string> demo_words(const fs::path& picture) {
   return words;
 }
 
-/// The lines of a table: its head, which names a motor's verdict, and all that follow without a gap.
+/// Returns the lines of a table: its head, which contains the motor's verdict, and all consecutive lines.
 std::vector<std::string> table(const std::string& text) {
   std::istringstream lines(text);
   std::vector<std::string> result;
@@ -52,7 +52,7 @@ class FirstVerdict : public testing::Test {
 };
 
 TEST_F(FirstVerdict, table_of_the_readme_is_what_the_demo_prints) {
-  ASSERT_EQ(demo_.exit_code, 1) << demo_.err;  // one of the motors dies
+  ASSERT_EQ(demo_.exit_code, 1) << demo_.err;  // one of the motors exceeds its limit
   const std::vector<std::string> printed = table(demo_.out);
   ASSERT_EQ(printed.size(), 5U) << demo_.out;
   EXPECT_THAT(content_of(kSource / "README.md"), testing::HasSubstr(fmt::format("{}", fmt::join(printed, "\n"))));

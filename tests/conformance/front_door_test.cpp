@@ -1,4 +1,4 @@
-// What a new user meets first: templates, pictures, terminals, interrupted commands.
+// First steps of a new user: templates, pictures, terminals, interrupted commands.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -37,12 +37,12 @@ class FrontDoor : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// Fills the blanks of a template that stand in front of `unit` in the line of `key`.
+/// Fills the blank in the line of `key`, in front of the unit.
 void fill(std::string& text, const std::string& key, const std::string& value) {
   text = std::regex_replace(text, std::regex("(\n" + key + " = [^\n?]*)\\?"), "$01" + value, std::regex_constants::format_first_only);
 }
 
-// The values are those of the sheet of the EC 45 flat.
+// The values come from the data sheet of the EC 45 flat.
 TEST_F(FrontDoor, motor_template_passes_lint_once_it_is_filled_in) {
   ASSERT_EQ(run_here("heatsoak new motor mine.toml").exit_code, 0);
   std::string text = file("mine.toml");
@@ -70,7 +70,7 @@ TEST_F(FrontDoor, motor_template_works_with_its_optional_lines_too) {
   ASSERT_EQ(run_here("heatsoak new motor mine.toml").exit_code, 0);
   const std::string text = std::regex_replace(file("mine.toml"), std::regex("\n# ([a-z_]+ = )"), "\n$1");
   write(folder_.path() / "mine.toml", text);
-  // The blanks are missing still; no key and no unit is wrong.
+  // Only the missing values are reported; keys and units are right.
   EXPECT_THAT(run_here("heatsoak lint mine.toml").err, AllOf(HasSubstr("figures.diameter.value"), Not(HasSubstr("is not a key"))));
 }
 
@@ -136,13 +136,13 @@ TEST_F(FrontDoor, every_kind_of_error_of_a_motor_file_is_reported_at_once) {
     ASSERT_NE(text.find(from), std::string::npos) << from;
     text.replace(text.find(from), from.size(), to);
   };
-  change("name = ", "nmae = ");            // a key
-  change("\"0.463 mH\"", "\"0.463 mV\"");  // a unit
+  change("name = ", "nmae = ");            // wrong key
+  change("\"0.463 mH\"", "\"0.463 mV\"");  // wrong unit
   change("mass = { value = \"141 g\", origin = \"datasheet\", source = \"maxon_2019\"",
          "mass = { value = \"141 g\", origin = \"datasheet\", source = \"nowhere\"");
-  change("\"259 rpm/V\"", "\"100 rpm/V\"");              // a contradiction
-  change("\"1460 mN m\"", "\"14600 mN m\"");             // another one
-  text += "\n[effects.no_such_effect]\nsize = \"1\"\n";  // an effect
+  change("\"259 rpm/V\"", "\"100 rpm/V\"");              // contradiction
+  change("\"1460 mN m\"", "\"14600 mN m\"");             // another contradiction
+  text += "\n[effects.no_such_effect]\nsize = \"1\"\n";  // unknown effect
   write(folder_.path() / "mine.toml", text);
   for (const char* command :
        {"heatsoak lint mine.toml", "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors mine.toml"}) {
@@ -208,7 +208,7 @@ TEST_F(FrontDoor, pictures_are_drawn_as_png_too) {
   const std::string png = file("verdict.png");
   ASSERT_GT(png.size(), 10'000U);
   EXPECT_EQ(png.substr(1, 3), "PNG");
-  // Width and height stand in the first chunk, most significant byte first: two pixels for one of the SVG's 1000.
+  // The first chunk contains width and height, most significant byte first. Two pixels stand for one unit of the SVG's 1000.
   const auto at = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(png[i])); };
   EXPECT_EQ((at(18) << 8U) + at(19), 2000U);
 }
@@ -225,7 +225,7 @@ TEST_F(FrontDoor, an_interrupted_command_leaves_nothing) {
 }
 
 TEST_F(FrontDoor, undecided_verdicts_ask_for_more_samples) {
-  // Its probability lies near the threshold of 5 %.
+  // The probability of exceeding the limit is near the threshold of 5 %.
   const std::string line = "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors nanotec_df45l024048_a2";
   const ProgramRun few = run_here(line + " --samples 60 --json -");
   const nlohmann::json before = few.json().at("motors").at(0);

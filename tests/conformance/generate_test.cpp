@@ -1,4 +1,5 @@
-// `heatsoak generate core`: the folder that it writes compiles on its own, for host and controller, and computes the bits of the core here.
+// `heatsoak generate core`: the generated folder compiles on its own for host and controller and gives bit-identical results to the
+// library.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -35,14 +36,14 @@ const std::string kEcx = "maxon_ecx_flat_32l_48v";
 constexpr int kSamples = 60;
 constexpr const char* kStrict = "-Wall -Wextra -Werror -Wconversion -Wsign-conversion -Wdouble-promotion";
 
-/// Lines of a motor file with the effect at its typical size, as `describe` prints them.
+/// Returns lines of a motor file with the effect at its typical size, as `describe` prints them.
 std::string typical(const std::string& effect) {
   const ProgramRun done = run({"describe", effect});
   EXPECT_EQ(done.exit_code, 0) << done.err;
   return done.out.substr(done.out.find("\n[effects.") + 1);
 }
 
-/// The paper's motor with effects behind its data sheet.
+/// Writes the paper's motor with effects appended to its data sheet.
 void write_motor_with(const fs::path& file, const std::vector<std::string>& effects) {
   std::string text = content_of(kSource / "motor_db" / (kEcx + ".toml"));
   for (const std::string& effect : effects) {
@@ -62,7 +63,7 @@ bool has_cross_compiler() {
              .exit_code == 0;
 }
 
-/// A core as the program writes it, and the same configuration made here. Written once for all tests of a motor.
+/// A generated core and the equivalent configuration in memory. Generated once for all tests of a motor.
 struct Generated {
   explicit Generated(const std::vector<std::string>& effects) {
     const fs::path motor_file = folder.path() / (effects.empty() ? kEcx + ".toml" : "with_effects.toml");
@@ -98,7 +99,7 @@ ProgramRun build(const Generated& core, const std::string& line) {
   return done;
 }
 
-/// One for all tests that this process runs.
+/// Shared by all tests of this process.
 const Generated& plain_core() {
   static const Generated kCore({});
   return kCore;
@@ -106,7 +107,7 @@ const Generated& plain_core() {
 
 constexpr int kSteps = 100'000;
 
-/// An Output without padding, whose bytes may be anything, and the digest of the state.
+/// Serialises an Output without its padding bytes, which are undefined, and the digest of the state.
 std::string bytes_of(const Output& out, std::uint64_t digest) {
   std::string bytes;
   const auto add = [&bytes](const auto& value) {
@@ -126,7 +127,7 @@ std::string bytes_of(const Output& out, std::uint64_t digest) {
   return bytes;
 }
 
-/// Runs recorded inputs through a self_test that was built.
+/// Feeds recorded inputs to a compiled self_test.
 std::vector<std::string> replayed(const fs::path& self_test, const fs::path& inputs, const fs::path& outputs) {
   const ProgramRun done = run_line(fmt::format("'{}' replay '{}' '{}'", self_test.string(), inputs.string(), outputs.string()));
   EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
@@ -140,7 +141,7 @@ std::vector<std::string> replayed(const fs::path& self_test, const fs::path& inp
   return records;
 }
 
-/// The first byte that differs, for the message.
+/// Describes the first differing byte for the failure message.
 std::string difference(const std::vector<std::string>& found, const std::vector<std::string>& expected) {
   const auto [differs, here] = std::ranges::mismatch(found, expected);
   if (differs == found.end()) {
@@ -192,9 +193,9 @@ void expect_firmware_builds(const Generated& core) {
     EXPECT_THAT(build(core, fmt::format("arm-none-eabi-nm -u {}", image)).out, IsEmpty());
     const std::string names = build(core, fmt::format("arm-none-eabi-nm -C {}", image)).out;
     EXPECT_THAT(names, AllOf(HasSubstr("heatsoak_core_step"), HasSubstr("kMotorGuard"), HasSubstr("08000000 r vectors")));
-    // main.c asks for no pose targets: the linker has left the planner out.
+    // main.c uses no pose targets, so the linker must omit the planner.
     EXPECT_THAT(names, Not(AnyOf(HasSubstr("plan_to_pose"), HasSubstr("plan_plane"))));
-    // Double precision would be calls of the compiler's library.
+    // Double precision would appear as calls of the compiler's library.
     EXPECT_THAT(names, Not(HasSubstr("__aeabi_d")));
     const std::string sections = build(core, fmt::format("arm-none-eabi-size -A -d {}", image)).out;
     EXPECT_THAT(sections, AllOf(HasSubstr(".vectors"), HasSubstr("134217728"), HasSubstr(".noinit")));
@@ -207,7 +208,7 @@ TEST(GeneratedCore, CompilesForTheHostWithBothBuildsAndHasTheBitsOfTheCoreHere) 
 
 TEST(GeneratedCore, CompilesForTheControllerWithBothBuilds) { expect_firmware_builds(plain_core()); }
 
-// Power, exponential, a third node, and a signal that the core does not have.
+// These effects need a power, an exponential, a third node, and a signal that the core lacks.
 TEST(GeneratedCore, HasTheLawsOfAddedEffects) {
   const Generated core({typical("natural_convection"), typical("third_node"), typical("contact_ageing")});
   EXPECT_THAT(content_of(core.core / "motor_guard.cpp"),

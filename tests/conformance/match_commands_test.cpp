@@ -1,4 +1,4 @@
-// Matches on the command line: the closed loop, the planners side by side, where heat comes from.
+// Matches on the command line: the closed loop, a comparison of planners, and the sources of heat.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-/// Without guard, which takes longer than the match.
+/// Runs without guard, because preparing the guard takes longer than the match.
 const Words kMatch{"simulate", "--motor", "maxon_ecx_flat_42m_24v", "--robot", "roboteam_twente_v2024", "--duty", "division_b_match",
                    "--guard",  "off"};
 
@@ -164,7 +164,7 @@ TEST(Describe, a_duty_shape_is_a_file_to_start_from) {
   }
 }
 
-/// A folder to work in that holds mine.toml.
+/// Working folder that contains mine.toml.
 struct OwnRobot {
   OwnRobot() {
     write(folder.path() / "mine.toml", robot);
@@ -175,7 +175,7 @@ struct OwnRobot {
   RunOptions options;
 };
 
-/// Whoever takes --json for a switch names a file of his own behind it.
+/// A user who takes --json for a switch may put an input file behind it, which must not be overwritten.
 TEST(Outputs, an_answer_replaces_answers_only) {
   const auto& [folder, robot, options] = OwnRobot();
   for (const Words& line : {Words{"lint", "--json", "mine.toml"}, Words{"steady", "--json=mine.toml"},
@@ -258,7 +258,7 @@ TEST(Describe, a_match_shows_every_input_with_its_range) {
   }
 }
 
-TEST(DutyMatch, heat_is_told_by_phase_and_role) {
+TEST(DutyMatch, heat_is_reported_by_phase_and_role) {
   const ProgramRun result = run({"duty", "--duty", "division_a_match", "--robot", "tigers_v2020", "--json", "-"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("keeper"));
@@ -280,7 +280,7 @@ TEST(DutyMatch, heat_is_told_by_phase_and_role) {
     EXPECT_NEAR(sum_share, 1.0, 1e-5);
     EXPECT_NEAR(time_s, answer.at("duration_s").get<double>(), 0.1);
     most_share = std::max(most_share, role.at("heat_of_busiest_share").get<double>());
-    // In play keeper, defender, attacker are each busier than the one before; outside play they all take their places.
+    // In play keeper, defender and attacker have increasing loads. Outside play all of them return to their places.
     const json running = role.at("phases").at(1);
     ASSERT_EQ(running.at("phase"), "running");
     const double in_play_share = running.at("heat_share").get<double>() * role.at("heat_of_busiest_share").get<double>();
@@ -302,7 +302,7 @@ TEST(EvaluateMatch, a_match_and_its_own_export_give_the_same_temperature) {
     const ProgramRun evaluated = run(Words{"evaluate", "--duty", duty} + robot + motor, options);
     return evaluated.json().at("motors").at(0).at("winding_peak_C").at("nominal").get<double>();
   };
-  // Rows of 0.01 s in place of bins of 0.25 s.
+  // Rows of 0.01 s compared with bins of 0.25 s.
   EXPECT_NEAR(peak_C("match.toml"), peak_C("division_b_match"), 0.5);
 }
 
@@ -311,7 +311,7 @@ TEST(EvaluateMatch, a_recording_costs_what_its_match_does) {
   RunOptions options;
   options.folder = folder.path();
   const Words robot{"--robot", "roboteam_twente_v2024"};
-  // Ten times the usual rows: half a gigabyte, if they were kept.
+  // Ten times the usual number of rows would need half a gigabyte in memory.
   const ProgramRun written = run(Words{"duty", "--duty", "division_a_match", "--out", "match.csv", "--every", "1 ms"} + robot, options);
   ASSERT_EQ(written.exit_code, 0) << written.err;
   EXPECT_GT(std::filesystem::file_size(folder.path() / "match.csv"), 60'000'000U);

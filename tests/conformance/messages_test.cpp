@@ -1,4 +1,4 @@
-// What is wrong is told all at once, and what to do with it.
+// All mistakes are reported at once, each with advice.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,8 +17,6 @@ using testing::Not;
 const std::string kMotorFile = (kSource / "motor_db/maxon_ec45_flat_70w_24v.toml").string();
 const std::string kRobotFile = (kSource / "robot_core/robots/tigers_v2020.toml").string();
 const std::string kDutyFile = (kSource / "duty_profiles/paper_intermittent.toml").string();
-
-// Names.
 
 TEST(AllAtOnce, wrong_ids_of_every_kind) {
   const ProgramRun result = run({"evaluate", "--robot", "tigers_v2021", "--duty", "paper_intermitent", "--motors",
@@ -52,7 +50,7 @@ TEST(AllMotors, may_stand_beside_a_file) {
   EXPECT_EQ(count("all," + (folder.path() / "mine.toml").string()), count("all") + 1);
 }
 
-// Files of another kind than the place is for.
+// Files of another kind than expected.
 
 struct Misplaced {
   std::string name;
@@ -61,7 +59,7 @@ struct Misplaced {
 };
 class WrongKind : public testing::TestWithParam<Misplaced> {};
 
-TEST_P(WrongKind, is_told_in_one_line) {
+TEST_P(WrongKind, is_reported_in_one_line) {
   const ProgramRun result = run(GetParam().words);
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr(GetParam().said));
@@ -90,8 +88,6 @@ INSTANTIATE_TEST_SUITE_P(
                   "is a robot file; expected a motor file"}),
     [](const auto& instance) { return instance.param.name; });
 
-// Options.
-
 TEST(AllAtOnce, wrong_values_and_missing_options) {
   const ProgramRun result = run({"steady", "--current-on", "-3A", "--time-on=1kg", "--time-off", "-6s", "--ambient", "25degC"});
   EXPECT_EQ(result.exit_code, 2);
@@ -111,8 +107,6 @@ TEST(AllAtOnce, options_that_do_not_exist) {
   EXPECT_THAT(result.err, AllOf(HasSubstr("did you mean '--robot'?"), HasSubstr("did you mean '--duty'?")));
 }
 
-// Others.
-
 TEST(Describe, knows_what_begins_alike) {
   const ProgramRun result = run({"describe", "iron_lossX"});
   EXPECT_EQ(result.exit_code, 2);
@@ -127,7 +121,7 @@ TEST(List, of_a_folder_without_files_is_refused) {
   EXPECT_THAT(result.err, HasSubstr("there is no .toml file in " + folder.path().string()));
 }
 
-// 700 A through a motor for 3.3 A: a load that nobody means, not a failure of the numerics.
+// 700 A through a motor rated for 3.3 A is a wrong input, not a failure of the numerics.
 TEST(Evaluate, an_absurd_current_is_bad_input) {
   const TemporaryFolder folder;
   std::string robot = content_of(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
@@ -162,8 +156,8 @@ TEST(Outputs, larger_than_the_limit_of_the_user_are_refused_and_leave_nothing) {
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 
-// Who asks for a robot that the log lacks hears what the log has, and what was wrong with it.
-TEST(Import, of_a_robot_that_is_not_there_tells_who_is) {
+// If the requested robot is not in the log, the message lists the robots of the log and the problems of the log.
+TEST(Import, of_a_missing_robot_lists_the_present_ones) {
   const TemporaryFolder folder;
   std::string game = "t_s,team,robot_id,x_m,y_m,yaw_rad\n";
   for (int i = 0; i < 2000; ++i) {

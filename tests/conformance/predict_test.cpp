@@ -1,4 +1,4 @@
-// `heatsoak predict` as a user meets it: the shipped logs, whatever heat input a log has, and what hold-out errors are made of.
+// User's view of `heatsoak predict`: the shipped logs, every heat input that a log may have, and the source of hold-out errors.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ TEST(Predict, DrawsAPngWhereItsNameSaysSo) {
   EXPECT_TRUE(content_of(folder.path() / "p.png").starts_with("\x89PNG"));
 }
 
-/// Of a calibrated model the error of a hold-out run is smaller, and the same as `calibrate --holdout` says.
+/// A calibrated model has a smaller hold-out error, which equals the value of `calibrate --holdout`.
 TEST(Predict, IsWhereHoldoutErrorsComeFrom) {
   const TemporaryFolder folder;
   const ProgramRun fitted = run({"calibrate", "--motor", kMotor, log("match_1.csv"), log("match_2.csv"), log("bench.csv"), "--holdout",

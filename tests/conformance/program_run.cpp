@@ -44,7 +44,7 @@ void redirect(int descriptor, const fs::path& file) {
     words.push_back(each.data());
   }
   words.push_back(nullptr);
-  ::alarm(options.time_limit_s * HEATSOAK_SLOWNESS);  // survives execv: whatever hangs is ended
+  ::alarm(options.time_limit_s * HEATSOAK_SLOWNESS);  // survives execv and ends a hanging program
   ::execv(program.c_str(), words.data());
   ::_exit(127);
 }

@@ -1,4 +1,4 @@
-// Runs the real program, as a shell would, and says what it did.
+// Runs the real program like a shell and returns its results.
 #pragma once
 
 #include <filesystem>
@@ -9,15 +9,15 @@
 namespace heatsoak {
 
 struct RunOptions {
-  std::filesystem::path folder;          ///< working directory; the test's own where empty
-  std::vector<std::string> environment;  ///< "NAME=value" sets, "NAME" removes
+  std::filesystem::path folder;          ///< working directory; if empty, the test's own
+  std::vector<std::string> environment;  ///< "NAME=value" sets a variable, "NAME" removes it
   std::string program = HEATSOAK_PROGRAM;
-  std::filesystem::path stdout_file;  ///< for devices; captured where empty
+  std::filesystem::path stdout_file;  ///< for devices; if empty, stdout is captured
   std::filesystem::path stderr_file;
-  unsigned time_limit_s = 120;  ///< ten times as much where sanitizers or counters are built in
+  unsigned time_limit_s = 120;  ///< multiplied by ten in builds with sanitizers or counters
 };
 
-/// What stands on a command line.
+/// Arguments of a command line.
 using Words = std::vector<std::string>;
 
 inline Words operator+(Words first, const Words& second) {
@@ -26,20 +26,20 @@ inline Words operator+(Words first, const Words& second) {
 }
 
 struct ProgramRun {
-  int exit_code = -1;  ///< 128 + signal where a signal ended it
+  int exit_code = -1;  ///< 128 + signal if a signal ended the program
   std::string out;
   std::string err;
-  double memory_MB = 0.0;  ///< largest resident set; 0 where a sanitizer keeps what is freed
+  double memory_MB = 0.0;  ///< largest resident set; 0 with sanitizers, which keep freed memory
 
-  /// The JSON on stdout, and nothing but JSON.
+  /// Parses stdout, which must contain nothing but JSON.
   [[nodiscard]] nlohmann::json json() const;
 };
 
 ProgramRun run(const Words& arguments, const RunOptions& options = {});
-/// Through bash, as the example lines of the help are written; `heatsoak` is the program.
+/// Runs a line in bash, like the example lines of the help; `heatsoak` is the program.
 ProgramRun run_line(const std::string& line, const RunOptions& options = {});
 
-/// A folder that is gone when the test ends.
+/// Temporary folder, deleted by the destructor.
 class TemporaryFolder {
  public:
   TemporaryFolder();
@@ -47,7 +47,7 @@ class TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   ~TemporaryFolder();
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  [[nodiscard]] std::vector<std::string> names() const;  ///< of the entries, sorted
+  [[nodiscard]] std::vector<std::string> names() const;  ///< sorted names of the entries
 
  private:
   std::filesystem::path path_;
@@ -56,9 +56,9 @@ class TemporaryFolder {
 std::string content_of(const std::filesystem::path& file);
 void write(const std::filesystem::path& file, const std::string& content);
 
-/// Names of the files of a folder that begin and end so, sorted.
+/// Returns the sorted names of files in a folder with this beginning and end.
 std::vector<std::string> files_of(const std::filesystem::path& folder, const std::string& begin, const std::string& end);
-/// A test's name from a file's: letters, digits and '_'.
+/// Converts a file name to a valid test name: letters, digits and '_'.
 std::string test_name(const std::string& file);
 
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-// The shipped logs of a motor on a chassis that soaks, and the motor that they are tried on.
+// The shipped logs of a motor on a chassis that absorbs heat, and the motor file for them.
 #pragma once
 
 #include <filesystem>
@@ -12,10 +12,10 @@ namespace heatsoak {
 inline const std::filesystem::path kSoak = kSource / "reports/soak";
 inline constexpr const char* kMotor = "maxon_ec45_flat_70w_24v";
 
-/// One of the shipped logs.
+/// Returns the path of a shipped log.
 inline std::string log(const std::string& name) { return (kSoak / name).string(); }
 
-/// Runs the program in the folder.
+/// Returns options that run the program in the folder.
 inline RunOptions in(const TemporaryFolder& folder) {
   RunOptions options;
   options.folder = folder.path();

@@ -1,4 +1,4 @@
-// Errors of sensors and curves in a motor file: what `describe` prints of them is ready to paste, and every verb takes it.
+// Sensor errors and curves in a motor file: the output of `describe` can be pasted into the file, and every verb accepts it.
 #include <gtest/gtest.h>
 
 #include "program_run.h"
@@ -50,7 +50,7 @@ TEST_P(SensorLines, add_what_is_shown_to_a_simulation) {
   EXPECT_EQ(header.find(",stator_shown_C,") != std::string::npos, !is_winding) << header;
 }
 
-TEST_P(SensorLines, are_told_with_their_size) {
+TEST_P(SensorLines, are_reported_with_their_size) {
   const ProgramRun told = run({"describe", motor_.string(), "--json", "-"});
   ASSERT_EQ(told.json().at("sensors").size(), 1U) << told.out;
   EXPECT_EQ(told.json().at("sensors").at(0).at("type"), GetParam());
@@ -67,7 +67,7 @@ TEST_P(SensorLines, are_held_in_a_calibration) {
   EXPECT_NE(content_of(folder_.path() / "fitted.toml").find("[effects.my_" + GetParam() + "]"), std::string::npos);
 }
 
-/// A curve over the speed needs no neighbour, and is reckoned with where a prediction has a speed.
+/// A curve over the speed needs no other effect. It applies wherever a prediction has a speed.
 TEST(CurveLines, act_in_an_evaluation_and_it_says_nothing_else) {
   const std::string text = run({"describe", "tabulated"}).out;
   const std::size_t mark = text.find("\nat the end of a motor file");

@@ -1,4 +1,4 @@
-// A motor's file that cannot be trusted on its way to a verdict or to firmware, as a user meets it.
+// User's view of a motor file with missing tolerances, on its way to a verdict or to firmware.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using testing::Not;
 const std::string kEcx = "maxon_ecx_flat_32l_48v";
 const std::string kRobot = "roboteam_twente_v2024";
 
-/// Every verb that ends in a verdict or in firmware, with the motor `motor.toml`.
+/// Returns all verbs that end in a verdict or in firmware, with the motor `motor.toml`.
 std::vector<Words> verbs() {
   return {{"derate", "--robot", kRobot, "--motor", "motor.toml", "--out", "x.h"},
           {"derate", "--robot", kRobot, "--model", "motor.toml", "--out", "x.h"},
@@ -86,7 +86,7 @@ TEST(MotorWithoutSpreads, GetsDefaultsThatEveryAnswerStates) {
   EXPECT_THAT(content_of(folder.path() / "honest.h"), Not(HasSubstr("DEFAULT TOLERANCES")));
   EXPECT_GE(bare.json()["heat_reserve_ratio"].get<double>(), honest.json()["heat_reserve_ratio"].get<double>());
   EXPECT_LE(bare.json()["limp_current_A"].get<double>(), honest.json()["limp_current_A"].get<double>());
-  // The first place of all tables is a motor as cold as the air.
+  // The first entry of both tables is for a motor at air temperature.
   EXPECT_LE(bare.json()["table"]["current_A"][0].get<double>(), honest.json()["table"]["current_A"][0].get<double>());
 
   const ProgramRun verdict =

@@ -1,4 +1,5 @@
-// The header in integers beside the one in single precision: never more current, no colder, and the same on a Cortex-M0.
+// Compares the integer header with the single-precision header. The integer form must never allow more current or be colder, and must be
+// identical on a Cortex-M0.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,9 +19,9 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Hard driving in both forms: shares of what the integers allow, speeds, air and now and then a broken sensor, each held for a while.
-/// Prints the largest excess of the integer form in mA, its least and largest temperature above the other in mK, and its largest shortfall
-/// in per mille of the other where that allows `straight_mA` or more.
+/// Hard driving in both forms: shares of the current that the integer form allows, speeds, air, and occasionally a faulty sensor, each held
+/// for a while. Prints the largest excess current of the integer form in mA, and its smallest and largest temperature difference in mK.
+/// Also prints its largest shortfall in per mille, where the float form allows `straight_mA` or more.
 constexpr const char* kBoth = R"(
 #include "float_guard.h"
 #include "q15_guard.h"
@@ -78,7 +79,7 @@ int main(int argc, char **argv) {
 }
 )";
 
-/// Some thousand steps of the integers alone, and a check sum over all they answer.
+/// Runs some thousand steps of the integer form and prints a check sum of its answers.
 constexpr const char* kSteps = R"(
 #include "q15_guard.h"
 static uint32_t check_sum(void) {
@@ -110,7 +111,7 @@ int main(void) {
 }
 )";
 
-/// Start-up of a Cortex-M0 and the two calls of ARM's semihosting.
+/// Start-up code of a Cortex-M0 and two calls of ARM's semihosting.
 constexpr const char* kBareMain = R"(
 static int ask(int what, const void *with) {
   register int r0 __asm__("r0") = what;
@@ -176,7 +177,7 @@ class Q15Header : public testing::Test {
     std::ofstream(folder_ / "float_guard.h") << exported("c_header", derating);
     std::ofstream(folder_ / "q15_guard.h") << exported("c_header_q15", derating);
   }
-  /// What the command prints; a failure with its errors.
+  /// Returns the output of a command and reports errors as failures.
   [[nodiscard]] std::string output_of(const std::string& command) const {
     const auto in_folder = fmt::format("cd '{}' && {{ {}; }} > out 2> errors", folder_.string(), command);
     const int code = std::system(in_folder.c_str());
@@ -212,7 +213,7 @@ TEST_F(Q15Header, AllowsNeverMoreThanSinglePrecisionAndLittleLess) {
     const double table_permille = 10.0 * number_after(header, "at most ([0-9.]+) % below");
     EXPECT_LT(excess_mK, 600.0) << id;
     EXPECT_LT(table_permille, 50.0) << id;
-    // What a temperature that is so much higher costs, by the steepest line of the table.
+    // Current lost by such a temperature difference, from the steepest slope of the table.
     const CurrentTable& table = derating.table;
     const double by_heat_permille = excess_mK * table.bound.winding_slope_A_per_K / table.straight_below_A;
     for (const char* const broken : {"", " broken"}) {
@@ -244,7 +245,7 @@ TEST_F(Q15Header, HasTheSameBitsOnACortexM0WithoutAnyFloatingPoint) {
       output_of("arm-none-eabi-gcc -std=gnu99 -Os -Wall -Wextra -Werror -mcpu=cortex-m0 -mthumb -ffreestanding -nostdlib "
                 "-fno-tree-loop-distribute-patterns "
                 "-T layout.ld -o bare.elf bare.c -lgcc"));
-  // Soft-float helpers of the compiler's library would show here.
+  // Soft-float helpers of the compiler's library would be listed here.
   EXPECT_THAT(output_of("arm-none-eabi-nm bare.elf"),
               testing::Not(testing::ContainsRegex("__aeabi_(f|d|i2f|ui2f|l2f|ul2f|i2d)[a-z0-9]*$")));
   const std::string on_host = output_of("./host");
@@ -254,7 +255,7 @@ TEST_F(Q15Header, HasTheSameBitsOnACortexM0WithoutAnyFloatingPoint) {
       on_host);
 }
 
-// What an operation needs and integers do not have here is refused with the effect's name.
+// Laws with operations that the integer form lacks are refused with the effect's name.
 TEST(Q15HeaderText, RefusesLawsThatItCannotCompute) {
   const Derating derating = derating_of(ecx_32_with(R"([effects.air]
 type = "natural_convection"
@@ -270,7 +271,7 @@ exponent = { value = "0.25", origin = "estimated", derivation = "a test" }
   }
 }
 
-// Exact arithmetic on the statements' own scales: the bound on the rounding holds for the constants and is no wider than a few steps.
+// Exact arithmetic on the statements' own scales: the rounding bound holds for the constants and is at most a few steps wide.
 TEST(Q15Lines, RoundingIsBounded) {
   const integer_form::IntegerLines lines = integer_form::integer_lines(ecx_derating(), "motor");
   ASSERT_EQ(lines.rate_K_per_s.size(), 2U);

@@ -1,4 +1,4 @@
-// The header as a firmware's compiler takes it, and what it does when things go wrong.
+// The C header in a firmware compiler, and its behaviour in case of faults.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Reads a line of inputs, `current speed ambient`, or a command: "start C", "zero", "break", "iq" before a line whose current is an i_q,
-/// and answers each input with the bits of allowed current, winding, stator and nominal winding, and the reason.
+/// Test program. It reads lines with an input, `current speed ambient`, or a command: "start C", "zero", "break", "iq" before a line whose
+/// current is an i_q. It answers each input with the bits of allowed current, winding, stator and nominal winding, and with the reason.
 constexpr const char* kProgram = R"(
 #include "guard.h"
 #include <stdio.h>
@@ -69,7 +69,7 @@ struct Answer {
   int reason = -1;
 };
 
-/// As with `lines` behind its data sheet.
+/// Returns a derating for the ECX 32 with `lines` appended to its data sheet.
 Derating guarded_ecx_32(const std::string& lines = {}) {
   const GuardedMotor guarded(lines.empty() ? ecx_32() : ecx_32_with(lines), rules_for(ecx_32()), 1.5);
   return {.motor_id = "guarded",
@@ -107,9 +107,9 @@ class CHeader : public testing::TestWithParam<const char*> {
     std::ofstream(folder_ / "main.c") << kProgram;
     build("");
   }
-  /// The motor with effects in place of the bare one.
+  /// Builds the header for the motor with effects instead of the bare one.
   void build(const std::string& lines) { build_header(header_text(lines)); }
-  /// The bare motor in another robot.
+  /// Builds the header for the bare motor in another robot.
   void build_for(const Robot& robot) {
     Derating derating = guarded_ecx_32();
     const Network network = datasheet_network(ecx_32(), nominal_sample(ecx_32()));
@@ -155,11 +155,11 @@ class CHeader : public testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(Compilers, CHeader, testing::Values("cc -std=c99", "c++ -x c++ -std=c++11"),
                          [](const testing::TestParamInfo<const char*>& each) { return each.index == 0 ? "c99" : "cpp11"; });
 
-// The bits of what the search was made with: what was checked is what runs.
+// The header must be bit-identical to the observer and table that the search has checked.
 TEST_P(CHeader, has_the_bits_of_the_observer_and_the_table) {
   const Derating derating = guarded_ecx_32();
   ObserverRun<float> run(derating.observer, 0.01F, 31.0F);
-  // An observer of its own that counts heat once.
+  // Reference observer without a safety factor on heat.
   const Network network = datasheet_network(ecx_32(), nominal_sample(ecx_32()));
   const Observer nominal_observer(network, ecx_32().nominal, twente(), 1.0);
   ObserverRun<float> nominal(nominal_observer, 0.01F, 31.0F);
@@ -189,8 +189,8 @@ TEST_P(CHeader, has_the_bits_of_the_observer_and_the_table) {
   }
 }
 
-// The guard's temperature is the pessimistic one of the two, and both cool to the same air.
-TEST_P(CHeader, tells_the_guarded_from_the_nominal_temperature) {
+// The guarded temperature is the pessimistic one. Both temperatures cool to the same air.
+TEST_P(CHeader, separates_the_guarded_from_the_nominal_temperature) {
   std::string lines = "start 40\n";
   for (int i = 0; i < 6000; ++i) {
     lines += "in 3 200 40\n";
@@ -207,8 +207,9 @@ TEST_P(CHeader, tells_the_guarded_from_the_nominal_temperature) {
   EXPECT_NEAR(answers.back().nominal_C, 40.0F, 0.2F);
 }
 
-// Copper loss of three sinusoidal phase currents, averaged over a turn, against what the header's observer takes in one step from 25 °C,
-// where resistance is the sheet's. Torque by the same average against block commutation of the same back-EMF.
+// Reference for i_q: copper loss of three sinusoidal phase currents, averaged over a turn, compared with the heat in one step of the
+// header's observer. The step starts at 25 °C, where the resistance equals the data sheet's. The torque follows from the same average,
+// relative to block commutation with the same back-EMF.
 TEST_P(CHeader, converts_the_current_of_field_oriented_control_by_torque_and_never_below_its_heat) {
   constexpr double kIq_A = 5.0;
   constexpr int kTurn = 3600;
@@ -245,7 +246,7 @@ TEST_P(CHeader, converts_the_current_of_field_oriented_control_by_torque_and_nev
   }
 }
 
-// Laws with exponential and power bring their own, so that a controller's C library cannot change a bit.
+// The header brings its own exponential and power, so that a controller's C library cannot change a bit.
 TEST_P(CHeader, brings_its_own_exponential_and_power) {
   const std::string laws = R"([effects.air]
 type = "natural_convection"
@@ -307,7 +308,7 @@ TEST_P(CHeader, takes_the_hottest_case_for_what_is_no_number) {
   EXPECT_GT(ask("start 80\nin nan 0 25\n")[0].winding_C, known[0].winding_C + 0.5F);
 }
 
-// Air that comes with speed cools: a speed that nobody knows is none that can be counted on.
+// Air flow at speed cools the motor. If the speed is unknown, the guard must not rely on this cooling.
 TEST_P(CHeader, relies_on_no_cooling_by_a_speed_that_it_does_not_know) {
   build(R"([effects.flow]
 type = "winding_through_flow"
@@ -330,8 +331,8 @@ conductance = { value = "0.1 W/K", origin = "estimated", derivation = "a test" }
   }
 }
 
-// An open thermistor reads far below zero.
-TEST_P(CHeader, does_not_believe_air_colder_than_declared) {
+// An open thermistor reads far below 0 °C.
+TEST_P(CHeader, does_not_accept_air_colder_than_declared) {
   std::string lines = "start 40\n";
   std::string hottest = lines;
   for (int i = 0; i < 1000; ++i) {
@@ -349,13 +350,13 @@ TEST_P(CHeader, gives_no_current_beyond_its_table) {
   const double last_rad_per_s = rules_for(ecx_32()).no_current_speed_rad_per_s;
   EXPECT_EQ(ask(fmt::format("start 30\nin 0 {} 25\n", last_rad_per_s))[0].reason, no_current);
   EXPECT_EQ(ask(fmt::format("start 30\nin 0 {} 25\n", -1.1 * last_rad_per_s))[0].allowed_A, 0.0F);
-  // It can still brake when it is pushed beyond the table's last full row.
+  // A motor pushed beyond the table's last full row can still brake.
   EXPECT_GT(ask(fmt::format("start 30\nin -3 {} 25\n", 1.05 * most_rad_per_s))[0].allowed_A, 3.0F);
   EXPECT_EQ(ask("start 170\nin 0 0 25\n")[0].allowed_A, 0.0F);
   EXPECT_GT(ask("start 30\nin 0 -300 25\n")[0].allowed_A, 5.0F);
 }
 
-// A law with its most in the middle: neither standing nor the highest speed heats most.
+// The heat has its maximum at a medium speed, so neither standstill nor the highest speed is the worst case.
 TEST_P(CHeader, takes_the_hottest_of_all_that_an_unknown_signal_may_be) {
   build(hump(R"(driver = "speed"
 hot = "stator"

@@ -1,4 +1,4 @@
-// The exported headers through the tools of a firmware team: strict warnings, MISRA C, and every Cortex-M from M0 to M7.
+// Checks the exported headers with tools of firmware teams: strict warnings, MISRA C, and every Cortex-M from M0 to M7.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ int32_t use(void) {
 constexpr const char* kStrict =
     "-Wall -Wextra -Wpedantic -pedantic -Wconversion -Wsign-conversion -Wdouble-promotion -Wshadow -Wundef -Wcast-qual -Werror";
 
-/// Advisory rules that are not kept, with reasons in src/derate/README.md.
+/// Advisory rules that the headers do not follow; src/derate/README.md has the reasons.
 const std::set<std::string> kNotKept{"2.5", "8.9", "12.1", "15.5"};
 
 class CleanHeader : public testing::TestWithParam<const char*> {
@@ -80,7 +80,7 @@ TEST_P(CleanHeader, CompilesForEveryCortexM) {
     const Answer answer = run(fmt::format(
         "arm-none-eabi-gcc -std=c99 {} -Os -mthumb -mcpu={} -c -o use.o use.c && arm-none-eabi-nm -u use.o", kStrict, controller));
     EXPECT_EQ(answer.code, 0) << controller << "\n" << answer.text;
-    // A double would call __aeabi_d… of the compiler's library.
+    // A double would call __aeabi_d… in the compiler's library.
     EXPECT_EQ(answer.text.find("__aeabi_d"), std::string::npos) << controller << "\n" << answer.text;
   }
 }

@@ -1,4 +1,4 @@
-// A table that was written earlier against a fresh one: C header and CSV, sound, tampered with, of another motor.
+// Compares a committed table with a new one: C header and CSV, intact, modified, and of another motor.
 #include "derate/committed_table.h"
 
 #include <gmock/gmock.h>
@@ -91,7 +91,7 @@ TEST_P(Committed, OfAMoreCarefulReserveGivesCurrentAway) {
   EXPECT_GT(found.lost.difference_A, 0.5);
 }
 
-// The axes of the two have no point in common but the first: the difference is found between them, too.
+// The two tables share only the first point of their axes. The comparison must also find differences between the points.
 TEST_P(Committed, IsComparedBetweenThePointsOfOtherAxes) {
   Derating other = *fresh_;
   other.table.most_speed_rad_per_s *= 1.1;
@@ -99,10 +99,10 @@ TEST_P(Committed, IsComparedBetweenThePointsOfOtherAxes) {
   const TableComparison found = compare(read(exported_text(other, GetParam())), *fresh_);
   EXPECT_GE(found.excess.speed_rad_per_s, fresh_->table.most_speed_rad_per_s);
   if (std::string_view(GetParam()) == "csv") {
-    EXPECT_GT(found.excess.difference_A, 0.5);  // it says something of its own rows only
+    EXPECT_GT(found.excess.difference_A, 0.5);  // a CSV table contains only its own rows
     return;
   }
-  // Beyond its last speed the fresh table allows nothing.
+  // Beyond its last speed the new table allows no current.
   EXPECT_GE(found.excess.speed_rad_per_s, fresh_->table.no_current_speed_rad_per_s);
   EXPECT_EQ(found.excess.fresh_A, 0.0);
   EXPECT_GT(found.excess.committed_A, 1.0);
@@ -161,7 +161,7 @@ TEST_F(Tampered, VersionOfTheWriterIsRead) {
   EXPECT_EQ(read("/* heatsoak 9.8.7 */\n" + exported_text(*fresh_, "c_header")).version, "9.8.7");
 }
 
-// Wherever it is cut, before the table, in it or behind it.
+// The header is cut before, inside and behind the table.
 TEST_F(Tampered, HeaderThatIsCutOffIsNeverTakenForACsvTable) {
   const std::string header = exported_text(*fresh_, "c_header");
   for (const std::string_view last : {"#ifndef", "#include", "_square_A2[", "_advance("}) {
@@ -172,7 +172,7 @@ TEST_F(Tampered, HeaderThatIsCutOffIsNeverTakenForACsvTable) {
   EXPECT_THAT(message_of(header.substr(0, 300)), HasSubstr("truncated"));
 }
 
-// What a compiler reads as more than the number at its beginning is no table entry.
+// An entry that a compiler reads differently than its leading number is no valid table entry.
 TEST_F(Tampered, EntriesAreWholeNumbers) {
   const std::string text = exported_text(*fresh_, "c_header");
   const std::size_t array = text.find('{', text.find("_square_A2["));

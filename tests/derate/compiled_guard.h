@@ -1,4 +1,4 @@
-// A generated header as a shared library, so that a test can call it a million times.
+// Compiles a generated header to a shared library, so that a test can call it a million times.
 #pragma once
 
 #include <dlfcn.h>
@@ -19,7 +19,7 @@
 
 namespace heatsoak {
 
-/// Of a motor whose laws depend on current, speed and air alone.
+/// Guard of a motor whose laws depend on current, speed and air only.
 class CompiledGuard {
  public:
   struct Input {
@@ -75,7 +75,7 @@ class CompiledGuard {
   }
   [[nodiscard]] explicit operator bool() const { return library_ != nullptr; }
 
-  /// A symbol of the wrapper.
+  /// Looks up a symbol of the wrapper.
   template <class Function>
   [[nodiscard]] Function* function(const char* name) const {
     return reinterpret_cast<Function*>(dlsym(library_, name));
@@ -148,7 +148,7 @@ float resistance_reading_C(void *sensor, const void *state, const plain_input *i
   void* library_ = nullptr;
 };
 
-/// One motor's guard without a sensor.
+/// Guard of one motor without a sensor.
 class ModelGuard {
  public:
   explicit ModelGuard(const CompiledGuard& guard)
@@ -182,7 +182,7 @@ class ModelGuard {
                 CompiledGuard::Output*) = guard_.function<void(void*, const void*, CompiledGuard::Output*)>("model_step");
 };
 
-/// One motor's guard with its sensor.
+/// Guard of one motor with its sensor.
 class SensedGuard {
  public:
   explicit SensedGuard(const CompiledGuard& guard)

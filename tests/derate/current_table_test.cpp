@@ -1,4 +1,4 @@
-// The table and the observer: nothing that is allowed takes the observer over its limit, and not much less would.
+// Table and observer: no allowed current takes the observer over its limit, and the table is not much stricter than needed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,13 +21,13 @@ struct Peaks {
   float stator_C = -1e9F;
 };
 
-/// An hour of the hardest driving, in the precision of the firmware.
+/// One hour of the hardest driving, in the precision of the firmware.
 Peaks drive(const GuardedMotor& guarded, unsigned seed, float period_s) {
   ObserverRun<float> run(guarded.observer, period_s, 40.0F);
-  Regressor driver(seed);
+  RandomLoad driver(seed);
   Peaks peaks;
   for (int i = 0; i < static_cast<int>(3600.0F / period_s); ++i) {
-    const Regressor::Wish wish = driver.after(static_cast<double>(period_s));
+    const RandomLoad::Wish wish = driver.after(static_cast<double>(period_s));
     const auto speed_rad_per_s = static_cast<float>(wish.speed_share * guarded.rules.most_speed_rad_per_s);
     const float allowed_A = guarded.table.allowed_A(speed_rad_per_s, run.hottest_body_C(), run.state_C()[winding]);
     const std::array<float, firmware::kSignalCount> signals{
@@ -53,7 +53,7 @@ TEST(CurrentTable, ObserverNeverPassesItsLimit) {
   }
 }
 
-// Also near the air, where the table's axis is short.
+// Also close to the air temperature, where the table's axis is short.
 TEST(CurrentTable, StatorWithALimitKeepsItAndUsesIt) {
   const Motor motor = ecx_32();
   for (const double limit_C : {65.0, 73.0, 80.0}) {
@@ -68,13 +68,13 @@ TEST(CurrentTable, StatorWithALimitKeepsItAndUsesIt) {
       peak_C = std::max(peak_C, run.state_C()[stator]);
     }
     EXPECT_LE(peak_C, limit_C + 1e-2);
-    // The cell of 2 K of the winding's axis in which the current ends is given up.
+    // The table gives up the 2 K cell of the winding's axis in which the current reaches zero.
     EXPECT_GT(run.state_C()[stator], limit_C - 1.5);
     EXPECT_LE(drive(guarded, 6, 0.01F).stator_C, limit_C + 1e-2);
   }
 }
 
-// Independent of the table: where the network itself comes to rest under the current that is allowed for good.
+// Reference without the table: the network's steady state at the current that is allowed permanently.
 TEST(CurrentTable, LastingCurrentHoldsTheWindingAtItsLimit) {
   for (const double speed_share : {0.0, 0.5}) {
     const Motor motor = ecx_32();
@@ -126,7 +126,8 @@ TEST(CurrentTable, GivesNothingWhereItKnowsNothing) {
   }
 }
 
-// In single precision a step of the stator is less than the last digit of its temperature: without the carried rounding it stands still.
+// In single precision a step of the stator is smaller than the last digit of its temperature. Without compensated rounding it would stand
+// still.
 TEST(Observer, FollowsTheReferenceInSinglePrecision) {
   const Motor motor = ecx_32();
   const Network network = datasheet_network(motor, nominal_sample(motor));

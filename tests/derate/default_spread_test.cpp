@@ -1,4 +1,4 @@
-// The way that was unsafe: a motor's file without tolerances must not be allowed more current than the same file with them.
+// Missing tolerances must be safe: a motor file without them must not be allowed more current than the same file with them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@ DerateOptions few_samples() {
   return options;
 }
 
-/// Without all spreads that temperatures depend on, or a random half of them. The others stay: each takes a number of the stream of chance,
-/// so without them the remaining values would be other draws.
+/// Removes all spreads that temperatures depend on (seed 0), or a random half of them. Other spreads stay, because each consumes a random
+/// number and removing it would change the remaining draws.
 Motor stripped(Motor motor, unsigned seed) {
   std::mt19937 engine(seed);
   for (auto& [key, figure] : motor.parameters) {
@@ -31,8 +31,8 @@ Motor stripped(Motor motor, unsigned seed) {
   return motor;
 }
 
-// Of every shipped motor: with the same guard and the same draws, the 95th percentile of the stripped file's motors is as hot or hotter.
-// By that percentile the search finds its reserve.
+// For every shipped motor, with the same guard and draws, the 95th percentile without spreads is at least as hot. The search for the safety
+// factor uses this percentile.
 TEST(DerateWithoutSpreads, DrawsMotorsThatGetNoLessHot) {
   constexpr double kPeriod_s = 0.05;
   GuaranteeOptions options;
@@ -122,7 +122,7 @@ TEST(Derate, RefusesALimitBelowTheAir) {
 }
 
 TEST(DerateWithoutSpreads, CountsAnEffectWithoutOneToo) {
-  // Cooling that somebody guessed and gave no range for.
+  // Cooling with an estimated value and no range.
   const auto with_plate = [](const char* range) {
     Motor motor = ecx_32();
     const auto type = std::ranges::find(all_effects(), "conduction", &EffectType::name);

@@ -1,4 +1,4 @@
-// Whether drawn motors keep their limits: in driving that the search never saw, through the reference solver.
+// Drawn motors keep their limits during driving that the search has not used, simulated by the reference solver.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,16 +17,16 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-/// What the firmware lets through of ten minutes of random driving, as a network sees it.
+/// Ten minutes of random driving, limited by the firmware, as inputs of a network.
 std::vector<Interval> random_driving(const Derating& derating, unsigned seed) {
   std::vector<Interval> intervals;
-  Regressor driver(seed);
+  RandomLoad driver(seed);
   ObserverRun<float> run(derating.observer, 0.01F, 40.0F);
   for (int i = 0; i < 6000; ++i) {
     double current2_A2 = 0.0;
     double speed_rad_per_s = 0.0;
     constexpr int kPeriods = 10;
-    const Regressor::Wish wish = driver.after(0.01 * kPeriods);
+    const RandomLoad::Wish wish = driver.after(0.01 * kPeriods);
     for (int k = 0; k < kPeriods; ++k) {
       speed_rad_per_s = wish.speed_share * derating.rules.most_speed_rad_per_s;
       const float current_A = static_cast<float>(wish.current_share) *
@@ -55,11 +55,11 @@ TEST(Derate, DrawnMotorsKeepTheirLimitInDrivingThatTheSearchNeverSaw) {
     const TransientResult result = run_transient(real, real.values(), random_driving(derating, static_cast<unsigned>(i)), {});
     over += result.peak_C[states::winding] > motor.nominal.winding_limit_C ? 1 : 0;
   }
-  // Five in a hundred of 60 would be three; nine or more come by chance once in 400 times.
+  // Five in a hundred of 60 would be three. Nine or more have a probability of 1/400.
   EXPECT_LE(over, 8);
 }
 
-TEST(Derate, NominalFiguresAloneWouldNotDo) {
+TEST(Derate, NominalParametersAloneAreNotEnough) {
   const Motor motor = ecx_32();
   const Derating derating = derate(motor, twente(), {});
   EXPECT_GT(derating.observer.heat_safety_factor(), 1.2);
@@ -136,15 +136,15 @@ exponent = { value = "0.5", origin = "estimated", derivation = "a test" }
   EXPECT_FALSE(observer.uses(firmware::age));
   const Network bare = datasheet_network(plain, nominal_sample(plain));
   EXPECT_FALSE(Observer(bare, plain.nominal, twente(), 1.0).uses(firmware::vehicle_speed));
-  // Air that nobody can promise cools nothing in the table.
+  // The table must not rely on cooling by air flow that nobody guarantees.
   const GuardedMotor with_wind(blown, rules_for(blown), 1.0);
   const GuardedMotor without(plain, rules_for(plain), 1.0);
   EXPECT_NEAR(barrier_current_A(with_wind.observer, with_wind.rules, 100.0, 100.0, 150.0),
               barrier_current_A(without.observer, without.rules, 100.0, 100.0, 150.0), 1e-3);
 }
 
-// What only braking, only a hot neighbour or only an aged contact shows is among the uses.
-TEST(Derate, UsesCoverEveryCaseThatALawTellsApart) {
+// Effects that appear only when braking, with a hot neighbour or with an aged contact must have their own cases.
+TEST(Derate, UsesCoverEveryCaseThatALawDistinguishes) {
   const auto cases_of = [](const std::string& lines) {
     const Motor motor = lines.empty() ? ecx_32() : ecx_32_with(lines);
     const GuardedMotor guarded(motor, rules_for(motor), 1.0);
@@ -178,7 +178,7 @@ value_7 = { value = "0 W", origin = "estimated", derivation = "a test" }
   EXPECT_TRUE(std::ranges::any_of(hump, [](const HotCase& each) { return std::abs(each.acceleration_rad_per_s2 - 300.0) < 20.0; }));
 }
 
-// A reserve for driving alone would let a braking motor pass its limit.
+// A safety factor for driving alone would let a braking motor exceed its limit.
 TEST(Derate, BrakingThatHeatsNeedsMoreOfAReserve) {
   const std::string range = R"(range = ["0.1", "0.8"])";
   const Motor braking = ecx_32_with(fmt::format(R"([effects.brake]
@@ -214,7 +214,7 @@ loss = { value = "70 W", origin = "estimated", derivation = "a test" }
   }
 }
 
-// Hot enough a body cools again, but on the way there its own heat carries the winding over the limit without any current.
+// A sufficiently hot body cools again. On the way there its own heat carries the winding over the limit without any current.
 TEST(Derate, GuardsNoMotorThatHeatsItselfOnTheWay) {
   const std::string law = hump(R"(driver = "temperature"
 hot = "winding"

@@ -1,4 +1,4 @@
-// A derating with all that exporters write, and what they make of it.
+// A derating with all data that exporters write, and its exports.
 #pragma once
 
 #include "derate/exporter.h"
@@ -6,7 +6,7 @@
 
 namespace heatsoak {
 
-/// The paper's motor, as `derate` makes it.
+/// The paper's motor, derated as `derate` does it.
 inline const Derating& ecx_derating() {
   static const Derating derating = [] {
     Derating made = derate(ecx_32(), twente(), {});
@@ -16,7 +16,7 @@ inline const Derating& ecx_derating() {
   return derating;
 }
 
-/// Without a search: the observer of another motor with a named reserve.
+/// Derates another motor without a search, with a given safety factor.
 inline Derating derating_of(const Motor& motor) {
   const GuardedMotor guarded(motor, rules_for(motor), 1.5);
   Derating derating = ecx_derating();

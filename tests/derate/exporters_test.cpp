@@ -1,4 +1,4 @@
-// Every exported file, read by a parser of its format and used as its consumer does.
+// Reads every exported file with a parser of its format and uses it like its consumer.
 #include <expat.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -34,7 +34,7 @@ std::string refusal(std::string_view name, const Derating& derating) {
   return "accepted";
 }
 
-/// "name value" of every line that is no comment.
+/// Returns "name value" of every line that is no comment.
 std::map<std::string, std::string> lines_of(const std::string& text, const std::string& pattern) {
   std::map<std::string, std::string> values;
   std::istringstream lines(text);
@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(All, EveryExporter,
 TEST(Exporters, ConfidenceIsABoundThatTheDrawsShow) {
   const Guarantee& checked = ecx_derating().guarantee;
   EXPECT_GE(checked.least_kept_share, 0.95);
-  // By definition: were the share lower, so few over the limit would have a chance of less than 5 %.
+  // Definition: if the share were lower, so few exceedances would have a probability below 5 %.
   const double p = 1.0 - checked.least_kept_share;
   double chance = 0.0;
   for (int k = 0; k <= checked.over; ++k) {
@@ -160,10 +160,10 @@ TEST(Exporters, RefuseByNameWhatTheyCannotExpress) {
   }
 }
 
-/// A controller's current in A (i_q) at a temperature of its sensor.
+/// Current limit of a controller in A (i_q) as a function of its sensor temperature.
 using Limit = std::function<double(double)>;
 
-/// fw/bldc_servo_control.h: derate_fraction, derate_current_A, effective_max_current_A; a fault above the fault temperature.
+/// moteus, fw/bldc_servo_control.h: derate_fraction, derate_current_A, effective_max_current_A, and a fault above the fault temperature.
 Limit moteus_limit() {
   const auto values = lines_of(exported("moteus"), R"(^(servo\.[a-zA-Z_.]+) ([-0-9.]+)$)");
   const auto value = [values](const char* key) { return std::stod(values.at(key)); };
@@ -178,7 +178,7 @@ Limit moteus_limit() {
   };
 }
 
-/// Firmware/MotorControl/thermistor.cpp: get_current_limit(), do_checks().
+/// ODrive, Firmware/MotorControl/thermistor.cpp: get_current_limit(), do_checks().
 Limit odrive_limit() {
   std::string text = exported("odrive");
   EXPECT_THAT(text, HasSubstr("\naxis = odrv0.axis0\n"));
@@ -192,14 +192,14 @@ Limit odrive_limit() {
   return [=](double sensor_C) { return std::min(most_A, std::max(0.0, most_A * (upper_C - sensor_C) / (upper_C - lower_C))); };
 }
 
-/// All that a controller allows in spells, then nothing, and at changing speeds, in the hottest air: the hottest winding.
+/// Returns the hottest winding temperature in the hottest air: the controller's full current alternates with none, at changing speeds.
 double hottest_C(const Network& network, const Limit& limit, unsigned seed) {
-  Regressor driver(seed);
+  RandomLoad driver(seed);
   std::vector<double> state_C(2, 40.0);
   double hottest_C = 0.0;
   constexpr double kStep_s = 0.5;
   for (int i = 0; i < 3000; ++i) {
-    const Regressor::Wish wish = driver.after(kStep_s);
+    const RandomLoad::Wish wish = driver.after(kStep_s);
     OperatingPoint<double> at;
     at.current_rms_A = kDcPerIq_ratio * std::abs(wish.current_share) * limit(state_C[states::stator]);
     at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = wish.speed_share * ecx_derating().rules.most_speed_rad_per_s;
@@ -232,12 +232,12 @@ TEST(RampExporters, ControllerStaysBelowTheTableAndKeepsTheWindingBelowItsLimit)
       Random random(99, i);
       over += hottest_C(datasheet_network(spread, draw_sample(spread, random)), limit, i) > 155.0 ? 1 : 0;
     }
-    // Five in a hundred of 40 are two; seven or more come by chance once in 200 times.
+    // Five in a hundred of 40 are two. Seven or more have a probability of 1/200.
     EXPECT_LE(over, 6);
   }
 }
 
-/// motor/mc_interface.c, update_override_limits(): a filter of 0.01 at 1 kHz, full current up to 0.1 K above the start.
+/// VESC, motor/mc_interface.c, update_override_limits(): a filter of 0.01 at 1 kHz, full current up to 0.1 K above the start.
 TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
   SmallLisp script;
   float override_C = NAN;
@@ -264,9 +264,9 @@ TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
   double filtered_C = 40.0;
   double hottest = 0.0;
   float last_A = 0.0F;
-  Regressor driver(5);
+  RandomLoad driver(5);
   for (int i = 0; i < 60'000; ++i) {
-    const Regressor::Wish wish = driver.after(0.01);
+    const RandomLoad::Wish wish = driver.after(0.01);
     for (int tick = 0; tick < 10 && i > 0; ++tick) {
       filtered_C += 0.01 * (override_C - filtered_C);
     }
@@ -287,7 +287,7 @@ TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
   EXPECT_LE(hottest, 155.05);
 }
 
-/// A SimpleFOC of which only what the snippet uses is there.
+/// Minimal stub of SimpleFOC with the members that the snippet uses.
 constexpr const char* kSimpleFoc = R"(#pragma once
 #include <math.h>
 struct CurrentSense {};
@@ -347,12 +347,12 @@ TEST(SimpleFocExporter, CompilesBesideTheHeaderAndLimitsTheMotor) {
   EXPECT_EQ(limit_A, 0.0);
   out >> is_enabled >> limit_A;
   EXPECT_EQ(is_enabled, 1);
-  // Ten minutes of all that is allowed, near what is allowed for good.
+  // After ten minutes at the limit the current is near the permanent one.
   EXPECT_NEAR(limit_A, 2.22 / kDcPerIq_ratio, 0.1);
   std::filesystem::remove_all(folder);
 }
 
-/// Attributes of an element.
+/// Returns the attributes of an element.
 std::map<std::string, std::string> attributes_of(const std::string& xml, const std::string& element) {
   struct Search {
     std::string element;
@@ -371,7 +371,7 @@ std::map<std::string, std::string> attributes_of(const std::string& xml, const s
   return search.found;
 }
 
-/// src/engine/engine_forward.c: dT/dt = (R·i² − T/R_th)/C over the ambient temperature; doc/XMLreference.rst: order of the attributes.
+/// MuJoCo, src/engine/engine_forward.c: dT/dt = (R·i² − T/R_th)/C with T above ambient; doc/XMLreference.rst: order of the attributes.
 TEST(MujocoExporter, HeldCurrentAtStandstillReachesTheObserversTemperature) {
   const auto motor = attributes_of(exported("mujoco"), "dcmotor");
   double resistance_K_per_W = 0.0, capacity_J_per_K = 0.0, constant_s = -1.0, coefficient_per_K = 0.0, reference_C = 0.0, ambient_C = 0.0;

@@ -1,4 +1,4 @@
-// Speeds beyond what the battery drives: the current falls without a jump, and what it allows there is safe.
+// Speeds beyond the battery's no-load speed: the current decreases continuously, and the allowed current is safe.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using states::winding;
 
-/// Without a load, the command at its limit.
+/// Returns the no-load speed at the command's limit.
 double fastest_driven_rad_per_s(const Motor& motor, const Robot& robot) {
   return std::min(robot.battery_full_V, robot.voltage_limit_V) / motor.nominal.torque_constant_Nm_per_A;
 }
@@ -43,7 +43,7 @@ TEST(FastMotor, IsInTheTableOnAFullBatteryAndWhenPushed) {
       const double driven_rad_per_s = fastest_driven_rad_per_s(fast.motor, fast.robot);
       EXPECT_GE(fast.rules.most_speed_rad_per_s, 1.0999 * driven_rad_per_s) << robot << ", " << id;
       EXPECT_GT(fast.table.allowed_A(driven_rad_per_s, 60.0, 60.0), 0.5 * fast.table.allowed_A(0.0, 60.0, 60.0)) << robot << ", " << id;
-      // Whatever the command's limit: the drive core believes speeds up to that.
+      // Independent of the command's limit: the drive core accepts speeds up to this value.
       EXPECT_GE(fast.table.no_current_speed_rad_per_s, 1.0999 * fast.robot.battery_full_V / fast.motor.nominal.torque_constant_Nm_per_A);
     }
   }
@@ -73,7 +73,7 @@ TEST(FastMotor, HasACurrentThatFallsToNoneWithoutAJump) {
 }
 
 TEST(FastMotor, IsAllowedNoMoreThanTheBarrierWhereTheCurrentFalls) {
-  // Heat in the winding itself that grows with the speed's square: the hardest case for a straight line.
+  // Heat in the winding that grows with the speed squared is the hardest case for linear interpolation.
   const Motor lossy = ecx_32_with(R"([effects.eddy]
 type = "ac_copper_loss"
 share = { value = "0.2", origin = "estimated", derivation = "a test" }
@@ -90,7 +90,7 @@ share = { value = "0.2", origin = "estimated", derivation = "a test" }
   }
 }
 
-// Half an hour of being pushed about beyond the table's last full row, with all that is allowed, through the network's own solver.
+// Half an hour at imposed speeds beyond the table's last full row with all allowed current, simulated by the network's own solver.
 TEST(FastMotor, KeepsItsLimitInTheNetworkWhereverItIsPushed) {
   const FastMotor fast(ecx_32(), twente());
   const Observer nominal(fast.network, fast.motor.nominal, fast.robot, 1.0);

@@ -1,4 +1,4 @@
-// Functional mock-up units: compiled, opened and driven as a simulator does, against the integrator and the guard of this program.
+// Functional mock-up units: compiled, loaded and driven like in a simulator, compared with the integrator and the guard of this program.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ std::string compiled(const std::string& form, const Derating& derating) {
   throw std::out_of_range(form);
 }
 
-/// What a wheel asks for in a quarter of a second.
+/// Demand of a wheel for a quarter of a second.
 struct Moment {
   double duration_s = 0.0;
   double current_A = 0.0;
@@ -47,7 +47,7 @@ struct Moment {
   double vehicle_speed_m_per_s = 0.0;
 };
 
-/// Of a generated match, clamped by voltage and driver.
+/// Demands of a generated match, limited by voltage and motor controller.
 std::vector<Moment> random_match(const Motor& motor, std::uint64_t seed) {
   const Robot robot = twente();
   const WheelDemand wheel = draw_demands(read_duty(kSource / "duty_profiles/division_a_match.toml"), robot, seed, 1, 1).front();
@@ -80,7 +80,7 @@ class Fmu : public testing::TestWithParam<int> {
   }
 };
 
-/// Largest difference to CVODES over a match, in K.
+/// Returns the largest difference to CVODES over a match, in K.
 double difference_K(FmuUnit& unit, const Motor& motor, const std::vector<Moment>& match, const std::vector<std::string>& outputs) {
   constexpr double kAmbient_C = 31.0;
   constexpr double kStart_C = 44.0;
@@ -137,7 +137,7 @@ TEST_P(Fmu, MotorWithEffectsFollowsTheIntegratorToo) {
   EXPECT_LT(difference_K(unit, motor, random_match(motor, 5), outputs), 0.02);
 }
 
-// A long step has many inner ones: the result is that of short steps.
+// A long step has many inner steps, so its result must equal that of short steps.
 TEST_P(Fmu, MotorsLongStepsAreAsExactAsShortOnes) {
   const std::string bytes = compiled(form("motor"), ecx_derating());
   FmuUnit once(bytes, GetParam());
@@ -188,7 +188,7 @@ TEST_P(Fmu, RollbackGivesTheSameBits) {
     const std::vector<double> first = drive(unit, 200, 400);
     EXPECT_EQ(unit.bring_back(kept), 0);
     EXPECT_TRUE(same(drive(unit, 200, 400), first)) << kind;
-    // Another instance, from the bytes of the state.
+    // Restores the state in another instance from its bytes.
     const std::vector<char> state = unit.bytes_of(kept);
     FmuUnit other(bytes, GetParam());
     void* restored = nullptr;
@@ -214,19 +214,19 @@ TEST_P(Fmu, GuardIsTheOneOfTheFirmware) {
   EXPECT_EQ(unit.run(), 0);
   EXPECT_GT(unit.get("limp_current_A"), 0.0);
   ObserverRun<float> observer(ecx_derating().observer, 0.01F, static_cast<float>(kStart_C));
-  Regressor driver(3);
+  RandomLoad driver(3);
   double now_s = 0.0;
   for (int i = 0; i < 6000; ++i) {
-    const Regressor::Wish wish = driver.after(0.02);
+    const RandomLoad::Wish wish = driver.after(0.02);
     const double speed_rad_per_s = 0.9 * wish.speed_share * ecx_derating().rules.most_speed_rad_per_s;
     const double current_A = wish.current_share * unit.get("allowed_current_A");
     give(unit, {0.0, current_A, speed_rad_per_s, 0.0}, 40.0);
     EXPECT_EQ(unit.step(now_s, 0.02), 0);
     now_s += 0.02;
-    const std::array<float, firmware::kSignalCount> told{
+    const std::array<float, firmware::kSignalCount> input_signals{
         static_cast<float>(current_A), static_cast<float>(speed_rad_per_s), 40.0F, 0.0F, 40.0F, 0.0F, 0.0F};
-    observer.step(told);
-    observer.step(told);
+    observer.step(input_signals);
+    observer.step(input_signals);
     ASSERT_NEAR(unit.get("guarded_winding_C"), observer.state_C()[states::winding], 1e-3) << i;
     const double table_A =
         ecx_derating().table.allowed_A(static_cast<float>(speed_rad_per_s), observer.hottest_body_C(), observer.state_C()[states::winding]);
@@ -313,7 +313,7 @@ TEST_P(Fmu, DescriptionHasUnitsStartValuesAndWhatItCanDo) {
   }
 }
 
-// The official schemas are not part of the project: HEATSOAK_FMI_SCHEMAS names a folder with fmi2ModelDescription.xsd and its parts.
+// The official schemas are not part of the project. HEATSOAK_FMI_SCHEMAS names a folder with fmi2ModelDescription.xsd and its parts.
 TEST_P(Fmu, DescriptionFollowsTheOfficialSchema) {
   const char* const folder = std::getenv("HEATSOAK_FMI_SCHEMAS");
   if (folder == nullptr) {
@@ -335,7 +335,7 @@ TEST_P(Fmu, DescriptionFollowsTheOfficialSchema) {
   }
 }
 
-// FMPy (BSD) is what many read these files with; it is no package of Debian.
+// FMPy (BSD) is a common reader of these files. It is no Debian package, so the test may be skipped.
 TEST_P(Fmu, FmpyAcceptsAndRunsIt) {
   if (std::system("python3 -c 'import fmpy' > /dev/null 2>&1") != 0) {
     GTEST_SKIP() << "python3 has no fmpy";

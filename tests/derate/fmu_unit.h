@@ -1,5 +1,5 @@
-// A functional mock-up unit as a simulator uses it: its binary is opened with dlopen, its variables are found by name in its description.
-// The types are those of the standard, written here once more: a unit with other ones fails.
+// Uses a functional mock-up unit like a simulator: dlopen loads its binary, and its description gives the variables by name. The types of
+// the standard are defined here independently, so a unit with other types fails.
 #pragma once
 
 #include <dlfcn.h>
@@ -24,7 +24,7 @@ namespace heatsoak {
 
 using Attributes = std::map<std::string, std::string>;
 
-/// Attributes of every element with that attribute.
+/// Returns the attributes of every element that has this attribute.
 inline std::vector<Attributes> elements_with(const std::string& xml, const std::string& attribute) {
   struct Found {
     std::string attribute;
@@ -47,13 +47,13 @@ inline std::vector<Attributes> elements_with(const std::string& xml, const std::
   return found.all;
 }
 
-/// What went wrong, as the unit's log says.
+/// Error messages of the unit's logger.
 inline std::vector<std::string>& fmu_log() {
   static std::vector<std::string> lines;
   return lines;
 }
 
-/// One instance of a unit of either version. Status 0 is good.
+/// One instance of a unit of either version. Status 0 means success.
 class FmuUnit {
  public:
   FmuUnit(const std::string& bytes, int version, const std::string& token = {}) : version_(version), files_(unpacked(bytes)) {

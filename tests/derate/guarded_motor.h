@@ -1,4 +1,4 @@
-// A motor with its observer and its table, made as `derate` makes them but with a reserve that the test names.
+// A motor with its observer and table, made as `derate` makes them but with a safety factor chosen by the test.
 #pragma once
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 
 namespace heatsoak {
 
-/// The paper's motor with effects behind its data sheet, as a diagnosis writes them.
+/// Returns the paper's motor with effects appended to its data sheet, as a diagnosis writes them.
 inline Motor ecx_32_with(const std::string& lines) {
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_guarded_{}.toml", static_cast<int>(getpid()));
@@ -28,7 +28,7 @@ inline Motor ecx_32_with(const std::string& lines) {
   return motor;
 }
 
-/// A curve that heats over the temperature or speed that `lines` name, with all of it at its middle knot.
+/// Returns a heating curve over the temperature or speed in `lines`, with its maximum at the middle knot.
 inline std::string hump(const std::string& lines, double most_W) {
   std::string law = "[effects.hump]\ntype = \"tabulated\"\nform = \"heat\"\n" + lines;
   for (int knot = 1; knot <= 7; ++knot) {
@@ -59,10 +59,10 @@ struct GuardedMotor {
   CurrentTable table;
 };
 
-/// Someone who drives as hard as is allowed, and now and then less: a share of the allowed current, a speed, for a while.
-class Regressor {
+/// Random load: mostly the full allowed current, sometimes a share of it, at a random speed, held for a while.
+class RandomLoad {
  public:
-  explicit Regressor(unsigned seed) : engine_(seed) {}
+  explicit RandomLoad(unsigned seed) : engine_(seed) {}
 
   struct Wish {
     double current_share = 1.0;

@@ -1,5 +1,5 @@
-// Memory over power-off in the generated header: as warm as before after a short loss of power, never colder than the network says, and at
-// the limit where the buffer is not whole.
+// Memory over power-off in the generated header. After a short loss of power the guard is as warm as before and never colder than the
+// network. It starts at its limit if the buffer is damaged.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ class Memory : public testing::Test {
     static const CompiledGuard made(ecx_derating(), "memory");
     return made;
   }
-  /// Driven hard for a while.
+  /// Returns a guard after a period of hard driving.
   static ModelGuard driven(int steps) {
     ModelGuard motor(guard());
     motor.start(25.0F);
@@ -61,7 +61,7 @@ TEST_F(Memory, ATwoSecondResetChangesNothingThatTwoSecondsWouldNot) {
   }
 }
 
-// The reference solver on the same network without current: never colder than it, and not much warmer.
+// Reference: the solver on the same network without current. The guard must never be colder and not much warmer.
 TEST_F(Memory, CoolsAsTheNetworkDoesAndNoFaster) {
   const ModelGuard motor = driven(12'000);
   const Network network = datasheet_network(ecx_32(), nominal_sample(ecx_32()));
@@ -112,7 +112,7 @@ TEST_F(Memory, NoNodeIsColderThanTheBoard) {
   EXPECT_GE(dead_sensor.temperatures_C(2)[1], 40.0F);
 }
 
-// What happened between the last save and the loss of power is at least as hot as any driving that the guard allowed.
+// Time between the last save and the loss of power counts as the hottest driving that the guard allowed.
 TEST_F(Memory, UnsavedTimeCountsAsTheHardestDriving) {
   for (const int before : {10, 500, 8000}) {
     ModelGuard motor = driven(before);
@@ -173,7 +173,7 @@ TEST_F(Memory, WhatWasNeverStartedIsNotSaved) {
   EXPECT_EQ(after.restore(zero.saved(2), 1.0F, 0.0F, 25.0F), CompiledGuard::nothing_restored);
 }
 
-/// The committed table of docs/power_off.md, written anew.
+/// Regenerates the committed table of docs/power_off.md.
 std::string power_off_table(const CompiledGuard& guard, const std::vector<unsigned char>& hot) {
   struct Case {
     const char* name;
@@ -202,7 +202,7 @@ std::string power_off_table(const CompiledGuard& guard, const std::vector<unsign
 }
 
 TEST_F(Memory, TheDocumentsTableIsWhatTheHeaderDoes) {
-  // Driven until everything is as hot as it may be.
+  // Drives until every node is at its hottest permitted temperature.
   const std::string table = power_off_table(guard(), driven(60'000).saved(2));
   std::stringstream page;
   page << std::ifstream(kSource / "docs/power_off.md").rdbuf();

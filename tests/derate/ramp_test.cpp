@@ -1,4 +1,4 @@
-// The fitted ramp: against a brute-force search, below the table, and under a driver who asks for all that it allows.
+// The fitted ramp, compared with a brute-force search, with the table, and under a load that uses all its current.
 #include "derate/ramp.h"
 
 #include <gmock/gmock.h>
@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The least of the table, by a grid that knows nothing of its places.
+/// Returns the table's lowest current, by a grid independent of the table's points.
 double least_A(const Derating& derating, RampSignal signal, double signal_C) {
   double least = 1e9;
   for (int i = 0; i <= 60; ++i) {

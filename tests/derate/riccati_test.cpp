@@ -1,4 +1,4 @@
-// The gain against closed forms, the equation itself, and the recursion that it is the limit of.
+// The filter gain, compared with closed forms, with the Riccati equation itself, and with the recursion that converges to it.
 #include "derate/sensed/riccati.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A motor with a sensor in the loop of its generated guard: the plant is the network of a drawn motor, integrated on its own.
+// A motor with a sensor in the loop of its generated guard. The plant is the network of a drawn motor with a separate integrator.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace heatsoak {
 
-/// With a search of few motors: what it promises is checked on others.
+/// Options with few motors for the search. Other motors then check the guarantee.
 inline DerateOptions quick_options(const SensorOptions& sensor) {
   DerateOptions options;
   options.guarantee.samples = 120;
@@ -27,7 +27,7 @@ inline Derating resistance_derating() {
   return derate(ecx_32(), twente(), quick_options({.kind = SensorKind::winding_resistance, .node = states::winding, .accuracy_K = 10.0}));
 }
 
-/// Euler steps of the true network; its own time constants are hundreds of times the period.
+/// Euler steps of the true network. Its time constants are hundreds of times the period.
 class Plant {
  public:
   Plant(const Motor& motor, const MotorSample& sample, double start_C)
@@ -56,32 +56,33 @@ class Plant {
   std::vector<double> rate_;
 };
 
-/// What the sensor shows of the true stator at a time.
+/// Sensor reading as a function of time and of the true stator temperature.
 using Sensor = std::function<float(double time_s, double true_C, double ambient_C)>;
 
 struct SensedRun {
   double winding_peak_C = 0.0;
-  double most_excess_A = -1e9;  ///< above an independent guard without a sensor that saw what it would have allowed of the same current
+  /// Excess over an independent guard without a sensor. The input of that guard is the same current, limited by its own allowance.
+  double most_excess_A = -1e9;
   double dropped_at_s = -1.0;
   int status = 0;
   double last_allowed_A = 0.0;
 };
 
-/// Drives as hard as is allowed, or as `Driver` does.
+/// Drives with the full allowed current, or with a random load.
 inline SensedRun run_sensed(const CompiledGuard& guard, const Derating& derating, Plant& plant, const Sensor& sensor, int steps,
                             unsigned driver_seed, bool is_always_all = false) {
   SensedGuard sensed(guard);
   ModelGuard model(guard);
-  const double ambient_C = 39.5;  // measured: the hottest declared stands for one that is not
+  const double ambient_C = 39.5;  // just below 40 °C, the value that replaces a missing measurement
   sensed.start(static_cast<float>(ambient_C));
   model.start(static_cast<float>(ambient_C));
   SensedRun run;
-  Regressor driver(driver_seed);
+  RandomLoad driver(driver_seed);
   const double period_s = derating.options.period_s;
   double allowed_A = 0.0;
   double capped_A = 0.0;
   for (int i = 0; i < steps; ++i) {
-    const Regressor::Wish wish = is_always_all ? Regressor::Wish{} : driver.after(period_s);
+    const RandomLoad::Wish wish = is_always_all ? RandomLoad::Wish{} : driver.after(period_s);
     const double current_A = wish.current_share * allowed_A;
     const double speed_rad_per_s = wish.speed_share * derating.rules.most_speed_rad_per_s;
     plant.step(current_A, speed_rad_per_s, ambient_C, period_s);

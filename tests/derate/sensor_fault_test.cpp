@@ -1,4 +1,4 @@
-// Attacks on the sensor of a generated guard: none gains more than is stated, and the nominal motor outlives them all.
+// Sensor faults of a generated guard: no fault gains more current than stated, and the nominal motor survives all of them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 struct Attack {
   const char* name;
-  bool is_noticed;  ///< the cross-check must drop it within the run
+  bool is_noticed;  ///< true if the cross-check must drop the sensor within the run
   Sensor sensor;
 };
 
@@ -56,7 +56,7 @@ class LyingSensor : public testing::Test {
   }
 };
 
-// 10⁵ steps and more each: all that is allowed, and random driving.
+// At least 10⁵ steps each, with the full allowed current and with random driving.
 TEST_F(LyingSensor, GainsNoMoreThanStatedAndSparesTheNominalMotor) {
   const Derating& derating = thermistor_derating();
   ASSERT_TRUE(guard());
@@ -88,16 +88,16 @@ TEST_F(LyingSensor, OfDrawnMotorsGainsNoMoreThanStated) {
   }
 }
 
-// Without any reading it is the guard without a sensor, to the bit.
+// Without readings it must be bit-identical to the guard without a sensor.
 TEST_F(LyingSensor, WithoutAReadingItIsTheGuardWithoutASensor) {
   SensedGuard sensed(guard());
   ModelGuard model(guard());
   sensed.start(30.0F);
   model.start(30.0F);
-  Regressor driver(5);
+  RandomLoad driver(5);
   float allowed_A = 0.0F;
   for (int i = 0; i < 100'000; ++i) {
-    const Regressor::Wish wish = driver.after(0.01);
+    const RandomLoad::Wish wish = driver.after(0.01);
     const CompiledGuard::Input in{static_cast<float>(wish.current_share) * allowed_A,
                                   static_cast<float>(wish.speed_share * thermistor_derating().rules.most_speed_rad_per_s), 30.0F};
     const CompiledGuard::Output out = sensed.step(in, std::numeric_limits<float>::quiet_NaN());
@@ -125,7 +125,7 @@ TEST_F(LyingSensor, AJumpIsNotUsedAndOneThatLastsEndsTheSensor) {
   EXPECT_NE(status, CompiledGuard::used);
 }
 
-// In a cold room with air that nobody measures the guard takes 40 °C; a correct sensor that shows the room is no liar.
+// In a cold room without an air sensor the guard assumes 40 °C. A correct sensor that shows the cold motor must not count as faulty.
 TEST_F(LyingSensor, ACorrectSensorInAColdRoomIsKept) {
   SensedGuard sensed(guard());
   sensed.start(15.0F);
@@ -139,7 +139,7 @@ TEST_F(LyingSensor, ACorrectSensorInAColdRoomIsKept) {
   }
 }
 
-// A hot reading is believed, whatever the model says: it only takes current away.
+// A hot reading is always accepted, because it only reduces the current.
 TEST_F(LyingSensor, AHotReadingTakesCurrentAway) {
   SensedGuard sensed(guard());
   ModelGuard model(guard());
@@ -156,7 +156,7 @@ TEST_F(LyingSensor, AHotReadingTakesCurrentAway) {
   EXPECT_LT(out.allowed_A, 0.5F * model.step(in).allowed_A);
 }
 
-// What radiation or a wild pointer leaves of the state gives no more than the guard without a sensor at its limit.
+// A state corrupted by radiation or a wild pointer must not allow more than the guard without a sensor at its limit.
 TEST_F(LyingSensor, ACorruptStateCountsAsAtItsLimit) {
   std::mt19937 engine(8);
   for (int trial = 0; trial < 2000; ++trial) {

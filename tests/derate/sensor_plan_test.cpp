@@ -1,4 +1,4 @@
-// What a sensor is worth: gains that follow its accuracy, a lower safety factor, and limits that drawn motors keep with it.
+// Benefit of a sensor: gains that follow its accuracy, a lower safety factor, and limits that drawn motors keep.
 #include "derate/sensed/sensor_plan.h"
 
 #include <gmock/gmock.h>
@@ -59,7 +59,7 @@ TEST(SensorPlan, RefusesWhatIsNoSensor) {
   EXPECT_THROW(plan_sensor(ecx_32(), twente(), derating, {.node = 7}), Failure);
 }
 
-// Motors and sensor errors that the search has not seen, through the generated code and another integrator.
+// Motors and sensor errors that the search has not used, with the generated code and another integrator.
 TEST(SensorPlan, DrawnMotorsKeepTheirLimitWithACorrectSensor) {
   const Derating& derating = thermistor_derating();
   const CompiledGuard guard(derating);
@@ -79,8 +79,8 @@ TEST(SensorPlan, DrawnMotorsKeepTheirLimitWithACorrectSensor) {
     over += run.winding_peak_C > derating.rules.limits.winding_C ? 1 : 0;
     dropped += run.dropped_at_s >= 0.0 ? 1 : 0;
   }
-  // Five in a hundred of 60 would be three; nine or more come by chance once in 400 times. Of the dropped, one in a hundred: 5 or more once
-  // in 1000.
+  // Five in a hundred of 60 would be three; nine or more have a probability of 1/400. One in a hundred may lose its sensor; 5 or more have
+  // a probability of 1/1000.
   EXPECT_LE(over, 8);
   EXPECT_LE(dropped, 4);
 }

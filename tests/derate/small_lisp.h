@@ -1,4 +1,5 @@
-// The part of LispBM that an exported script uses, in single precision: enough to run it against what the host computes.
+// Interpreter for the part of LispBM that an exported script uses, in single precision. It runs the script for a comparison with the host's
+// results.
 #pragma once
 
 #include <cmath>
@@ -11,20 +12,20 @@
 
 namespace heatsoak {
 
-/// Throws std::runtime_error on a name that is not known, so that a script with one is no script.
+/// Throws std::runtime_error on an unknown name, so that a script with a wrong name fails.
 class SmallLisp {
  public:
   using Extension = std::function<float(const std::vector<float>&)>;
 
   struct Node {
-    std::string atom;  ///< empty: a list
+    std::string atom;  ///< empty for a list
     std::vector<Node> items;
   };
 
   std::map<std::string, Extension> extensions;
-  std::map<std::string, float> settings;  ///< of conf-set
+  std::map<std::string, float> settings;  ///< values set by conf-set
 
-  /// Runs the definitions; the body of `loopwhile` is kept for cycle().
+  /// Runs the definitions and keeps the body of `loopwhile` for cycle().
   void load(const std::string& script) {
     std::string words;
     for (std::istringstream lines(script); std::getline(lines, line_);) {

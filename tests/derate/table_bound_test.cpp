@@ -1,4 +1,4 @@
-// What the table promises beside the exact answer: never above it, not far below, no jump, no steeper than it says, and small.
+// Table compared with the exact solution: never above it, not far below, continuous, no steeper than stated, and small.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ type = "winding_through_flow"
 conductance = { value = "0.1 W/K", origin = "estimated", derivation = "a test" }
 )";
 
-/// Motors of the data base, one whose losses depend on the speed, and one with a stator limit.
+/// Motors of the database: one has losses that depend on the speed, another has a stator limit.
 struct Case {
   std::string name;
   Motor motor;
@@ -44,7 +44,7 @@ struct Place {
   double winding_C;
 };
 
-/// Anywhere up to the limits, half of them near these.
+/// Random states up to the limits, half of them near these.
 class Places {
  public:
   explicit Places(const BarrierRules& rules) : rules_(rules) {}
@@ -90,7 +90,7 @@ TEST(TableBound, HoldsOnPointsThatTheTableHasNotSeen) {
   }
 }
 
-// A stator above its axis, which only a measured stator or a restart can show.
+// Only a measured stator or a restart can give a stator above its axis.
 TEST(TableBound, HoldsForAStatorAboveItsAxis) {
   for (const Case& each : cases()) {
     const GuardedMotor guarded(each.motor, each.rules, 1.6);
@@ -106,7 +106,7 @@ TEST(TableBound, HoldsForAStatorAboveItsAxis) {
   }
 }
 
-// Along lines through the table, 20 steps per kelvin: a jump would show as a slope far above what the table states.
+// Lines through the table with 20 steps per kelvin. A discontinuity would appear as a slope far above the stated one.
 TEST(TableBound, CurrentIsContinuousAndNoSteeperThanStated) {
   for (const Case& each : cases()) {
     const GuardedMotor guarded(each.motor, each.rules, 1.6);
@@ -159,8 +159,8 @@ TEST(TableBound, SizeAndErrorAreTradedAsAsked) {
   EXPECT_GT(small.bound.shortfall_ratio, 0.002);
 }
 
-/// Places that straight lines between currents need from 40 °C to where the current is `least_A`, each line as long as the goal allows: the
-/// fewest there can be. The current is concave there, so these lines stay below it by themselves.
+/// Returns the smallest number of points for linear interpolation of the current, from 40 °C to the temperature with current `least_A`.
+/// Each line is as long as the goal allows. The current is concave there, so the lines stay below it.
 int places_of_straight_currents(Barrier& barrier, double stator_C, double least_A, double goal) {
   const auto current_A = [&](double winding_C) { return barrier.current_A(0.0, stator_C, winding_C); };
   constexpr double kStep_K = 0.25;
@@ -188,7 +188,7 @@ int places_of_straight_currents(Barrier& barrier, double stator_C, double least_
   return places;
 }
 
-// The simple rival: straight lines between currents, with the best places that there are.
+// Alternative method: linear interpolation of the current between optimal points.
 TEST(TableBound, SquaresNeedFewerPlacesThanCurrents) {
   constexpr double kGoal = 0.01;
   for (const char* const id : {"maxon_ecx_flat_32l_48v", "maxon_ecx_flat_42m_24v", "maxon_ec45_flat_70w_24v"}) {

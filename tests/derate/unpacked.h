@@ -1,4 +1,4 @@
-// Files of a ZIP archive, read by libarchive.
+// Reads files of a ZIP archive with libarchive.
 #pragma once
 
 #include <archive.h>
@@ -27,7 +27,7 @@ inline std::map<std::string, std::string> unpacked(const std::string& bytes) {
   return files;
 }
 
-/// An exporter's text, or the texts of all files of its archive.
+/// Returns an exporter's text, or the texts of all files of its archive.
 inline std::string readable(const std::string& exported) {
   if (!exported.starts_with("PK")) {
     return exported;

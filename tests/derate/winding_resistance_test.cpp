@@ -1,4 +1,4 @@
-// The winding's temperature from voltage and current: within its accuracy where it is shown, and not shown where it cannot be.
+// Winding temperature from voltage and current: within its accuracy where it is given, and not given where it cannot be determined.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 const SensorOptions kResistance{.kind = SensorKind::winding_resistance, .node = states::winding, .accuracy_K = 10.0};
 
-/// The thermistor's plan with readings of the resistance: what is tested here is how they are made.
+/// Uses the thermistor's plan with resistance readings, because this file tests only how the readings are made.
 const CompiledGuard& guard() {
   static const CompiledGuard made(
       [] {
@@ -25,13 +25,13 @@ const CompiledGuard& guard() {
   return made;
 }
 
-/// A motor's terminals with everything wrong at once that is declared.
+/// A motor's terminals with all declared errors at once.
 struct Terminals {
   double resistance_25C_ohm = 1.07;
   double torque_constant_Nm_per_A = 0.0328;
   double voltage_error_V = 0.0;
   double current_error_A = 0.0;
-  double gain_ratio = 1.0;  ///< of the voltage sensor
+  double gain_ratio = 1.0;  ///< gain of the voltage sensor
 
   [[nodiscard]] double voltage_V(double current_A, double speed_rad_per_s, double winding_C) const {
     const double resistance_ohm = resistance_25C_ohm * (1.0 + 0.0039 * (winding_C - 25.0));
@@ -47,7 +47,7 @@ class ResistanceSensor {
     sensed_.start(body_C);
     guard().function<void(void*, float)>("resistance_start")(sensor_.data(), body_C);
   }
-  /// Twice, so that the current has not just changed.
+  /// Reads twice, because a reading requires that the current has not just changed.
   float reading_C(const Terminals& terminals, double current_A, double speed_rad_per_s, double winding_C) {
     const CompiledGuard::Input in{static_cast<float>(current_A + terminals.current_error_A), static_cast<float>(speed_rad_per_s), 30.0F};
     const auto voltage_V = static_cast<float>(terminals.voltage_V(current_A, speed_rad_per_s, winding_C));
@@ -55,7 +55,7 @@ class ResistanceSensor {
     read(sensor_.data(), sensed_.state().data(), &in, voltage_V);
     return read(sensor_.data(), sensed_.state().data(), &in, voltage_V);
   }
-  /// The guard's own state, while the motor works.
+  /// Advances the guard's own state under load.
   void work(int steps) {
     for (int i = 0; i < steps; ++i) {
       sensed_.step({5.0F, 0.0F, 30.0F}, std::nanf(""));
@@ -78,7 +78,7 @@ TEST(WindingResistance, ExactTerminalsShowTheTemperature) {
   }
 }
 
-// Random errors within what is declared, random motors: never more than the accuracy off where anything is shown.
+// Random motors with random errors within the declared ranges: every given temperature is within the stated accuracy.
 TEST(WindingResistance, StaysWithinItsAccuracyForDrawnMotorsAndErrors) {
   std::mt19937_64 engine(12);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

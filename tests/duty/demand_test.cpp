@@ -14,7 +14,7 @@ namespace {
 
 const DemandGatherer::Grid kGrid{};
 
-// 0.1 N m at 100 rad/s for 1 s, then −0.05 N m at 40 rad/s for 3 s: (10·1 − 2·3)/4 = 1 W.
+// Reference: 0.1 N m at 100 rad/s for 1 s, then −0.05 N m at 40 rad/s for 3 s: (10·1 − 2·3)/4 = 1 W.
 TEST(DemandGatherer, power_is_the_mean_of_the_products) {
   DemandGatherer gatherer("wheel", 4.0, kGrid);
   gatherer.add(1.0, 0.1, 100.0);
@@ -25,7 +25,7 @@ TEST(DemandGatherer, power_is_the_mean_of_the_products) {
   EXPECT_NEAR(constant_bin(2.0, -0.05, 40.0, 0.0).power_mean_W, -2.0, 1e-15);
 }
 
-// A triangle of speed between −30 and 30 rad/s with 60 rad/s per second up and down, a thousand steps a second.
+// Triangular speed between −30 and 30 rad/s with slopes of ±60 rad/s², a thousand steps per second.
 TEST(DemandGatherer, acceleration_is_the_mean_of_its_magnitude_through_reversals_and_across_bins) {
   DemandGatherer gatherer("wheel", 0.7, kGrid);
   for (int i = 0; i < 7000; ++i) {
@@ -35,12 +35,12 @@ TEST(DemandGatherer, acceleration_is_the_mean_of_its_magnitude_through_reversals
   const WheelDemand demand = gatherer.finish();
   ASSERT_EQ(demand.bins.size(), 10U);
   for (std::size_t i = 0; i < demand.bins.size(); ++i) {
-    // The very first moment has none before it.
+    // The first moment has no predecessor.
     EXPECT_NEAR(demand.bins[i].acceleration_rad_per_s2, i == 0 ? 60.0 * 699.0 / 700.0 : 60.0, 1e-9) << i;
   }
 }
 
-// −2 A, which brakes, for 1 s and 6 A for 3 s: (4·1 + 36·3)/4 = 28 A².
+// Reference: −2 A, which brakes, for 1 s and 6 A for 3 s: (4·1 + 36·3)/4 = 28 A².
 TEST(DemandGatherer, current_is_merged_by_its_square) {
   DemandGatherer gatherer("wheel", 4.0, kGrid);
   gatherer.add(1.0, 0.0, 10.0, -2.0);
@@ -53,7 +53,7 @@ TEST(DemandGatherer, current_is_merged_by_its_square) {
   EXPECT_NEAR(demand.points[1].current_A, 6.0, 1e-12);
 }
 
-// 4 A that brakes stays so, as a bin, as a point and where rows are merged.
+// A braking current of 4 A must stay a braking current in a bin, in a point and in merged rows.
 TEST(DemandGatherer, current_against_the_motion_brakes) {
   DemandGatherer gatherer("wheel", 1.0, kGrid);
   for (int i = 0; i < 200; ++i) {
@@ -73,7 +73,7 @@ TEST(DemandGatherer, current_against_the_motion_brakes) {
   }
 }
 
-TEST(DemandGatherer, a_stretch_of_its_own_ends_the_bin_before_it) {
+TEST(DemandGatherer, a_separate_segment_ends_the_bin_before_it) {
   DemandGatherer gatherer("wheel", 4.0, kGrid);
   gatherer.add(1.0, 0.1, 10.0);
   gatherer.add_alone(0.5, -0.1234, -50.0);
@@ -86,7 +86,7 @@ TEST(DemandGatherer, a_stretch_of_its_own_ends_the_bin_before_it) {
   EXPECT_TRUE(std::ranges::any_of(demand.points, [](const LoadPoint& each) { return each.torque_Nm == 0.1234 && each.time_s == 0.5; }));
 }
 
-// However large the loads, the points stay few, stand for all of the time and never ask for less than what was there.
+// For any range of loads the number of points is bounded. The points cover the whole time and never have less load than the input.
 TEST(DemandGatherer, loads_without_bound_make_no_points_without_bound) {
   Random random(5, 0);
   DemandGatherer gatherer("wheel", 1e9, kGrid);

@@ -15,7 +15,7 @@ struct Written {
   }
 };
 
-// Two moments make a row: rms 5 of 3 and −4 … with the sign of the mean, mean speeds 2 and −3.
+// Two moments make one row. Torques of 1 and −7 have the RMS 5 and the sign of their mean. The mean speeds are 2 and −3.
 TEST(DutyRows, are_put_out_as_soon_as_they_are_whole) {
   Written written;
   DutyRows rows(2, DutyKind::torque, 0.02, written.put());

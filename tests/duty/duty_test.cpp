@@ -38,7 +38,7 @@ class DutyTest : public testing::Test {
   std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("heatsoak_duty_" + std::to_string(::getpid()));
 };
 
-/// The one wheel of a duty that tells none apart.
+/// Returns the only wheel of a duty that does not distinguish wheels.
 WheelDemand wheel_of(const Duty& duty) { return duty.demand({}, 1).at(0); }
 
 double time_on_s(const Duty& duty) {
@@ -134,7 +134,7 @@ TEST_F(DutyTest, a_recording_of_current_is_repeated_whole) {
   }
 }
 
-/// Rows of 10 ms of two sines, as text and as the integrals that heat depends on.
+/// Rows of 10 ms of two sines, as text and as the integrals that determine the heat.
 struct ShortRows {
   std::string text;
   double square_s = 0.0;  ///< ∫M²dt, or ∫I²dt

@@ -71,7 +71,7 @@ TEST(ImportCsv, NamesThePlaceOfWhatIsWrong) {
   EXPECT_THAT(failure_of_table(kHeader), HasSubstr("holds no row"));
 }
 
-// A recorder that dies leaves a last row that is cut somewhere, perhaps inside its last number.
+// A recorder that stops abruptly leaves a truncated last row, perhaps inside its last number.
 TEST(ImportCsv, LeavesOutALastRowThatMayBeCut) {
   const std::string last = "103,blue,7,3.00,1.5,0.125\n";
   for (std::size_t kept = 1; kept < last.size(); ++kept) {
@@ -87,7 +87,7 @@ TEST(ImportCsv, LeavesOutALastRowThatMayBeCut) {
     EXPECT_EQ(game.tracks.at(0).segments.at(0).size(), 301U);
     EXPECT_THAT(sentences(game.report), Each(Not(HasSubstr("line break"))));
   }
-  // What is wrong before stays wrong, and a header alone is no game.
+  // Mistakes in earlier rows are still reported, and a header without rows is no game.
   EXPECT_THAT(failure_of_table(table(3) + "101,blue,7,zero,0,0\n101,bl"), HasSubstr("game.csv:5:12: error: x_m"));
   EXPECT_THAT(failure_of_table(std::string(kHeader) + "101,bl"), HasSubstr("holds no row"));
 }
@@ -125,7 +125,7 @@ TEST(ImportCsv, LeavesOutRowsThatGoBackInTimeAndSaysWhichOnes) {
   EXPECT_THAT(sentences(game.report), Contains(HasSubstr("line 302: blue 7 at 101 s")));
 }
 
-/// One robot on a circle, with the yaw that is given, 60 rows a second.
+/// Returns rows of a robot on a circle with the given yaw, 60 rows per second.
 std::string with_yaw(int rows, double (*yaw)(double time_s)) {
   std::string text = kHeader;
   for (int i = 0; i < rows; ++i) {
@@ -138,7 +138,7 @@ std::string with_yaw(int rows, double (*yaw)(double time_s)) {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 TEST(ImportCsv, AStepOf360IsInDegreesHoweverSlowTheTurn) {
-  // 0.25 rad/s from 0: past 180 degrees at 12.566 s, the 755th row, which begins with 12.5667,blue,7,0.00033,1.00000,
+  // 0.25 rad/s from 0: the yaw exceeds 180 degrees at 12.566 s, in the 755th row, which starts with 12.5667,blue,7,0.00033,1.00000,
   EXPECT_THAT(failure_of_table(with_yaw(3600, [](double time_s) { return std::remainder(0.25 * kDegrees * time_s, 360.0); })),
               HasSubstr("game.csv:756:32: error: yaw_rad: jumps by a full turn of 360: it is in degrees; expected radians"));
   EXPECT_THAT(failure_of_table(with_yaw(3600, [](double time_s) { return std::fmod(0.25 * kDegrees * time_s, 360.0); })),
@@ -153,14 +153,14 @@ TEST(ImportCsv, DegreesThatAreNotWrappedTurnMoreThanARobotKeepsUp) {
 
 TEST(ImportCsv, RadiansAreTakenWrappedOrNot) {
   for (double (*yaw)(double) : std::initializer_list<double (*)(double)>{
-           [](double time_s) { return 2.0 * time_s; },                                            // 120 rad in the end
+           [](double time_s) { return 2.0 * time_s; },                                            // 120 rad at the end
            [](double time_s) { return -3.9 * time_s; },                                           //
-           [](double time_s) { return 300.0 + 0.25 * time_s; },                                   // a day of turning before
-           [](double time_s) { return 40.0 * std::sin(0.07 * time_s); },                          // to and fro
+           [](double time_s) { return 300.0 + 0.25 * time_s; },                                   // many turns before the start
+           [](double time_s) { return 40.0 * std::sin(0.07 * time_s); },                          // oscillating
            [](double time_s) { return std::remainder(14.0 * time_s, 2.0 * std::numbers::pi); },   // spinning
            [](double time_s) { return std::fmod(14.0 * time_s, 2.0 * std::numbers::pi); },        //
-           [](double time_s) { return 3.0 + 0.005 * std::sin(40.0 * time_s); },                   // a noisy camera
-           [](double time_s) { return time_s > 30.0 ? 0.4 * time_s - 330.0 : 0.4 * time_s; }}) {  // begins anew elsewhere
+           [](double time_s) { return 3.0 + 0.005 * std::sin(40.0 * time_s); },                   // noisy camera
+           [](double time_s) { return time_s > 30.0 ? 0.4 * time_s - 330.0 : 0.4 * time_s; }}) {  // restarts with another yaw
     const TemporaryFile file("game.csv", with_yaw(3600, yaw));
     EXPECT_NO_THROW((void)import_game(file.path())) << yaw(1.0) << " at 1 s";
   }
@@ -188,7 +188,7 @@ TEST(ImportCsv, AClockThatStartsAgainLosesNothing) {
 }
 
 TEST(ImportCsv, RowsOutOfOrderAreNoClockThatStartsAgain) {
-  // Every tenth row comes again a second later, and at the end a segment too short to be sure of.
+  // Every tenth row is repeated one second later. The end contains a segment too short for a decision.
   std::string text = kHeader;
   for (int i = 0; i < 1000; ++i) {
     text += fmt::format("{:.2f},blue,7,1,1,0\n", 0.01 * i);

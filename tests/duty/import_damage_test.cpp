@@ -1,4 +1,4 @@
-// Logs that are cut off, damaged, foreign or far too large.
+// Logs that are truncated, damaged, foreign or far too large.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 SeenRobot robot_at(double time_s) { return {true, 3, std::sin(time_s), 0.5, 0.1}; }
 
-/// Everything a log may hold, in a few kilobytes.
+/// Returns a log with all kinds of contents in a few kilobytes.
 LogWriter small_log(int frames = 100) {
   LogWriter log;
   const Message geometry = Message().message(2, camera_at(0, 1.0, 2.0));
@@ -123,11 +123,11 @@ TEST(ImportDamage, SurvivesFlippedBitsAnywhere) {
 TEST(ImportDamage, PassesOverDamageAndSaysWhere) {
   const LogWriter log = small_log(300);
   std::string bytes = log.bytes();
-  const std::size_t wrong_size = log.starts()[50] + 13;  // this message now claims another 20 to 30 kB
+  const std::size_t wrong_size = log.starts()[50] + 13;  // this message now claims an additional 20 to 30 kB
   bytes[wrong_size] = static_cast<char>(0x00);
   bytes[wrong_size + 1] = static_cast<char>(0x60);
   const std::size_t no_protobuf = log.starts()[100];
-  bytes[no_protobuf + 16] = '\x07';  // a field of a kind that does not exist
+  bytes[no_protobuf + 16] = '\x07';  // a field of an undefined type
   const std::string rubbish(5000, '\xa5');
   bytes.insert(log.starts()[200], rubbish);
   const TemporaryFile file("damaged.log", bytes);
@@ -191,13 +191,13 @@ long peak_memory_kB() {
 }
 
 #ifdef __SANITIZE_ADDRESS__
-constexpr long kMostMemory_kB = 1'000'000;  // the sanitizer keeps freed memory
+constexpr long kMostMemory_kB = 1'000'000;  // sanitizers keep freed memory
 #else
 constexpr long kMostMemory_kB = 100'000;
 #endif
 
 TEST(ImportHuge, StreamsALogOfAQuarterOfAGigabyte) {
-  // 16 robots at 75 Hz on 4 cameras; the points of all of them would not fit.
+  // 16 robots at 75 Hz on 4 cameras: the memory limit is too small for all their points.
   const TemporaryFile file("huge.log", LogWriter().bytes());
   std::uint64_t messages = 0;
   for (int block = 0; block < 50; ++block) {
@@ -214,14 +214,14 @@ TEST(ImportHuge, StreamsALogOfAQuarterOfAGigabyte) {
     file.append(log.bytes().substr(16));
   }
   const long before_kB = peak_memory_kB();
-  double told = 0.0;
-  const RecordedGame game = import_game(file.path(), {.progress = [&told](double share) {
-                                          EXPECT_GE(share, told);
-                                          told = share;
+  double last_share = 0.0;
+  const RecordedGame game = import_game(file.path(), {.progress = [&last_share](double share) {
+                                          EXPECT_GE(share, last_share);
+                                          last_share = share;
                                         }});
   EXPECT_LT(peak_memory_kB() - before_kB, kMostMemory_kB);
-  EXPECT_GT(told, 0.9);
-  EXPECT_LE(told, 1.0);
+  EXPECT_GT(last_share, 0.9);
+  EXPECT_LE(last_share, 1.0);
   EXPECT_EQ(game.report.messages, messages);
   EXPECT_GT(game.report.bytes, 250'000'000U);
   EXPECT_TRUE(game.report.full_at_s);

@@ -1,4 +1,4 @@
-// What the import says about a file that it cannot read.
+// Returns the error message of an import that fails.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// A whole recording at once, as a tournament leaves it: cameras that overlap and disagree, a tracker beside them, a referee,
-// a robot that is lost twice, packed, and cut off at the end. What the wheels had to do is known, for the motion is.
+// A complete recording of a tournament game: overlapping cameras that disagree, a tracker, a referee, a robot that is lost twice,
+// compressed, and truncated at the end. The motion is defined by formulas, so the wheel loads are known.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,10 +18,10 @@ namespace {
 using namespace testing_logs;
 
 constexpr double kLength_s = 60.0;
-/// Away for two seconds, which cuts the track, and for a moment, which is bridged.
+/// Times without sight of the robot: two seconds split the track, a short gap is bridged.
 bool is_lost(double time_s) { return (time_s > 30.0 && time_s < 32.0) || (time_s > 45.0 && time_s < 45.2); }
 
-/// A sum of sines, so that velocity and acceleration are known.
+/// Sum of sines with exact velocity and acceleration.
 struct Sine {
   double amplitude = 0.0;
   double rate_rad_per_s = 0.0;
@@ -33,7 +33,7 @@ constexpr Sine kX{1.2, 1.0};
 constexpr Sine kY{0.8, 1.4};
 constexpr Sine kYaw{0.5, 0.8};
 
-/// Two cameras over the halves of the field that both see its middle, 8 mm apart; 1 mm of noise.
+/// Two cameras over the halves of the field overlap in the middle and differ by 8 mm; noise of 1 mm.
 std::string recording() {
   LogWriter log;
   Random random(11, 0);
@@ -62,7 +62,7 @@ std::string recording() {
   return packed.substr(0, packed.size() * 98 / 100);
 }
 
-// ∫M²dt of every wheel is what heats its motor.
+// ∫M²dt of every wheel determines the heat of its motor.
 TEST(ImportGame, a_damaged_recording_gives_the_wheels_work) {
   const TemporaryFile file("game.log.gz", recording());
   const Robot robot = read_robot(kSource / "robot_core/robots/tigers_v2020.toml");
@@ -97,7 +97,7 @@ TEST(ImportGame, a_damaged_recording_gives_the_wheels_work) {
   for (const std::string& sentence : game.sentences) {
     all += sentence + "\n";
   }
-  // The cut, the end of the file, and which of the sources was used.
+  // The report must mention the split, the end of the file, and the source that was used.
   EXPECT_THAT(all, testing::HasSubstr("vision, 2 cameras"));
   EXPECT_THAT(all, testing::HasSubstr("not seen (taken as standstill)"));
   EXPECT_THAT(all, testing::HasSubstr("ends"));

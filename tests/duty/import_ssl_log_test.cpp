@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 SeenRobot on_a_line(double time_s) { return {true, 3, 0.5 * time_s - 1.0, 0.25, 0.1}; }
 
-/// `seconds` of one robot on a line, seen by camera 0.
+/// Log of one robot on a line for `seconds`, seen by camera 0.
 LogWriter line(double seconds, int type = 4) {
   LogWriter log;
   for (int i = 0; i * kFrame_s < seconds; ++i) {
@@ -134,7 +134,7 @@ TEST(ImportSslLog, KeepsOneRobotOrASpanOfTimeOnDemandButSummarisesAll) {
 
 TEST(ImportSslLog, FollowsThePhasesOfTheReferee) {
   LogWriter log;
-  // stage 0 before the first half, 1 the first half, 2 half time; commands as published
+  // Published values: stage 0 before the first half, 1 the first half, 2 half time; commands likewise.
   const std::vector<std::array<int, 3>> calls{{0, 0, 0},  {1, 0, 1}, {2, 0, 4},  {3, 1, 2}, {4, 1, 1},
                                               {5, 1, 17}, {6, 1, 9}, {7, 1, 12}, {8, 2, 0}, {9, 1, 99}};
   for (int i = 0; i < 750; ++i) {
@@ -153,7 +153,7 @@ TEST(ImportSslLog, FollowsThePhasesOfTheReferee) {
   }
   EXPECT_THAT(phases, testing::ElementsAre(GamePhase::halt, GamePhase::stop, GamePhase::preparation, GamePhase::running, GamePhase::stop,
                                            GamePhase::ball_placement, GamePhase::running, GamePhase::timeout, GamePhase::off_play));
-  EXPECT_EQ(game.report.problems_in_all, 15U);  // no command 99
+  EXPECT_EQ(game.report.problems_in_all, 15U);  // command 99 does not exist
   const std::array wanted{GamePhase::running};
   const RobotTrack playing = only_in(game.tracks[0], game.phases, wanted);
   ASSERT_EQ(playing.segments.size(), 2U);

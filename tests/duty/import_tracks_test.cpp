@@ -1,4 +1,4 @@
-// How single sights become tracks: cameras, gaps, false sights, clocks.
+// Tracks from single detections: cameras, gaps, false detections, clocks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ TEST(ImportTracks, JoinsCamerasByConfidenceAndDistance) {
   const Message geometry = Message().message(2, camera_at(0, -3.0, 0.0)).message(2, camera_at(1, 3.0, 0.0));
   for (int i = 0; i < 600; ++i) {
     const double time_s = i * kFrame_s;
-    // at x = -1.5 m: 1.5 m from camera 0, 4.5 m from camera 1, which sees it 20 mm off
+    // At x = -1.5 m the robot is 1.5 m from camera 0 and 4.5 m from camera 1, which sees it with an error of 20 mm.
     log.add(time_s, 4, vision(time_s, 0, {still(-1.5)}, i == 0 ? &geometry : nullptr));
     log.add(time_s, 4, vision(time_s + 0.004, 1, {still(-1.48)}));
   }
@@ -48,7 +48,7 @@ TEST(ImportTracks, HandsOverFromCameraToCameraWithoutAStep) {
       log.add(time_s, 4, vision(time_s, 0, {still(x_m + 0.002 * (random.uniform() - 0.5))}));
     }
     if (x_m > -0.2) {
-      log.add(time_s, 4, vision(time_s, 1, {still(x_m + 0.03 + 0.002 * (random.uniform() - 0.5))}));  // 30 mm off
+      log.add(time_s, 4, vision(time_s, 1, {still(x_m + 0.03 + 0.002 * (random.uniform() - 0.5))}));  // error of 30 mm
     }
   }
   const RecordedGame game = import_log(log);
@@ -85,7 +85,7 @@ TEST(ImportTracks, LeavesOutSightsTheRobotCannotReachButFollowsItWhenItIsMoved) 
   LogWriter log;
   for (int i = 0; i < 750; ++i) {
     const double time_s = i * kFrame_s;
-    const double place_m = i < 400 ? 0.0 : 2.0;  // lifted by hand
+    const double place_m = i < 400 ? 0.0 : 2.0;  // moved by hand
     const double error_m = i % 50 == 20 ? 1.0 : 0.0;
     log.add(time_s, 4, vision(time_s, 0, {still(place_m + error_m)}));
   }
@@ -105,7 +105,7 @@ TEST(ImportTracks, ChoosesBetweenTwoRobotsOfOneNumberInAFrame) {
     const double time_s = i * kFrame_s;
     std::vector<SeenRobot> robots{still(0.5)};
     if (i > 50 && i % 3 == 0) {
-      robots.insert(robots.begin(), SeenRobot{true, 3, -2.0, 1.0, 0.0, 1.0});  // another pattern read as number 3
+      robots.insert(robots.begin(), SeenRobot{true, 3, -2.0, 1.0, 0.0, 1.0});  // another pattern misread as number 3
     }
     log.add(time_s, 4, vision(time_s, 0, robots));
   }

@@ -1,4 +1,4 @@
-// A duty file that states only what differs from another one.
+// A duty file that contains only its differences from another one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -58,7 +58,7 @@ TEST(Game, a_division_b_free_kick_may_wait_ten_seconds_and_a_division_a_one_five
   }
 }
 
-/// What a game is made of, over many of them.
+/// Statistics over many games.
 struct Counted {
   std::array<double, kPhaseNames.size()> time_s{};
   std::array<int, kPhaseNames.size()> spans{};
@@ -80,7 +80,7 @@ Counted many_games(Division division, const MatchValues& values, bool overtime =
   return counted;
 }
 
-// An input means what it says: over many games the mean that comes about is the one that went in.
+// Over many games the observed mean must equal the input.
 TEST(Game, lengths_and_numbers_have_the_means_of_their_inputs) {
   constexpr double kClose = 0.02;
   const auto expect = [](double seen, double wanted, const char* what) { EXPECT_NEAR(seen, wanted, kClose * wanted) << what; };
@@ -89,7 +89,7 @@ TEST(Game, lengths_and_numbers_have_the_means_of_their_inputs) {
       MatchValues values = division_a().nominal();
       values.running_mean_s = running_mean_s;
       const Counted seen = many_games(division, values);
-      // The end of a half cuts a segment, which does not change how many interruptions there are to the time of play.
+      // The end of a half truncates a segment but does not change the number of interruptions per time of play.
       expect(seen.time_s[static_cast<std::size_t>(Phase::running)] / seen.count(Phase::free_kick), values.running_mean_s, "running_mean");
       expect(seen.mean_s(Phase::stop), values.stop_mean_s, "stop_mean");
       expect(seen.count(Phase::ball_placement) / seen.count(Phase::free_kick), values.placement_share, "placement_share");
@@ -103,8 +103,8 @@ TEST(Game, lengths_and_numbers_have_the_means_of_their_inputs) {
 
 TEST(Game, means_hold_at_the_ends_of_their_ranges) {
   MatchValues values = division_a().nominal();
-  values.running_mean_s = 300.0;  // many a half has no interruption
-  values.stop_mean_s = 1.5;       // below the shortest
+  values.running_mean_s = 300.0;  // many halves have no interruption
+  values.stop_mean_s = 1.5;       // shorter than the shortest stop
   values.placement_mean_s = 20.0;
   values.halt_count = 5.0;
   values.timeout_count = 6.0;
@@ -115,19 +115,19 @@ TEST(Game, means_hold_at_the_ends_of_their_ranges) {
   EXPECT_NEAR(seen.count(Phase::timeout) / kGames, 1.5 * 6.0, 0.2);
 }
 
-struct Told {
+struct CommandInPhase {
   Phase phase = Phase::halt;
   FieldPose from;
   MotionCommand command;
 };
 
-/// What one game tells a robot that goes at 1.2 m/s.
-std::vector<Told> commands(const MatchInputs& inputs, const MatchValues& values, std::uint64_t seed) {
+/// Commands of one game for a robot that drives at 1.2 m/s.
+std::vector<CommandInPhase> commands(const MatchInputs& inputs, const MatchValues& values, std::uint64_t seed) {
   constexpr double kSpeed_m_per_s = 1.2;
   Random random(seed, 0);
   const std::vector<MatchPhase> game = generate_game(inputs.division, inputs.overtime, values, random);
   Behaviour behaviour(inputs, values, random);
-  std::vector<Told> all;
+  std::vector<CommandInPhase> all;
   FieldPose at;
   for (const MatchPhase& span : game) {
     for (double into_s = 0.0; span.duration_s - into_s > 5e-4; into_s += std::max(1e-3, all.back().command.duration_s)) {
@@ -176,7 +176,7 @@ TEST(Behaviour, distances_and_duels_are_those_of_the_inputs) {
   }
 }
 
-// No input is there for show: each moves what a robot is told.
+// Every input must change the commands of a robot.
 TEST(Behaviour, every_input_matters) {
   MatchInputs inputs = division_a();
   inputs.role = Role::defender;
@@ -194,7 +194,7 @@ TEST(Behaviour, every_input_matters) {
     ASSERT_TRUE(inputs.parameters[i].spread) << key << " has no range";
     MatchInputs other = inputs;
     other.parameters[i].value = inputs.parameters[i].spread->low;
-    if (key != "aggressiveness") {  // which is the planner's
+    if (key != "aggressiveness") {  // only the planner uses it
       EXPECT_NE(sum(other), sum(inputs)) << key;
     }
   }
@@ -209,7 +209,7 @@ struct Seen {
   double duel_speed_rad_per_s = 0.0;
   double farthest_m = 0.0;
   std::vector<double> torque_squared_Nm2_s = std::vector<double>(4, 0.0);
-  std::vector<double> current_squared_A2_s = std::vector<double>(4, 0.0);  ///< of a motor, step by step
+  std::vector<double> current_squared_A2_s = std::vector<double>(4, 0.0);  ///< one value per motor, accumulated step by step
 };
 
 constexpr double kTorqueConstant_Nm_per_A = 0.0328;
@@ -258,7 +258,7 @@ TEST(Match, keeps_the_rules_and_the_robot_s_limits) {
     const Seen seen = watch(division_a(), seed);
     EXPECT_LE(seen.fastest_in_stop_m_per_s, 1.5 + 1e-9);
     EXPECT_LE(seen.moved_in_halt_m_per_s, 1e-9);
-    EXPECT_LE(seen.fastest_m_per_s, 2.0 * 1.005);  // a circle, which joined axes leave by some 0.2 %
+    EXPECT_LE(seen.fastest_m_per_s, 2.0 * 1.005);  // limit is a circle, which combined axes exceed by about 0.2 %
     EXPECT_LT(seen.farthest_m, 0.3);
   }
 }
@@ -269,7 +269,7 @@ TEST(Match, duels_push_at_a_stand) {
   EXPECT_EQ(seen.duel_speed_rad_per_s, 0.0);
 }
 
-// What the ground passes on in a duel is what is asked: the share of the largest push there is in that direction, and no turn.
+// In a duel the robot pushes with the given share of the largest force that the ground transmits in that direction, without turning.
 TEST(Match, a_duel_pushes_with_its_share_of_the_grip) {
   MotorValues no_rotor;
   no_rotor.rotor_inertia_kg_m2 = 0.0;
@@ -304,7 +304,7 @@ TEST(Match, a_duel_pushes_with_its_share_of_the_grip) {
   }
 }
 
-// The means of a bin give ∫I² of a motor with drag exactly, whatever moments were merged.
+// The means of a bin must give ∫I² of a motor with drag exactly, whatever moments were merged.
 TEST(Match, bins_conserve_the_heat_of_every_motor) {
   MatchLoad load;
   const Seen seen = watch(division_a(), 3, &load);
@@ -342,7 +342,7 @@ TEST(Match, same_seed_same_demand_and_another_seed_another) {
   EXPECT_NE(one, rms(8));
 }
 
-// A drawn game takes steps four times as long and another course: over many games the heat is the same.
+// Drawn games use steps four times as long and a different course. Over many games their heat must be the same.
 TEST(Match, drawn_games_have_the_heat_of_games_in_finer_steps) {
   const auto heat = [](std::uint64_t seed, double step_s) {
     double sum_Nm2_s = 0.0;
@@ -363,7 +363,7 @@ TEST(Match, drawn_games_have_the_heat_of_games_in_finer_steps) {
   EXPECT_NEAR(coarse_Nm2_s / fine_Nm2_s, 1.0, 0.02);
 }
 
-// The script is what another way of driving is asked: it covers the game without gaps, phase by phase.
+// The script for other driving methods must cover the game without gaps, phase by phase.
 TEST(Match, the_script_is_the_game) {
   const MatchLoad load = play_match(division_a(), division_a().nominal(), twente(), 4, Planner::jerk_limited);
   std::array<double, kPhaseNames.size()> time_s{};
@@ -378,7 +378,7 @@ TEST(Match, the_script_is_the_game) {
   }
 }
 
-// Draws are other games with other inputs, each the same whenever it is drawn.
+// Draws are different games with different inputs, each reproducible.
 TEST(Match, draws_spread_the_demand) {
   const Robot robot = twente();
   const MatchDuty duty(division_a());
@@ -412,7 +412,7 @@ TEST(Match, a_keeper_works_less_than_an_attacker) {
   EXPECT_LT(keeper_Nm2_s, attacker_Nm2_s);
 }
 
-TEST(Match, a_robot_without_figures_for_motion_is_refused_by_name) {
+TEST(Match, a_robot_without_values_for_motion_is_refused_by_name) {
   Robot robot = twente();
   robot.yaw_inertia_kg_m2 = kAbsent;
   EXPECT_THROW(play_match(division_a(), division_a().nominal(), robot, 1, Planner::jerk_limited), Failure);

@@ -14,7 +14,7 @@ constexpr double kPi = std::numbers::pi;
 
 double normal(Random& random) { return std::sqrt(-2.0 * std::log(random.uniform())) * std::cos(2.0 * kPi * random.uniform()); }
 
-/// A coordinate that runs to one goal velocity after another with limited acceleration and jerk; a state every millisecond.
+/// A coordinate that follows one target velocity after another with limited acceleration and jerk; one state per millisecond.
 class LimitedMotion {
  public:
   struct State {
@@ -69,7 +69,7 @@ Game game(double play_share, double most_acceleration_m_per_s2, double most_jerk
           duration_s};
 }
 
-/// As vision sees it: noise of 2 mm and 10 mrad, 5 % of the frames lost, 0.5 % wrong by up to 100 mm and 0.5 rad.
+/// Simulated vision: noise of 2 mm and 10 mrad, 5 % of the frames lost, 0.5 % wrong by up to 100 mm and 0.5 rad.
 RobotTrack seen(const Game& g, double rate_Hz, double noise_share = 1.0) {
   Random random(7, 7);
   RobotTrack track{{Team::yellow, 3}, {{}}};
@@ -91,7 +91,7 @@ RobotTrack seen(const Game& g, double rate_Hz, double noise_share = 1.0) {
 struct Errors {
   double velocity_rms_m_per_s = 0.0;
   double acceleration_rms_m_per_s2 = 0.0;
-  double place_share = 0.0;  ///< ∫a² too much, as a share
+  double place_share = 0.0;  ///< excess of ∫a² as a share
   double turn_share = 0.0;
 };
 
@@ -154,14 +154,14 @@ TEST(Smoothing, KeepsTheHeatOfAMotionWithoutNoise) {
   EXPECT_EQ(motion.report().place.outliers, 0U);
 }
 
-/// A sine of the frequency the report names comes out with 1/√2 of its amplitude, and in phase.
+/// At the reported bandwidth a sine must come out with 1/√2 of its amplitude and in phase.
 TEST(Smoothing, HasTheBandwidthItStates) {
   for (const double bandwidth_Hz : {3.0, 5.0, 8.0}) {
     for (const double rate_Hz : {60.0, 100.0}) {
       RobotTrack track{{Team::blue, 1}, {{}}};
       for (int i = 0; i < 40 * static_cast<int>(rate_Hz); ++i) {
         const double time_s = i / rate_Hz;
-        // a small amplitude: no point is far enough off to be suspected
+        // The amplitude is small, so that no point is treated as an outlier.
         track.segments[0].push_back({time_s, 0.003 * std::sin(2.0 * kPi * bandwidth_Hz * time_s), 0.0, 0.0});
       }
       const MotionTrack motion = smooth(track, {.bandwidth_Hz = bandwidth_Hz});
@@ -206,13 +206,13 @@ TEST(Smoothing, SeesNoAccelerationOfARobotThatStands) {
     ++count;
   });
   EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.1);
-  // All of next to nothing is no finding.
+  // A large share of a negligible quantity must not be reported.
   EXPECT_EQ(to_string(motion.report()).find("100.0 %"), std::string::npos);
   EXPECT_NE(to_string(motion.report()).find("is below the noise"), std::string::npos);
 }
 
 TEST(Smoothing, GivesTheSameInOnePieceAsInBlocks) {
-  // A polynomial of fifth degree is what the smoother reproduces between sights; a long one spans many blocks.
+  // Between detections the smoother reproduces a polynomial of fifth degree. A long polynomial spans many blocks.
   const Game g = game(0.9, 3.0, 20.0, 200.0);
   const RobotTrack whole = seen(g, 100.0, 0.0);
   RobotTrack tail = whole;

@@ -13,7 +13,7 @@
 
 namespace heatsoak::testing_logs {
 
-/// Between two pictures of a camera.
+/// Time between two pictures of a camera.
 inline constexpr double kFrame_s = 1.0 / 75.0;
 
 /// A protobuf message under construction.
@@ -61,13 +61,13 @@ struct SeenRobot {
   double confidence = 1.0;
 };
 
-/// The 1.7e9th second: times of capture are Unix times.
+/// Start time of the log: capture times are Unix times.
 inline constexpr double kEpoch_s = 1.7e9;
 
 inline Message vision(double time_s, int camera, const std::vector<SeenRobot>& robots, const Message* geometry = nullptr) {
   Message frame;
   frame.integer(1, 7).real64(2, kEpoch_s + time_s).real64(3, kEpoch_s + time_s + 0.01).integer(4, static_cast<std::uint64_t>(camera));
-  frame.message(5, Message().real32(1, 0.9).integer(2, 80).real32(3, 12.0).real32(4, 34.0).real32(6, 1.0).real32(7, 2.0));  // a ball
+  frame.message(5, Message().real32(1, 0.9).integer(2, 80).real32(3, 12.0).real32(4, 34.0).real32(6, 1.0).real32(7, 2.0));  // ball
   for (const SeenRobot& robot : robots) {
     Message one;
     one.real32(1, robot.confidence)
@@ -119,7 +119,7 @@ inline Message referee(double time_s, int stage, int command) {
 class LogWriter {
  public:
   explicit LogWriter(std::int32_t version = 1) { number(static_cast<std::uint32_t>(version), 4); }
-  /// Received 12 ms after `time_s`.
+  /// Adds a message that is received 12 ms after `time_s`.
   LogWriter& add(double time_s, int type, const std::string& message) {
     starts_.push_back(bytes_.size());
     number(static_cast<std::uint64_t>((kEpoch_s + time_s + 0.012) * 1e9), 8);
@@ -130,7 +130,7 @@ class LogWriter {
   }
   LogWriter& add(double time_s, int type, const Message& message) { return add(time_s, type, message.bytes()); }
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
-  /// Where each record begins.
+  /// Offsets of the records.
   [[nodiscard]] const std::vector<std::size_t>& starts() const { return starts_; }
 
  private:
@@ -143,7 +143,7 @@ class LogWriter {
   std::vector<std::size_t> starts_;
 };
 
-/// A file that goes away with the test.
+/// Temporary file, deleted by the destructor.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& name, const std::string& bytes = {})
@@ -158,7 +158,7 @@ class TemporaryFile {
     std::filesystem::remove(path_, error);
     std::filesystem::remove(folder_, error);
   }
-  /// In place: file systems take a file that is truncated to nothing and written again for one to be made safe on disk at once.
+  /// Overwrites in place, because some file systems flush a file at once that is truncated to zero and rewritten.
   void write(const std::string& bytes) const {
     if (!std::filesystem::exists(path_)) {
       std::ofstream(path_, std::ios::binary) << bytes;
@@ -175,7 +175,7 @@ class TemporaryFile {
   std::filesystem::path path_;
 };
 
-/// One gzip member.
+/// Compresses the bytes as one gzip member.
 inline std::string gzip(std::string bytes) {
   z_stream zip{};
   deflateInit2(&zip, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);

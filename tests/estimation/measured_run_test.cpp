@@ -37,7 +37,7 @@ Recording recording_of(const std::vector<LogRow>& rows) {
   return log;
 }
 
-/// 1 Hz, 2 A in the first ten seconds and 6 A after.
+/// Rows at 1 Hz with 2 A in the first ten seconds and 6 A afterwards.
 std::vector<LogRow> rows_of_a_step() {
   std::vector<LogRow> rows;
   for (int k = 0; k < 20; ++k) {
@@ -50,7 +50,7 @@ MeasuredRuns runs_of(const std::vector<LogRow>& rows, double longest_step_s = 2.
   return measured_runs(recording_of(rows), {.longest_step_s = longest_step_s, .needed = {Signal::current}, .ambient_C = 25.0});
 }
 
-/// ∫ I² dt.
+/// Returns ∫ I² dt.
 double heat_A2s(const MeasuredRun& run) {
   double heat = 0.0;
   for (std::size_t k = 0; k < run.at.size(); ++k) {
@@ -70,9 +70,9 @@ TEST(MeasuredRun, a_lost_row_is_no_loss_of_certainty_where_nothing_changed) {
   }
 }
 
-TEST(MeasuredRun, where_the_current_changed_beside_a_lost_row_the_heat_is_the_middle_and_both_ends_are_within_the_doubt) {
+TEST(MeasuredRun, where_the_current_changed_beside_a_lost_row_the_heat_is_the_middle_and_both_ends_are_within_the_uncertainty) {
   std::vector<LogRow> rows = rows_of_a_step();
-  rows.erase(rows.begin() + 10);  // from the row at 9 s on 2 A, at 11 s 6 A
+  rows.erase(rows.begin() + 10);  // the row at 9 s has 2 A, the next one at 11 s has 6 A
   const MeasuredRun run = runs_of(rows).runs.at(0);
   EXPECT_DOUBLE_EQ(heat_A2s(run), 10 * 4.0 + 0.5 * (4.0 + 36.0) + 8 * 36.0);
   ASSERT_EQ(run.unknown_inputs.size(), 1U);
@@ -82,23 +82,23 @@ TEST(MeasuredRun, where_the_current_changed_beside_a_lost_row_the_heat_is_the_mi
   EXPECT_NEAR(std::abs(other_A2s - mean_A2s), 0.5 * (36.0 - 4.0), 1e-12);
 }
 
-TEST(MeasuredRun, bursts_of_one_row_are_within_the_doubt_of_a_lost_row_between_equal_ones) {
+TEST(MeasuredRun, bursts_of_one_row_are_within_the_uncertainty_of_a_lost_row_between_equal_ones) {
   std::vector<LogRow> rows;
   for (int k = 0; k < 61; ++k) {
     rows.push_back({static_cast<double>(k), k % 6 == 3 ? 6.0 : 0.0});
   }
-  rows.erase(rows.begin() + 27);  // a burst
+  rows.erase(rows.begin() + 27);  // the row of a load pulse
   const MeasuredRun run = runs_of(rows).runs.at(0);
   ASSERT_EQ(run.unknown_inputs.size(), 1U);
   const auto place = static_cast<std::size_t>(run.unknown_inputs[0].interval);
   EXPECT_EQ(run.at[place].current_rms_A, 0.0);
-  // Of four rows between equal ones one is off by 36 A²: 18 A² rms.
+  // One of four rows between equal rows differs by 36 A²: 18 A² RMS.
   EXPECT_NEAR(2.0 * std::pow(run.unknown_inputs[0].other.current_rms_A, 2), 18.0, 1.5);
 }
 
 TEST(MeasuredRun, a_mean_over_the_time_before_its_row_speaks_of_the_end_of_a_gap) {
   std::vector<LogRow> rows = rows_of_a_step();
-  rows.erase(rows.begin() + 12);  // 6 A on both sides; after to_interval_values() the row at 11 s has what was logged at 13 s
+  rows.erase(rows.begin() + 12);  // 6 A on both sides; to_interval_values() moves the value of 13 s to the row at 11 s
   Recording log = recording_of(rows);
   log.inputs = InputConvention::previous_interval;
   log.channels[0].values[11] = 3.0;
@@ -135,7 +135,7 @@ TEST(MeasuredRun, a_speed_is_unlogged_in_the_rows_that_lack_it_and_where_somethi
   EXPECT_EQ(standing.at[5].unlogged_speed_share, 0.0);
 }
 
-/// A drive that turns round within a row of its log: means with a sign fall short of the distance that bearings and iron feel.
+/// The drive reverses within a row of its log. The signed mean underestimates the distance that bearings and iron experience.
 TEST(MeasuredRun, a_row_in_which_the_motor_turns_round_has_more_speed_than_its_mean) {
   constexpr int kFine = 1000;
   constexpr double kSteepest_rad_per_s2 = 700.0;
@@ -145,7 +145,7 @@ TEST(MeasuredRun, a_row_in_which_the_motor_turns_round_has_more_speed_than_its_m
   for (int row = 0; row < 600; ++row) {
     double turned_rad = 0.0;
     for (int k = 0; k < kFine; ++k) {
-      // Periods without a common measure with the row, and halts.
+      // Reversal periods incommensurable with the row, and halts.
       const double time_s = row + k / static_cast<double>(kFine);
       const double wanted_rad_per_s =
           std::fmod(time_s, 17.3) > 15.0 ? 0.0 : 300.0 * std::sin(0.37 * time_s) * (std::sin(0.83 * time_s) > 0.0 ? 1.0 : -1.0);
@@ -177,13 +177,13 @@ TEST(MeasuredRun, a_row_in_which_the_motor_turns_round_has_more_speed_than_its_m
   }
   EXPECT_LT(short_of_it_rad, 0.95 * truth_rad) << "an easy case shows nothing";
   EXPECT_NEAR(seen_rad, truth_rad, 0.5 * (truth_rad - short_of_it_rad)) << short_of_it_rad;
-  // How far it went on the other side is lost more than that it did.
+  // The reverse speed is harder to recover than the reversal itself, so the limit is one third.
   EXPECT_GT(seen_rad2_per_s - short_of_it_rad2_per_s, (truth_rad2_per_s - short_of_it_rad2_per_s) / 3.0);
   EXPECT_LT(seen_rad2_per_s, truth_rad2_per_s);
   EXPECT_NEAR(turned_rad, std::accumulate(mean_rad_per_s.begin(), mean_rad_per_s.end() - 1, 0.0), 1e-6);
 }
 
-TEST(MeasuredRun, current_stands_for_a_torque_that_nobody_logged) {
+TEST(MeasuredRun, current_replaces_an_unlogged_torque) {
   Recording log = recording_of(rows_of_a_step());
   log.channels.push_back({*quantity_named("speed_rad_per_s"), std::vector<double>(log.rows(), -100.0)});
   MeasuredRunOptions how{.needed = {Signal::current}, .ambient_C = 25.0};
@@ -191,9 +191,9 @@ TEST(MeasuredRun, current_stands_for_a_torque_that_nobody_logged) {
   how.torque = {.per_current_Nm_per_A = 0.03, .drag_Nm = 0.002};
   const MeasuredRun driven = measured_runs(log, how).runs.at(0);
   EXPECT_TRUE(driven.has(Signal::shaft_power));
-  // 0.03 N m/A · 2 A · 100 rad/s = 6 W, less 0.2 W of drag; the current has no sign, so that turning backwards is no braking.
+  // 0.03 N m/A · 2 A · 100 rad/s = 6 W, minus 0.2 W of drag. The current is unsigned, so turning backwards does not mean braking.
   EXPECT_NEAR(driven.at[0].shaft_power_W, 5.8, 1e-9);
-  // A current with a sign brakes where it is against the speed.
+  // A signed current brakes if its sign is opposite to the speed's.
   for (double& current_A : log.channels[0].values) {
     current_A -= 4.0;
   }
@@ -204,7 +204,7 @@ TEST(MeasuredRun, current_stands_for_a_torque_that_nobody_logged) {
   EXPECT_NEAR(measured_runs(log, how).runs.at(0).at[0].shaft_power_W, -1.0, 1e-9);
 }
 
-TEST(MeasuredRun, says_why_no_stretch_is_left) {
+TEST(MeasuredRun, reports_why_no_segment_remains) {
   std::vector<LogRow> rows = rows_of_a_step();
   for (std::size_t row = 0; row < rows.size(); row += 5) {
     rows[row].current_A = rows[row + 1].current_A = rows[row + 2].current_A = std::nan("");
@@ -269,7 +269,7 @@ TEST(MeasuredRun, a_pause_of_ten_seconds_ends_no_run_unless_the_temperature_jump
     }
   }
   Recording log = recording_of(rows);
-  log.run_begins = {0, 26};  // as the reading splits it
+  log.run_begins = {0, 26};  // the split that the reader makes
   const MeasuredRunOptions how{.needed = {Signal::current}, .ambient_C = 25.0};
   const MeasuredRuns one = measured_runs(log, how);
   ASSERT_EQ(one.runs.size(), 1U);
@@ -281,8 +281,9 @@ TEST(MeasuredRun, a_pause_of_ten_seconds_ends_no_run_unless_the_temperature_jump
   EXPECT_THAT(measured_runs(log, how).runs, testing::SizeIs(2));
 }
 
-// A motor that pushes stands, one that turns fast pushes little: neither tells which of both it was in a row that nobody logged.
-TEST(MeasuredRun, what_moves_and_what_drives_are_doubted_by_themselves) {
+// A pushing motor stands still, and a fast motor pushes little. An unlogged row may be either, so motion and current have separate
+// uncertainties.
+TEST(MeasuredRun, motion_and_current_have_separate_uncertainties) {
   std::vector<LogRow> rows = rows_of_a_step();
   Recording log = recording_of(rows);
   std::vector<double> speed_rad_per_s(log.rows(), 300.0);
@@ -322,7 +323,7 @@ TEST(MeasuredRun, a_run_that_begins_or_ends_without_inputs_loses_those_rows_only
   EXPECT_THAT(run.unknown_inputs, testing::IsEmpty());
 }
 
-TEST(MeasuredRun, merging_keeps_heat_and_doubt) {
+TEST(MeasuredRun, merging_keeps_heat_and_uncertainty) {
   std::vector<LogRow> rows;
   for (int k = 0; k < 200; ++k) {
     rows.push_back({0.1 * k, k % 50 < 25 ? 2.0 : 6.0});
@@ -334,8 +335,9 @@ TEST(MeasuredRun, merging_keeps_heat_and_doubt) {
   ASSERT_EQ(run.unknown_inputs.size(), 1U);
   const auto place = static_cast<std::size_t>(run.unknown_inputs[0].interval);
   const double duration_s = run.time_s[place + 1] - run.time_s[place];
-  const double doubt_A2s = duration_s * (std::pow(run.unknown_inputs[0].other.current_rms_A, 2) - std::pow(run.at[place].current_rms_A, 2));
-  EXPECT_NEAR(std::abs(doubt_A2s), 0.1 * 0.5 * (36.0 - 4.0), 1e-9);
+  const double uncertainty_A2s =
+      duration_s * (std::pow(run.unknown_inputs[0].other.current_rms_A, 2) - std::pow(run.at[place].current_rms_A, 2));
+  EXPECT_NEAR(std::abs(uncertainty_A2s), 0.1 * 0.5 * (36.0 - 4.0), 1e-9);
   const MeasuredRun thin = thinned(run, 2);
   EXPECT_NEAR(heat_A2s(thin), heat_A2s(run), 1e-9);
   EXPECT_EQ(thin.unknown_inputs.size(), 1U);
@@ -374,7 +376,7 @@ TEST(MeasuredRun, a_gap_of_a_column_is_filled_from_its_nearer_side) {
   EXPECT_THAT(column, testing::ElementsAre(1.0, 1.0, 1.0, 3.0, 3.0, 3.0));
 }
 
-TEST(MeasuredRun, a_column_that_one_run_lacks_tells_nothing_of_any) {
+TEST(MeasuredRun, a_column_that_one_run_lacks_is_used_for_none) {
   std::vector<MeasuredRun> runs(3);
   for (MeasuredRun& run : runs) {
     run.columns["fan_ratio"].setOnes(3);

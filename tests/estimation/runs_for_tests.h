@@ -1,4 +1,5 @@
-// Runs with a known truth. Equations and method are written out here once more and share nothing with the analysers under test.
+// Runs with a known truth. Equations and integration method are implemented here independently and share no code with the analysers under
+// test.
 #pragma once
 
 #include <algorithm>
@@ -20,29 +21,29 @@ struct TwoNodeTruth {
   double stator_ambient_K_per_W = 5.5;
   double resistance_25C_ohm = 0.447;
   double temperature_coefficient_per_K = 0.0039;
-  double contact_change_per_K = 0.0;  ///< of the conductance between winding and stator, by the mean temperature above 60 °C
+  double contact_change_per_K = 0.0;  ///< change of the conductance between winding and stator per K of mean temperature above 60 °C
 };
 
-/// How the truth becomes a log.
+/// Rules for making a log from the truth.
 struct LogMaking {
   double duration_s = 1800.0;
   double period_s = 1.0;
   double noise_K = 0.15;
-  double resolution_K = 0.1;  ///< 0: none
-  double flux_rms_W = 0.06;   ///< heat that no model knows, at each node
+  double resolution_K = 0.1;  ///< 0 means no rounding
+  double flux_rms_W = 0.06;   ///< unmodelled heat at each node
   double flux_time_scale_s = 180.0;
   double outlier_share = 0.003;
   double dropout_share = 0.01;
   double lost_row_share = 0.0;
   double largest_current_A = 9.0;
-  int rows_per_load = 1;  ///< for which the load is the same
+  int rows_per_load = 1;  ///< rows with the same load
   bool winding_is_sensed = true;
   double ambient_swing_K = 0.5;
 };
 
 inline double standard_normal(Random& random) { return boost::math::quantile(boost::math::normal(), random.uniform()); }
 
-/// A robot's current: bursts and rests of some seconds, grouped into harder and easier minutes.
+/// Returns the current of a robot: bursts and rests of some seconds, grouped into minutes of high and low load.
 inline std::vector<double> robot_current_A(Random& random, int rows, double largest_A) {
   std::vector<double> current_A;
   double level_ratio = 0.5;
@@ -60,7 +61,7 @@ inline std::vector<double> robot_current_A(Random& random, int rows, double larg
   return current_A;
 }
 
-/// Rows that never reached the log.
+/// Removes rows at random, like rows that were lost in transmission.
 inline void lose_rows(Recording& log, double share, Random random) {
   std::vector<bool> is_lost(log.rows());
   for (std::size_t row = 1; row < is_lost.size(); ++row) {
@@ -76,7 +77,7 @@ inline void lose_rows(Recording& log, double share, Random random) {
   }
 }
 
-/// Heun's method with steps of 1/20 of a row; the unknown heat moves with every step.
+/// Simulates a log by Heun's method with steps of 1/20 of a row. The unknown heat changes with every step.
 inline Recording generated_log(const TwoNodeTruth& truth, const LogMaking& making, std::uint64_t seed, std::uint64_t stream) {
   Random random(seed, stream);
   const int rows = static_cast<int>(making.duration_s / making.period_s);
@@ -163,7 +164,8 @@ inline Network two_node_network(const TwoNodeTruth& truth) {
   return network;
 }
 
-/// The four of the network free, known to `prior_sd` in their logarithms; unknown heat may reach both nodes.
+/// Model with four free network parameters, whose logarithms have the prior standard deviation `prior_sd`. Unknown heat may enter both
+/// nodes.
 inline Model two_node_model(const TwoNodeTruth& start, double prior_sd) {
   Model model{two_node_network(start), {}, {}, {}, {0, 1}};
   model.values = model.network.values();

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Any numbers will do: linear algebra does not ask where they come from.
+/// Returns a run of random numbers, which is sufficient to test linear algebra.
 MeasuredRun random_run(std::uint64_t seed, int samples) {
   Random random(seed, 0);
   MeasuredRun run;
@@ -50,7 +50,7 @@ LinearisedRun linearised(const Model& model, const MeasuredRun& run) {
   return linearise(model.network, model.values, wanted, model.flux_nodes, std::vector<double>{25.0, 25.0}, run);
 }
 
-/// What the sensors show after one kick at the state by the end of interval `j`, row by row.
+/// Returns the sensors' response, row by row, to an impulse on the state at the end of interval `j`.
 Eigen::VectorXd response_to(const LinearisedRun& run, Eigen::Index j, Eigen::VectorXd state) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Eigen::VectorXd response = Eigen::VectorXd::Zero(run.residual_K.size());
@@ -65,8 +65,8 @@ Eigen::VectorXd response_to(const LinearisedRun& run, Eigen::Index j, Eigen::Vec
   return response;
 }
 
-/// The covariance of the sensors' samples, written out: noise on the diagonal, and the response to every moment of the flux and to
-/// inputs that nobody logged.
+/// Covariance of the sensors' samples as a dense matrix: noise on the diagonal, and the responses to every moment of the flux and to
+/// unlogged inputs.
 Eigen::MatrixXd dense_covariance(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise& noise) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Index samples = run.samples();
@@ -91,11 +91,11 @@ Eigen::MatrixXd dense_covariance(const LinearisedRun& run, const LatentFlux& flu
     }
     covariance += response * memory * response.transpose();
   }
-  for (const StateUncertainty& doubt : run.state_uncertainties) {
-    // Of rank one: the difference between two courses of the inputs.
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(doubt.covariance_K2);
+  for (const StateUncertainty& uncertainty : run.state_uncertainties) {
+    // The covariance has rank one: the difference between two possible courses of the inputs.
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(uncertainty.covariance_K2);
     const Eigen::VectorXd response =
-        response_to(run, doubt.interval, modes.eigenvectors().rightCols(1) * std::sqrt(modes.eigenvalues().tail(1)[0]));
+        response_to(run, uncertainty.interval, modes.eigenvectors().rightCols(1) * std::sqrt(modes.eigenvalues().tail(1)[0]));
     covariance += response * response.transpose();
   }
   for (std::size_t sensor = 0; sensor < noise.drift_K.size(); ++sensor) {
@@ -119,8 +119,8 @@ Eigen::MatrixXd dense_covariance(const LinearisedRun& run, const LatentFlux& flu
 }
 
 struct Dense {
-  Eigen::MatrixXd covariance;  ///< of the rows that count
-  Columns columns;             ///< their rows of [start, parameters, residual]
+  Eigen::MatrixXd covariance;  ///< covariance of the valid rows
+  Columns columns;             ///< valid rows of [start, parameters, residual]
 };
 
 Dense dense(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise& noise) {
@@ -166,7 +166,7 @@ TEST(Whitening, products_of_columns_are_those_of_generalised_least_squares_with_
   }
 }
 
-/// Of a network with so many nodes, unknown heats and sensors that forgets what it is told within some steps.
+/// Random stable network with the given numbers of nodes, unknown heats and sensors, whose impulse response decays within some steps.
 LinearisedRun random_linearised_run(Eigen::Index states, Eigen::Index fluxes, int sensors) {
   constexpr Eigen::Index kSamples = 40;
   Random random(11, 0);
@@ -218,7 +218,7 @@ TEST_P(SmoothedFlux, is_the_conditional_mean) {
   const LatentFlux flux{{0.3, 0.7}, 90.0};
   const SensorNoise noise{{0.15, 0.1}, {}, GetParam(), 7.0};
   const Dense reference = dense(run, flux, noise);
-  // The response to the conditional mean of the flux is what V does not call an error of the sensors: V_flux·V⁻¹·y.
+  // V_flux·V⁻¹·y is the sensors' response to the conditional mean of the flux.
   const Eigen::VectorXd residual = reference.columns.rightCols(1);
   const Eigen::VectorXd weighted = reference.covariance.ldlt().solve(residual);
   LinearisedRun certain = run;
@@ -246,7 +246,7 @@ TEST_P(SmoothedFlux, is_the_conditional_mean) {
   }
 }
 
-/// The variance that the estimate explains and what is left of it make up the flux's own.
+/// The variance explained by the estimate and the posterior variance must add up to the flux's prior variance.
 TEST_P(SmoothedFlux, has_the_standard_deviation_that_is_left) {
   const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(5, 40));
   const LatentFlux flux{{0.3, 0.7}, 90.0};
@@ -289,30 +289,30 @@ TEST(Whitening, a_common_factor_of_heat_capacities_conductances_and_sources_chan
   EXPECT_LT((a.state_C - b.state_C).cwiseAbs().maxCoeff(), 1e-10);
 }
 
-/// Covariance of the state at the end of interval `to` − 1, from the doubts of intervals `from` … `to` − 1.
-Eigen::MatrixXd doubt_after_K2(const LinearisedRun& run, Eigen::Index from, Eigen::Index to) {
+/// Covariance of the state at the end of interval `to` − 1, caused by the input uncertainties of intervals `from` … `to` − 1.
+Eigen::MatrixXd uncertainty_after_K2(const LinearisedRun& run, Eigen::Index from, Eigen::Index to) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Eigen::MatrixXd covariance_K2 = Eigen::MatrixXd::Zero(run.states, run.states);
   for (Eigen::Index k = from; k < to; ++k) {
     const Eigen::Map<const RowMajor> step(run.transition.data() + k * run.states * run.states, run.states, run.states);
     covariance_K2 = step * covariance_K2.eval() * step.transpose();
-    for (const StateUncertainty& doubt : run.state_uncertainties) {
-      covariance_K2 += doubt.interval == k ? doubt.covariance_K2 : Eigen::MatrixXd::Zero(run.states, run.states);
+    for (const StateUncertainty& uncertainty : run.state_uncertainties) {
+      covariance_K2 += uncertainty.interval == k ? uncertainty.covariance_K2 : Eigen::MatrixXd::Zero(run.states, run.states);
     }
   }
   return covariance_K2;
 }
 
-TEST(AveragedRun, doubts_of_its_stretches_are_those_of_the_run) {
+TEST(AveragedRun, uncertainties_of_its_segments_are_those_of_the_run) {
   const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(5, 90));
   ASSERT_GT(run.state_uncertainties.size(), 3U);
-  const LinearisedRun averaged = Averaging(run, {}, 3).run();  // from sample 1 to sample 88
-  EXPECT_LT((doubt_after_K2(averaged, 0, averaged.samples() - 1) - doubt_after_K2(run, 1, 88)).norm(), 1e-12);
-  EXPECT_GT(doubt_after_K2(run, 1, 88).norm(), 1e-3);
+  const LinearisedRun averaged = Averaging(run, {}, 3).run();  // covers samples 1 to 88
+  EXPECT_LT((uncertainty_after_K2(averaged, 0, averaged.samples() - 1) - uncertainty_after_K2(run, 1, 88)).norm(), 1e-12);
+  EXPECT_GT(uncertainty_after_K2(run, 1, 88).norm(), 1e-3);
 }
 
 TEST(Evidence, one_more_column_gains_what_the_projected_score_says) {
-  // Frisch, Waugh, Lovell: the gain of a candidate after the base is ½·s²/v of the parts orthogonal to the base.
+  // Frisch, Waugh, Lovell: a candidate added to the base gains ½·s²/v, calculated from the parts orthogonal to the base.
   const LinearisedRun run = linearised(two_node_model({}, 1.0), random_run(11, 150));
   const Whitening whitening(run, {{0.2, 0.3}, 100.0}, {{0.15, 0.1}, {}});
   const StartPrior start{Eigen::VectorXd::Zero(2), Eigen::VectorXd::Constant(2, 5.0)};
@@ -322,7 +322,8 @@ TEST(Evidence, one_more_column_gains_what_the_projected_score_says) {
     return linear_fit(one, Eigen::VectorXd::Zero(columns), none).misfit;
   };
   const RunEvidence all = run_evidence(run, run.by_parameter, whitening, start);
-  // Of the last column the triangle's diagonal is what is left after the others, and beside it stands its score over that.
+  // The diagonal of the triangle's last column is the norm of the candidate's orthogonal part. The entry beside it is the score divided by
+  // this norm.
   const double gain = all.triangle(3, 4) * all.triangle(3, 4);
   EXPECT_NEAR(misfit(3) - misfit(4), gain, 1e-8 * misfit(3));
 }
@@ -355,7 +356,7 @@ TEST(Evidence, many_runs_say_what_one_long_least_squares_says) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const LinearisedRun run = linearised(model, random_run(seed, 80));
     runs.push_back(run_evidence(run, run.by_parameter, Whitening(run, flux, noise), start));
-    // The start's prior moved into the covariance of the samples.
+    // Includes the prior of the start temperatures in the samples' covariance.
     Dense reference = dense(run, flux, noise);
     const Eigen::MatrixXd by_start = reference.columns.leftCols(2);
     reference.covariance += 25.0 * by_start * by_start.transpose();

@@ -1,4 +1,4 @@
-// What the drive core is told of a robot, against hand calculations, and what the guard's figures promise.
+// Configuration of the drive core from a robot file: compared with hand calculations, and with the guarantees of the guard.
 #include "firmware/core_config.h"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,7 @@ TEST(CoreConfig, OfEveryShippedRobotStartsTheCore) {
   }
 }
 
-// 1.07 ohm with a tolerance of 10 %, 10 mohm of the driver, 25.2 V, 32.8 mN m/A, J = 220 g cm² + 9.47 g cm².
+// 1.07 ohm with a tolerance of 10 %, 10 mohm of the motor controller, 25.2 V, 32.8 mN m/A, J = 220 g cm² + 9.47 g cm².
 TEST(CoreConfig, HandCalculationOfTheMotor) {
   const robot_core::Config config = twente_config();
   const double lowest_ohm = 1.07 * 0.9 * (1.0 - 0.0039 * 25.0) + 0.01;
@@ -54,7 +54,7 @@ TEST(CoreConfig, DriverWithACurrentLimitKeepsIt) {
   const robot_core::Config config = make_core_config(robot, motor.nominal, with_tolerance({}, motor));
   EXPECT_FLOAT_EQ(config.current_limit_A, 8.16F);
   EXPECT_FLOAT_EQ(config.gear_efficiency, 0.72F);
-  // Rollers take a part of the grip: √(0.7² − 0.11²).
+  // Rollers use a part of the grip: √(0.7² − 0.11²).
   EXPECT_NEAR(config.traction_ratio, 0.6913, 1e-4);
 }
 
@@ -63,15 +63,15 @@ TEST(CoreConfig, RangeCountsByItsLowerEnd) {
   ParameterValue& resistance = *find_parameter(motor, "terminal_resistance");
   resistance.spread = Spread{.kind = Spread::Kind::range, .low = 0.8, .high = 1.3};
   EXPECT_NEAR(with_tolerance({}, motor).lowest_resistance_ratio, 0.8 / 1.07, 1e-12);
-  // A resistance without a tolerance is not exact: the lower end of the default for its origin counts.
+  // A resistance without a stated tolerance gets the default for its origin, and the lower end of that range counts.
   resistance.spread.reset();
   EXPECT_NEAR(with_tolerance({}, motor).lowest_resistance_ratio, 0.9, 1e-12);
 }
 
-/// The core's feed-forward and wheel columns against the plant's inverse dynamics: a steady drive needs the voltage that it plans.
+/// The core's feed-forward must equal the voltage that the plant's inverse dynamics needs for a steady drive.
 TEST(CoreConfig, FeedForwardIsWhatThePlantNeeds) {
   Robot robot = twente();
-  robot.heading_double_angle_Nm = kAbsent;  // which the core's form of friction does not have
+  robot.heading_double_angle_Nm = kAbsent;  // the core's friction law has no such term
   robot.heading_double_angle_phase_rad.clear();
   const MotorValues motor = ecx_32().nominal;
   const robot_core::Config config = make_core_config(robot, motor, {});
@@ -97,7 +97,7 @@ TEST(CoreConfig, FeedForwardIsWhatThePlantNeeds) {
   }
 }
 
-TEST(CoreConfig, NamesEveryFigureThatIsMissing) {
+TEST(CoreConfig, NamesEveryMissingParameter) {
   Robot robot = twente();
   robot.yaw_inertia_kg_m2 = kAbsent;
   robot.traction_ratio = kAbsent;
@@ -138,7 +138,7 @@ TEST(CoreConfig, RefusesAPeriodThatItsWheelLoopCannotUse) {
   EXPECT_THROW(make_core_config(twente(), ecx_32().nominal, {.period_s = 0.02}), Failure);
 }
 
-/// One derating for all that need one; few samples, because it is not the share of motors that is looked at.
+/// Shared derating with few samples, because these tests do not check the share of motors that keep their limit.
 const Derating& derating() {
   static const Derating made = [] {
     DerateOptions options;
@@ -175,7 +175,7 @@ TEST(GuardedCoreConfig, GuardPeriodIsAWholeNumberOfControlPeriods) {
   }
 }
 
-/// Highest temperature of the observer's winding with that current held at that speed for hours.
+/// Returns the highest temperature of the observer's winding if the current is held for hours at that speed.
 double held_C(const HotCase& around, double current_A, double speed_rad_per_s) {
   ObserverRun<double> run(derating().observer, derating().options.period_s, derating().rules.hottest_ambient_C);
   const Signals signals = around.signals(derating().rules, current_A, speed_rad_per_s);
@@ -187,7 +187,7 @@ double held_C(const HotCase& around, double current_A, double speed_rad_per_s) {
   return most_C;
 }
 
-// For a wheel whose speed nobody knows it must hold at all of them.
+// For a wheel with unknown speed the limp current must be safe at all speeds.
 TEST(GuardedCoreConfig, LimpCurrentIsBorneForGoodAtEverySpeedInEveryHotCase) {
   const double limp_A = limp_current_A(derating());
   const BarrierRules& rules = derating().rules;
@@ -198,11 +198,11 @@ TEST(GuardedCoreConfig, LimpCurrentIsBorneForGoodAtEverySpeedInEveryHotCase) {
     }
   }
   EXPECT_LT(hottest_C, rules.limits.winding_C + 0.5);
-  // And it is no more than a little below what could be held.
+  // It must also be close to the highest safe current.
   EXPECT_GT(hottest_C, rules.limits.winding_C - 5.0);
 }
 
-// Without effects the observer's heating is that of copper alone: I²·R(155 °C)·reserve/C_w, C_w = 12 s/3.8 K/W.
+// Without effects the observer's heating is copper loss alone: I²·R(155 °C)·factor/C_w, C_w = 12 s/3.8 K/W.
 TEST(GuardedCoreConfig, BrakingReserveIsTheHeatOfOneStop) {
   const double hot_ohm = 1.07 * (1.0 + 0.0039 * (155.0 - 25.0));
   const BodyConfig body = make_body(twente(), ecx_32().nominal);

@@ -1,4 +1,4 @@
-// The configured core in closed loop: on blocks, where nothing but a wheel's own inertia holds it, and on the ground.
+// The configured core in closed loop: on blocks, where the wheels drive only their own inertia, and on the ground.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Case {
 };
 constexpr Case kCases[] = {{"roboteam_twente_v2024", "maxon_ecx_flat_32l_48v"}, {"tigers_v2020", "nanotec_df45l024048_a2"}};
 
-/// The wheels of a robot on blocks: each turns its own inertia against the drag of motor and bearing.
+/// The wheels of a robot on blocks: each drives its own inertia against the drag of motor and bearing.
 class Blocks {
  public:
   Blocks(const Robot& robot, const MotorValues& motor, double inertia_share)
@@ -30,7 +30,7 @@ class Blocks {
         drag_Nm_(drive_.drag_torque_Nm * drive_.gear_ratio + robot.wheel_friction_torque_Nm),
         battery_V_(robot.battery_V) {}
 
-  /// One period; what a call computes acts one period later.
+  /// Simulates one period; the computed voltage acts one period later.
   robot_core::Output step(const robot_core::Config& config, robot_core::State& state, const robot_core::Command& command) {
     robot_core::Input input;
     input.elapsed_s = config.period_s;
@@ -50,7 +50,7 @@ class Blocks {
   [[nodiscard]] double speed_rad_per_s(std::size_t wheel) const { return speed_rad_per_s_[wheel]; }
 
  private:
-  /// Mean speed over the period, as an encoder gives it.
+  /// Returns the mean speed over the period, as an encoder measures it.
   double advance(std::size_t i) {
     constexpr int kSteps = 20;
     const double geared = drive_.torque_constant_Nm_per_A * drive_.gear_ratio;
@@ -76,7 +76,7 @@ class Blocks {
   std::array<bool, 4> is_open_next_{true, true, true, true};
 };
 
-// On blocks the loop gain is many times that on the ground: wheels that shake there heat their motors and wear their gears.
+// On blocks the loop gain is many times higher than on the ground. Oscillating wheels would heat the motors and wear the gears.
 TEST(CoreLoop, DoesNotShakeOnBlocks) {
   for (const Case& each : kCases) {
     const Robot robot = shipped_robot(each.robot);
@@ -104,7 +104,7 @@ TEST(CoreLoop, DoesNotShakeOnBlocks) {
           EXPECT_LT(most[i] - least[i], 0.5) << each.robot << ", wheel " << i << ", " << heading_rad;
           mean_rad_per_s[i] = 0.5 * (most[i] + least[i]);
         }
-        // Turning apart: on blocks no gyro sees it.
+        // The yaw rate is not checked, because a gyro measures none on blocks.
         const BodyVelocity shown = body_velocity(make_kinematics(robot), mean_rad_per_s);
         EXPECT_NEAR(shown.x_m_per_s, std::cos(heading_rad), 0.01) << each.robot << ", " << heading_rad;
         EXPECT_NEAR(shown.y_m_per_s, std::sin(heading_rad), 0.01) << each.robot << ", " << heading_rad;
@@ -113,7 +113,7 @@ TEST(CoreLoop, DoesNotShakeOnBlocks) {
   }
 }
 
-// Speeding up to 1 m/s and driving on: the feed-forward carries the robot, the loop takes what it lacks.
+// Acceleration to 1 m/s and cruise: the feed-forward drives the robot, the loop corrects the rest.
 TEST(CoreLoop, ReachesItsSpeedOnTheGround) {
   for (const Case& each : kCases) {
     const Robot robot = shipped_robot(each.robot);

@@ -1,4 +1,4 @@
-// The drawn block diagram: complete, readable, and the one that is shipped.
+// The drawn block diagram: complete, legible, and identical to the shipped one.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ struct Area {
   }
 };
 
-/// Size and mean advance of a letter, in px: widths of DejaVu Sans, the widest font of the list.
+/// Height and mean width of a letter in px, for DejaVu Sans, the widest font of the list.
 const std::map<std::string, std::pair<double, double>> kFonts{{"h1", {20.0, 14.0}},   {"h2", {12.0, 7.2}},    {"title", {14.0, 9.6}},
                                                               {"small", {11.0, 6.4}}, {"mono", {11.0, 6.63}}, {"head", {11.0, 6.63}},
                                                               {"no", {13.0, 10.0}}};

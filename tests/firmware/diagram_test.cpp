@@ -1,4 +1,4 @@
-// The block diagram against the code that it stands for, and the drawing against itself.
+// Compares the block diagram with the code, and checks that the drawing is consistent.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ using Names = std::set<std::string>;
 
 const std::filesystem::path kCore = kSource / "robot_core";
 
-/// Without comments.
+/// Returns the code of a file without comments.
 std::string code_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   EXPECT_TRUE(stream) << file;
@@ -46,7 +46,7 @@ std::vector<std::string> all_matches(const std::string& text, const std::string&
 
 bool has(const std::string& text, const std::string& pattern) { return std::regex_search(text, std::regex(pattern)); }
 
-/// Members of all structs of the headers that the stages share.
+/// Returns the members of all structs in the headers that the stages share.
 std::map<std::string, std::vector<std::string>> structs_of(const std::string& headers) {
   static const std::regex kStruct(R"(struct (?:alignas\(\d+\) )?(\w+) \{\n([^}]*(?:\{[^}\n]*\}[^}]*)*)\n\};)");
   std::map<std::string, std::vector<std::string>> structs;
@@ -56,7 +56,7 @@ std::map<std::string, std::vector<std::string>> structs_of(const std::string& he
   return structs;
 }
 
-/// The files of a block, one after the other.
+/// Returns the concatenated files of each block.
 std::map<Block, std::string> code_of_blocks() {
   std::map<Block, std::string> code;
   for (const BlockText& block : robot_core::kBlocks) {
@@ -67,7 +67,7 @@ std::map<Block, std::string> code_of_blocks() {
   return code;
 }
 
-/// The core's code as the test reads it.
+/// The core's code in the form that the tests analyse.
 struct Code {
   std::string stages = code_of(kCore / "drive_stages.h");
   std::string core = code_of(kCore / "drive_core.cpp");
@@ -81,7 +81,7 @@ const Code& code() {
   return kCode;
 }
 
-/// How the stages name the structs that they hand on; the second is one wheel's part.
+/// Names of the structs that the stages pass on; the second name is one wheel's part.
 struct Carrier {
   std::string name;
   std::string variable;
@@ -93,7 +93,7 @@ const std::vector<Carrier> kCarriers{{"Validated", "validated", "ValidatedWheel"
                                      {"WheelVoltages", "voltage", "WheelVoltage"},
                                      {"LimitedVoltages", "limited", "LimitedWheel"}};
 
-/// "wheel.speed_rad_per_s", "velocity", "command.pose".
+/// Returns signal names such as "wheel.speed_rad_per_s", "velocity", "command.pose".
 std::vector<std::string> signals_in(const std::string& name, const std::string& part, const std::string& member) {
   std::vector<std::string> names;
   const auto found = code().structs.find(name);
@@ -109,7 +109,7 @@ std::vector<std::string> signals_in(const std::string& name, const std::string& 
   return names;
 }
 
-/// Patterns of what a block calls the carrier, or one wheel's part of it by an alias.
+/// Returns patterns for the names by which a block accesses the carrier, or one wheel's part of it through an alias.
 std::vector<std::string> ways_to(const Carrier& carrier, bool is_per_wheel, const std::string& text) {
   std::vector<std::string> ways{carrier.variable + (is_per_wheel ? R"(\.wheel\[\w+\])" : "")};
   for (const std::string& alias : all_matches(text, fmt::format(R"(\b{}& (\w+) = {}\.wheel\[)", carrier.per_wheel, carrier.variable))) {
@@ -118,7 +118,7 @@ std::vector<std::string> ways_to(const Carrier& carrier, bool is_per_wheel, cons
   return ways;
 }
 
-/// Blocks that look at or set a member of what the carrier hands on.
+/// Returns the blocks that read or set a member of the carrier.
 Names users_of(const Carrier& carrier, const std::string& signal) {
   const bool is_per_wheel = signal.starts_with("wheel.");
   const std::string member = is_per_wheel ? signal.substr(6) : signal;
@@ -133,7 +133,7 @@ Names users_of(const Carrier& carrier, const std::string& signal) {
   return users;
 }
 
-/// Whether a block that may change the carrier looks at one of its members, too.
+/// True if a block with write access to the carrier also reads one of its members.
 bool looks_at(const Carrier& carrier, const std::string& text) {
   for (const std::string& way : ways_to(carrier, true, text)) {
     if (has(text, fmt::format(R"(\b{}\.\w+\b(?!\s*[-+]?=[^=]))", way))) {
@@ -179,7 +179,7 @@ const SignalText* row_of(const std::string& carrier, const std::string& name, Bl
 
 std::string number_of(Block block) { return block == Block::firmware ? "firmware" : text_of(block).number; }
 
-/// Calls of `wanted` functions in the order in which `function` of drive_core.cpp makes them, through the other functions of that file.
+/// Returns the calls of `wanted` functions by `function` of drive_core.cpp in order, including calls through other functions of that file.
 std::vector<std::string> calls_of(const std::string& function, const Names& wanted) {
   std::smatch body;
   const std::regex definition(fmt::format(R"(\n[\w:]+(?: [\w:]+)* {}\([^;{{]*\) \{{\n([\s\S]*?)\n\}})", function));
@@ -200,7 +200,7 @@ std::vector<std::string> calls_of(const std::string& function, const Names& want
 
 TEST(BlockDiagram, StagesAreTheCallsOfStep) {
   const std::vector<std::string> declared = all_matches(code().stages, R"(\n\w+ (\w+)\(const Config& config)");
-  // A stage that several branches call counts where the last one does.
+  // A stage that several branches call counts at its last call.
   std::vector<std::string> expected;
   for (const std::string& call : calls_of("step", {declared.begin(), declared.end()})) {
     std::erase(expected, call);
@@ -227,7 +227,7 @@ TEST(BlockDiagram, EachFileOfTheCoreBelongsToABlock) {
   }
   for (const auto& entry : std::filesystem::directory_iterator(kCore)) {
     const std::string file = entry.path().filename().string();
-    // The planner names its interface; what lies below starts with the same word. The memory over power-off is outside of the step.
+    // The planner names its interface only; its other files start with the same word. The memory over power-off is not part of the step.
     EXPECT_TRUE(!file.ends_with(".cpp") || named.contains(file) || file.starts_with("trajectory_") || file == "guard_memory.cpp")
         << file << " is of no block";
   }
@@ -244,7 +244,7 @@ TEST(BlockDiagram, UnitsAreThoseOfTheNames) {
   }
 }
 
-// Both ways: what the stages hand on is in the table with its readers, and the table has nothing else.
+// Checks both directions: the table must contain all signals between stages with their readers, and no others.
 TEST(BlockDiagram, SignalsBetweenStagesAreThoseOfTheCode) {
   std::size_t rows = 0;
   for (const Carrier& carrier : kCarriers) {
@@ -259,7 +259,7 @@ TEST(BlockDiagram, SignalsBetweenStagesAreThoseOfTheCode) {
           ++rows;
         }
       }
-      // What only the block itself looks at is no signal.
+      // A member that only its own block uses is no signal.
       EXPECT_EQ(drawn, used.size() > 1 ? used : Names{}) << carrier.name << " " << name;
     }
   }
@@ -342,7 +342,7 @@ TEST(BlockDiagram, OutputsAreThoseOfTheCode) {
   EXPECT_EQ(drawn, Names(members.begin(), members.end()));
 }
 
-/// State members whose name no other struct has, so that a place in the code is surely one of them.
+/// Returns State members with a unique name, so that an occurrence in the code is unambiguous.
 std::vector<std::string> unique_state_members() {
   std::map<std::string, int> times;
   for (const auto& [name, members] : code().structs) {
@@ -405,7 +405,7 @@ TEST(BlockDiagram, WhatBlocksKeepForEachOtherIsInTheTable) {
 int guard_runs = 0;
 int plan_runs = 0;
 
-// The rates that the blocks state, counted.
+// Counts calls to check the rates stated in the blocks.
 TEST(BlockDiagram, RatesAreThoseOfTheCore) {
   const float axis[] = {0.0F, 100.0F};
   const float hot_C[] = {0.0F, 155.0F};
@@ -456,7 +456,7 @@ TEST(BlockDiagram, RatesAreThoseOfTheCore) {
   EXPECT_EQ(plan_runs, 0);
   run(robot_core::Mode::pose_target);
   EXPECT_EQ(plan_runs, 1000);
-  // The limits of motion are reached only after many steps, so that each new reference differs from the last.
+  // The motion limits are reached only after many steps, so that each new reference differs from the last one.
   int references = 0;
   robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F});
   input.command.mode = robot_core::Mode::body_velocity;

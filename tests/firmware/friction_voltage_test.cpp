@@ -1,4 +1,4 @@
-// Friction of a robot's file as voltages, against the steady state of the plant's own equations.
+// Friction of a robot file as voltages, compared with the steady state of the plant's equations.
 #include "firmware/friction_voltage.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace heatsoak {
 namespace {
 
-/// A curve in the form of equation 3, with its own a and b for each wheel.
+/// A friction curve in the form of equation 3, with separate a and b for each wheel.
 Robot with_measured_curve(double phase_offset_rad = 0.0) {
   Robot robot = twente();
   robot.heading_constant_Nm = robot.heading_sine_Nm = robot.heading_double_angle_Nm = kAbsent;
@@ -32,7 +32,7 @@ double form_V(const FrictionVoltage& friction, int wheel, double heading_rad) {
   return friction.sine_V[wheel] * sine + std::copysign(friction.sign_V[wheel], sine);
 }
 
-/// Voltage that keeps the wheel turning at that heading and speed, by the plant's own friction.
+/// Returns the voltage that keeps the wheel turning at that heading and speed, from the plant's friction.
 double steady_V(const Robot& robot, const MotorValues& motor, int wheel, double heading_rad, double speed_m_per_s) {
   const BodyConfig body = make_body(robot, motor);
   BodyMotion motion;
@@ -50,7 +50,7 @@ TEST(FrictionVoltage, RepresentsACurveOfItsFormExactly) {
   for (int i = 0; i < 4; ++i) {
     EXPECT_LT(friction.residual_rms_V[i], 1e-9) << i;
     for (const double heading_rad : {0.0, 1.3, 1.6, 3.1, 4.7}) {
-      // At 1 m/s and away from where a wheel stands the smoothing of the plant's sign takes less than 1 % of the friction.
+      // At 1 m/s and away from headings at which a wheel stands, the smoothed sign changes the friction by less than 1 %.
       ASSERT_GT(std::abs(std::sin(heading_rad + friction.phase_rad[i])), 0.15) << i << ", " << heading_rad;
       const double speed_rad_per_s = wheel_speeds_rad_per_s(kinematics, {std::cos(heading_rad), std::sin(heading_rad), 0.0})[i];
       const double expected_V = steady_V(robot, motor, i, heading_rad, 1.0) - friction.damping_V_s_per_rad * speed_rad_per_s;
@@ -60,7 +60,7 @@ TEST(FrictionVoltage, RepresentsACurveOfItsFormExactly) {
 }
 
 TEST(FrictionVoltage, FitFindsACurveOfItsForm) {
-  // A double angle of nearly nothing takes the way over the fit.
+  // A negligible double-angle term forces the code to use the fit.
   const MotorValues motor = ecx_32().nominal;
   const FrictionVoltage direct = friction_voltage(with_measured_curve(), motor);
   Robot robot = with_measured_curve();
@@ -74,12 +74,12 @@ TEST(FrictionVoltage, FitFindsACurveOfItsForm) {
   }
 }
 
-// The firmware's own numbers: 1.23 V in translation, 0.3 V in rotation, 0.0375 V s/rad; its robot file rounds them.
+// Values of the team's firmware: 1.23 V in translation, 0.3 V in rotation, 0.0375 V s/rad. The robot file rounds them.
 TEST(FrictionVoltage, GivesBackTheVoltagesOfTheTeam) {
   Robot robot = twente();
   robot.heading_double_angle_Nm = kAbsent;
   robot.heading_double_angle_phase_rad.clear();
-  // The team counted without the driver's 10 mohm.
+  // The team neglected the motor controller's 10 mohm.
   robot.driver_resistance_ohm = 0.0;
   const FrictionVoltage friction = friction_voltage(robot, ecx_32().nominal);
   EXPECT_NEAR(friction.damping_V_s_per_rad, 0.0375, 5e-5);
@@ -90,7 +90,7 @@ TEST(FrictionVoltage, GivesBackTheVoltagesOfTheTeam) {
   }
 }
 
-// sin(2θ + ψ)·sign is beyond the form: what is left is at most its rms, and the fit can do no better along a or b.
+// The form cannot represent sin(2θ + ψ)·sign. The residual is at most its RMS, and other values of a or b do not reduce it.
 TEST(FrictionVoltage, ReportsWhatADoubleAngleLeaves) {
   const MotorValues motor = ecx_32().nominal;
   const Robot robot = twente();
@@ -103,14 +103,14 @@ TEST(FrictionVoltage, ReportsWhatADoubleAngleLeaves) {
   }
 }
 
-// Rollers: by symmetry the mirrored wheels have the same curve, and the fit leaves less than half of the friction's own rms.
+// Rollers: by symmetry the mirrored wheels have the same curve, and the fit's residual is less than half of the friction's RMS.
 TEST(FrictionVoltage, FitsTheDragOfRollers) {
   const Robot robot = shipped_robot("tigers_v2020");
   const MotorValues motor = shipped_motor("nanotec_df45l024048_a2").nominal;
   const FrictionVoltage friction = friction_voltage(robot, motor);
   EXPECT_NEAR(friction.sine_V[0], friction.sine_V[1], 1e-9);
   EXPECT_NEAR(friction.sign_V[2], friction.sign_V[3], 1e-9);
-  // In rotation the rollers stand: 4.2 mN m at the wheel and the motor's own drag are left.
+  // In rotation the rollers stand still. The remaining friction is 4.2 mN m at the wheel and the motor's drag.
   const DriveConstants drive = drive_constants(robot, motor);
   EXPECT_NEAR(friction.rotation_V, steady_voltage_V(drive, 0.0042, 1e-9), 1e-6);
   for (int i = 0; i < 4; ++i) {
@@ -123,7 +123,7 @@ TEST(FrictionVoltage, FitsTheDragOfRollers) {
   }
 }
 
-// The sum of squares has its minimum at what was fitted.
+// The sum of squares must have its minimum at the fitted values.
 TEST(FrictionVoltage, FitIsALeastSquaresOne) {
   const Robot robot = shipped_robot("tigers_v2020");
   const MotorValues motor = shipped_motor("nanotec_df45l024048_a2").nominal;
@@ -169,7 +169,7 @@ TEST(FrictionVoltage, RobotWithoutFrictionHasItsBackEmfAlone) {
     EXPECT_EQ(friction.sign_V[i], 0.0);
   }
   EXPECT_TRUE(friction_note(robot).starts_with("feed-forward of friction is off"));
-  // The core knows nothing of friction that is assumed for the simulated robot.
+  // Friction that is assumed for the simulated robot must not reach the core.
   const Robot assumed = with_assumed_friction(robot);
   EXPECT_GT(assumed.roller_drag_ratio, 0.0);
   const FrictionVoltage unknown = friction_voltage(assumed, ecx_32().nominal);

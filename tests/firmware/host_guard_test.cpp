@@ -1,4 +1,4 @@
-// The guard on the host against the generated C header of the same derating: what is simulated is what runs on the controller.
+// Compares the host's guard with the generated C header of the same derating, so that simulations match the controller.
 #include "firmware/host_guard.h"
 
 #include <fmt/format.h>
@@ -44,7 +44,7 @@ Derating derating_of(const Motor& motor) {
           .reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s};
 }
 
-/// Laws with exponential, power and square root, over every signal, and a third body.
+/// Laws with exponential, power and square root over every signal, and a third node.
 constexpr const char* kManyLaws = R"([effects.knee]
 type = "saturation"
 excess = { value = "0.3", origin = "estimated", derivation = "a test" }
@@ -102,7 +102,7 @@ leak_ratio = { value = "0.5", origin = "estimated", derivation = "a test" }
 heat_capacity = { value = "60 J/K", origin = "estimated", derivation = "a test" }
 )";
 
-/// Plays a robot: signals that drift, current close to what is allowed, and now and then a sensor that is broken for a while.
+/// Simulates a robot: drifting signals, currents close to the allowed one, and occasionally a faulty sensor for a while.
 class Play {
  public:
   explicit Play(const Derating& derating) : rules_(derating.rules), reachable_rad_per_s_(derating.reachable_speed_rad_per_s) {}
@@ -151,11 +151,11 @@ class Play {
 };
 
 struct Row {
-  std::vector<std::uint32_t> bits;  ///< allowed current, temperatures, carried rounding
+  std::vector<std::uint32_t> bits;  ///< allowed current, temperatures, compensated rounding errors
   bool is_unknown_input = false;
 };
 
-/// Reads records as single precision and answers each with the bits of Row.
+/// Returns a program that reads records in single precision and answers each with the bits of Row.
 std::string program(const Derating& derating) {
   std::string fields;
   for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
@@ -187,7 +187,7 @@ int main(void) {{
                      firmware::kSignalCount, fields, derating.observer.state_count());
 }
 
-/// What the compiled header answers.
+/// Returns the answers of the compiled header.
 std::vector<Row> by_header(const Derating& derating, const std::vector<Record>& records) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / ("heatsoak_host_guard_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
@@ -215,7 +215,7 @@ std::vector<Row> by_header(const Derating& derating, const std::vector<Record>& 
   return rows;
 }
 
-/// Steps the guard of the drive core; the last record's answer decides the next.
+/// Steps the guard of the drive core. The answer to the last record determines the next one.
 std::vector<Row> by_host(const HostGuard& guard, Play play, std::size_t steps, std::vector<Record>& records) {
   const robot_core::GuardModel& model = guard.model();
   robot_core::GuardState state;
@@ -237,7 +237,7 @@ std::vector<Row> by_host(const HostGuard& guard, Play play, std::size_t steps, s
   return rows;
 }
 
-/// The bits agree, and the play has been through what it is about.
+/// Checks that the bits agree and that the records cover the intended situations.
 void expect_same_bits(const Derating& derating, const std::string& text) {
   constexpr std::size_t kSteps = 100'000;
   const HostGuard guard(derating);
@@ -298,7 +298,7 @@ TEST(HostGuard, ReadsItsTableAsTheDeratingDoes) {
   }
 }
 
-// Threads get copies: each has to be whole without the one that it was copied from.
+// Each thread uses a copy, which must stay valid without the original.
 TEST(HostGuard, CopyStandsOnItsOwn) {
   const Derating derating = derating_of(ecx_32());
   auto original = std::make_unique<HostGuard>(derating);

@@ -1,4 +1,4 @@
-// The gains in the loop they were designed for: a wheel that is held by its motor, with the delays of a real controller.
+// The gains in the loop that they were designed for: one wheel with its motor and the delays of a real controller.
 #include "firmware/wheel_loop.h"
 
 #include <gtest/gtest.h>
@@ -31,12 +31,12 @@ WheelLoopPlant plant_of(const WheelCase& each) {
   return wheel_loop_plant(make_body_with_known_friction(robot, motor.nominal), drive_constants(robot, motor.nominal));
 }
 
-/// One wheel of that inertia under PI control, exact over a period in which the voltage is held. The controller sees the mean speed of the
-/// last period, and what it computes acts one period later. States: speed, measured speed, voltage that acts, integral.
+/// One wheel with the given inertia under PI control, exact for a voltage that is held over a period. The controller gets the mean speed of
+/// the last period, and its output acts one period later. States: speed, measured speed, acting voltage, integral.
 struct Loop {
   Eigen::Matrix4d matrix;
 
-  /// `efficiency` of the gear; `body_V_s_per_rad` is a further gain on the wheel's error, as the body loop adds it.
+  /// `efficiency` is the gear's. `body_V_s_per_rad` is an additional gain on the wheel's error, which the body loop adds.
   Loop(const WheelLoopPlant& plant, const WheelLoopGains& gains, double period_s, double inertia_kg_m2, double efficiency,
        double body_V_s_per_rad = 0.0) {
     const double time_constant_s = inertia_kg_m2 * plant.volt_per_Nm / (plant.back_emf_V_s_per_rad * efficiency);
@@ -45,20 +45,20 @@ struct Loop {
     const double per_V = 1.0 / plant.back_emf_V_s_per_rad;
     const double gain = gains.wheel_gain_V_s_per_rad + body_V_s_per_rad;
     const double integral = gains.wheel_integral_V_per_rad * period_s;
-    // Held voltage u, next voltage from the speed measured over the period before: e = −measured.
+    // Held voltage u; the next voltage follows from the mean speed of the previous period: e = −measured.
     matrix << kept, 0.0, (1.0 - kept) * per_V, 0.0,  //
         mean, 0.0, (1.0 - mean) * per_V, 0.0,        //
         0.0, -gain - integral, 0.0, 1.0,             //
         0.0, -integral, 0.0, 1.0;
   }
 
-  /// Without the integral, whose own pole is 1 where it has no gain.
+  /// Loop without the integral state, whose pole is at 1 if the integral gain is zero.
   [[nodiscard]] Eigen::Matrix3d proportional() const { return matrix.topLeftCorner<3, 3>(); }
   [[nodiscard]] double largest_pole() const { return Eigen::EigenSolver<Eigen::Matrix4d>(matrix).eigenvalues().cwiseAbs().maxCoeff(); }
 };
 
 TEST(WheelLoop, OscillatesAtTheUltimateGainOfItsDerivation) {
-  // An integrator with these delays: a huge time constant, no integral.
+  // An integrator with these delays: a huge time constant and no integral gain.
   WheelLoopPlant plant;
   plant.back_emf_V_s_per_rad = 0.03;
   plant.volt_per_Nm = 30.0;
@@ -81,7 +81,7 @@ TEST(WheelLoop, OscillatesAtTheUltimateGainOfItsDerivation) {
   EXPECT_NEAR(angle_rad, std::numbers::pi / 4.0, 1e-5);
 }
 
-// Without delay the closed loop has the double pole that was asked for.
+// Without delay the closed loop must have the specified double pole.
 TEST(WheelLoop, PlacesThePolesOfTheLoadedWheel) {
   for (const WheelCase& each : kWheelCases) {
     const WheelLoopPlant plant = plant_of(each);
@@ -105,7 +105,7 @@ TEST(WheelLoop, IsStableWithHalfAndDoubleInertiaOnTheGroundAndInTheAir) {
         EXPECT_LT(Loop(plant, gains, period_s, part * plant.loaded_inertia_kg_m2, plant.gear_efficiency).largest_pole(), 1.0) << where;
         EXPECT_LT(Loop(plant, gains, period_s, part * plant.wheel_inertia_kg_m2, 1.0).largest_pole(), 1.0) << where << " in the air";
       }
-      // The body loop sees the same wheels: with all of them in the air it adds its force to each.
+      // The body loop controls the same wheels. If all of them are in the air, it adds its force to each.
       const double body_V_s_per_rad =
           gains.body_gain_per_s * (plant.hardest_body_inertia_kg_m2 + plant.wheel_inertia_kg_m2) * plant.volt_per_Nm;
       for (const double part : {0.75, 1.0, 2.0}) {
@@ -118,7 +118,7 @@ TEST(WheelLoop, IsStableWithHalfAndDoubleInertiaOnTheGroundAndInTheAir) {
   }
 }
 
-/// A step of the reference on the loaded wheel, without feed-forward.
+/// Returns the overshoot of a reference step on the loaded wheel without feed-forward.
 double overshoot(const Loop& loop, const WheelLoopGains& gains, double period_s, double& settled_s) {
   Eigen::Vector4d state = Eigen::Vector4d::Zero();
   double most = 0.0;
@@ -140,7 +140,7 @@ TEST(WheelLoop, SettlesWithoutMuchOvershoot) {
     for (const double part : {0.5, 1.0, 2.0}) {
       double settled_s = 0.0;
       const Loop loop(plant, gains, 0.001, part * plant.loaded_inertia_kg_m2, plant.gear_efficiency);
-      // A double pole with the zero of the PI controller overshoots by e^-2 = 13.5 % at most.
+      // A double pole with the zero of the PI controller overshoots by at most e^-2 = 13.5 %.
       EXPECT_LT(overshoot(loop, gains, 0.001, settled_s), part <= 1.0 ? 0.14 : 0.22) << each.robot << ", " << part;
       EXPECT_LT(settled_s, 10.0 / gains.wheel_rate_per_s * (1.0 + part)) << each.robot << ", " << part;
     }
@@ -165,7 +165,7 @@ TEST(WheelLoop, RefusesAPeriodThatIsTooLongAndNamesTheLongest) {
   }
 }
 
-// By hand, four wheels at right angles: Σt_x² = 2, so m·r²/2 in either direction.
+// Hand calculation for four wheels at right angles: Σt_x² = 2, so m·r²/2 in either direction.
 TEST(WheelLoop, MassBehindAWheelOfASquareRobot) {
   Robot robot = twente();
   robot.wheel_axis_rad = {-0.25 * std::numbers::pi, 0.25 * std::numbers::pi, 0.75 * std::numbers::pi, -0.75 * std::numbers::pi};

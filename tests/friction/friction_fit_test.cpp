@@ -1,4 +1,4 @@
-// What a steady-state test teaches about friction, against drives of the forward dynamics whose friction is known.
+// Friction from a steady-state test, compared with the known friction of simulated drives (forward dynamics).
 #include "friction/friction_fit.h"
 
 #include <gmock/gmock.h>
@@ -28,19 +28,19 @@ struct Case {
   Truth truth;
 };
 
-/// The long statistics, `ctest -C statistics -L statistics`, drives 200 times (two minutes); sixteen without it.
+/// Number of simulated drives: 200 for the long statistics (`ctest -C statistics -L statistics`, two minutes), otherwise sixteen.
 int seeds_wanted() {
   const char* given = std::getenv("HEATSOAK_FRICTION_SEEDS");
   return given ? std::atoi(given) : 16;
 }
 
-/// f(θ) of a wheel.
+/// Returns f(θ) of a wheel.
 double friction_V(const Truth& truth, std::size_t wheel, double heading_rad) {
   const double s = std::sin(heading_rad + truth.phase_rad[wheel]);
   return truth.sine_V[wheel] * s + std::copysign(truth.constant_V[wheel], s);
 }
 
-/// A robot with 0.9 Ω, 33 mN m/A and friction of its own at every wheel.
+/// A robot with 0.9 Ω, 33 mN m/A and different random friction at every wheel.
 Case any_case(std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> any(0.0, 1.0);
@@ -79,7 +79,7 @@ Case any_case(std::uint64_t seed) {
   motor.rotor_inertia_kg_m2 = 7.2e-6;
   Case made{make_plant(robot, motor, 0.001), {}};
   made.plant.body.friction.smoothing_rad_per_s = 0.05;
-  // The steady state by hand: V = R·(T/K_t) + K_t·ω with T = 6.6 mN m of the motor + friction + damping·ω, R = 0.9 Ω.
+  // Steady state by hand: V = R·(T/K_t) + K_t·ω with T = 6.6 mN m of the motor + friction + damping·ω, R = 0.9 Ω.
   const double per_torque = 0.9 / 0.033;
   made.truth.damping_V_s_per_rad = 0.033 + per_torque * robot.wheel_damping_Nm_s_per_rad;
   made.truth.rotation_V = per_torque * (0.0066 + 0.008);
@@ -139,7 +139,7 @@ TEST(FrictionFit, intervals_hold_the_truth_of_95_percent_of_drives) {
   for (const auto& [name, coverage] :
        {std::pair("damping", damping), {"a", sine}, {"b", constant}, {"phase", phase}, {"offset of a heading", offset}}) {
     std::cout << name << ": " << coverage.inside << " of " << coverage.all << " inside, largest error " << coverage.worst << "\n";
-    // 95 % within three standard errors of the share; the wheels of a drive share its pushes, so drives are counted.
+    // 95 % within three standard errors of the share. The wheels of a drive share its disturbances, so the drives are counted.
     const double margin = 3.0 * std::sqrt(0.95 * 0.05 / seeds);
     EXPECT_GE(coverage.inside, (0.95 - margin) * coverage.all) << name;
     EXPECT_LE(coverage.inside, (0.95 + margin) * coverage.all) << name << ": wider than it says";
@@ -160,7 +160,7 @@ TestDrive short_drive(const std::vector<double>& headings_deg, const std::vector
   return drive;
 }
 
-/// Without pushes, without bad rows: what is left is the logger's noise.
+/// Without disturbances and bad rows only the logger's noise remains.
 TEST(FrictionFit, an_undisturbed_drive_gives_the_friction_within_millivolts) {
   const Case known = any_case(3);
   TestDrive drive = usual_drive();
@@ -176,7 +176,7 @@ TEST(FrictionFit, an_undisturbed_drive_gives_the_friction_within_millivolts) {
     EXPECT_NEAR(wheel.constant_V.value, known.truth.constant_V[i], 0.010);
     EXPECT_NEAR(wheel.rotation_V.value, known.truth.rotation_V, 0.010);
     EXPECT_GT(wheel.r2_ratio, 0.999);
-    // what every heading says by itself
+    // voltage offset from each heading alone
     for (const HeadingLine& line : fit.lines[i]) {
       EXPECT_NEAR(line.offset_V.value, friction_V(known.truth, i, line.heading_rad), 0.06);
     }
@@ -199,24 +199,24 @@ TEST(FrictionFit, bad_rows_and_return_legs_are_left_out) {
       EXPECT_TRUE(std::abs(speed_m_per_s - 0.4) < 0.03 || std::abs(speed_m_per_s - 0.8) < 0.03 || std::abs(speed_m_per_s - 1.2) < 0.03)
           << speed_m_per_s;
     } else {
-      EXPECT_NEAR(part.speed_m_per_s, 0.8, 0.03);  // homing knows one speed
+      EXPECT_NEAR(part.speed_m_per_s, 0.8, 0.03);  // homing uses one speed only
     }
   }
   EXPECT_GT(returns, 15);
-  // A fifth of the rows is bad, but a quarter of those repeat a row that may have been as steady.
+  // A fifth of the rows is bad, but a quarter of these repeat an earlier row, which may also be steady.
   EXPECT_NEAR(kept / rows, 0.83, 0.05);
   const FrictionFit without = fit_friction(steady.parts, known.plant.body.kinematics, {});
   const FrictionFit with = fit_friction(steady.parts, known.plant.body.kinematics, {.use_return_legs = true});
   EXPECT_GT(with.wheels[0].parts_used, without.wheels[0].parts_used);
 }
 
-/// Straight ahead no wheel stands, at 60° wheel 2 (axle at 30°, rolling along 120°) turns with cos 60°, wheel 1 (rolling
-/// along 60°) fully; at −30° wheel 1 should stand.
-TEST(FrictionFit, a_wheel_that_should_stand_tells_nothing) {
+/// Straight ahead no wheel stands still. At 60° wheel 2 (axle at 30°, rolling along 120°) turns with cos 60°, and wheel 1 (rolling along
+/// 60°) at full speed. At −30° wheel 1 should stand still.
+TEST(FrictionFit, a_wheel_that_should_stand_gives_no_information) {
   const Case known = any_case(5);
   const SteadyParts steady = parts_of(known, short_drive({-30.0, 0.0, 60.0, 90.0, 150.0, 180.0, 240.0, 270.0}, {0.5, 1.0}), 5);
   const FrictionFit fit = fit_friction(steady.parts, known.plant.body.kinematics, {});
-  EXPECT_EQ(fit.wheels[0].parts_standing, 4);  // −30° and 150°
+  EXPECT_EQ(fit.wheels[0].parts_standing, 4);  // at −30° and 150°
   ASSERT_TRUE(fit.wheels[0].is_learned()) << fit.wheels[0].problem;
   for (const HeadingLine& line : fit.lines[0]) {
     EXPECT_GT(std::abs(std::sin(line.heading_rad + 30.0 * kDegree_rad)), 0.1);
@@ -238,7 +238,7 @@ TEST(FrictionFit, says_what_a_drive_cannot_tell) {
   const FrictionFit unknown = fit_friction(one_speed.parts, known.plant.body.kinematics, {});
   EXPECT_FALSE(unknown.is_learned());
   EXPECT_THAT(unknown.wheels[0].problem, testing::HasSubstr("one speed"));
-  // With the damping known the rest is learned, and said to rest on it.
+  // With known damping the other parameters are identifiable, and the result must report the given value.
   const FrictionFit given =
       fit_friction(one_speed.parts, known.plant.body.kinematics, {.known_damping_V_s_per_rad = known.truth.damping_V_s_per_rad});
   ASSERT_TRUE(given.is_learned());
@@ -249,9 +249,9 @@ TEST(FrictionFit, says_what_a_drive_cannot_tell) {
   }
 }
 
-/// Two directions and their opposites are two equations for a, b and φ. Diagonally a front wheel turns once fully and once
-/// slowly, so that some doubt in φ leaves a and b in wide intervals; 7° off straight ahead the speeds of three wheels are
-/// so alike on both that it leaves nothing.
+/// Two directions and their opposites are two equations for a, b and φ. Diagonally a front wheel turns once at full speed and once slowly,
+/// so a small uncertainty in φ makes the intervals of a and b wide. At 7° off straight ahead three wheels have nearly equal speeds in both
+/// directions, so nothing is identifiable.
 TEST(FrictionFit, few_headings_leave_wide_intervals_or_nothing) {
   Coverage sine, constant, damping;
   for (int seed = 1; seed <= 6; ++seed) {
@@ -300,8 +300,8 @@ TEST(FrictionFit, a_robot_that_stands_or_swings_has_no_steady_parts) {
   EXPECT_TRUE(find_steady_parts({log}, known.plant.body.kinematics).parts.empty());
 }
 
-/// Every third heading predicted: a robot file without friction is wrong by the friction, the fit by the pushes only.
-TEST(FrictionFit, foretells_headings_that_it_has_not_seen) {
+/// Predicts every third heading. Without friction the error equals the friction; with the fit it equals the disturbances.
+TEST(FrictionFit, predicts_headings_that_were_not_fitted) {
   const Case known = any_case(8);
   const SteadyParts steady = parts_of(known, usual_drive(), 8);
   const auto none = [](const SteadyPart& part) {
@@ -315,8 +315,8 @@ TEST(FrictionFit, foretells_headings_that_it_has_not_seen) {
   EXPECT_LT(error.after_V, 0.1);
 }
 
-/// A third harmonic hides in a and b to a large part, and R² stays above 0.998.
-TEST(FrictionFit, of_a_third_harmonic_is_told_and_covered) {
+/// A third harmonic is mostly absorbed by a and b, and R² stays above 0.998.
+TEST(FrictionFit, of_a_third_harmonic_is_reported_and_covered) {
   Coverage sine, constant;
   for (int seed = 1; seed <= 5; ++seed) {
     const Case known = any_case(static_cast<std::uint64_t>(seed));
@@ -347,9 +347,9 @@ TEST(FrictionFit, of_a_third_harmonic_is_told_and_covered) {
   EXPECT_GE(constant.inside, 0.9 * constant.all);
 }
 
-/// A robot whose friction has a part of twice the angle, as Twente's firmware has it: the law cannot follow it, phases go to
-/// where the wheels would turn the other way, and what is predicted must stay as good as the law can be.
-TEST(FrictionFit, of_another_law_is_said_and_still_foretells) {
+/// The robot's friction has a double-angle term, as in Twente's firmware, which the law cannot represent. Fitted phases may even reverse a
+/// wheel's direction. The prediction must still be as good as the law permits.
+TEST(FrictionFit, of_another_law_is_reported_and_still_predicts) {
   Case known = any_case(9);
   HeadingFriction& friction = known.plant.body.friction.heading;
   friction.constant_Nm.fill(0.030);
@@ -367,7 +367,7 @@ TEST(FrictionFit, of_another_law_is_said_and_still_foretells) {
     EXPECT_NEAR(wheel.damping_V_s_per_rad.value, known.truth.damping_V_s_per_rad, 0.006);
   }
   const HeldOutError error = error_on_held_out_headings(steady.parts, known.plant.body.kinematics, {}, {});
-  // All of it is 0.7 V to 1.4 V, the part of twice the angle 0.27 V rms.
+  // The total friction is 0.7 V to 1.4 V, and the RMS of its double-angle term is 0.27 V.
   EXPECT_LT(error.after_V, 0.3);
 }
 

@@ -1,4 +1,4 @@
-// The friction test on recordings of real robots, where they are at hand; no part of the project.
+// Friction test on recordings of real robots. The recordings are not part of the project; without them the tests are skipped.
 #include <gtest/gtest.h>
 
 #include <iomanip>
@@ -29,12 +29,12 @@ const Robot& robotino() {
   return robot;
 }
 
-/// Friction torque at the wheel is measured with the motor's drag in it; 5.95 Ω, 51.4 mN m/A.
+/// The measured friction torque at the wheel includes the motor's drag; 5.95 Ω, 51.4 mN m/A.
 DriveConstants robotino_drive() {
   return {.resistance_ohm = 5.95, .torque_constant_Nm_per_A = 0.0514, .drag_torque_Nm = 0.0, .gear_ratio = 16.0};
 }
 
-/// Back-EMF alone: what the data sheet makes expect.
+/// Back-EMF from the data sheet, without friction.
 PerWheel back_emf_V(const SteadyPart& part) {
   PerWheel voltage_V{};
   for (int i = 0; i < 3; ++i) {
@@ -65,7 +65,7 @@ void print(const std::string& name, const SteadyParts& steady, const FrictionFit
   }
 }
 
-/// One speed: damping is taken as back-EMF, and the directions say the rest. Opposite headings repeat within 5 % of Σi².
+/// One speed: the back-EMF gives the damping, the directions give the rest. Opposite headings agree within 5 % of Σi².
 TEST(FrictionOfRecordings, robotino_on_two_surfaces) {
   const std::filesystem::path folder = data_or_skip("robotino_omni");
   if (folder.empty()) {
@@ -83,14 +83,14 @@ TEST(FrictionOfRecordings, robotino_on_two_surfaces) {
     print(surface, steady, fit, error);
     EXPECT_EQ(error.headings, 24);
     EXPECT_LT(error.after_V, 0.35 * error.before_V);
-    // Where a wheel turns slowly neighbouring points lie off the curve together.
+    // Neighbouring points deviate from the curve in the same direction where a wheel turns slowly.
     EXPECT_TRUE(fit.wheels[0].lack.is_found);
     EXPECT_EQ(fit.wheels[0].lack.repeats, "neighbouring headings");
     for (const WheelFriction& wheel : fit.wheels) {
       ASSERT_TRUE(wheel.is_learned()) << wheel.problem;
       EXPECT_TRUE(wheel.damping_is_given);
       EXPECT_GT(wheel.r2_ratio, 0.98);
-      // robots.md of the recordings: about 0.15 A to keep a wheel turning, 5.95 Ω
+      // The recordings' robots.md states about 0.15 A to keep a wheel turning, 5.95 Ω.
       EXPECT_NEAR(wheel.constant_V.value, 0.15 * 5.95, 0.5);
     }
   }
@@ -112,15 +112,15 @@ TEST(FrictionOfRecordings, robotino_on_carpet_at_three_speeds) {
     ASSERT_TRUE(wheel.is_learned()) << wheel.problem;
     EXPECT_FALSE(wheel.damping_is_given);
     EXPECT_GT(wheel.r2_ratio, 0.98);
-    // Back-EMF is the least, unless friction falls with speed; what is measured must not contradict it.
+    // The damping is at least the back-EMF constant unless friction falls with speed. The measured interval must not contradict this.
     EXPECT_GT(wheel.damping_V_s_per_rad.high, 0.0514 * 16.0);
     EXPECT_GT(wheel.damping_V_s_per_rad.value, 0.95 * 0.0514 * 16.0);
     EXPECT_LT(wheel.damping_V_s_per_rad.value, 1.5 * 0.0514 * 16.0);
   }
 }
 
-/// Staircases of modulation on blocks, both ways. An ordinary line through all rows above 5 rad/s is the reference; the
-/// motors' back-EMF and the battery make 24 V/(60 rad/s per 0.083) about 0.033 V s/rad.
+/// Staircases of modulation on blocks in both directions. The reference is an ordinary line through all rows above 5 rad/s. Back-EMF and
+/// battery give 24 V/(60 rad/s per 0.083), about 0.033 V s/rad.
 TEST(FrictionOfRecordings, a_team_wheel_motors_voltage_over_speed) {
   const std::filesystem::path folder = data_or_skip("ateam_wheel_motor");
   if (folder.empty()) {

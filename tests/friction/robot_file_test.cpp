@@ -1,4 +1,4 @@
-// Friction that was learned goes into a robot's file and comes out of it as the same voltages.
+// Fitted friction is written to a robot file and read back as the same voltages.
 #include "friction/robot_file.h"
 
 #include <gmock/gmock.h>
@@ -81,7 +81,7 @@ TEST(RobotFile, keeps_everything_else_as_it_stands) {
   EXPECT_EQ(constant.origin, Origin::measured);
   ASSERT_TRUE(constant.spread.has_value());
   EXPECT_LT(constant.spread->low, constant.value);
-  // A second time: the same, not twice.
+  // A second write must replace the entry instead of adding it again.
   EXPECT_EQ(with_measured_friction(text, after, drive_constants(after, motor()), any_fit(after), "drive.csv", notes), text);
 }
 

@@ -1,4 +1,4 @@
-// Robust location and regression against exact answers and against samples whose truth is known.
+// Robust location and regression, compared with exact answers and with samples of known truth.
 #include "friction/robust_fit.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST(RobustFit, is_exact_where_most_rows_are) {
   EXPECT_EQ(fit.weights(2), 0.0);
 }
 
-/// Scatter that grows along the line, and 15 % gross errors: intervals still hold the truth in 95 % of samples.
+/// Scatter that grows along the line, and 15 % gross errors: the intervals must still hold the truth in 95 % of the samples.
 TEST(RobustFit, intervals_of_unequal_scatter) {
   std::mt19937_64 engine(2);
   std::normal_distribution<double> normal;
@@ -69,7 +69,7 @@ TEST(RobustFit, intervals_of_unequal_scatter) {
   EXPECT_LE(inside, 0.98 * kSamples);
 }
 
-/// Twelve clusters of three rows of which three alone tell the second coefficient: 95 % must not need more clusters.
+/// Only three of twelve clusters of three rows determine the second coefficient. The intervals must keep their 95 % coverage.
 TEST(RobustFit, intervals_of_what_few_clusters_tell) {
   std::mt19937_64 engine(3);
   std::normal_distribution<double> normal;
@@ -93,13 +93,13 @@ TEST(RobustFit, intervals_of_what_few_clusters_tell) {
   EXPECT_LE(inside, 0.98 * kSamples);
 }
 
-TEST(RobustFit, says_which_columns_cannot_be_told_apart) {
+TEST(RobustFit, reports_which_columns_are_collinear) {
   Eigen::MatrixXd X(10, 3);
   for (int i = 0; i < 10; ++i) {
     X.row(i) << 1.0, i, 2.0 * i + 3.0;
   }
   EXPECT_LT(independent_share(X, 2), 1e-9);
-  EXPECT_NEAR(independent_share(X.leftCols(2), 1), std::sqrt(82.5 / 285.0), 1e-12);  // of 0 … 9 without its mean
+  EXPECT_NEAR(independent_share(X.leftCols(2), 1), std::sqrt(82.5 / 285.0), 1e-12);  // share for the values 0 … 9 after removing their mean
 }
 
 }  // namespace

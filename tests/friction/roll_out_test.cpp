@@ -1,4 +1,4 @@
-// Roll-outs of the plant with open motors, and of a lifted wheel by its closed solution.
+// Roll-outs of the plant with open motors, and of a lifted wheel by its closed-form solution.
 #include "friction/roll_out.h"
 
 #include <gtest/gtest.h>
@@ -37,13 +37,13 @@ PlantConfig rolling_robot() {
   MotorValues motor;
   motor.terminal_resistance_ohm = 0.85;
   motor.torque_constant_Nm_per_A = 0.033;
-  motor.no_load_current_A = 0.2;  // 6.6 mN m of drag
+  motor.no_load_current_A = 0.2;  // drag of 6.6 mN m
   motor.temperature_coefficient_per_K = 0.0;
   motor.rotor_inertia_kg_m2 = 7.2e-6;
   return make_plant(robot, motor, 0.001);
 }
 
-/// Rolls from a velocity to standstill; a fifth of the rows is lost or wild.
+/// Simulates a roll-out to standstill; a fifth of the rows is lost or wrong.
 FrictionLog rolled(const PlantConfig& plant, const BodyVelocity& from, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal;
@@ -61,7 +61,7 @@ FrictionLog rolled(const PlantConfig& plant, const BodyVelocity& from, std::uint
       log.wheel_speed_rad_per_s[i].push_back(fate < 0.1 ? std::nan("") : fate < 0.2 ? 200.0 * any(engine) : speed);
     }
     for (int n = 0; n < 10; ++n) {
-      step(plant, state, {});  // motors open
+      step(plant, state, {});  // open motors
     }
   }
   return log;
@@ -88,7 +88,7 @@ TEST(RollOut, of_the_plant_gives_its_damping_and_friction) {
   EXPECT_GT(damping.high, 4e-4);
 }
 
-/// J·dω/dt = −τ − D·ω:  ω = (ω_0 + τ/D)·exp(−D·t/J) − τ/D.
+/// Closed-form solution of J·dω/dt = −τ − D·ω:  ω = (ω_0 + τ/D)·exp(−D·t/J) − τ/D.
 TEST(RollOut, of_lifted_wheels_gives_each_its_own) {
   const PlantConfig plant = rolling_robot();
   const double inertia_kg_m2 = plant.body.wheel_inertia_kg_m2;

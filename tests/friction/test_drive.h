@@ -1,5 +1,5 @@
-// A robot that drives the steady-state test, played by the forward dynamics of the plant: wheel-speed controllers on a
-// battery that sags, homing in between, pushes that make wheels slip, and a logger with noise, steps and bad rows.
+// A robot that drives the steady-state test, simulated by the plant's forward dynamics. It has wheel-speed controllers on a sagging
+// battery, homing between legs, and pushes that make wheels slip. Its logger adds noise, quantisation and bad rows.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,14 +20,14 @@ namespace heatsoak {
 struct TestDrive {
   std::vector<double> headings_rad;
   std::vector<double> speeds_m_per_s;
-  double yaw_rad = 0.4;  ///< that the robot keeps on the field
-  double hold_s = 2.5;   ///< of a leg at its speed
-  double push_N = 0.1;   ///< standard deviation of a steady push, leg by leg
+  double yaw_rad = 0.4;  ///< constant yaw on the field
+  double hold_s = 2.5;   ///< duration of a leg at its speed
+  double push_N = 0.1;   ///< standard deviation of a steady push, drawn for each leg
   double bad_row_share = 0.0;
-  bool rotates = false;  ///< legs of pure rotation at the end
+  bool rotates = false;  ///< adds legs of pure rotation at the end
 };
 
-/// A row as a logger writes it: the heading is that of the command on the field.
+/// A row in the logger's format; the heading is that of the command on the field.
 struct DriveRow {
   double time_s = 0.0;
   PerWheel wheel_speed_rad_per_s{};
@@ -100,13 +100,13 @@ class DriveOnPlant {
     }
   }
 
-  /// In the robot's frame, its yaw kept.
+  /// Converts a velocity on the field to the robot's frame; the yaw is constant.
   [[nodiscard]] BodyVelocity on_field(double x_m_per_s, double y_m_per_s) const {
     return to_local(BodyVelocity{x_m_per_s, y_m_per_s, 4.0 * (drive_.yaw_rad - state_.pose.yaw_rad)}, state_.pose.yaw_rad);
   }
 
-  /// Between two rows: a PI controller of each wheel's speed every millisecond, its output as modulation of the measured
-  /// battery. The row has the last modulation and the encoder's counts.
+  /// Simulates one row: a PI controller for each wheel's speed every millisecond, whose output is the modulation of the measured battery.
+  /// The row contains the last modulation and the encoder counts.
   void follow(const BodyVelocity& local, double command_heading_rad) {
     const PerWheel wanted_rad_per_s = wheel_speeds_rad_per_s(plant_.body.kinematics, local);
     DriveRow row{.time_s = time_s_, .command_heading_rad = command_heading_rad};
@@ -136,7 +136,7 @@ class DriveOnPlant {
     time_s_ += kPeriod_s;
   }
 
-  /// Lost rows, spikes, rows of long ago, modulation that was not sent: in bursts of one to three.
+  /// Adds lost rows, spikes, outdated rows and wrong modulation in bursts of one to three.
   void spoil() {
     std::uniform_real_distribution<double> any(0.0, 1.0);
     const std::vector<DriveRow> whole = rows_;
@@ -180,7 +180,7 @@ class DriveOnPlant {
   std::vector<DriveRow> rows_;
 };
 
-/// As a logger writes it; what is lost is blank.
+/// Returns the log in the logger's format; lost values are blank.
 inline std::string csv_of(const std::vector<DriveRow>& rows, int wheel_count) {
   std::string text = "time_s,battery_V,heading_field_rad,yaw_rad";
   for (int i = 1; i <= wheel_count; ++i) {

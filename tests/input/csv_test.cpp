@@ -35,7 +35,7 @@ class CsvTest : public testing::Test {
       lines_.push_back(row.line);
     });
   }
-  /// "line:column key: message" of every problem.
+  /// Returns "line:column key: message" for every problem.
   std::vector<std::string> problems(const std::string& content) {
     std::vector<std::string> result;
     try {
@@ -91,7 +91,7 @@ TEST_F(CsvTest, line_ends_blanks_byte_order_mark_and_signs) {
 
 TEST_F(CsvTest, line_breaks_in_quotes_count) {
   read("time_s,\"no\nte\",current_A\n0,\"a \"\"b\"\", c\n\nd\",1\n1,,2\n");
-  EXPECT_THAT(lines_, ElementsAre(3, 6));  // where the row begins
+  EXPECT_THAT(lines_, ElementsAre(3, 6));  // lines where the rows start
   EXPECT_EQ(rows_.at(1).at(1), 2.0);
 }
 
@@ -121,7 +121,7 @@ TEST_F(CsvTest, lists_twenty_problems_and_counts_the_rest) {
   EXPECT_THAT(said.back(), HasSubstr("and 37 more problems"));
 }
 
-// So that what is wrong with the order of the rows is told in the same run.
+// Valid rows are still returned, so that the same run can report problems with their order.
 TEST_F(CsvTest, sound_rows_are_given_beside_a_problem) {
   EXPECT_THAT(problems("time_s,current_A\n0,1\nx,1\n2,1\n3\n4,1\n"), SizeIs(2));
   EXPECT_THAT(lines_, ElementsAre(2, 4, 6));

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-/// The text as a file, read.
+/// Writes the text to a file and reads it.
 class ReaderTest : public testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove(file_); }
@@ -26,7 +26,7 @@ class ReaderTest : public testing::Test {
     root_ = read_toml(file_);
     return {root_, "", diagnostics_};
   }
-  /// "line:column key" of every problem.
+  /// Returns "line:column key" for every problem.
   [[nodiscard]] std::vector<std::string> places() const {
     std::vector<std::string> result;
     for (const Diagnostic& each : diagnostics_.list()) {
@@ -127,7 +127,7 @@ TEST_F(ReaderTest, a_range_has_units_of_its_own) {
   EXPECT_DOUBLE_EQ(figure.spread->high, 2.5);
 }
 
-TEST_F(ReaderTest, other_sources_of_a_figure_have_units_too) {
+TEST_F(ReaderTest, other_sources_of_a_value_have_units_too) {
   const ParameterValue figure = parameter_of(
       read(R"(resistance = { value = "2 ohm", origin = "measured", source = "s", confirmed_by = { a = "2100 mohm", b = "1.9 ohm" } })")
           .figure(kResistance, Need::required));

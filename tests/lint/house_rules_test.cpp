@@ -1,4 +1,4 @@
-// Rules of the house that no compiler checks. Each checker is shown a planted violation first.
+// House rules that no compiler checks. Each checker must first find a planted violation.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,14 +16,14 @@ namespace heatsoak::lint {
 namespace {
 
 constexpr std::ptrdiff_t kMostLines = 500;
-/// Longer files, each with the reason.
+/// Longer files, each with its reason.
 const std::map<std::string, std::string> kLongFiles{};
 
 std::set<std::string> folders_of_src() {
   std::set<std::string> folders;
   for (const SourceFile& file : files_in("src")) {
     const std::size_t begin = file.path.find('/') + 1;
-    // What stands beside the folders is the map of them.
+    // Files directly in src (the README.md) belong to no folder.
     if (const std::size_t end = file.path.find('/', begin); end != std::string::npos) {
       folders.insert(file.path.substr(begin, end - begin));
     }
@@ -90,7 +90,7 @@ TEST(Layers, TreeKeepsToTheTable) {
     ADD_FAILURE() << problem;
   }
   for (const SourceFile& file : files_in("src")) {
-    // What is written for others to compile includes what stands beside it there; the map of the sources includes nothing.
+    // Templates are compiled elsewhere and include the files beside them there. The README contains no includes.
     if (file.path.find("/templates/") != std::string::npos || file.path.find("/fmi/sources/") != std::string::npos ||
         file.path == "src/README.md") {
       continue;
@@ -121,7 +121,7 @@ TEST(UnitNames, FieldsAndParametersAreSeen) {
   EXPECT_EQ(names_of(floating_point_names(header)), expected);
 }
 
-TEST(UnitNames, UnitsAreTold) {
+TEST(UnitNames, UnitsAreRecognised) {
   for (const char* name : {"current_A", "resistance_25C_ohm", "thermal_resistance_K_per_W", "temperature_coefficient_per_K", "state_C_",
                            "speed_constant_rad_per_s_per_V", "rotor_inertia_kg_m2", "drag_Nm", "acceleration_m_per_s2"}) {
     EXPECT_TRUE(ends_in_unit(name)) << name;
@@ -169,7 +169,7 @@ TEST(Files, OfMotorsHaveNoLongLines) {
   }
 }
 
-/// Put together here, so that this file does not contain what it looks for.
+/// Split literals, so that this file does not contain its own patterns.
 const std::regex kLeftover(
     "\\b(TO"
     "DO|FIX"
@@ -193,7 +193,7 @@ TEST(Files, HoldNoLeftoversAndNoPathOfAMachine) {
     int line = 1;
     for (std::size_t begin = 0; begin < file.text.size(); ++line) {
       const std::size_t end = std::min(file.text.find('\n', begin), file.text.size());
-      // A long line is data; std::regex recurses for each character.
+      // Long lines are data, and std::regex recurses for each character.
       if (const std::string text = file.text.substr(begin, std::min<std::size_t>(end - begin, 2000));
           std::regex_search(text, kLeftover) || std::regex_search(text, kPathOfAMachine)) {
         ADD_FAILURE() << file.path << ":" << line << ": " << text;

@@ -8,7 +8,7 @@
 namespace heatsoak::lint {
 namespace {
 
-/// Libraries that only one folder may see, by the beginning of their headers' paths.
+/// Libraries that only one folder may include, by the beginning of their headers' paths.
 struct HiddenLibrary {
   const char* headers;
   const char* folder;
@@ -59,7 +59,7 @@ LayerTable read_layer_table(std::string_view cmake, const std::set<std::string>&
       reach.insert(name);
       table.uses[name] = reach;
     } else {
-      // A plugin shares the headers, not the code, of the layer in whose folder it lives.
+      // A plugin uses the headers, but not the code, of the layer whose folder contains it.
       const std::string& folder = declaration.at(1);
       const std::size_t begin = folder.find('/') + 1;
       reach.insert(folder.substr(begin, folder.find('/', begin) - begin));

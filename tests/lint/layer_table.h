@@ -1,4 +1,4 @@
-// The layer diagram as CMakeLists.txt declares it.
+// The layer diagram declared in CMakeLists.txt.
 #pragma once
 
 #include <map>
@@ -10,15 +10,15 @@
 namespace heatsoak::lint {
 
 struct LayerTable {
-  std::map<std::string, std::set<std::string>> uses;     ///< of each layer, everything below it and itself
-  std::map<std::string, std::set<std::string>> plugins;  ///< "src/report/vtk": what its code may include
-  std::vector<std::string> problems;                     ///< a layer that uses one not declared above it
+  std::map<std::string, std::set<std::string>> uses;     ///< each layer with all layers that it may include, including itself
+  std::map<std::string, std::set<std::string>> plugins;  ///< key "src/report/vtk": layers that the plugin may include
+  std::vector<std::string> problems;                     ///< layers that use a layer not declared above them
 };
 
-/// `folders`: the names of the folders of src, to tell layers from libraries.
+/// `folders`: names of the folders of src, which distinguish layers from libraries.
 LayerTable read_layer_table(std::string_view cmake, const std::set<std::string>& folders);
 
-/// "file:line: …" for every include of a file in src that the table does not allow.
+/// Returns "file:line: …" for every include in a file of src that the table does not allow.
 std::vector<std::string> layer_violations(const LayerTable& table, const std::string& path, std::string_view text);
 
 }  // namespace heatsoak::lint

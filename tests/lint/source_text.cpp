@@ -13,7 +13,7 @@ namespace {
 
 const fs::path kRoot = HEATSOAK_SOURCE_DIR;
 
-/// What .gitignore names, and hidden folders of other tools than the tree's own.
+/// True for folders in .gitignore and hidden folders of other tools.
 bool is_skipped(const fs::path& folder) {
   const std::string name = folder.filename().string();
   return name == "build" || name.starts_with("build-") || name == "out" || (name.starts_with('.') && name != ".ci");
@@ -21,7 +21,7 @@ bool is_skipped(const fs::path& folder) {
 
 bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-/// Where the text that starts at the quote `begin` ends, one past its closing quote.
+/// Returns the position after the closing quote of the text that starts at the quote `begin`.
 std::size_t end_of_text(std::string_view text, std::size_t begin) {
   if (text[begin] == '"' && begin > 0 && text[begin - 1] == 'R') {
     const std::size_t open = text.find('(', begin);
@@ -50,7 +50,7 @@ std::vector<SourceFile> files_in(const fs::path& folder) {
   for (fs::recursive_directory_iterator each(folder.empty() ? kRoot : kRoot / folder), end; each != end; ++each) {
     if (each->is_directory() && is_skipped(each->path())) {
       each.disable_recursion_pending();
-    } else if (each->is_regular_file() && each->path().filename() != ".git") {  // a worktree's pointer
+    } else if (each->is_regular_file() && each->path().filename() != ".git") {  // .git is a file in a worktree
       std::ifstream stream(each->path(), std::ios::binary);
       std::string text{std::istreambuf_iterator<char>(stream), {}};
       if (text.find('\0') == std::string::npos) {

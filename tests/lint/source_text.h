@@ -1,4 +1,4 @@
-// The files of the tree, as far as the house rules look at them.
+// Files of the tree, as the house rules read them.
 #pragma once
 
 #include <filesystem>
@@ -9,21 +9,21 @@
 namespace heatsoak::lint {
 
 struct SourceFile {
-  std::string path;  ///< from the tree's root, "src/base/figure.h"
+  std::string path;  ///< path from the tree's root, for example "src/base/parameter_value.h"
   std::string text;
 };
 
-/// Every text file under `folder` of the tree (all of it where empty), sorted; not what is built or fetched.
+/// Returns every text file below `folder` (if empty, of the whole tree), sorted, without build and downloaded files.
 std::vector<SourceFile> files_in(const std::filesystem::path& folder);
 
-/// C++ with comments, texts and preprocessor lines blanked out; lines keep their numbers.
+/// Returns C++ code with blanked comments, literals and preprocessor lines; line numbers stay unchanged.
 std::string code_only(std::string_view text);
 
 struct Token {
   std::string text;
   int line = 0;
 };
-/// Identifiers, numbers, "::", and single characters of the rest.
+/// Identifiers, numbers, "::", and all other characters one by one.
 std::vector<Token> tokens(std::string_view code);
 
 struct Include {

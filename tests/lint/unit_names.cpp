@@ -10,10 +10,10 @@
 namespace heatsoak::lint {
 namespace {
 
-/// `Lanes` are several doubles, `S` is the scalar of a law that runs on both.
+/// Floating-point types. `Lanes` holds several doubles, `S` is the scalar type of a law that supports both.
 const std::set<std::string, std::less<>> kFloatingTypes{"double", "float", "realtype", "Lanes", "S"};
 
-/// A pure number; the last word of the name says which.
+/// Last words of names of pure numbers.
 const std::set<std::string, std::less<>> kPureNumbers{"count",
                                                       "efficiency",
                                                       "sd",
@@ -50,56 +50,56 @@ const std::set<std::string, std::less<>> kPureNumbers{"count",
                                                       "sign",
                                                       "periods"};
 
-/// The unit is not known where the name is written, but stands beside it.
-const std::set<std::string, std::less<>> kUnitBeside{// of a figure, range or tolerance: its ParameterSpec or comment has the unit
+/// Names whose unit is documented elsewhere.
+const std::set<std::string, std::less<>> kUnitBeside{// figures, ranges and tolerances: their ParameterSpec or comment has the unit
                                                      "value", "values", "low", "high", "absolute", "kUnknown", "slope", "intercept",
-                                                     // of a threshold: its ThresholdType has the unit
+                                                     // thresholds: their ThresholdType has the unit
                                                      "limit_value", "origin_value",
-                                                     // of a distribution: the variable of that type has the unit
+                                                     // distributions: the variable of that type has the unit
                                                      "nominal", "p05", "p50", "p95",
-                                                     // of a log's column: the log has the unit
+                                                     // columns of logs: the log has the unit
                                                      "column",
-                                                     // of a chart: its axis label has the unit; of an ODE: the system has it
+                                                     // charts: the axis label has the unit; ODEs: the system has it
                                                      "x", "y", "dydt", "event_values", "written",
                                                      // mixed units, place by place
                                                      "parameters", "effect_parameters", "integrals", "variants", "signals",
-                                                     // of a power: its exponent takes the unit away
+                                                     // powers: the exponent removes the unit
                                                      "base", "b", "e",
-                                                     // of a function for any argument: in the argument's unit
+                                                     // functions for any argument: the unit of the argument
                                                      "width", "each", "parameter", "most",
-                                                     // of a fitted figure or a candidate: its declaration has the unit
+                                                     // fitted parameters or candidates: their declaration has the unit
                                                      "before", "prior_sd", "spread", "spread_sd", "off_value", "scale", "size",
                                                      "typical_size",
-                                                     // of a curve over a driver: the driver has the unit
+                                                     // curves over a signal: the signal has the unit
                                                      "knots", "curve", "curve_sd",
-                                                     // of a filter: rows and columns have different units
+                                                     // filters: rows and columns have different units
                                                      "transition", "injection", "gain", "expected_K2",
                                                      // stages of a method, in the state's unit
                                                      "rate", "sum",
-                                                     // of a smoothed coordinate: its samples have the unit
+                                                     // smoothed coordinates: their samples have the unit
                                                      "acceleration",
-                                                     // of a square: in the root of its argument's unit
+                                                     // squares: the root of their argument's unit
                                                      "root",
-                                                     // of a channel of a log: its quantity has the unit
+                                                     // channels of logs: their quantity has the unit
                                                      "columns", "noise", "saturates_high", "saturates_low", "step", "usual",
                                                      // types of a standard, no variables
                                                      "fmi2Real", "fmi3Float32", "fmi3Float64",
-                                                     // VTK's own signature
+                                                     // signature given by VTK
                                                      "point",
-                                                     // of a vector of two lengths and an angle, and of a guard's signal: its comment
-                                                     // or the signal's name has the unit
+                                                     // vectors of two lengths and an angle, and signals of a guard: their comment or the
+                                                     // signal's name has the unit
                                                      "yaw", "signal", "least", "possible", "points", "corner",
-                                                     // not a number
+                                                     // no numbers
                                                      "kAbsent", "kNoSample"};
 
 bool is_identifier(const std::string& text) { return std::isalpha(static_cast<unsigned char>(text[0])) != 0 || text[0] == '_'; }
 
 bool is_decoration(const std::string& text) { return text == "const" || text == "&" || text == "*"; }
 
-/// Templates whose name says nothing about what the numbers are; other templates name their fields themselves.
+/// Templates whose name does not describe their numbers; other templates name their fields.
 const std::set<std::string, std::less<>> kContainers{"array", "map", "optional", "pair", "span", "tuple", "unique_ptr", "vector"};
 
-/// Where the arguments of the container that `at` is inside of end, or 0 where it is inside of none.
+/// Returns the end of the arguments of the container around `at`, or 0 if there is none.
 std::size_t end_of_template(const std::vector<Token>& all, std::size_t at) {
   int depth = 0;
   std::size_t back = at;
@@ -158,12 +158,12 @@ std::vector<NamedNumber> floating_point_names(std::string_view header) {
     };
     while (names_a_variable(at)) {
       found.push_back({text(at), all[at].line});
-      // `double a = 1.0, b;` is not written here; `std::vector<double> a, b;` is. The next parameter of a
-      // function starts with a type, so its name is not followed by one of the marks above.
+      // This code base writes `std::vector<double> a, b;` but not `double a = 1.0, b;`. The next parameter of a function starts with a
+      // type, so its name is not followed by one of these marks.
       at += text(at + 1) == "," ? 2 : all.size();
     }
   }
-  // A number inside nested templates is met once for each type, a name is reported once.
+  // A number inside nested templates is found once for each type but reported once.
   std::ranges::stable_sort(found, {}, &NamedNumber::line);
   const auto same = [](const NamedNumber& a, const NamedNumber& b) { return a.line == b.line && a.name == b.name; };
   found.erase(std::unique(found.begin(), found.end(), same), found.end());

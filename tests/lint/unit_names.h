@@ -1,4 +1,4 @@
-// Every floating-point name ends in its unit.
+// Checks that every floating-point name ends in its unit.
 #pragma once
 
 #include <string>
@@ -12,11 +12,11 @@ struct NamedNumber {
   int line = 0;
 };
 
-/// Variables, fields and parameters of a floating-point type or of a container of one. Functions are none.
+/// Returns variables, fields and parameters of a floating-point type or of a container of one, without functions.
 std::vector<NamedNumber> floating_point_names(std::string_view header);
 
 bool ends_in_unit(std::string_view name);
-/// Names without a unit that are right as they are.
+/// True for names that need no unit.
 bool is_unitless_by_nature(std::string_view name);
 
 }  // namespace heatsoak::lint

@@ -10,7 +10,7 @@
 namespace heatsoak::lint {
 namespace {
 
-/// The left column says what to write in place of the right one.
+/// Replacement, and pattern of the word to avoid.
 const std::map<std::string, std::string> kInstead{
     {"uncertainty, prior standard deviation", "doubts?"},
     {"drift", "wander(s|ed|ing)?"},
@@ -50,7 +50,7 @@ int count_in(const std::string& text, const std::regex& words, std::string& plac
   int line = 1;
   for (std::size_t begin = 0; begin < text.size(); ++line) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    // A long line is data; std::regex recurses for each character.
+    // Long lines are data, and std::regex recurses for each character.
     const std::string part = text.substr(begin, std::min<std::size_t>(end - begin, 2000));
     for (auto at = std::sregex_iterator(part.begin(), part.end(), words); at != std::sregex_iterator(); ++at) {
       ++count;

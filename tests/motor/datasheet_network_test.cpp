@@ -9,7 +9,7 @@
 namespace heatsoak {
 namespace {
 
-/// Figures that are easy to compute with by hand.
+/// A motor with values that are convenient for hand calculation.
 Motor simple_motor() {
   Motor motor;
   motor.nominal.terminal_resistance_ohm = 0.5;
@@ -44,8 +44,8 @@ TEST(DatasheetNetwork, drag_torque_is_torque_constant_times_no_load_current) {
   EXPECT_DOUBLE_EQ(drag_torque_Nm(simple_motor().nominal), 0.006);
 }
 
-// (3 A)² · 0.5 Ω · (1 + 0.004 · 50) = 5.4 W into the winding, (75 − 45)/4 = 7.5 W on to the stator, 0.006 N m · 500 rad/s
-// = 3 W of drag, (45 − 25)/2 = 10 W to ambient: −2.1 W / 3 J/K and 0.5 W / 40 J/K.
+// (3 A)² · 0.5 Ω · (1 + 0.004 · 50) = 5.4 W into the winding, (75 − 45)/4 = 7.5 W on to the stator, 0.006 N m · 500 rad/s = 3 W of drag,
+// (45 − 25)/2 = 10 W to ambient. Rates: −2.1 W / 3 J/K and 0.5 W / 40 J/K.
 TEST(DatasheetNetwork, rate_computed_by_hand) {
   const Motor motor = simple_motor();
   const Network network = datasheet_network(motor, nominal_sample(motor));
@@ -56,7 +56,7 @@ TEST(DatasheetNetwork, rate_computed_by_hand) {
   EXPECT_NEAR(rate[1], 0.0125, 1e-14);
 }
 
-// The time constants of a sheet are those of one element with the other held: not the eigenvalues of both.
+// Time constants of a data sheet describe one element while the other is held constant. They are not the eigenvalues of the network.
 TEST(DatasheetNetwork, time_constants_are_those_of_one_element) {
   const Motor motor = simple_motor();
   const Network network = datasheet_network(motor, nominal_sample(motor));
@@ -92,7 +92,7 @@ TEST(DatasheetNetwork, an_effect_of_the_file_is_added) {
   EXPECT_NEAR(rate[0], -10.0 / 3.0, 1e-14);  // 50 K / 5 K/W on 3 J/K
 }
 
-TEST(DatasheetNetwork, takes_the_figures_of_the_sample) {
+TEST(DatasheetNetwork, takes_the_values_of_the_sample) {
   const Motor motor = simple_motor();
   MotorSample sample = nominal_sample(motor);
   sample.values.terminal_resistance_ohm = 0.7;

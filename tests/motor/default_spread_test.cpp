@@ -1,4 +1,4 @@
-// A tolerance that a file does not give never makes a motor look better than an honest one does.
+// A missing tolerance must never make a motor look better than its stated tolerance would.
 #include "motor/default_spread.h"
 
 #include <gmock/gmock.h>
@@ -49,8 +49,8 @@ TEST(DefaultSpread, ShippedMotorsNeedNoneAndAreSound) {
   }
 }
 
-// First-order stochastic dominance on both sides: at the same place of the draw the default lies no nearer to the nominal value than the
-// spread that the file of the same motor states. So every tail of every temperature is at least as heavy.
+// First-order stochastic dominance on both sides: at each quantile the default is at least as far from the nominal value as the stated
+// spread. Every tail of every temperature is therefore at least as heavy.
 TEST(DefaultSpread, StandsOutsideOfEveryHonestSpreadThatItReplaces) {
   std::mt19937 engine(7);
   for (const Motor& honest : all_shipped()) {
@@ -86,7 +86,7 @@ TEST(DefaultSpread, WorseOriginsGetNoNarrowerOnes) {
     figure.spread.reset();
   }
   std::vector<DefaultSpread> before;
-  // A value called measured without an interval is no measurement.
+  // An origin "measured" without an interval counts as no measurement.
   for (const Origin origin : {Origin::datasheet, Origin::third_party, Origin::derived, Origin::estimated, Origin::measured}) {
     for (auto& [key, figure] : motor.parameters) {
       figure.origin = origin;
@@ -102,7 +102,7 @@ TEST(DefaultSpread, WorseOriginsGetNoNarrowerOnes) {
 }
 
 TEST(DefaultSpread, OfEverythingThatTemperaturesDependOn) {
-  // Of the declared thermal values only limits are agreed and have none.
+  // Among the declared thermal values only limits are agreed values, which have no spread.
   for (const MotorParameterSpec& each : motor_parameter_specs()) {
     EXPECT_EQ(each.is_thermal && !is_agreed(each.spec.key), needs_spread(each.spec.key) && each.spec.key != "temperature_coefficient")
         << each.spec.key;
@@ -124,7 +124,7 @@ Spread of_percent(const ParameterValue& figure, double below_percent, double abo
   return {Spread::Kind::range, figure.value * (1.0 - 0.01 * below_percent), figure.value * (1.0 + 0.01 * above_percent), true};
 }
 
-// A file says 0.001 % to get rid of its doubt, on both sides or on the one that makes motors hot.
+// A file states 0.001 % to avoid a larger spread, on both sides or on the side that makes motors hot.
 TEST(DefaultSpread, ANarrowerSpreadThanItsOriginSupportsIsRefusedAndNotUsed) {
   for (const std::string_view key : {"thermal_resistance_stator_ambient", "terminal_resistance", "no_load_current"}) {
     for (const Origin origin : {Origin::datasheet, Origin::third_party, Origin::derived, Origin::estimated}) {

@@ -34,7 +34,7 @@ std::set<std::string> checks_with(LintFinding::Level level, const Motor& motor) 
 }
 std::set<std::string> errors(const Motor& motor) { return checks_with(LintFinding::Level::error, motor); }
 
-/// All messages of one check, for what they advise.
+/// Returns all messages of one check, including their advice.
 std::string said_by(const std::string& check, const Motor& motor) {
   std::string messages;
   for (const LintFinding& finding : lint(motor)) {
@@ -43,7 +43,7 @@ std::string said_by(const std::string& check, const Motor& motor) {
   return messages;
 }
 
-// Every motor of the database passes.
+// Every motor of the database must pass.
 
 std::vector<std::string> motors_of_database() {
   std::vector<std::string> ids;
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(each, MotorOfDatabase, testing::ValuesIn(motors_of_data
   return name;
 });
 
-// The heat of the nominal point, against the calculation of motors.yaml (key Ieq_over_that).
+// Heat at the nominal point, compared with the calculation in motors.yaml (key Ieq_over_that).
 
 struct KnownHeat {
   std::string id;
@@ -98,8 +98,8 @@ INSTANTIATE_TEST_SUITE_P(ec45_flat, NominalPointOfSheet,
                                          KnownHeat{"maxon_ec45_flat_70w_43mm_60v", 1.004}),
                          [](const auto& each) { return each.param.id; });
 
-// By hand for 397172: (128 + 36.9 · 0.234) mN m / 36.9 mN m/A = 3.703 A. Drag 8.635 mN m · 508.9 rad/s = 4.394 W, · 3.56 K/W
-// = 15.64 K; the copper may have (100 − 15.64) K / 7.66 K/W = 11.01 W = I² · 0.608 ohm · 1.39, so I = 3.610 A.
+// Hand calculation for 397172: (128 + 36.9 · 0.234) mN m / 36.9 mN m/A = 3.703 A. Drag 8.635 mN m · 508.9 rad/s = 4.394 W, · 3.56 K/W =
+// 15.64 K. The copper may have (100 − 15.64) K / 7.66 K/W = 11.01 W = I² · 0.608 ohm · 1.39, so I = 3.610 A.
 TEST(NominalPointHeat, worked_example) {
   const std::optional<NominalPointHeat> heat = nominal_point_heat(motor_of_database("maxon_ec45_flat_70w_24v"));
 
@@ -118,17 +118,17 @@ TEST(NominalPointHeat, is_zero_where_drag_alone_is_too_much) {
   EXPECT_THAT(said_by("nominal_point_heat", motor), HasSubstr("without any current"));
 }
 
-// Figures that circulate and are wrong.
+// Wrong values that are in circulation.
 
-TEST(WrongFigures, of_the_wiki) {
+TEST(WrongValues, of_the_wiki) {
   EXPECT_THAT(errors(wrong_motor("df45l_wiki")), ElementsAre("assigned_power", "density", "nominal_current"));
 }
 
-TEST(WrongFigures, resistance_of_the_wiki_makes_the_nominal_point_too_hot) {
+TEST(WrongValues, resistance_of_the_wiki_makes_the_nominal_point_too_hot) {
   EXPECT_THAT(said_by("nominal_point_heat", wrong_motor("df45l_wiki")), HasSubstr("expected 0.85 to 1.1 times"));
 }
 
-/// The sound file of the DF45L with one figure of the wiki in the place of its own.
+/// Returns the valid file of the DF45L with one value replaced by that of the wiki.
 Motor df45l_with(const std::string& key, const std::string& value, bool with_second_sources = true) {
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / ("df45l_" + std::to_string(getpid()) + ".toml");
   std::ifstream in(kSource / "motor_db" / "nanotec_df45l024048_a2.toml");
@@ -136,7 +136,7 @@ Motor df45l_with(const std::string& key, const std::string& value, bool with_sec
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with(key + " = {")) {
       line = std::regex_replace(line, std::regex("value = \"[^\"]*\""), "value = \"" + value + "\"");
-      // A range of the sound value says nothing about another one.
+      // The range belongs to the valid value and is replaced, too.
       line = std::regex_replace(line, std::regex("range = \\[[^\\]]*\\]"), "tolerance = \"10 %\"");
     }
     out << (with_second_sources ? line : std::regex_replace(line, std::regex("confirmed_by = \\{[^}]*\\}, "), "")) << "\n";
@@ -147,33 +147,33 @@ Motor df45l_with(const std::string& key, const std::string& value, bool with_sec
   return motor;
 }
 
-struct WikiFigure {
+struct WikiValue {
   std::string key;
   std::string value;
   LintFinding::Level level;
   std::string check;
 };
-class WikiFigureAlone : public testing::TestWithParam<WikiFigure> {};
+class WikiValueAlone : public testing::TestWithParam<WikiValue> {};
 
-TEST_P(WikiFigureAlone, is_found) {
+TEST_P(WikiValueAlone, is_found) {
   const auto& [key, value, level, check] = GetParam();
 
   EXPECT_THAT(checks_with(level, df45l_with(key, value)), Contains(check));
 }
 
-INSTANTIATE_TEST_SUITE_P(df45l, WikiFigureAlone,
-                         testing::Values(WikiFigure{"nominal_current", "6.4 A", LintFinding::Level::error, "nominal_current"},
-                                         WikiFigure{"assigned_power", "151 W", LintFinding::Level::error, "assigned_power"},
-                                         WikiFigure{"terminal_resistance", "1.2 ohm", LintFinding::Level::error, "confirmations"},
-                                         WikiFigure{"terminal_inductance", "0.4 mH", LintFinding::Level::error, "confirmations"},
-                                         WikiFigure{"mass", "320 g", LintFinding::Level::error, "density"},
-                                         WikiFigure{"length", "48 mm", LintFinding::Level::warning, "density"},
-                                         WikiFigure{"rotor_inertia", "13 g cm2", LintFinding::Level::error, "rotor_inertia"}),
+INSTANTIATE_TEST_SUITE_P(df45l, WikiValueAlone,
+                         testing::Values(WikiValue{"nominal_current", "6.4 A", LintFinding::Level::error, "nominal_current"},
+                                         WikiValue{"assigned_power", "151 W", LintFinding::Level::error, "assigned_power"},
+                                         WikiValue{"terminal_resistance", "1.2 ohm", LintFinding::Level::error, "confirmations"},
+                                         WikiValue{"terminal_inductance", "0.4 mH", LintFinding::Level::error, "confirmations"},
+                                         WikiValue{"mass", "320 g", LintFinding::Level::error, "density"},
+                                         WikiValue{"length", "48 mm", LintFinding::Level::warning, "density"},
+                                         WikiValue{"rotor_inertia", "13 g cm2", LintFinding::Level::error, "rotor_inertia"}),
                          [](const auto& each) { return each.param.key; });
 
-// By hand: 24 V · 3.26 A = 78.2 W go in; 130 mN m · 506.8 rad/s = 65.9 W, 3.26² A² · 1.2 ohm · 1.41 = 18.0 W and 5.58 mN m ·
-// 506.8 rad/s = 2.8 W make 86.7 W, 1.108 times that; with 0.64 ohm it is 1.002 times.
-TEST(WrongFigures, resistance_of_the_wiki_loses_more_than_goes_in_without_any_second_source) {
+// Hand calculation: the input is 24 V · 3.26 A = 78.2 W. The output and losses are 130 mN m · 506.8 rad/s = 65.9 W, 3.26² A² · 1.2 ohm ·
+// 1.41 = 18.0 W and 5.58 mN m · 506.8 rad/s = 2.8 W. Their sum of 86.7 W is 1.108 times the input; with 0.64 ohm it is 1.002 times.
+TEST(WrongValues, resistance_of_the_wiki_loses_more_than_goes_in_without_any_second_source) {
   const Motor motor = df45l_with("terminal_resistance", "1.2 ohm", false);
 
   EXPECT_THAT(errors(motor), ElementsAre());
@@ -181,27 +181,27 @@ TEST(WrongFigures, resistance_of_the_wiki_loses_more_than_goes_in_without_any_se
   EXPECT_THAT(said_by("power_balance", motor), HasSubstr("1.11 times the input"));
 }
 
-// The EC 45 flat of the same size and constants has 0.463 mH: no law of a motor refuses 0.4 mH, only who measured it.
-TEST(WrongFigures, inductance_of_the_wiki_is_refused_by_the_second_source_alone) {
+// The EC 45 flat with equal size and constants has 0.463 mH. No physical law excludes 0.4 mH, only a measurement does.
+TEST(WrongValues, inductance_of_the_wiki_is_refused_by_the_second_source_alone) {
   EXPECT_THAT(said_by("confirmations", df45l_with("terminal_inductance", "0.4 mH")), HasSubstr("tigers_firmware says 0.26 mH"));
   EXPECT_THAT(checks_with(LintFinding::Level::warning, df45l_with("terminal_inductance", "0.4 mH", false)), ElementsAre());
 }
 
-// 13 g cm2 is 0.019 of 150 g at 21.4 mm: as much as the internal rotors of the EC-i 40 have, and no external one.
-TEST(WrongFigures, inertia_of_the_wiki_is_impossible_for_an_external_rotor_only) {
+// 13 g cm2 is 0.019 of 150 g at 21.4 mm. This fits the internal rotors of the EC-i 40 but no external rotor.
+TEST(WrongValues, inertia_of_the_wiki_is_impossible_for_an_external_rotor_only) {
   Motor motor = df45l_with("rotor_inertia", "13 g cm2");
   EXPECT_THAT(errors(motor), ElementsAre("rotor_inertia"));
   EXPECT_THAT(said_by("rotor_inertia", motor), HasSubstr("expected at least 20.6 g cm2"));
-  motor.rotor.clear();  // the file does not say, but it is flat
+  motor.rotor.clear();  // the file does not state it, but the motor is flat
   EXPECT_THAT(errors(motor), ElementsAre());
   EXPECT_THAT(checks_with(LintFinding::Level::warning, motor), ElementsAre("rotor_inertia"));
   motor.rotor = "internal";
   EXPECT_EQ(said_by("rotor_inertia", motor), "");
 }
 
-TEST(WrongFigures, sound_file_without_a_change_has_none) { EXPECT_THAT(errors(df45l_with("mass", "150 g")), ElementsAre()); }
+TEST(WrongValues, sound_file_without_a_change_has_none) { EXPECT_THAT(errors(df45l_with("mass", "150 g")), ElementsAre()); }
 
-TEST(WrongFigures, of_one_phase_given_as_if_between_terminals) {
+TEST(WrongValues, of_one_phase_given_as_if_between_terminals) {
   const Motor motor = wrong_motor("df45l_phase_constants");
 
   EXPECT_THAT(errors(motor), ElementsAre("constants", "nominal_current", "nominal_speed", "peak_point"));
@@ -209,28 +209,28 @@ TEST(WrongFigures, of_one_phase_given_as_if_between_terminals) {
   EXPECT_THAT(said_by("nominal_speed", motor), HasSubstr("phase_to_star"));
 }
 
-TEST(WrongFigures, resistance_of_one_phase) {
+TEST(WrongValues, resistance_of_one_phase) {
   const Motor motor = wrong_motor("df45l_phase_resistance");
 
   EXPECT_THAT(errors(motor), ElementsAre("nominal_speed"));
   EXPECT_THAT(said_by("nominal_speed", motor), HasSubstr("0.623 ohm, about twice as much"));
 }
 
-TEST(WrongFigures, torque_constant_per_ampere_of_phase_peak) {
+TEST(WrongValues, torque_constant_per_ampere_of_phase_peak) {
   const Motor motor = wrong_motor("df45l_peak_phase_ampere");
 
   EXPECT_THAT(errors(motor), Contains("constants"));
   EXPECT_THAT(said_by("constants", motor), HasSubstr("\"per_peak_phase_ampere\""));
 }
 
-TEST(WrongFigures, of_a_failed_identification) {
+TEST(WrongValues, of_a_failed_identification) {
   const Motor motor = wrong_motor("ecx_flat_42m_24v_misidentified");
 
   EXPECT_THAT(errors(motor), ElementsAre("constants", "nominal_current"));
   EXPECT_THAT(said_by("constants", motor), HasSubstr("no known convention explains"));
 }
 
-TEST(WrongFigures, are_found_at_their_line) {
+TEST(WrongValues, are_found_at_their_line) {
   const std::vector<LintFinding> findings = lint(wrong_motor("df45l_wiki"));
 
   const auto density = std::ranges::find(findings, "density", &LintFinding::check);
@@ -240,7 +240,7 @@ TEST(WrongFigures, are_found_at_their_line) {
   EXPECT_THAT(density->message, HasSubstr("320 g"));
 }
 
-// One figure of a good sheet (EC 45 flat, 70 W, 24 V) is wrong: the checks that it belongs to fire, and no other.
+// One wrong value in a good data sheet (EC 45 flat, 70 W, 24 V) must trigger exactly the checks that involve it.
 
 struct Slip {
   std::string name;
@@ -311,7 +311,7 @@ TEST(Slip, saturation_is_guessed_and_a_wrong_flag_is_found) {
   EXPECT_THAT(said_by("stall_torque", saturated), HasSubstr("stall_includes_saturation = true"));
 }
 
-// A convention declared wrongly is found from either side and named.
+// A wrongly declared convention is found from either side and named.
 TEST(Slip, torque_constant_in_another_convention_is_named) {
   const std::vector<std::pair<double, std::string>> factors = {{1.0 / 1.654, "peak EMF of one phase"},
                                                                {0.907, "per_peak_phase_ampere"},
@@ -330,8 +330,8 @@ TEST(Slip, torque_constant_in_another_convention_is_named) {
   }
 }
 
-// What is not in the file is not judged.
-TEST(Lint, says_nothing_about_absent_figures) {
+// Missing values are not checked.
+TEST(Lint, reports_nothing_about_absent_values) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
   for (const MotorParameterSpec& each : motor_parameter_specs()) {
     if (each.need == Need::optional && each.value != &MotorValues::temperature_coefficient_per_K) {
@@ -357,8 +357,8 @@ TEST(Lint, notes_estimates_and_missing_spreads) {
   EXPECT_THAT(errors(without_spread), ElementsAre("spreads"));
 }
 
-// What is agreed has no spread, what is built has one; nothing is without a source.
-TEST(Lint, asks_every_figure_for_a_source_and_every_built_one_for_a_spread) {
+// Agreed values have no spread, manufactured quantities have one, and every value has a source.
+TEST(Lint, asks_every_value_for_a_source_and_every_built_one_for_a_spread) {
   const Motor good = motor_of_database("maxon_ec45_flat_70w_24v");
   for (const auto& [key, figure] : good.parameters) {
     Motor motor = good;
@@ -370,7 +370,7 @@ TEST(Lint, asks_every_figure_for_a_source_and_every_built_one_for_a_spread) {
   }
 }
 
-TEST(Lint, asks_the_figures_of_an_effect_for_a_source) {
+TEST(Lint, asks_the_values_of_an_effect_for_a_source) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
   ParameterValue figure;
   figure.value = 40.0;
@@ -380,7 +380,7 @@ TEST(Lint, asks_the_figures_of_an_effect_for_a_source) {
   EXPECT_THAT(said_by("sources", motor), HasSubstr("flange.thermal_resistance of 40 K/W names no source"));
 }
 
-// Wherever the temperature rests on estimates, a hot nominal point may be their fault and not the sheet's.
+// If temperatures depend on estimates, these may cause a hot nominal point instead of the data sheet.
 TEST(Lint, heat_of_estimates_is_only_a_warning) {
   Motor estimated = motor_of_database("nanotec_df45l024048_a2");
   estimated.nominal.thermal_resistance_winding_stator_K_per_W *= 2.0;
@@ -389,8 +389,8 @@ TEST(Lint, heat_of_estimates_is_only_a_warning) {
   EXPECT_THAT(checks_with(LintFinding::Level::warning, estimated), Contains("nominal_point_heat"));
 }
 
-// Figures that are too good: every verdict would be optimistic.
-TEST(Lint, warns_of_thermal_figures_that_no_known_sheet_has) {
+// Values that are too good would make every verdict optimistic.
+TEST(Lint, warns_of_thermal_values_that_no_known_sheet_has) {
   for (const auto& [figure, factor] : {std::pair(&MotorValues::thermal_resistance_winding_stator_K_per_W, 0.5),
                                        {&MotorValues::thermal_resistance_stator_ambient_K_per_W, 0.5},
                                        {&MotorValues::winding_limit_C, 155.0 / 125.0}}) {
@@ -401,7 +401,7 @@ TEST(Lint, warns_of_thermal_figures_that_no_known_sheet_has) {
   }
 }
 
-// The sheet's nominal point is of the sheet's network: what the file adds to it is no contradiction.
+// The data sheet's nominal point refers to the data sheet's network. Effects in the file must not contradict it.
 TEST(Lint, judges_the_nominal_point_without_the_effects_of_the_file) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
   const NominalPointHeat sheet = nominal_point_heat(motor).value();
@@ -415,8 +415,8 @@ TEST(Lint, judges_the_nominal_point_without_the_effects_of_the_file) {
   EXPECT_THAT(errors(motor), ElementsAre());
 }
 
-// What was fitted is of one motor: it may differ from the sheet, and the file is sound.
-TEST(Lint, figures_of_a_fit_that_differ_from_the_sheet_are_only_noted) {
+// Fitted values describe a single motor. They may differ from the data sheet in a valid file.
+TEST(Lint, values_of_a_fit_that_differ_from_the_sheet_are_only_noted) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
   motor.nominal.thermal_resistance_winding_stator_K_per_W *= 2.0;
   EXPECT_THAT(errors(motor), Contains("nominal_point_heat"));
@@ -426,7 +426,7 @@ TEST(Lint, figures_of_a_fit_that_differ_from_the_sheet_are_only_noted) {
   EXPECT_THAT(checks_with(LintFinding::Level::note, motor), Contains("nominal_point_heat"));
 }
 
-// The 48 V winding of a 70 W motor gives 36 W at its own voltage: worth knowing, but right.
+// The 48 V winding of a 70 W motor gives 36 W at its own voltage, which is unusual but correct.
 TEST(Lint, name_plate_of_the_type_is_only_noted) {
   EXPECT_THAT(said_by("assigned_power", motor_of_database("maxon_ec45_flat_70w_48v_402687")), HasSubstr("70 W are assigned to the type"));
 }

@@ -14,7 +14,7 @@
 namespace heatsoak {
 namespace {
 
-/// A motor file with the conventions of the arguments, 0.5 ohm ± 10 % and 30 mN m/A ± 7 %.
+/// Returns a motor with the given conventions, 0.5 ohm ± 10 % and 30 mN m/A ± 7 %.
 Motor motor_with(const std::string& resistance, const std::string& torque, const std::string& more = "") {
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / ("motor_" + std::to_string(getpid()) + ".toml");
   std::ofstream(path) << R"(manufacturer = "x"
@@ -59,9 +59,9 @@ TEST(MotorConventions, phase_values_are_two_in_series) {
   EXPECT_DOUBLE_EQ(figure.spread->high, 1.1);
 }
 
-// Block commutation on a sinusoidal back-EMF of amplitude E between two terminals: the mean torque over the 60° around
-// the crest is 3/π of the crest's, so per DC ampere K = (3/π)·E/ω. A sinusoidal phase current of peak Î against phase
-// amplitudes E/√3 gives M·ω = 1.5·Î·E/√3, so per peak ampere (√3/2)·E/ω: the ratio is 2√3/π = 1.1027.
+// Block commutation on a sinusoidal back-EMF of amplitude E between two terminals: the mean torque over the 60° around the crest is 3/π of
+// the crest's. Per DC ampere this gives K = (3/π)·E/ω. A sinusoidal phase current of peak Î and phase amplitudes E/√3 give M·ω =
+// 1.5·Î·E/√3, or (√3/2)·E/ω per peak ampere. The ratio is 2√3/π = 1.1027.
 TEST(MotorConventions, per_peak_and_per_rms_ampere_from_the_power_of_a_sinusoidal_machine) {
   const double per_dc = motor_with("between_terminals", "per_dc_ampere").nominal.torque_constant_Nm_per_A;
   const double of_peak = motor_with("between_terminals", "per_peak_phase_ampere").nominal.torque_constant_Nm_per_A;
@@ -70,7 +70,7 @@ TEST(MotorConventions, per_peak_and_per_rms_ampere_from_the_power_of_a_sinusoida
   EXPECT_NEAR(of_rms * std::numbers::sqrt2, of_peak, 1e-16) << "an rms ampere is √2 peak amperes";
 }
 
-TEST(MotorSample, without_spread_is_the_figure_and_with_spread_within_it) {
+TEST(MotorSample, without_spread_is_the_value_and_with_spread_within_it) {
   const Motor motor = motor_with("between_terminals", "per_dc_ampere");
   double lowest_ohm = 1.0;
   double highest_ohm = 0.0;
@@ -117,7 +117,7 @@ heat_capacity = { value = "150 J/K", origin = "measured", source = "sheet" }
 )";
 
 TEST(MotorEffects, a_node_of_its_own_is_named_after_the_effect_and_others_may_name_it) {
-  // The lamp and the mount stand before what they hang on.
+  // The lamp and the mount are defined before the effects that they depend on.
   const Motor motor = motor_with("between_terminals", "per_dc_ampere", R"([effects.a_lamp]
 type = "constant_heat"
 heated = "chassis"
@@ -186,7 +186,7 @@ type = "sensor_offset_winding"
 offset = { value = "-1.5 K", origin = "measured", source = "sheet", range = ["-2 K", "0.5 K"] }
 )";
 
-// What a sensor shows heats nothing: the motor's own temperatures, and what they rest on, are those of the file without it.
+// Sensor faults produce no heat. The motor's temperatures, and the parameters that they depend on, must equal those without sensors.
 TEST(MotorSensors, move_no_temperature_of_the_motor) {
   const Motor bare = motor_with("between_terminals", "per_dc_ampere");
   Motor motor = motor_with("between_terminals", "per_dc_ampere", kSensors);
@@ -230,7 +230,7 @@ offset = { value = "1 K", origin = "measured", source = "nobody" }
                Failure);
 }
 
-TEST(DataQuality, is_that_of_the_worst_thermal_figure) {
+TEST(DataQuality, is_that_of_the_worst_thermal_value) {
   Motor motor = motor_with("between_terminals", "per_dc_ampere");
   EXPECT_EQ(data_quality(motor), "datasheet");
   motor.parameters.at("terminal_resistance").origin = Origin::measured;

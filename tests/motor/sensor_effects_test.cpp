@@ -1,4 +1,4 @@
-// Faults of sensors: the numbers beside each equation, and the derivatives that fits take from them.
+// Sensor faults: the values given beside each equation, and the derivatives that fits use.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -78,7 +78,7 @@ std::vector<std::string_view> all_names() {
 INSTANTIATE_TEST_SUITE_P(All, SensorEffects, testing::ValuesIn(all_names()),
                          [](const auto& instance) { return std::string(instance.param); });
 
-/// Several faults of one sensor: one after the other, asked at once or as time goes on.
+/// Several faults of one sensor act one after the other. Evaluation of a series and stepwise evaluation must agree.
 TEST(SensorReading, GoesAsTheWholeSeriesDoes) {
   const std::vector<SensorFault> faults{{find_sensor_effect("sensor_lag_winding"), 6.0},
                                         {find_sensor_effect("sensor_gain_winding"), 0.04},
@@ -95,23 +95,23 @@ TEST(SensorReading, GoesAsTheWholeSeriesDoes) {
     EXPECT_NEAR(reading.sensor_C(), sensor_C[k], 1e-12);
   }
   EXPECT_GT((sensor_C - true_C).cwiseAbs().maxCoeff(), 3.0);
-  // No time, no answer: a step of the temperature is not shown yet.
+  // After zero elapsed time the sensor must not yet show a step of the temperature.
   const double before_C = reading.sensor_C();
   reading.advance(0.0, true_C[true_C.size() - 1]);
   EXPECT_DOUBLE_EQ(reading.sensor_C(), before_C);
 }
 
-TEST(SensorReading, AtRestTellsTheTemperature) {
+TEST(SensorReading, AtSteadyStateInvertsTheFaults) {
   const std::vector<SensorFault> faults{{find_sensor_effect("sensor_gain_winding"), 0.1},
                                         {find_sensor_effect("sensor_offset_winding"), 3.0},
                                         {find_sensor_effect("sensor_lag_winding"), 40.0}};
-  // 25 + 1.1·50 + 3 = 83 °C
+  // By hand: 25 + 1.1·50 + 3 = 83 °C
   EXPECT_NEAR(sensor_at_rest_C(faults, 75.0), 83.0, 1e-12);
   EXPECT_NEAR(true_at_rest_C(faults, 83.0), 75.0, 1e-12);
   EXPECT_EQ(true_at_rest_C({}, 83.0), 83.0);
 }
 
-/// The lag's reading against a fine Euler integration of its differential equation.
+/// Reading of a sensor with lag, compared with a fine Euler integration of its differential equation.
 TEST(SensorLag, FollowsItsDifferentialEquation) {
   const SensorEffectType& type = *find_sensor_effect("sensor_lag_winding");
   std::vector<double> time_s, true_C;

@@ -22,7 +22,7 @@ namespace {
 using State = std::span<const double>;
 using Values = std::span<double>;
 
-/// A system from lambdas; remembers the latest time it was asked for.
+/// A system defined by lambdas; it records the latest time of evaluation.
 class TestSystem final : public OdeSystem {
  public:
   using Function = std::function<void(double, State, Values)>;
@@ -54,10 +54,10 @@ void oscillate(double /*time_s*/, State y, Values dydt) {
   dydt[1] = -kAngular_rad_per_s * y[0];
 }
 
-/// y' = 1: the state is the time, so that an event at a value is an event at a time.
+/// y' = 1 makes the state equal to the time, so that an event at a value is an event at a time.
 void run_as_clock(double /*time_s*/, State /*y*/, Values dydt) { dydt[0] = 1.0; }
 
-/// Winding and stator above an ambient of 0: C y' = heat input and conduction, its solution by exp(A t).
+/// Winding and stator above an ambient of 0. The solution of C y' = heat input and conduction uses exp(A t).
 struct TwoBody {
   double capacity_winding_J_per_K = 5.0, capacity_stator_J_per_K = 80.0;
   double resistance_winding_stator_K_per_W = 2.0, resistance_stator_ambient_K_per_W = 3.0;
@@ -179,7 +179,7 @@ TEST(ArkodeTest, work_grows_with_the_fifth_root_of_the_tolerance) {
     calls.push_back(static_cast<double>(integrator.derivative_count()));
   }
 
-  // 10^(5/5) = 10 at order five; order four would give 17.8, order six 6.8.
+  // The ratio is 10^(5/5) = 10 at order five; order four would give 17.8, order six 6.8.
   EXPECT_NEAR(calls[1] / calls[0], 10.0, 2.0);
 }
 
@@ -206,7 +206,7 @@ TEST_P(IntegratorTest, restart_at_a_jump_is_not_less_accurate_than_going_on) {
 }
 
 TEST_P(IntegratorTest, linear_invariant_is_kept_to_rounding) {
-  // Heat that is only exchanged: the sum of the states cannot change, whatever the tolerance is.
+  // Heat is only exchanged, so the sum of the states must stay constant at any tolerance.
   TestSystem system(3, [](double, State y, Values dydt) {
     const double first_W = 3.0 * (y[0] - y[1]), second_W = 0.2 * (y[1] - y[2]), third_W = 40.0 * (y[2] - y[0]);
     dydt[0] = third_W - first_W;
@@ -268,7 +268,7 @@ TEST_P(IntegratorTest, stop_may_be_rounding_away_from_the_current_time) {
       EXPECT_EQ(integrator.step(stop_s).time_s, stop_s);
       EXPECT_EQ(integrator.advance(stop_s).time_s, stop_s);
     }
-    // Just too far to count as rounding: then it has to be a step.
+    // Slightly more than rounding, so the integrator must take a step.
     const double near_s = start_s * (1.0 + 1e-13) + 1e-20;
     const long before = integrator.derivative_count();
     EXPECT_EQ(integrator.advance(near_s).time_s, near_s);
@@ -319,7 +319,7 @@ TEST_P(IntegratorTest, each_crossing_is_found_once_at_its_time) {
   }
 }
 
-/// The clock with events at 0.3, 0.6 (falling) and, twice, 0.7.
+/// The clock system with events at 0.3, 0.6 (falling) and, twice, 0.7.
 TestSystem clock_with_events() {
   return TestSystem(1, run_as_clock, 4, [](double, State y, Values values) {
     values[0] = y[0] - 0.3;
@@ -354,7 +354,7 @@ TEST_P(IntegratorTest, several_events_in_one_step_come_in_order) {
 }
 
 TEST_P(IntegratorTest, stop_may_come_nearer_behind_an_event) {
-  // The step that found the event at 0.3 may have gone on to 100: a stop inside it still holds.
+  // The step that found the event at 0.3 may have continued to 100. A stop inside it must still apply.
   TestSystem system = clock_with_events();
   Integrator integrator(system, method(), {});
   integrator.start(0.0, std::array{0.0});
@@ -443,8 +443,8 @@ TEST_P(IntegratorTest, exception_of_the_system_arrives_as_thrown) {
       EXPECT_STREQ(thrown.what(), "no such winding");
       EXPECT_EQ(thrown.payload, 42);
     }
-    EXPECT_EQ(thrown_count, 1);                      // SUNDIALS may go on trying, the system is left alone
-    EXPECT_THROW(integrator.advance(1.0), Failure);  // not without a start()
+    EXPECT_EQ(thrown_count, 1);                      // SUNDIALS may retry, but must not call the system again
+    EXPECT_THROW(integrator.advance(1.0), Failure);  // requires a new start()
 
     armed = false;
     integrator.start(0.0, std::array{0.0});
@@ -453,7 +453,7 @@ TEST_P(IntegratorTest, exception_of_the_system_arrives_as_thrown) {
   }
 }
 
-/// The message of the Failure (numerics_failed) that advance(stop_s) must end with; nothing may be printed.
+/// Returns the message of the Failure (numerics_failed) that advance(stop_s) must throw. Nothing may be printed.
 std::string failure_of(Integrator& integrator, double stop_s) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
@@ -503,7 +503,7 @@ TEST_P(IntegratorTest, not_a_number_in_an_event_is_a_failure) {
 }
 
 TEST_P(IntegratorTest, solution_that_ends_in_finite_time_is_a_failure) {
-  // y' = y² from 1 has no solution beyond 1 s.
+  // y' = y² with y(0) = 1 has no solution beyond 1 s.
   TestSystem system(1, [](double, State y, Values dydt) { dydt[0] = y[0] * y[0]; });
   Integrator integrator(system, method(), {});
   integrator.start(0.0, std::array{1.0});
@@ -564,7 +564,7 @@ TEST_P(IntegratorTest, nothing_is_allocated_after_the_first_step) {
     std::ranges::copy(integrator.state(), y.begin());
   }
 
-  // SUNDIALS' difference quotient clones an empty vector: three small blocks, at most two Jacobians a piece here.
+  // SUNDIALS' difference quotient clones an empty vector, which takes three small blocks. Here each piece has at most two Jacobians.
   EXPECT_LE(allocation_count() - before, method() == OdeMethod::cvodes_bdf ? 100 * 6 : 0);
   EXPECT_EQ(found, 23);  // 70 rad are 11 turns and the twelfth rise, at 69.42 rad
 }
@@ -582,13 +582,13 @@ TEST(ArkodeTest, a_short_piece_is_one_step) {
     std::ranges::copy(integrator.state(), y.begin());
     return integrator.derivative_count() - before;
   };
-  run_piece(0, 0.1);  // pays for the search of the first step
+  run_piece(0, 0.1);  // includes the search for the first step size
 
-  // Dormand-Prince has six new stages and, at a restart, the first one.
+  // Dormand-Prince needs six new stages, and a seventh after a restart.
   for (int piece = 1; piece < 100; ++piece) {
     ASSERT_EQ(run_piece(piece, 0.1), 7) << piece;
   }
-  // A crumb of a piece must not leave its step size behind: growth of 20 per step is back soon.
+  // A tiny piece must not leave a tiny step size: a growth of 20 per step recovers quickly.
   run_piece(100, 1e-7);
   EXPECT_LE(run_piece(101, 0.1), 7 + 6 * 6);
   EXPECT_EQ(run_piece(102, 0.1), 7);

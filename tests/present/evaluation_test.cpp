@@ -1,4 +1,4 @@
-// The words and numbers of an evaluation.
+// Text and numbers of an evaluation.
 #include "present/evaluation.h"
 
 #include <gmock/gmock.h>
@@ -44,7 +44,7 @@ TEST(SamplesNeeded, nothing_where_the_interval_covers_no_threshold) {
   EXPECT_FALSE(samples_needed(sampled(0.04, {0.02, 0.06}, 0), {0.0, 0.01}, false)) << "nominal values alone decide";
 }
 
-// A number that is asked for and drawn decides, one less does not: with the same share, at the error of that look.
+// With the same share and the error of that look, the returned number of samples decides, and one less does not.
 TEST(SamplesNeeded, is_the_smallest_number_that_decides) {
   for (const auto& [share, is_drawn] : {std::pair(0.04, false), std::pair(0.07, false), std::pair(0.03, true), std::pair(0.08, true)}) {
     const int per_draw = is_drawn ? 8 : 1;
@@ -65,7 +65,7 @@ TEST(SamplesNeeded, without_a_hit_it_is_that_of_the_binomial_law) {
   EXPECT_EQ(*samples_needed(sampled(0.0, {0.0, 0.31}, 80), {0.0, 0.0}, true), 72 * 8);
 }
 
-// The program doubles the first number five times at most; that leaves two looks for who asks for more.
+// The program doubles the first number at most five times. Two further looks remain for users who request more.
 TEST(SamplesNeeded, all_looks_together_err_with_5_percent_at_most) {
   for (const auto& [first, is_drawn] : {std::pair(75, true), std::pair(500, false)}) {
     double total = 0.0;

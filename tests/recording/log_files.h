@@ -1,4 +1,4 @@
-// Logs written for one test and gone afterwards.
+// Temporary log files for one test.
 #pragma once
 
 #include <unistd.h>
@@ -24,7 +24,7 @@ class LogFile {
     std::filesystem::remove_all(folder_, ignored);
   }
 
-  /// Another file beside it.
+  /// Adds another file to the folder.
   std::filesystem::path add(const std::string& name, const std::string& content) const {
     std::ofstream(folder_ / name, std::ios::binary) << content;
     return folder_ / name;

@@ -1,4 +1,4 @@
-// Foreign logs through mappings: units, expressions, clocks, gaps that are filled, and every problem with its place.
+// Third-party logs with mappings: units, expressions, clocks, filled gaps, and every problem with its place.
 #include "recording/mapping.h"
 
 #include <gmock/gmock.h>
@@ -110,7 +110,7 @@ TEST(Mapping, SeparatorsDecimalCommaHeaderRowsAndComments) {
   EXPECT_THAT(recording.line, ElementsAre(5, 7));
 }
 
-/// A current that changes evenly from a to b has the mean square (a² + ab + b²)/3, a power the mean (a + b)/2.
+/// A current that changes linearly from a to b has the mean square (a² + ab + b²)/3; a power has the mean (a + b)/2.
 TEST(Mapping, HabitsOfLoggersBecomeIntervals) {
   const std::string log = "t,I,P,T\n0,0,0,20\n1,3,4,21\n2,3,8,22\n";
   const std::string quantities =
@@ -124,7 +124,7 @@ TEST(Mapping, HabitsOfLoggersBecomeIntervals) {
   EXPECT_THAT(values(previous, "power_in_W"), Pointwise(NanSensitiveDoubleEq(), {4.0, 8.0, kNone}));
 }
 
-/// A held input moved by a quarter of a period keeps its energy; a straight temperature stays on its line.
+/// A held input moved by a quarter of a period keeps its energy. A linear temperature stays on its line.
 TEST(Mapping, ClockOffsetMovesAChannel) {
   const Recording recording =
       read("t,P,T\n0,8,20\n1,0,22\n2,4,24\n3,4,26\n",
@@ -168,7 +168,7 @@ TEST(Mapping, IsFoundBesideTheLog) {
   EXPECT_EQ(mapping_for(file.path(), "").file, map);
 }
 
-/// The example of the documentation is read as it stands there.
+/// The example of the documentation must be valid.
 TEST(Mapping, ExampleOfTheReadme) {
   std::ifstream file(kSource / "docs/file_formats.md");
   const std::string readme{std::istreambuf_iterator<char>(file), {}};

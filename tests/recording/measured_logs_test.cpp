@@ -1,4 +1,5 @@
-// Recordings of others through the example mappings, against what a plain look at the files says. Skipped where they are not at hand.
+// Third-party recordings with the example mappings, compared with values read directly from the files. Skipped if the recordings are not
+// available.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -55,7 +56,7 @@ TEST_F(MeasuredLogs, UavMotor) {
   EXPECT_LT(left_out("winding_C", LeftOutReason::outlier) + left_out("stator_C", LeftOutReason::outlier), 10U);
   EXPECT_TRUE(quality_.thermal.is_good());
 
-  // The driver's log ends before the temperatures do: that power is unknown.
+  // The motor controller's log ends before the temperatures do, so that power is unknown.
   const Recording hot = read("tasrv_uav_motor", "run2.csv");
   EXPECT_EQ(hot.rows(), 586U);
   EXPECT_EQ(left_out("power_in_W", LeftOutReason::not_recorded), 105U);
@@ -111,7 +112,7 @@ TEST_F(MeasuredLogs, TractionMotor) {
   EXPECT_EQ(profile.run_begins.size(), 1U);
   EXPECT_NEAR(quality_.sampling.usual_period_s, 2.5, 1e-9);
   EXPECT_NEAR(channel("speed_rad_per_s").high, 576.0, 0.1) << "5500 rpm";
-  // Line 4: -1.3188 A along the field, 0.7276 A across it, generating.
+  // Line 4: -1.3188 A along the field, 0.7276 A across it; the motor works as a generator.
   EXPECT_NEAR(profile.find("current_A")->values[2],
               -std::sqrt((1.318769931793213 * 1.318769931793213 + 0.727579712867737 * 0.727579712867737) / 2.0), 1e-9);
   EXPECT_THAT(quality_.suspicions, IsEmpty());

@@ -1,4 +1,4 @@
-// What is told about a log before anything is fitted. All logs here are synthetic.
+// Checks of a log before any fit. All logs in this file are synthetic.
 #include "recording/quality.h"
 
 #include <gmock/gmock.h>
@@ -36,7 +36,7 @@ TEST_P(Resolution, SoundLogKeepsItsSamplesAndRaisesNoSuspicion) {
 }
 INSTANTIATE_TEST_SUITE_P(Synthetic, Resolution, testing::Values(0.0, 0.1, 0.25, 1.0));
 
-/// Second differences of white noise have six times its variance; a slope has none.
+/// Second differences of white noise have six times its variance; a slope contributes nothing.
 TEST(Noise, WhiteNoiseOnASlope) {
   Random random(3, 0);
   std::vector<double> values;
@@ -59,7 +59,7 @@ TEST(Noise, WhiteNoiseOnASlope) {
   EXPECT_NEAR(noise_level(values, runs).noise, 0.5 / std::sqrt(12.0), 1e-9) << "no noise is seen below the resolution";
 }
 
-/// A fifth of the samples is anywhere: the counts of the encoder are seen all the same.
+/// A fifth of the samples has random values. The encoder's resolution must still be found.
 TEST(Noise, ResolutionAmongBadSamples) {
   Random random(4, 0);
   std::vector<double> values;
@@ -127,7 +127,7 @@ TEST(ClockOffsets, DelayOfTheTemperaturesIsFound) {
   }
 }
 
-/// Loggers that were started by hand one after the other. What repeats itself soon would look alike at several delays.
+/// Loggers that were started by hand one after the other. A current that repeats soon would match at several delays.
 TEST(ClockOffsets, AMinuteIsFoundWhereTheCurrentDoesNotRepeatItself) {
   for (const double delay_s : {-60.0, 25.0, 60.0}) {
     SyntheticLog log;
@@ -206,7 +206,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"upside_down", [](int, auto& cells) { cells[winding] = 120.0 - cells[winding]; }, "is the sign of the sensor wrong?"}),
     [](const auto& instance) { return instance.param.name; });
 
-/// A run with a column more or less than SyntheticLog writes; `row` gives the cells behind the time.
+/// Returns a run with other columns than SyntheticLog writes; `row` gives the cells after the time.
 std::string run_of(const std::string& columns, std::size_t first, const std::vector<std::pair<double, double>>& rows_C,
                    const std::function<std::string(double winding_C, double stator_C, std::size_t row)>& cells) {
   std::string text = "time_s," + columns + "\n";
@@ -216,7 +216,7 @@ std::string run_of(const std::string& columns, std::size_t first, const std::vec
   return text;
 }
 
-/// Only the cool-down after a heat of so long; with the columns of winding and stator in this order.
+/// Returns a cool-down after `heated_s` of heating; `columns` sets the order of winding and stator.
 std::string cool_down(const char* columns, double heated_s, int rest_s, double stator_offset_K = 0.0) {
   SyntheticLog log;
   log.rows = static_cast<int>(heated_s) + 1 + rest_s;
@@ -238,8 +238,8 @@ TEST_P(CoolDown, IsSwappedOrNotHoweverLongItsTail) {
 INSTANTIATE_TEST_SUITE_P(Synthetic, CoolDown,
                          testing::Combine(testing::Values(60.0, 1500.0), testing::Values(400, 1100, 3000), testing::Values(0.0, 2.0)));
 
-/// The resistance rises with the temperature, and so does the power: while the motor levels out the one falls as the other
-/// rises, without a wrong sign.
+/// The resistance rises with the temperature, and so does the power. During the warm-up the heating rate falls while the power rises, and
+/// this must not look like a wrong sign.
 TEST(Suspicions, NoneInAWarmUpAtConstantCurrent) {
   SyntheticLog log;
   log.current_A = [](double) { return 6.0; };
@@ -264,8 +264,8 @@ TEST(Suspicions, NoneInAWarmUpAtConstantCurrent) {
   }
 }
 
-/// Without load the iron is heated, and the stator answers first: to the speed, or to a current that comes and goes with it.
-/// A mirrored network: the part of 60 J/K is heated, that of 12 J/K follows.
+/// Without load the iron is heated, and the stator responds first, to the speed or to a current that correlates with it. The network is
+/// mirrored: the part with 60 J/K is heated, the part with 12 J/K follows.
 TEST(Suspicions, NoneWhereTheIronIsHeated) {
   for (const int period_s : {40, 80, 150, 300, 600}) {
     const auto turns = [period_s](std::size_t row) {
@@ -298,7 +298,7 @@ TEST(Suspicions, NoneWhereTheIronIsHeated) {
   }
 }
 
-/// Fallen to what is room temperature in degrees Fahrenheit when the log begins; a motor at the air's temperature cannot fall.
+/// The temperature has fallen to a room temperature in degrees Fahrenheit when the log starts. A motor at air temperature cannot fall.
 TEST(Suspicions, NoneWhereOneSensorStartsWarm) {
   SyntheticLog log;
   log.current_A = [](double time_s) { return time_s < 900.0 ? 8.0 : 0.0; };
@@ -317,7 +317,7 @@ TEST(Suspicions, NoneWhereOneSensorStartsWarm) {
   }
 }
 
-/// 15 K colder than the air it comes into.
+/// The motor starts 15 K colder than its surrounding air.
 TEST(Suspicions, NoneOfAMotorBroughtInCold) {
   SyntheticLog log;
   log.current_A = [](double time_s) { return time_s < 60.0 ? 0.0 : 1.0; };
@@ -336,7 +336,7 @@ TEST(Suspicions, PowerThatCannotBe) {
   std::string text = "time_s,winding_C,torque_Nm,speed_rad_per_s,power_in_W,bus_V,bus_A\n";
   for (int i = 0; i < 200; ++i) {
     const double power_W = 20.0 + i % 50;
-    // 80 % of the power arrives at the shaft, the speed is written in rpm, the supply's current in mA.
+    // 80 % of the power reaches the shaft. The speed is written in rpm, the supply's current in mA.
     text += fmt::format("{},{},{:.4f},{:.3f},{},24,{:.2f}\n", i, 25.0 + 0.1 * i, 0.8 * power_W / 300.0, 300.0 * 9.5493, power_W,
                         1000.0 * power_W / 24.0);
   }
@@ -370,7 +370,7 @@ TEST(Fitness, LogsThatTellNothingAboutHeat) {
   EXPECT_THAT(lacks_of("time_s,ambient_C,bus_V\n0,20,24\n1,20,24.1\n"), testing::Contains(HasSubstr("no temperature of the motor")));
 }
 
-/// A motor that stands under one current from cold, with the speed logged.
+/// A stalled motor with constant current from cold, with logged speed.
 std::string standing_run(double current_A, bool is_swapped, double speed_rad_per_s, double winding_offset_K) {
   SyntheticLog log;
   log.current_A = [=](double) { return current_A; };
@@ -389,13 +389,13 @@ TEST(Suspicion, SwappedAtStandstillUnderOneCurrent) {
   for (const double current_A : {4.0, 5.0, 6.0}) {
     EXPECT_THAT(read_text(standing_run(current_A, true, 0.0, 0.0)).quality.blocking, ElementsAre(HasSubstr("are the two swapped")));
     EXPECT_THAT(read_text(standing_run(current_A, false, 0.0, 0.0)).quality.suspicions, IsEmpty());
-    // Its offset was there from the start; what turns may heat the stator.
+    // The offset exists from the start. If the motor turns, the iron may heat the stator first.
     EXPECT_THAT(read_text(standing_run(current_A, false, 0.0, -9.0)).quality.suspicions, IsEmpty());
     EXPECT_THAT(read_text(standing_run(current_A, true, 200.0, 0.0)).quality.suspicions, IsEmpty());
   }
 }
 
-/// A warm-up of the winding alone, in degrees Fahrenheit or not, beside a room that the user states.
+/// A warm-up of the winding alone, in Celsius or Fahrenheit, with a room temperature stated by the user.
 TEST(Suspicion, FahrenheitBesideAStatedRoom) {
   for (const auto& [is_fahrenheit, room_C] :
        {std::pair(true, 22.0), std::pair(true, 18.5), std::pair(false, 22.0), std::pair(false, 40.0)}) {
@@ -413,7 +413,7 @@ TEST(Suspicion, FahrenheitBesideAStatedRoom) {
   }
 }
 
-/// A logger of 60 Hz is none that writes minutes.
+/// A log at 60 Hz must not be mistaken for a log in minutes.
 TEST(Suspicion, MinutesByRowsThatNoMotorFollows) {
   SyntheticLog fast;
   fast.period_s = 1.0 / 60.0;

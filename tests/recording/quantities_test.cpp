@@ -1,4 +1,4 @@
-// Names of channels: of the table, numbered, or free with a unit at their end.
+// Names of channels: names of the table, numbered names, or free names with a unit at the end.
 #include "recording/quantities.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Synthetic logs with something changed, and what is told of them.
+// Modified synthetic logs, and the report about them.
 #pragma once
 
 #include <functional>
@@ -27,7 +27,7 @@ inline Read read_text(const std::string& text) {
   return result;
 }
 
-/// Every row of a synthetic log through `change`, which sees time, winding, stator, ambient, current.
+/// Applies `change` to every row of a synthetic log: time, winding, stator, ambient, current.
 inline std::string changed(const SyntheticLog& log, const std::function<void(int, std::vector<double>&)>& change) {
   std::istringstream lines(log.csv());
   std::string line;

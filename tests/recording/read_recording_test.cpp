@@ -1,4 +1,4 @@
-// A canonical log becomes a recording; what is no measurement is left out and said by line.
+// Converts a canonical log to a recording. Invalid measurements are left out and reported by line.
 #include "recording/read_recording.h"
 
 #include <fmt/format.h>
@@ -120,7 +120,7 @@ TEST(ReadRecording, RowsThatAreNoneAreLeftOutByLine) {
   EXPECT_DOUBLE_EQ(recording.find("winding_C")->values[5], 22.5);
 }
 
-/// One wild time must not take the rows after it along.
+/// One wrong time stamp must not remove the rows after it.
 TEST(ReadRecording, OneTimeFarAheadGoesAlone) {
   RecordingReport report;
   std::string text = "time_s,winding_C\n";
@@ -163,13 +163,13 @@ TEST(ReadRecording, ExitCodesTellWhatIsWrong) {
   EXPECT_EQ(code_of("time_s,winding_C\n0,\n1,nan\n"), ExitCode::cannot_answer);
 }
 
-/// Whatever is done to a log, it ends in a recording whose columns fit together, or in a Failure that says why.
+/// Any damaged log must give a consistent recording or a Failure with the reason.
 TEST(ReadRecording, DamagedLogsNeverCrash) {
   std::string sound = "time_s,winding_C,stator_C,current_A\n";
   for (int i = 0; i < 200; ++i) {
     sound += fmt::format("{},{:.2f},{:.2f},{}\n", i, 25.0 + 0.1 * i, 25.0 + 0.05 * i, i % 7);
   }
-  const std::string_view spoilers = ",;\"\n\r #\0-+.eEnN9\xff\xef"sv;
+  const std::string_view wrong_bytes = ",;\"\n\r #\0-+.eEnN9\xff\xef"sv;
   int failures = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Random random(seed, 0);
@@ -179,7 +179,7 @@ TEST(ReadRecording, DamagedLogsNeverCrash) {
       const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(damaged.size()));
       const double what = random.uniform();
       if (what < 0.5) {
-        damaged[at] = spoilers[static_cast<std::size_t>(random.uniform() * static_cast<double>(spoilers.size()))];
+        damaged[at] = wrong_bytes[static_cast<std::size_t>(random.uniform() * static_cast<double>(wrong_bytes.size()))];
       } else if (what < 0.8) {
         damaged.erase(at, static_cast<std::size_t>(random.uniform() * 40.0));
       } else if (what < 0.95) {

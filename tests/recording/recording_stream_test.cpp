@@ -1,4 +1,4 @@
-// A log that comes in parts is the log: nothing changes where one part ends and the next begins. All logs here are synthetic.
+// A log that is read in parts must give the same result at the borders of the parts. All logs in this file are synthetic.
 #include "recording/recording_stream.h"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ struct Row {
   double current_A = 0.0;
 };
 
-/// Even noise of ±0.05 K on a temperature that goes up and down, and a current of some seconds' pattern.
+/// Uniform noise of ±0.05 K on a temperature that rises and falls, and a current with a pattern of some seconds.
 std::string log_text(const std::function<void(int, Row&)>& change) {
   std::string text = "time_s,winding_C,current_A\n";
   Random random(7, 0);
@@ -48,7 +48,7 @@ std::vector<std::size_t> parts_of(const LogFile& file, RecordingReport& report, 
   return sizes;
 }
 
-/// Where the first part ends; the second ends as much later.
+/// Returns the last row of the first part. The second part has the same length.
 std::size_t first_border() {
   static const std::size_t border = [] {
     const LogFile file("log.csv", log_text([](int, Row&) {}));
@@ -113,14 +113,14 @@ TEST(RecordingStream, GapSplitsAtTheBorderOnly) {
   EXPECT_THAT(read_recording(file.path(), {}, report).run_begins, testing::ElementsAre(0U, static_cast<std::size_t>(border)));
 }
 
-/// Straight lines, of which shifts and changes of habit are known exactly.
+/// For linear signals, the results of clock offsets and input conventions are known exactly.
 TEST(RecordingStream, ClocksAndHabitsReachOverBorders) {
   std::string text = "t,T,I\n";
   for (int i = 0; i < kRows; ++i) {
     fmt::format_to(std::back_inserter(text), "{:.2f},{:.6f},{:.6f}\n", kPeriod_s * i, 20.0 + 1e-4 * i, 1.0 + 1e-5 * i);
   }
   const LogFile file("log.csv", text);
-  // 80 s are 8000 rows, more than are kept around a part unless a clock asks for it.
+  // 80 s are 8000 rows. This is more than the reader keeps around a part without a clock offset.
   const auto map = file.add("log.map.toml",
                             "inputs = \"previous_interval\"\n[quantities]\ntime_s = { column = \"t\" }\n"
                             "winding_C = { column = \"T\", clock_offset = \"80 s\" }\ncurrent_A = { column = \"I\" }\n");
@@ -152,7 +152,7 @@ TEST(RecordingStream, SortedBackwardsIsRefused) {
   }
 }
 
-/// What is kept does not grow with the log, and still holds its heat, its extremes and its noise.
+/// The summary of a log has a bounded size. It must still contain the heat, the extremes and the noise.
 TEST(Assessment, KeepsABoundedPictureOfALongLog) {
   const int border = static_cast<int>(first_border());
   const LogFile file("log.csv", log_text([&](int i, Row& row) { row.current_A = i == border + 17 ? 55.5 : row.current_A; }));
@@ -183,7 +183,7 @@ TEST(Assessment, KeepsABoundedPictureOfALongLog) {
   const std::vector<double>& high_A = assessment.condensed().high(1);
   EXPECT_EQ(*std::ranges::max_element(high_A), 55.5);
   EXPECT_EQ(quality.channels[0].samples, static_cast<std::size_t>(kRows));
-  // Even noise of ±0.05 K.
+  // Uniform noise of ±0.05 K.
   EXPECT_NEAR(quality.channels[0].noise, 0.1 / std::sqrt(12.0), 0.006);
   EXPECT_NEAR(quality.sampling.usual_period_s, kPeriod_s, 1e-9);
   EXPECT_NEAR(quality.sampling.duration_s, kPeriod_s * (kRows - 1), 1e-6);

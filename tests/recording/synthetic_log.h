@@ -1,4 +1,4 @@
-// A motor of two heat capacities, integrated in small steps, as a logger would write it. Synthetic: no measurement.
+// Synthetic motor with two heat capacities, integrated in small steps and written in a logger's format.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,12 +16,12 @@ struct SyntheticLog {
   double period_s = 1.0;
   int rows = 1800;
   double noise_K = 0.05;
-  double step_K = 0.0;   ///< resolution; 0: as many digits as it takes
-  double delay_s = 0.0;  ///< of the temperatures' clock
+  double step_K = 0.0;   ///< resolution; 0 means full precision
+  double delay_s = 0.0;  ///< delay of the temperatures' clock
   std::uint64_t seed = 1;
   std::function<double(double)> current_A = [](double t) { return std::fmod(t, 300.0) < 150.0 ? 6.0 : 0.0; };
 
-  /// Winding and stator per row.
+  /// Returns winding and stator temperatures per row.
   [[nodiscard]] std::vector<std::pair<double, double>> temperatures_C() const {
     constexpr double kStep_s = 0.01;
     Random random(seed, 0);
@@ -53,7 +53,7 @@ struct SyntheticLog {
 
  private:
   [[nodiscard]] double seen(double true_C, Random& random) const {
-    // Twelve uniform numbers make a good normal one.
+    // The sum of twelve uniform numbers is approximately normal.
     double normal = -6.0;
     for (int i = 0; i < 12; ++i) {
       normal += random.uniform();

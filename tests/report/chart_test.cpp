@@ -40,10 +40,10 @@ struct Element {
 
 struct Reader {
   std::vector<Element> elements;
-  bool is_open = false;  ///< text belongs to the last element
+  bool is_open = false;  ///< the following text belongs to the last element
 };
 
-/// Every element in document order; throws where the text is not well-formed XML.
+/// Returns all elements in document order; throws if the text is not well-formed XML.
 std::vector<Element> parsed(const std::string& xml) {
   Reader reader;
   XML_Parser parser = XML_ParserCreate(nullptr);
@@ -78,7 +78,7 @@ struct Point {
   double y_px = 0.0;
 };
 
-/// Coordinates of a `points` or `d` attribute, whatever letters stand between them.
+/// Returns the coordinates of a `points` or `d` attribute, ignoring letters between them.
 std::vector<Point> points(std::string text) {
   const auto is_separator = [](char c) { return std::string_view(",MLz\n").find(c) != std::string_view::npos; };
   std::ranges::replace_if(text, is_separator, ' ');
@@ -90,7 +90,7 @@ std::vector<Point> points(std::string text) {
   return result;
 }
 
-/// A linear axis as a reader sees it: from the places of its tick labels.
+/// A linear axis reconstructed from the places of its tick labels.
 struct SeenAxis {
   std::vector<double> values;
   std::vector<double> places_px;
@@ -106,7 +106,8 @@ struct SeenPanel {
   SeenAxis y;
 };
 
-/// Tick labels are the grey 12 px texts: a panel's y labels end at the axis, its x labels follow, centred.
+/// Finds the panels by their tick labels, which are the grey 12 px texts. The y labels of a panel end at the axis; its centred x labels
+/// follow.
 std::vector<SeenPanel> seen_panels(const std::vector<Element>& elements) {
   std::vector<SeenPanel> panels;
   bool was_y_label = false;
@@ -153,11 +154,11 @@ struct Extremes {
 };
 
 Extremes extremes(const std::vector<Point>& line) {
-  const auto [high, low] = std::ranges::minmax_element(line, {}, &Point::y_px);  // y counts downwards
+  const auto [high, low] = std::ranges::minmax_element(line, {}, &Point::y_px);  // y points downwards
   return {*low, *high};
 }
 
-/// First-order warm-up of three motors over 40 min, stator above winding.
+/// First-order warm-up of three motors over 40 min, with the stator panel above the winding panel.
 Chart warm_up() {
   const std::vector<std::string> names{"maxon_ecx_flat_32l_48v  162 °C", "maxon_ec_45_flat_70w  118 °C", "df45"};
   const std::vector<double> stator_rise_K{110.0, 80.0, 88.0};
@@ -225,7 +226,7 @@ TEST_F(ChartTest, WritesEveryNameOnce) {
   EXPECT_GE(texts(elements, "winding limit 155 °C"), 1U);
 }
 
-// Every factor of ten is the same height; zero has no place there and breaks the line.
+// Every factor of ten has the same height. Zero cannot be drawn and interrupts the line.
 TEST_F(ChartTest, ALogarithmicAxisShowsFactors) {
   Chart chart{.title = "factors", .x_label = "x", .panels = {{}}};
   chart.panels[0].logarithmic = true;
@@ -287,7 +288,7 @@ TEST_F(ChartTest, LimitAndBandStandWhereTheAxesSay) {
   EXPECT_NEAR(seen.high.y_px, winding.y.px(chart.panels[1].curves[0].y.back() + 9.0), 1.0);
 }
 
-// A ripple as wide as the plot leaves no free place on the line: the name then stands beside the plot, below the legend.
+// A ripple over the whole width leaves no free place on the line, so the name is placed beside the plot, below the legend.
 TEST_F(ChartTest, NameOfALimitInARippleStandsBesideThePlot) {
   Chart chart = warm_up();
   ChartCurve& ripple = chart.panels[1].curves[0];
@@ -325,7 +326,7 @@ TEST_F(ChartTest, NamesOfCloseLimitsStandApart) {
   std::map<std::string, Place> places;
   for (const Element& each : drawn(chart)) {
     if (each.name == "text" && std::ranges::find(names, each.text) != names.end()) {
-      const double width_px = 5.0 * static_cast<double>(each.text.size());  // narrower than it is
+      const double width_px = 5.0 * static_cast<double>(each.text.size());  // underestimates the true width
       const double x_px = each.number("x");
       const bool ends_there = each.at("text-anchor") == "end";
       places[each.text] = {ends_there ? x_px - width_px : x_px, ends_there ? x_px : x_px + width_px, each.number("y")};
@@ -347,7 +348,7 @@ TEST_F(ChartTest, EverythingIsInsideThePlotWithHeadroom) {
   const SeenPanel winding = seen_panels(elements).at(1);
   const auto limits = lines(elements, red, 2);
   ASSERT_EQ(limits.size(), 2U);
-  // Without a frame the grid's upright lines show the height of the plot: 500 K and 5 % at either end.
+  // Without a frame the vertical grid lines give the height of the plot: 500 K and 5 % at either end.
   const auto grid = lines(elements, "#e4e4e4", 2);
   const auto is_of_winding = [&](const std::vector<Point>& line) {
     return line[0].x_px == line[1].x_px && std::max(line[0].y_px, line[1].y_px) > limits[1][0].y_px;
@@ -364,13 +365,13 @@ TEST_F(ChartTest, NanBreaksLineAndBand) {
   const double gap = std::numeric_limits<double>::quiet_NaN();
   chart.panels[1].curves[0].y[100] = gap;
   chart.panels[1].curves[0].y[180] = gap;
-  chart.panels[1].curves[0].y[182] = gap;  // leaves one sample alone
+  chart.panels[1].curves[0].y[182] = gap;  // isolates one sample
   chart.panels[1].bands[0].low[100] = gap;
   const std::string text = svg(chart);
   EXPECT_EQ(text.find("nan"), std::string::npos);
   const auto elements = parsed(text);
   EXPECT_EQ(lines(elements, blue).size(), 1U + 3U);
-  EXPECT_EQ(std::ranges::count_if(elements, is_band), 2 + 1);  // and the legend
+  EXPECT_EQ(std::ranges::count_if(elements, is_band), 2 + 1);  // plus the legend
 }
 
 TEST_F(ChartTest, BandOfTwoSamplesIsDrawn) {
@@ -378,7 +379,7 @@ TEST_F(ChartTest, BandOfTwoSamplesIsDrawn) {
   const ChartCurve& curve = chart.panels[1].curves[0];
   chart.panels[1].bands = {{"left out", {curve.x[10], curve.x[20]}, {30.0, 30.0}, {60.0, 60.0}, 0}};
   const std::vector<Element> elements = parsed(svg(chart));
-  EXPECT_EQ(std::ranges::count_if(elements, is_band), 1 + 1);  // and the legend
+  EXPECT_EQ(std::ranges::count_if(elements, is_band), 1 + 1);  // plus the legend
 }
 
 TEST_F(ChartTest, LongCurvesStaySmallAndKeepTheirSpikes) {
@@ -439,7 +440,7 @@ TEST_F(ChartTest, DrawsWhereThereIsLittleToShow) {
   chart.panels[1].curves = {{.name = "constant", .x = {2.0}, .y = {0.3}}};
   const auto elements = drawn(chart);
   EXPECT_EQ(seen_panels(elements).size(), 2U);
-  EXPECT_EQ(lines(elements, blue, 2).size(), 1U + 2U);  // a dot and two names in the legend
+  EXPECT_EQ(lines(elements, blue, 2).size(), 1U + 2U);  // plus one dot and two names in the legend
 }
 
 void expect_failure(const Chart& chart, const fs::path& path, ExitCode code, const std::string& words) {
@@ -452,7 +453,7 @@ void expect_failure(const Chart& chart, const fs::path& path, ExitCode code, con
   }
 }
 
-TEST_F(ChartTest, UnwritablePathIsToldAndLeavesNothing) {
+TEST_F(ChartTest, UnwritablePathIsReportedAndLeavesNothing) {
   const fs::path missing = folder_ / "missing" / "chart.svg";
   expect_failure(warm_up(), missing, ExitCode::bad_input, missing.string() + ": error: cannot be written: No such file");
   fs::create_directories(folder_ / "taken" / "inside");
@@ -469,7 +470,7 @@ TEST_F(ChartTest, BrokenLibraryIsABugAndKeepsTheOldPicture) {
   const std::string before = usual != nullptr ? usual : "";
   setenv("HEATSOAK_PLUGINS", plugins.c_str(), 1);
   expect_failure(Chart{}, folder_ / "chart.svg", ExitCode::bug, "heatsoak_charts.so");
-  setenv("HEATSOAK_PLUGINS", before.c_str(), 1);  // empty counts as not set
+  setenv("HEATSOAK_PLUGINS", before.c_str(), 1);  // an empty value counts as not set
   EXPECT_EQ(fs::file_size(folder_ / "chart.svg"), old.size());
   EXPECT_EQ(files(), 2);
 }

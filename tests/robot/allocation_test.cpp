@@ -1,4 +1,4 @@
-// Millions of steps: none of them may go to the heap.
+// No step of a long simulation may allocate memory.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ TEST(Allocation, no_step_takes_memory) {
   for (int i = 0; i < 100; ++i) {
     input.command.fill({MotorCommand::Kind::voltage, i < 50 ? 3.0 : 100.0});
     step(plant, state, input);
-    // Within the grip, beyond it, and with wheels off the ground.
+    // The accelerations are within the grip, beyond it, and so high that wheels lift off.
     sum_Nm += inverse_dynamics(plant.body, {{1.0, 0.5, 2.0}, {0.15 * i, 0.0, 0.0}, {}, 0.0}).torque_Nm[0];
   }
   const long after = allocation_count();

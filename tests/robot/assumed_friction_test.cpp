@@ -1,4 +1,4 @@
-// The friction that is assumed for a robot whose file states none.
+// Assumed friction of a robot whose file states none.
 #include "robot/assumed_friction.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ TEST(AssumedFriction, stated_friction_stays) {
   EXPECT_EQ(assumed_friction_text(same), "");
 }
 
-/// Ranges hold what both teams measured on their robots.
+/// The ranges must include the friction that both teams measured.
 TEST(AssumedFriction, ranges_include_the_measured_robots) {
   for (const char* const id : {"tigers_v2020", "roboteam_twente_v2024"}) {
     const Robot stated = read_robot(kRobots / (std::string(id) + ".toml"));

@@ -19,8 +19,8 @@ BodyConfig bare_body() { return make_body(bare_robot(), bare_motor()); }
 
 double sum(const PerWheel& values) { return values[0] + values[1] + values[2] + values[3]; }
 
-// 2.5 kg at 2 m/s² is 5 N; four wheels at 45° each pass on 5/(4·0.7071) = 1.7678 N, 53.033 mN m at 30 mm. Spinning
-// them up, J = 3e-5 + 1e-5 = 4e-5 kg m², takes 4e-5·2·0.7071/0.03 = 1.8856 mN m more.
+// 2.5 kg at 2 m/s² need 5 N. Each of four wheels at 45° transmits 5/(4·0.7071) = 1.7678 N, which is 53.033 mN m at 30 mm. Accelerating the
+// wheels, J = 3e-5 + 1e-5 = 4e-5 kg m², needs another 4e-5·2·0.7071/0.03 = 1.8856 mN m.
 TEST(InverseDynamics, square_robot_ahead_by_hand) {
   const WheelDemands out = inverse_dynamics(bare_body(), {{1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}, {}, 0.0});
   const PerWheel sign{1.0, -1.0, -1.0, 1.0};
@@ -55,7 +55,7 @@ TEST(InverseDynamics, the_global_trajectory_is_the_local_one_turned) {
   }
 }
 
-/// Σ torque·speed = change of kinetic energy + what friction, drag and rolling take: nothing else.
+/// Energy balance: Σ torque·speed = change of kinetic energy + losses by friction, drag and rolling.
 TEST(InverseDynamics, power_of_the_wheels_is_accounted_for) {
   const BodyConfig body = make_body(lossy_robot(), bare_motor());
   std::mt19937_64 engine(5);
@@ -112,8 +112,8 @@ TEST(InverseDynamics, a_square_robot_may_be_turned_by_a_quarter) {
   }
 }
 
-// At 3 m/s² ahead, h = 50 mm: S_x = −0.05·7.5 = −0.375 N m over contact points at ±56.57 mm: the front wheels lose and
-// the rear wheels gain 0.375/(4·0.05657) = 1.6573 N of 6.1292 N each.
+// At 3 m/s² ahead, h = 50 mm: S_x = −0.05·7.5 = −0.375 N m over contact points at ±56.57 mm. The front wheels lose and the rear wheels gain
+// 0.375/(4·0.05657) = 1.6573 N of 6.1292 N each.
 TEST(NormalLoads, move_to_the_rear_by_hand) {
   const WheelDemands out = inverse_dynamics(bare_body(), {{}, {3.0, 0.0, 0.0}, {}, 0.0});
   EXPECT_NEAR(out.normal_force_N[0], 6.12916 - 1.65728, 1e-4);
@@ -149,14 +149,15 @@ TEST(NormalLoads, add_up_to_the_weight_and_hold_the_moment) {
   EXPECT_LT(lifted, 1500);
 }
 
-// At 45° each newton along a wheel advances by 0.7071 N. With all load used μ·m·g·0.7071 = 12.135 N are to be had
-// however the load has moved, 4.8540 m/s² of 2.5 kg, if the rear wheels take over what the front ones cannot. The loads
-// are those of the demand: at 6 m/s² front 6.1292 − 3.3146 N, rear 6.1292 + 3.3146 N.
+// At 45° each newton along a wheel contributes 0.7071 N. If all load is used, μ·m·g·0.7071 = 12.135 N are available for any load transfer,
+// 4.8540 m/s² for 2.5 kg. The rear wheels must then provide the force that the front wheels cannot. The loads are those of the demand: at 6
+// m/s² front 6.1292 − 3.3146 N, rear 6.1292 + 3.3146 N.
 TEST(InverseDynamics, traction_limits_the_acceleration) {
   const BodyConfig body = bare_body();
   const WheelDemands four = inverse_dynamics(body, {{}, {4.0, 0.0, 0.0}, {}, 0.0});
   EXPECT_EQ(four.transmitted_share, 1.0);
-  // Of least squares each wheel would give 10/(4·0.7071) = 3.536 N; the front ones have 0.7·(6.1292 − 2.2097) = 2.7436 N.
+  // By least squares each wheel would give 10/(4·0.7071) = 3.536 N, but the front wheels can transmit only 0.7·(6.1292 − 2.2097) = 2.7436
+  // N.
   EXPECT_NEAR(four.rolling_force_N[0], 2.74362, 1e-4);
   EXPECT_NEAR(four.rolling_force_N[3], 2.0 * 3.53553 - 2.74362, 1e-4);
   EXPECT_NEAR(four.traction_use_ratio[0], 1.0, 1e-12);
@@ -173,13 +174,13 @@ TEST(InverseDynamics, traction_limits_the_acceleration) {
   EXPECT_NEAR(twelve.achievable.x_m_per_s2, 0.7 * kGravity_m_per_s2 * std::sqrt(0.5), 1e-6);
 }
 
-// Three wheels leave no choice: the wheel that has the least decides.
+// With three wheels the distribution is unique, and the wheel with the least grip limits it.
 TEST(InverseDynamics, three_wheels_cannot_take_over) {
   Robot robot = bare_robot();
   robot.wheel_axis_rad = {std::numbers::pi / 3.0, std::numbers::pi, -std::numbers::pi / 3.0};
   robot.center_of_gravity_height_m = 0.0;
   const WheelDemands out = inverse_dynamics(make_body(robot, bare_motor()), {{}, {12.0, 0.0, 0.0}, {}, 0.0});
-  // Wheels 1 and 3 share 30 N, each along 30° off: 30/(2·0.8660) of 0.7·24.517/3.
+  // Wheels 1 and 3 share 30 N, each 30° off the direction: 30/(2·0.8660) of 0.7·24.517/3.
   EXPECT_NEAR(out.transmitted_share, 0.7 * kWeight_N / 3.0 / (30.0 / std::sqrt(3.0)), 1e-9);
 }
 
@@ -199,7 +200,7 @@ TEST(InverseDynamics, delivered_forces_never_exceed_the_grip) {
     }
     EXPECT_GE(out.transmitted_share, 0.0);
     EXPECT_LE(out.transmitted_share, 1.0);
-    // What is achieved needs what is delivered.
+    // The achievable acceleration must need exactly the transmitted wrench.
     BodyMotion less = motion;
     less.acceleration = out.achievable;
     const Wrench missing = wrench_of_acceleration(body, motion.velocity.yaw_rad_per_s, motion.acceleration);
@@ -209,8 +210,8 @@ TEST(InverseDynamics, delivered_forces_never_exceed_the_grip) {
   }
 }
 
-// A duel at standstill: 10 N against another robot, wheels at rest. 10/(4·0.7071) N · 30 mm = 106.07 mN m each. The
-// other pushes at the ground, so that no load moves.
+// A duel at standstill: 10 N against another robot, wheels at rest. 10/(4·0.7071) N · 30 mm = 106.07 mN m each. The other robot pushes at
+// ground level, so no load is transferred.
 TEST(InverseDynamics, push_at_standstill_is_a_stall) {
   const WheelDemands out = inverse_dynamics(bare_body(), {{}, {}, {-10.0, 0.0, 0.0}, 0.0});
   for (int i = 0; i < 4; ++i) {
@@ -218,14 +219,14 @@ TEST(InverseDynamics, push_at_standstill_is_a_stall) {
     EXPECT_NEAR(std::abs(out.torque_Nm[i]), 0.106066, 1e-6);
   }
   EXPECT_EQ(out.transmitted_share, 1.0);
-  // 30 N are beyond the grip: it is pushed back, and says how much it could not hold.
+  // 30 N exceed the grip: the robot is pushed back, and the untransmitted force is reported.
   const WheelDemands beyond = inverse_dynamics(bare_body(), {{}, {}, {-30.0, 0.0, 0.0}, 0.0});
   EXPECT_EQ(beyond.transmitted_share, 0.0);
   EXPECT_LT(beyond.achievable.x_m_per_s2, -1.0);
   EXPECT_NEAR(beyond.untransmitted.x_N, -2.5 * beyond.achievable.x_m_per_s2, 1e-12);
 }
 
-/// TIGERs measured 2.65 N in translation and 0.097 N m in rotation; the drag of the motors is in both.
+/// TIGERs measured 2.65 N in translation and 0.097 N m in rotation. Both include the drag of the motors.
 TEST(Friction, of_tigers_is_what_they_measured) {
   const Robot robot = shipped_robot("tigers_v2020");
   const MotorValues motor = shipped_motor("nanotec_df45l024048_a2").nominal;
@@ -249,11 +250,11 @@ TEST(Friction, of_tigers_is_what_they_measured) {
   EXPECT_NEAR(power_W({0.0, 0.0, 10.0}) / 10.0, 0.097, 0.001);
 }
 
-/// The curve of Twente's firmware at wheel 1, θ_f from the left to ahead: 1.23 V + 0.46 V·sin(2θ_f − 0.987).
+/// Curve of Twente's firmware for wheel 1, with θ_f measured from left to ahead: 1.23 V + 0.46 V·sin(2θ_f − 0.987).
 TEST(Friction, of_twente_is_their_curve) {
   const Robot robot = shipped_robot("roboteam_twente_v2024");
   const MotorValues motor = shipped_motor("maxon_ecx_flat_32l_48v").nominal;
-  // The team divides its voltages by the winding's resistance alone.
+  // The team divides its voltages by the winding's resistance without the motor controller's.
   const DriveConstants drive{motor.terminal_resistance_ohm, motor.torque_constant_Nm_per_A, drag_torque_Nm(motor)};
   BodyConfig body = make_body(robot, motor);
   EXPECT_EQ(body.traction.roller_drag_ratio, 0.0);
@@ -272,7 +273,7 @@ TEST(Friction, of_twente_is_their_curve) {
   EXPECT_NEAR(turning.torque_Nm[0], friction_torque_of_voltage_Nm(drive, 0.3), 1e-4);
 }
 
-/// f(θ) = a·sin(θ + φ_i) + b·sign(sin(θ + φ_i)), ETDP 2025, equation (3): φ_i is the wheel's rolling direction.
+/// Reference: f(θ) = a·sin(θ + φ_i) + b·sign(sin(θ + φ_i)), ETDP 2025, equation (3); φ_i is the wheel's rolling direction.
 TEST(Friction, equation_3_of_the_paper) {
   FrictionConfig friction;
   friction.by_heading = true;
@@ -291,7 +292,7 @@ TEST(Friction, equation_3_of_the_paper) {
   }
 }
 
-/// The roller drag alone, found from means, explains that Twente's wheels cost more ahead than sideways.
+/// The mean roller drag alone explains why Twente's wheels have more friction ahead than sideways.
 TEST(Friction, roller_drag_costs_more_ahead_than_sideways) {
   Robot robot = shipped_robot("roboteam_twente_v2024");
   robot.heading_constant_Nm = kAbsent;
@@ -307,13 +308,13 @@ TEST(Friction, voltages_become_torques) {
   const DriveConstants drive{.resistance_ohm = 0.6, .torque_constant_Nm_per_A = 0.035, .drag_torque_Nm = 0.007, .gear_ratio = 2.0};
   EXPECT_NEAR(friction_torque_of_voltage_Nm(drive, 1.2), (2.0 * 0.035 - 0.007) * 2.0, 1e-15);
   EXPECT_EQ(friction_torque_of_voltage_Nm(drive, 0.05), 0.0);
-  // 0.09 V s/rad at the wheel: 0.07 are back-EMF, 0.02 V/(rad/s)/0.6 Ω·35 mN m/A·2
+  // 0.09 V s/rad at the wheel: 0.07 are back-EMF, the rest gives 0.02 V/(rad/s)/0.6 Ω·35 mN m/A·2.
   EXPECT_NEAR(damping_of_voltage_Nm_s_per_rad(drive, 0.09), 0.02 / 0.6 * 0.035 * 2.0, 1e-15);
 }
 
 TEST(Friction, torques_become_the_same_voltages_again) {
   const DriveConstants drive = drive_constants(lossy_robot(), lossy_motor());
-  EXPECT_NEAR(drive.resistance_ohm, 0.61, 1e-15);  // winding and driver
+  EXPECT_NEAR(drive.resistance_ohm, 0.61, 1e-15);  // sum of winding and motor controller
   for (const double speed_rad_per_s : {-40.0, -3.0, 5.0, 60.0}) {
     const double side = speed_rad_per_s > 0.0 ? 1.0 : -1.0;
     const double damping_V_s_per_rad = 0.08;
@@ -324,7 +325,7 @@ TEST(Friction, torques_become_the_same_voltages_again) {
   }
 }
 
-/// The plant driven at the voltage that the formula says keeps its speed: the wheels have a curve each, with an offset.
+/// The plant must keep its speed at the voltage of the formula. Each wheel has its own curve with an offset.
 TEST(Friction, of_each_wheel_keeps_the_plant_steady) {
   Robot robot = lossy_robot();
   robot.rolling_efficiency = 1.0;
@@ -355,7 +356,7 @@ TEST(Friction, of_each_wheel_keeps_the_plant_steady) {
   }
 }
 
-TEST(InverseDynamics, names_every_figure_that_is_missing) {
+TEST(InverseDynamics, names_every_missing_value) {
   Robot robot = bare_robot();
   robot.yaw_inertia_kg_m2 = kAbsent;
   robot.traction_ratio = kAbsent;
@@ -368,7 +369,7 @@ TEST(InverseDynamics, names_every_figure_that_is_missing) {
   }
 }
 
-// Level with the ground, so that no load moves: four wheels at 45° pass on 4·μ·(m·g/4)·cos 45° along either axis.
+// The push acts at ground level, so no load is transferred. Four wheels at 45° transmit 4·μ·(m·g/4)·cos 45° along either axis.
 TEST(LargestPush, of_a_square_robot_by_hand) {
   const BodyConfig body = bare_body();
   for (const double direction_rad : {0.0, 0.5 * std::numbers::pi, std::numbers::pi}) {

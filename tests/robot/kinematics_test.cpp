@@ -15,9 +15,9 @@ constexpr double kDeg = std::numbers::pi / 180.0;
 
 const std::vector<std::string> kShipped{"roboteam_twente_v2024", "roboteam_twente_v2025", "tigers_v2020"};
 
-// Wheel 1 stands front right, its axle at −30°: it rolls along (0.5, 0.866). At 1 m/s and a radius of 28 mm straight
-// ahead is 0.5/0.028 = 17.857 rad/s, to the left 0.8660/0.028 = 30.929 rad/s; the rear wheels 0.7071/0.028 = 25.254.
-// Turning with 1 rad/s is 0.0804/0.028 = 2.8714 rad/s at every wheel.
+// Wheel 1 is at the front right with its axle at −30°, so it rolls along (0.5, 0.866). At 1 m/s and a radius of 28 mm it turns at 0.5/0.028
+// = 17.857 rad/s ahead and 0.8660/0.028 = 30.929 rad/s to the left. The rear wheels turn at 0.7071/0.028 = 25.254 rad/s. Turning at 1 rad/s
+// needs 0.0804/0.028 = 2.8714 rad/s at every wheel.
 TEST(Kinematics, roboteam_twente_by_hand) {
   const Kinematics kinematics = make_kinematics(shipped_robot("roboteam_twente_v2024"));
   const PerWheel ahead = wheel_speeds_rad_per_s(kinematics, {1.0, 0.0, 0.0});
@@ -32,7 +32,7 @@ TEST(Kinematics, roboteam_twente_by_hand) {
   }
 }
 
-// The recordings command (−34.641, 0, 34.641) rad/s at the motors (gear 16) for 0.1 m/s ahead, (20, −40, 20) to the left.
+// The recorded commands are (−34.641, 0, 34.641) rad/s at the motors (gear 16) for 0.1 m/s ahead, and (20, −40, 20) to the left.
 TEST(Kinematics, robotino_as_its_own_commands) {
   const Kinematics kinematics = make_kinematics(read_robot(kSource / "tests/data/robots/festo_robotino.toml"));
   const PerWheel ahead = wheel_speeds_rad_per_s(kinematics, {0.1, 0.0, 0.0});
@@ -68,7 +68,7 @@ TEST(Kinematics, there_and_back_is_where_it_was) {
   }
 }
 
-/// Forces and speeds are dual: what the wheels put in is what the body gets.
+/// Forces and speeds are dual: the power at the wheels equals the power at the body.
 TEST(Kinematics, power_at_the_rims_is_power_at_the_body) {
   std::mt19937_64 engine(2);
   std::uniform_real_distribution<double> any(-3.0, 3.0);
@@ -92,10 +92,10 @@ TEST(Kinematics, power_at_the_rims_is_power_at_the_body) {
   }
 }
 
-/// The one pattern of forces that moves nothing has no part in the distribution: else Σf² could be less.
+/// The distribution must not contain the pattern of forces that moves nothing; otherwise Σf² could be smaller.
 TEST(Kinematics, four_wheels_do_not_work_against_each_other) {
   const Kinematics kinematics = make_kinematics(shipped_robot("tigers_v2020"));
-  // Of 31° and 45°: (1, 1, −1, −1) turns nothing; sideways sin·… leaves +cos31 for the front, −cos45·k for the rear.
+  // Axles at 31° and 45°: the pattern (1, 1, −1, −1) has no yaw moment; the sideways forces cos 31° and −k·cos 45° cancel.
   const PerWheel force_N = rolling_forces_N(kinematics, {3.0, -2.0, 0.1});
   std::mt19937_64 engine(3);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
@@ -104,7 +104,7 @@ TEST(Kinematics, four_wheels_do_not_work_against_each_other) {
     PerWheel other{any(engine), any(engine), any(engine), any(engine)};
     const PerWheel effective = rolling_forces_N(kinematics, wrench_of_rolling_forces(kinematics, other));
     for (int i = 0; i < 4; ++i) {
-      other[i] = force_N[i] + other[i] - effective[i];  // the same wrench
+      other[i] = force_N[i] + other[i] - effective[i];  // keeps the wrench
     }
     EXPECT_NEAR(magnitude(wrench_of_rolling_forces(kinematics, other)), magnitude({3.0, -2.0, 0.1}), 1e-12);
     EXPECT_GE(squares(other), squares(force_N) - 1e-12);
@@ -130,7 +130,7 @@ TEST(Kinematics, a_quarter_turn_of_a_square_robot_moves_the_wheels_on) {
   }
 }
 
-/// On a circle at constant speed the local components stand still, but the body is accelerated to its left.
+/// On a circle at constant speed the local velocity is constant, but the body accelerates to its left.
 TEST(Kinematics, local_rates_are_not_the_acceleration) {
   const BodyVelocity velocity{2.0, 0.0, 3.0};
   const BodyAcceleration acceleration = acceleration_from_rates(velocity, {});
@@ -161,7 +161,7 @@ TEST(Kinematics, robots_that_cannot_be_driven_are_refused) {
   EXPECT_THROW(make_kinematics(parallel), Failure);
 }
 
-// Two pairs of axles at an angle ε: ahead they roll with ε/2 per speed or so, and to the left with 1.
+// Two pairs of axles with an angle ε between them: ahead the wheels roll at about ε/2 per unit of speed, to the left at 1.
 TEST(Kinematics, axles_that_are_next_to_parallel_are_refused) {
   Robot robot = bare_robot();
   const auto with_angle = [&](double angle_rad) {

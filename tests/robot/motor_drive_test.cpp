@@ -12,7 +12,7 @@
 namespace heatsoak {
 namespace {
 
-/// K_t = 0.03 N m/A, R = 0.5 Ω, drag 0.006 N m.
+/// Motor with K_t = 0.03 N m/A, R = 0.5 Ω, drag 0.006 N m.
 MotorValues motor() {
   MotorValues values;
   values.terminal_resistance_ohm = 0.5;
@@ -28,7 +28,7 @@ Robot robot() {
   return made;
 }
 
-// Accelerating takes the drag on top, (0.09 + 0.006)/0.03 = 3.2 A; braking has its help, (0.09 − 0.006)/0.03 = 2.8 A.
+// Acceleration must overcome the drag, (0.09 + 0.006)/0.03 = 3.2 A. In braking the drag helps, (0.09 − 0.006)/0.03 = 2.8 A.
 TEST(DrivePoint, signs_in_all_four_quadrants) {
   EXPECT_NEAR(drive_point(motor(), robot(), {0.09, 100.0}).current_A, 3.2, 1e-13);
   EXPECT_NEAR(drive_point(motor(), robot(), {-0.09, 100.0}).current_A, -2.8, 1e-13);
@@ -87,7 +87,7 @@ TEST(DrivePoint, current_is_clamped_to_the_limit_of_the_driver) {
   EXPECT_EQ(drive_point(motor(), limited, {-0.3, 100.0}).current_A, -2.0);
 }
 
-// 24 V − 0.03 · 700 V = 3 V over 0.5 Ω: 6 A; braking −24 V − 21 V = −45 V: −90 A
+// 24 V − 0.03 · 700 V = 3 V across 0.5 Ω: 6 A; braking −24 V − 21 V = −45 V: −90 A
 TEST(DrivePoint, current_is_clamped_to_what_the_voltage_lets_through) {
   const DrivePoint fast = drive_point(motor(), robot(), {0.3, 700.0});
   EXPECT_NEAR(fast.current_A, 6.0, 1e-12);
@@ -129,7 +129,7 @@ TEST(DrivePoint, of_a_current_is_that_current_within_the_same_limits) {
   EXPECT_EQ(point.motor_speed_rad_per_s, 200.0);
   EXPECT_NEAR(point.motor_torque_Nm, 0.03 * 4.0 - 0.006, 1e-15);
   EXPECT_EQ(drive_point_of_current(motor(), limited, -7.0, 100.0).current_A, -5.0);
-  EXPECT_NEAR(drive_point_of_current(motor(), limited, 5.0, 375.0).current_A, 3.0, 1e-12);  // 24 − 22.5 V over 0.5 Ω
+  EXPECT_NEAR(drive_point_of_current(motor(), limited, 5.0, 375.0).current_A, 3.0, 1e-12);  // 24 − 22.5 V across 0.5 Ω
 }
 
 // 3.2 A · 0.5 Ω · (1 + 0.004 · 100) + 0.03 · 100 V = 2.24 V + 3 V
@@ -141,7 +141,7 @@ TEST(TerminalVoltage, rises_with_the_winding) {
 
 // --- gear -------------------------------------------------------------------------------------------------
 
-// Driving, 0.3 N m at 50 rad/s are 0.3/(3 · 0.8) = 0.125 N m at 150 rad/s; braking, 0.3/3 · 0.8 = 0.08 N m come back.
+// Driving, 0.3 N m at 50 rad/s are 0.3/(3 · 0.8) = 0.125 N m at 150 rad/s. Braking returns 0.3/3 · 0.8 = 0.08 N m.
 TEST(Gear, numbers_computed_by_hand) {
   Robot geared = robot();
   geared.gear_ratio = 3.0;
@@ -174,7 +174,7 @@ TEST(Gear, makes_no_power) {
   }
 }
 
-/// Electrical power in = copper loss + drag loss + power at the shaft.
+/// Energy balance: electrical input power = copper loss + drag loss + shaft power.
 TEST(Motor, power_at_the_terminals_is_loss_and_shaft) {
   std::mt19937_64 engine(1103);
   std::uniform_real_distribution<double> torque_Nm(-0.4, 0.4);
@@ -188,7 +188,7 @@ TEST(Motor, power_at_the_terminals_is_loss_and_shaft) {
   }
 }
 
-// --- what the network sees --------------------------------------------------------------------------------
+// --- operating point --------------------------------------------------------------------------------------
 
 TEST(OperatingPoint, has_no_signs) {
   const OperatingPoint<double> at = operating_point(drive_point(motor(), robot(), {-0.09, -100.0}), motor(), robot(), 31.0);
@@ -198,7 +198,7 @@ TEST(OperatingPoint, has_no_signs) {
   EXPECT_EQ(at.ambient_C, 31.0);
 }
 
-// Driving: I = (0.09 + 0.006)/0.03 = 3.2 A; shaft 0.09·100 = 9 W; terminals 3.2·0.5 + 0.03·100 = 4.6 V, so 4.6·3.2 = 14.72 W go in.
+// Driving: I = (0.09 + 0.006)/0.03 = 3.2 A; shaft 0.09·100 = 9 W; terminals 3.2·0.5 + 0.03·100 = 4.6 V, input 4.6·3.2 = 14.72 W.
 TEST(OperatingPoint, has_powers_voltage_and_the_vehicle_of_a_driving_wheel) {
   Robot wheeled = robot();
   wheeled.wheel_radius_m = 0.03;
@@ -212,7 +212,7 @@ TEST(OperatingPoint, has_powers_voltage_and_the_vehicle_of_a_driving_wheel) {
   EXPECT_EQ(at.neighbour_share, 0.0);
 }
 
-// Braking, turning backwards: I = (0.09 − 0.006)/0.03 = 2.8 A, −9 W at the shaft, 2.8·0.5 − 3 = −1.6 V, −4.48 W: it feeds back.
+// Braking, turning backwards: I = (0.09 − 0.006)/0.03 = 2.8 A, −9 W at the shaft, 2.8·0.5 − 3 = −1.6 V, −4.48 W, which is regenerated.
 TEST(OperatingPoint, has_negative_powers_where_the_motor_brakes) {
   const OperatingPoint<double> at = operating_point(drive_point(motor(), robot(), {0.09, -100.0}), motor(), robot(), 25.0);
   EXPECT_NEAR(at.shaft_power_W, -9.0, 1e-12);
@@ -221,7 +221,7 @@ TEST(OperatingPoint, has_negative_powers_where_the_motor_brakes) {
   EXPECT_EQ(at.velocity_rad_per_s, -100.0);
 }
 
-// A gear of 4 behind a wheel at 50 rad/s: the motor turns at 200, the robot rolls as the wheel does.
+// A gear of 4 and a wheel at 50 rad/s: the motor turns at 200 rad/s, and the robot rolls at the wheel's speed.
 TEST(OperatingPoint, has_the_wheels_speed_behind_a_gear_and_never_more_modulation_than_the_supply) {
   Robot geared = robot();
   geared.gear_ratio = 4.0;
@@ -232,8 +232,8 @@ TEST(OperatingPoint, has_the_wheels_speed_behind_a_gear_and_never_more_modulatio
   EXPECT_EQ(operating_point(drive_point(motor(), geared, {9.0, 100.0}), motor(), geared, 25.0).modulation_ratio, 1.0);
 }
 
-// Block: a current I against the back-EMF between two terminals of crest E, whose mean over the 60° around the crest is
-// (3/π)·E. Sinusoidal: an amplitude Î against phase amplitudes E/√3, 1.5·Î·E/√3. Heat: I²·R against 3·(Î²/2)·(R/2).
+// Block commutation: a current I and a back-EMF between two terminals with crest E, whose mean over the 60° around the crest is (3/π)·E.
+// Sinusoidal: an amplitude Î and phase amplitudes E/√3, 1.5·Î·E/√3. Ratio of heats: I²·R to 3·(Î²/2)·(R/2).
 TEST(OperatingPoint, sinusoidal_commutation_heats_0_912_of_block) {
   Robot sinusoidal = robot();
   sinusoidal.commutation = Commutation::sinusoidal;

@@ -26,7 +26,7 @@ PlantInput all(MotorCommand::Kind kind, double value = 0.0) {
   return input;
 }
 
-/// Voltages that drive ahead, on a circle, and push sideways, smooth in time.
+/// Smooth voltages that drive ahead, on a circle, and push sideways.
 PlantInput lively(double t_s) {
   PlantInput input;
   for (int i = 0; i < kMostWheels; ++i) {
@@ -48,7 +48,7 @@ struct Balance {
   [[nodiscard]] double residual_J() const { return battery_J + external_J - heat_J - kinetic_J; }
 };
 
-/// One second of lively(); the input is held over each of the coarse steps, so that a finer period sees the same.
+/// Simulates one second of lively(). The input is held over each coarse step, so that a finer period has the same input.
 Balance balance_of_a_second(const Robot& robot, const MotorValues& motor, int steps_per_hold) {
   constexpr double kHold_s = 0.002;
   PlantConfig plant = make_plant(robot, motor, kHold_s / steps_per_hold);
@@ -70,7 +70,7 @@ Balance balance_of_a_second(const Robot& robot, const MotorValues& motor, int st
   return balance;
 }
 
-/// What the battery gives is heat, motion, or done on the world, to the order of the method.
+/// The battery's energy becomes heat, motion or external work, with an error of the method's order.
 TEST(Plant, energy_is_conserved_to_second_order) {
   const Robot robot = lossy_robot();
   const Balance coarse = balance_of_a_second(robot, lossy_motor(), 4);
@@ -102,7 +102,7 @@ TEST(Plant, every_loss_is_a_loss) {
   }
 }
 
-/// ROS2 against itself: the error of the end state falls with the square of the period.
+/// Self-convergence of ROS2: the error of the final state is proportional to the square of the period.
 TEST(Plant, converges_with_second_order) {
   const auto end = [](int steps_per_hold) {
     constexpr double kHold_s = 0.002;
@@ -140,8 +140,8 @@ TEST(Plant, without_friction_it_coasts_for_ever) {
   EXPECT_NEAR(std::hypot(state.pose.x_m, state.pose.y_m), 60.0 * std::hypot(1.0, 0.5), 1e-8);
 }
 
-/// Coasting with a spin: the wheels' own momentum turns with the robot, m_w = Σ J·t·tᵀ/r² = 2·J/r², so the local velocity
-/// turns back by only m/(m + m_w) of the yaw and the path bends, by m_w/(m + m_w) of 4 rad.
+/// Coasting with a spin: the wheels' momentum turns with the robot, m_w = Σ J·t·tᵀ/r² = 2·J/r². The local velocity therefore turns back by
+/// only m/(m + m_w) of the yaw, and the path bends by m_w/(m + m_w) of 4 rad.
 TEST(Plant, a_spinning_robot_coasts_on_a_wide_curve) {
   const PlantConfig plant = bare_plant();
   PlantState state = moving(plant, {1.0, 0.0, 2.0});
@@ -155,7 +155,7 @@ TEST(Plant, a_spinning_robot_coasts_on_a_wide_curve) {
   EXPECT_NEAR(std::atan2(global.y_m_per_s, global.x_m_per_s), 4.0 * wheels_kg / (2.5 + wheels_kg), 1e-3);
 }
 
-/// With much grip and little slip the wheels and the body are one mass: m + Σ J·(t·x/r)².
+/// With much grip and little slip, wheels and body are one mass: m + Σ J·(t·x/r)².
 TEST(Plant, much_grip_is_a_rigid_coupling) {
   Robot robot = bare_robot();
   robot.traction_ratio = 50.0;
@@ -170,13 +170,13 @@ TEST(Plant, much_grip_is_a_rigid_coupling) {
   for (int i = 0; i < 500; ++i) {
     step(plant, state, input);
   }
-  // Four wheels of 0.07 N m at 45°: 4·0.07·0.7071/0.03 = 6.5997 N on 2.5 kg + 4·4e-5·0.5/9e-4 = 2.58889 kg.
+  // Four wheels with 0.07 N m at 45°: 4·0.07·0.7071/0.03 = 6.5997 N on 2.5 kg + 4·4e-5·0.5/9e-4 = 2.58889 kg.
   const double acceleration_m_per_s2 = 4.0 * 0.07 * std::sqrt(0.5) / 0.03 / (2.5 + 4.0 * 4e-5 * 0.5 / 9e-4);
   EXPECT_NEAR(state.velocity.x_m_per_s, 0.5 * acceleration_m_per_s2, 2e-4);
   EXPECT_NEAR(state.wheel_speed_rad_per_s[0] * 0.03, std::sqrt(0.5) * state.velocity.x_m_per_s, 1e-3);
 }
 
-/// 0 V at the terminals is a short circuit: K_t²/R brakes exponentially, τ = m_eff·(R + R_d)·r²/(ΣK_t²·½).
+/// 0 V at the terminals is a short circuit. K_t²/R brakes exponentially with τ = m_eff·(R + R_d)·r²/(ΣK_t²·½).
 TEST(Plant, zero_voltage_brakes_exponentially) {
   Robot robot = bare_robot();
   robot.traction_ratio = 50.0;
@@ -197,7 +197,7 @@ TEST(Plant, zero_voltage_brakes_exponentially) {
   EXPECT_NEAR(copper_J, before_J - kinetic_energy_J(plant.body, state.velocity, state.wheel_speed_rad_per_s), 1e-3 * before_J);
 }
 
-/// Pushing against a wall that gives way nowhere: no speed, currents U/R, all power is heat.
+/// Pushing against a rigid wall: no speed, currents U/R, and all power becomes heat.
 TEST(Plant, stall_push_turns_all_power_into_heat) {
   const PlantConfig plant = bare_plant();
   PlantState state = plant_at_rest(plant);
@@ -208,14 +208,14 @@ TEST(Plant, stall_push_turns_all_power_into_heat) {
   }
   PlantOutput out;
   for (int i = 0; i < 4000; ++i) {
-    // The wall: a stiff spring with a damper.
+    // A stiff spring with a damper represents the wall.
     input.external = {-20'000.0 * state.pose.x_m - 300.0 * state.velocity.x_m_per_s, 0.0, 0.0};
     input.external_height_m = 0.05;
     out = step(plant, state, input);
   }
   const double winding_ohm = 0.6 * 1.39;
   for (int i = 0; i < kMostWheels; ++i) {
-    // Creep turns the wheels a little: U = I·R + K_t·ω.
+    // Creep turns the wheels slowly: U = I·R + K_t·ω.
     EXPECT_NEAR(std::abs(out.current_A[i]), (1.0 - 0.035 * std::abs(out.motor_speed_rad_per_s[i])) / (winding_ohm + 0.01), 1e-9);
     EXPECT_NEAR(out.copper_W[i], winding_ohm * out.current_A[i] * out.current_A[i], 1e-9);
     EXPECT_LT(std::abs(out.motor_speed_rad_per_s[i]), 1.0);
@@ -225,7 +225,7 @@ TEST(Plant, stall_push_turns_all_power_into_heat) {
   EXPECT_NEAR(-input.external.x_N, wrench_of_rolling_forces(plant.body.kinematics, out.rolling_force_N).x_N, 1e-6);
 }
 
-/// Full voltage on a slippery floor: wheels spin, force stays at μ·N, the rest heats the contact.
+/// Full voltage on a slippery floor: the wheels spin, the force stays at μ·N, and the remaining power heats the contact.
 TEST(Plant, too_much_torque_slips) {
   Robot robot = bare_robot();
   robot.traction_ratio = 0.1;
@@ -239,13 +239,13 @@ TEST(Plant, too_much_torque_slips) {
   for (int i = 0; i < 300; ++i) {
     out = step(plant, state, input);
   }
-  // All contacts give μ·N along 45°; weight moves between them, their sum does not.
+  // All contacts transmit μ·N along 45°. Load moves between them, but its sum is constant.
   EXPECT_NEAR(state.velocity.x_m_per_s / 0.3, 0.1 * kGravity_m_per_s2 * std::sqrt(0.5), 0.01);
   EXPECT_GT(out.slip_m_per_s[0], 2.0);
   EXPECT_NEAR(out.slip_W[0], out.rolling_force_N[0] * out.slip_m_per_s[0], 1e-3);
 }
 
-/// What an empty battery cannot give goes nowhere: the robot rolls out, and the balance still closes.
+/// An empty battery gives no power: the robot rolls out, and the energy balance still closes.
 TEST(Plant, an_empty_battery_gives_nothing) {
   Robot robot = lossy_robot();
   robot.battery_capacity_A_s = 0.3;
@@ -279,7 +279,7 @@ TEST(Plant, a_robot_that_falls_over_is_refused) {
   robot.center_of_gravity_x_m = -0.05;
   EXPECT_THROW(make_plant(robot, bare_motor(), 0.001), Failure);
   robot = bare_robot();
-  robot.center_of_gravity_x_m = 0.03;  // one wheel of four may hang, three carry
+  robot.center_of_gravity_x_m = 0.03;  // one wheel of four may lift off, three carry the load
   EXPECT_NO_THROW(make_plant(robot, bare_motor(), 0.001));
 }
 
@@ -316,14 +316,14 @@ TEST(Plant, the_bus_clamps_where_the_battery_sags) {
   robot.battery_resistance_ohm = 0.1;
   const PlantConfig plant = make_plant(robot, bare_motor(), 0.001);
   PlantState state = plant_at_rest(plant);
-  // At rest four windings in parallel, 0.61/4 Ω, at the battery: (25 − 0.1·I)·… the drivers pass the whole bus on.
+  // At rest the battery sees four windings in parallel, 0.61/4 Ω, because the motor controllers apply the full bus voltage.
   const PlantOutput out = step(plant, state, all(MotorCommand::Kind::voltage, 100.0));
   EXPECT_LT(out.battery_V, 17.0);
   EXPECT_NEAR(out.battery_source_W, out.battery_loss_W + out.battery_V * out.battery_current_A, 1.0);
   EXPECT_TRUE(out.limited);
 }
 
-/// A symmetric robot, mirrored commands: the mirrored path.
+/// A symmetric robot with mirrored commands drives the mirrored path.
 TEST(Plant, mirrored_commands_have_the_mirrored_path) {
   Robot robot = lossy_robot();
   robot.center_of_gravity_y_m = 0.0;
@@ -347,7 +347,7 @@ TEST(Plant, mirrored_commands_have_the_mirrored_path) {
   EXPECT_NEAR(there.battery_charge_A_s, mirrored.battery_charge_A_s, 1e-9);
 }
 
-/// Driven with the torques of the inverse dynamics the plant moves as was asked, but for the slip.
+/// With the torques of the inverse dynamics the plant must follow the demanded motion except for slip.
 TEST(Plant, follows_the_inverse_dynamics) {
   Robot robot = lossy_robot();
   robot.slip_speed_m_per_s = 0.005;
@@ -384,7 +384,7 @@ TEST(Battery, gives_what_its_stored_energy_loses) {
   EXPECT_TRUE(battery_load(battery, 4680.0, 4000.0).collapsed);
 }
 
-TEST(Regressor, sinusoidal_current_heats_less_for_the_same_torque) {
+TEST(Driver, sinusoidal_current_heats_less_for_the_same_torque) {
   Robot robot = bare_robot();
   const MotorPoint block =
       motor_point(make_electrics(robot, bare_motor()), make_driver(robot), {MotorCommand::Kind::current, 4.0}, 0.0, 25.0, 25.0, 22.0);

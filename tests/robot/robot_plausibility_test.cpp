@@ -1,4 +1,4 @@
-// Slips that a robot file can hold and `lint` finds: lengths, batteries and inertias of another unit.
+// Mistakes in a robot file that `lint` finds: lengths, batteries and inertias in wrong units.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ std::string content_of_robot(const char* name) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Findings of a robot file in which `pattern` is replaced, as "check level".
+/// Returns the findings for a robot file with `pattern` replaced, as "check level".
 std::vector<std::string> findings_with(const std::string& pattern, const std::string& by) {
   const std::string text = content_of_robot("roboteam_twente_v2024.toml");
   const std::string changed = std::regex_replace(text, std::regex(pattern), by, std::regex_constants::format_first_only);
@@ -40,7 +40,7 @@ TEST(RobotPlausibility, diameter_in_place_of_the_radius_makes_wheels_overlap) {
   EXPECT_THAT(findings_with("\nradius = \"28 mm\"", "\nradius = \"62 mm\""), Contains("wheels error"));
 }
 
-// Two wheels at ±30° on a circle of 80.4 mm touch where their radius is 80.4 mm · tan 30° = 46.4 mm.
+// Two wheels at ±30° on a circle of 80.4 mm touch if their radius is 80.4 mm · tan 30° = 46.4 mm.
 TEST(RobotPlausibility, wheels_overlap_from_the_radius_of_geometry_on) {
   EXPECT_THAT(findings_with("\nradius = \"28 mm\"", "\nradius = \"46 mm\""), IsEmpty());
   EXPECT_THAT(findings_with("\nradius = \"28 mm\"", "\nradius = \"47 mm\""), Contains("wheels error"));

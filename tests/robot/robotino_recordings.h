@@ -1,4 +1,4 @@
-// Recordings of a Festo Robotino driving on 72 headings, where they are at hand; no part of the project.
+// Recordings of a Festo Robotino on 72 headings. They are not part of the project; tests are skipped without them.
 #pragma once
 
 #include <filesystem>
@@ -16,14 +16,15 @@ namespace heatsoak {
 struct SteadyRun {
   double heading_deg = 0.0;
   double commanded_m_per_s = 0.0;
-  PerWheel motor_speed_rad_per_s{};  ///< from the encoders' counts
-  PerWheel current_A{};              ///< magnitude, as recorded
-  BodyVelocity camera;               ///< local; its millimetres have a scale of their own
+  PerWheel motor_speed_rad_per_s{};  ///< calculated from encoder counts
+  PerWheel current_A{};              ///< absolute value, as recorded
+  BodyVelocity camera;               ///< local velocity; its millimetres have an unknown scale
 
   [[nodiscard]] bool is_even() const { return static_cast<int>(heading_deg) % 10 == 0; }
 };
 
-/// Three header rows, then `;` separated numbers: time in ms, set speeds, encoder counts, velocities, currents, camera.
+/// Reads a recording with three header rows, then numbers separated by `;`: time in ms, set speeds, encoder counts, velocities, currents,
+/// camera.
 inline std::vector<std::vector<double>> read_recording(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::string line;
@@ -41,7 +42,7 @@ inline std::vector<std::vector<double>> read_recording(const std::filesystem::pa
   return rows;
 }
 
-/// Leaves out 2.5 s of starting (or 40 % of a short run) and half a second at the end.
+/// Returns the part without the first 2.5 s (or 40 % of a short run) and the last half second.
 inline SteadyRun steady_part(const std::vector<std::vector<double>>& rows) {
   constexpr double kCounts_per_rad = 2000.0 / 6.283185307179586;
   const double end_ms = rows.back()[0];
@@ -75,7 +76,7 @@ inline SteadyRun steady_part(const std::vector<std::vector<double>>& rows) {
   return run;
 }
 
-/// The runs of a surface at a commanded speed; file n drives on heading 5°·n, 72 for each of 0.1, 0.2 and 0.3 m/s.
+/// Returns the runs on a surface at a commanded speed. File n drives on heading 5°·n; each of 0.1, 0.2 and 0.3 m/s has 72 files.
 inline std::vector<SteadyRun> steady_runs(const std::filesystem::path& surface, int speed_index) {
   std::vector<SteadyRun> runs;
   for (int n = 72 * speed_index; n < 72 * (speed_index + 1); ++n) {

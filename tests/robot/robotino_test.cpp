@@ -1,5 +1,5 @@
-// What a real omni robot shows: kinematics against its camera, and friction over the direction of travel. Every fit is
-// made on the headings 0°, 10°, 20°, … and judged on 5°, 15°, 25°, ….
+// Measurements of a real omni robot: kinematics compared with its camera, and friction over the direction of travel. Every fit uses the
+// headings 0°, 10°, 20°, … and is scored on 5°, 15°, 25°, ….
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -18,13 +18,13 @@ namespace {
 
 constexpr double kGear = 16.0;
 constexpr double kTorque_Nm_per_A = 0.0514 * kGear;  // at the wheel
-constexpr double kStanding_rad_per_s = 0.5;          // of a motor: its gear holds the wheel
+constexpr double kStanding_rad_per_s = 0.5;          // below this motor speed the gear holds the wheel
 
 MotorValues robotino_motor() {
   MotorValues motor;
   motor.terminal_resistance_ohm = 5.95;
   motor.torque_constant_Nm_per_A = 0.0514;
-  motor.no_load_current_A = 0.0;  // stands in the wheel's friction
+  motor.no_load_current_A = 0.0;  // included in the wheel's friction
   motor.temperature_coefficient_per_K = 0.0039;
   motor.rotor_inertia_kg_m2 = 7e-6;
   return motor;
@@ -53,10 +53,10 @@ PerWheel wheel_speeds(const SteadyRun& run) {
   return speed_rad_per_s;
 }
 
-/// How the camera's marker sits on the robot: a scale of its millimetres and a turn, v = scale·R(turn)·v_camera.
+/// Mounting of the camera's marker on the robot: a scale of its millimetres and an angle, v = scale·R(angle)·v_camera.
 struct Mounting {
-  double along = 1.0;   ///< scale·cos turn
-  double across = 0.0;  ///< scale·sin turn
+  double along = 1.0;   ///< scale·cos(angle)
+  double across = 0.0;  ///< scale·sin(angle)
 };
 
 BodyVelocity mounted(const Mounting& mounting, const SteadyRun& run) {
@@ -64,12 +64,12 @@ BodyVelocity mounted(const Mounting& mounting, const SteadyRun& run) {
           mounting.across * run.camera.x_m_per_s + mounting.along * run.camera.y_m_per_s, run.camera.yaw_rad_per_s};
 }
 
-/// Rim speed of a wheel by the camera, by the kinematics of the library.
+/// Rim speeds of the wheels from the camera, by the kinematics of the library.
 PerWheel rims_by_camera_m_per_s(const BodyConfig& body, const SteadyRun& run, const Mounting& mounting) {
   return rolling_speeds_m_per_s(body.kinematics, mounted(mounting, run));
 }
 
-/// Least squares of the wheels' speeds on the even headings.
+/// Least-squares fit of the wheel speeds on the even headings.
 Mounting fitted_mounting(const BodyConfig& body, const std::vector<SteadyRun>& runs) {
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
   Eigen::Vector2d right = Eigen::Vector2d::Zero();
@@ -87,7 +87,7 @@ Mounting fitted_mounting(const BodyConfig& body, const std::vector<SteadyRun>& r
   return {found(0), found(1)};
 }
 
-/// Root mean square error of the wheels' speeds over their root mean square, odd headings.
+/// RMS error of the wheel speeds on odd headings, divided by their RMS.
 double kinematics_error(const BodyConfig& body, const std::vector<SteadyRun>& runs, const Mounting& mounting) {
   double error = 0.0;
   double square = 0.0;
@@ -117,7 +117,7 @@ TEST_F(Robotino, motion_gives_the_wheel_speeds_within_3_percent) {
     print(surface, mounting, error);
     EXPECT_LE(error, 0.03) << surface;
   }
-  // On the soft carpet the wheels spin: no rigid rolling there.
+  // Not for the soft carpet, on which the wheels slip.
   for (const int speed : {0, 1, 2}) {
     const std::vector<SteadyRun> runs = steady_runs(folder_ / "green_surface", speed);
     const Mounting mounting = fitted_mounting(body_, runs);
@@ -127,7 +127,7 @@ TEST_F(Robotino, motion_gives_the_wheel_speeds_within_3_percent) {
 
 // ---- friction over the headings ---------------------------------------------------------------------------------
 
-/// Torques of the three wheels for each parameter at 1: models here are linear in theirs.
+/// Torques of the three wheels for each parameter set to 1. All models here are linear in their parameters.
 using Columns = std::vector<PerWheel>;
 using Model = std::function<Columns(const SteadyRun&)>;
 
@@ -141,7 +141,7 @@ BodyConfig frictionless(BodyConfig body) {
   return body;
 }
 
-/// Equation (3) of the paper, a and b of each wheel by itself: six parameters.
+/// Equation (3) of the paper with separate a and b for each wheel: six parameters.
 Model paper_model(const BodyConfig& body) {
   return [body](const SteadyRun& run) {
     Columns columns;
@@ -149,7 +149,7 @@ Model paper_model(const BodyConfig& body) {
       BodyConfig one = frictionless(body);
       one.friction.by_heading = true;
       (is_sine ? one.friction.heading.sine_Nm : one.friction.heading.constant_Nm).fill(1.0);
-      // The paper's θ is the commanded direction.
+      // In the paper θ is the commanded direction.
       const double heading_rad = run.heading_deg * std::numbers::pi / 180.0;
       const BodyVelocity commanded{0.1 * std::cos(heading_rad), 0.1 * std::sin(heading_rad), 0.0};
       const PerWheel torque_Nm = friction_torques_Nm(one.friction, body.kinematics, commanded, wheel_speeds(run));
@@ -162,8 +162,8 @@ Model paper_model(const BodyConfig& body) {
   };
 }
 
-/// The library's: torque and damping of all wheels alike, roller drag, and how much more the rear wheel carries: four
-/// parameters b, d, c, c·x_cg.
+/// The library's model: torque and damping that are equal for all wheels, roller drag, and the additional load of the rear wheel. Its four
+/// parameters are b, d, c, c·x_cg.
 Model physical_model(const BodyConfig& body) {
   return [body](const SteadyRun& run) {
     const BodyMotion motion{rolling_velocity(body, run), {}, {}, 0.0};
@@ -184,7 +184,7 @@ Model physical_model(const BodyConfig& body) {
   };
 }
 
-/// Where the contacts slide: drag as contact_ratios() has it, at the slip that camera and encoders show; κ = c/μ.
+/// Model for sliding contacts: drag by contact_ratios() at the slip that camera and encoders measure; κ = c/μ.
 Model sliding_model(const BodyConfig& body, const Mounting& mounting, double kappa) {
   return [=](const SteadyRun& run) {
     const BodyVelocity ground = mounted(mounting, run);
@@ -240,9 +240,9 @@ Eigen::VectorXd fitted(const std::vector<SteadyRun>& runs, const Model& model, c
 }
 
 struct Fit {
-  double error_of_mean = 0.0;   ///< rms error of Σi² over its mean
+  double error_of_mean = 0.0;   ///< RMS error of Σi² divided by its mean
   double explained = 0.0;       ///< share of the variance over the headings, 1 − error²/variance
-  double measured_range = 0.0;  ///< largest over smallest Σi²
+  double measured_range = 0.0;  ///< ratio of largest to smallest Σi²
   double range = 0.0;
 };
 
@@ -285,7 +285,7 @@ bool odd(const SteadyRun& run) { return !run.is_even(); }
 
 struct Outcome {
   Eigen::VectorXd parameters;
-  Fit other;  ///< on the headings that were not fitted
+  Fit other;  ///< score on the headings that were not fitted
 };
 
 Outcome fit(const std::vector<SteadyRun>& runs, const std::string& name, const Model& model) {
@@ -312,8 +312,8 @@ TEST_F(Robotino, friction_depends_on_the_heading_as_the_roller_drag_says) {
   }
 }
 
-/// On the soft carpet the wheels slip by half, and no form tried here comes near what repeats (below): neither the paper's
-/// nor the roller drag. That a sliding contact is not a rolling one helps the latter a little.
+/// On the soft carpet the wheels slip by half. Neither the paper's model nor roller drag comes close to the repeatability (below).
+/// Modelling the sliding contact improves roller drag slightly.
 TEST_F(Robotino, where_wheels_slide_the_drag_should_know) {
   const Mounting mounting = fitted_mounting(body_, steady_runs(folder_ / "table_surface", 0));
   std::vector<SteadyRun> runs;
@@ -341,7 +341,7 @@ TEST_F(Robotino, where_wheels_slide_the_drag_should_know) {
   EXPECT_GT(sliding.parameters(2), 0.0);
 }
 
-/// How well a run repeats: opposite headings have the same friction.
+/// Repeatability of a run: opposite headings have the same friction.
 TEST_F(Robotino, opposite_headings_tell_the_spread) {
   for (const char* surface : {"table_surface", "brown_surface", "green_surface"}) {
     const std::vector<SteadyRun> runs = steady_runs(folder_ / surface, 0);

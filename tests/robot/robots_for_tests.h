@@ -12,7 +12,7 @@
 
 namespace heatsoak {
 
-/// Four wheels at right angles to each other, no friction anywhere: every loss that a test is about is put in by it.
+/// Four wheels at right angles to each other without friction. Each test adds the losses that it needs.
 inline Robot bare_robot() {
   Robot robot;
   robot.mass_kg = 2.5;
@@ -39,7 +39,7 @@ inline Robot bare_robot() {
   return robot;
 }
 
-/// The same with everything that costs power.
+/// bare_robot() with all kinds of losses.
 inline Robot lossy_robot() {
   Robot robot = bare_robot();
   robot.center_of_gravity_x_m = 0.004;

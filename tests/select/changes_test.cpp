@@ -1,4 +1,4 @@
-// Changes of a robot against what physics says they do.
+// Changes of a robot, compared with the physically expected results.
 #include "select/changes.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ class Changes : public testing::Test {
   Motor motor_ = read_motor(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml");
 };
 
-// Steady copper heat goes with the square of the torque: a gear of 1.25 leaves 0.64 of it, and so of the rise that it makes.
+// Copper loss at steady state is proportional to the square of the torque. A gear of 1.25 reduces it, and its temperature rise, to 0.64.
 TEST_F(Changes, gear_alone_acts_on_a_fixed_load) {
   const Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
   const std::vector<ChangeEffect> all = effects_of_changes(robot_, duty, motor_, 1, 0);

@@ -8,7 +8,7 @@
 namespace heatsoak {
 namespace {
 
-/// K_t = 0.03 N m/A, R = 0.5 Ω, drag 0.006 N m.
+/// Motor with K_t = 0.03 N m/A, R = 0.5 Ω, drag 0.006 N m.
 MotorValues motor() {
   MotorValues values;
   values.terminal_resistance_ohm = 0.5;
@@ -34,7 +34,7 @@ struct Means {
   double vehicle_m_per_s = 0.0;
 };
 
-/// Time means over the moments, each as a point of its own.
+/// Time means over the moments, with each moment as a separate point.
 Means means_of_moments(const std::vector<WheelLoad>& loads) {
   Means means;
   for (const WheelLoad& load : loads) {
@@ -48,7 +48,8 @@ Means means_of_moments(const std::vector<WheelLoad>& loads) {
   return means;
 }
 
-/// Driving or braking throughout, so that the gear's efficiency is one number; with both in a bin it is that of the mean.
+/// The bin either drives or brakes throughout, so that the gear's efficiency is one number. A bin with both uses the efficiency of its
+/// mean.
 TEST(OperatingPointOfABin, has_the_means_of_its_moments) {
   std::mt19937_64 engine(1200);
   for (const double direction : {1.0, -1.0}) {
@@ -77,12 +78,12 @@ TEST(OperatingPointOfABin, has_the_means_of_its_moments) {
 }
 
 TEST(OperatingPointOfABin, asked_for_more_than_the_supply_gives_the_shaft_gets_less) {
-  const LoadBin bin = constant_bin(1.0, 0.8, 300.0, 0.0);  // 15 A would need 25.5 V with 18 V of back-EMF
+  const LoadBin bin = constant_bin(1.0, 0.8, 300.0, 0.0);  // 15 A would need 25.5 V, of which 18 V are back-EMF
   const OperatingPoint<double> at = operating_point(motor(), robot(), DutyKind::torque, bin, {25.0, 1.0});
   EXPECT_GT(at.shaft_power_W, 0.0);
   EXPECT_LT(at.shaft_power_W, 240.0);
   EXPECT_NEAR(at.modulation_ratio, 1.0, 1e-12);
-  // What goes in is what 24 V and the current allow, 12 A, and what is not lost: here the cut is of the whole current.
+  // 24 V limits the current to 12 A. The input power is the sum of losses and shaft power at that current.
   EXPECT_NEAR(at.current_rms_A, 12.0, 1e-9);
   EXPECT_NEAR(at.input_power_W, 0.5 * 144.0 + at.shaft_power_W + 0.006 * 600.0, 1e-9);
 }

@@ -1,4 +1,4 @@
-// Effects that a motor file adds, through everything that reads a motor.
+// Additional effects in a motor file, tested in all code that uses a motor.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -32,7 +32,7 @@ class MotorFile {
   [[nodiscard]] Motor read() const { return read_motor(path_); }
 
  private:
-  /// Tests run side by side, and one test reads several files.
+  /// Returns a unique name, because tests run in parallel and one test reads several files.
   static std::string unused_name() {
     static int count = 0;
     return "heatsoak_effects_of_file_" + std::to_string(getpid()) + "_" + std::to_string(++count) + ".toml";
@@ -49,7 +49,7 @@ const std::string kChassisAndSkin = "\n[effects.chassis]\ntype = \"third_node\"\
                                     estimated("leak_ratio", "0.5") + estimated("heat_capacity", "60 J/K") +
                                     "\n[effects.skin]\ntype = \"ac_copper_loss\"\n" + estimated("share", "0.3");
 
-/// Three bodies in a row that only conduct, the last one a probe that keeps nothing for itself: closed form by the eigenvalues.
+/// Three nodes in a row with conduction only; the last is a probe without capacity. Closed-form solution by eigenvalues.
 struct ClosedForm {
   Eigen::Matrix3d slope_per_s;
   Eigen::Vector3d drive_K_per_s;
@@ -98,13 +98,13 @@ TEST_F(EffectsOfAFile, balance_closes_with_a_node_of_an_effects_own) {
     all_W += std::abs(each.mean_W);
   }
   EXPECT_NEAR(into_motor_W, with.stored_W, 1e-9 * all_W);
-  // A body of 60 J/K that is warmer at the end than at the start has stored that much.
+  // A node of 60 J/K that is warmer at the end than at the start has stored this heat.
   const double chassis_rise_K = with.rows.back().own_C.at(0) - with.rows.front().own_C.at(0);
   EXPECT_GT(chassis_rise_K, 1.0);
   EXPECT_NEAR(booked_W(with, "chassis", "chassis"), 60.0 * chassis_rise_K / with.rows.back().time_s, 1e-6);
 }
 
-// 60 rad/s and 40 rad/s of a direct drive: k·(60/500)² and k·(40/500)² of the copper loss of their time.
+// At 60 rad/s and 40 rad/s of a direct drive: k·(60/500)² and k·(40/500)² of the copper loss in these periods.
 TEST_F(EffectsOfAFile, extra_copper_loss_is_its_share_of_the_copper_loss) {
   give(duty_, {{400.0, 0.08, 60.0, 0.0}});
   const Trace with = trace(MotorFile(kChassisAndSkin).read());
@@ -135,12 +135,12 @@ TEST_F(EffectsOfAFile, evaluate_shows_them_in_the_nominal_run_and_in_the_samples
   EXPECT_GT(heated.stator_peak_C.p50, plain.stator_peak_C.p50 + 1.0);
 }
 
-/// As good as exact. Without any spread a default one would take its place.
+/// Sets a nearly zero spread. Without any spread the default would apply.
 void make_certain(ParameterValue& figure) {
   figure.spread = Spread{Spread::Kind::range, figure.value - 1e-9 * std::abs(figure.value), figure.value, figure.value > 0.0};
 }
 
-/// Samples with hardly any spread are the nominal run: the ensemble knows own nodes and all quantities too.
+/// Samples with nearly zero spread must equal the nominal run. The ensemble supports additional nodes and all quantities.
 TEST_F(EffectsOfAFile, samples_agree_with_the_reference_where_nothing_is_uncertain) {
   std::string everything;
   for (const EffectType& type : all_effects()) {
@@ -205,7 +205,7 @@ TEST_F(EffectsOfAFile, a_condition_that_no_effect_has_is_an_error_that_says_what
   }
 }
 
-// A glued-on probe follows the stator with its time constant; the temperatures themselves, and the verdict, know nothing of it.
+// A glued-on probe follows the stator with its time constant. The temperatures and the verdict must not depend on it.
 TEST_F(EffectsOfAFile, a_late_sensor_shows_the_response_of_first_order) {
   Motor motor = MotorFile("\n[effects.sensor_lag_stator]\n" + estimated("time_constant", "20 s") +
                           "\n[effects.cold_probe]\ntype = \"sensor_offset_stator\"\n" + estimated("offset", "-2 K"))

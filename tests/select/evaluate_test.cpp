@@ -33,7 +33,7 @@ void give(Motor& motor, std::string_view key, double MotorValues::*value, const 
   motor.nominal.*value = figure.value;
 }
 
-/// Heats up in a minute or two; no drag.
+/// A motor that heats up within a minute or two, without drag.
 Motor simple_motor() {
   Motor motor;
   motor.id = "simple";
@@ -71,7 +71,7 @@ MotorEvaluation evaluate_one(const Motor& motor, const Robot& robot, const Duty&
   return evaluate(robot, duty, duty.demand(robot, options.seed), std::span(&motor, 1), options).front();
 }
 
-/// Winding of the closed form, (9) and (12), for a constant current.
+/// Winding temperature by the closed form, (9) and (12), for a constant current.
 double rest_C(double resistance_ohm, double current_A) {
   return on_off_steady_state({resistance_ohm, kAlpha_per_K, kInner_K_per_W, kOuter_K_per_W}, {current_A, 1.0, 0.0, 25.0}).winding_C;
 }
@@ -101,7 +101,8 @@ TEST(Evaluate, rms_current_is_that_of_the_whole_duty) {
   EXPECT_NEAR(evaluate_one(simple_motor(), simple_robot(), duty).current_rms_A, 2.5, 1e-14);
 }
 
-// 9/π² of the heat of block commutation is 3/π of its rms current; a limited current heats as much as flows.
+// Sinusoidal commutation makes 9/π² of the heat of block commutation, so its RMS current is 3/π. A limited current heats by its limited
+// value.
 TEST(Evaluate, rms_current_is_the_one_that_heats) {
   Robot robot = simple_robot();
   robot.commutation = Commutation::sinusoidal;
@@ -116,7 +117,7 @@ TEST(Evaluate, too_hot_fails_and_says_when) {
   EXPECT_EQ(result.verdict, Verdict::fail);
   EXPECT_EQ(result.limiting_factor, LimitingFactor::winding_temperature);
   ASSERT_TRUE(result.time_to_limit_s.has_value());
-  // Cut the duty there: it ends on the limit.
+  // A duty that ends at this time ends exactly at the limit.
   EXPECT_NEAR(evaluate_one(simple_motor(), simple_robot(), constant_current(8.0, *result.time_to_limit_s)).winding_peak_C.nominal, 155.0,
               1e-4);
 }
@@ -139,7 +140,7 @@ TEST(Evaluate, runaway_is_destroyed) {
 TEST(Evaluate, infeasible_by_voltage) {
   Duty duty = constant_current(5.0);
   duty.kind = DutyKind::torque;
-  give(duty, {{1.0, 0.06, 790.0, 0.0}});  // 23.7 V of back-EMF leave 0.3 V: 0.6 of 2 A
+  give(duty, {{1.0, 0.06, 790.0, 0.0}});  // 23.7 V of back-EMF leave 0.3 V, which drive 0.6 A of the demanded 2 A
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty);
   EXPECT_EQ(result.verdict, Verdict::infeasible);
   EXPECT_EQ(result.limiting_factor, LimitingFactor::voltage);
@@ -147,7 +148,7 @@ TEST(Evaluate, infeasible_by_voltage) {
   EXPECT_NEAR(result.least_torque_share, 0.3 / hot_ratio, 1e-9);
 }
 
-// At 780 rad/s the motor makes 23.4 V: 1.2 A is what the rest drives through 0.5 Ω, braking has 95 A.
+// At 780 rad/s the back-EMF is 23.4 V. The remaining voltage drives 1.2 A through 0.5 Ω; braking allows 95 A.
 TEST(Evaluate, a_current_that_brakes_is_helped_by_the_back_emf) {
   Duty duty = constant_current(0.0);
   give(duty, {{600.0, 0.0, 780.0, -3.0}});
@@ -159,7 +160,7 @@ TEST(Evaluate, a_current_that_brakes_is_helped_by_the_back_emf) {
   EXPECT_LT(drives.least_torque_share, 0.41);
 }
 
-// At 1000 rad/s the motor would make 30 V: nothing flows, neither way.
+// At 1000 rad/s the back-EMF would be 30 V, so no current flows in either direction.
 TEST(Evaluate, a_speed_out_of_reach_takes_no_current) {
   Duty duty = constant_current(0.0);
   give(duty, {{600.0, 0.0, 1000.0, 5.0}});
@@ -178,7 +179,8 @@ TEST(Evaluate, infeasible_by_current) {
   EXPECT_NEAR(result.least_torque_share, 0.8, 1e-12);
 }
 
-// The driver gives 5.1 A for a demand of 5 A in the file and ±10 % in the world: 40 % of a cut-off normal lie above 2 %.
+// The motor controller gives 5.1 A for a nominal demand of 5 A with a tolerance of ±10 %. In 40 % of the truncated normal distribution the
+// demand is more than 2 % higher.
 TEST(Evaluate, samples_that_cannot_deliver_make_a_motor_marginal) {
   Duty duty = constant_current(5.0);
   duty.load.spread = Spread{Spread::Kind::tolerance, 0.9, 1.1, true};
@@ -190,18 +192,18 @@ TEST(Evaluate, samples_that_cannot_deliver_make_a_motor_marginal) {
   EXPECT_EQ(result.verdict, Verdict::marginal);
   EXPECT_EQ(result.limiting_factor, LimitingFactor::current);
   EXPECT_EQ(result.probability_over_limit, 0.0);
-  // More than 0.5 % short means a load above 5.1/0.995/5 = 1.0251: above 0.502 of two standard deviations of ±0.05.
+  // A shortfall of more than 0.5 % needs a load factor above 5.1/0.995/5 = 1.0251, which is 0.502 of two standard deviations of ±0.05.
   const double above = 0.5 * std::erfc(0.5025 / std::sqrt(2.0));
   const double cut_off = 0.5 * std::erfc(2.0 / std::sqrt(2.0));
   EXPECT_NEAR(result.short_probability, (above - cut_off) / (1.0 - 2.0 * cut_off), 0.03);
 }
 
-// Cold it is just enough, hot the resistance takes more: 5 A · 0.5 Ω · 1.35… instead of 2.5 V.
+// The voltage suffices for the cold winding. The hot winding needs 5 A · 0.5 Ω · 1.35… instead of 2.5 V.
 TEST(Evaluate, infeasible_where_the_voltage_suffices_only_cold) {
   Duty duty = constant_current(5.0);
   give(duty, {{600.0, 0.0, 21.4 / 0.03, 5.0}});  // 21.4 V + 2.5 V = 23.9 V
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty);
-  // The hot winding gets 2.6 V only: it rests where 6 K/W · (2.6 V)²/R(T) is what leaves.
+  // Only 2.6 V remain for the hot winding. Its steady state satisfies ΔT = 6 K/W · (2.6 V)²/R(T).
   double rest_at_voltage_C = 25.0;
   for (int i = 0; i < 100; ++i) {
     rest_at_voltage_C = 25.0 + 6.0 * 2.6 * 2.6 / (kResistance_ohm * (1.0 + kAlpha_per_K * (rest_at_voltage_C - 25.0)));
@@ -211,7 +213,7 @@ TEST(Evaluate, infeasible_where_the_voltage_suffices_only_cold) {
   const double hot_ohm = kResistance_ohm * (1.0 + kAlpha_per_K * (result.winding_peak_C.nominal - 25.0));
   EXPECT_NEAR(result.highest_voltage_V, 21.4 + 5.0 * hot_ohm, 1e-6);
   EXPECT_NEAR(result.least_torque_share, 2.6 / hot_ohm / 5.0, 1e-6);
-  // The current falls from what 2.6 V drive through 25 °C to what they drive through the hot winding.
+  // The current at 2.6 V falls from its value at 25 °C to its value in the hot winding.
   EXPECT_GT(result.current_rms_A, 2.6 / hot_ohm);
   EXPECT_LT(result.current_rms_A, std::min(5.0, 2.6 / kResistance_ohm));
   EXPECT_EQ(result.verdict, Verdict::infeasible);
@@ -220,7 +222,7 @@ TEST(Evaluate, infeasible_where_the_voltage_suffices_only_cold) {
 
 // --- margin -----------------------------------------------------------------------------------------------
 
-/// Peak with all currents of the duty scaled.
+/// Peak with all currents of the duty scaled by the factor.
 double peak_of_scaled_C(const Motor& motor, const Robot& robot, const Duty& duty, double factor) {
   const MotorSample sample = nominal_sample(motor);
   const Network network = datasheet_network(motor, sample);
@@ -265,7 +267,7 @@ TEST(Margin, ends_where_the_driver_does) {
   robot.current_limit_A = 4.0;
   EXPECT_NEAR(*evaluate_one(simple_motor(), robot, constant_current(3.0)).margin_A, 1.0, 0.03);
   robot.current_limit_A = 400.0;
-  // What 4 A take at 0.5 Ω, as hot as the winding may be.
+  // The voltage for 4 A through 0.5 Ω with the winding at its limit.
   robot.voltage_limit_V = 0.5 * 4.0 * (1.0 + 0.0039 * 130.0);
   EXPECT_NEAR(*evaluate_one(simple_motor(), robot, constant_current(3.0)).margin_A, 1.0, 0.03);
 }
@@ -274,11 +276,11 @@ TEST(Margin, there_is_none_where_drag_alone_is_too_much) {
   Motor motor = simple_motor();
   motor.nominal.no_load_current_A = 10.0;
   Duty duty = constant_current(5.0);
-  give(duty, {{600.0, 0.0, 300.0, 5.0}});  // 0.3 N m · 300 rad/s = 90 W behind 2 K/W
+  give(duty, {{600.0, 0.0, 300.0, 5.0}});  // 0.3 N m · 300 rad/s = 90 W across 2 K/W
   EXPECT_FALSE(evaluate_one(motor, simple_robot(), duty).margin_A.has_value());
 }
 
-// --- the uncertain ----------------------------------------------------------------------------------------
+// --- uncertainty ------------------------------------------------------------------------------------------
 
 TEST(Samples, same_seed_same_bits_for_any_number_of_threads) {
   const Robot robot = robot_of_file("roboteam_twente_v2024");
@@ -335,7 +337,7 @@ ParameterValue resistance_within_10_percent() {
   return figure;
 }
 
-// Independent: the standard library's normal distribution, cut off by rejection at the tolerance, through the closed form.
+// Independent reference: the standard library's normal distribution, truncated at the tolerance by rejection, with the closed form.
 TEST(Samples, spread_of_the_resistance_alone_is_that_of_an_independent_monte_carlo) {
   Motor motor = simple_motor();
   give(motor, "terminal_resistance", &MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
@@ -353,7 +355,7 @@ TEST(Samples, spread_of_the_resistance_alone_is_that_of_an_independent_monte_car
   }
   const double width_K = quantile_of(peaks_C, 0.95) - quantile_of(peaks_C, 0.05);
   ASSERT_GT(width_K, 20.0);
-  // Standard error of a 5 % quantile of 4000 draws: √(0.05·0.95/4000)/density ≈ 0.011 of the width; four of them.
+  // The standard error of a 5 % quantile of 4000 draws is √(0.05·0.95/4000)/density ≈ 0.011 of the width; the tolerance is four of them.
   EXPECT_NEAR(result.winding_peak_C.p05, quantile_of(peaks_C, 0.05), 0.05 * width_K);
   EXPECT_NEAR(result.winding_peak_C.p50, quantile_of(peaks_C, 0.50), 0.03 * width_K);
   EXPECT_NEAR(result.winding_peak_C.p95, quantile_of(peaks_C, 0.95), 0.05 * width_K);
@@ -376,14 +378,14 @@ TEST(Samples, median_of_symmetric_spreads_is_near_the_nominal_peak) {
   EXPECT_GT(result.winding_peak_C.p95, result.winding_peak_C.nominal + 3.0);
 }
 
-// The limit lies between 105 and 155 °C in half of the draws, evenly: below 130 °C in a quarter of them.
+// In half of the draws the limit is uniform between 105 and 155 °C, so it is below 130 °C in a quarter of all draws.
 TEST(Samples, a_limit_that_may_be_lower_makes_a_pass_marginal) {
   Motor motor = simple_motor();
   ParameterValue limit;
   limit.value = 155.0;
   limit.spread = Spread{Spread::Kind::range, 105.0, 165.0, false};
   give(motor, "winding_limit", &MotorValues::winding_limit_C, limit);
-  const double current_A = std::sqrt(105.0 / (1.0 + 0.0039 * 105.0) / 3.0);  // rests at 130 °C
+  const double current_A = std::sqrt(105.0 / (1.0 + 0.0039 * 105.0) / 3.0);  // has its steady state at 130 °C
   const MotorEvaluation result = evaluate_one(motor, simple_robot(), constant_current(current_A), {.samples = 2000, .seed = 3});
   EXPECT_EQ(result.verdict, Verdict::marginal);
   EXPECT_EQ(result.limiting_factor, LimitingFactor::winding_temperature);
@@ -394,12 +396,12 @@ TEST(Samples, ambient_of_the_duty_moves_the_peak_with_it) {
   Duty duty = constant_current(5.0);
   duty.ambient_C.spread = Spread{Spread::Kind::range, 15.0, 35.0, false};
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty, {.samples = 2000, .seed = 3});
-  // T_W = T_A + c·(1+α(T_A−25))/(1−α·c) with c = 75 K: 1 + α·75/(1−α·75) = 1.4134 K per K; 5 % of 15 … 35 °C is 16 °C.
+  // T_W = T_A + c·(1+α(T_A−25))/(1−α·c) with c = 75 K: 1 + α·75/(1−α·75) = 1.4134 K per K. The 5th percentile of 15 … 35 °C is 16 °C.
   EXPECT_NEAR(result.winding_peak_C.p05, result.winding_peak_C.nominal - 9.0 * 1.4134, 1.0);
   EXPECT_NEAR(result.winding_peak_C.p95, result.winding_peak_C.nominal + 9.0 * 1.4134, 1.0);
 }
 
-// --- the case it was born from ----------------------------------------------------------------------------
+// --- the paper's case -------------------------------------------------------------------------------------
 
 TEST(PaperCase, ecx_flat_32l_peaks_at_162_C_and_fails_by_its_winding) {
   const MotorEvaluation result =
@@ -478,7 +480,7 @@ std::vector<WheelDemand> steady_wheels(double torque_Nm, double duration_s) {
   return {idle, busy};
 }
 
-// With I = U/(R·(1 + α·ΔT) + R_driver) the winding comes to rest where its heat leaves; bisected, independent of the program's way.
+// The steady state with I = U/(R·(1 + α·ΔT) + R_driver) is found by bisection, independent of the program's method.
 TEST(Evaluate, resistance_of_the_driver_takes_its_share_of_the_voltage) {
   const Motor motor = simple_motor();
   Robot robot = simple_robot();
@@ -526,13 +528,13 @@ TEST(Evaluate, nearer_limit_decides_margins) {
   const MotorEvaluation with = evaluate(robot, duty, duty.demand(robot, 1), std::span(&motor, 1), {.samples = 0}).front();
   EXPECT_NEAR(nearest_margin_K(with), 5.0, 1e-6);
   EXPECT_LT(*with.margin_A, *without.margin_A);
-  // That much more current brings the stator to its limit.
+  // This additional current brings the stator to its limit.
   const Duty more = constant_current(3.0 + *with.margin_A, 2000.0);
   const MotorEvaluation at_limit = evaluate(robot, more, more.demand(robot, 1), std::span(&motor, 1), {.samples = 0}).front();
   EXPECT_NEAR(at_limit.stator_peak_C.nominal, motor.nominal.stator_limit_C, 0.05);
 }
 
-// Clopper and Pearson's interval of 10 of 100: 0.0490 to 0.1762; the percentile's places of 100 are those of the binomial.
+// Clopper and Pearson's interval for 10 of 100 is 0.0490 to 0.1762. The binomial distribution gives the percentile's ranks among 100.
 TEST(Spread, sampling_error_is_that_of_the_textbook) {
   std::vector<double> samples_C(100);
   std::vector<char> over(100, 0);
@@ -556,7 +558,7 @@ TEST(Spread, few_samples_tell_no_upper_end) {
   EXPECT_EQ(sample_intervals(more_C, std::vector<char>(72, 0)).p95.high, 80.0);
 }
 
-// Without a hit in n draws up to 3/n of them may be hits: the rule of three.
+// If none of n draws exceeds the limit, up to 3/n of all draws may do so (rule of three).
 TEST(Spread, draws_that_are_all_alike_do_not_rule_the_others_out) {
   for (const std::size_t draws : {1U, 6U, 62U}) {
     const std::vector<double> samples_C(8 * draws, 80.0);
@@ -569,13 +571,13 @@ TEST(Spread, draws_that_are_all_alike_do_not_rule_the_others_out) {
   }
 }
 
-// Blocks of samples take the draws in turn: without other spread every peak is a closed form.
+// Blocks of samples use the draws in turn. Without other spread every peak has a closed form.
 TEST(Evaluate, draws_of_a_duty_are_shared_by_the_samples) {
   const Motor motor = simple_motor();
   const Robot robot = simple_robot();
   Duty duty = constant_current(1.0);
   duty.kind = DutyKind::torque;
-  const std::vector<double> torques_Nm{0.03, 0.06, 0.09, 0.12};  // 1 A to 4 A
+  const std::vector<double> torques_Nm{0.03, 0.06, 0.09, 0.12};  // currents of 1 A to 4 A
   std::vector<WheelDemand> draws;
   for (const double torque_Nm : torques_Nm) {
     draws.push_back(steady_wheels(torque_Nm, 400.0).back());
@@ -588,11 +590,11 @@ TEST(Evaluate, draws_of_a_duty_are_shared_by_the_samples) {
   EXPECT_NEAR(result.winding_peak_C.p05, rest_C(kResistance_ohm, 1.0), 0.01);
   EXPECT_NEAR(result.winding_peak_C.p95, rest_C(kResistance_ohm, 4.0), 0.01);
   EXPECT_NEAR(result.winding_peak_C.p50, 0.5 * (rest_C(kResistance_ohm, 2.0) + rest_C(kResistance_ohm, 3.0)), 0.01);
-  // All four draws can be the same one: (1/4)^4 is less than one in 40, so the interval spans nearly all of them. What is hotter than all
-  // of them is not known.
+  // All four draws may be the same one: (1/4)^4 is less than 1/40. The interval therefore spans nearly all of them, and its upper end is
+  // unknown.
   EXPECT_TRUE(std::isinf(result.winding_p95_interval_C->high));
   EXPECT_LE(result.winding_p95_interval_C->low, rest_C(kResistance_ohm, 3.0) + 0.01);
-  // All draws end before the nominal duty: the band of the picture ends there too.
+  // All draws end before the nominal duty, so the band in the chart also ends there.
   ASSERT_FALSE(result.curves.band_time_s.empty());
   EXPECT_LT(result.curves.band_time_s.back(), 410.0);
   EXPECT_EQ(result.curves.band_time_s.size(), result.curves.winding_p95_C.size());
@@ -602,7 +604,8 @@ TEST(Evaluate, draws_of_a_duty_are_shared_by_the_samples) {
   EXPECT_EQ(again.curves.winding_p95_C, result.curves.winding_p95_C);
 }
 
-/// Motors whose limit is below the given peak in a share of the samples that lies near the 5 % of a verdict, or far from it.
+/// Returns motors whose limit is below the given peak in a share of the samples. The share is either near the 5 % of a verdict or far from
+/// it.
 Motor limited_between(double low_C, double high_C) {
   Motor motor = simple_motor();
   ParameterValue limit;
@@ -617,7 +620,7 @@ TEST(UntilDecided, takes_more_samples_only_near_a_threshold) {
   Motor near = limited_between(105.0, 165.0);
   near.id = "near";
   const double peak_C = evaluate_one(near, simple_robot(), duty).winding_peak_C.nominal;
-  // Half of the draws lie between the lower end and the nominal limit, evenly: 6.5 % of all below the peak.
+  // Half of the draws are uniform between the lower end and the nominal limit, so 6.5 % of all draws are below the peak.
   near = limited_between(peak_C - 0.13 / 0.87 * (155.0 - peak_C), 165.0);
   near.id = "near";
   Motor far = simple_motor();
@@ -632,7 +635,7 @@ TEST(UntilDecided, takes_more_samples_only_near_a_threshold) {
   EXPECT_GT(of("near").samples, 500);
   EXPECT_FALSE(of("near").samples_needed);
   EXPECT_EQ(of("near").verdict, Verdict::marginal);
-  // The same number asked for at once gives the same answer.
+  // A single request with the final number of samples must give the same answer.
   const MotorEvaluation at_once = evaluate_one(near, simple_robot(), duty, {.samples = of("near").samples});
   EXPECT_EQ(at_once.verdict, of("near").verdict);
   EXPECT_EQ(at_once.probability_over_limit, of("near").probability_over_limit);

@@ -1,4 +1,4 @@
-// A duty whose demand a test writes down.
+// A duty whose demand is given explicitly by a test.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace heatsoak {
 
-/// {duration_s, torque_Nm, speed_rad_per_s, current_A} of one wheel.
+/// One piece of one wheel: {duration_s, torque_Nm, speed_rad_per_s, current_A}.
 struct GivenPiece {
   double duration_s = 0.0;
   double torque_Nm = 0.0;
@@ -35,7 +35,7 @@ inline void give(Duty& duty, const std::vector<GivenPiece>& pieces) {
   duty.shape_data = std::make_shared<GivenDemand>(std::vector<WheelDemand>{wheel});
 }
 
-/// The demand of the duty, cut after so many bins.
+/// Shortens the demand of the duty to this number of bins.
 inline void shorten(Duty& duty, std::size_t bins) {
   std::vector<WheelDemand> wheels = duty.demand({}, 1);
   for (WheelDemand& wheel : wheels) {

@@ -43,8 +43,7 @@ TEST_F(PaperTrace, what_is_booked_is_what_is_stored) {
   EXPECT_NEAR(into_motor_W, trace().stored_W, 1e-9 * all_W);
 }
 
-// Electrical energy in = copper and drag heat + work at the shaft; the drive holds rows of 0.1 s, so the resistance's
-// drift within a row is all that is missing.
+// Electrical energy = copper and drag heat + shaft work. Rows have 0.1 s, so only the change of the resistance within a row is neglected.
 TEST_F(PaperTrace, power_into_the_terminals_is_heat_and_work) {
   double in_J = 0.0;
   double work_J = 0.0;
@@ -63,7 +62,7 @@ TEST_F(PaperTrace, power_into_the_terminals_is_heat_and_work) {
   EXPECT_NEAR(in_J / duration_s, lost_W + work_J / duration_s, 0.01 * lost_W);
 }
 
-// Where the hot winding lets less through than the cold one, the columns are those of the current that flows.
+// If the hot winding limits the current, the columns must contain the actual current.
 TEST(TraceInVoltageLimit, columns_agree_with_the_account_and_with_the_driver) {
   const Motor motor = read_motor(kSource / "motor_db/maxon_ec45_flat_30w_12v_200142.toml");
   Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");

@@ -1,4 +1,4 @@
-// The closed loop against conservation, the inverse dynamics (which knows nothing of it), and its own limits.
+// The closed loop, compared with conservation laws, with the independent inverse dynamics, and with its own limits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace heatsoak {
 namespace {
 
-/// Twente's with three wheels at equal angles and the rollers' drag in place of the measured curve of four.
+/// Twente's robot with three wheels at equal angles, and with roller drag instead of the measured curve of four wheels.
 Robot three_wheels() {
   Robot robot = twente();
   robot.wheel_axis_rad = {-std::numbers::pi / 3.0, std::numbers::pi / 3.0, std::numbers::pi};
@@ -38,7 +38,7 @@ ScheduledCommand push(double time_s, double direction_rad, double share) {
   return {time_s, Phase::running, command};
 }
 
-/// There, back before it has arrived, a turn, and a duel from 5 s on.
+/// Commands: drive away, return before arrival, turn, and a duel from 5 s on.
 std::vector<ScheduledCommand> lively() {
   return {go(0.0, 1.5, 0.5, 0.5), go(1.1, -0.5, 0.2, 2.0), go(3.0, 0.3, 0.3, 2.5), push(5.0, 2.6, 0.6)};
 }
@@ -47,8 +47,8 @@ constexpr double kLively_s = 7.0;
 struct Driven {
   DriveScore score;
   std::string csv;
-  double heat_to_air_J = 0.0;  ///< of all stators
-  double stored_J = 0.0;       ///< in all windings and stators
+  double heat_to_air_J = 0.0;  ///< sum over all stators
+  double stored_J = 0.0;       ///< sum over all windings and stators
   double peak_of_rows_C = 0.0;
 };
 
@@ -105,7 +105,7 @@ TEST(ClosedLoop, what_the_battery_gives_is_heat_and_motion) {
   }
 }
 
-/// The cell of the last row of a table.
+/// Returns the cell of a column in the last row of a table.
 double last_cell(const std::string& header, const std::string& rows, const std::string& column) {
   std::istringstream names(header), cells(rows.substr(rows.rfind('\n', rows.size() - 2) + 1));
   for (std::string name, cell; std::getline(names, name, ',') && std::getline(cells, cell, ',');) {
@@ -117,7 +117,7 @@ double last_cell(const std::string& header, const std::string& rows, const std::
   return 0.0;
 }
 
-// Each period by itself and not row by row: a row of a tenth of a second is long for a quick winding.
+// The lag must act in each period. A row of a tenth of a second would be too coarse for a fast winding.
 TEST(ClosedLoop, a_late_sensor_shows_in_columns_of_its_own) {
   Motor motor = ecx_32();
   const std::string bare = csv_header(4, additions_of(motor));
@@ -125,7 +125,7 @@ TEST(ClosedLoop, a_late_sensor_shows_in_columns_of_its_own) {
   ParameterValue lag;
   lag.value = 1.5;
   motor.sensors.push_back({"late", find_sensor_effect("sensor_lag_winding"), lag});
-  std::vector<double> sensor_C{25.0};  // after each period
+  std::vector<double> sensor_C{25.0};  // value after each period
   std::vector<double> true_C{25.0};
   const Driven driven = drive(twente(), motor, lively(), kLively_s, Planner::jerk_limited, [&](const LoopMoment& moment) {
     true_C.push_back(moment.robot->winding_C(2));
@@ -140,7 +140,7 @@ TEST(ClosedLoop, a_late_sensor_shows_in_columns_of_its_own) {
   EXPECT_GT(std::abs(true_C.at(period) - sensor_C.at(period)), 0.05);
 }
 
-// A mount of 4 J/K at 0.8 W/K from the stator and 0.4 W/K from the air, driven by the stator's temperature alone.
+// Reference: a mount of 4 J/K with 0.8 W/K to the stator and 0.4 W/K to the air, driven by the stator's temperature alone.
 TEST(ClosedLoop, a_body_of_the_motors_file_has_its_temperature_in_the_trace) {
   Motor motor = ecx_32();
   EXPECT_EQ(csv_header(4, additions_of(motor)).find("mount"), std::string::npos);
@@ -149,7 +149,7 @@ TEST(ClosedLoop, a_body_of_the_motors_file_has_its_temperature_in_the_trace) {
   figures[1].value = 0.5;
   figures[2].value = 4.0;
   motor.effects.push_back({"mount", find_effect("third_node"), {"stator", "mount", "ambient"}, figures});
-  std::vector<double> mount_C{25.0};  // after each period
+  std::vector<double> mount_C{25.0};  // value after each period
   double stator_C = 25.0;
   const Driven driven = drive(twente(), motor, lively(), kLively_s, Planner::jerk_limited, [&](const LoopMoment& moment) {
     const double mean_C = 0.5 * (stator_C + moment.robot->stator_C(2));
@@ -164,7 +164,7 @@ TEST(ClosedLoop, a_body_of_the_motors_file_has_its_temperature_in_the_trace) {
   EXPECT_LT(mount_C.at(period), last_cell(header, driven.csv, "stator_3_C"));
 }
 
-// The losses of the plant arrive in the thermal network: stored there or gone into the air.
+// The plant's losses must arrive in the thermal network, either stored or given off to the air.
 TEST(ClosedLoop, the_motors_losses_warm_windings_and_stators) {
   const Driven driven = drive(twente(), ecx_32(), lively(), kLively_s);
   const double lost_J = driven.score.energy.copper_J + driven.score.energy.motor_drag_J;
@@ -173,8 +173,8 @@ TEST(ClosedLoop, the_motors_losses_warm_windings_and_stators) {
   EXPECT_NEAR(driven.peak_of_rows_C, driven.score.winding_peak_C, 1e-2);
 }
 
-// Without rise of resistance, drag and rotor, the robot needs the currents of the inverse dynamics for the motion that it makes: the plan's
-// but for the corrections.
+// Without temperature coefficient, drag and rotor inertia, the currents must match the inverse dynamics of the executed motion. That motion
+// is the plan plus corrections.
 TEST(ClosedLoop, heats_as_the_inverse_dynamics_says) {
   Robot robot = twente();
   Motor motor = ecx_32();
@@ -207,7 +207,7 @@ TEST(ClosedLoop, a_duel_pushes_at_stall) {
   const Robot robot = twente();
   const Motor motor = ecx_32();
   const BodyConfig body = make_body(robot, motor.nominal);
-  constexpr double kShare = 0.5;  // nearer to the limit it is creep that shares the forces among the wheels, not the least Σf²
+  constexpr double kShare = 0.5;  // closer to the limit, creep distributes the forces among the wheels instead of the least Σf²
   BodyMotion stall;
   stall.external_height_m = body.weight.center_of_gravity_height_m;
   const double asked_N = kShare * largest_push_N(body, 0.0, stall.external_height_m);
@@ -230,7 +230,7 @@ TEST(ClosedLoop, a_duel_pushes_at_stall) {
       }
     }
   });
-  // Friction takes its part of the torque that the core spends on the push; the core does not know that the wheels creep.
+  // Friction uses a part of the torque for the push, and the core does not know the creep of the wheels. The bounds allow for both.
   EXPECT_GT(force_N, 0.7 * asked_N);
   EXPECT_LT(force_N, 1.05 * asked_N);
   stall.external = {-force_N, 0.0, 0.0};
@@ -239,12 +239,11 @@ TEST(ClosedLoop, a_duel_pushes_at_stall) {
     const double expected_A = (expected.torque_Nm[i] + drag_Nm[i]) / motor.nominal.torque_constant_Nm_per_A;
     EXPECT_NEAR(current_A[i], expected_A, 0.1 * std::abs(expected_A)) << i;
   }
-  // Wheels creep, as contacts under load do: s = s_0·x/√(1 − x²), x the share of the grip in use.
+  // Loaded contacts creep: s = s_0·x/√(1 − x²), where x is the used share of the grip.
   EXPECT_LT(fastest_rad_per_s * robot.wheel_radius_m, 2.0 * robot.slip_speed_m_per_s);
 }
 
-// At 1.2 m/s2, because two of three wheels bear all of an acceleration: at Twente's own 2 m/s2 the core's limit of traction holds them
-// back.
+// At 1.2 m/s², because two of three wheels carry the whole acceleration. At Twente's own 2 m/s² the core's traction limit would act.
 TEST(ClosedLoop, three_wheels_follow_as_well) {
   Robot robot = three_wheels();
   robot.acceleration_limit_m_per_s2 = robot.braking_limit_m_per_s2 = 1.2;
@@ -253,14 +252,14 @@ TEST(ClosedLoop, three_wheels_follow_as_well) {
   EXPECT_EQ(score.arrivals_count, 1.0);
 }
 
-// A fresh start is the same to the last bit; hotter air is not.
+// A new start must be identical to the last bit. Hotter air must change the result.
 TEST(ClosedLoop, is_repeatable) {
   const Driven once = drive(twente(), ecx_32(), lively(), kLively_s);
   EXPECT_EQ(once.csv, drive(twente(), ecx_32(), lively(), kLively_s).csv);
   EXPECT_NE(once.csv, drive(twente(), ecx_32(), lively(), kLively_s, Planner::bang_bang).csv);
 }
 
-// Rows are means over what they span, so their heat is that of the account.
+// Rows are means over their time span, so their heat equals the total.
 TEST(ClosedLoop, rows_hold_the_heat) {
   const Driven driven = drive(twente(), ecx_32(), lively(), kLively_s);
   std::istringstream lines(driven.csv);

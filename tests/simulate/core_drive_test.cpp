@@ -1,4 +1,4 @@
-// The drive core in its place: what sensors, radio, friction parameters and guard do to the drive.
+// Influence of sensors, radio, friction parameters and guard on the drive core.
 #include "simulate/core_drive.h"
 
 #include <gtest/gtest.h>
@@ -51,8 +51,8 @@ CoreDriven drive(const Robot& robot, const Motor& motor, const robot_core::Confi
 
 robot_core::Config core_of(const Robot& robot, const Motor& motor) { return make_core_config(robot, motor.nominal, {}); }
 
-// de/dt = (v_command − v) − k·e keeps the error e of the position below the largest error of the velocity over the gain k. With exact
-// sensors, slip is most of it: encoders do not see that wheels creep.
+// de/dt = (v_command − v) − k·e limits the position error e to the largest velocity error divided by the gain k. With exact sensors slip
+// dominates this error, because encoders do not measure creep of the wheels.
 TEST(CoreDrive, follows_the_plan_with_exact_sensors) {
   const Robot robot = twente();
   const robot_core::Config core = core_of(robot, ecx_32());
@@ -69,7 +69,7 @@ TEST(CoreDrive, follows_the_plan_with_exact_sensors) {
   const DriveScore exact = drive(robot, ecx_32(), core, ideal_drive(), 25.0, see).score;
   EXPECT_LT(exact.tracking_most_m, error_m_per_s / ideal_radio().position_gain_per_s);
   EXPECT_GT(slip_m_per_s, 0.5 * error_m_per_s);
-  EXPECT_LT(exact.tracking_most_m, 0.01 * 1.3);  // of the way from stop to stop
+  EXPECT_LT(exact.tracking_most_m, 0.01 * 1.3);  // share of the distance from stop to stop
   EXPECT_EQ(exact.fault_s, 0.0);
   const DriveScore real = drive(robot, ecx_32(), core, real_drive(robot, 1)).score;
   EXPECT_GT(real.tracking_rms_m, exact.tracking_rms_m);
@@ -77,7 +77,7 @@ TEST(CoreDrive, follows_the_plan_with_exact_sensors) {
   EXPECT_EQ(real.fault_s, 0.0);
 }
 
-// Without it, friction has to be found by the wheels' integrators; at low speed it is most of the voltage.
+// Without feed-forward the wheels' integrators must find the friction. At low speed friction is most of the voltage.
 TEST(CoreDrive, feed_forward_of_friction_helps_at_low_speed) {
   const robot_core::Config core = core_of(twente(), ecx_32());
   const DriveOptions options = without_position_feedback(real_drive(twente(), 3));
@@ -93,8 +93,8 @@ TEST(CoreDrive, feed_forward_of_friction_helps_at_low_speed) {
   }
 }
 
-// Straight ahead, friction at the front right wheel turns the robot to the right and pulls it there: the gyro brings the yaw rate back to
-// zero, not the angle that was lost, until the wheel's integrator has found the friction.
+// Straight ahead, additional friction at the front right wheel turns the robot to the right and pulls it there. The gyro restores the yaw
+// rate but not the lost angle, until the wheel's integrator has found the friction.
 TEST(CoreDrive, a_dirty_wheel_pulls_the_robot_to_its_side) {
   const robot_core::Config core = core_of(twente(), ecx_32());
   const DriveOptions options = without_position_feedback(ideal_drive());
@@ -109,7 +109,7 @@ TEST(CoreDrive, a_dirty_wheel_pulls_the_robot_to_its_side) {
   EXPECT_GT(left.moments.back().pose.y_m, 10.0 * clean_m);
   EXPECT_LT(right.yaw_error_rad, -10.0 * std::abs(clean.yaw_error_rad));
   EXPECT_GT(left.yaw_error_rad, 10.0 * std::abs(clean.yaw_error_rad));
-  // A curve for all wheels and the same curve for each wheel are one.
+  // One curve for all wheels and the same curve for each wheel must be equivalent.
   const DrivenLine same = drive_straight(with_dirty_wheel(twente(), 0, 1.0), ecx_32(), core, options, slow);
   EXPECT_NEAR(same.moments.back().pose.x_m, clean.moments.back().pose.x_m, 1e-9);
 }
@@ -121,7 +121,7 @@ TEST(CoreDrive, same_seed_same_bytes) {
   EXPECT_NE(once, drive(twente(), ecx_32(), core, real_drive(twente(), 6)).csv);
 }
 
-// A packet per second: the robot drives for the command's timeout, brakes to a stand and opens its bridges.
+// With one packet per second the robot drives for the command's timeout, brakes to standstill and opens its bridges.
 TEST(CoreDrive, lost_packets_bring_the_robot_to_a_stand) {
   const robot_core::Config core = core_of(twente(), ecx_32());
   DriveOptions options = ideal_drive();
@@ -134,7 +134,7 @@ TEST(CoreDrive, lost_packets_bring_the_robot_to_a_stand) {
     const DriveMoment& moment = driven.moments.at(static_cast<std::size_t>(std::lround(1e3 * time_s)) - 1);
     return std::hypot(moment.velocity.x_m_per_s, moment.velocity.y_m_per_s);
   };
-  // The first packet was sent when the plan stood.
+  // The first packet was sent at zero planned speed.
   EXPECT_LT(speed_m_per_s(0.9), 0.01);
   const double timeout_s = static_cast<double>(core.command_timeout_s);
   EXPECT_GT(speed_m_per_s(1.0 + 0.95 * timeout_s), 0.3);
@@ -146,7 +146,7 @@ TEST(CoreDrive, lost_packets_bring_the_robot_to_a_stand) {
   }
 }
 
-// The packet of time 0 has the plan's first velocity; voltages that follow from the samples of one period act in the next.
+// The first packet has the plan's initial velocity. Voltages calculated from the samples of one period act in the next.
 TEST(CoreDrive, voltages_act_one_period_late) {
   const robot_core::Config core = core_of(twente(), ecx_32());
   std::vector<double> starts_s;
@@ -175,7 +175,7 @@ TEST(CoreDrive, asks_for_no_memory) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-// In shadow mode nothing changes but what the guard counts; hot motors are limited when it is on, and stay within their limit.
+// Shadow mode changes only the guard's counters. Active mode limits hot motors and keeps them within their limit.
 TEST(GuardedCore, shadow_counts_and_on_limits) {
   const Motor motor = ecx_32();
   const MotorGuard guard = make_guard(motor, twente(), 25.0, 2);
@@ -198,7 +198,7 @@ TEST(GuardedCore, shadow_counts_and_on_limits) {
   EXPECT_LT(limited.distance_m, without.distance_m);
 }
 
-// Winding and stator so badly coupled that iron loss alone is too much: derate() refuses, and the core drives without guard.
+// Winding and stator are so poorly coupled that iron loss alone exceeds the limit. derate() refuses, and the core drives without guard.
 TEST(GuardedCore, a_motor_that_cannot_be_guarded_says_why) {
   Motor motor = ecx_32();
   ParameterValue& figure = motor.parameters.at("winding_limit");

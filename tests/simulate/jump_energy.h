@@ -1,4 +1,4 @@
-// What the energy account cannot resolve of voltages that jump.
+// Error bound of the energy balance for voltages that jump.
 #pragma once
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 
 namespace heatsoak {
 
-/// A jump of the voltage starts a motion of the wheel against its contact of the time constant J/(c·r²), c = μ·N/slip speed the contact's
-/// slope: 0.4 ms for RoboTeam Twente, less than the plant's period T. The plant's method damps what it cannot follow; the power that the
-/// account misses over that period is of the order of the jump of the torque times that of the wheel's speed, ΔM·ΔM/(c·r²).
+/// A jump of the voltage moves the wheel against its contact with the time constant J/(c·r²); c = μ·N/slip speed is the contact's slope.
+/// For RoboTeam Twente this is 0.4 ms, less than the plant's period T. The plant's method damps such fast motions. The power that the
+/// balance misses in that period is of the order of ΔM·ΔM/(c·r²): the torque jump times the jump of the wheel's speed.
 class JumpEnergy {
  public:
   JumpEnergy(const Robot& robot, const Motor& motor)
@@ -27,7 +27,7 @@ class JumpEnergy {
     }
     last_V_ = out.terminal_V;
   }
-  /// Of all jumps so far.
+  /// Returns the sum over all jumps so far.
   [[nodiscard]] double unresolved_J() const { return sum_J_; }
 
  private:

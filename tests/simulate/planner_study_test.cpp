@@ -1,4 +1,4 @@
-// Both planners through the loop: where they must agree, and where physics says what must happen.
+// Both planners in the closed loop: cases in which they must agree, and cases with a physically known result.
 #include "simulate/planner_study.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kBangBang = std::numeric_limits<double>::infinity();
 
-// A jerk without bound is bang-bang, though other code plans it. (At 100 Hz a command that is held from a start without
-// acceleration would tell them apart.)
+// A very high jerk must match bang-bang, which other code plans. The control rate is 1 kHz because the two would differ at 100 Hz: the
+// first command has no acceleration and is held.
 TEST(PlannerStudy, much_jerk_is_bang_bang) {
   Robot robot = twente();
   robot.control_rate_Hz = 1000.0;
@@ -43,19 +43,19 @@ TEST(PlannerStudy, below_the_grip_nothing_slides_and_beyond_it_the_jerk_limit_he
   EXPECT_GT(results[3].copper_J, results[2].copper_J);
 }
 
-// The first wheel to slide has less than its share of the grip: μ·g is out of reach, and grip grows with μ.
+// The first wheel that slides carries less than its share of the load. μ·g is therefore unreachable, and grip grows with μ.
 TEST(PlannerStudy, grip_is_that_of_the_first_wheel) {
   Robot robot = twente();
   const double grip = grip_m_per_s2(robot);
   EXPECT_LT(grip, robot.traction_ratio * kGravity_m_per_s2);
   robot.center_of_gravity_height_m = 0.0;
   const double flat = grip_m_per_s2(robot);
-  EXPECT_GT(flat, grip);  // no weight leaves the wheels that push
+  EXPECT_GT(flat, grip);  // no load transfer away from the pushing wheels
   robot.traction_ratio *= 0.5;
   EXPECT_NEAR(grip_m_per_s2(robot), 0.5 * flat, 1e-4 * flat);
 }
 
-// Twente goes to two thirds of its grip, the TIGERs to all of it.
+// Twente uses two thirds of its grip, the TIGERs use all of it.
 TEST(JerkSweep, has_no_acceleration_twice) {
   const Robot tigers = read_robot(kSource / "robot_core/robots/tigers_v2020.toml");
   for (const auto& [robot, count] : {std::pair{twente(), 3U}, std::pair{tigers, 2U}}) {
@@ -100,7 +100,7 @@ TEST(MatchRun, both_planners_drive_the_same_game) {
   EXPECT_NEAR(jerk.score.energy.residual_J(), 0.0, 1e-4 * jerk.score.energy.battery_J + jerk_jumps.unresolved_J());
   EXPECT_LT(jerk_jumps.unresolved_J(), 5e-3 * jerk.score.energy.battery_J);
   EXPECT_NEAR(bang.score.energy.residual_J(), 0.0, 1e-4 * bang.score.energy.battery_J + bang_jumps.unresolved_J());
-  // Faster there, more heat there; the peak of the winding hangs on single duels.
+  // The faster planner makes more heat. The winding's peak depends on single duels and is not compared.
   EXPECT_GT(bang.score.distance_m, jerk.score.distance_m);
   EXPECT_GT(bang.score.energy.copper_J, jerk.score.energy.copper_J);
 }

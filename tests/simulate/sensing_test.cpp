@@ -1,4 +1,4 @@
-// Sensors and radio link against their analytic statistics.
+// Sensors and radio link, compared with their analytic statistics.
 #include "simulate/sensing.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ Statistics statistics_of(const std::vector<double>& values) {
   return made;
 }
 
-/// All errors off but those that a test switches on.
+/// Configuration without errors, to which each test adds its own.
 SensingConfig silent() {
   SensingConfig config = ideal_sensing();
   config.has_motor_current = config.has_stator = config.has_ambient = false;
@@ -53,12 +53,12 @@ TEST(Noise, is_normal_to_the_fourth_moment) {
   }
   EXPECT_NEAR(sum / kDraws, 0.0, 4.0 / std::sqrt(kDraws));
   EXPECT_NEAR(square / kDraws, 1.0, 4.0 * std::sqrt(2.0 / kDraws));
-  EXPECT_NEAR(fourth / kDraws, 2.7, 0.03);  // 3 − 6/5/4 of four uniform numbers
+  EXPECT_NEAR(fourth / kDraws, 2.7, 0.03);  // 3 − 6/5/4 for the sum of four uniform numbers
   EXPECT_LE(largest, 2.0 * std::sqrt(3.0) + 1e-9);
 }
 
-// The count of a period differs from the true angle by the difference of two roundings. At a speed of n + f counts per period it is n or
-// n + 1, standard deviation q·√(f·(1 − f)) of the resolution q = 2π/(N·T); over all speeds ∫f·(1 − f)df = 1/6 makes it q/√6.
+// The error of a period's count is the difference of two rounding errors. At n + f counts per period the count is n or n + 1, with standard
+// deviation q·√(f·(1 − f)) and resolution q = 2π/(N·T). Averaged over all speeds, ∫f·(1 − f)df = 1/6 gives q/√6.
 TEST(Sensing, encoder_noise_is_that_of_quantisation) {
   for (const double gear_ratio : {1.0, 3.0}) {
     Robot robot = twente();
@@ -112,7 +112,7 @@ TEST(Sensing, ideal_sensors_show_the_truth) {
   EXPECT_GT(simulated.stator_C(3), 46.0);
 }
 
-/// Yaw rates of a standing robot.
+/// Returns yaw rates of a standing robot.
 std::vector<double> gyro_at_rest(const SensingConfig& config, std::uint64_t seed, int samples) {
   const SimulatedRobot simulated(twente(), ecx_32(), 25.0);
   Sensing sensing(config, simulated, kPeriod_s, seed);
@@ -131,7 +131,7 @@ TEST(Sensing, gyro_noise_bias_and_drift) {
   const Statistics noisy = statistics_of(gyro_at_rest(config, 5, 20'000));
   EXPECT_NEAR(noisy.sd, 0.003, 0.03 * 0.003);
   EXPECT_NEAR(noisy.mean, 0.0, 4.0 * 0.003 / std::sqrt(20'000.0));
-  config.gyro_step_rad_per_s = 0.002;  // white as well as uniform errors of the rounding add up
+  config.gyro_step_rad_per_s = 0.002;  // white noise and the uniform rounding errors add up
   EXPECT_NEAR(statistics_of(gyro_at_rest(config, 5, 20'000)).sd, std::sqrt(0.003 * 0.003 + 0.002 * 0.002 / 12.0), 1e-4);
   SensingConfig slow = silent();
   slow.gyro_bias_rad_per_s = 0.002;
@@ -152,7 +152,7 @@ TEST(Sensing, what_is_not_fitted_has_no_sample) {
   robot_core::Input input;
   sensing.sample(simulated, 25.0, input);
   for (int wheel = 0; wheel < 4; ++wheel) {
-    EXPECT_TRUE(std::isnan(input.motor_current_A[wheel]));  // Twente's drivers have no current limit
+    EXPECT_TRUE(std::isnan(input.motor_current_A[wheel]));  // Twente's motor controllers have no current sensor
     EXPECT_TRUE(std::isnan(input.stator_C[wheel]));
   }
   EXPECT_TRUE(std::isnan(input.ambient_C));
@@ -194,7 +194,7 @@ TEST(PacketLoss, has_its_share_and_its_bursts) {
       bursts += !arrives && arrived ? 1 : 0;
       arrived = arrives;
     }
-    // Bursts are geometric: the variance of a sum over independent bursts, with a margin of four standard deviations.
+    // Burst lengths are geometric. The tolerance is four standard deviations of a sum over independent bursts.
     const double expected_bursts = kPackets * share / burst_count;
     const double share_sd = share * std::sqrt(2.0 / expected_bursts);
     EXPECT_NEAR(static_cast<double>(lost) / kPackets, share, 4.0 * share_sd);
@@ -202,7 +202,7 @@ TEST(PacketLoss, has_its_share_and_its_bursts) {
   }
 }
 
-/// A plan that moves and turns evenly.
+/// A plan with constant velocity and yaw rate.
 class Even final : public Follower {
  public:
   void take(const MotionCommand& command) override { static_cast<void>(command); }
@@ -220,8 +220,8 @@ class Even final : public Follower {
   double time_s_ = 0.0;
 };
 
-// A robot that follows the plan at a fixed distance behind gets the plan's velocity and the gain times that distance, turned to where
-// it looks when the packet arrives: latencies make no error. In a duel the push's direction has push_speed in place of the correction.
+// A robot that follows the plan at a fixed distance gets the plan's velocity plus gain times distance. Both are rotated to its heading when
+// the packet arrives, so latencies cause no error. In a duel the component along the push is push_speed instead of the correction.
 TEST(OffBoard, commands_the_plan_and_corrects_the_distance) {
   RadioConfig config = radio_of(twente());
   EXPECT_EQ(config.packet_rate_Hz, 60.0);

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <cstddef>
 
-// SUNDIALS allocates in C, which operator new does not see.
+// SUNDIALS allocates in C, so operator new does not count it.
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 namespace {
 std::atomic<long> count = 0;
@@ -27,7 +27,7 @@ void* realloc(void* old, std::size_t size) {
   ++count;
   return __libc_realloc(old, size);
 }
-void* aligned_alloc(std::size_t alignment, std::size_t size) {  // what operator new uses for Lanes
+void* aligned_alloc(std::size_t alignment, std::size_t size) {  // operator new calls it for Lanes
   ++count;
   return __libc_memalign(alignment, size);
 }

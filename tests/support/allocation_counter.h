@@ -1,12 +1,12 @@
-// How often this program has asked for memory: an inner loop that never does can run for hours.
+// Counts the memory allocations of this program. Inner loops without any allocation can run for hours.
 #pragma once
 
 namespace heatsoak {
 
-/// Calls of malloc and its relatives so far, by C and by operator new; always 0 where a sanitizer brings its own malloc.
+/// Returns the number of calls of malloc and similar functions so far, in C and by operator new; always 0 if a sanitizer replaces malloc.
 long allocation_count();
 
-/// Whether they can be counted here.
+/// True if this build can count them.
 bool allocations_are_counted();
 
 }  // namespace heatsoak

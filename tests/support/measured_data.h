@@ -1,4 +1,4 @@
-// Where recordings of others lie, for tests that are skipped without them.
+// Location of third-party recordings. Tests that need them are skipped without them.
 #pragma once
 
 #include <cstdlib>
@@ -8,7 +8,7 @@
 
 namespace heatsoak {
 
-/// A folder of HEATSOAK_MEASURED_DATA, or of shared/data beside a folder above the sources.
+/// Returns a folder of HEATSOAK_MEASURED_DATA, or of shared/data in a folder above the sources.
 inline std::optional<std::filesystem::path> measured_data(const std::string& folder = "") {
   if (const char* given = std::getenv("HEATSOAK_MEASURED_DATA")) {
     const std::filesystem::path path = std::filesystem::path(given) / folder;

@@ -1,2 +1,2 @@
-// A library wants a file.
+// CMake requires a library to have a source file.
 #include "precompiled_tests.h"

@@ -1,4 +1,4 @@
-// As cmake/precompiled.h, for the programs of tests.
+// Precompiled headers of the test programs, like cmake/precompiled.h.
 #pragma once
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// Robots and motors that come with the program.
+// Robots and motors shipped with the program.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace heatsoak {
 inline Robot shipped_robot(const std::string& id) { return read_robot(kSource / "robot_core/robots" / (id + ".toml")); }
 inline Motor shipped_motor(const std::string& id) { return read_motor(kSource / "motor_db" / (id + ".toml")); }
 
-/// The paper's robot with the motor that it lost.
+/// The paper's robot with the motor that failed in it.
 inline Robot twente() { return shipped_robot("roboteam_twente_v2024"); }
 inline Motor ecx_32() { return shipped_motor("maxon_ecx_flat_32l_48v"); }
 

@@ -1,4 +1,4 @@
-// Where the checkout lies that is tested.
+// Location of the tested checkout.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// The inner loops take no memory from the heap: not for speed alone, the same code is to run for hours.
+// The inner loops must not allocate memory, because the same code must be able to run for hours.
 #include <gtest/gtest.h>
 
 #include "support/allocation_counter.h"
@@ -55,7 +55,7 @@ TEST(Allocation, none_in_the_rate_of_lanes_and_in_the_ensemble_run) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-/// From the second interval on nothing is allocated, with limits and with the ledger.
+/// No allocation from the second interval on, with limits and with the ledger.
 class TransientAllocation : public testing::TestWithParam<std::tuple<OdeMethod, bool>> {};
 INSTANTIATE_TEST_SUITE_P(Methods, TransientAllocation,
                          testing::Combine(testing::Values(OdeMethod::cvodes_adams, OdeMethod::arkode_erk), testing::Bool()));

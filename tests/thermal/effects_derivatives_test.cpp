@@ -1,18 +1,18 @@
-// Laws on numbers that carry derivatives, against the laws themselves and against differences of them.
+// Laws evaluated with derivative-carrying numbers, compared with the plain laws and with finite differences.
 #include "one_effect.h"
 
 namespace heatsoak {
 namespace {
 
-/// The last bit of an exponent of some hundreds is 1e-13 of the power.
+/// The last bit of an exponent of some hundreds changes a power by 1e-13.
 constexpr double kRounding = 1e-12;
-/// Below it numbers lose their digits.
+/// Smaller numbers are subnormal and lose digits.
 constexpr double kSmallest_W = 1e-300;
 
 class Derivatives : public EveryEffect {};
 INSTANTIATE_TEST_SUITE_P(Registry, Derivatives, every_effect(), name_of_effect);
 
-/// One state with everything that a derivative may be asked by: temperatures, then parameters, then the copper loss.
+/// A state with all variables of differentiation: temperatures, then parameters, then the copper loss.
 struct State {
   OperatingPoint<double> at;
   std::vector<double> temperature_C;
@@ -28,7 +28,7 @@ struct State {
   }
 };
 
-/// Parameters near the sizes of life, where a difference has digits.
+/// Draws parameters of realistic size, so that differences are accurate.
 State random_state(Chance& chance, const EffectType& type) {
   State state{random_point(chance), random_temperatures(chance, type), type.example.parameters};
   for (std::size_t p = 0; p < state.parameters.size(); ++p) {
@@ -53,7 +53,7 @@ std::vector<Tangent> tangent_heat_W(const EffectType& type, State& state, std::s
   for_each_quantity([](Tangent& to, const double& from) { to = Tangent(from); }, at, state.at);
   std::vector<Tangent> temperature_C = as<Tangent>(state.temperature_C);
   std::vector<Tangent> parameters = as<Tangent>(state.parameters);
-  constexpr int kSlot = 3;  // any of the eight
+  constexpr int kSlot = 3;  // any of the eight lanes
   if (direction < temperature_C.size()) {
     temperature_C[direction].v[kSlot] = 1.0;
   } else if (direction - temperature_C.size() < parameters.size()) {
@@ -101,7 +101,7 @@ TEST_P(Derivatives, are_those_of_central_differences) {
       for (std::size_t node = 0; node < heat.size(); ++node) {
         const double difference = (above_W[node] - below_W[node]) / (2.0 * step);
         const double wider = (far_above_W[node] - far_below_W[node]) / (4.0 * step);
-        // What the difference itself is wrong by: a third of its change with the step.
+        // The error of the difference is a third of its change with the step; the tolerance uses all of it.
         const double truncated = std::abs(wider - difference);
         EXPECT_NEAR(heat[node].v[3], difference,
                     1e-6 * std::abs(difference) + truncated + kRounding * size_of(above_W) / step + kSmallest_W)
@@ -111,7 +111,7 @@ TEST_P(Derivatives, are_those_of_central_differences) {
   }
 }
 
-/// Where nothing happens derivatives are numbers too: a fit begins there.
+/// Derivatives must be finite at rest and at uniform temperature, because a fit starts there.
 TEST_P(Derivatives, are_finite_at_rest_and_at_one_temperature) {
   State state{{}, std::vector<double>(type().nodes.size(), 25.0), type().example.parameters};
   for (std::size_t direction = 0; direction < state.size(); ++direction) {
@@ -121,7 +121,7 @@ TEST_P(Derivatives, are_finite_at_rest_and_at_one_temperature) {
   }
 }
 
-/// All effects in one motor: the network's own derivatives, through the copper loss that other laws look at.
+/// All effects in one motor: derivatives of the network, including those through the copper loss that other laws use.
 TEST(Linearise, agrees_with_differences_of_the_rate_with_every_effect_in_place) {
   Chance chance(822);
   for (int i = 0; i < 20; ++i) {

@@ -1,4 +1,4 @@
-// Effects at work: passivity of what moves heat, nodes that effects bring, curves, neighbours.
+// Effects in networks: passivity of heat transfer, additional nodes, curves, neighbours.
 #include <algorithm>
 
 #include "one_effect.h"
@@ -11,7 +11,7 @@ OperatingPoint<double> without_sources(OperatingPoint<double> at) {
   return at;
 }
 
-/// Effects that make no heat where no power comes in, whatever turns or moves.
+/// Returns effects that produce no heat without input power, at any speed.
 std::vector<const EffectType*> movers() {
   std::vector<const EffectType*> found;
   for (const EffectType& type : all_effects()) {
@@ -31,7 +31,7 @@ std::vector<const EffectType*> movers() {
   return found;
 }
 
-/// V = ½ΣC·(T − T_ambient)² of random networks, each with every effect that only moves heat.
+/// V = ½ΣC·(T − T_ambient)² must never rise, for random networks with every effect that only transfers heat.
 TEST(Passivity, energy_functional_never_rises_with_the_sources_off) {
   const std::vector<const EffectType*> all = movers();
   for (const char* name : {"conduction", "natural_convection", "radiation", "third_node", "contact_ageing", "enclosure_warm_up"}) {
@@ -63,9 +63,9 @@ TEST(Passivity, energy_functional_never_rises_with_the_sources_off) {
   }
 }
 
-// --- nodes of their own -----------------------------------------------------------------------------------
+// --- additional nodes -------------------------------------------------------------------------------------
 
-/// Stator and body alone exchange heat: the difference decays with G·(1/C_1 + 1/C_2), the energy stays.
+/// Only stator and body exchange heat: their difference decays with G·(1/C_1 + 1/C_2), and the energy is constant.
 TEST(OwnNode, two_bodies_meet_as_computed_by_hand) {
   constexpr double kStator_J_per_K = 80.0;
   constexpr double kBody_J_per_K = 120.0;
@@ -87,7 +87,7 @@ TEST(OwnNode, two_bodies_meet_as_computed_by_hand) {
   EXPECT_NEAR((kStator_J_per_K * result.end_C[0] + kBody_J_per_K * result.end_C[1]) / (kStator_J_per_K + kBody_J_per_K), mean_C, 1e-6);
 }
 
-/// At rest the chain stator → body → ambient is two resistances in series.
+/// At steady state the chain stator → body → ambient is two resistances in series.
 TEST(OwnNode, leads_heat_through_to_ambient) {
   Network network;
   network.add_node("stator", 80.0);
@@ -176,8 +176,8 @@ TEST_F(Tabulated, is_heat_a_share_of_the_copper_loss_or_a_conductance) {
   EXPECT_NEAR(heat(parameters("bus_voltage", "per_speed", 100.0, 700.0), at)[0], 4.0 * 200.0, 1e-12);
 }
 
-/// What a curve says that it needs of a log is what its heat hangs on, and nothing else.
-TEST_F(Tabulated, needs_the_signals_that_it_hangs_on) {
+/// The signals in needs() must be exactly those that the curve's heat depends on.
+TEST_F(Tabulated, needs_the_signals_that_it_depends_on) {
   using At = OperatingPoint<double>;
   const std::vector<std::pair<Signal, void (*)(At&)>> changes{
       {Signal::current, [](At& at) { at.current_rms_A = 4.7, at.copper_loss_W = 9.0; }},
@@ -232,7 +232,7 @@ TEST_F(Tabulated, looks_at_the_signal_that_was_chosen) {
   at.neighbour_share = 1.0;
   at.column = 7.5;
   at.column_share = 1.0;
-  // A line from −10 to 50 through the origin of the driver reads the driver back: value = driver + 10.
+  // A line from −10 to 50 returns the regressor itself: value = regressor + 10.
   const std::vector<double> temperature_C{60.0, 40.0, 43.0, 42.0};
   const std::vector<std::pair<std::string_view, double>> expected{{"speed", 2.0},
                                                                   {"velocity", -1.0},

@@ -1,4 +1,4 @@
-// What every effect owes, driven by the registry: a new file in src/thermal/effects is tested by being there.
+// Requirements of every effect, checked for all entries of the registry. A new file in src/thermal/effects is tested automatically.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -33,14 +33,14 @@ TEST_P(EveryEffect, worked_example) {
   }
 }
 
-TEST_P(EveryEffect, is_told_in_words) {
+TEST_P(EveryEffect, is_reported_in_words) {
   for (const std::string_view text : {type().summary, type().equation, type().reference, type().typical, type().confounded_with}) {
     EXPECT_THAT(text, Not(IsEmpty()));
   }
   for (const ParameterSpec& spec : type().parameters) {
     EXPECT_THAT(spec.meaning, Not(IsEmpty())) << spec.key;
   }
-  // What is spelt like an effect is one.
+  // Words spelt like an effect's name must be one.
   const std::string prose(type().confounded_with);
   const std::regex name("[a-z]+(_[a-z]+)+");
   for (std::sregex_iterator found(prose.begin(), prose.end(), name), end; found != end; ++found) {
@@ -64,7 +64,7 @@ TEST_P(EveryEffect, lanes_have_the_bits_of_the_law_for_one) {
       at[lane] = random_point(chance);
       for (std::size_t p = 0; p < lane_parameters.size(); ++p) {
         if (!type().parameters[p].choices.empty()) {
-          parameters[lane][p] = parameters[0][p];  // a choice is the same for all samples
+          parameters[lane][p] = parameters[0][p];  // choices are equal for all samples
         }
         lane_parameters[p][l] = parameters[lane][p];
       }
@@ -85,7 +85,7 @@ TEST_P(EveryEffect, lanes_have_the_bits_of_the_law_for_one) {
   }
 }
 
-/// Every corner of what is allowed, one parameter at each end.
+/// Tests every corner of the permitted ranges, one parameter at each end.
 TEST_P(EveryEffect, heat_is_finite_at_the_ends_of_every_range) {
   const std::size_t parameters = type().parameters.size();
   for (std::size_t corner = 0; corner < (std::size_t{1} << parameters); ++corner) {
@@ -119,8 +119,8 @@ TEST_P(EveryEffect, heat_is_finite_wherever_a_range_and_a_machine_lead) {
   }
 }
 
-/// A law that says it does without a signal gives the same bits when the signal is no number at all; the surroundings' temperature
-/// it has from its nodes, and the headroom is the network's business.
+/// A law without a signal in its needs must give the same bits when that signal is NaN. The ambient temperature comes from its nodes, and
+/// the headroom from the network.
 TEST_P(EveryEffect, looks_at_no_signal_but_those_it_needs) {
   Chance chance(806);
   const double none = std::numeric_limits<double>::quiet_NaN();
@@ -157,7 +157,7 @@ TEST_P(EveryEffect, looks_at_no_signal_but_those_it_needs) {
   }
 }
 
-/// First and second law: nothing is taken away, and entropy is not destroyed: Σ P ≥ 0 and Σ P/T ≥ 0, T in kelvin.
+/// First and second law: no heat disappears, and entropy is not destroyed: Σ P ≥ 0 and Σ P/T ≥ 0, T in kelvin.
 TEST_P(EveryEffect, neither_destroys_heat_nor_entropy) {
   Chance chance(801);
   for (int i = 0; i < 1000; ++i) {
@@ -174,7 +174,7 @@ TEST_P(EveryEffect, neither_destroys_heat_nor_entropy) {
   }
 }
 
-/// What makes no heat in any state moves it, and only downhill: Σ P·T ≤ 0.
+/// An effect that produces no heat in any state only transfers it from hot to cold: Σ P·T ≤ 0.
 TEST_P(EveryEffect, what_only_moves_heat_moves_it_downhill) {
   Chance chance(802);
   for (int i = 0; i < 1000; ++i) {
@@ -184,7 +184,7 @@ TEST_P(EveryEffect, what_only_moves_heat_moves_it_downhill) {
     settle_neighbour(at, type(), temperature_C);
     const std::vector<double> heat = heat_W(type(), at, random_parameters(chance, type()), temperature_C);
     if (std::ranges::all_of(heat, [](double each_W) { return each_W >= 0.0; })) {
-      continue;  // a source, or nothing
+      continue;  // a source, or no effect
     }
     EXPECT_NEAR(sum(heat), 0.0, 1e-12 * size_of(heat));
     double uphill = 0.0;
@@ -207,7 +207,7 @@ TEST_P(EveryEffect, at_one_temperature_no_heat_is_moved) {
   }
 }
 
-/// Two books of the same network: the rate is the sum of the balance over the capacity.
+/// Two evaluations of the same network: the rate equals the sum of the balance divided by the capacity.
 TEST_P(EveryEffect, balance_and_rate_of_a_network_agree) {
   Chance chance(804);
   Network network;
@@ -222,7 +222,7 @@ TEST_P(EveryEffect, balance_and_rate_of_a_network_agree) {
   std::vector<double> balance(2 * (states + 1));
   const std::vector<double> values = network.values();
   network.balance_W(at, values, temperature_C, balance);
-  temperature_C.push_back(-999.0);  // ambient: overwritten
+  temperature_C.push_back(-999.0);  // ambient, will be overwritten
   std::vector<double> rate(states);
   network.rate_K_per_s<double>(at, values, temperature_C, rate);
   EXPECT_EQ(temperature_C.back(), at.ambient_C);
@@ -232,9 +232,9 @@ TEST_P(EveryEffect, balance_and_rate_of_a_network_agree) {
   }
 }
 
-// --- where a model may lack it ------------------------------------------------------------------------------
+// --- candidate effects --------------------------------------------------------------------------------------
 
-/// The candidates' sizes and shapes.
+/// Sizes and shapes of candidate effects.
 class EveryCandidate : public EveryEffect {
  protected:
   void SetUp() override {
@@ -288,7 +288,7 @@ TEST_P(EveryCandidate, books_heat_in_proportion_to_its_size) {
   }
 }
 
-/// At typical size in a typical state: a motor of some 50 W at work, not a milliwatt and not a furnace.
+/// At typical size and in a typical state the heat must be plausible for a motor of about 50 W.
 TEST_P(EveryCandidate, of_typical_size_books_watts) {
   for (const std::vector<double>& variant : type().candidacy.variants) {
     OperatingPoint<double> at{.current_rms_A = 5.0, .speed_mean_rad_per_s = 500.0, .speed_rms_rad_per_s = 500.0};
@@ -309,7 +309,7 @@ TEST_P(EveryCandidate, of_typical_size_books_watts) {
     }
     double most_W = 0.0;
     constexpr double kShaftAndMore_W = 70.0;
-    // The states that some need to show: braking, a stall, hard current, an old contact.
+    // Some effects act only in certain states: braking, stall, high current, an old contact.
     for (const int state : {0, 1, 2, 3}) {
       OperatingPoint<double> now = at;
       now.shaft_power_W *= state == 1 ? -1.0 : 1.0;

@@ -10,7 +10,7 @@
 namespace heatsoak {
 namespace {
 
-/// Eight motors side by side, each with a duty of its own: the lengths are shared, the operating points not.
+/// Eight motors in parallel, each with its own duty: durations are shared, operating points are not.
 struct Eight {
   std::array<TwoNode, kLanes> motors;
   std::array<std::vector<Interval>, kLanes> duties;
@@ -42,7 +42,7 @@ struct Eight {
   struct Outcome {
     std::vector<Lanes> end_C, peak_C;
   };
-  /// `fixed_step_s` 0: the step that longest_step_s() allows, for every piece anew.
+  /// If `fixed_step_s` is 0, each piece uses the step of longest_step_s().
   [[nodiscard]] Outcome run(double fixed_step_s = 0.0) const {
     const Network network = motors[0].network();
     const std::vector<Lanes> values = parameters();
@@ -71,7 +71,7 @@ Eight random_eight(Chance& chance) {
   return eight;
 }
 
-/// Largest distance of the peaks from the reference, in K.
+/// Returns the largest deviation of the peaks from the reference, in K.
 double worst_peak_error_K(const Eight& eight, Node node) {
   const Eight::Outcome outcome = eight.run();
   double worst_K = 0.0;
@@ -82,8 +82,8 @@ double worst_peak_error_K(const Eight& eight, Node node) {
   return worst_K;
 }
 
-// The bounds are some four times what was measured: 0.0005 K and 0.0077 K for the on/off duty, 0.00002 K and 0.0024 K for
-// the random one. Peaks are taken at the steps only, which costs the heat soak of the stator a little.
+// The bounds are about four times the measured errors: 0.0005 K and 0.0077 K for the on/off duty, 0.00002 K and 0.0024 K for the random
+// one. Peaks are taken at steps only, which slightly underestimates the stator's peak after switch-off.
 TEST(Ensemble, peaks_of_an_on_off_duty_are_those_of_the_reference) {
   Chance chance(700);
   double winding_K = 0.0;
@@ -150,7 +150,7 @@ TEST(Ensemble, end_is_the_two_exponentials) {
     }
   }
   RecordProperty("worst_K", std::to_string(worst_K));
-  EXPECT_LT(worst_K, 0.0002);  // measured 0.00004 K
+  EXPECT_LT(worst_K, 0.0002);  // measured: 0.00004 K
 }
 
 TEST(Ensemble, error_has_order_four_in_the_step) {

@@ -1,4 +1,4 @@
-// One effect alone, and states to try it in: shared by the suites that run over the registry.
+// A single effect, and states to test it in, shared by the test suites that iterate over the registry.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace heatsoak {
 
-/// Heat per role; parameters and temperatures in declared order.
+/// Returns the heat per role; parameters and temperatures have the declared order.
 template <class S>
 std::vector<S> heat_W(const EffectType& type, const OperatingPoint<S>& at, const std::vector<S>& parameters,
                       const std::vector<S>& temperature_C) {
@@ -51,7 +51,7 @@ inline std::vector<double> random_parameters(Chance& chance, const EffectType& t
   return parameters;
 }
 
-/// Everything that a machine may do; `copper_loss_W` as if a network had filled it in.
+/// Draws an operating point from all permitted ranges, with a consistent `copper_loss_W`.
 inline OperatingPoint<double> random_point(Chance& chance) {
   OperatingPoint<double> at;
   at.current_rms_A = chance.between(0.0, 100.0);
@@ -80,7 +80,7 @@ inline std::vector<double> random_temperatures(Chance& chance, const EffectType&
   return temperature_C;
 }
 
-/// A neighbour is a part of the surroundings: where these have one temperature, it has it too.
+/// A neighbour is part of the surroundings. If these have a uniform temperature, the neighbour gets it, too.
 inline void settle_neighbour(OperatingPoint<double>& at, const EffectType& type, const std::vector<double>& temperature_C) {
   for (std::size_t role = 0; role < type.nodes.size(); ++role) {
     if (type.nodes[role].default_node == Network::kAmbient) {
@@ -94,7 +94,7 @@ inline double size_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0, [](double all, double each) { return all + std::abs(each); });
 }
 
-/// Adds the effect to a network under `name`, with nodes of random capacity where there are none yet of that name.
+/// Adds the effect to a network under `name`, with new nodes of random capacity if nodes of these names do not exist.
 inline std::vector<std::string> add_alone(Network& network, const std::string& name, const EffectType& type, Chance& chance) {
   std::vector<std::string> nodes;
   for (const NodeRole& role : type.nodes) {

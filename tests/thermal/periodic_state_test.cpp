@@ -10,7 +10,7 @@
 namespace heatsoak {
 namespace {
 
-/// The cycle that repeats itself, on paper: the map of a cycle is affine.
+/// The repeating cycle in closed form: the map of a cycle is affine.
 struct OnPaper {
   TwoNode::Pair start_C;
   TwoNode::Pair mean_C;
@@ -120,7 +120,7 @@ TEST(PeriodicState, held_current_is_the_rest) {
   }
 }
 
-// A body that takes hours to warm: waiting until one cycle is much like the next stops long before.
+// A body with a time constant of hours: waiting until consecutive cycles are similar would stop much too early.
 TEST(PeriodicState, a_slow_body_is_warm_however_short_the_cycle) {
   Network network = kFlatMotor.network();
   add_body(network, {0.15, 0.2, 3000.0});
@@ -130,14 +130,14 @@ TEST(PeriodicState, a_slow_body_is_warm_however_short_the_cycle) {
     const PeriodicState result = periodic_state(network, cycle);
     TransientOptions options;
     options.start_C = result.start_C;
-    // Over a quarter of an hour nothing drifts.
+    // No drift within a quarter of an hour.
     const TransientResult later =
         run_transient(network, network.values(), on_off(6.0, 0.4 * cycle_s, 0.6 * cycle_s, static_cast<int>(900.0 / cycle_s)), options);
     for (std::size_t node = 0; node < result.start_C.size(); ++node) {
       EXPECT_NEAR(later.end_C[node], result.start_C[node], 1e-3) << cycle_s << " s, node " << node;
     }
     EXPECT_NEAR(later.peak_C[winding], result.peak_C[winding], 1e-3) << cycle_s;
-    // What the body leads away, G·(T_stator − T_body), it passes on: r·G·(T_body − T_ambient).
+    // The heat that the body receives, G·(T_stator − T_body), equals the heat that it gives off, r·G·(T_body − T_ambient).
     EXPECT_NEAR(result.mean_C[stator] - result.mean_C[2], 0.2 * (result.mean_C[2] - 25.0), 1e-3) << cycle_s;
     EXPECT_GT(result.peak_C[winding], shorter_C) << cycle_s;
     shorter_C = result.peak_C[winding];
@@ -155,7 +155,8 @@ TEST(PeriodicState, a_body_that_nothing_touches_stays_at_ambient) {
   EXPECT_NEAR(result.peak_C[winding], without.peak_C[winding], 1e-4);
 }
 
-// Above the critical current of the cold motor; the fourth power of the temperature catches it, hot.
+// The current exceeds the critical current of the cold motor. The radiated heat, with the fourth power of the temperature, stabilises it
+// when hot.
 TEST(PeriodicState, radiation_may_stop_what_grows_at_first) {
   TwoNode motor = kFlatMotor;
   motor.stator_ambient_K_per_W = 20.0;
@@ -190,7 +191,7 @@ TEST(PeriodicState, destroyed_in_the_first_cycle_says_when) {
 }
 
 TEST(PeriodicState, destroyed_over_many_cycles_is_a_runaway_too) {
-  // At 0.99 it would settle at 2200 °C.
+  // At 0.99 the steady state would be 2200 °C.
   for (const double share : {0.99, 1.05}) {
     const PeriodicState result = periodic_state(kFlatMotor.network(), cycle_of(share * kFlatMotor.critical_current_A(), 10.0, 0.0));
     EXPECT_TRUE(result.runaway) << share;

@@ -17,8 +17,8 @@ void expect_relative(double value, long double expected, double tolerance, const
 
 // --- the paper's equations --------------------------------------------------------------------------------
 
-// By hand: I_RMS = 5 A · √(4/16) = 2.5 A; (2+6) K/W · 0.8 Ω · 6.25 A² = 40 K; 1 − 0.004·40 = 0.84;
-// 40/0.84 = 47.619… K; 6/8 of it are 35.714… K.
+// Hand calculation: I_RMS = 5 A · √(4/16) = 2.5 A; (2+6) K/W · 0.8 Ω · 6.25 A² = 40 K; 1 − 0.004·40 = 0.84; 40/0.84 = 47.619… K; 6/8 of it
+// are 35.714… K.
 TEST(OnOffSteadyState, numbers_computed_by_hand_at_25_C) {
   const OnOffSteadyState result = on_off_steady_state({0.8, 0.004, 2.0, 6.0}, {5.0, 4.0, 12.0, 25.0});
   EXPECT_FALSE(result.runaway);
@@ -27,8 +27,8 @@ TEST(OnOffSteadyState, numbers_computed_by_hand_at_25_C) {
   expect_relative(result.stator_C, 25.0L + 250.0L / 7.0L, 1e-12, "(10), (11)");
 }
 
-// At 40 °C: R_TA = 0.8·1.06 = 0.848 Ω, so 42.4 K cold; α·R25/R_TA = 0.004/1.06, so the denominator is 0.84 again;
-// 42.4/0.84 = 50.476190476… K and 37.857142857… K.
+// At 40 °C: R_TA = 0.8·1.06 = 0.848 Ω, so 42.4 K without feedback; α·R25/R_TA = 0.004/1.06, so the denominator is 0.84 again; 42.4/0.84 =
+// 50.476190476… K and 37.857142857… K.
 TEST(OnOffSteadyState, numbers_computed_by_hand_at_40_C) {
   const OnOffSteadyState result = on_off_steady_state({0.8, 0.004, 2.0, 6.0}, {5.0, 4.0, 12.0, 40.0});
   expect_relative(result.winding_C, 40.0L + 42.4L / 0.84L, 1e-12, "winding");
@@ -80,7 +80,7 @@ TEST(OnOffSteadyState, no_current_rests_at_ambient) {
   EXPECT_FALSE(result.runaway);
 }
 
-// --- the network's rest -----------------------------------------------------------------------------------
+// --- steady state of the network --------------------------------------------------------------------------
 
 TEST(SteadyState, network_with_copper_loss_only_is_the_closed_form_at_any_ambient) {
   Chance chance(12);
@@ -123,9 +123,9 @@ TEST(SteadyState, nothing_above_the_critical_current) {
   }
 }
 
-// --- the integrated model comes to the same ---------------------------------------------------------------
+// --- comparison with the integrated model -----------------------------------------------------------------
 
-/// Mean temperatures above ambient of the periodic motion, from the heat that passed the two resistances.
+/// Mean temperatures above ambient in the periodic state, from the heat through the two resistances.
 TwoNode::Pair periodic_mean_K(const TwoNode& motor, double current_A, double on_s, double off_s, double ambient_C) {
   const Network network = motor.network();
   const std::vector<double> values = network.values();
@@ -166,8 +166,8 @@ TEST(OnOffSteadyState, is_the_mean_of_the_integrated_model_exactly_where_alpha_i
   }
 }
 
-// With α the loss follows the ripple of the winding. The ripple is a saw tooth with the mean 0 over the on phase to
-// first order, so what remains is of second order in the cycle time.
+// With α the loss follows the ripple of the winding. The ripple is a saw tooth with zero mean over the on phase to first order. The error
+// is therefore of second order in the cycle time.
 TEST(OnOffSteadyState, is_the_mean_of_the_integrated_model_for_short_cycles_with_order_two) {
   std::vector<double> error_K;
   for (const double cycle_s : {8.0, 4.0, 2.0, 1.0}) {

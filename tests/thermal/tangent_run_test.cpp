@@ -14,7 +14,7 @@ namespace {
 
 const std::vector<std::string> kWinding{"winding"};
 
-/// Two nodes under copper loss that grows with temperature, no-load loss, and a source of unknown heat at each node.
+/// Two nodes with temperature-dependent copper loss, no-load loss, and a source of unknown heat at each node.
 Network example_network() {
   Network network;
   network.add_node("winding", 18.0);
@@ -42,7 +42,7 @@ std::vector<Interval> drive(Random& random, int rows) {
   return intervals;
 }
 
-/// By SUNDIALS, which knows nothing of the derivatives.
+/// Reference: integration by SUNDIALS without derivatives.
 std::vector<double> end_C(const Network& network, const std::vector<double>& parameters, const std::vector<double>& start_C,
                           const std::vector<Interval>& intervals) {
   TransientOptions options;

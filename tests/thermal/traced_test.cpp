@@ -1,4 +1,4 @@
-// Laws as formulas: the same heat as the law itself, for every effect of the registry and for whole networks.
+// Laws as formulas must give the same heat as the laws, for every effect of the registry and for whole networks.
 #include "thermal/traced.h"
 
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@ namespace {
 class EveryLaw : public EveryEffect {};
 INSTANTIATE_TEST_SUITE_P(Registry, EveryLaw, every_effect(), name_of_effect);
 
-/// The effect's heat through a formula of everything that may vary: the operating point and the temperatures.
+/// Returns the effect's heat through a formula of all inputs: the operating point and the temperatures.
 std::vector<double> heat_by_formula_W(const EffectType& type, const OperatingPoint<double>& at, const std::vector<double>& parameters,
                                       const std::vector<double>& temperature_C) {
   Formula formula;
@@ -74,7 +74,7 @@ TEST(Formula, WorksOutConstants) {
   EXPECT_EQ((Traced(2.0) * 3.0 + power(Traced(2.0), 3.0)).value(), 14.0);
 }
 
-TEST(Formula, NeedsOnlyWhatItsResultsHangOn) {
+TEST(Formula, NeedsOnlyWhatItsResultsDependOn) {
   Formula formula;
   const Traced x(formula, formula.input("x"));
   const Traced y(formula, formula.input("y"));
@@ -86,8 +86,8 @@ TEST(Formula, NeedsOnlyWhatItsResultsHangOn) {
   EXPECT_TRUE(needed[static_cast<std::size_t>(x.step_in(formula))]);
 }
 
-// Worked by hand: copper 3² · 0.5 Ω · (1 + 0.004·(75 − 25)) = 5.4 W into the winding; 5 K / 2.5 K/W = 2 W leave it.
-TEST(Formula, NetworkTellsHeatThatIsMadeFromHeatThatMoves) {
+// Hand calculation: copper 3² · 0.5 Ω · (1 + 0.004·(75 − 25)) = 5.4 W into the winding; 5 K / 2.5 K/W = 2 W leave it.
+TEST(Formula, NetworkSeparatesGeneratedFromTransferredHeat) {
   Network network;
   network.add_node("winding", 4.0);
   network.add_node("stator", 40.0);

@@ -90,7 +90,7 @@ TEST_P(EveryMethod, error_follows_the_tolerance) {
   const std::vector<Interval> duty{{20.0, {5.0, 300.0, 300.0, 25.0}}, {40.0, {1.0, 50.0, 50.0, 25.0}}, {30.0, {4.0, 400.0, 400.0, 25.0}}};
   const TwoNode::Pair expected = kMotor.after(duty, {25.0L, 25.0L});
   const auto error_K = [&](double tolerance) {
-    // The largest of several ends: one alone may be right by chance.
+    // Uses the largest error of several ends, because a single one may be small by chance.
     double largest_K = 0.0;
     const TransientResult result = run(kMotor, duty, tight(tolerance), [&](const TransientMoment& moment) {
       long double start_s = 0.0L;
@@ -119,7 +119,7 @@ TEST_P(EveryMethod, ledger_closes_for_random_duties) {
   for (int i = 0; i < 30; ++i) {
     const TwoNode motor = chance.motor();
     const std::vector<Interval> duty = random_duty(chance, motor, 25);
-    TransientOptions options = tight(1e-6);  // the balance closes to rounding whatever the tolerance
+    TransientOptions options = tight(1e-6);  // the balance closes within rounding at any tolerance
     options.with_ledger = true;
     const TransientResult result = run(motor, duty, options);
     ASSERT_EQ(result.heat_J.size(), 12U);
@@ -193,7 +193,7 @@ TEST_P(EveryMethod, single_exponential_crosses_the_limit_at_the_logarithm) {
   TransientOptions options = tight(1e-9);
   options.limits = {{0, 155.0}};
   const TransientResult result = run_transient(network, network.values(), duty, options);
-  // It rests at 20 + 144 °C with a time constant of 32 s: 135 of 144 K after 32 s · ln(144/9) = 32 s · 4 · ln 2
+  // Its steady state is 20 + 144 °C with a time constant of 32 s: 135 of 144 K after 32 s · ln(144/9) = 32 s · 4 · ln 2
   ASSERT_TRUE(result.time_to_limit_s[0].has_value());
   EXPECT_NEAR(*result.time_to_limit_s[0], 128.0 * std::log(2.0), 1e-3);
 }
@@ -245,7 +245,7 @@ TEST_P(EveryMethod, the_first_of_many_crossings_is_reported) {
   EXPECT_NEAR(*result.time_to_limit_s[0], static_cast<double>(start_s + bisected(0.0L, duty[piece].duration_s, above)), 1e-3);
 }
 
-// The slower a limit is crossed the longer its event is zero within rounding.
+// The slower a limit is crossed, the longer its event function is zero within rounding.
 TEST_P(EveryMethod, a_limit_crossed_at_a_crawl_is_found) {
   const OperatingPoint<double> at{5.0, 300.0, 300.0, 25.0};
   const TwoNode::Pair rest_C = kMotor.rest_C(at);
@@ -258,7 +258,7 @@ TEST_P(EveryMethod, a_limit_crossed_at_a_crawl_is_found) {
       const TransientResult result = run(kMotor, std::vector<Interval>{{1e5, at}}, options);
       ASSERT_TRUE(result.time_to_limit_s[0].has_value()) << below_K;
       EXPECT_EQ(result.end_s, 1e5);
-      // The state is known to some 1e-7 K, so the time to that over the slope.
+      // The state has an error of about 1e-7 K, so the time has this error divided by the slope.
       const double slope_K_per_s = static_cast<double>(kMotor.rate_K_per_s(kMotor.after(expected_s, {25.0L, 25.0L}, at), at)[node]);
       EXPECT_NEAR(*result.time_to_limit_s[0], expected_s, 1e-3 + 1e-7 / slope_K_per_s) << below_K;
     }
@@ -294,7 +294,7 @@ TEST_P(EveryMethod, cooling_through_a_limit_is_no_crossing) {
 
 // --- peaks ------------------------------------------------------------------------------------------------
 
-// After switching off the winding goes on heating the stator: its maximum lies between the solver's steps.
+// After switch-off the winding continues to heat the stator, whose maximum lies between the solver's steps.
 TEST_P(EveryMethod, heat_soak_peak_of_the_stator_is_found_between_the_steps) {
   Chance chance(500);
   double worst_K = 0.0;
@@ -314,7 +314,7 @@ TEST_P(EveryMethod, heat_soak_peak_of_the_stator_is_found_between_the_steps) {
     const TransientResult result = run(motor, std::vector<Interval>{{on_s, on}, {5000.0, off}}, tight(1e-9));
     worst_K = std::max(worst_K, std::abs(result.peak_C[stator] - peak_C));
     EXPECT_NEAR(result.peak_C[stator], peak_C, 1e-3) << i;
-    // A maximum is flat: where it lies is known less well than how high it is.
+    // A maximum is flat, so its time is less accurate than its height.
     const double share = std::abs(result.peak_time_s[stator] - on_s - static_cast<double>(peak_s)) / static_cast<double>(peak_s);
     EXPECT_LT(share, 0.02) << i;
     EXPECT_NEAR(result.peak_C[winding], static_cast<double>(at_switch_C[winding]), 1e-6);
@@ -323,7 +323,7 @@ TEST_P(EveryMethod, heat_soak_peak_of_the_stator_is_found_between_the_steps) {
   RecordProperty("worst_K", std::to_string(worst_K));
 }
 
-// A limit just below the peak is passed and left again within one step.
+// A limit just below the peak is exceeded and left again within one step.
 TEST_P(EveryMethod, a_peak_above_a_limit_has_a_time_to_limit) {
   const OperatingPoint<double> off = current_point(0.0);
   const std::vector<Interval> duty{{12.0, current_point(6.0)}, {400.0, off}};
@@ -337,7 +337,7 @@ TEST_P(EveryMethod, a_peak_above_a_limit_has_a_time_to_limit) {
       options.limits = {{stator, peak_C - below_K}, {stator, peak_C + 0.03}};
       const TransientResult result = run(kMotor, duty, options);
       const auto above = [&](long double time_s) { return kMotor.after(time_s, at_switch_C, off)[stator] - options.limits[0].limit_C; };
-      if (tolerance > 1e-8 && below_K < 0.03) {  // the peak itself is less well known
+      if (tolerance > 1e-8 && below_K < 0.03) {  // the peak itself is less accurate
         EXPECT_EQ(result.time_to_limit_s[0].has_value(), result.peak_C[stator] > options.limits[0].limit_C);
         continue;
       }
@@ -391,7 +391,7 @@ TEST_P(EveryMethod, just_below_the_critical_current_it_settles) {
   TwoNode motor = kMotor;
   motor.temperature_coefficient_per_K = 0.01;
   const OperatingPoint<double> at = current_point(std::sqrt(0.88) * motor.critical_current_A());
-  const TwoNode::Pair rest_C = motor.rest_C(at);  // 25 + 100·0.88/0.12 °C
+  const TwoNode::Pair rest_C = motor.rest_C(at);  // steady state at 25 + 100·0.88/0.12 °C
   ASSERT_NEAR(static_cast<double>(rest_C[winding]), 25.0 + 100.0 * 0.88 / 0.12, 1e-6);
   const TransientResult result = run(motor, std::vector<Interval>{{1e5, at}}, tight(1e-9));
   EXPECT_FALSE(result.destroyed);
@@ -409,8 +409,8 @@ TEST_P(EveryMethod, without_current_and_speed_it_stays_at_ambient) {
   EXPECT_EQ(result.end_s, 3600.0);
 }
 
-// A trial step that is too long for an explicit method may look below the zero of copper's line, where a headroom without
-// limit has no current.
+// A trial step that is too long for an explicit method may evaluate the copper resistance below its zero. A headroom without limit has no
+// current there.
 TEST_P(EveryMethod, long_rests_after_long_loads_come_to_ambient) {
   for (const double current_A : {2.0, 4.0, 5.5, 5.9, 6.0, 6.1}) {
     for (const double phase_s : {900.0, 1200.0, 1800.0, 3600.0}) {
@@ -443,7 +443,7 @@ TEST_P(EveryMethod, behind_a_huge_resistance_all_heat_stays) {
   motor.stator_ambient_K_per_W = 1e12;
   motor.temperature_coefficient_per_K = 0.0;
   const TransientResult result = run(motor, std::vector<Interval>{{600.0, {2.0, 100.0, 100.0, 25.0}}}, tight(1e-9));
-  // (3.6 W + 0.8 W) · 600 s = 2640 J in both bodies
+  // (3.6 W + 0.8 W) · 600 s = 2640 J in both nodes
   EXPECT_NEAR(3.2 * (result.end_C[winding] - 25.0) + 28.0 * (result.end_C[stator] - 25.0), 2640.0, 1e-4);
 }
 
@@ -452,7 +452,7 @@ TEST_P(EveryMethod, behind_a_tiny_resistance_both_nodes_are_one_body) {
   motor.winding_stator_K_per_W = 1e-3;
   motor.temperature_coefficient_per_K = 0.0;
   const TransientResult result = run(motor, std::vector<Interval>{{60.0, current_point(4.0)}}, tight(1e-9));
-  // 14.4 W on 31.2 J/K behind 2.8 K/W; the two differ by 14.4 W · 1 mK/W at most
+  // One body: 14.4 W on 31.2 J/K behind 2.8 K/W. The two nodes differ by at most 14.4 W · 1 mK/W.
   const double one_body_C = 25.0 + 14.4 * 2.8 * (1.0 - std::exp(-60.0 / (31.2 * 2.8)));
   EXPECT_NEAR(result.end_C[winding], one_body_C, 0.02);
   EXPECT_NEAR(result.end_C[stator], one_body_C, 0.02);
@@ -489,7 +489,7 @@ TEST(Transient, more_current_is_nowhere_colder) {
   }
 }
 
-// --- the way it is driven ---------------------------------------------------------------------------------
+// --- intervals and calls ----------------------------------------------------------------------------------
 
 TEST_P(EveryMethod, cutting_an_interval_in_pieces_changes_nothing) {
   const OperatingPoint<double> at{5.0, 300.0, 300.0, 25.0};

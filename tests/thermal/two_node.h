@@ -1,4 +1,4 @@
-// The two-node motor solved on paper: what the tests of this folder compare with.
+// Closed-form solution of the two-node motor, the reference of this folder's tests.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ namespace heatsoak {
 
 enum Node { winding, stator, ambient };
 
-/// Under a constant current the network is linear, also with α: dT/dt = A·T + b, T(t) = T∞ + exp(A·t)·(T0 − T∞).
-/// All of it in long double.
+/// Under a constant current the network is linear, also with α: dT/dt = A·T + b, T(t) = T∞ + exp(A·t)·(T0 − T∞). All values are long
+/// double.
 struct TwoNode {
   double resistance_25C_ohm = 1.0;
   double temperature_coefficient_per_K = 0.0039;
@@ -65,7 +65,7 @@ struct TwoNode {
     return {-(x.d * x.constant[0] - x.b * x.constant[1]) / determinant, -(x.a * x.constant[1] - x.c * x.constant[0]) / determinant};
   }
 
-  /// Positive where the copper loss outgrows what can be led away.
+  /// Positive if the copper loss grows faster than the heat that can be removed.
   [[nodiscard]] std::array<long double, 2> eigenvalues_per_s(const OperatingPoint<double>& at) const {
     const Linear x = linear(at);
     const long double middle = 0.5L * (x.a + x.d);
@@ -98,13 +98,13 @@ struct TwoNode {
     return start_C;
   }
 
-  /// Above this current there is no rest.
+  /// Above this current there is no steady state.
   [[nodiscard]] double critical_current_A() const {
     return std::sqrt(1.0 / (temperature_coefficient_per_K * resistance_25C_ohm * (winding_stator_K_per_W + stator_ambient_K_per_W)));
   }
 };
 
-/// Where a function with one change of sign between `low` and `high` is zero.
+/// Returns the zero of a function with one change of sign between `low` and `high`.
 template <class Function>
 long double bisected(long double low, long double high, const Function& function) {
   const bool rises = function(high) > 0.0L;
@@ -115,7 +115,7 @@ long double bisected(long double low, long double high, const Function& function
   return 0.5L * (low + high);
 }
 
-/// Seeded chance for sweeps.
+/// Random numbers with a fixed seed.
 class Chance {
  public:
   explicit Chance(unsigned seed) : engine_(seed) {}
@@ -132,7 +132,7 @@ class Chance {
             .winding_J_per_K = by_ratio(1.0, 15.0),
             .stator_J_per_K = by_ratio(10.0, 200.0)};
   }
-  /// At most 0.9 of the critical current, for a copper loss of at most 60 W.
+  /// Draws at most 0.9 of the critical current, and a copper loss of at most 60 W.
   OperatingPoint<double> point(const TwoNode& motor) {
     const double most_A = std::min(0.9 * motor.critical_current_A(), std::sqrt(60.0 / motor.resistance_25C_ohm));
     const double speed_rad_per_s = between(0.0, 800.0);

@@ -1,6 +1,7 @@
-// What each number of SelectionRules does: the diagnosis with it off, halved and doubled, on a few motors of which everything is known.
+// Ablation study of SelectionRules: the diagnosis with each number disabled, halved and doubled, on a few synthetic motors with known
+// effects.
 //   heatsoak_attribution_ablation [NAME…]
-// One line of the table per number; without names all of them.
+//   Prints one table row per number; without names it tests all of them.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -20,7 +21,7 @@ struct Sealed {
   DiagnosisInput input;
   const Subject* subject = nullptr;
   const Outsider* outsider = nullptr;
-  bool is_logged = true;  ///< some signal follows the outsider
+  bool is_logged = true;  ///< true if a logged signal follows the outsider's heat
 };
 
 std::vector<Sealed> cases() {
@@ -79,7 +80,7 @@ std::string in_short(const Marks& marks) {
   return fmt::format("{}, {}, {}, {}", share(marks.false_alarm), share(marks.single), share(marks.outside), share(marks.unlogged));
 }
 
-/// `off` is the value with which the number does nothing.
+/// A number of SelectionRules; `off` is the value that disables it.
 struct Number {
   const char* name;
   double SelectionRules::*value;

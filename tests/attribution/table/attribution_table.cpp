@@ -1,7 +1,7 @@
-// How the diagnosis does on motors of which everything is known: one table.
+// Scores the diagnosis on synthetic motors with known effects and prints one table.
 //   heatsoak_attribution_table [nothing N] [single N] [pair N] [outside N] [unlogged N] [calibrated N] [hard N] [interval N]
-//     [effect NAME SIZE SEED]; NAME also of an outsider, whose size is 1
-// One line per case, wrong ones marked with X, with what the tool weighed; then the table.
+//     [effect NAME SIZE SEED]; NAME may also be an outsider, whose size is 1
+//   Prints one line per case with the evidence that the tool compared; wrong cases are marked with X. The table follows.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -17,7 +17,7 @@ namespace {
 using namespace heatsoak;
 using namespace heatsoak::truth;
 
-/// What makes an examination harder than the ordinary one.
+/// Conditions that make an examination harder than the ordinary one.
 struct Hardship {
   const char* name;
   void (*make)(Case& sealed);
@@ -40,7 +40,8 @@ struct Marks {
   struct Harder {
     Share false_alarm, detected, right;
   };
-  Harder whole, loose;  ///< of models that were calibrated before: parts that hang together, and loose ones
+  /// Scores of previously calibrated models: motors with good thermal contact between their parts, and with poor contact.
+  Harder whole, loose;
   double seconds_s = 0.0;
   int cases = 0;
   std::vector<double> after_over_floor;
@@ -60,7 +61,7 @@ void say(const std::string& label, std::uint64_t seed, const Answer& answer, boo
   std::fflush(stdout);
 }
 
-/// Typical within a factor of 1.4.
+/// Draws a size within a factor of 1.4 of the typical one.
 double size_of(Dice& dice) { return 0.7 * std::pow(2.0, dice.uniform(0.0, 1.0)); }
 
 Answer examined(Marks& marks, const Case& sealed) {
@@ -80,7 +81,7 @@ void examine_nothing(Marks& marks, int number) {
   }
 }
 
-/// Whether the interval that users are shown holds the true size, in words; nothing where both laws are not of one form.
+/// Says whether the reported interval holds the true size. Empty if the two laws differ in form.
 std::string cover(Marks& marks, const Answer& answer, const Subject& subject, double size) {
   if (subject.true_value == 0.0 || answer.diagnosis.effects.size() != 1 || answer.named.front() != subject.name) {
     return "";
@@ -130,7 +131,7 @@ void examine_singles(Marks& marks, int number) {
   }
 }
 
-/// Effects whose size the tool's law has in common, on other motors than the rest of the table: only whether their intervals hold.
+/// Scores only the intervals, for effects whose law matches the tool's, on other motors than the rest of the table.
 void examine_intervals(Marks& marks, int number) {
   for (int k = 0; k < number; ++k) {
     for (std::size_t s = 0; s < subjects().size(); ++s) {
@@ -206,7 +207,7 @@ void examine_strangers(Marks& marks, int number) {
   }
 }
 
-/// Nothing missing, then an effect drawn by the case's own seed.
+/// Runs a case without a missing effect, then one with an effect drawn by the case's seed.
 void examine_harder(Marks& marks, Case sealed, int number, const std::string& kind, Marks::Harder& share) {
   const std::vector<const Subject*> visible = visible_subjects();
   const Answer nothing = examined(marks, sealed);
@@ -225,7 +226,7 @@ void examine_harder(Marks& marks, Case sealed, int number, const std::string& ki
   say(fmt::format("{} x {:.2f}; {}", subject.name, size, kind), sealed.seed, answer, is_right || is_silent(answer));
 }
 
-/// Motors of parts that hang together well or hardly at all, with a model that was calibrated before anything was missing.
+/// Motors with good or poor thermal contact between their parts, and a model calibrated before the effect appeared.
 void examine_calibrated(Marks& marks, int number) {
   constexpr double kWhole_ratio = 0.15;
   const std::vector<double> metal_ratios{0.02, 0.05, 0.1, 0.2, 0.5, 1.0};
@@ -291,7 +292,7 @@ void print_table(Marks& marks) {
   }
 }
 
-/// Of the scores that have cases; the exit code is 1 where one misses its target.
+/// Returns false if a score that has cases misses its target. The exit code is then 1.
 bool meets_targets(const Marks& marks) {
   const auto is_within = [](const Share& share, double low, double high) {
     const double reached = share.of > 0 ? static_cast<double>(share.right) / share.of : low;
@@ -308,7 +309,7 @@ bool meets_targets(const Marks& marks) {
 
 namespace {
 
-/// Subjects, outsiders and strangers of that name; false where there is none.
+/// Runs the subjects, outsiders and strangers with this name; false if there is none.
 bool examine_named(Marks& marks, std::string_view name, double size, std::uint64_t seed) {
   int found = 0;
   for (const Subject& subject : subjects()) {

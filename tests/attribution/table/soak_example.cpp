@@ -1,5 +1,5 @@
-// Writes the logs of reports/soak: a wheel motor whose stator is screwed to a chassis that soaks heat, which the data sheet's two
-// nodes do not know. Synthetic; the same bytes on every run.
+// Writes the synthetic logs of reports/soak: a wheel motor whose stator is bolted to a chassis that absorbs heat. The data sheet's two-node
+// model lacks the chassis. Every run writes the same bytes.
 //   heatsoak_soak_example FOLDER
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ using namespace heatsoak::truth;
 
 constexpr int kRows = 1200;
 
-/// The data sheet's drag, K_t·I_0, and a chassis of 0.4 kg of aluminium behind the motor's flange.
+/// The data sheet's drag torque K_t·I_0, and a chassis of 0.4 kg of aluminium behind the motor's flange.
 Missing chassis() {
   Missing missing;
   missing.heat.push_back([](const Moment& m, PerPart& q) {

@@ -1,6 +1,7 @@
-// How the calibration does on motors of which everything is known: tables.
+// Scores the calibration on synthetic motors with known parameters and prints tables.
 //   heatsoak_calibration_table [CASES [both|two|stator|lost|resistance|local [FIRST_SEED]]]
-// "local": what four runs tell of each parameter at the truth, without any prior, beside what a prototype of the method found.
+//   "local": the information that four runs contain about each parameter at the truth, without any prior, compared with a prototype of the
+//   method.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// 95 % interval of a share (Clopper and Pearson 1934).
+/// Returns the 95 % interval of a share (Clopper and Pearson 1934).
 std::pair<double, double> bounds_of(int hits, int count) {
   const auto quantile = [](double a, double b, double p) { return boost::math::quantile(boost::math::beta_distribution<>(a, b), p); };
   return {hits == 0 ? 0.0 : quantile(hits, count - hits + 1.0, 0.025), hits == count ? 1.0 : quantile(hits + 1.0, count - hits, 0.975)};
@@ -38,7 +39,7 @@ void tabulate(const std::string& title, const Sheet& sheet, const Case& like, in
              "covered", "95 % of that", "median err", "90 % err", "rms z", "half width", "averaged");
   std::vector<double> seconds_s;
   for (std::size_t f = 0; f < results.front().marks.size(); ++f) {
-    // How much wider the interval is for averaging over suppositions than it would be for the most probable one.
+    // `averaged`: factor by which averaging over hypotheses widens the interval, compared with the most probable hypothesis.
     std::vector<double> errors, widths, averaged;
     int covered = 0;
     double squares = 0.0;
@@ -74,12 +75,12 @@ void tabulate(const std::string& title, const Sheet& sheet, const Case& like, in
 struct LocalRow {
   bool winding_is_sensed;
   double flux_W;
-  const char* prototype;  ///< ln C_w, ln R_ws, ln C_s, ln R_sa
+  const char* prototype;  ///< prototype's values for ln C_w, ln R_ws, ln C_s, ln R_sa
 };
 
-/// Standard deviations from the whitened slopes, with the flux and the noise known.
+/// Prints standard deviations from the whitened derivatives, with known flux and noise.
 void tabulate_local(std::uint64_t seed) {
-  // Chosen so that the first row agrees; the note does not tell the load of its prototype.
+  // This value makes the first row agree. The note does not state the load of its prototype.
   constexpr double kMild_A = 6.8;
   fmt::print(
       "\nstandard deviation of the logarithm in %, four runs of 30 min, no prior, flux of 180 s known\n{:24} {:>8} {:>8} {:>8} {:>8}   "

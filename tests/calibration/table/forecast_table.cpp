@@ -1,5 +1,5 @@
-// Forecasts of recordings by others, protocol: fit to some runs, predict others. Prints a table; decides nothing. Exit code 77 where the
-// recordings are not at hand.
+// Forecasts of third-party recordings: fits some runs and predicts others. Prints a table without pass or fail. The exit code is 77 if the
+// recordings are not available.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -25,8 +25,8 @@ struct Part {
 
 struct Case {
   std::string name;
-  std::string motor;    ///< below reports
-  std::string mapping;  ///< below the sources
+  std::string motor;    ///< path below reports
+  std::string mapping;  ///< path below the sources
   std::string folder;
   std::vector<Part> fitted;
   std::vector<Part> predicted;
@@ -97,7 +97,7 @@ std::string errors(const std::vector<PredictedRun>& runs) {
   return cells(runs, [](const PredictedSignal& each) { return fmt::format("{:.2f}", each.rmse_K); });
 }
 
-/// Predictions of the unseen runs with the base network.
+/// Returns predictions of the unseen runs with the base network.
 std::vector<PredictedRun> predictions(const ForecastModel& model, const Eigen::VectorXd& theta, const std::vector<MeasuredRun>& runs) {
   std::vector<PredictedRun> all;
   for (const MeasuredRun& run : runs) {
@@ -159,7 +159,7 @@ void examine(const Case& one, int threads) {
 }  // namespace
 }  // namespace heatsoak
 
-/// Arguments: parts of names of the cases that are wanted; none: all.
+/// Arguments: parts of the names of the wanted cases; without arguments all cases run.
 int main(int argc, char** argv) {
   constexpr int kSkipped = 77;
   if (!heatsoak::measured_data("tasrv_uav_motor")) {

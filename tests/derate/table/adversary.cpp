@@ -29,7 +29,7 @@ Segment random_segment(const BarrierRules& rules, Random& random) {
   return segment;
 }
 
-/// Long enough, and cut at the end.
+/// Extends or cuts the script to kScript_s.
 void complete(Script& script, const BarrierRules& rules, Random& random) {
   double sum_s = 0.0;
   for (std::size_t i = 0; i < script.segments.size(); ++i) {
@@ -136,9 +136,9 @@ UsePlayed play(const Script& script, const Observer& observer, const CurrentTabl
         end_interval();
       }
       held.take(current_A, segment.speed_rad_per_s, period_s);
-      std::array<float, firmware::kSignalCount> told{};
-      std::ranges::transform(signals(current_A), told.begin(), [](double value) { return static_cast<float>(value); });
-      run.step(told);
+      std::array<float, firmware::kSignalCount> guard_inputs{};
+      std::ranges::transform(signals(current_A), guard_inputs.begin(), [](double value) { return static_cast<float>(value); });
+      run.step(guard_inputs);
       result.winding_peak_C = std::max<double>(result.winding_peak_C, run.state_C()[states::winding]);
     }
     if (held.duration_s > 0.0) {

@@ -1,8 +1,9 @@
-// Makes reports/derate anew: millions of uses and motors against the promise of `derate`. The same bytes on every run but for the time,
-// unless MINUTES ends it.
+// Regenerates reports/derate: millions of loads and motors test the guarantee of `derate`. Every run writes the same bytes except for the
+// time, unless MINUTES ends it.
 //   heatsoak_worst_use [FOLDER [TRIALS [MINUTES]]]
-// FOLDER: reports/derate of the checkout; TRIALS: per class, 1 000 000 unless given; MINUTES: for all classes, no end unless given. The
-// files are written anew after every class, with the trials that were made until then; progress goes to stderr.
+//   FOLDER: reports/derate of the checkout by default. TRIALS: per class, 1 000 000 by default. MINUTES: for all classes, unlimited by
+//   default.
+//   The files are rewritten after every class with the trials made until then. Progress goes to stderr.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,13 +27,13 @@ namespace heatsoak::studies {
 namespace {
 
 constexpr std::uint64_t kSeed = 20'261;
-/// Streams of chance of the motors; those of the search and of the check of `derate` end below.
+/// First random stream of the motors. The streams of the search and of the check in `derate` have lower numbers.
 constexpr std::uint64_t kMotors = std::uint64_t{1} << 40U;
 constexpr std::uint64_t kPanel = std::uint64_t{1} << 41U;
 constexpr std::uint64_t kFresh = std::uint64_t{1} << 42U;
 constexpr int kMotorsPerUse = 64;
 
-/// The paper's robot with the motor that it lost, and what `derate` makes of them with its usual options.
+/// The paper's robot with the motor that failed in it, and their derating with the default options.
 struct Subject {
   Robot robot = twente();
   Motor motor = with_default_spreads(ecx_32());
@@ -42,8 +43,8 @@ struct Subject {
 
 struct Worst {
   double winding_C = 0.0;
-  std::uint64_t use = 0;    ///< number of the script
-  std::uint64_t motor = 0;  ///< its stream of chance, or number of the corner
+  std::uint64_t use = 0;    ///< number of the load script
+  std::uint64_t motor = 0;  ///< its random stream, or number of the corner
   Script script;
 };
 
@@ -55,7 +56,7 @@ struct Tally {
   std::uint64_t over = 0;
   Worst worst = {};
   static constexpr int kFrom_C = 0;
-  static constexpr int kCells = 600;  ///< of 1 K
+  static constexpr int kCells = 600;  ///< cells of 1 K
   std::vector<std::uint64_t> peaks = std::vector<std::uint64_t>(kCells);
 
   void take(const MotorPeak& peak, std::uint64_t use, std::uint64_t motor, const Script& script) {
@@ -66,7 +67,7 @@ struct Tally {
       worst = {peak.winding_C, use, motor, script};
     }
   }
-  /// Temperature that the share of trials stays below, to 1 K.
+  /// Returns the temperature that this share of the trials stays below, with a resolution of 1 K.
   [[nodiscard]] int quantile_C(double share) const {
     std::uint64_t sum = 0;
     for (int cell = 0; cell < kCells; ++cell) {
@@ -88,7 +89,7 @@ std::vector<Network> drawn(const Subject& subject, std::uint64_t first_stream) {
   return networks;
 }
 
-/// Every value at one end of what the file says of it, the ends by the bits of `corner`.
+/// Returns a network with every parameter at the low or high end of its spread; the bits of `corner` select the ends.
 Network at_the_ends(const Subject& subject, std::uint64_t corner) {
   Motor motor = subject.motor;
   unsigned bit = 0;
@@ -105,7 +106,7 @@ UsePlayed played(const Subject& subject, const Script& script) {
   return play(script, subject.derating.observer, subject.derating.table, subject.motor, subject.robot, subject.options.period_s);
 }
 
-/// How hot a use makes the same motors: what the adversary climbs by.
+/// Returns the heating of a fixed panel of motors by a load. The adversary maximises this score.
 double heat_of(const UsePlayed& use, const Subject& subject, const std::vector<std::vector<Network>>& panel) {
   double sum_C = 0.0;
   for (const std::vector<Network>& motors : panel) {
@@ -116,7 +117,7 @@ double heat_of(const UsePlayed& use, const Subject& subject, const std::vector<s
   return sum_C;
 }
 
-/// The hottest uses so far; half of the new ones are changes of them.
+/// Keeps the hottest loads so far. Half of the new loads are mutations of them.
 class Adversary {
  public:
   explicit Adversary(const Subject& subject) : subject_(subject) {
@@ -154,17 +155,17 @@ class Adversary {
  private:
   const Subject& subject_;
   std::vector<std::vector<Network>> panel_;
-  std::deque<std::pair<double, Script>> best_;  ///< hottest first
+  std::deque<std::pair<double, Script>> best_;  ///< sorted, hottest first
 };
 
-/// When a class has to end, and how far it is.
+/// Time limit and progress of a class.
 class Clock {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
   explicit Clock(double minutes) : start_(now()), minutes_(minutes) {}
   [[nodiscard]] double elapsed_min() const { return minutes_between(start_, now()); }
-  /// Shares the time that is left among the classes that are left.
+  /// Divides the remaining time equally among the remaining classes.
   void begin_class(int classes_left) { class_end_min_ = elapsed_min() + (minutes_ - elapsed_min()) / classes_left; }
   [[nodiscard]] bool is_over() const { return elapsed_min() > class_end_min_; }
   void report(const Tally& tally, std::uint64_t trials) {
@@ -186,7 +187,7 @@ class Clock {
 };
 
 using MakeScript = std::function<Script(Random& random)>;
-/// Every use on motors of its own.
+/// Runs every load on newly drawn motors.
 void run_class(Tally& tally, const Subject& subject, std::uint64_t trials, std::uint64_t number, Clock& clock, const MakeScript& make,
                const std::function<void(const Script&, const UsePlayed&)>& learn = {}) {
   const std::uint64_t uses = (trials + kMotorsPerUse - 1) / kMotorsPerUse;
@@ -210,7 +211,7 @@ void run_class(Tally& tally, const Subject& subject, std::uint64_t trials, std::
   }
 }
 
-/// All corners of the tolerances under the hottest uses and random ones.
+/// Runs all corners of the tolerances under the hottest loads and under random ones.
 void run_corners(Tally& tally, const Subject& subject, std::uint64_t trials, Clock& clock, const Adversary& adversary) {
   const auto values = static_cast<unsigned>(
       std::ranges::count_if(subject.motor.parameters, [](const auto& each) { return needs_spread(each.first) && each.second.spread; }));
@@ -236,10 +237,10 @@ void run_corners(Tally& tally, const Subject& subject, std::uint64_t trials, Clo
 
 struct Retest {
   int motors = 0;
-  int over_check = 0;  ///< in one of the uses of the check
-  int over_all = 0;    ///< in one of them, or of what the adversary found
+  int over_check = 0;  ///< motors over the limit in a load of the check
+  int over_all = 0;    ///< motors over the limit in one of these loads or in one that the adversary found
 };
-/// The promise on fresh motors, with the uses that `derate` looks at and with the hottest that were found.
+/// Checks the guarantee on new motors, with the loads that `derate` checks and with the hottest ones found.
 Retest retest(const Subject& subject, const Adversary& adversary, int motors) {
   constexpr std::size_t kHottest = 8;
   const std::vector<UsePlayed> found = adversary.best(kHottest);
@@ -313,7 +314,7 @@ Chart chart_of(std::span<const Tally> tallies, double limit_C) {
   return chart;
 }
 
-/// `written` gets the classes that are done, after each of them.
+/// Calls `written` with the completed classes after each class.
 std::vector<Tally> run_all(const Subject& subject, std::uint64_t trials, Clock& clock, Adversary& adversary,
                            const std::function<void(std::span<const Tally>)>& written) {
   const BarrierRules& rules = subject.derating.rules;

@@ -1,5 +1,5 @@
-// Writes the log of reports/friction_test: the paper's robot drives the steady-state test, wheel 3 with rollers that drag twice as
-// much as the others'. Synthetic; the same bytes on every run.
+// Writes the synthetic log of reports/friction_test: the paper's robot drives the steady-state test. The rollers of wheel 3 have twice the
+// drag of the others. Every run writes the same bytes.
 //   heatsoak_friction_example FOLDER
 #include <fstream>
 
@@ -10,9 +10,9 @@ namespace heatsoak {
 namespace {
 
 constexpr double kPlantPeriod_s = 0.001;
-constexpr std::size_t kEvery = 2;  ///< of the drive's rows is in the log, as radios send them
+constexpr std::size_t kEvery = 2;  ///< every second row of the drive is in the log, as a radio link would send it
 
-/// 20 mN m as the wheel's direction has it and 5 mN m beside, at the wheel; README.md of the folder says so.
+/// Friction at the wheel: 20 mN m that varies with the wheel's direction, plus 5 mN m constant, as in README.md of the folder.
 Robot with_dirty_wheel(Robot robot) {
   robot.heading_double_angle_Nm = 0.0;
   for (const double axis_rad : robot.wheel_axis_rad) {

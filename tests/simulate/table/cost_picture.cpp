@@ -9,10 +9,10 @@ namespace heatsoak::studies {
 namespace {
 
 constexpr int kWidth_px = 1200;
-constexpr int kNames_px = 280;  ///< left column
+constexpr int kNames_px = 280;  ///< width of the left column
 constexpr int kRow_px = 22;
 constexpr int kColumn_px = (kWidth_px - kNames_px - 20) / 4;
-constexpr int kBar_px = kColumn_px - 110;  ///< longest; beside it stands its value
+constexpr int kBar_px = kColumn_px - 110;  ///< longest bar; its value is printed beside it
 constexpr const char* kKeeps = "#2b7bba";
 constexpr const char* kGuard = "#1b7837";
 constexpr const char* kOver = "#c8413b";

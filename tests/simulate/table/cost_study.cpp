@@ -1,4 +1,4 @@
-// What limiting costs at three levels of aggressiveness: the guard against six other ways, one of which knows the true motor.
+// Cost of limiting at three levels of aggressiveness: the guard compared with six other methods, one of which knows the true motor.
 #include "cost_study.h"
 
 #include <fmt/format.h>
@@ -38,7 +38,7 @@ double upper_bound(std::size_t hits, std::size_t count) {
 namespace {
 
 constexpr std::size_t kMatches = 3;
-constexpr std::size_t kMotors = 9;  ///< each in one of the matches
+constexpr std::size_t kMotors = 9;  ///< motors, each assigned to one of the matches
 
 enum class Method : std::uint8_t { none, sheet_cap, hindsight_cap, stator_ramp, overload, guard_unsensed, guard, oracle };
 struct MethodSpec {
@@ -61,7 +61,7 @@ struct Level {
   std::string name;
   const char* key;
   HardMatch match;
-  std::vector<Game> games;  ///< by seed, from 1
+  std::vector<Game> games;  ///< index is the seed − 1
 };
 
 struct Known {
@@ -70,7 +70,7 @@ struct Known {
   Motor motor;
   MotorGuard guard;
   std::vector<Motor> drawn;
-  std::vector<Derating> exact;  ///< of each drawn motor
+  std::vector<Derating> exact;  ///< one per drawn motor
 };
 
 struct Run {
@@ -79,11 +79,11 @@ struct Run {
   double off_plan_s = 0.0;
 };
 
-/// One level with one knowledge.
+/// Results for one level and one knowledge of the motor.
 struct Cell {
   const Level* level = nullptr;
   const Known* known = nullptr;
-  double cap_A = kAbsent;  ///< found in hindsight; absent: not needed
+  double cap_A = kAbsent;  ///< found in hindsight; absent if no cap is needed
   std::array<std::vector<Run>, kMethods.size()> runs;
 };
 
@@ -110,7 +110,7 @@ std::unique_ptr<Limiter> make_limiter(Method method, const Known& known, std::si
 Run drive(const Level& level, const Known& known, Method method, std::size_t i, double cap_A = kAbsent) {
   Robot robot = level.match.robot;
   if (method == Method::hindsight_cap) {
-    // By the voltage and the lowest resistance, as the firmware holds its own limit: a cold winding gets more than a warm one.
+    // The firmware limits the current through the voltage and the lowest resistance, so a cold winding gets more than a warm one.
     robot.current_limit_A = cap_A;
   }
   const Game& game = level.games[seed_of(i) - 1];
@@ -125,8 +125,8 @@ Run drive(const Level& level, const Known& known, Method method, std::size_t i, 
   return {hardship.score.winding_peak_C, hardship.score.distance_m, hardship.off_plan_s};
 }
 
-/// Drives all motors with the largest cap, to 0.1 A, with which every one of them keeps its limit in its match: first for the motor that is
-/// hottest without limit, then for any that the cap leaves over the limit.
+/// Finds the largest cap, to 0.1 A, with which all motors keep their limits in their matches, and drives all motors with it. The search
+/// starts with the motor that is hottest without limit and continues with any motor that still exceeds its limit.
 void find_cap(Cell& cell) {
   const std::vector<Run>& free = cell.runs[place_of(Method::none)];
   std::vector<Run>& runs = cell.runs[place_of(Method::hindsight_cap)];
@@ -199,7 +199,7 @@ std::string name_of(const Cell& cell, const MethodSpec& spec) {
   }
 }
 
-/// Without "-0.0".
+/// Formats a number without "-0.0".
 std::string number(double value, int decimals) {
   const double step = std::pow(10.0, -decimals);
   return fmt::format("{:.{}f}", std::abs(value) < 0.5 * step ? 0.0 : value, decimals);
@@ -249,7 +249,7 @@ Sheet all_runs(const std::vector<Cell>& cells) {
   return sheet;
 }
 
-/// Least distance not driven of the other ways that no motor overheats with; the oracle is none, because nobody has it.
+/// Smallest lost distance of the other methods that overheat no motor. The oracle is excluded, because it needs the true motor.
 double best_rival_percent(const Cell& cell) {
   double least = std::numeric_limits<double>::infinity();
   for (const MethodSpec& spec : kMethods) {
@@ -261,7 +261,7 @@ double best_rival_percent(const Cell& cell) {
   return least;
 }
 
-/// `cells`: level by level, in each the knowledges.
+/// `cells` are ordered by level, then by knowledge.
 std::string picture(const std::vector<Level>& levels, const std::vector<Known>& known, const std::vector<Cell>& cells) {
   std::vector<CostLevel> shown;
   for (std::size_t l = 0; l < levels.size(); ++l) {

@@ -1,6 +1,6 @@
-// Makes the tables and pictures of reports/drive_core anew: simulated, with real sensing; the same bytes on every run.
+// Regenerates the tables and charts of reports/drive_core from simulations with realistic sensors. Every run writes the same bytes.
 //   heatsoak_drive_core_studies [FOLDER [low_speed|planners|guard|costs]]
-// FOLDER: reports/drive_core of the checkout unless given. Without a study's name all four run.
+//   FOLDER: reports/drive_core of the checkout by default. Without a study's name all four run.
 #include "drive_core_studies.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Four studies of the drive core in the closed loop, and what they share: tables, spreads, the robot and its motor.
+// Four studies of the drive core in closed loop, and their shared parts: tables, spreads, the robot and its motor.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace heatsoak::studies {
 
-/// Over seeds, headings or motors.
+/// Statistics over seeds, headings or motors.
 struct Spread {
   double mean = 0.0;
   double low = 0.0;   ///< 5th percentile
@@ -21,7 +21,7 @@ struct Spread {
 };
 /// Percentiles are interpolated between the sorted values. `values` must not be empty.
 Spread spread_of(std::vector<double> values);
-/// "12.3 [10.1, 14.5]": mean, and 5th to 95th percentile.
+/// Formats mean, and 5th to 95th percentile: "12.3 [10.1, 14.5]".
 std::string to_text(const Spread& spread, int decimals);
 
 /// One table, written as Markdown and as CSV.
@@ -33,7 +33,7 @@ struct Sheet {
   [[nodiscard]] std::string csv() const;
 };
 
-/// What a study leaves in the folder of its report.
+/// Writes a study's files to the folder of its report.
 struct Report {
   std::filesystem::path folder;
 
@@ -41,13 +41,13 @@ struct Report {
   void draw(const std::string& file, const Chart& chart) const;
 };
 
-/// The paper's robot with the motor that it lost.
+/// The paper's robot with the motor that failed in it.
 struct Subject {
   Robot robot;
   Motor motor;
 };
 
-/// Sensors and radio of the robot; a current sensor per motor where asked for, which Twente's driver does not have.
+/// Sensors and radio of the robot, with an optional current sensor per motor, which Twente's motor controller lacks.
 DriveOptions sensed_drive(const Robot& robot, std::uint64_t seed, bool has_current_sensor);
 
 void study_low_speed(const Subject& subject, const Report& report);

@@ -1,4 +1,4 @@
-// A match that overheats the motor: without guard, with it, and with its rival, a fixed current cap.
+// A match that overheats the motor: without guard, with it, and with the alternative of a fixed current cap.
 #include "guard_study.h"
 
 #include <fmt/format.h>
@@ -13,20 +13,20 @@ namespace {
 constexpr std::size_t kSeeds = 5;
 constexpr std::size_t kMotors = 12;
 
-/// What is known of the motor, and everything that was driven with this knowledge.
+/// The core's knowledge of the motor, and all drives with this knowledge.
 struct Group {
   std::string name;
   Motor known;
   MotorGuard guard;
-  std::vector<Motor> drawn;                     ///< within the tolerances of `known`
-  std::vector<Way> ways;                        ///< the first without any limit
+  std::vector<Motor> drawn;                     ///< motors drawn within the tolerances of `known`
+  std::vector<Way> ways;                        ///< the first has no limit
   std::vector<std::vector<Hardship>> by_seed;   ///< [way][seed], nominal motor
   std::vector<std::vector<Hardship>> by_motor;  ///< [way][motor], first match
 };
 
 struct Study {
   HardMatch match;
-  std::vector<Game> games;  ///< by seed, from 1
+  std::vector<Game> games;  ///< index is the seed − 1
   Group file;
   Group bench;
 };
@@ -44,7 +44,7 @@ std::vector<Hardship> drive_seeds(const Study& study, const Way& way, const Moto
   return hardships;
 }
 
-/// The caps that just keep the limit in the first match: of the nominal motor, and of the hottest of the drawn ones.
+/// Adds the largest caps that keep the limit in the first match: for the nominal motor, and for the hottest drawn motor.
 void add_caps(const Study& study, Group& group) {
   const auto hottest = std::ranges::max_element(group.by_motor.front(), {}, [](const Hardship& each) { return each.score.winding_peak_C; });
   const std::array<const Motor*, 2> kept{&group.known, &group.drawn[static_cast<std::size_t>(hottest - group.by_motor.front().begin())]};
@@ -186,7 +186,7 @@ ChartCurve curve_of(std::string name, const std::vector<Second>& seconds, double
   return curve;
 }
 
-/// Distance that the robot has lost so far against the same knowledge without guard.
+/// Returns the accumulated lost distance, relative to a drive with the same knowledge without guard.
 ChartCurve lost_m(const Group& group, std::size_t way, std::string name, int color) {
   ChartCurve curve = curve_of(std::move(name), seconds_of(group, way), &Second::distance_m, color);
   for (std::size_t i = 0; i < curve.y.size(); ++i) {
@@ -202,7 +202,7 @@ ChartPanel panel(std::string title, std::string label) {
 constexpr const char* kGuardOfBench = "guard from bench data";
 constexpr const char* kGuardOfFile = "guard from the file's estimates";
 
-/// First match, nominal motor.
+/// Draws the first match of the nominal motor.
 Chart time_picture(const Study& study) {
   const Group& file = study.file;
   const Group& bench = study.bench;
@@ -233,7 +233,7 @@ Chart time_picture(const Study& study) {
   return chart;
 }
 
-/// Peak over distance, one point per drawn motor.
+/// Draws peak temperature over distance, one point per drawn motor.
 Chart motor_picture(const Study& study) {
   const Group& file = study.file;
   const Group& bench = study.bench;
@@ -255,7 +255,7 @@ Chart motor_picture(const Study& study) {
   }
   const auto add = [&](const char* title, const Group& group) {
     const bool is_file = &group == &study.file;
-    // Colours and names of what time_picture() shows too are the same there.
+    // Colours and names must match those of time_picture().
     const char* const names[] = {"no guard", is_file ? kGuardOfFile : kGuardOfBench, "cap for the nominal motor",
                                  is_file ? "file: cap for the hottest motor" : "bench: cap for the hottest motor", "guard, nothing sensed"};
     const int colors[] = {0, is_file ? 1 : 2, 4, is_file ? 5 : 3, 6};
@@ -268,7 +268,7 @@ Chart motor_picture(const Study& study) {
                             .color_index = colors[w],
                             .dots = true});
     }
-    // Room beside the outermost points.
+    // Adds a margin around the outermost points.
     constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
     one.curves.push_back({.x = {least - kRoom_m, most + kRoom_m}, .y = {kNothing, kNothing}});
     const double limit_C = group.known.nominal.winding_limit_C;

@@ -1,4 +1,4 @@
-// The hard match of the guard's study, and how a robot is driven through it.
+// The hard match of the guard's study, and the drive of a robot through it.
 #pragma once
 
 #include <string>
@@ -24,31 +24,31 @@ struct HardMatch {
   double ambient_C = 0.0;
   std::vector<HardInput> changed;
 };
-/// Every change is listed. Those within the ranges that the files declare take the harder end. `share`: of every change; 0: files as they
-/// are, 1: the hard match.
+/// Makes the hard match and lists every change. Inputs with a declared range are moved to their harder end. `share` scales all changes: 0
+/// means files as they are, 1 the hard match.
 HardMatch make_hard_match(const Robot& robot, double share = 1.0);
 
-/// The motor's file after a bench test: its values with the tolerances that such a test leaves.
+/// Returns the motor's file after a bench test: its values with the tolerances that such a test leaves.
 Motor bench_tested(const Motor& motor);
 inline constexpr const char* kBenchTolerances =
     "both thermal resistances ±5 %, both time constants ±10 %, resistance and torque constant ±2 %, no-load current ±20 %";
 
-/// How the current is limited.
+/// One method of limiting the current.
 struct Way {
   std::string name;
-  const Motor* motor = nullptr;       ///< whose tolerances the core knows
-  const MotorGuard* guard = nullptr;  ///< none: without
-  bool has_sensors = false;           ///< of motor current and air temperature
-  double cap_A = kAbsent;             ///< of every motor, always
+  const Motor* motor = nullptr;       ///< the core knows the tolerances of this motor file
+  const MotorGuard* guard = nullptr;  ///< null: no guard
+  bool has_sensors = false;           ///< sensors of motor current and air temperature
+  double cap_A = kAbsent;             ///< constant cap for every motor
 };
 
-/// Of one second.
+/// Values of one second.
 struct Second {
   double time_s = 0.0;
-  double winding_C = 0.0;   ///< hottest, any wheel
-  double observer_C = 0.0;  ///< hottest of the guard's observer, any wheel
-  double allowed_A = 0.0;   ///< least, any wheel
-  double distance_m = 0.0;  ///< so far
+  double winding_C = 0.0;   ///< hottest winding of all wheels
+  double observer_C = 0.0;  ///< hottest observer temperature of all wheels
+  double allowed_A = 0.0;   ///< smallest allowed current of all wheels
+  double distance_m = 0.0;  ///< distance since the start
   double off_plan_m = 0.0;  ///< largest distance between plan and robot
 };
 
@@ -59,18 +59,18 @@ struct Hardship {
 };
 inline constexpr double kOffPlan_m = 0.09;  ///< radius of a robot of the league
 
-/// `motor` is the true one.
+/// Drives the match; `motor` is the true motor.
 Hardship drive_hard(const HardMatch& match, const Game& game, const Way& way, const Motor& motor, std::uint64_t seed, bool with_seconds);
 
-/// The same with a configuration of the core that is ready; `has_sensors` is Way's.
+/// Drives the match with a given configuration of the core; `has_sensors` has the meaning in Way.
 Hardship drive_hard(const HardMatch& match, const Game& game, const robot_core::Config& core, bool has_sensors, const Motor& motor,
                     std::uint64_t seed, bool with_seconds);
 
-/// The motors of a file, drawn within its tolerances.
+/// Draws motors of a file within its tolerances.
 std::vector<Motor> drawn_motors(const Motor& motor, std::size_t count);
 
-/// Largest cap with which the true winding stays within its limit in this match, to 0.05 A: known only afterwards. The core holds it by
-/// the voltage and the lowest resistance that the motor may have, so that a warm motor gets less.
+/// Finds the largest cap, to 0.05 A, that keeps the true winding within its limit in this match; it is known only in hindsight. The core
+/// applies it through the voltage and the lowest resistance that the motor may have, so a warm motor gets less.
 double largest_cap_A(const HardMatch& match, const Game& game, const Motor& core_motor, const Motor& motor, std::uint64_t seed);
 
 }  // namespace heatsoak::studies

@@ -30,15 +30,15 @@ constexpr HarderInput kHarder[] = {
     {"duel_push_share", 1.0, kEnd},
 };
 
-struct HarderFigure {
+struct HarderParameter {
   const char* name;
   const char* unit;
   double Robot::*value;
   double hard;
-  double per_unit;  ///< shown per SI
+  double per_unit;  ///< displayed unit per SI unit
   const char* remark;
 };
-constexpr HarderFigure kHarderFigures[] = {
+constexpr HarderParameter kHarderParameters[] = {
     {"acceleration limit", "m/s²", &Robot::acceleration_limit_m_per_s2, 3.0, 1.0,
      "harsher than the team's own limit; the braking that TIGERs saw of the robot"},
     {"braking limit", "m/s²", &Robot::braking_limit_m_per_s2, 3.0, 1.0, kEnd},
@@ -71,7 +71,7 @@ HardMatch make_hard_match(const Robot& robot, double share) {
         {harder.key, fmt::format("{:.3g} {}", figure.value, unit), fmt::format("{:.3g} {}", value, unit), harder.remark});
     figure.value = value;
   }
-  for (const HarderFigure& harder : kHarderFigures) {
+  for (const HarderParameter& harder : kHarderParameters) {
     double& value = match.robot.*harder.value;
     const double changed = std::lerp(value, harder.hard, share);
     match.changed.push_back({harder.name, fmt::format("{:.3g} {}", value * harder.per_unit, harder.unit),
@@ -100,7 +100,7 @@ Motor bench_tested(const Motor& motor) {
     if (figure == nullptr) {
       throw Failure(ExitCode::bug, fmt::format("the motor has no {}", each.key));
     }
-    // Of an estimate nobody would believe tolerances this narrow: they would be replaced.
+    // Tolerances this narrow would be replaced by the default for an estimate.
     figure->origin = Origin::measured;
     figure->spread = heatsoak::Spread{
         .kind = heatsoak::Spread::Kind::range, .low = figure->value * (1.0 - each.share), .high = figure->value * (1.0 + each.share)};

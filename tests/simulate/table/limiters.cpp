@@ -9,11 +9,11 @@
 namespace heatsoak::studies {
 namespace {
 
-/// The accumulator's node counts to this when the budget is used. Far above any stator, because the table sees the larger of both nodes; a
-/// stator counts for less than a quarter of the budget, where all current is allowed.
+/// The accumulator's node has this value when the budget is used up. It is far above any stator temperature, because the table takes the
+/// larger of both nodes. A stator temperature corresponds to less than a quarter of the budget, where the full current is allowed.
 constexpr float kFull = 900.0F;
 constexpr float kFallsFrom_share = 0.9F;
-constexpr float kMost = 999.0F;  ///< the core takes more than 1000 for a broken state
+constexpr float kMost = 999.0F;  ///< the core treats more than 1000 as a corrupted state
 
 Derating scaled(Derating exact, double ratio) {
   CurrentTable& table = exact.table;
@@ -35,7 +35,7 @@ Derating exact_derating(const Motor& motor, const Robot& robot) {
   if (rules.most_speed_rad_per_s < reachable_rad_per_s) {
     rules.no_current_speed_rad_per_s = 0.0;
   }
-  // What an oracle knows is exact.
+  // The oracle's table is nearly exact.
   CurrentTable table = current_table(observer, rules, {.shortfall_ratio = 0.003, .most_bytes = 1U << 16U});
   return {.motor_id = motor.id,
           .robot_id = robot.id,
@@ -69,7 +69,7 @@ Limiter::Limiter(const Derating& exact, double resistance_ratio)
 void Limiter::set_table(const std::vector<float>& body, const std::vector<double>& current_A) {
   constexpr float kAnyWinding_C = 1000.0F;
   constexpr float kAnySpeed_rad_per_s = 1e6F;
-  constexpr int kParts = 32;  // the table's squares are straight between the places, these limiters' currents are
+  constexpr int kParts = 32;  // the table interpolates squares of the current linearly, these limiters interpolate the current
   speed_rad_per_s_ = {0.0F};
   winding_C_ = {0.0F, kAnyWinding_C};
   for (std::size_t i = 0; i + 1 < body.size(); ++i) {
@@ -136,7 +136,7 @@ robot_core::Config Limiter::config(const Robot& robot, const Motor& known) const
   return config;
 }
 
-/// Nodes: winding, accumulator, stator. The core itself keeps the accumulator above the coldest air, which is 0.
+/// Nodes: winding, accumulator, stator. The core keeps the accumulator above the coldest air temperature, which is 0.
 void Limiter::overload_rates(const void* context, const float* signal, const float* state_C, float* rate_K_per_s) {
   const Limiter& limiter = *static_cast<const Limiter*>(context);
   const robot_core::GuardModel& motor = limiter.motor_.model();

@@ -1,4 +1,4 @@
-// Alternatives to the thermal guard. Each is a robot_core::GuardModel, so that the same drive core and the same limit stage run it.
+// Alternatives to the thermal guard. Each is a robot_core::GuardModel, so the same drive core and the same limit stage run it.
 #pragma once
 
 #include <memory>
@@ -9,10 +9,10 @@
 
 namespace heatsoak::studies {
 
-/// The derating of exactly this motor: safety factor on heat 1, no tolerances, no check on drawn motors.
+/// Derating for exactly this motor: safety factor on heat 1, no tolerances, no check on drawn motors.
 Derating exact_derating(const Motor& motor, const Robot& robot);
 
-/// What a data sheet says of overload, for an I²t limiter.
+/// Overload data of a data sheet for an I²t limiter.
 struct Overload {
   double continuous_A = 0.0;
   double peak_A = 0.0;
@@ -20,40 +20,41 @@ struct Overload {
 
   [[nodiscard]] double budget_A2_s() const { return (peak_A * peak_A - continuous_A * continuous_A) * peak_s; }
 };
-/// continuous_A: nominal current or, where the sheet has none, nominal torque/K_t + no-load current. peak_A: stall current U/R, as maxon's
-/// sheets print no other. peak_s: maxon's overload rule from a cold winding, τ_w·ln(K²/(K² − 1)) with K = peak_A/continuous_A.
+/// Calculates the overload data. continuous_A: nominal current or, if the data sheet has none, nominal torque/K_t + no-load current.
+/// peak_A: stall current U/R, because maxon's data sheets state no other. peak_s: maxon's overload rule from a cold winding, τ_w·ln(K²/(K²
+/// − 1)) with K = peak_A/continuous_A.
 Overload overload_of(const MotorValues& motor);
 
-/// One limiter of one true motor. Its winding and stator temperatures are those of the true motor's network with the sensed current: a
-/// sensor without lag or error. Currents hold for the true motor's resistance, as with a driver that controls the current.
-/// Not movable, because its model points into it. One thread at a time.
+/// One limiter of one true motor. Its winding and stator temperatures come from the true motor's network with the sensed current, like a
+/// sensor without lag or error. Currents hold for the true motor's resistance, as with a current-controlling driver. Not movable, because
+/// its model points into it. Use by one thread at a time.
 class Limiter {
  public:
-  /// The same current always.
+  /// Constant current limit.
   static std::unique_ptr<Limiter> fixed_cap(const Derating& exact, double resistance_ratio, double cap_A);
-  /// All current up to a stator of `full_C`, none from `none_C` on, a straight line between.
+  /// Full current up to a stator temperature of `full_C`, none from `none_C` on, linear between.
   static std::unique_ptr<Limiter> stator_ramp(const Derating& exact, double resistance_ratio, double full_C, double none_C);
-  /// dE/dt = I² − I_continuous², E ≥ 0. Up to 90 % of the budget all current, at 100 % the continuous one, a straight line between.
+  /// dE/dt = I² − I_continuous², E ≥ 0. Full current up to 90 % of the budget, continuous current at 100 %, linear between.
   static std::unique_ptr<Limiter> i_squared_t(const Derating& exact, double resistance_ratio, const Overload& overload);
-  /// The guard that derating the true motor gives.
+  /// The guard from the derating of the true motor.
   static std::unique_ptr<Limiter> oracle(const Derating& exact, double resistance_ratio, double braking_reserve_K);
 
   Limiter(const Limiter&) = delete;
   Limiter& operator=(const Limiter&) = delete;
 
-  /// Of a core that knows the motor as `known`. Valid as long as the limiter is.
+  /// Returns the configuration of a core that knows the motor as `known`. It is valid only while the limiter exists.
   [[nodiscard]] robot_core::Config config(const Robot& robot, const Motor& known) const;
 
  private:
   Limiter(const Derating& exact, double resistance_ratio);
-  /// The table depends on the second node alone.
+  /// Sets a table that depends on the second node only.
   void set_table(const std::vector<float>& body, const std::vector<double>& current_A);
   static void overload_rates(const void* context, const float* signal, const float* state_C, float* rate_K_per_s);
 
   Derating exact_;
   HostGuard motor_;
   robot_core::GuardModel model_;
-  double resistance_ratio_;  ///< true per known
+  double resistance_ratio_;  ///< true resistance divided by the known one
   double braking_reserve_K_ = 0.0;
   std::vector<float> speed_rad_per_s_;
   std::vector<float> body_;

@@ -1,4 +1,4 @@
-// How well the core keeps a slow velocity, with and without equations (2) and (3) of RoboTeam Twente, ETDP 2025, per direction of travel.
+// Accuracy of a slow velocity with and without equations (2) and (3) of RoboTeam Twente, ETDP 2025, for each direction of travel.
 #include <fmt/format.h>
 
 #include <array>
@@ -29,7 +29,7 @@ struct Case {
   const Robot* robot = nullptr;
 };
 
-/// Equations (2) and (3) off: back-EMF, acceleration and control stay.
+/// Disables equations (2) and (3); back-EMF, acceleration and control remain.
 robot_core::Config without_feed_forward(robot_core::Config config, double gain_ratio) {
   config.has_friction = false;
   for (robot_core::WheelConfig& wheel : config.wheel) {
@@ -52,13 +52,13 @@ std::vector<Case> cases_of(const robot_core::Config& core, const Robot& clean, c
 }
 constexpr std::size_t kDrawnCases = 6;
 
-/// Of one drive.
+/// Result of one drive.
 struct Outcome {
-  double error_rms_m_per_s = 0.0;  ///< velocity vector against plan, whole drive
-  double steady_m_per_s = 0.0;     ///< along the direction, last quarter: robot minus plan
-  double direction_rad = 0.0;      ///< magnitude, last quarter
-  double distance_m = 0.0;         ///< between plan and robot at the end
-  double ripple_m_per_s = 0.0;     ///< of the velocity about its mean, rms, last quarter
+  double error_rms_m_per_s = 0.0;  ///< RMS of the velocity vector's error over the whole drive
+  double steady_m_per_s = 0.0;     ///< robot minus plan along the direction in the last quarter
+  double direction_rad = 0.0;      ///< absolute error of the direction in the last quarter
+  double distance_m = 0.0;         ///< distance between plan and robot at the end
+  double ripple_m_per_s = 0.0;     ///< RMS of the velocity about its mean in the last quarter
   double fault_s = 0.0;
 };
 
@@ -93,7 +93,7 @@ Outcome drive(const Case& tried, const Motor& motor, bool is_core_alone, double 
   return outcome;
 }
 
-/// All drives: [case][speed][heading][seed]. The core alone keeps the course, or the team's computer corrects it by the cameras.
+/// All drives: [case][speed][heading][seed]. Either the core alone keeps the course, or the team's computer corrects it with the cameras.
 class Results {
  public:
   Results(const std::vector<Case>& cases, const Motor& motor, bool is_core_alone)
@@ -106,11 +106,11 @@ class Results {
     });
   }
 
-  /// Over headings and seeds, times `scale`.
+  /// Spread over headings and seeds, multiplied by `scale`.
   [[nodiscard]] Spread over_all(std::size_t tried, std::size_t speed, double Outcome::*value, double scale) const {
     return over(tried, speed, 0, kHeadings, value, scale);
   }
-  /// Over the seeds of one heading.
+  /// Spread over the seeds of one heading.
   [[nodiscard]] Spread over_seeds(std::size_t tried, std::size_t speed, std::size_t heading, double Outcome::*value, double scale) const {
     return over(tried, speed, heading, heading + 1, value, scale);
   }

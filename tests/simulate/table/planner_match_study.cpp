@@ -1,4 +1,4 @@
-// Slip and heat over a match: bang-bang against jerk-limited plans, with the drive core and real sensing.
+// Slip and heat over a match: bang-bang plans compared with jerk-limited plans, with the drive core and realistic sensors.
 #include <fmt/format.h>
 
 #include "base/parallel.h"
@@ -21,7 +21,7 @@ struct Value {
   const char* column;
   int decimals;
   double (*of)(const DriveScore& score);
-  std::array<double, 2> before;  ///< mean of an earlier plain controller with exact sensors, by planner; NaN: not reported
+  std::array<double, 2> before;  ///< mean of an earlier simple controller with exact sensors, by planner; NaN if not reported
 };
 
 constexpr Value kValues[] = {
@@ -57,15 +57,15 @@ static_assert(kLimits[3] == robot_core::Reason::traction);
 struct Setting {
   const char* name;
   bool is_exact;          ///< no errors, delays or lost packets
-  bool has_double_angle;  ///< part of the friction that equation (3) does not have
+  bool has_double_angle;  ///< adds friction that equation (3) does not describe
 };
 constexpr std::array<Setting, 3> kSettings{
     {{"real sensing", false, true}, {"exact sensors", true, true}, {"real sensing, friction without double angle", false, false}}};
 
-/// By planner of each setting, then by seed.
+/// Scores by setting and planner, then by seed.
 using Scores = std::array<std::vector<DriveScore>, kSettings.size() * kPlanners.size()>;
 
-/// No errors, delays or lost packets, but the gains of the real link, so that only the sensing differs.
+/// No errors, delays or lost packets, but the gains of the real link, so that only the sensors differ.
 DriveOptions exact_drive(const Robot& robot) {
   DriveOptions options = ideal_drive();
   const RadioConfig real = radio_of(robot);
@@ -124,7 +124,7 @@ Sheet summary(const Scores& scores) {
   return sheet;
 }
 
-/// What separates the drive core from the earlier controller.
+/// Table of the differences between the drive core and the earlier controller.
 Sheet causes(const Scores& scores, std::size_t planner) {
   Sheet sheet{{kNames.at(planner)}, {}};
   for (const Setting& setting : kSettings) {

@@ -1,4 +1,4 @@
-// How long a hot robot must rest before it can play on: the recorded load of one wheel, run through the thermal models.
+// Rest that a hot robot needs before it can continue: the recorded load of one wheel, simulated with the thermal models.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,18 +13,18 @@
 namespace heatsoak::studies {
 namespace {
 
-/// Over one guard period.
+/// Load over one guard period.
 struct Load {
   float current_A = 0.0F;  ///< RMS, with the sign of the mean
   float speed_rad_per_s = 0.0F;
 };
 
 constexpr double kPeriod_s = SimulatedRobot::kThermalPeriod_s;
-constexpr double kWindows_s = 60.0;  ///< between the starts of two windows of play
+constexpr double kWindows_s = 60.0;  ///< time between the starts of two windows of play
 constexpr int kLongestRest_s = 3600;
 constexpr double kLongestPlay_s = 1200.0;
 
-/// Of the wheel with the most copper heat.
+/// Records the load of the wheel with the most copper loss.
 std::vector<Load> record(const HardMatch& match, const Game& game, const Motor& motor) {
   const GuardedCore core(match.robot, motor, GuardUse::off, {});
   MatchRunOptions options;
@@ -66,16 +66,17 @@ struct Bodies {
   float stator_C = 0.0F;
 };
 
-/// One answer to "may the robot play on?": the guard's, or the true motor's.
+/// Decides whether the robot may continue, by the guard or by the true motor.
 class Judge {
  public:
-  /// `braking_reserve_K` absent: the true motor, whose winding must stay within its limit. Else the guard, which must not limit.
+  /// If `braking_reserve_K` is absent, this is the true motor, whose winding must stay within its limit. Otherwise it is the guard, which
+  /// must not limit.
   Judge(std::string name, const HostGuard& guard, double braking_reserve_K)
       : name_(std::move(name)), guard_(guard), reserve_K_(braking_reserve_K) {}
 
   [[nodiscard]] const std::string& name() const { return name_; }
 
-  /// Of a motor that was held at its limit until the stator settled, then rested without current: one entry per second.
+  /// Temperatures of a motor that was held at its limit until the stator was steady, then rested without current; one entry per second.
   [[nodiscard]] std::vector<Bodies> rested(float air_C) const {
     const HostGuard own = guard_;
     const robot_core::GuardModel& model = own.model();
@@ -104,7 +105,7 @@ class Judge {
     return bodies;
   }
 
-  /// Time from `first` of the load on, which begins anew at its end, until the guard limits or the winding is over its limit.
+  /// Time until the guard limits or the winding exceeds its limit. The load starts at `first` and restarts when it ends.
   [[nodiscard]] double plays_s(const std::vector<Load>& load, std::size_t first, float air_C, Bodies start, double most_s) const {
     const HostGuard own = guard_;
     const robot_core::GuardModel& model = own.model();
@@ -143,7 +144,8 @@ class Judge {
   double reserve_K_;
 };
 
-/// Shortest rest in whole seconds after which a window of play is possible; absent: not even with a cold motor. More rest never hurts.
+/// Returns the shortest rest in whole seconds before a window of play is possible; absent if even a cold motor cannot play it. A longer
+/// rest is always possible, too.
 double rest_needed_s(const Judge& judge, const std::vector<Load>& load, std::size_t first, float air_C, const std::vector<Bodies>& rested,
                      double play_s) {
   const auto is_enough = [&](Bodies start) { return judge.plays_s(load, first, air_C, start, play_s) >= play_s; };
@@ -166,8 +168,8 @@ struct Row {
   const Judge* judge = nullptr;
   float air_C = 0.0F;
   std::vector<Bodies> rested;
-  std::vector<std::vector<double>> rest_s;  ///< [length of play][window], absent: never
-  std::vector<double> median_s;             ///< of play, over kRests_s
+  std::vector<std::vector<double>> rest_s;  ///< [length of play][window]; absent means never
+  std::vector<double> median_s;             ///< medians of the play time, over kRests_s
 };
 constexpr double kPlays_s[] = {60.0, 300.0, 1200.0};
 constexpr double kRestStep_s = 30.0;
@@ -178,7 +180,7 @@ double median(std::vector<double> values) {
     each = std::isnan(each) ? std::numeric_limits<double>::infinity() : each;
   }
   std::ranges::sort(values);
-  // The upper one of two: a rest after which at least half of the windows are possible.
+  // Upper median: after this rest at least half of the windows are possible.
   return values[values.size() / 2];
 }
 
