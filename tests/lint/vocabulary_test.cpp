@@ -27,8 +27,7 @@ const std::map<std::string, std::string> kInstead{
     {"safety factor on heat", "heat reserves?"},
 };
 
-/// Allowed counts: `figures` is a table of motor files and a key of answers, <figure> an element of HTML, and two sensors lie next to each
-/// other.
+/// Allowed counts: `figures` is a table of motor files and a key of answers, <figure> an element of HTML.
 const std::map<std::string, int> kMost{{"docs", 4},         {"src/cli", 11},  {"src/duty", 1},
                                        {"src/firmware", 1}, {"src/motor", 6}, {"src/robot", 1}};
 
