@@ -101,12 +101,12 @@ class Selector : Rounds {
     const Eigen::Index coordinate = parameter_of(best.members[place]);
     const FreeParameter& free = input_.model.model.free[static_cast<std::size_t>(coordinate)];
     const NetworkParameter& parameter = input_.model.model.network.parameters()[static_cast<std::size_t>(free.place)];
-    ChangedParameter parameter;
-    parameter.coordinate = coordinate;
-    parameter.name = parameter.name;
-    parameter.unit = parameter.unit;
-    parameter.gain_nats = search_->loss_without_nats(best, place);
-    out_.changed.push_back(std::move(parameter));
+    ChangedParameter changed;
+    changed.coordinate = coordinate;
+    changed.name = parameter.name;
+    changed.unit = parameter.unit;
+    changed.gain_nats = search_->loss_without_nats(best, place);
+    out_.changed.push_back(std::move(changed));
   }
 
   void scan(const Judged& judged, const EffectSet& best) {

@@ -25,6 +25,7 @@
 #include "cli/usage.h"
 #include "input/document.h"
 #include "present/renderer.h"
+#include "present/wrap.h"
 
 namespace heatsoak {
 namespace {
@@ -102,6 +103,20 @@ std::string printable(std::string_view text) {
 
 /// Unlike fmt::print this does not throw: a full disk is detected at the end (see run_program), a failing stderr is ignored.
 void put(std::FILE* file, std::string_view text) { static_cast<void>(std::fwrite(text.data(), 1, text.size(), file)); }
+
+/// Breaks the lines that are longer than `width`; the continuation is indented like its line.
+std::string folded(std::string_view text, std::size_t width) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+    result += present::width_of(line) > width ? present::wrapped(line.substr(indent), line.substr(0, indent), width) : std::string(line);
+    result += end < text.size() ? "\n" : "";
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return result;
+}
 
 /// Adds line numbers to diagnostics that have only a file and a key.
 Failure with_places(const Failure& failure) {
@@ -224,7 +239,10 @@ void Session::add_text_options(CLI::App& app) {
       ->type_name("FILE.md");
 }
 
-void Session::say(std::string_view text) { text_ += printable(text); }
+void Session::say(std::string_view text) {
+  const int descriptor = json_target_ == "-" ? STDERR_FILENO : STDOUT_FILENO;
+  text_ += isatty(descriptor) == 1 ? folded(printable(text), terminal_width(descriptor)) : printable(text);
+}
 
 void Session::show(const present::Document& document) {
   const int descriptor = json_target_ == "-" ? STDERR_FILENO : STDOUT_FILENO;

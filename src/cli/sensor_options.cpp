@@ -8,13 +8,16 @@
 namespace heatsoak {
 
 void add_sensor_options(CLI::App& app, SensorFlags& flags) {
-  app.add_option("--thermistor", flags.thermistor, "the guard reads a thermistor at the stator or at the winding")
-      ->check(CLI::IsMember({"stator", "winding"}))
-      ->type_name("NODE");
+  CLI::Option* const thermistor =
+      app.add_option("--thermistor", flags.thermistor, "the guard reads a thermistor at the stator or at the winding")
+          ->check(CLI::IsMember({"stator", "winding"}))
+          ->type_name("NODE");
   add_quantity(app, "--thermistor-accuracy", flags.thermistor_accuracy_K,
-               {"thermistor_accuracy", "K", Range::between(0.05, 50.0), "its largest error, mounting included; 2 K unless given"});
+               {"thermistor_accuracy", "K", Range::between(0.05, 50.0), "its largest error, mounting included; 2 K unless given"})
+      ->needs(thermistor);
   add_quantity(app, "--thermistor-lag", flags.thermistor_lag_s,
-               {"thermistor_lag", "s", Range::between(0.0, 600.0), "its time constant; 0 s unless given"});
+               {"thermistor_lag", "s", Range::between(0.0, 600.0), "its time constant; 0 s unless given"})
+      ->needs(thermistor);
   app.add_flag("--winding-resistance", flags.reads_resistance,
                "the guard reads the winding's temperature from its resistance: voltage and current at the terminals");
   add_quantity(app, "--resistance-accuracy", flags.resistance_accuracy_K,

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/delayed_signals.h"
 #include "firmware/core_files.h"
 
 namespace heatsoak {
@@ -27,6 +28,7 @@ class StagedFolder {
  private:
   void write(std::span<const CoreFile> files) const;
 
+  DelayedSignals delayed_;  ///< until the temporary folder has its name or is removed
   std::filesystem::path folder_;
   std::filesystem::path stage_;
 };

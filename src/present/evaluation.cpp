@@ -244,8 +244,17 @@ void add_changes(Document& document, std::span<const ChangeEffect> effects, cons
     }
   }
   if (table.rows.empty()) {
-    document.headline.push_back(
-        {"No change of the robot by a usual step cools " + motor_id + " by more than its scatter from game to game."});
+    const auto largest = std::ranges::max_element(effects, {}, &ChangeEffect::saved_K);
+    if (largest == effects.end() || largest->is_deliverable || !(largest->saved_K > 0.5)) {
+      document.headline.push_back(
+          {"No change of the robot by a usual step cools " + motor_id + " by more than its scatter from game to game."});
+    } else {
+      document.headline.push_back({fmt::format(
+          "No change of the robot by a usual step cools {} and lets it deliver what the duty demands. The largest effect has {} "
+          "from {} to {}: {:.0f} K less.",
+          motor_id, name_of(largest->quantity), shown(largest->before, unit_of(largest->quantity)),
+          shown(largest->before * largest->factor, unit_of(largest->quantity)), largest->saved_K)});
+    }
     return;
   }
   document.headline.push_back(

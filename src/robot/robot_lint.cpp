@@ -63,6 +63,22 @@ void check_battery(const Robot& robot, std::vector<LintFinding>& findings) {
   }
 }
 
+void check_drive(const Robot& robot, std::vector<LintFinding>& findings) {
+  const auto add = [&](const char* key, std::string message) {
+    findings.push_back({LintFinding::Level::warning, "drive", fmt::format("{}: {}", key, message), place_of(robot.file, key)});
+  };
+  if (std::isfinite(robot.voltage_limit_V) && robot.voltage_limit_V > 1.1 * robot.battery_full_V) {
+    add("drive.voltage_limit", fmt::format("{:.4g} V is more than the full battery's {:.4g} V; expected at most that; check the unit",
+                                           robot.voltage_limit_V, robot.battery_full_V));
+  }
+  // Known robots have ratios of 1 to 5.
+  constexpr double kLargestRatio = 30.0;
+  if (robot.gear_ratio > kLargestRatio) {
+    add("drive.gear_ratio",
+        fmt::format("{:.4g} motor turns per wheel turn; expected at most {:.0f}: 3.6 to 1 is \"3.6\"", robot.gear_ratio, kLargestRatio));
+  }
+}
+
 /// A disc with the contact radius has 0.5 of mass times radius squared, a ring of twice the radius has 4.
 void check_inertia(const Robot& robot, std::vector<LintFinding>& findings) {
   constexpr double kLeast = 0.15;
@@ -90,6 +106,7 @@ std::vector<LintFinding> lint(const Robot& robot, std::span<const std::string> k
   }
   check_wheels(robot, findings);
   check_battery(robot, findings);
+  check_drive(robot, findings);
   check_inertia(robot, findings);
   try {
     MotorValues any;

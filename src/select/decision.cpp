@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "base/binomial_bound.h"
 #include "base/lanes.h"
@@ -90,28 +93,94 @@ int most_samples(const Duty& duty) {
   return first_samples(duty) * kFiveDoublings;
 }
 
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// Shows the rounds after the first look as one job. Its length follows from the time that the first look took and from the samples that
+/// are needed; it changes when a round shows that more are needed.
+class LaterRounds {
+ public:
+  LaterRounds(double s_per_draw, double s_per_sample, Progress progress)
+      : s_per_draw_(s_per_draw), s_per_sample_(s_per_sample), progress_(std::move(progress)) {}
+
+  /// A round with `draws` new draws and `samples` samples of `motors` motors, and the rounds that double them until `needed` or `most`.
+  void begin(double draws, double samples, double motors, double needed, double most) {
+    done_s_ = seconds_since(begin_);
+    play_s_ = s_per_draw_ * draws;
+    evaluate_s_ = s_per_sample_ * samples * motors;
+    later_s_ = 0.0;
+    for (double factor = 2.0; factor * samples / 2.0 < needed && factor * samples / 2.0 < most; factor *= 2.0) {
+      later_s_ += factor * (play_s_ + evaluate_s_);
+    }
+  }
+  [[nodiscard]] Progress playing() const { return part(done_s_, play_s_, evaluate_s_ + later_s_); }
+  [[nodiscard]] Progress evaluating() const { return part(done_s_ + play_s_, evaluate_s_, later_s_); }
+
+ private:
+  [[nodiscard]] Progress part(double before_s, double part_s, double after_s) const {
+    if (!progress_) {
+      return {};
+    }
+    return [=, progress = progress_](std::size_t done, std::size_t total) {
+      const auto in_ms = [](double time_s) { return static_cast<std::size_t>(1e3 * time_s); };
+      const std::size_t all_ms = in_ms(before_s + part_s + after_s) + 1;
+      const double share = static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, total));
+      progress(std::min(all_ms - 1, in_ms(before_s + part_s * share)), all_ms);
+    };
+  }
+  double s_per_draw_;
+  double s_per_sample_;
+  Progress progress_;
+  Clock::time_point begin_ = Clock::now();
+  double done_s_ = 0.0;
+  double play_s_ = 0.0;
+  double evaluate_s_ = 0.0;
+  double later_s_ = 0.0;
+};
+
+}  // namespace
+
 std::vector<MotorEvaluation> evaluate_until_decided(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
                                                     std::span<const Motor> motors, EvaluateOptions options, int most,
                                                     std::vector<WheelDemand>& draws, const ProgressFor& progress) {
   const auto progress_for = [&](const char* what) { return progress ? progress(what) : Progress(); };
-  const auto run = [&](std::span<const Motor> wanted) {
-    add_draws(draws, duty, robot, options.seed, draw_count(duty, options.samples), options.threads, progress_for("playing games"));
+  double play_s = 0.0;
+  double evaluate_s = 0.0;
+  const auto run = [&](std::span<const Motor> wanted, const Progress& playing, const Progress& evaluating) {
+    const Clock::time_point begin = Clock::now();
+    add_draws(draws, duty, robot, options.seed, draw_count(duty, options.samples), options.threads, playing);
+    play_s = seconds_since(begin);
     options.draws = draws;
-    return evaluate(robot, duty, wheels, wanted, options, progress_for("evaluating"));
+    std::vector<MotorEvaluation> found = evaluate(robot, duty, wheels, wanted, options, evaluating);
+    evaluate_s = seconds_since(begin) - play_s;
+    return found;
   };
-  std::vector<MotorEvaluation> results = run(motors);
+  std::vector<MotorEvaluation> results = run(motors, progress_for("playing games"), progress_for("evaluating"));
+  std::optional<LaterRounds> later;
   while (options.samples < most) {
     std::vector<Motor> open;
+    int needed = 0;
     for (const MotorEvaluation& each : results) {
       if (each.samples_needed) {
         open.push_back(*std::ranges::find(motors, each.motor_id, &Motor::id));
+        needed = std::max(needed, *each.samples_needed);
       }
     }
     if (open.empty()) {
       break;
     }
+    if (!later) {
+      const auto samples = static_cast<double>(options.samples) * static_cast<double>(motors.size());
+      later.emplace(play_s / static_cast<double>(std::max<std::size_t>(1, draws.size())), evaluate_s / samples,
+                    progress_for("undecided, drawing more samples"));
+    }
+    const int before = draw_count(duty, options.samples);
     options.samples = std::min(most, 2 * options.samples);
-    for (MotorEvaluation& longer : run(open)) {
+    later->begin(draw_count(duty, options.samples) - before, options.samples, static_cast<double>(open.size()), needed, most);
+    for (MotorEvaluation& longer : run(open, later->playing(), later->evaluating())) {
       *std::ranges::find(results, longer.motor_id, &MotorEvaluation::motor_id) = std::move(longer);
     }
   }

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "base/delayed_signals.h"
 #include "base/diagnostic.h"
 #include "base/files.h"
 #include "derate/fmi/fmu.h"
@@ -81,6 +82,7 @@ std::vector<FmuFile> with_binary(std::vector<FmuFile> files, const FmuModel& mod
     throw Failure(ExitCode::bad_input,
                   "this version of FMI has no name for this platform; leave --compiler out, the file then contains sources only");
   }
+  const DelayedSignals delayed;
   const TemporaryFolder folder;
   // File names without a folder, so that the library contains no paths of this machine.
   std::vector<std::string> words{compiler, "-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared", "-fvisibility=hidden",
