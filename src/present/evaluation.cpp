@@ -118,7 +118,7 @@ std::string what_happens(const MotorEvaluation& motor, bool is_drawn) {
                              ? fmt::format("{:.0f} % of the samples cannot deliver the demand", 100.0 * motor.short_probability)
                              : over);
     default:
-      return fmt::format("passes: {}", reaches);
+      return fmt::format("passes{}: {}", motor.samples == 0 ? " with nominal values" : "", reaches);
   }
 }
 

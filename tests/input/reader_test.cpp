@@ -66,7 +66,7 @@ TEST_F(ReaderTest, optional_keys_may_be_absent) {
   EXPECT_FALSE(top.text("a", Need::optional));
   EXPECT_FALSE(top.flag("b", Need::optional));
   EXPECT_FALSE(top.quantity(kResistance, Need::optional));
-  EXPECT_FALSE(top.figure(kResistance, Need::optional));
+  EXPECT_FALSE(top.parameter(kResistance, Need::optional));
   EXPECT_FALSE(top.table("d", Need::optional));
   EXPECT_THAT(top.texts("e", Need::optional), IsEmpty());
   EXPECT_THAT(top.tables("f"), IsEmpty());
@@ -108,8 +108,8 @@ TEST_F(ReaderTest, a_tolerance_is_a_share_and_of_a_temperature_a_difference) {
   Reader top = read(
       "resistance = { value = \"2 ohm\", origin = \"datasheet\", source = \"s\", tolerance = \"10 %\" }\n"
       "temperature = { value = \"20 degC\", origin = \"datasheet\", source = [\"s\", \"t\"], tolerance = \"3 K\" }\n");
-  const ParameterValue resistance = parameter_of(top.figure(kResistance, Need::required));
-  const ParameterValue temperature = parameter_of(top.figure(kTemperature, Need::required));
+  const ParameterValue resistance = parameter_of(top.parameter(kResistance, Need::required));
+  const ParameterValue temperature = parameter_of(top.parameter(kTemperature, Need::required));
   ASSERT_TRUE(diagnostics_.empty()) << message();
   EXPECT_DOUBLE_EQ(resistance.spread->low, 1.8);
   EXPECT_DOUBLE_EQ(resistance.spread->high, 2.2);
@@ -121,7 +121,7 @@ TEST_F(ReaderTest, a_tolerance_is_a_share_and_of_a_temperature_a_difference) {
 TEST_F(ReaderTest, a_range_has_units_of_its_own) {
   const ParameterValue figure = parameter_of(
       read("resistance = { value = \"2 ohm\", origin = \"measured\", source = \"s\", range = [\"1900 mohm\", \"0.0025 kohm\"] }")
-          .figure(kResistance, Need::required));
+          .parameter(kResistance, Need::required));
   ASSERT_TRUE(diagnostics_.empty()) << message();
   EXPECT_DOUBLE_EQ(figure.spread->low, 1.9);
   EXPECT_DOUBLE_EQ(figure.spread->high, 2.5);
@@ -130,7 +130,7 @@ TEST_F(ReaderTest, a_range_has_units_of_its_own) {
 TEST_F(ReaderTest, other_sources_of_a_value_have_units_too) {
   const ParameterValue figure = parameter_of(
       read(R"(resistance = { value = "2 ohm", origin = "measured", source = "s", confirmed_by = { a = "2100 mohm", b = "1.9 ohm" } })")
-          .figure(kResistance, Need::required));
+          .parameter(kResistance, Need::required));
   ASSERT_TRUE(diagnostics_.empty()) << message();
   ASSERT_EQ(figure.confirmed_by.size(), 2U);
   EXPECT_EQ(figure.confirmed_by[0].source, "a");
@@ -139,7 +139,7 @@ TEST_F(ReaderTest, other_sources_of_a_value_have_units_too) {
 }
 
 TEST_F(ReaderTest, an_unknown_origin_is_one_problem_not_three) {
-  read("resistance = { value = \"2 ohm\", origin = \"internet\" , source = \"s\"}").figure(kResistance, Need::required);
+  read("resistance = { value = \"2 ohm\", origin = \"internet\" , source = \"s\"}").parameter(kResistance, Need::required);
   EXPECT_THAT(places(), ElementsAre("1:42 resistance.origin"));
 }
 
