@@ -7,10 +7,14 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <mutex>
 #include <string_view>
+#include <thread>
+#include <utility>
 
 namespace heatsoak {
 namespace {
@@ -107,7 +111,33 @@ class Bar {
   bool is_visible_ = false;
 };
 
+/// A thread that overwrites one line on stderr every second, and removes it at the end.
+class ElapsedLine {
+ public:
+  explicit ElapsedLine(std::string what) : thread_([this, what = std::move(what)](const std::stop_token& stop) { run(what, stop); }) {}
+
+ private:
+  void run(const std::string& what, const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    int elapsed_s = 0;
+    // True if the wait ended because of the stop.
+    while (!changed_.wait_for(lock, stop, std::chrono::seconds(1), [&] { return stop.stop_requested(); })) {
+      fmt::print(stderr, "\r\x1b[K{}: {} s", what, ++elapsed_s);
+    }
+    if (elapsed_s > 0) {
+      static_cast<void>(std::fputs("\r\x1b[K", stderr));
+    }
+  }
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::jthread thread_;
+};
+
 }  // namespace
+
+std::shared_ptr<void> elapsed_line(std::string what) {
+  return isatty(STDERR_FILENO) == 0 ? nullptr : std::make_shared<ElapsedLine>(std::move(what));
+}
 
 Progress progress_bar(std::string what) {
   if (isatty(STDERR_FILENO) == 0) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 
 #include "base/parallel.h"
@@ -16,5 +17,9 @@ bool takes_colors(int descriptor);
 
 /// Returns a progress bar with the remaining time on stderr; silent if stderr is not a terminal.
 Progress progress_bar(std::string what);
+
+/// Shows the elapsed time of a job without known length on stderr, from its first second until the returned object is destroyed; silent if
+/// stderr is not a terminal.
+std::shared_ptr<void> elapsed_line(std::string what);
 
 }  // namespace heatsoak

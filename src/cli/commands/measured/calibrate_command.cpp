@@ -17,6 +17,7 @@
 #include "cli/measured/prediction_answer.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
+#include "cli/terminal.h"
 #include "motor/motor.h"
 #include "motor/write_motor.h"
 
@@ -234,7 +235,9 @@ ExitCode run(const Options& options, Session& session) {
   const WrittenFit written = options.writes_forecast      ? WrittenFit::forecast
                              : options.writes_innovations ? WrittenFit::innovations
                                                           : WrittenFit::best;
+  std::shared_ptr<void> line = elapsed_line("calibrating");
   Calibration result = calibrate(motor, logs, holdout, {options.fit, options.how.ambient_C, written});
+  line.reset();
   report_next_steps(admission.next_steps, result.next_experiment);
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   session.write(options.out, to_toml(calibrated_motor(motor, result)));

@@ -15,6 +15,7 @@
 #include "cli/measured/effect_topics.h"
 #include "cli/measured/logs_option.h"
 #include "cli/named_files.h"
+#include "cli/terminal.h"
 #include "estimation/log_columns.h"
 #include "estimation/open_loop.h"
 #include "motor/write_motor.h"
@@ -70,6 +71,25 @@ void hand_out(const Options& options, const Motor& extended, const Diagnosis& di
   session.write(folder / "diagnosis.html", diagnosis_page(diagnosis, input, score, svg));
 }
 
+/// Returns the verdict as a sentence.
+std::string headline_of(const Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  for (const FoundEffect& effect : diagnosis.effects) {
+    names.push_back(effect.id);
+  }
+  switch (diagnosis.verdict) {
+    case DiagnosisVerdict::nothing_missing:
+      return "No effect is missing.";
+    case DiagnosisVerdict::effect_found:
+      return fmt::format("The model lacks {}.", fmt::join(names, " and "));
+    case DiagnosisVerdict::unexplained:
+      return "Heat is missing that no effect of the catalogue explains.";
+    case DiagnosisVerdict::not_identifiable:
+      break;
+  }
+  return "These runs do not determine whether an effect is missing.";
+}
+
 ExitCode run(const Options& options, Session& session) {
   const Motor motor = motor_named(session.folders(), options.model);
   std::vector<std::string> notes;
@@ -94,7 +114,9 @@ ExitCode run(const Options& options, Session& session) {
         fmt::format("not every log has {}: heat that depends on {} is not searched for; to search for it, leave out the other logs",
                     fmt::join(rare, ", "), rare.size() == 1 ? "it" : "them"));
   }
+  std::shared_ptr<void> line = elapsed_line("searching for missing effects");
   Diagnosis diagnosis = heatsoak::diagnose(input, {});
+  line.reset();
   set_column(input.train, diagnosis.selection.after.model.column);
   refuse_where_nothing_follows(diagnosis, input);
   const Motor extended = extended_motor(motor, model, diagnosis);
@@ -107,7 +129,7 @@ ExitCode run(const Options& options, Session& session) {
     notes.push_back(std::move(lacking));
   }
   diagnosis.notes = notes;
-  present::Document document{.headline = {{std::string(to_string(diagnosis.verdict))}}, .paragraphs = diagnosis.words};
+  present::Document document{.headline = {{headline_of(diagnosis)}}, .paragraphs = diagnosis.words};
   for (const std::string& note : notes) {
     const bool is_of_logs = std::ranges::find(of_logs, note) != of_logs.end();
     document.add_note(is_of_logs ? present::Severity::background : present::Severity::note, note);
