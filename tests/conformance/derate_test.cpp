@@ -13,7 +13,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const Words kDerate{"derate", "--robot", "roboteam_twente_v2024"};
+const Words kDerateEcx{"derate", "--robot", "roboteam_twente_v2024"};
 
 RunOptions here(const TemporaryFolder& folder) {
   RunOptions options;
@@ -27,7 +27,7 @@ TEST(DerateCommand, TradesBytesForErrorAsAsked) {
   const TemporaryFolder folder;
   const auto table_with = [&](const Words& options) {
     const ProgramRun done =
-        run(kDerate + Words{"--motor", "maxon_ecx_flat_32l_48v", "--out", "guard.h", "--json", "-"} + options, here(folder));
+        run(kDerateEcx + Words{"--motor", "maxon_ecx_flat_32l_48v", "--out", "guard.h", "--json", "-"} + options, here(folder));
     EXPECT_EQ(done.exit_code, 0) << done.err;
     EXPECT_THAT(done.err, HasSubstr("below it from"));
     return done.json()["table"];
@@ -46,7 +46,7 @@ TEST(DerateCommand, TradesBytesForErrorAsAsked) {
 
 TEST(DerateCommand, TellsWhatItGuarantees) {
   const TemporaryFolder folder;
-  const ProgramRun done = run(kDerate + Words{"--motor", "maxon_ecx_flat_32l_48v", "--out", "guard.h", "--json", "-"}, here(folder));
+  const ProgramRun done = run(kDerateEcx + Words{"--motor", "maxon_ecx_flat_32l_48v", "--out", "guard.h", "--json", "-"}, here(folder));
   ASSERT_EQ(done.exit_code, 0) << done.err;
   const nlohmann::json answer = done.json();
   EXPECT_EQ(answer["schema"], "heatsoak.derating/1");
@@ -69,8 +69,8 @@ TEST(DerateCommand, EffectThatADiagnosisFoundActsInTheFirmware) {
                 .exit_code,
             0);
   const Words extended{"--motor", kMotor, "--model", fmt::format("found/{}.toml", kMotor)};
-  const ProgramRun before = run(kDerate + Words{"--motor", kMotor, "--out", "before.h", "--json", "-"}, here(folder));
-  const ProgramRun after = run(kDerate + extended + Words{"--out", "after.h", "--json", "-"}, here(folder));
+  const ProgramRun before = run(kDerateEcx + Words{"--motor", kMotor, "--out", "before.h", "--json", "-"}, here(folder));
+  const ProgramRun after = run(kDerateEcx + extended + Words{"--out", "after.h", "--json", "-"}, here(folder));
   ASSERT_EQ(before.exit_code, 0) << before.err;
   ASSERT_EQ(after.exit_code, 0) << after.err;
   EXPECT_THAT(before.json()["nodes"], ElementsAre("winding", "stator"));
@@ -84,14 +84,14 @@ TEST(DerateCommand, EffectThatADiagnosisFoundActsInTheFirmware) {
 
 TEST(DerateCommand, WritesTheTableAlone) {
   const TemporaryFolder folder;
-  ASSERT_EQ(run(kDerate + Words{"--motor", kMotor, "--to", "csv", "--out", "table.csv"}, here(folder)).exit_code, 0);
+  ASSERT_EQ(run(kDerateEcx + Words{"--motor", kMotor, "--to", "csv", "--out", "table.csv"}, here(folder)).exit_code, 0);
   EXPECT_THAT(content_of(folder.path() / "table.csv"),
               AllOf(testing::StartsWith("# "), HasSubstr("\nspeed_rad_per_s,stator_C,winding_C,allowed_current_A\n")));
 }
 
 TEST(DerateCommand, JsonFileIsTheAnswerAndNamesItsInputs) {
   const TemporaryFolder folder;
-  const ProgramRun done = run(kDerate + Words{"--motor", kMotor, "--to", "json", "--out", "table.json", "--json", "-"}, here(folder));
+  const ProgramRun done = run(kDerateEcx + Words{"--motor", kMotor, "--to", "json", "--out", "table.json", "--json", "-"}, here(folder));
   ASSERT_EQ(done.exit_code, 0) << done.err;
   nlohmann::json answer = done.json();
   answer.erase("version");  // every answer on stdout has this key; the file has "program" instead
@@ -126,7 +126,7 @@ TEST(DerateCommand, SaysWhatIsWrongAndLeavesNothing) {
   };
   for (const WrongLine& each : wrong) {
     const TemporaryFolder folder;
-    const ProgramRun done = run(kDerate + each.words, here(folder));
+    const ProgramRun done = run(kDerateEcx + each.words, here(folder));
     EXPECT_EQ(done.exit_code, each.exit_code) << done.err;
     EXPECT_THAT(done.err, HasSubstr(each.message));
     EXPECT_THAT(folder.names(), IsEmpty());

@@ -131,11 +131,11 @@ void examine(const Case& one, int threads) {
   std::vector<std::string> accepted;
   std::ranges::transform(forecast.accepted, std::back_inserter(accepted),
                          [](const AcceptedExtension& each) { return fmt::format("{} ({:.2f})", each.name, each.gain_nats); });
-  constexpr std::array kSources{"file", "ordinary", "tempered"};
+  constexpr std::array kSources{"file", "ordinary", "tempered", "innovations"};
   fmt::print("| {} | {} | {} | {} | **{}** | {} | {} | {} | {} | {:.1f} |\n", one.name, errors(predictions(base, base.start(), others)),
              errors(predictions(base, innovations.theta, others)), errors(predictions(base, plain.theta, others)), errors(predicted),
              cells(predicted, [](const PredictedSignal& each) { return fmt::format("{:.0f}", 100.0 * each.coverage_share); }),
-             kSources[static_cast<std::size_t>(forecast.source)], forecast.pieces, fmt::join(accepted, ", "), seconds);
+             kSources[static_cast<std::size_t>(forecast.source)], forecast.pieces.size(), fmt::join(accepted, ", "), seconds);
   for (const RivalScore& rival : forecast.rivals) {
     fmt::print(stderr, "  left out, {}: {:.3f} nats", kSources[static_cast<std::size_t>(rival.source)], rival.score_nats);
     for (const auto& [signal, rmse_K] : rival.rmse_K) {
