@@ -3,9 +3,9 @@
  * Inputs CRC-64/XZ 2de2986516dcff92.
  *
  * Winding at most 125 degC, air from 0 to 40 degC; thermal data: estimated.
- * While the motor gets no more than allowed_current_A and no hotter air than that, the observer's winding temperature never exceeds its limit. The
- * safety factor on heat is 2.49, for a confidence of 0.95: of 60 motors drawn from the declared tolerances 0 exceeded a
- * limit in one of the 11 hardest uses (0.0 %, with other draws 0.0 to 4.9 %), the hottest winding reached 125 degC.
+ * While the current is at most allowed_current_A and the air no hotter than that, the observer's winding temperature never exceeds its
+ * limit. The safety factor on heat is 2.49, for a confidence of 0.95: of 60 motors drawn from the declared tolerances, 0 exceeded a
+ * limit in one of the 11 hardest uses (0.0 %; other draws give 0.0 to 4.9 %). The hottest winding reached 125 degC.
  * Computed, not measured; plausible but wrong sensor readings are not covered.
  *
  * Laws of the model:
@@ -14,7 +14,7 @@
  *   winding_stator (conduction): P_hot→cold = (T_hot − T_cold) / R_th
  *   stator_ambient (conduction): P_hot→cold = (T_hot − T_cold) / R_th
  *
- * Once, after a long rest:      maxon_ecx_flat_42m_24v_start(&motor, board_C);   what was never started counts as hot as its limit
+ * Once, after a long rest:      maxon_ecx_flat_42m_24v_start(&motor, board_C);   a state that was never started counts as hot as its limit
  * every 0.01 s:                out = maxon_ecx_flat_42m_24v_step(&motor, &in);   then |current| <= out.allowed_current_A until the next call
  * A state that is kept in RAM continues after a reset. */
 #ifndef HEATSOAK_MAXON_ECX_FLAT_42M_24V_F967A453_H
@@ -24,11 +24,11 @@
 #include <stdint.h>
 
 #ifdef __FAST_MATH__
-#error "without -ffast-math: it takes away what tells a number from none, and the rounding that is carried"
+#error "compile without -ffast-math: it removes the checks for NaN and the carried rounding error"
 #endif
 
-/* The derating table of a motor and how it is read: the same text in the drive core and in the exported C header, so plain C99.
-   Method: squares of the allowed current, straight between the places (trilinear), because copper heats with the square. */
+/* Derating table of a motor and its reader. Plain C99: the drive core and the exported C header share this text. Method: trilinear
+   interpolation of the squared current, because copper heats with the square. */
 #ifndef HEATSOAK_CURRENT_TABLE_H
 #define HEATSOAK_CURRENT_TABLE_H
 
@@ -37,7 +37,7 @@
 #include <math.h>
 #endif
 
-/* Ascending places of an axis; one place: the axis does not matter. */
+/* Axis points in ascending order. With one point the current does not depend on this axis. */
 typedef struct {
   const float *points;
   int32_t count;
@@ -47,26 +47,26 @@ typedef struct {
   heatsoak_axis speed_rad_per_s;
   heatsoak_axis stator_C;
   heatsoak_axis winding_C;
-  const float *square_A2; /* [speed][stator][winding]; negative: no current is too much already */
+  const float *square_A2; /* [speed][stator][winding]; negative: even zero current is too much */
   float most_current_A;
-  float straight_below_A;           /* a smaller current is square/straight_below, so that it falls to 0 with a finite slope */
-  float most_speed_rad_per_s;       /* from here on the current falls in a straight line */
-  float no_current_speed_rad_per_s; /* to none here */
-  float winding_per_stator_K;       /* a stator above its axis counts as a winding that is so many times hotter */
+  float straight_below_A;           /* below this current the result is square/straight_below, so that it falls to 0 with a finite slope */
+  float most_speed_rad_per_s;       /* above this speed the allowed current falls linearly */
+  float no_current_speed_rad_per_s; /* the allowed current is 0 from this speed on */
+  float winding_per_stator_K;       /* a stator 1 K above its axis counts as a winding that is this much hotter */
 } heatsoak_current_table;
 
-/* Where a speed and a stator temperature lie in the table: found once, used for several winding temperatures. */
+/* Position of a speed and a stator temperature in the table: found once, used for several winding temperatures. */
 typedef struct {
-  int32_t first;       /* of the squares: corner of the cells of the row; negative: no current is allowed */
-  int32_t next_stator; /* from a square to that of the next stator and speed; 0 without such an axis */
+  int32_t first;       /* index of the first square of the row; negative: no current is allowed */
+  int32_t next_stator; /* step to the square of the next stator point; 0 if the axis has one point */
   int32_t next_speed;
-  float stator_share; /* 0 to 1, place in the cell */
+  float stator_share; /* position between two stator points, 0 to 1 */
   float speed_share;
-  float hotter_K;   /* that the winding counts hotter, for the stator */
-  float fade_ratio; /* 0 to 1, current that a speed above the highest leaves */
+  float hotter_K;   /* added to the winding temperature for a stator above its axis */
+  float fade_ratio; /* factor on the current above the highest speed of the axis, 0 to 1 */
 } heatsoak_row;
 
-/* Segment of an axis, from 0, and the place in it, 0 to 1; the ends for what lies outside. */
+/* Returns the axis segment of x, from 0, and sets `share` to the position in it, 0 to 1. Values outside the axis count as its ends. */
 static inline int32_t heatsoak_find(const heatsoak_axis *axis, float x, float *share) {
   int32_t above = 1;
   float low;
@@ -82,7 +82,7 @@ static inline int32_t heatsoak_find(const heatsoak_axis *axis, float x, float *s
   return above - 1;
 }
 
-/* What is not a number allows no current. */
+/* Finds the row of a speed and a stator temperature. NaN allows no current. */
 static inline heatsoak_row heatsoak_find_row(const heatsoak_current_table *table, float speed_rad_per_s, float stator_C) {
   const int32_t windings = table->winding_C.count;
   const float last_stator_C = table->stator_C.points[table->stator_C.count - 1];
@@ -104,7 +104,7 @@ static inline heatsoak_row heatsoak_find_row(const heatsoak_current_table *table
   return row;
 }
 
-/* Between two places of the winding's axis. */
+/* Linear interpolation between two points of the winding axis. */
 static inline float heatsoak_along_winding(const float *square_A2, int32_t at, float share) {
   return square_A2[at] + share * (square_A2[at + 1] - square_A2[at]);
 }
@@ -115,7 +115,7 @@ static inline float heatsoak_along_stator(const float *square_A2, const heatsoak
                                : low_A2 + row->stator_share * (heatsoak_along_winding(square_A2, at + row->next_stator, share) - low_A2);
 }
 
-/* Square of the current; 0 above the axis of the winding and for what is not a number. */
+/* Square of the allowed current; 0 for a winding above its axis and for NaN. */
 static inline float heatsoak_allowed_A2(const heatsoak_current_table *table, const heatsoak_row *row, float winding_C) {
   const float first_C = table->winding_C.points[0];
   float counted_C = winding_C;
@@ -135,7 +135,7 @@ static inline float heatsoak_allowed_A2(const heatsoak_current_table *table, con
              : low_A2 + row->speed_share * (heatsoak_along_stator(table->square_A2, row, at + row->next_speed, share) - low_A2);
 }
 
-/* Of a positive number: one instruction where the controller has it, else the C library's; correctly rounded, so equal everywhere. */
+/* Square root of a positive number: one instruction if the controller has it, else the C library's. Both round correctly. */
 static inline float heatsoak_square_root(float x) {
 #ifdef __GNUC__
   return __builtin_sqrtf(x);
@@ -144,7 +144,7 @@ static inline float heatsoak_square_root(float x) {
 #endif
 }
 
-/* Current of a square of that row, from 0 to most_current_A. */
+/* Allowed current for a square of that row, 0 to most_current_A. */
 static inline float heatsoak_current_A(const heatsoak_current_table *table, const heatsoak_row *row, float square_A2) {
   const float straight_A = table->straight_below_A;
   float current_A;
@@ -173,8 +173,8 @@ static inline float heatsoak_allowed_A(const heatsoak_current_table *table, cons
 #define MAXON_ECX_FLAT_42M_24V_WINDING_PER_STATOR_K 1.0f
 #define MAXON_ECX_FLAT_42M_24V_REACHABLE_SPEED_RAD_PER_S 487.58865f
 #define MAXON_ECX_FLAT_42M_24V_TORQUE_CONSTANT_NM_PER_A 0.0282f
-/* What the motor bears for good at every speed and in every hot case, for a wheel whose speed nobody knows: the least of the currents
-   that the table still gives, held at full allowance until everything has warmed up; 0 where none was played. */
+/* Continuous current at every speed and in every hot case, for a wheel of unknown speed: the lowest current that the table allows in the
+   steady state of each continuous use at the full allowed current; 0 if no such use was simulated. */
 #define MAXON_ECX_FLAT_42M_24V_LIMP_CURRENT_A 3.7858367f
 #define MAXON_ECX_FLAT_42M_24V_STARTED 0x48454154u
 
@@ -182,48 +182,48 @@ static inline float heatsoak_allowed_A(const heatsoak_current_table *table, cons
  * header expects and allows is the equivalent DC current I = torque / TORQUE_CONSTANT of block commutation, with the copper loss
  * I^2 * R, R between two terminals, 2 * R_phase. With a sinusoidal back-EMF of amplitude E * w per phase
  *   TORQUE_CONSTANT = 3 * sqrt(3) / pi * E   and   torque = 3/2 * E * i_q,   so   I = sqrt(3) * pi / 6 * i_q = 0.907 * i_q.
- * The motor's copper loss is 3/2 * i_q^2 * R_phase = (sqrt(3) / 2 * i_q)^2 * R, that of 0.866 * i_q. The laws count 0.907 * i_q, for
- * the robot's file says block commutation: torque is exact, copper loss 9.7 % too high, the safe side.
- * Sign: i_q > 0 has the sign of a speed > 0, so that both have the same sign where the motor drives. Give the rms over the period.
+ * The motor's copper loss is 3/2 * i_q^2 * R_phase = (sqrt(3) / 2 * i_q)^2 * R, that of 0.866 * i_q. The heat laws use
+ * 0.907 * i_q, because the robot's file states block commutation: torque is exact, copper loss 9.7 % too high, which is on the safe side.
+ * Sign: i_q > 0 has the sign of a speed > 0, so that both have the same sign when the motor drives. Give the rms over the period.
  * With i_d use sqrt(i_d^2 + i_q^2) with the sign of i_q. Power-invariant i_q: multiply it by sqrt(2/3) first. */
 #define MAXON_ECX_FLAT_42M_24V_DC_A_PER_IQ_A 0.9068997f
 static inline float maxon_ecx_flat_42m_24v_current_from_iq_A(float iq_A) { return MAXON_ECX_FLAT_42M_24V_DC_A_PER_IQ_A * iq_A; }
-/* magnitude of i_q that allowed_current_A stands for */
+/* magnitude of i_q that corresponds to allowed_current_A */
 static inline float maxon_ecx_flat_42m_24v_iq_limit_A(float allowed_current_A) { return allowed_current_A / MAXON_ECX_FLAT_42M_24V_DC_A_PER_IQ_A; }
 
 typedef struct {
-  float current_A; /* equivalent DC current (torque per torque constant), rms over the period, with the sign of the speed where it drives */
-  float speed_rad_per_s; /* of the motor's shaft, signed */
-  float ambient_C; /* air around the motor; the hottest declared where it is not measured */
+  float current_A; /* equivalent DC current (torque per torque constant), rms over the period, with the sign of the speed when the motor drives */
+  float speed_rad_per_s; /* speed of the motor's shaft, signed */
+  float ambient_C; /* air around the motor; the hottest declared air if it is not measured */
 } maxon_ecx_flat_42m_24v_input;
 
 typedef struct {
   uint32_t started;
-  float state_C[2]; /* winding stator: counts heat 2.49 times */
+  float state_C[2]; /* winding stator: safety factor on heat 2.49 */
   float carry_K[2];
-  float nominal_C[2]; /* the same of a motor of nominal values */
+  float nominal_C[2]; /* the same for a motor with nominal values */
   float nominal_carry_K[2];
 } maxon_ecx_flat_42m_24v_state;
 
 typedef enum {
-  maxon_ecx_flat_42m_24v_full,          /* all that the driver can give */
-  maxon_ecx_flat_42m_24v_derated,       /* less, for the winding or the stator is hot */
-  maxon_ecx_flat_42m_24v_no_current,    /* at its limit, or faster than the table goes */
-  maxon_ecx_flat_42m_24v_input_unknown, /* an input was no number, or none that can be: its hottest case was taken */
-  maxon_ecx_flat_42m_24v_not_started    /* the state was no state: taken for as hot as its limit */
+  maxon_ecx_flat_42m_24v_full,          /* the driver's largest current */
+  maxon_ecx_flat_42m_24v_derated,       /* less, because the winding or the stator is hot */
+  maxon_ecx_flat_42m_24v_no_current,    /* at the limit, or above the highest speed of the table */
+  maxon_ecx_flat_42m_24v_input_unknown, /* an input was NaN or implausible: its hottest case was used */
+  maxon_ecx_flat_42m_24v_not_started    /* the state was not started or damaged: taken as hot as the limit */
 } maxon_ecx_flat_42m_24v_reason;
 
 typedef struct {
   float allowed_current_A; /* A, equivalent DC current, magnitude, until the next step */
-  float guarded_winding_C; /* degC, pessimistic: heat counts 2.49 times, as the hottest of the drawn motors need it; decides what is allowed */
-  float nominal_winding_C; /* degC, of a motor of nominal values, heat counts once; to show and log, decides nothing. An unknown input
-                              is as hot as it may be here too */
+  float guarded_winding_C; /* degC, pessimistic: safety factor on heat 2.49, for the hottest drawn motors; sets the allowed current */
+  float nominal_winding_C; /* degC, motor with nominal values, safety factor 1; for display and logs only. An unknown input takes its
+                              hottest case here too */
   maxon_ecx_flat_42m_24v_reason reason;
 } maxon_ecx_flat_42m_24v_output;
 
-/* Squares of the allowed current. The table is never above the exact answer of the network, and at most 1.0 % below it from
-   2.33 A up, on points that are not its own. The allowed current changes by at most 7.05 A per K of the winding, 7.05 A per K
-   of the stator and 0.0868 A per rad/s. An axis with one place does not matter. */
+/* Squares of the allowed current. The table is never above the exact result of the network. Between grid points it is at most 1.0 %
+   below it, for currents of 2.33 A and more and windings below their limit. The allowed current changes by at most 7.05 A per K of the winding, 7.05 A per K of
+   the stator and 0.0868 A per rad/s. An axis with one grid point has no influence. */
 static const float maxon_ecx_flat_42m_24v_speed_rad_per_s[1] = {
     0.0f,};
 static const float maxon_ecx_flat_42m_24v_stator_C[2] = {
@@ -297,7 +297,7 @@ static inline void maxon_ecx_flat_42m_24v_nominal_rates(const maxon_ecx_flat_42m
   rate_K_per_s[1] = t63;
 }
 
-/* what an input may be of which nothing is known */
+/* possible values of an unknown input */
 static const float maxon_ecx_flat_42m_24v_possible_current_A[33] = {
     -116.27907f, -109.01163f, -101.74419f, -94.476746f, -87.209305f, -79.941864f, -72.674416f, -65.406975f, -58.139534f, -50.872093f,
     -43.604652f, -36.337208f, -29.069767f, -21.802326f, -14.5348835f, -7.2674417f, 0.0f, 7.2674417f, 14.5348835f, 21.802326f,
@@ -309,17 +309,17 @@ static const float maxon_ecx_flat_42m_24v_possible_speed_rad_per_s[33] = {
     121.89716f, 152.37146f, 182.84575f, 213.32004f, 243.79433f, 274.26862f, 304.74292f, 335.2172f, 365.6915f, 396.16577f,
     426.64008f, 457.11435f, 487.58865f,};
 
-/* magnitude of the speed; stator_C: the hottest part but the winding */
+/* speed_rad_per_s: magnitude; stator_C: the hottest node other than the winding */
 static inline float maxon_ecx_flat_42m_24v_allowed_A(float speed_rad_per_s, float stator_C, float winding_C) {
   const heatsoak_row row = heatsoak_find_row(&maxon_ecx_flat_42m_24v_table, speed_rad_per_s, stator_C);
   return heatsoak_allowed_A(&maxon_ecx_flat_42m_24v_table, &row, winding_C);
 }
 
-/* Not for what is no number, and not for what no motor has. */
+/* Both return false for NaN; the second also for a temperature that no motor can have. */
 static inline bool maxon_ecx_flat_42m_24v_is_between(float low, float x, float high) { return x >= low && x <= high; }
 static inline bool maxon_ecx_flat_42m_24v_is_temperature(float x) { return maxon_ecx_flat_42m_24v_is_between(MAXON_ECX_FLAT_42M_24V_COLDEST_AMBIENT_C - 1.0f, x, 1000.0f); }
 
-/* body_C: temperature of the whole motor after a rest; what cannot be one counts as the limit. */
+/* body_C: temperature of the whole motor after a rest; an implausible value counts as the limit. */
 static inline void maxon_ecx_flat_42m_24v_start(maxon_ecx_flat_42m_24v_state *state, float body_C) {
   int node;
   const float start_C = maxon_ecx_flat_42m_24v_is_temperature(body_C) ? body_C : MAXON_ECX_FLAT_42M_24V_WINDING_LIMIT_C;
@@ -332,7 +332,7 @@ static inline void maxon_ecx_flat_42m_24v_start(maxon_ecx_flat_42m_24v_state *st
   state->started = MAXON_ECX_FLAT_42M_24V_STARTED;
 }
 
-/* Every node warms as fast as with the hottest of the possible values; the input takes the one that heats the winding most. */
+/* Each node takes its largest heating rate over the possible values; the input takes the value that heats the winding most. */
 static inline void maxon_ecx_flat_42m_24v_sweep(const maxon_ecx_flat_42m_24v_input *in, float *input, const float *possible, int count, const float *state_C, float *most_K_per_s) {
   float rate_K_per_s[2];
   float hottest = possible[0];
@@ -353,7 +353,7 @@ static inline void maxon_ecx_flat_42m_24v_sweep(const maxon_ecx_flat_42m_24v_inp
   *input = hottest;
 }
 
-/* One period of heating; the rounding of each step is carried to the next (Kahan 1965). */
+/* One period; the rounding error of each step is carried to the next (Kahan 1965). */
 static inline void maxon_ecx_flat_42m_24v_advance(float *state_C, float *carry_K, const float *rate_K_per_s) {
   int node;
   for (node = 0; node < 2; ++node) {
@@ -425,12 +425,12 @@ static inline maxon_ecx_flat_42m_24v_output maxon_ecx_flat_42m_24v_step(maxon_ec
 
 #define MAXON_ECX_FLAT_42M_24V_SIGNATURE 0xf967a453u
 #define MAXON_ECX_FLAT_42M_24V_MOST_COOLING_STEPS 4096
-/* What is kept over power-off: motor and guard (MAXON_ECX_FLAT_42M_24V_SIGNATURE), temperatures, CRC-32 (IEEE 802.3); little-endian. */
+/* Data saved over power-off: signature of motor and guard (MAXON_ECX_FLAT_42M_24V_SIGNATURE), temperatures, CRC-32 (IEEE 802.3); little-endian. */
 #define MAXON_ECX_FLAT_42M_24V_SAVED_SIZE 24
 typedef enum {
-  maxon_ecx_flat_42m_24v_restored,        /* cooled for the time that has passed */
+  maxon_ecx_flat_42m_24v_restored,        /* cooled for the elapsed time */
   maxon_ecx_flat_42m_24v_time_unknown,    /* time without power unknown: each node takes its highest safe temperature */
-  maxon_ecx_flat_42m_24v_nothing_restored /* not saved, damaged or of another guard: as hot as the limit */
+  maxon_ecx_flat_42m_24v_nothing_restored /* not saved, damaged or of another guard: starts as hot as the limit */
 } maxon_ecx_flat_42m_24v_restored_from;
 
 static inline uint32_t maxon_ecx_flat_42m_24v_crc_32(const uint8_t *bytes, int count) {
@@ -483,7 +483,7 @@ static inline float maxon_ecx_flat_42m_24v_number(uint32_t word) {
   return x;
 }
 
-/* buffer: MAXON_ECX_FLAT_42M_24V_SAVED_SIZE bytes. Call it now and then, and before power goes. */
+/* buffer: MAXON_ECX_FLAT_42M_24V_SAVED_SIZE bytes. Call it at regular intervals and when the supply voltage falls. */
 static inline void maxon_ecx_flat_42m_24v_save(const maxon_ecx_flat_42m_24v_state *state, uint8_t *buffer) {
   int node;
   maxon_ecx_flat_42m_24v_pack(buffer, state->started == MAXON_ECX_FLAT_42M_24V_STARTED ? MAXON_ECX_FLAT_42M_24V_SIGNATURE : 0u);
@@ -496,8 +496,8 @@ static inline void maxon_ecx_flat_42m_24v_save(const maxon_ecx_flat_42m_24v_stat
 
 typedef void (*maxon_ecx_flat_42m_24v_law)(const maxon_ecx_flat_42m_24v_input *, const float *, float *);
 
-/* Longest Euler step at these temperatures: 1/20 of the shortest time constant, whose rate is at most the largest sum of a row's
-   derivatives (Gershgorin). */
+/* Longest Euler step at these temperatures: 1/20 of a lower bound of the shortest time constant. Its rate is at most the largest row sum
+   of the absolute derivatives (Gershgorin). */
 static inline float maxon_ecx_flat_42m_24v_cooling_step_s(maxon_ecx_flat_42m_24v_law law, const maxon_ecx_flat_42m_24v_input *off, const float *state_C) {
   float moved_C[2];
   float rate_K_per_s[2];
@@ -526,8 +526,9 @@ static inline float maxon_ecx_flat_42m_24v_cooling_step_s(maxon_ecx_flat_42m_24v
   return fastest_per_s > 0.0f ? 0.05f / fastest_per_s : MAXON_ECX_FLAT_42M_24V_PERIOD_S;
 }
 
-/* Without current in the hottest air; no more than MAXON_ECX_FLAT_42M_24V_MOST_COOLING_STEPS steps, what is left of the time counts as no time. An Euler
-   step of 1/20 of a time constant cools as 1/20 + 1/800 of it would, so 3 % of the time are left out. peak_C: hottest on the way. */
+/* Cool-down without current in the hottest air, in at most MAXON_ECX_FLAT_42M_24V_MOST_COOLING_STEPS steps. Time beyond them is ignored: no cooling. An
+   Euler step of 1/20 of a time constant cools as 1/20 + 1/800 of one would, so only 97 % of the time is used. peak_C: highest
+   temperature of each node during the cool-down. */
 static inline void maxon_ecx_flat_42m_24v_cool(maxon_ecx_flat_42m_24v_law law, float elapsed_s, float *state_C, float *peak_C) {
   maxon_ecx_flat_42m_24v_input off;
   float rate_K_per_s[2];
@@ -557,7 +558,7 @@ static inline void maxon_ecx_flat_42m_24v_cool(maxon_ecx_flat_42m_24v_law law, f
   }
 }
 
-/* All that the driver can give at the highest speed, up to the limit that the guard has kept. */
+/* Worst-case heating: the driver's largest current at the highest speed, up to the limit that the guard has kept. */
 static inline void maxon_ecx_flat_42m_24v_heat(maxon_ecx_flat_42m_24v_law law, float unsaved_s, float *state_C) {
   maxon_ecx_flat_42m_24v_input on;
   float drive_K_per_s[2];
@@ -585,10 +586,10 @@ static inline void maxon_ecx_flat_42m_24v_heat(maxon_ecx_flat_42m_24v_law law, f
   }
 }
 
-/* elapsed_s: without power, by a clock that ran meanwhile; below 0 or no number: unknown. After an unknown time every node is as hot as
-   it was saved or may have become since from the heat of the others: power can have been back at once. unsaved_s: longest time from the
-   last save to the loss of power, 0 where the falling supply starts the save; no number counts as very long. board_C: no node is colder,
-   for the motor stood in the same warmth; what is no temperature counts as the hottest air. */
+/* elapsed_s: time without power, from a clock that kept running; negative or NaN: unknown. After an unknown time each node takes the
+   highest temperature that it can have had since the save, heat from the other nodes included, because power may have returned at once.
+   unsaved_s: longest time from the last save to the loss of power; 0 if the falling supply triggers the save; NaN counts as very long.
+   board_C: lower bound of every node, because the motor was in the same surroundings; an implausible value counts as the hottest air. */
 static inline maxon_ecx_flat_42m_24v_restored_from maxon_ecx_flat_42m_24v_restore(maxon_ecx_flat_42m_24v_state *state, const uint8_t *buffer, float elapsed_s, float unsaved_s, float board_C) {
   float peak_C[2];
   float nominal_peak_C[2];

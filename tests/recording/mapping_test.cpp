@@ -197,7 +197,7 @@ TEST(Mapping, EveryProblemWithItsPlace) {
   EXPECT_THAT(all, AllOf(HasSubstr("m.map.toml:1:10: error: inputs: 'hold' is not known"), HasSubstr("did you mean 'held'?"),
                          HasSubstr(":3:"), HasSubstr("'m' is not a unit of time_s")));
   EXPECT_THAT(all, AllOf(HasSubstr("m.map.toml:4:"), HasSubstr("colum: is not a key of this table; did you mean 'column'?"),
-                         HasSubstr("stator_C: expected one of column"), HasSubstr("ambient: is no quantity"),
+                         HasSubstr("stator_C: expected one of column"), HasSubstr("ambient: is not a quantity"),
                          HasSubstr("did you mean 'ambient_C'?"), HasSubstr("a temperature has no sign")));
 }
 

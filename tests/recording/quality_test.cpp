@@ -196,7 +196,7 @@ INSTANTIATE_TEST_SUITE_P(
                 cells[stator] *= 10.0;
               },
               "is it in tenths of degrees (22"},
-        Fault{"constant", [](int, auto& cells) { cells[winding] = 25.0; }, "winding_C is constant, 25 °C, while stator_C moves"},
+        Fault{"constant", [](int, auto& cells) { cells[winding] = 25.0; }, "winding_C is constant, 25 °C, while stator_C changes"},
         Fault{"microseconds", [](int, auto& cells) { cells[time] *= 1e6; }, "is the time in microseconds?"},
         Fault{"kelvin", [](int, auto& cells) { cells[stator] += 273.15; }, "is it in kelvin"},
         Fault{"milliampere", [](int, auto& cells) { cells[current] *= 1000.0; }, "is it in milliamperes?"},
