@@ -154,7 +154,6 @@ nlohmann::ordered_json derating_json(const Derating& derating) {
     }
   }
   return {{"schema", "heatsoak.derating/1"},
-          {"version", derating.provenance.program_version},
           {"program", derating.provenance.program_version},
           {"input_hash", {{"name", kInputHash}, {"value", derating.provenance.input_hash}}},
           {"motor", derating.motor_id},

@@ -336,7 +336,7 @@ TEST(Steady, destroyed_within_one_time_on_is_a_runaway) {
   EXPECT_EQ(result.json().at("runaway"), true);
   EXPECT_TRUE(result.json().at("winding_peak_C").is_null());
   EXPECT_LT(result.json().at("destroyed_after_s"), 100.0);
-  EXPECT_THAT(result.err, testing::ContainsRegex("1000[ \n]°C[ \n]are[ \n]passed"));
+  EXPECT_THAT(result.err, testing::ContainsRegex("1000[ \n]°C[ \n]are[ \n]exceeded"));
 }
 
 // The closed-form solution does not include the additional node of an effect.

@@ -179,10 +179,12 @@ ExitCode run(Options& options, Session& session) {
   present::add_lines(document.notes, inactive_effects(motors), present::Severity::note);
   present::add_lines(document.notes, default_spreads_text(motors), present::Severity::note);
   std::vector<ChangeEffect> changes;
-  if (options.suggests) {
-    // The motor that the robot is built with if it is among the results, else the best one.
-    const auto own = std::ranges::find(results, robot.drive_motor, &MotorEvaluation::motor_id);
-    const std::string id = own == results.end() ? results.front().motor_id : own->motor_id;
+  // The motor that the robot is built with if it is among the results, else the best one.
+  const auto own = std::ranges::find(results, robot.drive_motor, &MotorEvaluation::motor_id);
+  const MotorEvaluation& subject = own == results.end() ? results.front() : *own;
+  const bool suggests = options.suggests || subject.verdict != Verdict::pass;
+  if (suggests) {
+    const std::string id = subject.motor_id;
     changes = effects_of_changes(robot, duty, *std::ranges::find(motors, id, &Motor::id), options.evaluate.seed, options.evaluate.threads,
                                  progress_bar("trying changes"));
     present::add_changes(document, changes, id);
@@ -201,7 +203,7 @@ ExitCode run(Options& options, Session& session) {
                                 {"duty_origin", duty.origin},          {"seed", options.evaluate.seed},
                                 {"samples", options.evaluate.samples}, {"duty_draws", draws.size()}};
   answer["default_spreads"] = default_spreads_json(motors);
-  if (options.suggests) {
+  if (suggests) {
     answer["changes"] = nlohmann::ordered_json::array();
     for (const ChangeEffect& each : changes) {
       answer["changes"].push_back({{"quantity", name_of(each.quantity)},
@@ -265,8 +267,9 @@ Command evaluate_command() {
         app.add_option("--games", options->games, "of --closed-loop, with successive seeds")
             ->check(CLI::Range(1, 1000))
             ->capture_default_str();
-        app.add_flag("--suggest", options->suggests,
-                     "lists the changes of the robot that cool its motor most: acceleration, jerk, speed, mass, wheels, gear");
+        app.add_flag(
+            "--suggest", options->suggests,
+            "list the changes of the robot that cool its motor most also if it passes: acceleration, jerk, speed, mass, wheels, gear");
         app.add_option("--fail-on", options->fail_on, "exit 1 if a motor's verdict is this or worse: marginal, fail, infeasible")
             ->check(CLI::IsMember(kFailOn))
             ->type_name("VERDICT")
