@@ -129,7 +129,7 @@ inline constexpr SignalText kSignals[] = {
     {"State", "comparison.driven_V2", "V2", validate_input, only(run_guards)},
     {"State", "comparison.counted_A2", "A2", validate_input, only(run_guards)},
     {"State", "comparison.standing_s", "s", validate_input, only(apply_limits)},
-    {"State", "comparison.runaway_s", "s", validate_input, only(apply_limits)},
+    {"State", "comparison.is_runaway", "flag", validate_input, only(apply_limits)},
     {"State", "guard.state_C", "°C", run_guards, only(make_output)},
     {"State", "guard.time_to_limit_s", "s", run_guards, only(make_output)},
     {"BodyReference", "velocity", "m/s, rad/s", control_body_velocity, find_wheel_speeds | feed_forward},

@@ -222,11 +222,11 @@ struct alignas(8) ComparisonState {
   std::uint8_t yaw_fault = 0;
   std::uint8_t is_checked = 0;         ///< 1 if no pair of wheel sensors is swapped: each pair has kConfirmations
   std::uint8_t confirmations[6] = {};  ///< per pair of wheels: comparisons that showed it not to be swapped
-  std::uint8_t unused[4] = {};
+  /// 1 if the wheels have turned for kRunaway_s without slowing down although the robot should stand, until they stand.
+  std::uint8_t is_runaway = 0;
+  std::uint8_t runaway_count = 0;      ///< comparisons in a row that showed it
+  std::uint16_t runaway_mm_per_s = 0;  ///< sum of the rim speeds in the first of them
   float standing_s = 0.0F;  ///< time without a change of any speed sample while blocked motors would draw more than the limp current
-  /// Time for which the wheels turn without slowing down although the robot should stand; stays at kRunaway_s or above until they stand.
-  float runaway_s = 0.0F;
-  float runaway_m_per_s = 0.0F;  ///< sum of the rim speeds at the beginning of that time
 };
 
 /// State of the core between two steps. Only start() and step() write it; a copy can be logged. The check sum covers the members up to

@@ -1,6 +1,9 @@
 // Thermal guards of the wheels. Each is stepped once per guard period, at different times, so that no control step runs all of them.
 #include "robot_core/drive_stages.h"
 
+// For size: each guard runs once in its own period.
+#pragma GCC optimize("Os")
+
 namespace robot_core {
 namespace {
 

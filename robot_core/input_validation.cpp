@@ -354,7 +354,6 @@ float estimated_current_A(const Config& config, const WheelState& wheel, float s
 }
 
 void validate_currents(const Config& config, State& state, const Input& input, Validated& validated) {
-#pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     const float sample_A = input.motor_current_A[i];
@@ -396,7 +395,7 @@ Validated validate_input(const Config& config, State& state, const Input& input)
     check_redundancy(config, state, validated);
   }
   compare_sensors(config, state, input, validated);
-  if (state.comparison.runaway_s >= kRunaway_s && validated.robot_fault == Reason::none) {
+  if (state.comparison.is_runaway != 0 && validated.robot_fault == Reason::none) {
     validated.robot_fault = Reason::runaway;
   }
   validate_currents(config, state, input, validated);

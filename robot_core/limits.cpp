@@ -278,7 +278,7 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
   WheelDemand demand[kMostWheels];
   const float most_V = smaller(config.voltage_limit_V, validated.battery_V);
   const float share = find_demands(config, state, validated, body, voltage, most_V, demand, limited);
-  const bool is_all_open = body.is_open || validated.robot_fault == Reason::period_invalid || state.comparison.runaway_s >= kRunaway_s;
+  const bool is_all_open = body.is_open || validated.robot_fault == Reason::period_invalid || state.comparison.is_runaway != 0;
   state.is_limited = !is_all_open && share < 1.0F ? 1 : 0;
   // Back-calculation: the integrators follow the voltages after the limits.
   const float feedback_share = smaller(1.0F, validated.elapsed_s * config.derived.per_tracking_time_per_s);

@@ -30,7 +30,7 @@ constexpr float kWheelwise_ratio = 10.0F;
 // Sums of the sizes of the rim speeds: of a robot that runs away, of one that stands again, and the decrease of one that slows down.
 constexpr float kRuns_m_per_s = 0.5F;
 constexpr float kStands_m_per_s = 0.1F;
-constexpr float kSlows_m_per_s = 0.05F;
+constexpr float kSlows_mm_per_s = 50.0F;
 // Reference velocity from which currents are compared with what they do.
 constexpr float kDriven_m_per_s = 0.1F;
 // A wheel that accelerates by more than this multiple of the acceleration limits slides.
@@ -140,7 +140,7 @@ void compare_heat(const Config& config, State& state, const Validated& validated
 bool is_controlled(Mode mode) { return mode == Mode::body_velocity || mode == Mode::pose_target; }
 
 /// False while the robot should stand, and if the body is not controlled.
-bool is_asked_to_move(const Config& config, const State& state, const Validated& validated) {
+[[gnu::noinline]] bool is_asked_to_move(const Config& config, const State& state, const Validated& validated) {
   const Vector3& asked = state.velocity_reference;
   return is_controlled(validated.mode) &&
          absolute(asked.x) + absolute(asked.y) + config.contact_radius_m * absolute(asked.yaw) > kDriven_m_per_s;
@@ -166,23 +166,27 @@ bool is_asked_to_move(const Config& config, const State& state, const Validated&
 }
 
 /// Swapped wheel sensors make the control drive a standing robot, once it is pushed, instead of holding it.
-[[gnu::cold]] void compare_runaway(const Config& config, State& state, const Validated& validated, float since_s) {
+[[gnu::cold, gnu::noinline]] void compare_runaway(const Config& config, State& state, const Validated& validated, float since_s) {
   ComparisonState& comparison = state.comparison;
   float rim_m_per_s = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
     rim_m_per_s += absolute(rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s));
   }
-  const bool is_away = comparison.runaway_s >= kRunaway_s;
   const bool should_stand = (is_controlled(validated.mode) || validated.mode == Mode::brake) &&
                             !is_asked_to_move(config, state, validated) && comparison.is_checked == 0;
-  if (!should_stand || !(rim_m_per_s > (is_away ? kStands_m_per_s : kRuns_m_per_s))) {
-    comparison.runaway_s = 0.0F;
-  } else if (!is_away) {
-    comparison.runaway_s += since_s;
-    if (rim_m_per_s < comparison.runaway_m_per_s - kSlows_m_per_s || comparison.runaway_s == since_s) {
-      comparison.runaway_s = since_s;
-      comparison.runaway_m_per_s = rim_m_per_s;
-    }
+  if (!should_stand || !(rim_m_per_s > (comparison.is_runaway != 0 ? kStands_m_per_s : kRuns_m_per_s))) {
+    comparison.is_runaway = comparison.runaway_count = 0;
+    return;
+  }
+  const float rim_mm_per_s = smaller(1000.0F * rim_m_per_s, 65535.0F);
+  if (comparison.runaway_count == 0 || rim_mm_per_s < static_cast<float>(comparison.runaway_mm_per_s) - kSlows_mm_per_s) {
+    comparison.runaway_count = 0;
+    comparison.runaway_mm_per_s = static_cast<std::uint16_t>(rim_mm_per_s);
+  }
+  constexpr std::uint8_t kMostCount = 255;
+  comparison.runaway_count += comparison.runaway_count < kMostCount ? 1 : 0;
+  if (static_cast<float>(comparison.runaway_count) * since_s >= kRunaway_s || comparison.runaway_count == kMostCount) {
+    comparison.is_runaway = 1;
   }
 }
 

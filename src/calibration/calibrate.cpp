@@ -106,42 +106,12 @@ class Calibrating {
   }
 
  private:
-  /// Scores the innovations fit as a rival of the forecast, on the same left-out pieces.
-  void score_innovations() {
-    if (all_.forecast->rivals.empty()) {
-      return;
-    }
-    Model near = all_.motor_model.model;
-    near.values = near.values_at(all_.fit.theta);
-    FitOptions options = options_.fit;
-    options.starts = 0;
-    const auto fit_without = [&](const Piece& piece) {
-      Fit others = fit(near, runs_without(all_.runs, piece), options);
-      ForecastFit found;
-      found.theta = std::move(others.theta);
-      found.covariance = std::move(others.covariance);
-      found.starts = std::move(others.starts);
-      return found;
-    };
-    const PieceScore score = score_pieces(setup_.model(), all_.runs, all_.forecast->pieces, fit_without);
-    all_.forecast->rivals.push_back(rival_score(ForecastSource::innovations, score, all_.runs));
-  }
-
-  [[nodiscard]] bool is_forecast_better() const {
-    if (options_.written != WrittenFit::best) {
-      return options_.written == WrittenFit::forecast;
-    }
-    const std::vector<RivalScore>& rivals = all_.forecast->rivals;
-    const auto score_nats = [&](ForecastSource source) { return std::ranges::find(rivals, source, &RivalScore::source)->score_nats; };
-    return !rivals.empty() && score_nats(ForecastSource::innovations) > score_nats(all_.forecast->source) + kLeastGain_nats;
-  }
-
   /// Runs the forecast fit to whole runs, and writes its parameters if they predict better.
   void forecast() {
     const ForecastModel base = setup_.model();
     all_.forecast = forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads);
-    score_innovations();
-    if (is_forecast_better()) {
+    score_innovations(setup_.model(), options_.fit, all_);
+    if (writes_forecast(options_.written, *all_.forecast)) {
       write_forecast(all_);
       all_.effects = all_.forecast->setup.motor.effects;
       widen_by_rows();
@@ -200,7 +170,6 @@ class Calibrating {
     all_.notes.emplace_back(kTurningRowsReason);
   }
 
-  /// Adds warnings about the fit to the notes.
   void warn() {
     const Fit& fit = all_.fit;
     // Unknown heat that is certain to exist is reported elsewhere.
@@ -483,13 +452,14 @@ Calibration calibrate(const Motor& motor, std::span<const Recording> recordings,
 Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
   constexpr const char* kSource = "calibration";
   Motor result = motor;
-  add_extensions(calibration, kSource, result);
+  const std::vector<std::string> extensions = add_extensions(calibration, kSource, result);
   MotorFit& fit = result.fit.emplace();
   fit.motor = motor.id;
-  // The runs of earlier fits still count.
   fit.runs = motor.fit ? motor.fit->runs : std::vector<std::string>{};
   std::ranges::copy(calibration.fitted, std::back_inserter(fit.runs));
   fit.training = calibration.training;
+  fit.extensions = motor.fit ? motor.fit->extensions : std::vector<std::string>{};
+  fit.extensions.insert(fit.extensions.end(), extensions.begin(), extensions.end());
   result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(names_of(calibration.runs), ", "));
   for (const CalibratedParameter& each : calibration.parameters) {
     if (!each.is_of_file) {

@@ -35,7 +35,39 @@ std::string errors_in_words(const RivalScore& rival) {
   return fmt::format("{}: {}", name_of(rival.source), fmt::join(each, ", "));
 }
 
+bool is_better_than_innovations(const Forecast& forecast) {
+  const auto score_nats = [&](ForecastSource source) {
+    return std::ranges::find(forecast.rivals, source, &RivalScore::source)->score_nats;
+  };
+  return !forecast.rivals.empty() && score_nats(ForecastSource::innovations) > score_nats(forecast.source) + kLeastGain_nats;
+}
+
 }  // namespace
+
+void score_innovations(const ForecastModel& model, FitOptions options, Calibration& calibration) {
+  Forecast& forecast = *calibration.forecast;
+  if (forecast.rivals.empty()) {
+    return;
+  }
+  Model near = calibration.motor_model.model;
+  near.values = near.values_at(calibration.fit.theta);
+  options.starts = 0;
+  const auto fit_without = [&](const Piece& piece) {
+    Fit others = fit(near, runs_without(calibration.runs, piece), options);
+    ForecastFit found;
+    found.theta = std::move(others.theta);
+    found.covariance = std::move(others.covariance);
+    found.starts = std::move(others.starts);
+    return found;
+  };
+  const PieceScore score = score_pieces(model, calibration.runs, forecast.pieces, fit_without);
+  forecast.rivals.push_back(rival_score(ForecastSource::innovations, score, calibration.runs));
+}
+
+bool writes_forecast(WrittenFit wanted, const Forecast& forecast) {
+  return wanted == WrittenFit::best ? forecast.source != ForecastSource::file && is_better_than_innovations(forecast)
+                                    : wanted == WrittenFit::forecast;
+}
 
 Range declared_range(const Motor& motor, std::string_view key) {
   for (const MotorEffect& effect : motor.effects) {
@@ -117,6 +149,8 @@ std::vector<std::string> forecast_in_words(const Calibration& calibration) {
   if (forecast.source == ForecastSource::file) {
     words.emplace_back(calibration.is_forecast_written
                            ? "no fit predicts left-out pieces better than the file: its values are written as they are"
+                       : is_better_than_innovations(forecast)
+                           ? "for forecasts the values of the file are better than the written ones: they predict left-out pieces better"
                            : "no fit predicts left-out pieces better than the file, but the written values predict them as well");
   } else if (forecast.source == ForecastSource::ordinary) {
     words.push_back(fmt::format("least squares of free runs predicts left-out pieces best: {}",
@@ -133,19 +167,21 @@ std::vector<std::string> forecast_in_words(const Calibration& calibration) {
   return words;
 }
 
-void add_extensions(const Calibration& calibration, const std::string& source, Motor& motor) {
+std::vector<std::string> add_extensions(const Calibration& calibration, const std::string& source, Motor& motor) {
+  std::vector<std::string> names;
   for (const MotorEffect& effect : calibration.effects) {
     if (std::ranges::find(motor.effects, effect.name, &MotorEffect::name) != motor.effects.end()) {
       continue;
     }
     motor.effects.push_back(effect);
+    names.push_back(effect.name);
     for (ParameterValue& each : motor.effects.back().parameters) {
       each.source = source;
       each.origin = each.spread ? each.origin : Origin::derived;
     }
   }
-  if (!calibration.is_forecast_written) {
-    return;
+  if (!calibration.is_forecast_written || calibration.forecast->accepted.empty()) {
+    return {};
   }
   const ForecastModel model = calibration.forecast->model();
   const ForecastFit& fit = calibration.forecast->fit;
@@ -160,8 +196,10 @@ void add_extensions(const Calibration& calibration, const std::string& source, M
     sensor.size.derivation = "fit to measured temperatures, for forecasts";
     sensor.size.spread = Spread{Spread::Kind::range, std::max(fault.type->size.range.low, sensor.size.value * std::exp(-reach)),
                                 std::min(fault.type->size.range.high, sensor.size.value * std::exp(reach)), true};
+    names.push_back(sensor.name);
     motor.sensors.push_back(std::move(sensor));
   }
+  return names;
 }
 
 }  // namespace heatsoak

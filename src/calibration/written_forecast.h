@@ -10,6 +10,13 @@
 
 namespace heatsoak {
 
+/// Adds the innovations fit to the rivals of the forecast, scored on the same left-out pieces. Does nothing without pieces.
+void score_innovations(const ForecastModel& model, FitOptions options, Calibration& calibration);
+
+/// Returns whether the forecast's parameters are written. With WrittenFit::best they must come from a fit, not from the file, and predict
+/// the left-out pieces better than the innovations fit by kLeastGain_nats.
+bool writes_forecast(WrittenFit wanted, const Forecast& forecast);
+
 /// Returns one sentence per fitted value outside its declared range. Verbs that need a sound motor may refuse such a file.
 std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> parameters);
 
@@ -25,8 +32,9 @@ std::string what_does_not_describe(const Calibration& calibration);
 /// Returns sentences about the compared fits and the chosen one.
 std::vector<std::string> forecast_in_words(const Calibration& calibration);
 
-/// Adds the effects and sensor faults of the calibration that the motor file does not have.
-void add_extensions(const Calibration& calibration, const std::string& source, Motor& motor);
+/// Adds the effects and sensor faults of the calibration that the motor file does not have. Returns the names of those that were added for
+/// better forecasts.
+std::vector<std::string> add_extensions(const Calibration& calibration, const std::string& source, Motor& motor);
 
 /// Returns the allowed range of a motor parameter by its key (for example "effects.fan.conductance"), in the parameter's unit. Positive
 /// numbers if the key is unknown.

@@ -150,6 +150,7 @@ MotorFit read_fit(Reader& table, std::span<const std::string> parameters) {
           .quantity({"free_run_error", "K", Range::between(1e-3, 20.0), "rms error of the free runs that determined the values"},
                     Need::optional)
           .value_or(0.0);
+  fit.extensions = table.texts("extensions", Need::optional);
   fit.training = read_training(table);
   fit.band = read_band(table);
   table.finish();
@@ -178,6 +179,9 @@ std::string to_toml(const MotorFit& fit) {
     text += fmt::format("latent_flux_{} = \"{} W\"\n", kHeatedNodes[i], significant(fit.latent_flux_W[i], 2));
   }
   text += fmt::format("latent_flux_time_scale = \"{} s\"\n", significant(fit.latent_flux_time_scale_s, 2));
+  text += fit.extensions.empty()
+              ? ""
+              : fmt::format("# added for better forecasts, no diagnosis\nextensions = [\"{}\"]\n", fmt::join(fit.extensions, "\", \""));
   text += fit.free_run_error_K > 0.0 ? fmt::format("free_run_error = \"{} K\"\n", significant(fit.free_run_error_K, 2)) : "";
   text += training_text(fit.training);
   return text + (fit.band ? band_text(*fit.band) : "");

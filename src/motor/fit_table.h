@@ -47,6 +47,8 @@ struct MotorFit {
   /// Above 0 if the parameters were fitted to simulations of whole runs: their rms error. Short-term predictions would then ask for other
   /// parameters, as in a motor with more thermal bodies than the model.
   double free_run_error_K = 0.0;
+  /// Names of effects and sensor errors of the file that were added for better forecasts: they are no diagnosis.
+  std::vector<std::string> extensions = {};
   TrainingRange training = {};
   std::optional<ForecastBand> band = {};  ///< estimated by the calibration from left-out runs; may be absent
 };

@@ -95,6 +95,12 @@ ExitCode run(const Options& options, Session& session) {
   std::vector<std::string> notes;
   std::vector<Recording> train = read_logs(session.folders(), options.train, options.logs, notes);
   std::vector<Recording> holdout = read_logs(session.folders(), options.holdout, options.logs, notes);
+  if (motor.fit && !motor.fit->extensions.empty()) {
+    notes.push_back(
+        fmt::format("an effect that {} imitates may stay unfound, because the file has {} for better forecasts only; calibrate "
+                    "with --innovations for a diagnosis",
+                    fmt::join(motor.fit->extensions, " and "), motor.fit->extensions.size() == 1 ? "it" : "them"));
+  }
   const std::vector<std::string> of_logs = notes;
   make_names_distinct(train, holdout);
   std::ranges::move(admit(motor, train, holdout, options.logs.takes_logs_as_they_are, options.logs.ambient_C).notes,
