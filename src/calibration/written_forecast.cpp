@@ -39,7 +39,7 @@ bool is_better_than_innovations(const Forecast& forecast) {
   const auto score_nats = [&](ForecastSource source) {
     return std::ranges::find(forecast.rivals, source, &RivalScore::source)->score_nats;
   };
-  return !forecast.rivals.empty() && score_nats(ForecastSource::innovations) > score_nats(forecast.source) + kLeastGain_nats;
+  return forecast.rivals.empty() || score_nats(ForecastSource::innovations) > score_nats(forecast.source) + kLeastGain_nats;
 }
 
 }  // namespace
