@@ -184,7 +184,9 @@ bool is_controlled(Mode mode) { return mode == Mode::body_velocity || mode == Mo
     comparison.runaway_mm_per_s = static_cast<std::uint16_t>(rim_mm_per_s);
   }
   constexpr std::uint8_t kMostCount = 255;
-  comparison.runaway_count += comparison.runaway_count < kMostCount ? 1 : 0;
+  if (comparison.runaway_count < kMostCount) {
+    ++comparison.runaway_count;
+  }
   if (static_cast<float>(comparison.runaway_count) * since_s >= kRunaway_s || comparison.runaway_count == kMostCount) {
     comparison.is_runaway = 1;
   }
