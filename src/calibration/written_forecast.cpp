@@ -42,19 +42,6 @@ bool is_better_than_innovations(const Forecast& forecast) {
   return !forecast.rivals.empty() && score_nats(ForecastSource::innovations) > score_nats(forecast.source) + kLeastGain_nats;
 }
 
-/// RMS error in K of simulations of the runs from their first readings.
-double free_run_error_K(const ForecastModel& model, const Eigen::VectorXd& theta, std::span<const MeasuredRun> runs) {
-  double squares_K2 = 0.0;
-  double count = 0.0;
-  for (const MeasuredRun& run : runs) {
-    const Eigen::VectorXd start_C = model.decided_start(run, theta).state_C;
-    const LinearisedRun path = model.along(run, theta, 0.0, {start_C.data(), static_cast<std::size_t>(start_C.size())});
-    squares_K2 += path.residual_K.array().isNaN().select(0.0, path.residual_K).matrix().squaredNorm();
-    count += static_cast<double>(path.residual_K.array().isNaN().select(0.0, Eigen::ArrayXd::Ones(path.residual_K.size())).sum());
-  }
-  return std::sqrt(squares_K2 / std::max(1.0, count));
-}
-
 }  // namespace
 
 void score_innovations(const ForecastModel& model, FitOptions options, Calibration& calibration) {
@@ -77,14 +64,12 @@ void score_innovations(const ForecastModel& model, FitOptions options, Calibrati
   forecast.rivals.push_back(rival_score(ForecastSource::innovations, score, calibration.runs));
 }
 
-bool writes_forecast(WrittenFit wanted, const ForecastModel& model, const Calibration& calibration) {
-  const Forecast& forecast = *calibration.forecast;
-  if (wanted != WrittenFit::best || forecast.source == ForecastSource::file) {
+bool writes_forecast(WrittenFit wanted, const Forecast& forecast) {
+  if (wanted != WrittenFit::best) {
     return wanted == WrittenFit::forecast;
   }
-  return forecast.rivals.empty() ? free_run_error_K(forecast.model(), forecast.fit.theta, calibration.runs) <=
-                                       free_run_error_K(model, calibration.fit.theta, calibration.runs)
-                                 : is_better_than_innovations(forecast);
+  const bool are_runs = std::ranges::all_of(forecast.pieces, [](const Piece& piece) { return piece.seen.empty(); });
+  return are_runs && forecast.source != ForecastSource::file && is_better_than_innovations(forecast);
 }
 
 Range declared_range(const Motor& motor, std::string_view key) {

@@ -14,9 +14,9 @@ namespace heatsoak {
 void score_innovations(const ForecastModel& model, FitOptions options, Calibration& calibration);
 
 /// Returns whether the forecast's parameters are written. With WrittenFit::best they must come from a fit, not from the file, and predict
-/// the left-out pieces better than the innovations fit by kLeastGain_nats. With too few pieces for that, they must follow the fitted runs
-/// at least as well. `model`: of the innovations fit.
-bool writes_forecast(WrittenFit wanted, const ForecastModel& model, const Calibration& calibration);
+/// at least three left-out runs better than the innovations fit by kLeastGain_nats. With fewer runs they are not written: the intervals of
+/// the innovations fit are the better founded ones.
+bool writes_forecast(WrittenFit wanted, const Forecast& forecast);
 
 /// Returns one sentence per fitted value outside its declared range. Verbs that need a sound motor may refuse such a file.
 std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> parameters);

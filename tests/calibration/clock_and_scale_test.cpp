@@ -48,7 +48,7 @@ SyntheticLog unsteady(double delay_s) {
 TEST(ClockOffsets, TemperatureBeforeItsHeatSpoils) {
   for (const auto& [delay_s, remedy] : {std::pair(-1.0, "inputs = \"previous_interval\""), std::pair(-4.0, "clock_offset = \"-")}) {
     const Read result = read_text(unsteady(delay_s).csv());
-    EXPECT_THAT(result.quality.blocking, ElementsAre(testing::AllOf(HasSubstr("winding_C answers"), HasSubstr(remedy)))) << delay_s;
+    EXPECT_THAT(result.quality.blocking, ElementsAre(testing::AllOf(HasSubstr("winding_C responds"), HasSubstr(remedy)))) << delay_s;
     EXPECT_THAT(result.quality.suspicions, result.quality.blocking);
   }
 }
@@ -60,7 +60,7 @@ TEST(ClockOffsets, TemperatureAfterItsHeatIsSaidByTheAdmission) {
     const Admission admission = admit(shipped_motor("maxon_ec45_flat_70w_24v"), std::vector{result.recording}, {}, false);
     if (delay_s > 0.0) {
       EXPECT_THAT(admission.notes, ElementsAre(HasSubstr("log: winding_C follows current_A 3")));
-      EXPECT_THAT(admission.next_steps, ElementsAre(HasSubstr("winding_C answers late")));
+      EXPECT_THAT(admission.next_steps, ElementsAre(HasSubstr("winding_C lags")));
     } else {
       EXPECT_THAT(admission.notes, IsEmpty());
       EXPECT_THAT(admission.next_steps, IsEmpty());

@@ -55,7 +55,7 @@ TEST_F(Recordings, DroneMotorNearStandstill) {
   const fs::path map = kMappings / "tasrv_uav_motor.map.toml";
   const Calibration found =
       calibrate(read_motor(kReports / "diagnosis/uav_motor.toml"), read("tasrv_uav_motor", {"run1.csv", "run3.csv", "run5.csv"}, map),
-                read("tasrv_uav_motor", {"run2.csv"}, map), {});
+                read("tasrv_uav_motor", {"run2.csv"}, map), {.fit = {}, .written = WrittenFit::innovations});
   // 600 W raise the winding by 1.1 K/s in the first half minute of run 5, before much heat reaches the stator: about 520 J/K.
   const CalibratedParameter& winding = figure(found, "winding_heat_capacity");
   EXPECT_TRUE(winding.is_identifiable);
@@ -76,7 +76,7 @@ TEST_F(Recordings, DroneMotorIsForecastTo2K) {
   const fs::path map = kMappings / "tasrv_uav_motor.map.toml";
   const Calibration found =
       calibrate(read_motor(kReports / "diagnosis/uav_motor.toml"), read("tasrv_uav_motor", {"run1.csv", "run3.csv", "run5.csv"}, map),
-                read("tasrv_uav_motor", {"run2.csv"}, map), {.fit = {}, .written = WrittenFit::forecast});
+                read("tasrv_uav_motor", {"run2.csv"}, map), {});
   ASSERT_TRUE(found.is_forecast_written);
   double contact_W_per_K = 1.0 / figure(found, "thermal_resistance_winding_stator").value;
   for (const CalibratedParameter& each : found.parameters) {

@@ -272,7 +272,7 @@ Command calibrate_command() {
             CLI::Option* const forecast = app.add_flag(
                 "--forecast", options->writes_forecast,
                 "always write the model that predicts left-out runs best, even if it needs effects that no diagnosis named; default: only "
-                "if it predicts them better by 5 % than the innovations fit");
+                "with three runs or more, if it predicts left-out ones better by 5 % than the innovations fit");
             app.add_flag("--innovations", options->writes_innovations,
                          "always write the fit that explains the response within seconds of a load change, for `heatsoak diagnose`")
                 ->excludes(forecast);
