@@ -222,8 +222,8 @@ typedef struct {
 } maxon_ecx_flat_42m_24v_output;
 
 /* Squares of the allowed current. The table is never above the exact result of the network. Between grid points it is at most 1.0 %
-   below it, for currents of 2.33 A and more and windings below their limit. The allowed current changes by at most 7.05 A per K of the winding, 7.05 A per K of
-   the stator and 0.0868 A per rad/s. An axis with one grid point has no influence. */
+   below it, for currents of 2.33 A and more and windings below their limit. The allowed current changes by at most 7.05 A per K of
+   the winding, 7.05 A per K of the stator and 0.0868 A per rad/s. An axis with one grid point has no influence. */
 static const float maxon_ecx_flat_42m_24v_speed_rad_per_s[1] = {
     0.0f,};
 static const float maxon_ecx_flat_42m_24v_stator_C[2] = {

@@ -407,7 +407,7 @@ TEST(CHeaderText, ConvertsNoCurrentOfABrushedMotor) {
 
 TEST(CHeaderText, ACommentEndsWhereItShould) {
   EXPECT_THAT(header_text(), HasSubstr("a * / robot"));
-  EXPECT_THAT(header_text(), HasSubstr("of 400 motors drawn from the declared tolerances 10 exceeded"));
+  EXPECT_THAT(header_text(), HasSubstr("of 400 motors drawn from the declared tolerances, 10 exceeded"));
 }
 
 }  // namespace

@@ -36,9 +36,10 @@ std::string tables(const Source& source) {
   return fmt::format(
              "/* Squares of the allowed current. The table is never above the exact result of the network. Between grid points it is at "
              "most {:.1f} %\n"
-             "   below it, for currents of {:.3g} A and more and windings below their limit. The allowed current changes by at most {:.3g} A per K of the winding, {:.3g} "
-             "A per K of\n"
-             "   the stator and {:.3g} A per rad/s.{} */\n",
+             "   below it, for currents of {:.3g} A and more and windings below their limit. The allowed current changes by at most {:.3g} "
+             "A per "
+             "K of\n"
+             "   the winding, {:.3g} A per K of the stator and {:.3g} A per rad/s.{} */\n",
              100.0 * bound.shortfall_ratio, table.straight_below_A, bound.winding_slope_A_per_K, bound.stator_slope_A_per_K,
              bound.speed_slope_A_s_per_rad,
              table.speed_rad_per_s.size() == 1 || table.stator_C.size() == 1 ? at_one_place : std::string()) +
