@@ -3,17 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <limits>
-#include <map>
-#include <regex>
 #include <set>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "fault_table_rows.h"
 #include "test_robot.h"
 
 namespace heatsoak::test_robot {
@@ -31,50 +28,6 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kFrom = 300;  ///< first period of the fault; the command reverses a little later
 constexpr int kReversal = 320;
 constexpr int kWheel = 1;
-
-std::string text_of(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(std::string(HEATSOAK_SOURCE_DIR) + "/" + path).rdbuf();
-  return text.str();
-}
-
-/// Code and letter of each row of the table.
-std::map<int, char> table_rows() {
-  std::map<int, char> rows;
-  const std::string text = text_of("robot_core/reason.h");
-  const std::regex row(R"(// \| (\d+) ([A-Z]) +\|)");
-  for (std::sregex_iterator at(text.begin(), text.end(), row), end; at != end; ++at) {
-    rows[std::stoi((*at)[1])] = (*at)[2].str().front();
-  }
-  return rows;
-}
-
-std::map<int, std::string> enum_members() {
-  std::map<int, std::string> members;
-  const std::string text = text_of("robot_core/reason.h");
-  const std::regex member(R"(\n  (\w+) = (\d+),)");
-  for (std::sregex_iterator at(text.begin(), text.end(), member), end; at != end; ++at) {
-    members[std::stoi((*at)[2])] = (*at)[1];
-  }
-  return members;
-}
-
-TEST(FaultTableText, AndEnumAgree) {
-  const std::map<int, char> rows = table_rows();
-  const std::map<int, std::string> members = enum_members();
-  const std::string tests = text_of("tests/robot_core/fault_table_test.cpp");
-  ASSERT_GE(members.size(), 10U);
-  for (const auto& [code, name] : members) {
-    EXPECT_EQ(rows.count(code), code >= 100 ? 1U : 0U) << name;
-    if (code >= 100) {
-      EXPECT_NE(tests.find("TEST(FaultTable, " + name + ")"), std::string::npos) << name << " has no test";
-    }
-  }
-  for (const auto& [code, letter] : rows) {
-    EXPECT_EQ(members.count(code), 1U) << code;
-    EXPECT_TRUE(letter == 'W' || letter == 'R') << code;
-  }
-}
 
 /// Record of a run from kFrom to the end of the fault, and afterwards.
 struct Record {
