@@ -19,8 +19,8 @@ struct Problem {  // NOLINT(cppcoreguidelines-pro-type-member-init): pose() fill
   Path<Real, 2> brake;
 };
 
-/// Brakes a start that moves upwards too fast, now or inevitably soon. Jerks down until the velocity sinks below `velocity_max`, but only
-/// as long as `velocity_min` can still be kept.
+/// Brakes a start that moves upwards too fast, now or inevitably soon. Jerks down until the velocity sinks below `velocity_max`, and stops
+/// earlier if `velocity_min` would otherwise be violated.
 template <typename Real>
 void brake_velocity(Real& v, Real& a, Real velocity_max, Real velocity_min, Real acceleration_min, Real sign, Path<Real, 2>& brake) {
   const Real square = a * a / Real(2);

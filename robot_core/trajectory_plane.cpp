@@ -201,7 +201,7 @@ class Inside {
       return false;
     }
     const Real square = speed_square(trajectories_, circle_);
-    // Of plans equally far out within rounding, the shorter one is better.
+    // The shorter one is better of two plans that are equally far out within rounding.
     constexpr Real kAlike = Real(1e-4);
     if (square < (Real(1) - kAlike) * best_.square || (square <= (Real(1) + kAlike) * best_.square && duration_s < best_.duration_s)) {
       best_ = {t, level, square, duration_s};

@@ -217,7 +217,7 @@ int SetSearch::count_of(const EffectSet& set, const std::string& family) const {
 }
 
 int SetSearch::rank_in_family(const EffectSet& set, std::size_t place) const {
-  // Of two effects in one family, the one with the larger loss of ln P without it has the better rank.
+  // The effect with the larger loss of ln P without it has the better rank within its family.
   const auto nats_without = [&](std::size_t gone) {
     std::vector<int> rest = set.members;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(gone));

@@ -9,7 +9,7 @@
 
 namespace heatsoak {
 
-/// Whether exponents, thresholds and capacities of an added effect are fitted or fixed.
+/// State of the exponents, thresholds and capacities of an added effect: fitted or fixed.
 enum class ShapesAre { free, held };
 
 /// Returns the model with the candidate added and its size free, starting at `size_share` typical sizes, clamped to the allowed range. If

@@ -54,7 +54,7 @@ struct Calibration {
   std::vector<std::string> fitted;  ///< name_and_fingerprint() of each recording
   TrainingRange training;           ///< their conditions and input ranges
   std::vector<CalibratedParameter> parameters;
-  Eigen::MatrixXd correlation;  ///< of the logarithms of the motor file's parameters, in the order of `parameters`
+  Eigen::MatrixXd correlation;  ///< correlation of the logarithms of the motor file's parameters, in the order of `parameters`
   std::vector<OpenDirection> open;
   std::string next_experiment;  ///< empty if nothing is open
   std::vector<ErrorBeforeAfter> fit_error;

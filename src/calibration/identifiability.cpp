@@ -208,8 +208,7 @@ Answer answer_to(const MotorModel& motor, const CalibratedValue& parameter, cons
   return not_excited();
 }
 
-/// Adds a reason for every parameter that is not identifiable and that the open directions do not explain. `explained` has these directions
-/// as columns.
+/// Adds a reason for every parameter that is neither identifiable nor explained by the open directions, the columns of `explained`.
 void name_the_rest(const MotorModel& motor, const Fit& fit, const Look& seen, std::span<const CalibratedParameter> parameters,
                    const Eigen::MatrixXd& explained, std::vector<OpenDirection>& open) {
   const bool has_unlogged_speed = !motor.nuisances.empty();

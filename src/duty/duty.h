@@ -26,7 +26,7 @@ class DutyShape {
   [[nodiscard]] virtual std::vector<WheelDemand> demand(const Robot& robot, std::uint64_t seed) const = 0;
   /// Whether the demand follows from the robot's mass and wheels; if not, the duty states torque and speed of the wheel itself.
   [[nodiscard]] virtual bool depends_on_robot() const { return false; }
-  /// Whether the duty rests on parameters with ranges of their own, beside ambient and load, that draw() samples.
+  /// True if the duty has parameters with ranges, in addition to ambient and load, that draw() samples.
   [[nodiscard]] virtual bool has_unknowns() const { return false; }
   /// The demand under draw number `draw` of these, and of what the robot's file leaves open. Same seed, same draws.
   [[nodiscard]] virtual std::vector<WheelDemand> draw(const Robot& robot, std::uint64_t seed, std::uint64_t /*draw*/) const {

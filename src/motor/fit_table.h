@@ -40,7 +40,7 @@ struct MotorFit {
   std::string motor;                    ///< id of the motor file that the fit started from
   std::vector<std::string> runs;        ///< names with the used part: "match_1 (5f0c31d2a7e94b68 0-1800 s)"
   std::vector<std::string> parameters;  ///< keys of the fitted parameters: "thermal_resistance_winding_stator", "effects.fan.conductance"
-  Eigen::MatrixXd correlation;          ///< of the logarithms of these parameters, in that order
+  Eigen::MatrixXd correlation;          ///< correlation of the logarithms of these parameters, in that order
   std::vector<std::pair<std::string, double>> noise_K;  ///< per node with a sensor: standard deviation of the noise of one sample
   std::vector<double> latent_flux_W;                    ///< rms of the unknown heat flux into winding and stator
   double latent_flux_time_scale_s = 0.0;

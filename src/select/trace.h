@@ -15,11 +15,11 @@ struct TraceRow {
   double stator_C = 0.0;
   double ambient_C = 0.0;
   double current_A = 0.0;             ///< equivalent DC current, signed like the torque
-  double speed_rad_per_s = 0.0;       ///< of the motor
+  double speed_rad_per_s = 0.0;       ///< speed of the motor
   double torque_Nm = 0.0;             ///< at the motor's shaft
   double motor_V = 0.0;               ///< at the terminals, at this winding temperature
   double power_in_W = 0.0;            ///< into the terminals
-  std::vector<double> own_C = {};     ///< of the nodes that effects brought, as own_nodes names them
+  std::vector<double> own_C = {};     ///< temperatures of the nodes that effects add, in the order of own_nodes
   std::vector<double> sensor_C = {};  ///< by the sensors for which the motor's file states a fault, as shown_at names their nodes
 };
 

@@ -43,7 +43,7 @@ class Behaviour {
   MatchValues values_;
   FieldSize field_;
   Random& random_;
-  double play_end_s_ = 0.0;  ///< of the segment that runs, counted in time of play
+  double play_end_s_ = 0.0;  ///< end of the present segment, in time of play
   double next_duel_s_;       ///< counted likewise: duels come by the minute of play, whatever time they take of it
 };
 

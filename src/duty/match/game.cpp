@@ -90,7 +90,7 @@ class Game {
 
   void add(Phase phase, double duration_s) { spans_.push_back({phase, duration_s}); }
 
-  /// What the clock of a half counts. The last segment of play has no interruption behind it, unless a free kick is the last.
+  /// Returns the interruptions that the clock of one half counts. None follows the last segment of play, except a free kick.
   std::vector<Interruption> segments(double left_s) {
     std::vector<Interruption> half;
     while (left_s > 0.0) {

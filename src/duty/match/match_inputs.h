@@ -1,4 +1,4 @@
-// What nobody has measured of a match, as named inputs with ranges. The rules' own parameters are constants.
+// Unknown parameters of a match, each with a range. Values fixed by the rules are constants.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ inline constexpr std::array<std::string_view, 3> kRoleNames{"keeper", "defender"
 
 /// One draw of every input; means are of exponential distributions unless said otherwise.
 struct MatchValues {
-  double running_mean_s = 0.0;   ///< of a segment of play, unless the half ends first
+  double running_mean_s = 0.0;   ///< mean duration of a segment of play; the end of the half shortens the last one
   double stop_mean_s = 0.0;      ///< of a stop, whose part beyond the shortest is exponential
   double stop_shortest_s = 0.0;  ///< robots slow down, the ball is looked for
   double placement_share = 0.0;  ///< part of the interruptions that end with ball placement
