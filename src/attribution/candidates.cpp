@@ -7,6 +7,8 @@
 
 #include "attribution/extended_model.h"
 #include "estimation/log_rows.h"
+#include "estimation/spans.h"
+#include "thermal/linearised.h"
 
 namespace heatsoak {
 namespace {
@@ -342,7 +344,7 @@ void show(const MeasuredRun& run, Columns& columns) {
     const std::vector<SensorFault>& faults = run.sensors[static_cast<std::size_t>(sensor)].faults;
     for (Eigen::Index column = 0; column < (faults.empty() ? 0 : columns.cols()); ++column) {
       Eigen::VectorXd change = columns(rows, column);
-      apply(faults, run.time_s, true, change);
+      apply(faults, run.time_s, true, as_span(change));
       columns(rows, column) = change;
     }
   }
@@ -433,10 +435,10 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Extend
     }
     const Eigen::Index sensor = sensor_of(run, candidate.sensor_type->signal);
     Eigen::VectorXd true_C = fitted.state_C.row(fitted.sensor_node[static_cast<std::size_t>(sensor)]);
-    apply(run.sensors[static_cast<std::size_t>(sensor)].faults, run.time_s, false, true_C);
+    apply(run.sensors[static_cast<std::size_t>(sensor)].faults, run.time_s, false, as_span(true_C));
     // A lag is strongly nonlinear in its size, so use a finite difference instead of the derivative at 0.
     Eigen::VectorXd sensor_C = true_C;
-    candidate.sensor_type->law.apply(run.time_s, candidate.column_at_share * candidate.typical_size(), false, sensor_C);
+    candidate.sensor_type->law.apply(run.time_s, candidate.column_at_share * candidate.typical_size(), false, as_span(sensor_C));
     for (Eigen::Index k = 0; k < sensor_C.size(); ++k) {
       columns(k * fitted.sensors() + sensor, static_cast<Eigen::Index>(j)) = (sensor_C[k] - true_C[k]) / candidate.column_at_share;
     }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "estimation/spans.h"
+
 namespace heatsoak {
 namespace {
 
@@ -145,10 +147,10 @@ LinearisedRun linearised(const ExtendedModel& model, const MeasuredRun& run, con
     for (Eigen::Index sensor = 0; sensor < out.sensors(); ++sensor) {
       if (run.sensors[static_cast<std::size_t>(sensor)].signal == model.sensors[i].type->signal) {
         const SensorFault fault{model.sensors[i].type, model.sensors[i].value};
-        const Eigen::VectorXd by_size = fault.type->law.by_size(run.time_s, fault.size, out.sensor_C.col(sensor));
+        const std::vector<double> by_size = fault.type->law.by_size(run.time_s, fault.size, as_span(out.sensor_C.col(sensor)));
         add_fault(fault, sensor, run, out);
         const auto rows = Eigen::seq(sensor, out.residual_K.size() - 1, out.sensors());
-        out.by_parameter(rows, model.model.free_count() + static_cast<Eigen::Index>(i)) = fault.type->typical_size * by_size;
+        out.by_parameter(rows, model.model.free_count() + static_cast<Eigen::Index>(i)) = fault.type->typical_size * as_vector(by_size);
       }
     }
   }

@@ -199,7 +199,7 @@ void set_parameters(Motor& motor, const ModelOfLogs& model, const Diagnosis& dia
   const Eigen::VectorXd sd = correlation.diagonal().cwiseSqrt().cwiseMax(1e-9);
   correlation = sd.cwiseInverse().asDiagonal() * correlation * sd.cwiseInverse().asDiagonal();
   correlation.diagonal().setOnes();
-  together.correlation = correlation;
+  together.correlation = Correlation(std::span<const double>(correlation.data(), static_cast<std::size_t>(correlation.size())));
   const LatentFlux flux = fit.flux;
   together.latent_flux_W = flux.rms_W;
   together.latent_flux_time_scale_s = flux.time_scale_s;

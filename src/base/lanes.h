@@ -1,11 +1,8 @@
-// Several parameter samples evaluated together (SIMD). A law written for `double` also runs on Lanes.
+// Number of parameter samples that are evaluated together (SIMD); thermal/lanes.h has their type.
 #pragma once
-
-#include <Eigen/Core>
 
 namespace heatsoak {
 
 inline constexpr int kLanes = 8;
-using Lanes = Eigen::Array<double, kLanes, 1>;
 
 }  // namespace heatsoak

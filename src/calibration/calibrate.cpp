@@ -482,7 +482,7 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
     const Range declared = declared_range(result, each.name);
     parameter->spread = Spread{Spread::Kind::range, std::max(each.low, declared.low), std::min(each.high, declared.high), true};
   }
-  fit.correlation = calibration.correlation;
+  fit.correlation = Correlation(std::span(calibration.correlation.data(), static_cast<std::size_t>(calibration.correlation.size())));
   fit.latent_flux_W = calibration.fit.flux.rms_W;
   fit.free_run_error_K = calibration.fit.free_run_error_K;
   fit.latent_flux_time_scale_s = calibration.fit.flux.time_scale_s;

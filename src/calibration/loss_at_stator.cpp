@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "thermal/effect.h"
-#include "thermal/scalar.h"
+#include "thermal/law.h"
 
 namespace heatsoak {
 namespace {

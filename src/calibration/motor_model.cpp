@@ -227,7 +227,8 @@ class ModelBuilder {
       for (Eigen::Index j = 0; j < i; ++j) {
         const Eigen::Index a = in_fit[static_cast<std::size_t>(i)];
         const Eigen::Index b = in_fit[static_cast<std::size_t>(j)];
-        correlation(i, j) = correlation(j, i) = a >= 0 && b >= 0 ? motor_.fit->correlation(a, b) : 0.0;
+        correlation(i, j) = correlation(j, i) =
+            a >= 0 && b >= 0 ? motor_.fit->correlation(static_cast<std::size_t>(a), static_cast<std::size_t>(b)) : 0.0;
       }
     }
     // The file has five digits, so smaller eigenvalues are rounding errors.

@@ -5,8 +5,7 @@
 #include <string>
 
 #include "motor/datasheet_network.h"
-#include "thermal/effect.h"
-#include "thermal/scalar.h"
+#include "thermal/law.h"
 
 namespace heatsoak {
 namespace {

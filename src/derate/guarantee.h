@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/lanes.h"
 #include "base/parallel.h"
 #include "derate/current_table.h"
 #include "derate/held_current.h"

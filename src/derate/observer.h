@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "motor/motor.h"
-#include "robot/motor_drive.h"
+#include "robot/machine_point.h"
 #include "robot/robot.h"
 #include "thermal/network.h"
 #include "thermal/traced.h"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/diagnostic.h"
+#include "estimation/spans.h"
 #include "thermal/tangent_run.h"
 
 namespace heatsoak {
@@ -80,13 +81,13 @@ class Recorder {
 
 void add_fault(const SensorFault& fault, Eigen::Index sensor, const MeasuredRun& run, LinearisedRun& out) {
   const SensorLaw& law = fault.type->law;
-  law.apply(run.time_s, fault.size, false, out.sensor_C.col(sensor));
+  law.apply(run.time_s, fault.size, false, as_span(out.sensor_C.col(sensor)));
   const auto rows = Eigen::seq(sensor, out.residual_K.size() - 1, out.sensors());
   out.residual_K(rows) = run.measured_C.col(sensor) - out.sensor_C.col(sensor);
   for (Columns* const columns : {&out.by_start, &out.by_parameter}) {
     for (Eigen::Index column = 0; column < columns->cols(); ++column) {
       Eigen::VectorXd change = (*columns)(rows, column);
-      law.apply(run.time_s, fault.size, true, change);
+      law.apply(run.time_s, fault.size, true, as_span(change));
       (*columns)(rows, column) = change;
     }
   }

@@ -4,8 +4,6 @@
 
 namespace heatsoak {
 
-double drag_torque_Nm(const MotorValues& motor) { return motor.torque_constant_Nm_per_A * motor.no_load_current_A; }
-
 bool is_loss_of_every_motor(const EffectType& type) { return type.name == "copper_loss" || type.name == "no_load_loss"; }
 
 Network datasheet_network(const Motor& motor, const MotorSample& sample) {

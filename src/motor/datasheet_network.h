@@ -25,7 +25,4 @@ bool is_loss_of_every_motor(const EffectType& type);
 /// those that the file adds. The order of nodes and effects is the same for every sample.
 Network datasheet_network(const Motor& motor, const MotorSample& sample);
 
-/// Returns the internal drag torque of the turning motor, K_t·I_0, in N m.
-double drag_torque_Nm(const MotorValues& motor);
-
 }  // namespace heatsoak

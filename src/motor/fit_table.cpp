@@ -18,17 +18,21 @@ namespace {
 constexpr std::array<std::string_view, 2> kHeatedNodes{"winding", "stator"};
 constexpr double kLargest_W = 1e6;
 
+Eigen::Map<const Eigen::MatrixXd> as_matrix(const Correlation& correlation) {
+  const auto count = static_cast<Eigen::Index>(correlation.count());
+  return {correlation.values().data(), count, count};
+}
+
 /// Reads the rows of a lower triangular matrix with a diagonal of 1: "1", "0.2 1", …
-Eigen::MatrixXd read_correlation(Reader& table, std::size_t count) {
-  const auto size = static_cast<Eigen::Index>(count);
-  Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(size, size);
+Correlation read_correlation(Reader& table, std::size_t count) {
+  Correlation correlation(count);
   const std::vector<std::string> rows = table.texts("correlation", Need::required);
   if (rows.size() != count) {
     table.problem("correlation", fmt::format("has {} rows, expected {}: one per fitted parameter", rows.size(), count));
     return correlation;
   }
-  for (Eigen::Index i = 0; i < size; ++i) {
-    std::istringstream row(rows[static_cast<std::size_t>(i)]);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::istringstream row(rows[i]);
     std::vector<double> values;
     for (std::string word; row >> word;) {
       const std::optional<double> value = parse_number(word);
@@ -38,16 +42,16 @@ Eigen::MatrixXd read_correlation(Reader& table, std::size_t count) {
       }
       values.push_back(*value);
     }
-    if (static_cast<Eigen::Index>(values.size()) != i + 1 || values.back() != 1.0) {
+    if (values.size() != i + 1 || values.back() != 1.0) {
       table.problem("correlation", fmt::format("row {} has {} numbers, expected {}, the last one 1", i + 1, values.size(), i + 1));
       return correlation;
     }
-    for (Eigen::Index j = 0; j < i; ++j) {
-      correlation(i, j) = correlation(j, i) = values[static_cast<std::size_t>(j)];
+    for (std::size_t j = 0; j < i; ++j) {
+      correlation.set(i, j, values[j]);
     }
   }
   constexpr double kRounding = 1e-3;
-  if (size > 0 && Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation).eigenvalues().minCoeff() < -kRounding) {
+  if (count > 0 && Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(as_matrix(correlation)).eigenvalues().minCoeff() < -kRounding) {
     table.problem("correlation", "is not a correlation matrix: it has a negative eigenvalue");
   }
   return correlation;
@@ -123,6 +127,15 @@ std::string band_text(const ForecastBand& band) {
 
 }  // namespace
 
+Correlation::Correlation(std::size_t count) : count_(count), values_(count * count, 0.0) {
+  for (std::size_t i = 0; i < count; ++i) {
+    set(i, i, 1.0);
+  }
+}
+
+Correlation::Correlation(std::span<const double> values)
+    : count_(static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(values.size()))))), values_(values.begin(), values.end()) {}
+
 MotorFit read_fit(Reader& table, std::span<const std::string> parameters) {
   MotorFit fit;
   fit.motor = table.text("motor", Need::required).value_or("");
@@ -163,9 +176,9 @@ std::string to_toml(const MotorFit& fit) {
   text += fmt::format("runs = [\"{}\"]\n", fmt::join(fit.runs, "\", \""));
   text += fmt::format("figures = [\"{}\"]\n", fmt::join(fit.parameters, "\", \""));
   text += "# of the parameters' logarithms: lower triangle\ncorrelation = [\n";
-  for (Eigen::Index i = 0; i < fit.correlation.rows(); ++i) {
+  for (std::size_t i = 0; i < fit.correlation.count(); ++i) {
     std::vector<std::string> row;
-    for (Eigen::Index j = 0; j < i; ++j) {
+    for (std::size_t j = 0; j < i; ++j) {
       row.push_back(fmt::format("{:.5f}", fit.correlation(i, j)));
     }
     row.emplace_back("1");
@@ -196,8 +209,8 @@ double drawn_heat_factor(const ForecastBand& band, double uniform) {
 void correlate(const MotorFit& fit, std::span<double> uniforms) {
   static const boost::math::normal kNormal;
   // Square root of the matrix. Eigenvalues that rounding made negative are set to 0.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(fit.correlation);
-  Eigen::VectorXd independent(fit.correlation.rows());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(as_matrix(fit.correlation));
+  Eigen::VectorXd independent(solver.eigenvalues().size());
   for (Eigen::Index i = 0; i < independent.size(); ++i) {
     independent[i] = boost::math::quantile(kNormal, uniforms[static_cast<std::size_t>(i)]);
   }

@@ -1,7 +1,6 @@
 // The [fit] table of a motor file: correlations of the fitted parameters, and the uncertainty of forecasts.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <map>
 #include <optional>
@@ -35,12 +34,31 @@ struct TrainingRange {
   std::map<std::string, InputRange> inputs = {};  ///< by channel: "ambient_C", "speed_rad_per_s", "current_A"
 };
 
+/// Symmetric matrix of correlations with a diagonal of 1.
+class Correlation {
+ public:
+  /// No correlation between `count` parameters.
+  Correlation() = default;
+  explicit Correlation(std::size_t count);
+  /// `values` are all elements; their number is a square.
+  explicit Correlation(std::span<const double> values);
+
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] double operator()(std::size_t i, std::size_t j) const { return values_[i * count_ + j]; }
+  void set(std::size_t i, std::size_t j, double value) { values_[i * count_ + j] = values_[j * count_ + i] = value; }
+  [[nodiscard]] std::span<const double> values() const { return values_; }
+
+ private:
+  std::size_t count_ = 0;
+  std::vector<double> values_;
+};
+
 /// The [fit] table, which a calibration writes.
 struct MotorFit {
   std::string motor;                    ///< id of the motor file that the fit started from
   std::vector<std::string> runs;        ///< names with the used part: "match_1 (5f0c31d2a7e94b68 0-1800 s)"
   std::vector<std::string> parameters;  ///< keys of the fitted parameters: "thermal_resistance_winding_stator", "effects.fan.conductance"
-  Eigen::MatrixXd correlation;          ///< correlation of the logarithms of these parameters, in that order
+  Correlation correlation;              ///< correlation of the logarithms of these parameters, in that order
   std::vector<std::pair<std::string, double>> noise_K;  ///< per node with a sensor: standard deviation of the noise of one sample
   std::vector<double> latent_flux_W;                    ///< rms of the unknown heat flux into winding and stator
   double latent_flux_time_scale_s = 0.0;

@@ -199,6 +199,8 @@ std::vector<std::pair<const ParameterValue*, double*>> places(const Motor& motor
 
 }  // namespace
 
+double drag_torque_Nm(const MotorValues& motor) { return motor.torque_constant_Nm_per_A * motor.no_load_current_A; }
+
 ParameterValue* find_parameter(Motor& motor, std::string_view key) {
   if (const auto found = motor.parameters.find(key); found != motor.parameters.end()) {
     return &found->second;

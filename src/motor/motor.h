@@ -59,6 +59,9 @@ struct MotorValues {
   double thermal_time_constant_stator_s = kAbsent;
 };
 
+/// Returns the internal drag torque of the turning motor, K_t·I_0, in N m.
+double drag_torque_Nm(const MotorValues& motor);
+
 /// Declaration of one motor parameter: its key, unit and range in the file, and the member that stores it.
 struct MotorParameterSpec {
   ParameterSpec spec;

@@ -33,18 +33,17 @@ const SensorEffectType* find_sensor_effect(std::string_view name) {
   return found == all_sensor_effects().end() ? nullptr : &*found;
 }
 
-void SensorLaw::apply(std::span<const double> time_s, double size, bool is_change, Eigen::Ref<Eigen::VectorXd> shown) const {
+void SensorLaw::apply(std::span<const double> time_s, double size, bool is_change, std::span<double> shown) const {
   double before_C = shown[0];
   shown[0] = at_rest(size, before_C, is_change);
   for (std::size_t k = 0; k + 1 < time_s.size(); ++k) {
-    const auto place = static_cast<Eigen::Index>(k);
-    const double now_C = shown[place + 1];
-    shown[place + 1] = next_C(size, time_s[k + 1] - time_s[k], before_C, now_C, shown[place], is_change);
+    const double now_C = shown[k + 1];
+    shown[k + 1] = next_C(size, time_s[k + 1] - time_s[k], before_C, now_C, shown[k], is_change);
     before_C = now_C;
   }
 }
 
-void apply(std::span<const SensorFault> faults, std::span<const double> time_s, bool is_change, Eigen::Ref<Eigen::VectorXd> shown) {
+void apply(std::span<const SensorFault> faults, std::span<const double> time_s, bool is_change, std::span<double> shown) {
   for (const SensorFault& fault : faults) {
     fault.type->law.apply(time_s, fault.size, is_change, shown);
   }
@@ -80,18 +79,20 @@ void Reading::advance(double duration_s, double true_C) {
 }
 
 SensorLaw sensor_offset_law() {
-  return {.at_rest = [](double size, double true_C, bool is_change) { return is_change ? true_C : true_C + size; },
-          .by_size = [](std::span<const double>, double, const Eigen::VectorXd& true_C) -> Eigen::VectorXd {
-            return Eigen::VectorXd::Ones(true_C.size());
-          }};
+  return {
+      .at_rest = [](double size, double true_C, bool is_change) { return is_change ? true_C : true_C + size; },
+      .by_size = [](std::span<const double>, double, std::span<const double> true_C) { return std::vector<double>(true_C.size(), 1.0); }};
 }
 
 SensorLaw sensor_gain_law() {
   return {
       .at_rest = [](double size, double true_C, bool is_change) { return true_C + size * (true_C - (is_change ? 0.0 : kGainReference_C)); },
-      .by_size = [](std::span<const double>, double, const Eigen::VectorXd& true_C) -> Eigen::VectorXd {
-        return true_C.array() - kGainReference_C;
-      }};
+      .by_size =
+          [](std::span<const double>, double, std::span<const double> true_C) {
+            std::vector<double> derivative(true_C.begin(), true_C.end());
+            std::ranges::for_each(derivative, [](double& each) { each -= kGainReference_C; });
+            return derivative;
+          }};
 }
 
 SensorLaw sensor_lag_law() {
@@ -106,20 +107,22 @@ SensorLaw sensor_lag_law() {
                 const double behind_K = size * (now_C - before_C) / duration_s;
                 return now_C - behind_K + (sensor_C - before_C + behind_K) * kept_of_lag(size, duration_s);
               },
-          .by_size = [](std::span<const double> time_s, double size, const Eigen::VectorXd& true_C) -> Eigen::VectorXd {
-            Eigen::VectorXd derivative = Eigen::VectorXd::Zero(true_C.size());
-            double difference_K = 0.0;  // reading − temperature
-            for (Eigen::Index k = 0; k + 1 < true_C.size(); ++k) {
-              const double duration_s = time_s[static_cast<std::size_t>(k) + 1] - time_s[static_cast<std::size_t>(k)];
-              const double kept = kept_of_lag(size, duration_s);
-              const double slope_K_per_s = (true_C[k + 1] - true_C[k]) / duration_s;
-              const double behind_K = size * slope_K_per_s;
-              const double kept_by_size_per_s = size > 0.0 ? kept * duration_s / (size * size) : 0.0;
-              derivative[k + 1] = -slope_K_per_s + (derivative[k] + slope_K_per_s) * kept + (difference_K + behind_K) * kept_by_size_per_s;
-              difference_K = -behind_K + (difference_K + behind_K) * kept;
-            }
-            return derivative;
-          }};
+          .by_size =
+              [](std::span<const double> time_s, double size, std::span<const double> true_C) {
+                std::vector<double> derivative(true_C.size(), 0.0);
+                double difference_K = 0.0;  // reading − temperature
+                for (std::size_t k = 0; k + 1 < true_C.size(); ++k) {
+                  const double duration_s = time_s[k + 1] - time_s[k];
+                  const double kept = kept_of_lag(size, duration_s);
+                  const double slope_K_per_s = (true_C[k + 1] - true_C[k]) / duration_s;
+                  const double behind_K = size * slope_K_per_s;
+                  const double kept_by_size_per_s = size > 0.0 ? kept * duration_s / (size * size) : 0.0;
+                  derivative[k + 1] =
+                      -slope_K_per_s + (derivative[k] + slope_K_per_s) * kept + (difference_K + behind_K) * kept_by_size_per_s;
+                  difference_K = -behind_K + (difference_K + behind_K) * kept;
+                }
+                return derivative;
+              }};
 }
 
 }  // namespace heatsoak

@@ -1,7 +1,6 @@
 // Sensor faults: how the reading of a sensor differs from the temperature of its node. Each has one size; 0 is a perfect sensor.
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -18,13 +17,13 @@ struct SensorLaw {
   /// is the reading at its beginning. Null for a sensor without memory: at_rest applies.
   double (*after)(double size, double duration_s, double before_C, double now_C, double sensor_C) = nullptr;
   /// Derivative of the reading with respect to the size, for a series of true temperatures.
-  Eigen::VectorXd (*by_size)(std::span<const double> time_s, double size, const Eigen::VectorXd& true_C) = nullptr;
+  std::vector<double> (*by_size)(std::span<const double> time_s, double size, std::span<const double> true_C) = nullptr;
 
   [[nodiscard]] double next_C(double size, double duration_s, double before_C, double now_C, double sensor_C, bool is_change) const {
     return after ? after(size, duration_s, before_C, now_C, sensor_C) : at_rest(size, now_C, is_change);
   }
   /// Replaces the true temperatures in `shown` (with `is_change` a derivative of them) at `time_s` by the readings.
-  void apply(std::span<const double> time_s, double size, bool is_change, Eigen::Ref<Eigen::VectorXd> shown) const;
+  void apply(std::span<const double> time_s, double size, bool is_change, std::span<double> shown) const;
 };
 
 /// A hand-calculated example of the equation; a test runs it for every sensor effect.
@@ -64,7 +63,7 @@ struct SensorFault {
 // A sensor with several faults: each acts on the reading of the one before.
 
 /// Like SensorLaw::apply(), for all faults in order.
-void apply(std::span<const SensorFault> faults, std::span<const double> time_s, bool is_change, Eigen::Ref<Eigen::VectorXd> shown);
+void apply(std::span<const SensorFault> faults, std::span<const double> time_s, bool is_change, std::span<double> shown);
 /// Reading of a constant temperature, and the constant temperature of a reading.
 double sensor_at_rest_C(std::span<const SensorFault> faults, double true_C);
 double true_at_rest_C(std::span<const SensorFault> faults, double sensor_C);

@@ -6,6 +6,7 @@
 
 #include "motor/datasheet_network.h"
 #include "robot/motor_drive.h"
+#include "robot/wheel_laws.h"
 
 namespace heatsoak {
 

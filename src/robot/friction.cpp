@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "robot/driver.h"
+#include "robot/wheel_laws.h"
 
 namespace heatsoak {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "motor/motor.h"
-#include "robot/wheels.h"
+#include "robot/kinematics.h"
 
 namespace heatsoak {
 
@@ -58,9 +58,6 @@ S smooth_sign(const S& x, double width) {
   using std::sqrt;
   return x / sqrt(x * x + width * width);
 }
-
-/// Returns the magnitude of each wheel's dry friction torque in N m: wheel_torque_Nm, or the curve over the direction of travel.
-Wheels dry_friction_Nm(const FrictionConfig& friction, const Kinematics& kinematics, const BodyVelocity& local);
 
 /// Returns the friction torque of each wheel, with the sign of its speed: subtract it from the driving torque.
 PerWheel friction_torques_Nm(const FrictionConfig& friction, const Kinematics& kinematics, const BodyVelocity& local,

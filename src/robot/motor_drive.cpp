@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "base/copper.h"
-#include "motor/datasheet_network.h"
+#include "robot/machine_point.h"
 
 namespace heatsoak {
 namespace {

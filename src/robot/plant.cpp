@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "robot/wheels.h"
+#include "robot/wheel_laws.h"
 
 namespace heatsoak {
 namespace {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/wheel_laws.h"
+
 namespace heatsoak {
 namespace {
 

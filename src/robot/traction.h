@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "robot/wheels.h"
+#include "robot/kinematics.h"
 
 namespace heatsoak {
 
@@ -40,12 +40,6 @@ inline LoadMoment load_moment(const WeightConfig& weight, const Wrench& ground, 
   const double above_m = external_height_m - height_m;
   return {weight_N * weight.center_of_gravity_x_m - height_m * ground.x_N + above_m * external.x_N,
           weight_N * weight.center_of_gravity_y_m - height_m * ground.y_N + above_m * external.y_N};
-}
-
-/// Returns the loads in N, linear in the contact position. A negative load means that the wheel lifts off: see normal_loads().
-inline Wheels plane_loads_N(const WeightConfig& weight, const LoadMoment& moment) {
-  return as_wheels(weight.level_share) * (weight.mass_kg * kGravity_m_per_s2) + as_wheels(weight.along_x_per_m) * moment.x_Nm +
-         as_wheels(weight.along_y_per_m) * moment.y_Nm;
 }
 
 struct NormalLoads {

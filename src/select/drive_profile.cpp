@@ -5,6 +5,7 @@
 
 #include "base/copper.h"
 #include "motor/datasheet_network.h"
+#include "robot/machine_point.h"
 
 namespace heatsoak {
 

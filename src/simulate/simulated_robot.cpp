@@ -5,6 +5,8 @@
 
 #include "base/copper.h"
 #include "motor/datasheet_network.h"
+#include "robot/wheels.h"
+#include "thermal/ensemble.h"
 
 namespace heatsoak {
 namespace {
@@ -32,81 +34,120 @@ double shortest_of_longest_steps_s(const PlantConfig& plant, const Network& netw
 
 }  // namespace
 
+struct SimulatedRobot::Heating {
+  /// Sums of the plant's powers over all periods. Times kPeriod_s they are energies.
+  struct Sums {
+    Wheels copper_W = Wheels::Zero();
+    Wheels driver_W = Wheels::Zero();
+    Wheels motor_drag_W = Wheels::Zero();
+    Wheels gear_W = Wheels::Zero();
+    Wheels rolling_W = Wheels::Zero();
+    Wheels friction_W = Wheels::Zero();
+    Wheels slip_W = Wheels::Zero();
+    Wheels roller_W = Wheels::Zero();
+    double battery_loss_W = 0.0;
+    double external_W = 0.0;
+  };
+
+  Heating(const PlantConfig& plant, const Motor& motor, double ambient_C, double start_C)
+      : network(datasheet_network(motor, nominal_sample(motor))),
+        parameters(same_in_all_lanes(network.values())),
+        thermal(network, parameters, std::vector<Lanes>(static_cast<std::size_t>(network.state_count()), Lanes::Constant(start_C))),
+        longest_step_s(shortest_of_longest_steps_s(plant, network, parameters, ambient_C)) {
+    static_assert(kMostWheels <= kLanes);
+    means.ambient_C = Lanes::Constant(ambient_C);
+  }
+
+  Sums sums;
+  Network network;
+  std::vector<Lanes> parameters;
+  EnsembleRun thermal;  ///< a wheel per lane
+  double longest_step_s;
+  OperatingPoint<Lanes> means;  ///< over the last kThermalPeriod_s
+  // Sums over the periods since the network was last advanced.
+  Wheels copper_W = Wheels::Zero();
+  Wheels speed_rad_per_s = Wheels::Zero();
+  Wheels speed_squared_rad2_per_s2 = Wheels::Zero();
+  int periods = 0;
+};
+
 SimulatedRobot::SimulatedRobot(const Robot& robot, const Motor& motor, double ambient_C, double start_C)
     : plant_(make_plant(robot, motor.nominal, kPeriod_s)),
       state_(plant_at_rest(plant_)),
       ambient_C_(ambient_C),
-      network_(datasheet_network(motor, nominal_sample(motor))),
-      parameters_(same_in_all_lanes(network_.values())),
-      thermal_(
-          network_, parameters_,
-          std::vector<Lanes>(static_cast<std::size_t>(network_.state_count()), Lanes::Constant(std::isnan(start_C) ? ambient_C : start_C))),
-      longest_step_s_(shortest_of_longest_steps_s(plant_, network_, parameters_, ambient_C)) {
-  static_assert(kMostWheels <= kLanes);
-  heating_.ambient_C = Lanes::Constant(ambient_C);
+      heating_(std::make_unique<Heating>(plant_, motor, ambient_C, std::isnan(start_C) ? ambient_C : start_C)) {
   input_.winding_C.fill(winding_C(0));
   input_.magnet_C.fill(stator_C(0));
   input_.external_height_m = plant_.body.weight.center_of_gravity_height_m;
 }
+
+SimulatedRobot::~SimulatedRobot() = default;
+
+double SimulatedRobot::body_C(std::size_t state, int wheel) const { return heating_->thermal.state_C()[state][wheel]; }
+
+double SimulatedRobot::peak_C(std::size_t state, int wheel) const { return heating_->thermal.peak_C()[state][wheel]; }
 
 const PlantOutput& SimulatedRobot::advance(const std::array<MotorCommand, kMostWheels>& command, const Wrench& external) {
   input_.command = command;
   input_.external = external;
   step(plant_, state_, input_, output_);
   book();
-  if (++periods_ == kPeriodsPerThermal) {
+  if (++heating_->periods == kPeriodsPerThermal) {
     warm_up();
   }
   return output_;
 }
 
 void SimulatedRobot::book() {
-  sums_.copper_W += as_wheels(output_.copper_W);
-  sums_.driver_W += as_wheels(output_.driver_W);
-  sums_.motor_drag_W += as_wheels(output_.motor_drag_W);
-  sums_.gear_W += as_wheels(output_.gear_W);
-  sums_.rolling_W += as_wheels(output_.rolling_W);
-  sums_.friction_W += as_wheels(output_.friction_W);
-  sums_.slip_W += as_wheels(output_.slip_W);
-  sums_.roller_W += as_wheels(output_.roller_W);
-  sums_.battery_loss_W += output_.battery_loss_W;
-  sums_.external_W += output_.external_W;
+  Heating::Sums& sums = heating_->sums;
+  sums.copper_W += as_wheels(output_.copper_W);
+  sums.driver_W += as_wheels(output_.driver_W);
+  sums.motor_drag_W += as_wheels(output_.motor_drag_W);
+  sums.gear_W += as_wheels(output_.gear_W);
+  sums.rolling_W += as_wheels(output_.rolling_W);
+  sums.friction_W += as_wheels(output_.friction_W);
+  sums.slip_W += as_wheels(output_.slip_W);
+  sums.roller_W += as_wheels(output_.roller_W);
+  sums.battery_loss_W += output_.battery_loss_W;
+  sums.external_W += output_.external_W;
   const Wheels speed_rad_per_s = as_wheels(output_.motor_speed_rad_per_s);
-  copper_W_ += as_wheels(output_.copper_W);
-  speed_rad_per_s_ += speed_rad_per_s.abs();
-  speed_squared_rad2_per_s2_ += speed_rad_per_s.square();
+  heating_->copper_W += as_wheels(output_.copper_W);
+  heating_->speed_rad_per_s += speed_rad_per_s.abs();
+  heating_->speed_squared_rad2_per_s2 += speed_rad_per_s.square();
 }
 
 void SimulatedRobot::warm_up() {
+  Heating& heat = *heating_;
   // The plant's copper loss as the current that makes it, so that the network gets that heat.
   const Wheels resistance_ohm = plant_.motor.resistance_25C_ohm *
                                 resistance_ratio<Wheels>(Wheels::Constant(plant_.motor.resistance_rise_per_K), as_wheels(input_.winding_C));
-  heating_.current_rms_A.head<kMostWheels>() = (copper_W_ / periods_ / resistance_ohm).sqrt();
-  heating_.speed_mean_rad_per_s.head<kMostWheels>() = speed_rad_per_s_ / periods_;
-  heating_.speed_rms_rad_per_s.head<kMostWheels>() = (speed_squared_rad2_per_s2_ / periods_).sqrt();
-  thermal_.over(kPeriod_s * periods_, heating_, longest_step_s_);
+  heat.means.current_rms_A.head<kMostWheels>() = (heat.copper_W / heat.periods / resistance_ohm).sqrt();
+  heat.means.speed_mean_rad_per_s.head<kMostWheels>() = heat.speed_rad_per_s / heat.periods;
+  heat.means.speed_rms_rad_per_s.head<kMostWheels>() = (heat.speed_squared_rad2_per_s2 / heat.periods).sqrt();
+  heat.thermal.over(kPeriod_s * heat.periods, heat.means, heat.longest_step_s);
   for (int i = 0; i < wheel_count(); ++i) {
     input_.winding_C[i] = winding_C(i);
     input_.magnet_C[i] = stator_C(i);
   }
-  copper_W_.setZero();
-  speed_rad_per_s_.setZero();
-  speed_squared_rad2_per_s2_.setZero();
-  periods_ = 0;
+  heat.copper_W.setZero();
+  heat.speed_rad_per_s.setZero();
+  heat.speed_squared_rad2_per_s2.setZero();
+  heat.periods = 0;
 }
 
 EnergyAccount SimulatedRobot::energy() const {
   EnergyAccount account;
-  account.battery_loss_J = sums_.battery_loss_W * kPeriod_s;
-  account.copper_J = sums_.copper_W.sum() * kPeriod_s;
-  account.driver_J = sums_.driver_W.sum() * kPeriod_s;
-  account.motor_drag_J = sums_.motor_drag_W.sum() * kPeriod_s;
-  account.gear_J = sums_.gear_W.sum() * kPeriod_s;
-  account.rolling_J = sums_.rolling_W.sum() * kPeriod_s;
-  account.friction_J = sums_.friction_W.sum() * kPeriod_s;
-  account.slip_J = sums_.slip_W.sum() * kPeriod_s;
-  account.roller_J = sums_.roller_W.sum() * kPeriod_s;
-  account.external_J = sums_.external_W * kPeriod_s;
+  const Heating::Sums& sums = heating_->sums;
+  account.battery_loss_J = sums.battery_loss_W * kPeriod_s;
+  account.copper_J = sums.copper_W.sum() * kPeriod_s;
+  account.driver_J = sums.driver_W.sum() * kPeriod_s;
+  account.motor_drag_J = sums.motor_drag_W.sum() * kPeriod_s;
+  account.gear_J = sums.gear_W.sum() * kPeriod_s;
+  account.rolling_J = sums.rolling_W.sum() * kPeriod_s;
+  account.friction_J = sums.friction_W.sum() * kPeriod_s;
+  account.slip_J = sums.slip_W.sum() * kPeriod_s;
+  account.roller_J = sums.roller_W.sum() * kPeriod_s;
+  account.external_J = sums.external_W * kPeriod_s;
   account.battery_J =
       stored_energy_J(plant_.battery, plant_.battery.capacity_A_s) - stored_energy_J(plant_.battery, state_.battery_charge_A_s);
   account.kinetic_J = kinetic_energy_J(plant_.body, state_.velocity, state_.wheel_speed_rad_per_s);

@@ -1,10 +1,10 @@
 // The robot that is driven: the plant, and the windings and stators that its currents heat.
 #pragma once
 
+#include <memory>
+
 #include "motor/motor.h"
 #include "robot/plant.h"
-#include "robot/wheels.h"
-#include "thermal/ensemble.h"
 
 namespace heatsoak {
 
@@ -42,6 +42,7 @@ class SimulatedRobot {
   /// Motors start at `start_C`, or at ambient temperature where it is absent. Throws Failure (bad_input) that names what the robot's or
   /// the motor's file lacks.
   SimulatedRobot(const Robot& robot, const Motor& motor, double ambient_C, double start_C = kAbsent);
+  ~SimulatedRobot();
   SimulatedRobot(const SimulatedRobot&) = delete;
   SimulatedRobot& operator=(const SimulatedRobot&) = delete;
 
@@ -53,30 +54,21 @@ class SimulatedRobot {
   [[nodiscard]] const PlantState& state() const { return state_; }
   [[nodiscard]] BodyVelocity velocity_global() const { return to_global(state_.velocity, state_.pose.yaw_rad); }
   [[nodiscard]] int wheel_count() const { return plant_.body.kinematics.wheel_count; }
-  [[nodiscard]] double winding_C(int wheel) const { return thermal_.state_C()[kWinding][wheel]; }
-  [[nodiscard]] double stator_C(int wheel) const { return thermal_.state_C()[kStator][wheel]; }
+  [[nodiscard]] double winding_C(int wheel) const { return body_C(kWinding, wheel); }
+  [[nodiscard]] double stator_C(int wheel) const { return body_C(kStator, wheel); }
   /// Of the state of that place in the motor's network.
-  [[nodiscard]] double body_C(std::size_t state, int wheel) const { return thermal_.state_C()[state][wheel]; }
-  [[nodiscard]] double winding_peak_C(int wheel) const { return thermal_.peak_C()[kWinding][wheel]; }
-  [[nodiscard]] double stator_peak_C(int wheel) const { return thermal_.peak_C()[kStator][wheel]; }
+  [[nodiscard]] double body_C(std::size_t state, int wheel) const;
+  [[nodiscard]] double winding_peak_C(int wheel) const { return peak_C(kWinding, wheel); }
+  [[nodiscard]] double stator_peak_C(int wheel) const { return peak_C(kStator, wheel); }
   [[nodiscard]] EnergyAccount energy() const;
 
  private:
   static constexpr std::size_t kWinding = 0;
   static constexpr std::size_t kStator = 1;
-  /// Sums of the plant's powers over all periods. Times kPeriod_s they are energies.
-  struct Sums {
-    Wheels copper_W = Wheels::Zero();
-    Wheels driver_W = Wheels::Zero();
-    Wheels motor_drag_W = Wheels::Zero();
-    Wheels gear_W = Wheels::Zero();
-    Wheels rolling_W = Wheels::Zero();
-    Wheels friction_W = Wheels::Zero();
-    Wheels slip_W = Wheels::Zero();
-    Wheels roller_W = Wheels::Zero();
-    double battery_loss_W = 0.0;
-    double external_W = 0.0;
-  };
+  /// Powers summed over time and the motors' networks; in the .cpp file because they need Eigen.
+  struct Heating;
+
+  [[nodiscard]] double peak_C(std::size_t state, int wheel) const;
   void book();
   void warm_up();
 
@@ -85,17 +77,7 @@ class SimulatedRobot {
   PlantInput input_;
   PlantOutput output_;
   double ambient_C_;
-  Sums sums_;
-  Network network_;
-  std::vector<Lanes> parameters_;
-  EnsembleRun thermal_;  ///< a wheel per lane
-  double longest_step_s_;
-  OperatingPoint<Lanes> heating_;  ///< means over the last kThermalPeriod_s
-  // Sums over the periods since the network was last advanced.
-  Wheels copper_W_ = Wheels::Zero();
-  Wheels speed_rad_per_s_ = Wheels::Zero();
-  Wheels speed_squared_rad2_per_s2_ = Wheels::Zero();
-  int periods_ = 0;
+  std::unique_ptr<Heating> heating_;
 };
 
 }  // namespace heatsoak

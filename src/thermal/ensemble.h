@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "thermal/lanes.h"
 #include "thermal/network.h"
 
 namespace heatsoak {

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 
+#include "thermal/law.h"
+#include "thermal/linearised.h"
 #include "thermal/network.h"
 
 namespace heatsoak {
@@ -59,7 +61,7 @@ class LocalLaw {
     static constexpr std::array<int, kMostParameters> kOwn{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     const Situation<Tangent> situation(at, parameter_.data(), kOwn.data(), temperature_C_.data(), kOwn.data());
     HeatBook<Tangent> heat(heat_W_.data(), kOwn.data());
-    effect_.type->laws.tangent(situation, heat);
+    effect_.type->laws->tangent(situation, heat);
   }
   [[nodiscard]] const Tangent& heat_W(int role) const { return heat_W_[role]; }
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "base/copper.h"
+#include "thermal/law.h"
 
 namespace heatsoak {
 namespace {
@@ -17,9 +18,9 @@ void book(const EffectInPlace& effect, const OperatingPoint<S>& at, const S* par
   const Situation<S> situation(at, parameters, effect.parameter_index.data(), temperature_C, effect.node_index.data());
   HeatBook<S> heat_book(heat_W, effect.node_index.data());
   if constexpr (std::is_same_v<S, double>) {
-    effect.type->laws.one(situation, heat_book);
+    effect.type->laws->one(situation, heat_book);
   } else {
-    effect.type->laws.lanes(situation, heat_book);
+    effect.type->laws->lanes(situation, heat_book);
   }
 }
 
@@ -182,7 +183,7 @@ void Network::trace(const OperatingPoint<Traced>& at, std::span<const Traced> te
     const Situation<Traced> situation(seen, parameters.data(), effect.parameter_index.data(), temperature_C.data(),
                                       effect.node_index.data());
     HeatBook<Traced> heat_book(node_heat.data(), effect.node_index.data());
-    effect.type->laws.traced(situation, heat_book);
+    effect.type->laws->traced(situation, heat_book);
     if (turn == 0 && copper_effect_ >= 0) {
       seen.copper_loss_W = node_heat[static_cast<std::size_t>(effect.node_index[0])].made_W;
     }

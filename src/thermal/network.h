@@ -1,7 +1,6 @@
 // A thermal network: nodes that store heat, effects that book heat, and one flat list of all their parameters.
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,6 +9,10 @@
 #include "thermal/effect.h"
 
 namespace heatsoak {
+
+struct Linearised;
+class Traced;
+struct TracedHeat;
 
 struct NetworkParameter {
   std::string name;  ///< "winding_stator.thermal_resistance", "winding.heat_capacity"
@@ -25,13 +28,6 @@ struct EffectInPlace {
   const EffectType* type = nullptr;
   std::vector<int> node_index;
   std::vector<int> parameter_index;
-};
-
-/// Rates of the state nodes and their exact derivatives at one moment; n state nodes, p parameters.
-struct Linearised {
-  Eigen::VectorXd rate_K_per_s;  ///< n
-  Eigen::MatrixXd by_state;      ///< n × n, 1/s
-  Eigen::MatrixXd by_parameter;  ///< n × p, K/s per unit of the parameter
 };
 
 /// The structure is shared by all samples; parameter values are passed to each call, so that one network serves single runs, ensembles and
@@ -111,6 +107,5 @@ class Network {
 extern template double Network::within_headroom<double>(const OperatingPoint<double>&, const double*, const double*) const;
 extern template void Network::rate_K_per_s<double>(OperatingPoint<double>&, std::span<const double>, std::span<double>,
                                                    std::span<double>) const;
-extern template void Network::rate_K_per_s<Lanes>(OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>, std::span<Lanes>) const;
 
 }  // namespace heatsoak

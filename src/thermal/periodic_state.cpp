@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/diagnostic.h"
+#include "thermal/linearised.h"
 
 namespace heatsoak {
 namespace {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "thermal/linearised.h"
 #include "thermal/network.h"
 
 namespace heatsoak {

@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "robot_core/thermal_math.h"
-#include "thermal/scalar.h"
+#include "thermal/lanes.h"
 
 namespace heatsoak {
 namespace {

@@ -110,4 +110,10 @@ Traced power(const Traced& base, const Traced& exponent);
 /// Throws std::logic_error if the choice is not a constant.
 int chosen(const Traced& parameter);
 
+/// Heat as formulas. Moved and generated heat are kept apart, because a safety factor on heat applies to generated heat only.
+struct TracedHeat {
+  Traced moved_W;
+  Traced made_W;
+};
+
 }  // namespace heatsoak

@@ -245,7 +245,7 @@ TEST(ForecastBand, WidensTheDrawsOfACalibratedMotor) {
   Motor motor = sheet.motor(folder);
   motor.fit.emplace();
   motor.fit->parameters = {"thermal_resistance_winding_stator"};
-  motor.fit->correlation = Eigen::MatrixXd::Identity(1, 1);
+  motor.fit->correlation = Correlation(std::size_t{1});
   motor.fit->band = ForecastBand{{0.03, 0.0}, 100.0, 0.04, 2.0};
   Random random(5, 0);
   constexpr int kDraws = 4000;

@@ -1,6 +1,7 @@
 // Sensor faults: the values given beside each equation, and the derivatives that fits use.
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <cmath>
 
 #include "motor/sensor_effect.h"
@@ -12,12 +13,14 @@ Eigen::VectorXd vector(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
+std::span<double> as_span(Eigen::VectorXd& values) { return {values.data(), static_cast<std::size_t>(values.size())}; }
+
 class SensorEffects : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(SensorEffects, WorkedExampleComesOut) {
   const SensorEffectType& type = *find_sensor_effect(GetParam());
   Eigen::VectorXd shown = vector(type.example.true_C);
-  type.law.apply(type.example.time_s, type.example.size, false, shown);
+  type.law.apply(type.example.time_s, type.example.size, false, as_span(shown));
   for (Eigen::Index i = 0; i < shown.size(); ++i) {
     EXPECT_NEAR(shown[i], type.example.sensor_C[static_cast<std::size_t>(i)], 1e-9);
   }
@@ -38,21 +41,22 @@ TEST_P(SensorEffects, NothingChangesAtSizeZero) {
   const std::vector<double> time_s = seconds();
   const Eigen::VectorXd true_C = vector(time_s).array().unaryExpr([](double t) { return 40.0 + 10.0 * std::sin(0.05 * t); });
   Eigen::VectorXd shown = true_C;
-  type.law.apply(time_s, 0.0, false, shown);
+  type.law.apply(time_s, 0.0, false, as_span(shown));
   EXPECT_LT((shown - true_C).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST_P(SensorEffects, DerivativeBySizeIsTheReadingsOwn) {
   const SensorEffectType& type = *find_sensor_effect(GetParam());
   const std::vector<double> time_s = seconds();
-  const Eigen::VectorXd true_C = vector(time_s).array().unaryExpr([](double t) { return 40.0 + 10.0 * std::sin(0.05 * t) + 0.02 * t; });
+  Eigen::VectorXd true_C = vector(time_s).array().unaryExpr([](double t) { return 40.0 + 10.0 * std::sin(0.05 * t) + 0.02 * t; });
   const double size = type.typical_size;
   const double h = 1e-5 * size;
   Eigen::VectorXd above = true_C, below = true_C;
-  type.law.apply(time_s, size + h, false, above);
-  type.law.apply(time_s, size - h, false, below);
+  type.law.apply(time_s, size + h, false, as_span(above));
+  type.law.apply(time_s, size - h, false, as_span(below));
   const Eigen::VectorXd expected = (above - below) / (2.0 * h);
-  EXPECT_LT((type.law.by_size(time_s, size, true_C) - expected).cwiseAbs().maxCoeff(), 1e-6 * (1.0 + expected.cwiseAbs().maxCoeff()));
+  EXPECT_LT((vector(type.law.by_size(time_s, size, as_span(true_C))) - expected).cwiseAbs().maxCoeff(),
+            1e-6 * (1.0 + expected.cwiseAbs().maxCoeff()));
 }
 
 TEST_P(SensorEffects, ReadingIsLinearInTheTemperature) {
@@ -61,9 +65,9 @@ TEST_P(SensorEffects, ReadingIsLinearInTheTemperature) {
   const Eigen::VectorXd one_C = vector(time_s).array().unaryExpr([](double t) { return 40.0 + 10.0 * std::sin(0.05 * t); });
   const Eigen::VectorXd change_K = vector(time_s).array().unaryExpr([](double t) { return std::cos(0.2 * t); });
   Eigen::VectorXd shown = one_C, moved = one_C + change_K, shown_change = change_K;
-  type.law.apply(time_s, type.typical_size, false, shown);
-  type.law.apply(time_s, type.typical_size, false, moved);
-  type.law.apply(time_s, type.typical_size, true, shown_change);
+  type.law.apply(time_s, type.typical_size, false, as_span(shown));
+  type.law.apply(time_s, type.typical_size, false, as_span(moved));
+  type.law.apply(time_s, type.typical_size, true, as_span(shown_change));
   EXPECT_LT((moved - shown - shown_change).cwiseAbs().maxCoeff(), 1e-9);
 }
 
@@ -86,7 +90,7 @@ TEST(SensorReading, GoesAsTheWholeSeriesDoes) {
   const std::vector<double> time_s = seconds();
   const Eigen::VectorXd true_C = vector(time_s).array().unaryExpr([](double t) { return 40.0 + 10.0 * std::sin(0.05 * t); });
   Eigen::VectorXd sensor_C = true_C;
-  apply(faults, time_s, false, sensor_C);
+  apply(faults, time_s, false, as_span(sensor_C));
   Reading reading(faults, true_C[0]);
   EXPECT_DOUBLE_EQ(reading.sensor_C(), true_C[0] + 0.04 * (true_C[0] - 25.0) - 2.0);
   for (Eigen::Index k = 1; k < true_C.size(); ++k) {
@@ -120,7 +124,7 @@ TEST(SensorLag, FollowsItsDifferentialEquation) {
     true_C.push_back(20.0 + (k > 10 ? 0.8 * (k - 10) : 0.0));
   }
   Eigen::VectorXd shown = vector(true_C);
-  type.law.apply(time_s, 7.0, false, shown);
+  type.law.apply(time_s, 7.0, false, as_span(shown));
   double reading_C = 20.0;
   constexpr int kSteps = 20000;
   for (int k = 0; k < 60; ++k) {

@@ -1,5 +1,6 @@
 // Laws evaluated with derivative-carrying numbers, compared with the plain laws and with finite differences.
 #include "one_effect.h"
+#include "thermal/linearised.h"
 
 namespace heatsoak {
 namespace {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "thermal/law.h"
 #include "two_node.h"
 
 namespace heatsoak {
@@ -25,11 +26,11 @@ std::vector<S> heat_W(const EffectType& type, const OperatingPoint<S>& at, const
   const Situation<S> situation(at, parameters.data(), parameter_index.data(), temperature_C.data(), node_index.data());
   HeatBook<S> book(heat.data(), node_index.data());
   if constexpr (std::is_same_v<S, double>) {
-    type.laws.one(situation, book);
+    type.laws->one(situation, book);
   } else if constexpr (std::is_same_v<S, Lanes>) {
-    type.laws.lanes(situation, book);
+    type.laws->lanes(situation, book);
   } else {
-    type.laws.tangent(situation, book);
+    type.laws->tangent(situation, book);
   }
   return heat;
 }

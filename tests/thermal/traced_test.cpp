@@ -31,7 +31,7 @@ std::vector<double> heat_by_formula_W(const EffectType& type, const OperatingPoi
   std::iota(place.begin(), place.end(), 0);
   std::vector<TracedHeat> heat(temperature_C.size());
   HeatBook<Traced> book(heat.data(), place.data());
-  type.laws.traced(Situation<Traced>(point, constants.data(), place.data(), temperature.data(), place.data()), book);
+  type.laws->traced(Situation<Traced>(point, constants.data(), place.data(), temperature.data(), place.data()), book);
   std::vector<int> results;
   for (const TracedHeat& each : heat) {
     results.push_back((each.made_W + each.moved_W).step_in(formula));

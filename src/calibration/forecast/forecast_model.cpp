@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "estimation/evidence.h"
+#include "estimation/spans.h"
 #include "motor/sensor_effect.h"
 
 namespace heatsoak {
@@ -144,9 +145,9 @@ LinearisedRun ForecastModel::along(const MeasuredRun& run, const Eigen::VectorXd
     const SensorFault fault{faults_[i].type, std::exp(theta[own])};
     for (Eigen::Index sensor = 0; sensor < out.sensors(); ++sensor) {
       if (run.sensors[static_cast<std::size_t>(sensor)].signal == fault.type->signal) {
-        const Eigen::VectorXd by_size = fault.type->law.by_size(run.time_s, fault.size, out.sensor_C.col(sensor));
+        const std::vector<double> by_size = fault.type->law.by_size(run.time_s, fault.size, as_span(out.sensor_C.col(sensor)));
         add_fault(fault, sensor, run, out);
-        out.by_parameter(Eigen::seq(sensor, out.residual_K.size() - 1, out.sensors()), own) = fault.size * by_size;
+        out.by_parameter(Eigen::seq(sensor, out.residual_K.size() - 1, out.sensors()), own) = fault.size * as_vector(by_size);
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "derate/sensed/riccati.h"
+#include "thermal/linearised.h"
 
 namespace heatsoak {
 namespace {

@@ -1,4 +1,4 @@
-#include "thermal/effect.h"
+#include "thermal/law.h"
 #include "thermal/reference_point.h"
 
 namespace heatsoak::effects {

@@ -1,4 +1,4 @@
-#include "thermal/effect.h"
+#include "thermal/law.h"
 
 namespace heatsoak::effects {
 namespace {

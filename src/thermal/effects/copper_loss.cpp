@@ -1,5 +1,5 @@
 #include "base/copper.h"
-#include "thermal/effect.h"
+#include "thermal/law.h"
 
 namespace heatsoak::effects {
 namespace {

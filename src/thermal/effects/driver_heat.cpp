@@ -1,6 +1,5 @@
-#include "thermal/effect.h"
+#include "thermal/law.h"
 #include "thermal/reference_point.h"
-#include "thermal/scalar.h"
 
 namespace heatsoak::effects {
 namespace {

@@ -1,5 +1,4 @@
-#include "thermal/effect.h"
-#include "thermal/scalar.h"
+#include "thermal/law.h"
 
 namespace heatsoak::effects {
 namespace {

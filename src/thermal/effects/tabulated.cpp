@@ -1,7 +1,6 @@
 #include <array>
 
-#include "thermal/effect.h"
-#include "thermal/scalar.h"
+#include "thermal/law.h"
 
 namespace heatsoak::effects {
 namespace {

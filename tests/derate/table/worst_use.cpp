@@ -19,6 +19,7 @@
 #include "adversary.h"
 #include "base/binomial_bound.h"
 #include "base/files.h"
+#include "base/lanes.h"
 #include "report/chart.h"
 #include "select/evaluate.h"
 #include "support/shipped.h"

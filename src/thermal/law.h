@@ -1,0 +1,85 @@
+// The law of an effect: what it reads, and how it books heat into nodes. Files that only need the description include effect.h.
+//
+// Sign convention of the whole program: heat is in watts and positive *into* a node. A law books heat in two ways only. flow(from, to, W)
+// moves heat between nodes and so conserves energy; source(into, W) generates heat and is used by losses.
+#pragma once
+
+#include "thermal/effect.h"
+#include "thermal/lanes.h"
+#include "thermal/operating_point.h"
+#include "thermal/scalar.h"
+#include "thermal/tangent.h"
+#include "thermal/traced.h"
+
+namespace heatsoak {
+
+/// The inputs of a law: the operating point, its own parameters and the temperatures of its nodes. Parameters and nodes are numbered in the
+/// order of the effect's declaration.
+template <class S>
+class Situation {
+ public:
+  Situation(const OperatingPoint<S>& point, const S* parameters, const int* parameter_index, const S* temperatures_C, const int* node_index)
+      : at(point), parameters_(parameters), parameter_index_(parameter_index), temperatures_C_(temperatures_C), node_index_(node_index) {}
+
+  const OperatingPoint<S>& at;  // NOLINT(misc-non-private-member-variables-in-classes): a view, read only
+  const S& parameter(int declared_place) const { return parameters_[parameter_index_[declared_place]]; }
+  const S& temperature_C(int role) const { return temperatures_C_[node_index_[role]]; }
+
+ private:
+  const S* parameters_;
+  const int* parameter_index_;
+  const S* temperatures_C_;
+  const int* node_index_;
+};
+
+template <class S>
+class HeatBook {
+ public:
+  HeatBook(S* node_heat_W, const int* node_index) : node_heat_W_(node_heat_W), node_index_(node_index) {}
+
+  void flow(int from_role, int to_role, const S& heat_W) {
+    node_heat_W_[node_index_[from_role]] -= heat_W;
+    node_heat_W_[node_index_[to_role]] += heat_W;
+  }
+  void source(int into_role, const S& heat_W) { node_heat_W_[node_index_[into_role]] += heat_W; }
+
+ private:
+  S* node_heat_W_;
+  const int* node_index_;
+};
+
+template <>
+class HeatBook<Traced> {
+ public:
+  HeatBook(TracedHeat* node_heat, const int* node_index) : node_heat_(node_heat), node_index_(node_index) {}
+
+  void flow(int from_role, int to_role, const Traced& heat_W) {
+    node_heat_[node_index_[from_role]].moved_W -= heat_W;
+    node_heat_[node_index_[to_role]].moved_W += heat_W;
+  }
+  void source(int into_role, const Traced& heat_W) { node_heat_[node_index_[into_role]].made_W += heat_W; }
+
+ private:
+  TracedHeat* node_heat_;
+  const int* node_index_;
+};
+
+/// One law compiled for every scalar type that the network uses; laws<Law>() makes it from one template.
+struct Laws {
+  void (*one)(const Situation<double>&, HeatBook<double>&) = nullptr;
+  void (*lanes)(const Situation<Lanes>&, HeatBook<Lanes>&) = nullptr;
+  void (*tangent)(const Situation<Tangent>&, HeatBook<Tangent>&) = nullptr;
+  void (*traced)(const Situation<Traced>&, HeatBook<Traced>&) = nullptr;
+};
+
+/// Returns the law of an effect in all scalar types; it lives as long as the program.
+template <class Law>
+const Laws* laws() {
+  static constexpr Laws kLaws{[](const Situation<double>& x, HeatBook<double>& heat) { Law::book(x, heat); },
+                              [](const Situation<Lanes>& x, HeatBook<Lanes>& heat) { Law::book(x, heat); },
+                              [](const Situation<Tangent>& x, HeatBook<Tangent>& heat) { Law::book(x, heat); },
+                              [](const Situation<Traced>& x, HeatBook<Traced>& heat) { Law::book(x, heat); }};
+  return &kLaws;
+}
+
+}  // namespace heatsoak
