@@ -87,8 +87,8 @@ class CheckReader {
     }
     if (const auto name = table_.text("motor", Need::optional)) {
       check_.motor = motor("motor", *name);
-    } else if (check_.robot && check_.robot->drive_motor != "none" && !has("motor") && is_used(Setting::motor)) {
-      check_.motor = motor("robot", check_.robot->drive_motor);
+    } else if (check_.robot && check_.robot->drive.motor != "none" && !has("motor") && is_used(Setting::motor)) {
+      check_.motor = motor("robot", check_.robot->drive.motor);
     }
     std::vector<std::string> others = table_.texts("against", Need::optional);
     if (others == std::vector<std::string>{"all"}) {
@@ -223,7 +223,7 @@ class CheckReader {
     for (const Limit& limit : check_.limits) {
       for (const Setting setting : limit.type->needs) {
         const SettingText& text = all_settings()[static_cast<std::size_t>(setting)];
-        const bool is_there = has(text.key) || (setting == Setting::motor && check_.robot && check_.robot->drive_motor != "none");
+        const bool is_there = has(text.key) || (setting == Setting::motor && check_.robot && check_.robot->drive.motor != "none");
         if (!is_there && missing.insert(setting).second) {
           table_.problem("limits", fmt::format("{} needs '{}' in this check: {}", limit.type->name, text.key, text.meaning));
         }

@@ -31,7 +31,7 @@ struct Played {
 Played play(const MatchSimulation& wanted, const Game& game, const robot_core::Config& core, Planner planner) {
   Played played{planner, {}, {}, {}};
   const double ambient_C = wanted.duty.ambient_C.value;
-  const auto wheels = static_cast<int>(wanted.robot.wheel_axis_rad.size());
+  const auto wheels = static_cast<int>(wanted.robot.wheels.axis_rad.size());
   const MatchAdditions added = additions_of(wanted.motor);
   if (!wanted.out.empty()) {
     played.csv = csv_header(wheels, added);
@@ -255,7 +255,7 @@ std::vector<ChartPanel> detail(const MatchSimulation& wanted, const Played& play
     return ChartCurve{std::move(name), minutes, column(played.rows, of), color, false};
   };
   ChartPanel heat{.title = "Windings and stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
-  for (std::size_t i = 0; i < wanted.robot.wheel_axis_rad.size(); ++i) {
+  for (std::size_t i = 0; i < wanted.robot.wheels.axis_rad.size(); ++i) {
     heat.curves.push_back(
         curve(fmt::format("winding {}", i + 1), static_cast<int>(i), [i](const MatchRow& row) { return row.winding_peak_C[i]; }));
   }
@@ -387,7 +387,7 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
                   {"current_rms_A", rounded(first.current_rms_A, 4)},
                   {"verdict", verdict(wanted, all)},
                   {"data_quality", data_quality(wanted.motor)},
-                  {"is_friction_assumed", wanted.robot.is_friction_assumed},
+                  {"is_friction_assumed", wanted.robot.friction.is_assumed},
                   {"sensing", wanted.is_sensing_ideal ? "ideal" : "real"},
                   {"guard", guard_json(wanted, guard)},
                   {"default_spreads", is_guarded ? default_spreads_json({&wanted.motor, 1}) : nlohmann::ordered_json::array()},

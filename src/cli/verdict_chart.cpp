@@ -25,7 +25,7 @@ std::vector<const MotorEvaluation*> chosen(const std::vector<MotorEvaluation>& r
   for (const MotorEvaluation& each : results) {
     all.push_back(&each);
   }
-  std::stable_partition(all.begin(), all.end(), [&](const MotorEvaluation* each) { return each->motor_id == robot.drive_motor; });
+  std::stable_partition(all.begin(), all.end(), [&](const MotorEvaluation* each) { return each->motor_id == robot.drive.motor; });
   all.resize(std::min(all.size(), kMostCurves));
   return all;
 }
@@ -90,8 +90,8 @@ ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_windi
 }
 
 std::string title_of(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty) {
-  const auto good = std::ranges::count_if(
-      results, [](const MotorEvaluation& each) { return each.verdict == Verdict::pass && !each.samples_needed; });
+  const auto good =
+      std::ranges::count_if(results, [](const MotorEvaluation& each) { return each.verdict == Verdict::pass && !each.samples_needed; });
   const auto open = std::ranges::count_if(results, [](const MotorEvaluation& each) { return each.samples_needed.has_value(); });
   const std::string verdict = results.size() == 1 ? fmt::format("{}: {}", results.front().motor_id, present::verdict_word(results.front()))
                                                   : fmt::format("{} of {} motors pass{}", good, results.size(),

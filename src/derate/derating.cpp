@@ -24,9 +24,7 @@ constexpr double kReserveTolerance = 0.01;
 constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
 
 /// Voltage of a full battery in V; the nominal voltage if the robot's file gives none.
-double full_V(const Robot& robot) {
-  return std::isnan(robot.battery_full_V) ? robot.battery_V : std::max(robot.battery_V, robot.battery_full_V);
-}
+double full_V(const Robot& robot) { return std::max(robot.battery.nominal_V, robot.battery.full_V.value_or(robot.battery.nominal_V)); }
 
 }  // namespace
 
@@ -59,13 +57,13 @@ BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateO
   rules.stator_approach_s = std::max(options.approach_s, kWindingTimes * values.thermal_time_constant_winding_s);
   rules.hottest_ambient_C = options.hottest_ambient_C;
   // When braking at full speed, the back-EMF adds to the supply voltage.
-  rules.most_current_A = std::min(robot.current_limit_A, 2.0 * robot.available_V() / loop_ohm);
+  rules.most_current_A = std::min(robot.drive.current_limit_A, 2.0 * robot.available_V() / loop_ohm);
   constexpr double kPushed = 1.1;  // a pushed robot may turn its motors faster than its battery can
-  rules.most_speed_rad_per_s = kPushed * std::min(full_V(robot), robot.voltage_limit_V) / values.torque_constant_Nm_per_A;
+  rules.most_speed_rad_per_s = kPushed * std::min(full_V(robot), robot.drive.voltage_limit_V) / values.torque_constant_Nm_per_A;
   // Other firmware may use the full battery voltage of a driver whose command is limited here.
   rules.no_current_speed_rad_per_s =
       std::max(kSpeedFadeOut_ratio * rules.most_speed_rad_per_s, kPushed * full_V(robot) / values.torque_constant_Nm_per_A);
-  rules.most_vehicle_speed_m_per_s = rules.most_speed_rad_per_s / robot.gear_ratio * robot.wheel_radius_m;
+  rules.most_vehicle_speed_m_per_s = rules.most_speed_rad_per_s / robot.drive.gear_ratio * robot.wheels.radius_m;
   return rules;
 }
 

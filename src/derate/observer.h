@@ -41,9 +41,7 @@ OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, 
   at.neighbour_share = 1.0;
   at.age_h = signals[firmware::age];
   at.acceleration_rad_per_s2 = signals[firmware::acceleration];
-  if (!std::isnan(robot.battery_full_V)) {
-    at.bus_V = robot.battery_full_V;
-  }
+  at.bus_V = robot.battery.full_V.value_or(robot.battery.nominal_V);
   return at;
 }
 

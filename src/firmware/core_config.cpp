@@ -83,8 +83,8 @@ double lowest_resistance_ohm(const Robot& robot, const MotorValues& motor, const
 }
 
 double current_limit_A(const Robot& robot, double geared_V_s_per_rad, double fastest_rad_per_s, double lowest_ohm) {
-  const double most_V = std::min(robot.battery_full_V, robot.voltage_limit_V) + geared_V_s_per_rad * fastest_rad_per_s;
-  return std::min(robot.current_limit_A, most_V / lowest_ohm);
+  const double most_V = std::min(robot.battery.full_V.value(), robot.drive.voltage_limit_V) + geared_V_s_per_rad * fastest_rad_per_s;
+  return std::min(robot.drive.current_limit_A, most_V / lowest_ohm);
 }
 
 void set_drive(const Robot& robot, const MotorValues& motor, const BodyConfig& body, const CoreOptions& options,
@@ -93,7 +93,7 @@ void set_drive(const Robot& robot, const MotorValues& motor, const BodyConfig& b
   const double geared = drive.torque_constant_Nm_per_A * drive.gear_ratio;
   const double efficiency = drive.gear_efficiency * body.rolling_efficiency;
   const double lowest_ohm = lowest_resistance_ohm(robot, motor, options);
-  const double fastest_rad_per_s = kPushed * robot.battery_full_V / geared;
+  const double fastest_rad_per_s = kPushed * robot.battery.full_V.value() / geared;
   const double most_A = current_limit_A(robot, geared, fastest_rad_per_s, lowest_ohm);
   config.torque_constant_Nm_per_A = single(drive.torque_constant_Nm_per_A);
   config.resistance_ohm = single(drive.resistance_ohm);
@@ -105,10 +105,10 @@ void set_drive(const Robot& robot, const MotorValues& motor, const BodyConfig& b
   config.gear_efficiency = single(efficiency);
   config.fastest_wheel_rad_per_s = single(fastest_rad_per_s);
   config.largest_acceleration_rad_per_s2 = single(geared * most_A / (drive.gear_efficiency * body.wheel_inertia_kg_m2));
-  config.battery_full_V = single(robot.battery_full_V);
-  config.battery_lowest_V = single(robot.battery_empty_V);
-  config.battery_resistance_ohm = single(robot.battery_resistance_ohm);
-  config.voltage_limit_V = single(std::min(robot.battery_full_V, robot.voltage_limit_V));
+  config.battery_full_V = single(robot.battery.full_V.value());
+  config.battery_lowest_V = single(robot.battery.empty_V.value());
+  config.battery_resistance_ohm = single(robot.battery.resistance_ohm.value());
+  config.voltage_limit_V = single(std::min(robot.battery.full_V.value(), robot.drive.voltage_limit_V));
   config.current_limit_A = single(most_A);
 }
 
@@ -122,11 +122,11 @@ void set_gains(const WheelLoopGains& gains, robot_core::Config& config) {
 }
 
 void set_limits(const Robot& robot, const BodyConfig& body, robot_core::Config& config) {
-  config.speed_limit_m_per_s = single(robot.speed_limit_m_per_s);
-  config.yaw_rate_limit_rad_per_s = single(robot.yaw_rate_limit_rad_per_s);
-  config.acceleration_limit_m_per_s2 = single(robot.acceleration_limit_m_per_s2);
-  config.yaw_acceleration_limit_rad_per_s2 = single(robot.yaw_acceleration_limit_rad_per_s2);
-  config.jerk_limit_m_per_s3 = single(robot.jerk_limit_m_per_s3);
+  config.speed_limit_m_per_s = single(robot.limits.speed_m_per_s.value());
+  config.yaw_rate_limit_rad_per_s = single(robot.limits.yaw_rate_rad_per_s.value());
+  config.acceleration_limit_m_per_s2 = single(robot.limits.acceleration_m_per_s2.value());
+  config.yaw_acceleration_limit_rad_per_s2 = single(robot.limits.yaw_acceleration_rad_per_s2.value());
+  config.jerk_limit_m_per_s3 = single(robot.limits.jerk_m_per_s3.value());
   const double mu = body.traction.traction_ratio;
   const double c = body.traction.roller_drag_ratio;
   config.traction_ratio = single(std::sqrt(std::max(0.0, mu * mu - c * c)));
@@ -156,13 +156,13 @@ std::vector<Stop> stops(const Robot& robot, const DriveConstants& drive, const B
   constexpr int kHeadings = 72;
   const double most_A =
       current_limit_A(robot, drive.torque_constant_Nm_per_A * drive.gear_ratio,
-                      kPushed * robot.battery_full_V / (drive.torque_constant_Nm_per_A * drive.gear_ratio), drive.resistance_ohm);
+                      kPushed * robot.battery.full_V.value() / (drive.torque_constant_Nm_per_A * drive.gear_ratio), drive.resistance_ohm);
   std::vector<Stop> all;
   for (int h = 0; h < kHeadings; ++h) {
     const double heading_rad = 2.0 * std::numbers::pi * h / kHeadings;
     const Direction along = Direction::of(heading_rad);
-    const double a_m_per_s2 = robot.braking_limit_m_per_s2;
-    const double v_m_per_s = robot.speed_limit_m_per_s;
+    const double a_m_per_s2 = robot.limits.braking_m_per_s2.value();
+    const double v_m_per_s = robot.limits.speed_m_per_s.value();
     const Wrench wrench = wrench_of_acceleration(body, 0.0, {a_m_per_s2 * along.cosine_ratio, a_m_per_s2 * along.sine_ratio, 0.0});
     const PerWheel force_N = rolling_forces_N(body.kinematics, wrench);
     const PerWheel per_s2 = wheel_speeds_rad_per_s(body.kinematics, {a_m_per_s2 * along.cosine_ratio, a_m_per_s2 * along.sine_ratio, 0.0});

@@ -85,7 +85,7 @@ std::string limitations(const Robot& robot, const Derating& derating, const std:
       "- The thermal guard is computed from the files, not measured on this robot: {} thermal data of the motor. Air up to {:.0f} °C.\n"
       "- The example has not been run on a board. Its default board functions have no sensors, so the core keeps all bridges open.\n",
       derating.data_quality, derating.rules.hottest_ambient_C);
-  text += std::isfinite(robot.current_limit_A)
+  text += std::isfinite(robot.drive.current_limit_A)
               ? ""
               : "- The robot file has no current limit of the driver: only the battery bounds the current until the guard does.\n";
   for (const std::string& note : notes) {

@@ -109,10 +109,10 @@ BodyConfig make_body_with_known_friction(const Robot& robot, const MotorValues& 
     return make_body(robot, motor);
   }
   Robot smooth = robot;
-  smooth.rolling_efficiency = kAbsent;
-  smooth.wheel_friction_torque_Nm = 0.0;
-  smooth.wheel_damping_Nm_s_per_rad = 0.0;
-  smooth.roller_drag_ratio = 0.0;
+  smooth.friction.rolling_efficiency.reset();
+  smooth.friction.wheel_torque_Nm = 0.0;
+  smooth.friction.wheel_damping_Nm_s_per_rad = 0.0;
+  smooth.friction.roller_drag_ratio = 0.0;
   return make_body(smooth, motor);
 }
 

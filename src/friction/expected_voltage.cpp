@@ -20,11 +20,11 @@ std::optional<BodyConfig> body_of(const Robot& robot, const MotorValues& motor) 
 
 Expectation expectation(const Robot& robot, const MotorValues& motor) {
   const DriveConstants drive = drive_constants(robot, motor);
-  const int wheels = static_cast<int>(robot.wheel_axis_rad.size());
+  const int wheels = static_cast<int>(robot.wheels.axis_rad.size());
   Expectation found;
   DriveConstants without_drag = drive;
   without_drag.drag_torque_Nm = 0.0;
-  const double damping_Nm_s_per_rad = std::isnan(robot.wheel_damping_Nm_s_per_rad) ? 0.0 : robot.wheel_damping_Nm_s_per_rad;
+  const double damping_Nm_s_per_rad = robot.friction.wheel_damping_Nm_s_per_rad.value_or(0.0);
   found.damping_V_s_per_rad = steady_voltage_V(without_drag, damping_Nm_s_per_rad, 1.0);
   const std::optional<BodyConfig> body = body_of(robot, motor);
   found.from = body ? "the robot's file" : "the motor's data sheet";

@@ -22,10 +22,10 @@ class ColumnsOfRobot {
     log.name = recording_.name;
     log.time_s = recording_.time_s;
     log.run_begins = recording_.run_begins;
-    for (std::size_t wheel = 0; wheel < robot_.wheel_axis_rad.size(); ++wheel) {
+    for (std::size_t wheel = 0; wheel < robot_.wheels.axis_rad.size(); ++wheel) {
       if (const Column* speed = numbered("wheel_speed_rad_per_s", wheel)) {
         log.wheel_speed_rad_per_s[wheel] = *speed;
-        std::ranges::for_each(log.wheel_speed_rad_per_s[wheel], [&](double& each) { each /= robot_.gear_ratio; });
+        std::ranges::for_each(log.wheel_speed_rad_per_s[wheel], [&](double& each) { each /= robot_.drive.gear_ratio; });
       } else {
         missing(fmt::format("wheel_speed_rad_per_s_{}", wheel + 1), "speed of the wheel's motor");
       }
@@ -58,7 +58,7 @@ class ColumnsOfRobot {
   }
 
   void add_voltages(FrictionLog& log) {
-    for (std::size_t wheel = 0; wheel < robot_.wheel_axis_rad.size(); ++wheel) {
+    for (std::size_t wheel = 0; wheel < robot_.wheels.axis_rad.size(); ++wheel) {
       if (const Column* voltage = numbered("wheel_voltage_V", wheel)) {
         log.voltage_V[wheel] = *voltage;
         note("voltage: as the log has it");
@@ -79,10 +79,10 @@ class ColumnsOfRobot {
     note(battery ? "voltage: modulation × battery voltage"
                  : fmt::format("voltage: modulation × {} V, the robot's nominal battery voltage, because the log has none; every value in "
                                "V scales with it, beyond its interval",
-                               significant(robot_.battery_V, 3)));
+                               significant(robot_.battery.nominal_V, 3)));
     Column voltage_V = modulation;
     for (std::size_t row = 0; row < voltage_V.size(); ++row) {
-      voltage_V[row] *= battery ? (*battery)[row] : robot_.battery_V;
+      voltage_V[row] *= battery ? (*battery)[row] : robot_.battery.nominal_V;
     }
     return voltage_V;
   }
@@ -90,7 +90,7 @@ class ColumnsOfRobot {
   /// True if all currents are non-negative although wheels turn in both directions: the log has only magnitudes.
   [[nodiscard]] bool has_sizes_only() const {
     bool turns_back = false;
-    for (std::size_t wheel = 0; wheel < robot_.wheel_axis_rad.size(); ++wheel) {
+    for (std::size_t wheel = 0; wheel < robot_.wheels.axis_rad.size(); ++wheel) {
       const Column* current = numbered("wheel_current_A", wheel);
       if (current && std::ranges::any_of(*current, [](double each) { return each < 0.0; })) {
         return false;

@@ -194,7 +194,7 @@ std::string with_measured_friction(const std::string& text, const Robot& robot, 
   note_what_is_cut(fit, drive, notes);
   Lines lines = lines_of(text);
   const bool has_heading = std::ranges::any_of(lines, [](const std::string& line) { return is_header_of(line, "friction.heading"); });
-  const bool is_known = !std::isnan(robot.heading_constant_Nm) || !robot.heading_wheels.empty();
+  const bool is_known = robot.friction.heading.constant_Nm.has_value() || !robot.friction.heading.wheels.empty();
   if (is_known && !has_heading) {
     throw other_form(robot, "friction.heading");
   }

@@ -142,7 +142,7 @@ std::vector<Text> headline(std::span<const MotorEvaluation> results, const Evalu
                                            undecided > 0 ? fmt::format("; {} undecided", undecided) : ""),
                                good == 0 ? Tone::bad : Tone::good}};
   sentences.push_back(sentence(results.front(), results.size() > 1 ? "Best: " : ""));
-  const auto own = std::ranges::find(results, context.robot.drive_motor, &MotorEvaluation::motor_id);
+  const auto own = std::ranges::find(results, context.robot.drive.motor, &MotorEvaluation::motor_id);
   if (own != results.end() && own != results.begin()) {
     sentences.push_back(sentence(*own, "The robot's own "));
   }

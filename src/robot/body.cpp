@@ -7,25 +7,23 @@
 namespace heatsoak {
 namespace {
 
-double given_or(double value, double otherwise) { return std::isnan(value) ? otherwise : value; }
-
 FrictionConfig make_friction(const Robot& robot, const Kinematics& kinematics) {
   FrictionConfig friction;
-  friction.wheel_torque_Nm = robot.wheel_friction_torque_Nm;
-  friction.wheel_damping_Nm_s_per_rad = robot.wheel_damping_Nm_s_per_rad;
-  friction.by_heading = !std::isnan(robot.heading_constant_Nm) || !robot.heading_wheels.empty();
+  friction.wheel_torque_Nm = robot.friction.wheel_torque_Nm.value();
+  friction.wheel_damping_Nm_s_per_rad = robot.friction.wheel_damping_Nm_s_per_rad.value();
+  friction.by_heading = robot.friction.heading.constant_Nm.has_value() || !robot.friction.heading.wheels.empty();
   if (friction.by_heading) {
-    friction.heading.constant_Nm.fill(robot.heading_constant_Nm);
-    friction.heading.sine_Nm.fill(robot.heading_sine_Nm);
-    for (std::size_t i = 0; i < robot.heading_wheels.size(); ++i) {
-      const HeadingWheel& wheel = robot.heading_wheels[i];
+    friction.heading.constant_Nm.fill(robot.friction.heading.constant_Nm.value_or(0.0));
+    friction.heading.sine_Nm.fill(robot.friction.heading.sine_Nm.value_or(0.0));
+    for (std::size_t i = 0; i < robot.friction.heading.wheels.size(); ++i) {
+      const HeadingWheel& wheel = robot.friction.heading.wheels[i];
       friction.heading.constant_Nm[i] = wheel.constant_Nm;
       friction.heading.sine_Nm[i] = wheel.sine_Nm;
       friction.heading.phase_offset[i] = Direction::of(wheel.phase_rad - rolling_phase_rad(kinematics.wheels[i]));
     }
-    friction.heading.double_angle_Nm = given_or(robot.heading_double_angle_Nm, 0.0);
-    friction.heading.rotation_Nm = given_or(robot.heading_rotation_Nm, robot.wheel_friction_torque_Nm);
-    std::ranges::transform(robot.heading_double_angle_phase_rad, friction.heading.double_angle_phase.begin(), &Direction::of);
+    friction.heading.double_angle_Nm = robot.friction.heading.double_angle_Nm.value_or(0.0);
+    friction.heading.rotation_Nm = robot.friction.heading.rotation_Nm.value_or(robot.friction.wheel_torque_Nm.value());
+    std::ranges::transform(robot.friction.heading.double_angle_phase_rad, friction.heading.double_angle_phase.begin(), &Direction::of);
   }
   return friction;
 }
@@ -53,20 +51,21 @@ BodyConfig make_body(const Robot& robot, const MotorValues& motor) {
   }
   BodyConfig body;
   body.kinematics = make_kinematics(robot);
-  body.weight = make_weight(body.kinematics, robot.mass_kg, robot.center_of_gravity_height_m, given_or(robot.center_of_gravity_x_m, 0.0),
-                            given_or(robot.center_of_gravity_y_m, 0.0));
+  body.weight = make_weight(body.kinematics, robot.mass_kg, robot.body.center_of_gravity_height_m.value(),
+                            robot.body.center_of_gravity_x_m.value_or(0.0), robot.body.center_of_gravity_y_m.value_or(0.0));
   if (!stands(body.weight)) {
     throw bad_input({robot.file.string()}, "wheels.axis_angles",
                     "put all wheels on one side of the centre of gravity, so the robot tips over at standstill; expected the centre of "
                     "gravity between the wheels");
   }
   body.friction = make_friction(robot, body.kinematics);
-  body.traction.traction_ratio = robot.traction_ratio;
-  body.traction.slip_speed_m_per_s = robot.slip_speed_m_per_s;
-  body.traction.roller_drag_ratio = body.friction.by_heading ? 0.0 : robot.roller_drag_ratio;
-  body.rolling_efficiency = given_or(robot.rolling_efficiency, 1.0);
-  body.yaw_inertia_kg_m2 = robot.yaw_inertia_kg_m2;
-  body.wheel_inertia_kg_m2 = robot.wheel_inertia_kg_m2 + robot.gear_ratio * robot.gear_ratio * motor.rotor_inertia_kg_m2;
+  body.traction.traction_ratio = robot.traction.coefficient_ratio.value();
+  body.traction.slip_speed_m_per_s = robot.traction.slip_speed_m_per_s.value();
+  body.traction.roller_drag_ratio = body.friction.by_heading ? 0.0 : robot.friction.roller_drag_ratio.value();
+  body.rolling_efficiency = robot.friction.rolling_efficiency.value_or(1.0);
+  body.yaw_inertia_kg_m2 = robot.body.yaw_inertia_kg_m2.value();
+  body.wheel_inertia_kg_m2 =
+      robot.wheels.inertia_kg_m2.value() + robot.drive.gear_ratio * robot.drive.gear_ratio * motor.rotor_inertia_kg_m2;
   return body;
 }
 

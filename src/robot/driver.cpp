@@ -11,7 +11,8 @@
 namespace heatsoak {
 
 DriverConfig make_driver(const Robot& robot) {
-  return {robot.voltage_limit_V, robot.current_limit_A, robot.driver_resistance_ohm, robot.driver_standby_W};
+  return {robot.drive.voltage_limit_V, robot.drive.current_limit_A, robot.drive.driver_resistance_ohm.value(),
+          robot.drive.driver_standby_W.value()};
 }
 
 MotorElectrics make_electrics(const Robot& robot, const MotorValues& motor) {

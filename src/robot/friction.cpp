@@ -62,7 +62,7 @@ DriveConstants drive_constants(const Robot& robot, const MotorValues& motor) {
   const MotorElectrics electrics = make_electrics(robot, motor);
   const double driver_ohm = robot.series_resistance_ohm();
   return {electrics.heating_factor * electrics.resistance_25C_ohm + driver_ohm, electrics.torque_constant_25C_Nm_per_A,
-          electrics.drag_torque_Nm, robot.gear_ratio, robot.gear_efficiency};
+          electrics.drag_torque_Nm, robot.drive.gear_ratio, robot.drive.gear_efficiency};
 }
 
 double friction_torque_of_voltage_Nm(const DriveConstants& drive, double voltage_V) {

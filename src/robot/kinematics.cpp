@@ -48,20 +48,20 @@ BodyAcceleration acceleration_from_rates(const BodyVelocity& local, const BodyAc
 }
 
 Kinematics make_kinematics(const Robot& robot) {
-  const std::size_t count = robot.wheel_axis_rad.size();
+  const std::size_t count = robot.wheels.axis_rad.size();
   if (count < 3 || count > kMostWheels) {
     throw bad_input({robot.file.string()}, "wheels.axis_angles",
                     fmt::format("names {} wheels; a motion can be calculated for three or four", count));
   }
   Kinematics made;
   made.wheel_count = static_cast<int>(count);
-  made.wheel_radius_m = robot.wheel_radius_m;
-  made.contact_radius_m = robot.wheel_contact_radius_m;
+  made.wheel_radius_m = robot.wheels.radius_m;
+  made.contact_radius_m = robot.wheels.contact_radius_m;
   // The yaw column is divided by the contact radius to keep the matrix well scaled.
   Eigen::MatrixX3d jacobian(count, 3);
   for (std::size_t i = 0; i < count; ++i) {
-    const double cosine = std::cos(robot.wheel_axis_rad[i]);
-    const double sine = std::sin(robot.wheel_axis_rad[i]);
+    const double cosine = std::cos(robot.wheels.axis_rad[i]);
+    const double sine = std::sin(robot.wheels.axis_rad[i]);
     made.wheels[i] = {cosine, sine, -sine, cosine};
     jacobian.row(static_cast<Eigen::Index>(i)) << -sine, cosine, 1.0;
   }

@@ -27,9 +27,9 @@ OperatingPoint<S> machine_point(const MotorValues& motor, const Robot& robot, co
   at.velocity_rad_per_s = velocity_rad_per_s;
   at.shaft_power_W = shaft_power_W;
   at.input_power_W = input_power_W(motor, at.current_rms_A, shaft_power_W, at.speed_mean_rad_per_s);
-  at.bus_V = robot.battery_V;
+  at.bus_V = robot.battery.nominal_V;
   const S terminal_V = current_A * motor.terminal_resistance_ohm + motor.torque_constant_Nm_per_A * velocity_rad_per_s;
-  const S modulation_ratio = magnitude(terminal_V + current_A * robot.series_resistance_ohm()) / robot.battery_V;
+  const S modulation_ratio = magnitude(terminal_V + current_A * robot.series_resistance_ohm()) / robot.battery.nominal_V;
   at.modulation_ratio = modulation_ratio - positive_part(modulation_ratio - 1.0);
   return at;
 }

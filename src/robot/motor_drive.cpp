@@ -15,7 +15,7 @@ double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 }  // namespace
 
 double shaft_torque_factor(const Robot& robot, bool drives) {
-  return (drives ? 1.0 / robot.gear_efficiency : robot.gear_efficiency) / robot.gear_ratio;
+  return (drives ? 1.0 / robot.drive.gear_efficiency : robot.drive.gear_efficiency) / robot.drive.gear_ratio;
 }
 
 DrivePoint clamped_point(const MotorValues& motor, const Robot& robot, double wanted_A, double motor_speed_rad_per_s) {
@@ -27,7 +27,7 @@ DrivePoint clamped_point(const MotorValues& motor, const Robot& robot, double wa
   // A back-EMF above the supply voltage makes the demand impossible, but does not reverse the current.
   const double most_A = std::max(0.0, (robot.available_V() - back_emf_V) / loop_ohm);
   const double least_A = std::min(0.0, (-robot.available_V() - back_emf_V) / loop_ohm);
-  point.current_A = std::clamp(wanted_A, -robot.current_limit_A, robot.current_limit_A);
+  point.current_A = std::clamp(wanted_A, -robot.drive.current_limit_A, robot.drive.current_limit_A);
   if (point.current_A != wanted_A) {
     point.limit = DriveLimit::current;
   }
@@ -42,13 +42,13 @@ DrivePoint clamped_point(const MotorValues& motor, const Robot& robot, double wa
 
 DrivePoint drive_point(const MotorValues& motor, const Robot& robot, const WheelLoad& load) {
   const double motor_torque_Nm = load.torque_Nm * shaft_torque_factor(robot, load.torque_Nm * load.speed_rad_per_s >= 0.0);
-  const double motor_speed_rad_per_s = load.speed_rad_per_s * robot.gear_ratio;
+  const double motor_speed_rad_per_s = load.speed_rad_per_s * robot.drive.gear_ratio;
   const double wanted_A = (motor_torque_Nm + drag_torque_Nm(motor) * sign(motor_speed_rad_per_s)) / motor.torque_constant_Nm_per_A;
   return clamped_point(motor, robot, wanted_A, motor_speed_rad_per_s);
 }
 
 DrivePoint drive_point_of_current(const MotorValues& motor, const Robot& robot, double current_A, double wheel_speed_rad_per_s) {
-  return clamped_point(motor, robot, current_A, wheel_speed_rad_per_s * robot.gear_ratio);
+  return clamped_point(motor, robot, current_A, wheel_speed_rad_per_s * robot.drive.gear_ratio);
 }
 
 double terminal_voltage_V(const MotorValues& motor, const DrivePoint& point, double winding_C) {
@@ -62,7 +62,7 @@ double driver_voltage_V(const MotorValues& motor, const Robot& robot, const Driv
 
 double heating_factor(const Robot& robot) {
   // 0.75·R·Î² relative to R·I² at equal torque, with Î = I/(√3·π/6), is (3/π)².
-  return robot.commutation == Commutation::sinusoidal ? 3.0 / std::numbers::pi : 1.0;
+  return robot.drive.commutation == Commutation::sinusoidal ? 3.0 / std::numbers::pi : 1.0;
 }
 
 OperatingPoint<double> operating_point(const DrivePoint& point, const MotorValues& motor, const Robot& robot, double ambient_C) {
@@ -75,7 +75,7 @@ OperatingPoint<double> operating_point(const DrivePoint& point, const MotorValue
   at.ambient_C = ambient_C;
   at.resistive_headroom_V = std::max(0.0, robot.available_V() - back_emf_V) * heating_factor(robot);
   at.series_resistance_ohm = robot.series_resistance_ohm();
-  at.vehicle_speed_m_per_s = speed_rad_per_s / robot.gear_ratio * robot.wheel_radius_m;
+  at.vehicle_speed_m_per_s = speed_rad_per_s / robot.drive.gear_ratio * robot.wheels.radius_m;
   return at;
 }
 

@@ -397,9 +397,10 @@ PlantConfig make_plant(const Robot& robot, const MotorValues& motor, double peri
   require_parameters(robot, kElectricTables);
   plant.motor = make_electrics(robot, motor);
   plant.driver = make_driver(robot);
-  plant.battery = {robot.battery_full_V, robot.battery_empty_V, robot.battery_resistance_ohm, robot.battery_capacity_A_s};
-  plant.gear_ratio = robot.gear_ratio;
-  plant.gear_efficiency = robot.gear_efficiency;
+  plant.battery = {robot.battery.full_V.value(), robot.battery.empty_V.value(), robot.battery.resistance_ohm.value(),
+                   robot.battery.capacity_A_s.value()};
+  plant.gear_ratio = robot.drive.gear_ratio;
+  plant.gear_efficiency = robot.drive.gear_efficiency;
   plant.period_s = period_s;
   return plant;
 }

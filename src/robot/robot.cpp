@@ -13,66 +13,130 @@ namespace heatsoak {
 namespace {
 
 /// The ranges include any robot for a lab floor and exclude values with a wrong unit.
-constexpr std::array<RobotParameterSpec, 29> kSpecs{{
-    {"body",
-     {"yaw_inertia", "kg m2", Range::between(1e-5, 200.0),
-      "about the vertical axis through the centre of gravity; check the unit, g cm2 or kg m2"},
-     &Robot::yaw_inertia_kg_m2},
-    {"body", {"center_of_gravity_height", "m", Range::between(0.0, 2.0), "above the ground"}, &Robot::center_of_gravity_height_m},
-    {"body", {"center_of_gravity_x", "m", Range::between(-1.0, 1.0), "ahead of the robot's axis"}, &Robot::center_of_gravity_x_m},
-    {"body", {"center_of_gravity_y", "m", Range::between(-1.0, 1.0), "left of the robot's axis"}, &Robot::center_of_gravity_y_m},
-    {"wheels",
-     {"inertia", "kg m2", Range::between(1e-9, 1.0), "of one wheel about its axle, without the rotor; check the unit, g cm2 or kg m2"},
-     &Robot::wheel_inertia_kg_m2},
-    {"friction",
-     {"wheel_torque", "N m", Range::between(0.0, 20.0), "resisting torque of one wheel, without the motor's own drag"},
-     &Robot::wheel_friction_torque_Nm},
-    {"friction",
-     {"wheel_damping", "N m s/rad", Range::between(0.0, 1.0), "resisting torque of one wheel per speed of the wheel"},
-     &Robot::wheel_damping_Nm_s_per_rad},
-    {"friction",
-     {"roller_drag", "", Range::between(0.0, 1.0), "force along the axle per normal force while the rollers turn"},
-     &Robot::roller_drag_ratio},
-    {"friction",
-     {"rolling_efficiency", "", Range::between(0.1, 1.0), "share of the wheel's torque that reaches the ground"},
-     &Robot::rolling_efficiency},
-    {"friction.heading",
-     {"constant", "N m", Range::between(0.0, 20.0), "friction in translation, mean over the directions"},
-     &Robot::heading_constant_Nm},
-    {"friction.heading",
-     {"sine", "N m", Range::between(-20.0, 20.0), "part that grows with the wheel's share of rolling"},
-     &Robot::heading_sine_Nm},
-    {"friction.heading",
-     {"double_angle", "N m", Range::between(0.0, 20.0), "amplitude of the part with twice the direction"},
-     &Robot::heading_double_angle_Nm},
-    {"friction.heading", {"rotation", "N m", Range::between(0.0, 20.0), "friction in pure rotation"}, &Robot::heading_rotation_Nm},
-    {"traction", {"coefficient", "", Range::between(0.01, 5.0), "largest rolling force per normal force"}, &Robot::traction_ratio},
-    {"traction", {"slip_speed", "m/s", Range::between(1e-4, 10.0), "slip at which 0.71 of it is used"}, &Robot::slip_speed_m_per_s},
-    {"drive",
-     {"driver_resistance", "ohm", Range::between(0.0, 10.0), "of switches and traces in series with one motor"},
-     &Robot::driver_resistance_ohm},
-    {"drive", {"driver_standby_power", "W", Range::between(0.0, 100.0), "of one motor's driver without current"}, &Robot::driver_standby_W},
-    {"drive",
-     {"control_rate", "Hz", Range::between(20.0, 1000.0), "rate at which the firmware commands the motors"},
-     &Robot::control_rate_Hz},
-    {"drive",
-     {"command_rate", "Hz", Range::between(5.0, 1000.0), "rate at which the team's computer commands the robot"},
-     &Robot::command_rate_Hz},
-    {"battery", {"full_voltage", "V", Range::between(1.0, 5000.0), "open circuit, full"}, &Robot::battery_full_V},
-    {"battery", {"empty_voltage", "V", Range::between(1.0, 5000.0), "open circuit, empty"}, &Robot::battery_empty_V},
-    {"battery", {"internal_resistance", "ohm", Range::between(0.0, 10.0), "of the pack with its leads"}, &Robot::battery_resistance_ohm},
-    {"battery", {"capacity", "A s", Range::between(30.0, 4e6), "from full to empty"}, &Robot::battery_capacity_A_s},
-    {"limits", {"speed", "m/s", Range::between(0.01, 30.0), "largest speed that the team plans"}, &Robot::speed_limit_m_per_s},
-    {"limits", {"acceleration", "m/s2", Range::between(0.1, 200.0), "when speeding up"}, &Robot::acceleration_limit_m_per_s2},
-    {"limits",
-     {"braking", "m/s2", Range::between(0.1, 200.0), "when slowing down; a match plans with the smaller of this and acceleration"},
-     &Robot::braking_limit_m_per_s2},
-    {"limits", {"jerk", "m/s3", Range::between(0.1, 1e5), "change of the acceleration"}, &Robot::jerk_limit_m_per_s3},
-    {"limits", {"yaw_rate", "rad/s", Range::between(0.01, 200.0), "largest rate of turning"}, &Robot::yaw_rate_limit_rad_per_s},
-    {"limits",
-     {"yaw_acceleration", "rad/s2", Range::between(0.01, 1e4), "change of the rate of turning"},
-     &Robot::yaw_acceleration_limit_rad_per_s2},
-}};
+constexpr std::array<RobotParameterSpec, 29> kSpecs{
+    {{"body",
+      {"yaw_inertia", "kg m2", Range::between(1e-5, 200.0),
+       "about the vertical axis through the centre of gravity; check the unit, g cm2 or kg m2"},
+      [](auto& robot) -> auto& {return robot.body.yaw_inertia_kg_m2;
+}  // namespace
+}  // namespace heatsoak
+, {"body", {"center_of_gravity_height", "m", Range::between(0.0, 2.0), "above the ground"},
+   [](auto& robot) -> auto& {return robot.body.center_of_gravity_height_m;
+}
+}
+, {"body", {"center_of_gravity_x", "m", Range::between(-1.0, 1.0), "ahead of the robot's axis"},
+   [](auto& robot) -> auto& {return robot.body.center_of_gravity_x_m;
+}
+}
+, {"body", {"center_of_gravity_y", "m", Range::between(-1.0, 1.0), "left of the robot's axis"},
+   [](auto& robot) -> auto& {return robot.body.center_of_gravity_y_m;
+}
+}
+, {"wheels",
+   {"inertia", "kg m2", Range::between(1e-9, 1.0), "of one wheel about its axle, without the rotor; check the unit, g cm2 or kg m2"},
+   [](auto& robot) -> auto& {return robot.wheels.inertia_kg_m2;
+}
+}
+, {"friction", {"wheel_torque", "N m", Range::between(0.0, 20.0), "resisting torque of one wheel, without the motor's own drag"},
+   [](auto& robot) -> auto& {return robot.friction.wheel_torque_Nm;
+}
+}
+, {"friction", {"wheel_damping", "N m s/rad", Range::between(0.0, 1.0), "resisting torque of one wheel per speed of the wheel"},
+   [](auto& robot) -> auto& {return robot.friction.wheel_damping_Nm_s_per_rad;
+}
+}
+, {"friction", {"roller_drag", "", Range::between(0.0, 1.0), "force along the axle per normal force while the rollers turn"},
+   [](auto& robot) -> auto& {return robot.friction.roller_drag_ratio;
+}
+}
+, {"friction", {"rolling_efficiency", "", Range::between(0.1, 1.0), "share of the wheel's torque that reaches the ground"},
+   [](auto& robot) -> auto& {return robot.friction.rolling_efficiency;
+}
+}
+, {"friction.heading", {"constant", "N m", Range::between(0.0, 20.0), "friction in translation, mean over the directions"},
+   [](auto& robot) -> auto& {return robot.friction.heading.constant_Nm;
+}
+}
+, {"friction.heading", {"sine", "N m", Range::between(-20.0, 20.0), "part that grows with the wheel's share of rolling"},
+   [](auto& robot) -> auto& {return robot.friction.heading.sine_Nm;
+}
+}
+, {"friction.heading", {"double_angle", "N m", Range::between(0.0, 20.0), "amplitude of the part with twice the direction"},
+   [](auto& robot) -> auto& {return robot.friction.heading.double_angle_Nm;
+}
+}
+, {"friction.heading", {"rotation", "N m", Range::between(0.0, 20.0), "friction in pure rotation"},
+   [](auto& robot) -> auto& {return robot.friction.heading.rotation_Nm;
+}
+}
+, {"traction", {"coefficient", "", Range::between(0.01, 5.0), "largest rolling force per normal force"},
+   [](auto& robot) -> auto& {return robot.traction.coefficient_ratio;
+}
+}
+, {"traction", {"slip_speed", "m/s", Range::between(1e-4, 10.0), "slip at which 0.71 of it is used"},
+   [](auto& robot) -> auto& {return robot.traction.slip_speed_m_per_s;
+}
+}
+, {"drive", {"driver_resistance", "ohm", Range::between(0.0, 10.0), "of switches and traces in series with one motor"},
+   [](auto& robot) -> auto& {return robot.drive.driver_resistance_ohm;
+}
+}
+, {"drive", {"driver_standby_power", "W", Range::between(0.0, 100.0), "of one motor's driver without current"},
+   [](auto& robot) -> auto& {return robot.drive.driver_standby_W;
+}
+}
+, {"drive", {"control_rate", "Hz", Range::between(20.0, 1000.0), "rate at which the firmware commands the motors"},
+   [](auto& robot) -> auto& {return robot.drive.control_rate_Hz;
+}
+}
+, {"drive", {"command_rate", "Hz", Range::between(5.0, 1000.0), "rate at which the team's computer commands the robot"},
+   [](auto& robot) -> auto& {return robot.drive.command_rate_Hz;
+}
+}
+, {"battery", {"full_voltage", "V", Range::between(1.0, 5000.0), "open circuit, full"},
+   [](auto& robot) -> auto& {return robot.battery.full_V;
+}
+}
+, {"battery", {"empty_voltage", "V", Range::between(1.0, 5000.0), "open circuit, empty"},
+   [](auto& robot) -> auto& {return robot.battery.empty_V;
+}
+}
+, {"battery", {"internal_resistance", "ohm", Range::between(0.0, 10.0), "of the pack with its leads"},
+   [](auto& robot) -> auto& {return robot.battery.resistance_ohm;
+}
+}
+, {"battery", {"capacity", "A s", Range::between(30.0, 4e6), "from full to empty"},
+   [](auto& robot) -> auto& {return robot.battery.capacity_A_s;
+}
+}
+, {"limits", {"speed", "m/s", Range::between(0.01, 30.0), "largest speed that the team plans"},
+   [](auto& robot) -> auto& {return robot.limits.speed_m_per_s;
+}
+}
+, {"limits", {"acceleration", "m/s2", Range::between(0.1, 200.0), "when speeding up"},
+   [](auto& robot) -> auto& {return robot.limits.acceleration_m_per_s2;
+}
+}
+, {"limits", {"braking", "m/s2", Range::between(0.1, 200.0), "when slowing down; a match plans with the smaller of this and acceleration"},
+   [](auto& robot) -> auto& {return robot.limits.braking_m_per_s2;
+}
+}
+, {"limits", {"jerk", "m/s3", Range::between(0.1, 1e5), "change of the acceleration"},
+   [](auto& robot) -> auto& {return robot.limits.jerk_m_per_s3;
+}
+}
+, {"limits", {"yaw_rate", "rad/s", Range::between(0.01, 200.0), "largest rate of turning"},
+   [](auto& robot) -> auto& {return robot.limits.yaw_rate_rad_per_s;
+}
+}
+, {"limits", {"yaw_acceleration", "rad/s2", Range::between(0.01, 1e4), "change of the rate of turning"},
+   [](auto& robot) -> auto& {return robot.limits.yaw_acceleration_rad_per_s2;
+}
+}
+,
+}
+}
+;
 
 constexpr std::array<WheelParameterSpec, 3> kWheelSpecs{{
     {{"constant", "N m", Range::between(0.0, 20.0), "friction of this wheel in translation"}, &HeadingWheel::constant_Nm},
@@ -86,7 +150,7 @@ constexpr std::array<std::string_view, 5> kOptionalKeys{"center_of_gravity_x", "
 
 void read_parameter(Reader& reader, const RobotParameterSpec& each, Need need, Robot& robot) {
   if (std::optional<ParameterValue> parameter = reader.parameter(each.spec, need)) {
-    robot.*each.value = parameter->value;
+    each.value.of(robot) = parameter->value;
     robot.parameters.emplace(fmt::format("{}.{}", each.table, each.spec.key), std::move(*parameter));
   }
 }
@@ -104,8 +168,8 @@ std::string wheel_parameter_key(std::size_t wheel, const WheelParameterSpec& par
 }
 
 /// Adds a problem if the friction would drive the wheel in some direction of travel.
-void check_sign(Reader& reader, double constant_Nm, double sine_Nm, double double_angle_Nm) {
-  if (constant_Nm + std::min(0.0, sine_Nm) < double_angle_Nm) {
+void check_sign(Reader& reader, std::optional<double> constant_Nm, std::optional<double> sine_Nm, double double_angle_Nm) {
+  if (constant_Nm && sine_Nm && *constant_Nm + std::min(0.0, *sine_Nm) < double_angle_Nm) {
     reader.problem("constant", "is smaller than the other parts in some direction, so that friction would drive the wheel");
   }
 }
@@ -113,11 +177,11 @@ void check_sign(Reader& reader, double constant_Nm, double sine_Nm, double doubl
 /// Reads [[friction.heading.wheel]], wheel 1 first.
 void read_heading_wheels(std::vector<Reader>& wheels, Robot& robot, double double_angle_Nm) {
   for (Reader& reader : wheels) {
-    HeadingWheel& wheel = robot.heading_wheels.emplace_back();
+    HeadingWheel& wheel = robot.friction.heading.wheels.emplace_back();
     for (const WheelParameterSpec& each : kWheelSpecs) {
       if (std::optional<ParameterValue> parameter = reader.parameter(each.spec, Need::required)) {
         wheel.*each.value = parameter->value;
-        robot.parameters.emplace(wheel_parameter_key(robot.heading_wheels.size() - 1, each), std::move(*parameter));
+        robot.parameters.emplace(wheel_parameter_key(robot.friction.heading.wheels.size() - 1, each), std::move(*parameter));
       }
     }
     check_sign(reader, wheel.constant_Nm, wheel.sine_Nm, double_angle_Nm);
@@ -131,22 +195,22 @@ void read_heading(Reader& heading, Robot& robot) {
     const bool of_all_wheels = each.spec.key == "constant" || each.spec.key == "sine";
     if (each.table == "friction.heading") {
       read_parameter(heading, each, of_all_wheels && wheels.empty() ? Need::required : Need::optional, robot);
-      if (of_all_wheels && !wheels.empty() && !std::isnan(robot.*each.value)) {
+      if (of_all_wheels && !wheels.empty() && each.value.in(robot)) {
         heading.problem(each.spec.key, "is given together with the same value for every wheel; expected only one of the two");
       }
     }
   }
-  const bool has_double_angle = !std::isnan(robot.heading_double_angle_Nm);
-  robot.heading_double_angle_phase_rad =
+  const bool has_double_angle = robot.friction.heading.double_angle_Nm.has_value();
+  robot.friction.heading.double_angle_phase_rad =
       heading.quantities({"double_angle_phases", "rad", Range::any(), "one per wheel"}, has_double_angle ? Need::required : Need::optional);
-  if (has_double_angle && robot.heading_double_angle_phase_rad.size() != robot.wheel_axis_rad.size()) {
+  if (has_double_angle && robot.friction.heading.double_angle_phase_rad.size() != robot.wheels.axis_rad.size()) {
     heading.problem("double_angle_phases", "expected one phase per wheel");
   }
-  const double double_angle_Nm = has_double_angle ? robot.heading_double_angle_Nm : 0.0;
+  const double double_angle_Nm = robot.friction.heading.double_angle_Nm.value_or(0.0);
   if (wheels.empty()) {
-    check_sign(heading, robot.heading_constant_Nm, robot.heading_sine_Nm, double_angle_Nm);
-  } else if (wheels.size() != robot.wheel_axis_rad.size()) {
-    heading.problem("wheel", fmt::format("names {} wheels, the robot has {}", wheels.size(), robot.wheel_axis_rad.size()));
+    check_sign(heading, robot.friction.heading.constant_Nm, robot.friction.heading.sine_Nm, double_angle_Nm);
+  } else if (wheels.size() != robot.wheels.axis_rad.size()) {
+    heading.problem("wheel", fmt::format("names {} wheels, the robot has {}", wheels.size(), robot.wheels.axis_rad.size()));
   }
   read_heading_wheels(wheels, robot, double_angle_Nm);
   heading.finish();
@@ -169,15 +233,15 @@ void read_wheels(Reader& top, Robot& robot) {
   if (!wheels) {
     return;
   }
-  robot.wheel_radius_m =
+  robot.wheels.radius_m =
       wheels->quantity({"radius", "m", Range::between(0.005, 0.5), "of a wheel; check the unit, mm or m"}, Need::required).value_or(1.0);
-  robot.wheel_contact_radius_m = wheels
-                                     ->quantity({"contact_radius", "m", Range::between(0.01, 2.0),
-                                                 "from the robot's axis to the contact points; check the unit, mm or m"},
-                                                Need::required)
-                                     .value_or(1.0);
-  robot.wheel_axis_rad = wheels->quantities({"axis_angles", "rad", Range::any(), "of the wheels' axes"}, Need::required);
-  if (robot.wheel_axis_rad.size() < 3) {
+  robot.wheels.contact_radius_m = wheels
+                                      ->quantity({"contact_radius", "m", Range::between(0.01, 2.0),
+                                                  "from the robot's axis to the contact points; check the unit, mm or m"},
+                                                 Need::required)
+                                      .value_or(1.0);
+  robot.wheels.axis_rad = wheels->quantities({"axis_angles", "rad", Range::any(), "of the wheels' axes"}, Need::required);
+  if (robot.wheels.axis_rad.size() < 3) {
     wheels->problem("axis_angles", "names fewer than three wheels; an omni-directional robot has at least three");
   }
   read_file_parameters(*wheels, "wheels", robot);
@@ -189,20 +253,20 @@ void read_drive(Reader& top, Robot& robot) {
   if (!drive) {
     return;
   }
-  robot.drive_motor = drive->text("motor", Need::required).value_or("");
-  robot.gear_ratio =
+  robot.drive.motor = drive->text("motor", Need::required).value_or("");
+  robot.drive.gear_ratio =
       drive->quantity({"gear_ratio", "", Range::between(0.1, 500.0), "motor turns per wheel turn"}, Need::required).value_or(1.0);
-  robot.gear_efficiency =
+  robot.drive.gear_efficiency =
       drive->quantity({"gear_efficiency", "", Range::between(0.1, 1.0), "share of the torque that the gear transmits"}, Need::optional)
           .value_or(1.0);
-  robot.voltage_limit_V =
+  robot.drive.voltage_limit_V =
       drive->quantity({"voltage_limit", "V", Range::between(0.5, 5000.0), "largest command to one motor"}, Need::optional)
-          .value_or(robot.voltage_limit_V);
-  robot.current_limit_A =
+          .value_or(robot.drive.voltage_limit_V);
+  robot.drive.current_limit_A =
       drive->quantity({"current_limit", "A", Range::between(0.01, 1000.0), "largest equivalent DC current of one motor"}, Need::optional)
-          .value_or(robot.current_limit_A);
+          .value_or(robot.drive.current_limit_A);
   constexpr std::array<std::string_view, 2> kCommutations{"block", "sinusoidal"};
-  robot.commutation =
+  robot.drive.commutation =
       drive->choice("commutation", kCommutations, Need::required) == "sinusoidal" ? Commutation::sinusoidal : Commutation::block;
   read_file_parameters(*drive, "drive", robot);
   drive->finish();
@@ -218,7 +282,7 @@ void require_parameters(const Robot& robot, std::span<const std::string_view> ta
   for (const RobotParameterSpec& each : kSpecs) {
     const bool asked = std::ranges::find(tables, each.table) != tables.end();
     const bool optional = std::ranges::find(kOptionalKeys, each.spec.key) != kOptionalKeys.end();
-    if (asked && !optional && std::isnan(robot.*each.value)) {
+    if (asked && !optional && !each.value.in(robot)) {
       diagnostics.add({robot.file.string()}, fmt::format("{}.{}", each.table, each.spec.key),
                       fmt::format("is missing: {}", each.spec.meaning));
     }
@@ -228,26 +292,26 @@ void require_parameters(const Robot& robot, std::span<const std::string_view> ta
 
 Robot draw_sample(const Robot& robot, Random& random) {
   Robot drawn = robot;
-  const auto draw = [&](const std::string& key, double& value) {
+  const auto draw = [&](const std::string& key, auto& value) {
     const auto found = robot.parameters.find(key);
     if (found != robot.parameters.end() && found->second.spread) {
       value = found->second.quantile(random.uniform());
     }
   };
   for (const RobotParameterSpec& each : kSpecs) {
-    draw(fmt::format("{}.{}", each.table, each.spec.key), drawn.*each.value);
+    draw(fmt::format("{}.{}", each.table, each.spec.key), each.value.of(drawn));
   }
-  for (std::size_t i = 0; i < drawn.heading_wheels.size(); ++i) {
+  for (std::size_t i = 0; i < drawn.friction.heading.wheels.size(); ++i) {
     for (const WheelParameterSpec& each : kWheelSpecs) {
-      draw(wheel_parameter_key(i, each), drawn.heading_wheels[i].*each.value);
+      draw(wheel_parameter_key(i, each), drawn.friction.heading.wheels[i].*each.value);
     }
   }
   return drawn;
 }
 
-double Robot::available_V() const { return std::min(battery_V, voltage_limit_V); }
+double Robot::available_V() const { return std::min(battery.nominal_V, drive.voltage_limit_V); }
 
-double Robot::series_resistance_ohm() const { return std::isnan(driver_resistance_ohm) ? 0.0 : driver_resistance_ohm; }
+double Robot::series_resistance_ohm() const { return drive.driver_resistance_ohm.value_or(0.0); }
 
 namespace {
 
@@ -266,7 +330,7 @@ Robot robot_of(const Value& root, const std::filesystem::path& path) {
   read_wheels(top, robot);
   read_drive(top, robot);
   if (std::optional<Reader> battery = top.table("battery", Need::required)) {
-    robot.battery_V =
+    robot.battery.nominal_V =
         battery->quantity({"nominal_voltage", "V", Range::between(1.0, 5000.0), "of the battery"}, Need::required).value_or(1.0);
     read_file_parameters(*battery, "battery", robot);
     battery->finish();

@@ -17,7 +17,7 @@ std::string in_mm(double length_m) { return fmt::format("{:.0f} mm", 1e3 * lengt
 /// Returns the smallest angle between the axles of two wheels.
 double closest_axles_rad(const Robot& robot) {
   std::vector<double> sorted_rad;
-  for (const double each_rad : robot.wheel_axis_rad) {
+  for (const double each_rad : robot.wheels.axis_rad) {
     sorted_rad.push_back(std::remainder(each_rad, 2.0 * std::numbers::pi));
   }
   std::ranges::sort(sorted_rad);
@@ -30,16 +30,16 @@ double closest_axles_rad(const Robot& robot) {
 
 /// Wheels are discs that touch the contact circle; two of them overlap if their radius reaches the intersection of their planes.
 void check_wheels(const Robot& robot, std::vector<LintFinding>& findings) {
-  const double room_m = robot.wheel_contact_radius_m * std::tan(0.5 * std::min(closest_axles_rad(robot), 0.9 * std::numbers::pi));
+  const double room_m = robot.wheels.contact_radius_m * std::tan(0.5 * std::min(closest_axles_rad(robot), 0.9 * std::numbers::pi));
   // Known robots have wheels of 0.35 to 0.42 of the contact radius.
   constexpr double kLargestShare = 0.6;
-  const bool is_overlap = robot.wheel_radius_m > room_m;
-  if (is_overlap || robot.wheel_radius_m > kLargestShare * robot.wheel_contact_radius_m) {
+  const bool is_overlap = robot.wheels.radius_m > room_m;
+  if (is_overlap || robot.wheels.radius_m > kLargestShare * robot.wheels.contact_radius_m) {
     findings.push_back(
         {is_overlap ? LintFinding::Level::error : LintFinding::Level::warning, "wheels",
          fmt::format("wheels.radius: wheels with a radius of {} {} on a circle of {}; expected at most {}. Is {} the diameter?",
-                     in_mm(robot.wheel_radius_m), is_overlap ? "overlap" : "are large", in_mm(robot.wheel_contact_radius_m),
-                     in_mm(std::min(room_m, kLargestShare * robot.wheel_contact_radius_m)), in_mm(robot.wheel_radius_m)),
+                     in_mm(robot.wheels.radius_m), is_overlap ? "overlap" : "are large", in_mm(robot.wheels.contact_radius_m),
+                     in_mm(std::min(room_m, kLargestShare * robot.wheels.contact_radius_m)), in_mm(robot.wheels.radius_m)),
          place_of(robot.file, "wheels.radius")});
   }
 }
@@ -48,18 +48,18 @@ void check_battery(const Robot& robot, std::vector<LintFinding>& findings) {
   const auto add = [&](const char* key, std::string message) {
     findings.push_back({LintFinding::Level::error, "battery", fmt::format("{}: {}", key, message), place_of(robot.file, key)});
   };
-  if (robot.battery_V > robot.battery_full_V) {
+  const RobotBattery& battery = robot.battery;
+  if (battery.full_V && battery.nominal_V > *battery.full_V) {
     add("battery.nominal_voltage", fmt::format("{:.4g} V is more than the full battery's {:.4g} V; expected a value between empty and full",
-                                               robot.battery_V, robot.battery_full_V));
+                                               battery.nominal_V, *battery.full_V));
   }
-  if (robot.battery_V < robot.battery_empty_V) {
+  if (battery.empty_V && battery.nominal_V < *battery.empty_V) {
     add("battery.nominal_voltage",
-        fmt::format("{:.4g} V is less than the empty battery's {:.4g} V; expected a value between empty and full", robot.battery_V,
-                    robot.battery_empty_V));
+        fmt::format("{:.4g} V is less than the empty battery's {:.4g} V; expected a value between empty and full", battery.nominal_V,
+                    *battery.empty_V));
   }
-  if (robot.battery_empty_V >= robot.battery_full_V) {
-    add("battery.empty_voltage",
-        fmt::format("{:.4g} V is not less than the full battery's {:.4g} V", robot.battery_empty_V, robot.battery_full_V));
+  if (battery.empty_V && battery.full_V && *battery.empty_V >= *battery.full_V) {
+    add("battery.empty_voltage", fmt::format("{:.4g} V is not less than the full battery's {:.4g} V", *battery.empty_V, *battery.full_V));
   }
 }
 
@@ -67,15 +67,15 @@ void check_drive(const Robot& robot, std::vector<LintFinding>& findings) {
   const auto add = [&](const char* key, std::string message) {
     findings.push_back({LintFinding::Level::warning, "drive", fmt::format("{}: {}", key, message), place_of(robot.file, key)});
   };
-  if (std::isfinite(robot.voltage_limit_V) && robot.voltage_limit_V > 1.1 * robot.battery_full_V) {
+  if (std::isfinite(robot.drive.voltage_limit_V) && robot.battery.full_V && robot.drive.voltage_limit_V > 1.1 * *robot.battery.full_V) {
     add("drive.voltage_limit", fmt::format("{:.4g} V is more than the full battery's {:.4g} V; expected at most that; check the unit",
-                                           robot.voltage_limit_V, robot.battery_full_V));
+                                           robot.drive.voltage_limit_V, *robot.battery.full_V));
   }
   // Known robots have ratios of 1 to 5.
   constexpr double kLargestRatio = 30.0;
-  if (robot.gear_ratio > kLargestRatio) {
-    add("drive.gear_ratio",
-        fmt::format("{:.4g} motor turns per wheel turn; expected at most {:.0f}: 3.6 to 1 is \"3.6\"", robot.gear_ratio, kLargestRatio));
+  if (robot.drive.gear_ratio > kLargestRatio) {
+    add("drive.gear_ratio", fmt::format("{:.4g} motor turns per wheel turn; expected at most {:.0f}: 3.6 to 1 is \"3.6\"",
+                                        robot.drive.gear_ratio, kLargestRatio));
   }
 }
 
@@ -83,7 +83,10 @@ void check_drive(const Robot& robot, std::vector<LintFinding>& findings) {
 void check_inertia(const Robot& robot, std::vector<LintFinding>& findings) {
   constexpr double kLeast = 0.15;
   constexpr double kMost = 4.0;
-  const double share = robot.yaw_inertia_kg_m2 / (robot.mass_kg * robot.wheel_contact_radius_m * robot.wheel_contact_radius_m);
+  if (!robot.body.yaw_inertia_kg_m2) {
+    return;
+  }
+  const double share = *robot.body.yaw_inertia_kg_m2 / (robot.mass_kg * robot.wheels.contact_radius_m * robot.wheels.contact_radius_m);
   if (share < kLeast || share > kMost) {
     findings.push_back(
         {LintFinding::Level::warning, "inertia",
@@ -98,10 +101,10 @@ void check_inertia(const Robot& robot, std::vector<LintFinding>& findings) {
 
 std::vector<LintFinding> lint(const Robot& robot, std::span<const std::string> known_motors) {
   std::vector<LintFinding> findings;
-  if (robot.drive_motor != "none" && std::ranges::find(known_motors, robot.drive_motor) == known_motors.end()) {
+  if (robot.drive.motor != "none" && std::ranges::find(known_motors, robot.drive.motor) == known_motors.end()) {
     findings.push_back(
         {LintFinding::Level::warning, "motor",
-         fmt::format("drive.motor: there is no motor '{}'{}", robot.drive_motor, did_you_mean(robot.drive_motor, known_motors)),
+         fmt::format("drive.motor: there is no motor '{}'{}", robot.drive.motor, did_you_mean(robot.drive.motor, known_motors)),
          place_of(robot.file, "drive.motor")});
   }
   check_wheels(robot, findings);

@@ -16,29 +16,38 @@ struct Variant {
   double factor;
   std::string_view name;
   std::string_view unit;
-  double Robot::*value;
+  double* (*value)(Robot&);  ///< null if the robot file does not give it
 };
+
+double* given(std::optional<double>& value) { return value ? &*value : nullptr; }
 
 /// Steps that a team can make from one day to the next.
 constexpr std::array<Variant, 7> kVariants{{
-    {ChangedQuantity::acceleration, 0.8, "acceleration limit", "m/s²", &Robot::acceleration_limit_m_per_s2},
-    {ChangedQuantity::jerk, 0.5, "jerk limit", "m/s³", &Robot::jerk_limit_m_per_s3},
-    {ChangedQuantity::speed, 0.9, "speed limit", "m/s", &Robot::speed_limit_m_per_s},
-    {ChangedQuantity::yaw_acceleration, 0.7, "yaw acceleration limit", "rad/s²", &Robot::yaw_acceleration_limit_rad_per_s2},
-    {ChangedQuantity::mass, 0.9, "mass", "kg", &Robot::mass_kg},
-    {ChangedQuantity::wheel_radius, 0.9, "wheel radius", "m", &Robot::wheel_radius_m},
-    {ChangedQuantity::gear_ratio, 1.25, "gear ratio", "", &Robot::gear_ratio},
+    {ChangedQuantity::acceleration, 0.8, "acceleration limit", "m/s²",
+     [](Robot& robot) { return given(robot.limits.acceleration_m_per_s2); }},
+    {ChangedQuantity::jerk, 0.5, "jerk limit", "m/s³", [](Robot& robot) { return given(robot.limits.jerk_m_per_s3); }},
+    {ChangedQuantity::speed, 0.9, "speed limit", "m/s", [](Robot& robot) { return given(robot.limits.speed_m_per_s); }},
+    {ChangedQuantity::yaw_acceleration, 0.7, "yaw acceleration limit", "rad/s²",
+     [](Robot& robot) { return given(robot.limits.yaw_acceleration_rad_per_s2); }},
+    {ChangedQuantity::mass, 0.9, "mass", "kg", [](Robot& robot) { return &robot.mass_kg; }},
+    {ChangedQuantity::wheel_radius, 0.9, "wheel radius", "m", [](Robot& robot) { return &robot.wheels.radius_m; }},
+    {ChangedQuantity::gear_ratio, 1.25, "gear ratio", "", [](Robot& robot) { return &robot.drive.gear_ratio; }},
 }};
 
 const Variant& variant_of(ChangedQuantity quantity) { return *std::ranges::find(kVariants, quantity, &Variant::quantity); }
 
 Robot changed(const Robot& robot, const Variant& variant) {
   Robot result = robot;
-  result.*variant.value *= variant.factor;
+  const auto scale = [&](double* value) {
+    if (value) {
+      *value *= variant.factor;
+    }
+  };
+  scale(variant.value(result));
   if (variant.quantity == ChangedQuantity::acceleration) {
-    result.braking_limit_m_per_s2 *= variant.factor;
+    scale(given(result.limits.braking_m_per_s2));
   } else if (variant.quantity == ChangedQuantity::mass) {
-    result.yaw_inertia_kg_m2 *= variant.factor;
+    scale(given(result.body.yaw_inertia_kg_m2));
   }
   return result;
 }
@@ -54,9 +63,9 @@ Played play(const Robot& robot, const Duty& duty, const Motor& motor, std::uint6
   return {result.winding_peak_C.nominal, result.short_time_share <= kTolerableShortTime};
 }
 
-ChangeEffect effect_of(const Variant& variant, const Robot& robot, std::span<const Played> before, std::span<const Played> after) {
+ChangeEffect effect_of(const Variant& variant, Robot robot, std::span<const Played> before, std::span<const Played> after) {
   const auto count = static_cast<double>(before.size());
-  ChangeEffect effect{.quantity = variant.quantity, .before = robot.*variant.value, .factor = variant.factor};
+  ChangeEffect effect{.quantity = variant.quantity, .before = *variant.value(robot), .factor = variant.factor};
   double sum_squares_K2 = 0.0;
   for (std::size_t game = 0; game < before.size(); ++game) {
     effect.saved_K += (before[game].peak_C - after[game].peak_C) / count;
@@ -75,9 +84,10 @@ ChangeEffect effect_of(const Variant& variant, const Robot& robot, std::span<con
 std::vector<ChangeEffect> effects_of_changes(const Robot& robot, const Duty& duty, const Motor& motor, std::uint64_t seed, int threads,
                                              const Progress& progress) {
   std::vector<const Variant*> variants;
+  Robot own = robot;
   for (const Variant& each : kVariants) {
     const bool acts = duty.shape_data->depends_on_robot() || each.quantity == ChangedQuantity::gear_ratio;
-    if (acts && std::isfinite(robot.*each.value)) {
+    if (acts && each.value(own)) {
       variants.push_back(&each);
     }
   }

@@ -28,16 +28,16 @@ OperatingPoint<double> operating_point(const MotorValues& motor, const Robot& ro
   const double wanted_A =
       kind == DutyKind::torque ? std::sqrt(std::max(0.0, torque2)) / motor.torque_constant_Nm_per_A : bin.current_rms_A * sample.load;
   const double direction = bin.torque_along_motion_Nm < 0.0 || bin.current_along_motion_A < 0.0 ? -1.0 : 1.0;
-  const double speed_rad_per_s = bin.speed_mean_rad_per_s * robot.gear_ratio;
+  const double speed_rad_per_s = bin.speed_mean_rad_per_s * robot.drive.gear_ratio;
   const DrivePoint point = clamped_point(motor, robot, direction * wanted_A, speed_rad_per_s);
   OperatingPoint<double> at = operating_point(point, motor, robot, sample.ambient_C);
-  at.speed_rms_rad_per_s = bin.speed_rms_rad_per_s * robot.gear_ratio;
-  at.velocity_rad_per_s = bin.velocity_mean_rad_per_s * robot.gear_ratio;
-  at.acceleration_rad_per_s2 = bin.acceleration_rad_per_s2 * robot.gear_ratio;
+  at.speed_rms_rad_per_s = bin.speed_rms_rad_per_s * robot.drive.gear_ratio;
+  at.velocity_rad_per_s = bin.velocity_mean_rad_per_s * robot.drive.gear_ratio;
+  at.acceleration_rad_per_s2 = bin.acceleration_rad_per_s2 * robot.drive.gear_ratio;
   if (kind == DutyKind::torque) {
     const double delivered_ratio = wanted_A > 0.0 ? std::abs(point.current_A) / wanted_A : 1.0;
     at.shaft_power_W =
-        bin.power_mean_W * shaft_torque_factor(robot, bin.power_mean_W >= 0.0) * robot.gear_ratio * sample.load * delivered_ratio;
+        bin.power_mean_W * shaft_torque_factor(robot, bin.power_mean_W >= 0.0) * robot.drive.gear_ratio * sample.load * delivered_ratio;
     at.input_power_W = input_power_W(motor, at.current_rms_A, at.shaft_power_W, at.speed_mean_rad_per_s);
   }
   return at;

@@ -30,7 +30,7 @@ WheelDemand subdivided(const WheelDemand& demand, double every_s) {
 /// What flows during a bin, with the sign of its mean.
 DrivePoint point_of(const MotorValues& motor, const Robot& robot, const LoadBin& bin, double heating_A) {
   DrivePoint point;
-  point.motor_speed_rad_per_s = bin.velocity_mean_rad_per_s * robot.gear_ratio;
+  point.motor_speed_rad_per_s = bin.velocity_mean_rad_per_s * robot.drive.gear_ratio;
   const double direction = bin.torque_mean_Nm != 0.0   ? bin.torque_mean_Nm
                            : bin.current_mean_A != 0.0 ? bin.current_mean_A
                                                        : bin.velocity_mean_rad_per_s;

@@ -60,9 +60,9 @@ StudyResult drive_once(const Robot& robot, const Motor& motor, const robot_core:
 StudyResult one_case(const Robot& robot, const Motor& motor, const StudyCase& limits, const DriveOptions& options) {
   const bool bang_bang = std::isinf(limits.jerk_m_per_s3);
   Robot limited = robot;
-  limited.acceleration_limit_m_per_s2 = limits.acceleration_m_per_s2;
-  limited.braking_limit_m_per_s2 = limits.acceleration_m_per_s2;
-  limited.jerk_limit_m_per_s3 = bang_bang ? robot.jerk_limit_m_per_s3 : limits.jerk_m_per_s3;
+  limited.limits.acceleration_m_per_s2 = limits.acceleration_m_per_s2;
+  limited.limits.braking_m_per_s2 = limits.acceleration_m_per_s2;
+  limited.limits.jerk_m_per_s3 = bang_bang ? robot.limits.jerk_m_per_s3 : limits.jerk_m_per_s3;
   const robot_core::Config core = make_core_config(limited, motor.nominal, {});
   StudyResult sum;
   for (const double distance_m : kDistances_m) {
@@ -109,8 +109,9 @@ double grip_m_per_s2(const Robot& robot) {
     }
     return use_ratio - 1.0;
   };
-  const auto [low, high] = boost::math::tools::bisect(use_beyond_ratio, 0.0, robot.traction_ratio * kGravity_m_per_s2 * 2.0,
-                                                      boost::math::tools::eps_tolerance<double>(20));
+  const auto [low, high] =
+      boost::math::tools::bisect(use_beyond_ratio, 0.0, robot.traction.coefficient_ratio.value() * kGravity_m_per_s2 * 2.0,
+                                 boost::math::tools::eps_tolerance<double>(20));
   return 0.5 * (low + high);
 }
 
@@ -119,8 +120,10 @@ std::vector<StudyCase> jerk_sweep(const Robot& robot) {
   constexpr double kLeast_m_per_s3 = 3.0;
   constexpr double kMost_m_per_s3 = 60.0;
   constexpr double kAlike = 0.05;
-  const double own_m_per_s2 = std::min(robot.acceleration_limit_m_per_s2, robot.braking_limit_m_per_s2);
   const double sliding_m_per_s2 = grip_m_per_s2(robot);
+  constexpr std::array<std::string_view, 1> kTables{"limits"};
+  require_parameters(robot, kTables);
+  const double own_m_per_s2 = std::min(robot.limits.acceleration_m_per_s2.value(), robot.limits.braking_m_per_s2.value());
   std::vector<StudyCase> cases;
   for (const double acceleration_m_per_s2 : {own_m_per_s2, sliding_m_per_s2, 1.5 * sliding_m_per_s2}) {
     // A team that goes to the limit of its grip has one case less.

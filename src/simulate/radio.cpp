@@ -85,7 +85,7 @@ std::span<const DeclaredNumber<RadioConfig>> radio_numbers() { return kRadioNumb
 
 RadioConfig radio_of(const Robot& robot) {
   RadioConfig config;
-  config.packet_rate_Hz = std::isnan(robot.command_rate_Hz) ? config.packet_rate_Hz : robot.command_rate_Hz;
+  config.packet_rate_Hz = robot.drive.command_rate_Hz.value_or(config.packet_rate_Hz);
   return config;
 }
 

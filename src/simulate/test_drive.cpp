@@ -123,17 +123,19 @@ robot_core::Config with_friction_factor(robot_core::Config config, double factor
 
 Robot with_dirty_wheel(const Robot& robot, std::size_t wheel, double factor) {
   Robot dirty = robot;
-  if (dirty.heading_wheels.empty() && std::isnan(dirty.heading_constant_Nm)) {
+  if (dirty.friction.heading.wheels.empty() && !dirty.friction.heading.constant_Nm) {
     throw bad_input({robot.file.string()}, "friction.heading", "is missing: without it no wheel has a friction of its own");
   }
-  if (dirty.heading_wheels.empty()) {
+  if (dirty.friction.heading.wheels.empty()) {
     const Kinematics kinematics = make_kinematics(robot);
-    for (std::size_t i = 0; i < robot.wheel_axis_rad.size(); ++i) {
-      dirty.heading_wheels.push_back({robot.heading_constant_Nm, robot.heading_sine_Nm, rolling_phase_rad(kinematics.wheels.at(i))});
+    for (std::size_t i = 0; i < robot.wheels.axis_rad.size(); ++i) {
+      dirty.friction.heading.wheels.push_back({robot.friction.heading.constant_Nm.value(), robot.friction.heading.sine_Nm.value_or(0.0),
+                                               rolling_phase_rad(kinematics.wheels.at(i))});
     }
-    dirty.heading_constant_Nm = dirty.heading_sine_Nm = kAbsent;
+    dirty.friction.heading.constant_Nm.reset();
+    dirty.friction.heading.sine_Nm.reset();
   }
-  dirty.heading_wheels.at(wheel).constant_Nm *= factor;
+  dirty.friction.heading.wheels.at(wheel).constant_Nm *= factor;
   return dirty;
 }
 

@@ -412,10 +412,10 @@ TEST(Friction, of_one_roll_out_has_no_intervals_and_is_not_called_given) {
   for (int row = 0; row < 300; ++row) {
     const double free_m_per_s = (1.8 + kDrag_m_per_s2 / kRate_per_s) * std::exp(-kRate_per_s * 0.01 * row) - kDrag_m_per_s2 / kRate_per_s;
     text += fmt::format("\n{:.2f},24,{}", 0.01 * row, kHeading_rad);
-    for (const double axis_rad : robot.wheel_axis_rad) {
+    for (const double axis_rad : robot.wheels.axis_rad) {
       const double noise_rad_per_s = 0.05 * std::sin(12.9 * row + 78.2 * axis_rad);
       text += fmt::format(",{:.4f},0",
-                          std::max(0.0, free_m_per_s) / robot.wheel_radius_m * std::sin(kHeading_rad - axis_rad) + noise_rad_per_s);
+                          std::max(0.0, free_m_per_s) / robot.wheels.radius_m * std::sin(kHeading_rad - axis_rad) + noise_rad_per_s);
     }
   }
   write(log, text + "\n");

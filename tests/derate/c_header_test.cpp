@@ -240,7 +240,7 @@ TEST_P(CHeader, converts_the_current_of_field_oriented_control_by_torque_and_nev
     const double counted_W = by_iq_K * capacity_J_per_K / 0.01;
     EXPECT_GE(counted_W, 0.999 * copper_W) << robot;
     EXPECT_LE(counted_W, 1.1 * copper_W) << robot;
-    if (shipped_robot(robot).commutation == Commutation::sinusoidal) {
+    if (shipped_robot(robot).drive.commutation == Commutation::sinusoidal) {
       EXPECT_NEAR(counted_W, copper_W, 1e-3 * copper_W) << robot;
     }
   }

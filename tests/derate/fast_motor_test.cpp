@@ -16,7 +16,7 @@ using states::winding;
 
 /// Returns the no-load speed at the command's limit.
 double fastest_driven_rad_per_s(const Motor& motor, const Robot& robot) {
-  return std::min(robot.battery_full_V, robot.voltage_limit_V) / motor.nominal.torque_constant_Nm_per_A;
+  return std::min(robot.battery.full_V.value(), robot.drive.voltage_limit_V) / motor.nominal.torque_constant_Nm_per_A;
 }
 
 struct FastMotor {
@@ -44,7 +44,8 @@ TEST(FastMotor, IsInTheTableOnAFullBatteryAndWhenPushed) {
       EXPECT_GE(fast.rules.most_speed_rad_per_s, 1.0999 * driven_rad_per_s) << robot << ", " << id;
       EXPECT_GT(fast.table.allowed_A(driven_rad_per_s, 60.0, 60.0), 0.5 * fast.table.allowed_A(0.0, 60.0, 60.0)) << robot << ", " << id;
       // Independent of the command's limit: the drive core accepts speeds up to this value.
-      EXPECT_GE(fast.table.no_current_speed_rad_per_s, 1.0999 * fast.robot.battery_full_V / fast.motor.nominal.torque_constant_Nm_per_A);
+      EXPECT_GE(fast.table.no_current_speed_rad_per_s,
+                1.0999 * fast.robot.battery.full_V.value() / fast.motor.nominal.torque_constant_Nm_per_A);
     }
   }
 }

@@ -58,7 +58,7 @@ std::vector<Moment> random_match(const Motor& motor, std::uint64_t seed) {
     const DrivePoint point = drive_point(motor.nominal, robot, {bin.torque_rms_Nm, bin.speed_rms_rad_per_s});
     const double sign = bin.torque_along_motion_Nm < 0.0 ? -1.0 : 1.0;
     moments.push_back(
-        {bin.duration_s, sign * point.current_A, point.motor_speed_rad_per_s, bin.speed_mean_rad_per_s * robot.wheel_radius_m});
+        {bin.duration_s, sign * point.current_A, point.motor_speed_rad_per_s, bin.speed_mean_rad_per_s * robot.wheels.radius_m});
     sum_s += bin.duration_s;
     if (sum_s > kLongest_s) {
       break;

@@ -414,13 +414,13 @@ TEST(Match, a_keeper_works_less_than_an_attacker) {
 
 TEST(Match, a_robot_without_values_for_motion_is_refused_by_name) {
   Robot robot = twente();
-  robot.yaw_inertia_kg_m2 = kAbsent;
+  robot.body.yaw_inertia_kg_m2.reset();
   EXPECT_THROW(play_match(division_a(), division_a().nominal(), robot, 1, Planner::jerk_limited), Failure);
 }
 
 TEST(Match, limits_that_the_planner_cannot_hold_are_said_in_words) {
   Robot robot = twente();
-  robot.jerk_limit_m_per_s3 = 1e12;
+  robot.limits.jerk_m_per_s3 = 1e12;
   try {
     (void)play_match(division_a(), division_a().nominal(), robot, 1, Planner::jerk_limited);
     FAIL() << "played";

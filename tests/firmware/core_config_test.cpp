@@ -24,7 +24,7 @@ robot_core::Config twente_config() { return make_core_config(twente(), ecx_32().
 TEST(CoreConfig, OfEveryShippedRobotStartsTheCore) {
   for (const char* const id : {"roboteam_twente_v2024", "roboteam_twente_v2025", "tigers_v2020"}) {
     const Robot robot = shipped_robot(id);
-    const Motor motor = shipped_motor(robot.drive_motor);
+    const Motor motor = shipped_motor(robot.drive.motor);
     const robot_core::Config config = make_core_config(robot, motor.nominal, with_tolerance({}, motor));
     robot_core::State state;
     EXPECT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F})) << id;
@@ -50,7 +50,7 @@ TEST(CoreConfig, HandCalculationOfTheMotor) {
 
 TEST(CoreConfig, DriverWithACurrentLimitKeepsIt) {
   const Robot robot = shipped_robot("tigers_v2020");
-  const Motor motor = shipped_motor(robot.drive_motor);
+  const Motor motor = shipped_motor(robot.drive.motor);
   const robot_core::Config config = make_core_config(robot, motor.nominal, with_tolerance({}, motor));
   EXPECT_FLOAT_EQ(config.current_limit_A, 8.16F);
   EXPECT_FLOAT_EQ(config.gear_efficiency, 0.72F);
@@ -71,8 +71,8 @@ TEST(CoreConfig, RangeCountsByItsLowerEnd) {
 /// The core's feed-forward must equal the voltage that the plant's inverse dynamics needs for a steady drive.
 TEST(CoreConfig, FeedForwardIsWhatThePlantNeeds) {
   Robot robot = twente();
-  robot.heading_double_angle_Nm = kAbsent;  // the core's friction law has no such term
-  robot.heading_double_angle_phase_rad.clear();
+  robot.friction.heading.double_angle_Nm.reset();  // the core's friction law has no such term
+  robot.friction.heading.double_angle_phase_rad.clear();
   const MotorValues motor = ecx_32().nominal;
   const robot_core::Config config = make_core_config(robot, motor, {});
   const BodyConfig body = make_body(robot, motor);
@@ -99,9 +99,9 @@ TEST(CoreConfig, FeedForwardIsWhatThePlantNeeds) {
 
 TEST(CoreConfig, NamesEveryMissingParameter) {
   Robot robot = twente();
-  robot.yaw_inertia_kg_m2 = kAbsent;
-  robot.traction_ratio = kAbsent;
-  robot.battery_full_V = kAbsent;
+  robot.body.yaw_inertia_kg_m2.reset();
+  robot.traction.coefficient_ratio.reset();
+  robot.battery.full_V.reset();
   MotorValues motor = ecx_32().nominal;
   motor.rotor_inertia_kg_m2 = kAbsent;
   try {
@@ -123,10 +123,10 @@ TEST(CoreConfig, RobotWithoutFrictionIsDrivenWithoutItsFeedForward) {
   Robot robot = twente();
   for (const RobotParameterSpec& each : robot_parameter_specs()) {
     if (each.table.starts_with("friction")) {
-      robot.*each.value = kAbsent;
+      each.value.of(robot).reset();
     }
   }
-  robot.heading_double_angle_phase_rad.clear();
+  robot.friction.heading.double_angle_phase_rad.clear();
   const robot_core::Config config = make_core_config(robot, ecx_32().nominal, {});
   EXPECT_FALSE(config.has_friction);
   EXPECT_FLOAT_EQ(config.wheel[2].damping_V_s_per_rad, 0.0328F);

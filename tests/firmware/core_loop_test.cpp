@@ -27,8 +27,8 @@ class Blocks {
   Blocks(const Robot& robot, const MotorValues& motor, double inertia_share)
       : drive_(drive_constants(robot, motor)),
         inertia_kg_m2_(inertia_share * make_body(robot, motor).wheel_inertia_kg_m2),
-        drag_Nm_(drive_.drag_torque_Nm * drive_.gear_ratio + robot.wheel_friction_torque_Nm),
-        battery_V_(robot.battery_V) {}
+        drag_Nm_(drive_.drag_torque_Nm * drive_.gear_ratio + robot.friction.wheel_torque_Nm.value()),
+        battery_V_(robot.battery.nominal_V) {}
 
   /// Simulates one period; the computed voltage acts one period later.
   robot_core::Output step(const robot_core::Config& config, robot_core::State& state, const robot_core::Command& command) {
@@ -124,7 +124,7 @@ TEST(CoreLoop, ReachesItsSpeedOnTheGround) {
       PlantState at = plant_at_rest(plant);
       PlantInput command_V;
       PlantOutput measured;
-      measured.battery_V = robot.battery_full_V;
+      measured.battery_V = robot.battery.full_V.value();
       robot_core::State state;
       ASSERT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
       double worst_m_per_s = 0.0;

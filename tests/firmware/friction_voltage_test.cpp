@@ -18,11 +18,14 @@ namespace {
 /// A friction curve in the form of equation 3, with separate a and b for each wheel.
 Robot with_measured_curve(double phase_offset_rad = 0.0) {
   Robot robot = twente();
-  robot.heading_constant_Nm = robot.heading_sine_Nm = robot.heading_double_angle_Nm = kAbsent;
-  robot.heading_double_angle_phase_rad.clear();
+  robot.friction.heading.constant_Nm.reset();
+  robot.friction.heading.sine_Nm.reset();
+  robot.friction.heading.double_angle_Nm.reset();
+  robot.friction.heading.double_angle_phase_rad.clear();
   const Kinematics kinematics = make_kinematics(robot);
   for (int i = 0; i < 4; ++i) {
-    robot.heading_wheels.push_back({0.020 + 0.002 * i, 0.005 - 0.003 * i, rolling_phase_rad(kinematics.wheels[i]) + phase_offset_rad});
+    robot.friction.heading.wheels.push_back(
+        {0.020 + 0.002 * i, 0.005 - 0.003 * i, rolling_phase_rad(kinematics.wheels[i]) + phase_offset_rad});
   }
   return robot;
 }
@@ -64,8 +67,8 @@ TEST(FrictionVoltage, FitFindsACurveOfItsForm) {
   const MotorValues motor = ecx_32().nominal;
   const FrictionVoltage direct = friction_voltage(with_measured_curve(), motor);
   Robot robot = with_measured_curve();
-  robot.heading_double_angle_Nm = 1e-12;
-  robot.heading_double_angle_phase_rad = {0.0, 0.0, 0.0, 0.0};
+  robot.friction.heading.double_angle_Nm = 1e-12;
+  robot.friction.heading.double_angle_phase_rad = {0.0, 0.0, 0.0, 0.0};
   const FrictionVoltage fitted = friction_voltage(robot, motor);
   for (int i = 0; i < 4; ++i) {
     EXPECT_NEAR(fitted.sine_V[i], direct.sine_V[i], 1e-8) << i;
@@ -77,10 +80,10 @@ TEST(FrictionVoltage, FitFindsACurveOfItsForm) {
 // Values of the team's firmware: 1.23 V in translation, 0.3 V in rotation, 0.0375 V s/rad. The robot file rounds them.
 TEST(FrictionVoltage, GivesBackTheVoltagesOfTheTeam) {
   Robot robot = twente();
-  robot.heading_double_angle_Nm = kAbsent;
-  robot.heading_double_angle_phase_rad.clear();
+  robot.friction.heading.double_angle_Nm.reset();
+  robot.friction.heading.double_angle_phase_rad.clear();
   // The team neglected the motor controller's 10 mohm.
-  robot.driver_resistance_ohm = 0.0;
+  robot.drive.driver_resistance_ohm = 0.0;
   const FrictionVoltage friction = friction_voltage(robot, ecx_32().nominal);
   EXPECT_NEAR(friction.damping_V_s_per_rad, 0.0375, 5e-5);
   EXPECT_NEAR(friction.rotation_V, 0.3, 0.005);
@@ -129,7 +132,7 @@ TEST(FrictionVoltage, FitIsALeastSquaresOne) {
   const MotorValues motor = shipped_motor("nanotec_df45l024048_a2").nominal;
   const FrictionVoltage friction = friction_voltage(robot, motor);
   Robot undamped = robot;
-  undamped.wheel_damping_Nm_s_per_rad = 0.0;
+  undamped.friction.wheel_damping_Nm_s_per_rad = 0.0;
   const Kinematics kinematics = make_kinematics(robot);
   const auto misfit_V2 = [&](int wheel, double more_sine_V, double more_sign_V) {
     FrictionVoltage other = friction;
@@ -156,10 +159,10 @@ TEST(FrictionVoltage, RobotWithoutFrictionHasItsBackEmfAlone) {
   Robot robot = twente();
   for (const RobotParameterSpec& each : robot_parameter_specs()) {
     if (each.table.starts_with("friction")) {
-      robot.*each.value = kAbsent;
+      each.value.of(robot).reset();
     }
   }
-  robot.heading_double_angle_phase_rad.clear();
+  robot.friction.heading.double_angle_phase_rad.clear();
   const FrictionVoltage friction = friction_voltage(robot, ecx_32().nominal);
   EXPECT_FALSE(friction.is_known);
   EXPECT_NEAR(friction.damping_V_s_per_rad, 0.0328, 1e-12);
@@ -171,7 +174,7 @@ TEST(FrictionVoltage, RobotWithoutFrictionHasItsBackEmfAlone) {
   EXPECT_TRUE(friction_note(robot).starts_with("feed-forward of friction is off"));
   // Friction that is assumed for the simulated robot must not reach the core.
   const Robot assumed = with_assumed_friction(robot);
-  EXPECT_GT(assumed.roller_drag_ratio, 0.0);
+  EXPECT_GT(assumed.friction.roller_drag_ratio.value(), 0.0);
   const FrictionVoltage unknown = friction_voltage(assumed, ecx_32().nominal);
   EXPECT_FALSE(unknown.is_known);
   EXPECT_EQ(unknown.damping_V_s_per_rad, friction.damping_V_s_per_rad);
@@ -181,8 +184,8 @@ TEST(FrictionVoltage, RobotWithoutFrictionHasItsBackEmfAlone) {
 
 TEST(FrictionVoltage, NamesWhatHalfAFrictionTableLacks) {
   Robot robot = twente();
-  robot.roller_drag_ratio = kAbsent;
-  robot.wheel_damping_Nm_s_per_rad = kAbsent;
+  robot.friction.roller_drag_ratio.reset();
+  robot.friction.wheel_damping_Nm_s_per_rad.reset();
   try {
     friction_voltage(robot, ecx_32().nominal);
     FAIL() << "no failure";

@@ -168,7 +168,7 @@ TEST(WheelLoop, RefusesAPeriodThatIsTooLongAndNamesTheLongest) {
 // Hand calculation for four wheels at right angles: Σt_x² = 2, so m·r²/2 in either direction.
 TEST(WheelLoop, MassBehindAWheelOfASquareRobot) {
   Robot robot = twente();
-  robot.wheel_axis_rad = {-0.25 * std::numbers::pi, 0.25 * std::numbers::pi, 0.75 * std::numbers::pi, -0.75 * std::numbers::pi};
+  robot.wheels.axis_rad = {-0.25 * std::numbers::pi, 0.25 * std::numbers::pi, 0.75 * std::numbers::pi, -0.75 * std::numbers::pi};
   const MotorValues motor = ecx_32().nominal;
   const WheelLoopPlant plant = wheel_loop_plant(make_body_with_known_friction(robot, motor), drive_constants(robot, motor));
   EXPECT_NEAR(plant.hardest_body_inertia_kg_m2, 2.632 * 0.028 * 0.028 / 2.0, 1e-9);

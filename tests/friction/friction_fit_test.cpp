@@ -46,30 +46,30 @@ Case any_case(std::uint64_t seed) {
   std::uniform_real_distribution<double> any(0.0, 1.0);
   Robot robot;
   robot.mass_kg = 2.6;
-  robot.wheel_radius_m = 0.028;
-  robot.wheel_contact_radius_m = 0.08;
+  robot.wheels.radius_m = 0.028;
+  robot.wheels.contact_radius_m = 0.08;
   for (const double axis_deg : {-30.0, 30.0, 135.0, -135.0}) {
-    robot.wheel_axis_rad.push_back(axis_deg * kDegree_rad);
+    robot.wheels.axis_rad.push_back(axis_deg * kDegree_rad);
   }
-  robot.battery_V = 22.2;
-  robot.yaw_inertia_kg_m2 = 0.011;
-  robot.center_of_gravity_height_m = 0.05;
-  robot.wheel_inertia_kg_m2 = 2.2e-5;
-  robot.wheel_friction_torque_Nm = 0.0;
-  robot.wheel_damping_Nm_s_per_rad = 1e-4 + 2e-4 * any(engine);
-  robot.roller_drag_ratio = 0.0;
-  robot.traction_ratio = 0.4;
-  robot.slip_speed_m_per_s = 0.5;
-  robot.driver_resistance_ohm = 0.05;
-  robot.driver_standby_W = 0.5;
-  robot.battery_full_V = 25.2;
-  robot.battery_empty_V = 19.8;
-  robot.battery_resistance_ohm = 0.06;
-  robot.battery_capacity_A_s = 4680.0;
-  robot.heading_rotation_Nm = 0.008;
+  robot.battery.nominal_V = 22.2;
+  robot.body.yaw_inertia_kg_m2 = 0.011;
+  robot.body.center_of_gravity_height_m = 0.05;
+  robot.wheels.inertia_kg_m2 = 2.2e-5;
+  robot.friction.wheel_torque_Nm = 0.0;
+  robot.friction.wheel_damping_Nm_s_per_rad = 1e-4 + 2e-4 * any(engine);
+  robot.friction.roller_drag_ratio = 0.0;
+  robot.traction.coefficient_ratio = 0.4;
+  robot.traction.slip_speed_m_per_s = 0.5;
+  robot.drive.driver_resistance_ohm = 0.05;
+  robot.drive.driver_standby_W = 0.5;
+  robot.battery.full_V = 25.2;
+  robot.battery.empty_V = 19.8;
+  robot.battery.resistance_ohm = 0.06;
+  robot.battery.capacity_A_s = 4680.0;
+  robot.friction.heading.rotation_Nm = 0.008;
   for (std::size_t i = 0; i < 4; ++i) {
-    robot.heading_wheels.push_back(
-        {0.015 + 0.02 * any(engine), -0.008 + 0.024 * any(engine), -robot.wheel_axis_rad[i] + 8.0 * kDegree_rad * (any(engine) - 0.5)});
+    robot.friction.heading.wheels.push_back(
+        {0.015 + 0.02 * any(engine), -0.008 + 0.024 * any(engine), -robot.wheels.axis_rad[i] + 8.0 * kDegree_rad * (any(engine) - 0.5)});
   }
   MotorValues motor;
   motor.terminal_resistance_ohm = 0.85;
@@ -81,12 +81,12 @@ Case any_case(std::uint64_t seed) {
   made.plant.body.friction.smoothing_rad_per_s = 0.05;
   // Steady state by hand: V = R·(T/K_t) + K_t·ω with T = 6.6 mN m of the motor + friction + damping·ω, R = 0.9 Ω.
   const double per_torque = 0.9 / 0.033;
-  made.truth.damping_V_s_per_rad = 0.033 + per_torque * robot.wheel_damping_Nm_s_per_rad;
+  made.truth.damping_V_s_per_rad = 0.033 + per_torque * robot.friction.wheel_damping_Nm_s_per_rad.value();
   made.truth.rotation_V = per_torque * (0.0066 + 0.008);
   for (std::size_t i = 0; i < 4; ++i) {
-    made.truth.sine_V[i] = per_torque * robot.heading_wheels[i].sine_Nm;
-    made.truth.constant_V[i] = per_torque * (0.0066 + robot.heading_wheels[i].constant_Nm);
-    made.truth.phase_rad[i] = robot.heading_wheels[i].phase_rad;
+    made.truth.sine_V[i] = per_torque * robot.friction.heading.wheels[i].sine_Nm;
+    made.truth.constant_V[i] = per_torque * (0.0066 + robot.friction.heading.wheels[i].constant_Nm);
+    made.truth.phase_rad[i] = robot.friction.heading.wheels[i].phase_rad;
   }
   return made;
 }

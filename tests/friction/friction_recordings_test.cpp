@@ -127,9 +127,9 @@ TEST(FrictionOfRecordings, a_team_wheel_motors_voltage_over_speed) {
     GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
   }
   Robot robot = robotino();
-  robot.wheel_axis_rad = {-0.5, 0.5, 2.4, -2.4};
-  robot.gear_ratio = 1.0;
-  robot.battery_V = 24.0;
+  robot.wheels.axis_rad = {-0.5, 0.5, 2.4, -2.4};
+  robot.drive.gear_ratio = 1.0;
+  robot.battery.nominal_V = 24.0;
   Findings findings;
   std::vector<FrictionLog> logs;
   for (const char* file : {"Model1_pos.csv", "Model2_neg.csv"}) {

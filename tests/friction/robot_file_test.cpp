@@ -26,13 +26,13 @@ Estimate around(double value, double half) { return {value, value - half, value 
 
 FrictionFit any_fit(const Robot& robot) {
   FrictionFit fit;
-  for (std::size_t i = 0; i < robot.wheel_axis_rad.size(); ++i) {
+  for (std::size_t i = 0; i < robot.wheels.axis_rad.size(); ++i) {
     WheelFriction& wheel = fit.wheels.emplace_back();
     const auto n = static_cast<double>(i);
     wheel.damping_V_s_per_rad = around(0.0375, 0.0004);
     wheel.sine_V = around(0.30 - 0.2 * n, 0.05);
     wheel.constant_V = around(1.1 + 0.05 * n, 0.03);
-    wheel.phase_rad = around(std::remainder(-robot.wheel_axis_rad[i] + 0.03 * n, 2.0 * std::numbers::pi), 0.05);
+    wheel.phase_rad = around(std::remainder(-robot.wheels.axis_rad[i] + 0.03 * n, 2.0 * std::numbers::pi), 0.05);
   }
   return fit;
 }
@@ -95,8 +95,8 @@ TEST(RobotFile, of_a_robot_without_friction_gets_its_tables) {
   std::vector<std::string> notes;
   const Robot after =
       parse_robot(with_measured_friction(bare, before, drive_constants(before, motor()), any_fit(before), "drive.csv", notes), "bare.toml");
-  EXPECT_EQ(after.heading_wheels.size(), 4U);
-  EXPECT_GT(after.wheel_damping_Nm_s_per_rad, 0.0);
+  EXPECT_EQ(after.friction.heading.wheels.size(), 4U);
+  EXPECT_GT(after.friction.wheel_damping_Nm_s_per_rad.value(), 0.0);
 }
 
 TEST(RobotFile, says_where_the_motor_alone_is_more_than_what_was_measured) {
@@ -110,7 +110,7 @@ TEST(RobotFile, says_where_the_motor_alone_is_more_than_what_was_measured) {
       parse_robot(with_measured_friction(file_text(), robot, drive_constants(robot, motor()), fit, "drive.csv", notes), kFile);
   ASSERT_EQ(notes.size(), 2U);
   EXPECT_THAT(notes[0], HasSubstr("wheel 3: the drag of the motor alone"));
-  EXPECT_EQ(after.heading_wheels[2].constant_Nm, 0.0);
+  EXPECT_EQ(after.friction.heading.wheels[2].constant_Nm, 0.0);
 }
 
 TEST(RobotFile, is_not_written_with_a_wheel_that_was_not_learned) {

@@ -16,18 +16,18 @@ const std::filesystem::path kRobots = std::filesystem::path(HEATSOAK_SOURCE_DIR)
 Robot without_friction(Robot robot) {
   for (const RobotParameterSpec& each : robot_parameter_specs()) {
     if (each.table.starts_with("friction")) {
-      robot.*each.value = kAbsent;
+      each.value.of(robot).reset();
     }
   }
-  robot.heading_wheels.clear();
+  robot.friction.heading.wheels.clear();
   return robot;
 }
 
 TEST(AssumedFriction, stated_friction_stays) {
   const Robot stated = read_robot(kRobots / "tigers_v2020.toml");
   const Robot same = with_assumed_friction(stated);
-  EXPECT_FALSE(same.is_friction_assumed);
-  EXPECT_EQ(same.wheel_friction_torque_Nm, stated.wheel_friction_torque_Nm);
+  EXPECT_FALSE(same.friction.is_assumed);
+  EXPECT_EQ(same.friction.wheel_torque_Nm.value(), stated.friction.wheel_torque_Nm.value());
   EXPECT_EQ(assumed_friction_text(same), "");
 }
 
@@ -36,13 +36,13 @@ TEST(AssumedFriction, ranges_include_the_measured_robots) {
   for (const char* const id : {"tigers_v2020", "roboteam_twente_v2024"}) {
     const Robot stated = read_robot(kRobots / (std::string(id) + ".toml"));
     const Robot assumed = with_assumed_friction(without_friction(stated));
-    ASSERT_TRUE(assumed.is_friction_assumed);
+    ASSERT_TRUE(assumed.friction.is_assumed);
     EXPECT_FALSE(has_friction(assumed));
     for (const RobotParameterSpec& each : robot_parameter_specs()) {
-      if (each.table == "friction" && !std::isnan(stated.*each.value)) {
+      if (each.table == "friction" && each.value.in(stated)) {
         const Spread& range = assumed.parameters.at("friction." + std::string(each.spec.key)).spread.value();
-        EXPECT_GE(stated.*each.value, range.low) << id << " " << each.spec.key;
-        EXPECT_LE(stated.*each.value, range.high) << id << " " << each.spec.key;
+        EXPECT_GE(*each.value.in(stated), range.low) << id << " " << each.spec.key;
+        EXPECT_LE(*each.value.in(stated), range.high) << id << " " << each.spec.key;
       }
     }
   }
@@ -55,7 +55,7 @@ TEST(AssumedFriction, draws_stay_in_their_ranges) {
   double least = 1.0;
   double most = 0.0;
   for (int i = 0; i < 200; ++i) {
-    const double drawn = draw_sample(assumed, random).roller_drag_ratio;
+    const double drawn = draw_sample(assumed, random).friction.roller_drag_ratio.value();
     least = std::min(least, drawn);
     most = std::max(most, drawn);
   }

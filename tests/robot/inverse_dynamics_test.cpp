@@ -101,8 +101,8 @@ TEST(InverseDynamics, mirrored_motion_has_mirrored_wheels) {
 
 TEST(InverseDynamics, a_square_robot_may_be_turned_by_a_quarter) {
   Robot robot = bare_robot();
-  robot.roller_drag_ratio = 0.1;
-  robot.wheel_friction_torque_Nm = 0.004;
+  robot.friction.roller_drag_ratio = 0.1;
+  robot.friction.wheel_torque_Nm = 0.004;
   const BodyConfig body = make_body(robot, bare_motor());
   const WheelDemands ahead = inverse_dynamics(body, {{1.0, 0.2, 1.0}, {2.0, 0.5, 3.0}, {}, 0.0});
   const WheelDemands left = inverse_dynamics(body, {{-0.2, 1.0, 1.0}, {-0.5, 2.0, 3.0}, {}, 0.0});
@@ -126,9 +126,9 @@ TEST(NormalLoads, add_up_to_the_weight_and_hold_the_moment) {
   int lifted = 0;
   for (int round = 0; round < 2000; ++round) {
     Robot robot = bare_robot();
-    robot.wheel_axis_rad = {-0.6, 0.5, 2.3, -2.4};
+    robot.wheels.axis_rad = {-0.6, 0.5, 2.3, -2.4};
     if (round % 2 == 0) {
-      robot.wheel_axis_rad.resize(3);
+      robot.wheels.axis_rad.resize(3);
     }
     const Kinematics kinematics = make_kinematics(robot);
     const WeightConfig weight = make_weight(kinematics, 2.5, 0.05, 0.01 * any(engine), 0.01 * any(engine));
@@ -177,8 +177,8 @@ TEST(InverseDynamics, traction_limits_the_acceleration) {
 // With three wheels the distribution is unique, and the wheel with the least grip limits it.
 TEST(InverseDynamics, three_wheels_cannot_take_over) {
   Robot robot = bare_robot();
-  robot.wheel_axis_rad = {std::numbers::pi / 3.0, std::numbers::pi, -std::numbers::pi / 3.0};
-  robot.center_of_gravity_height_m = 0.0;
+  robot.wheels.axis_rad = {std::numbers::pi / 3.0, std::numbers::pi, -std::numbers::pi / 3.0};
+  robot.body.center_of_gravity_height_m = 0.0;
   const WheelDemands out = inverse_dynamics(make_body(robot, bare_motor()), {{}, {12.0, 0.0, 0.0}, {}, 0.0});
   // Wheels 1 and 3 share 30 N, each 30° off the direction: 30/(2·0.8660) of 0.7·24.517/3.
   EXPECT_NEAR(out.transmitted_share, 0.7 * kWeight_N / 3.0 / (30.0 / std::sqrt(3.0)), 1e-9);
@@ -295,7 +295,7 @@ TEST(Friction, equation_3_of_the_paper) {
 /// The mean roller drag alone explains why Twente's wheels have more friction ahead than sideways.
 TEST(Friction, roller_drag_costs_more_ahead_than_sideways) {
   Robot robot = shipped_robot("roboteam_twente_v2024");
-  robot.heading_constant_Nm = kAbsent;
+  robot.friction.heading.constant_Nm.reset();
   const BodyConfig body = make_body(robot, bare_motor());
   const WheelDemands ahead = inverse_dynamics(body, {{1.0, 0.0, 0.0}, {}, {}, 0.0});
   const WheelDemands left = inverse_dynamics(body, {{0.0, 1.0, 0.0}, {}, {}, 0.0});
@@ -328,10 +328,11 @@ TEST(Friction, torques_become_the_same_voltages_again) {
 /// The plant must keep its speed at the voltage of the formula. Each wheel has its own curve with an offset.
 TEST(Friction, of_each_wheel_keeps_the_plant_steady) {
   Robot robot = lossy_robot();
-  robot.rolling_efficiency = 1.0;
-  robot.center_of_gravity_x_m = robot.center_of_gravity_y_m = 0.0;
+  robot.friction.rolling_efficiency = 1.0;
+  robot.body.center_of_gravity_x_m = robot.body.center_of_gravity_y_m = 0.0;
   for (int i = 0; i < 4; ++i) {
-    robot.heading_wheels.push_back({0.02 + 0.002 * i, 0.01 - 0.004 * i, -robot.wheel_axis_rad[static_cast<std::size_t>(i)] + 0.05 * i});
+    robot.friction.heading.wheels.push_back(
+        {0.02 + 0.002 * i, 0.01 - 0.004 * i, -robot.wheels.axis_rad[static_cast<std::size_t>(i)] + 0.05 * i});
   }
   PlantConfig plant = make_plant(robot, lossy_motor(), 0.001);
   plant.body.friction.smoothing_rad_per_s = 1e-3;
@@ -342,10 +343,11 @@ TEST(Friction, of_each_wheel_keeps_the_plant_steady) {
     state.wheel_speed_rad_per_s = wheel_speeds_rad_per_s(plant.body.kinematics, state.velocity);
     PlantInput input;
     for (int i = 0; i < 4; ++i) {
-      const HeadingWheel& wheel = robot.heading_wheels[static_cast<std::size_t>(i)];
+      const HeadingWheel& wheel = robot.friction.heading.wheels[static_cast<std::size_t>(i)];
       const double s = std::sin(heading_rad + wheel.phase_rad);
       const double speed_rad_per_s = state.wheel_speed_rad_per_s[i];
-      const double torque_Nm = wheel.sine_Nm * s + std::copysign(wheel.constant_Nm, s) + robot.wheel_damping_Nm_s_per_rad * speed_rad_per_s;
+      const double torque_Nm =
+          wheel.sine_Nm * s + std::copysign(wheel.constant_Nm, s) + robot.friction.wheel_damping_Nm_s_per_rad.value() * speed_rad_per_s;
       input.command[i] = {MotorCommand::Kind::voltage, steady_voltage_V(drive, torque_Nm, speed_rad_per_s)};
     }
     const PlantOutput output = step(plant, state, input);
@@ -358,8 +360,8 @@ TEST(Friction, of_each_wheel_keeps_the_plant_steady) {
 
 TEST(InverseDynamics, names_every_missing_value) {
   Robot robot = bare_robot();
-  robot.yaw_inertia_kg_m2 = kAbsent;
-  robot.traction_ratio = kAbsent;
+  robot.body.yaw_inertia_kg_m2.reset();
+  robot.traction.coefficient_ratio.reset();
   try {
     make_body(robot, bare_motor());
     FAIL();

@@ -50,9 +50,9 @@ TEST(Kinematics, there_and_back_is_where_it_was) {
   std::uniform_real_distribution<double> any(-5.0, 5.0);
   for (int round = 0; round < 300; ++round) {
     Robot robot = bare_robot();
-    robot.wheel_axis_rad.resize(round % 2 == 0 ? 3 : 4);
-    for (std::size_t i = 0; i < robot.wheel_axis_rad.size(); ++i) {
-      robot.wheel_axis_rad[i] = (0.6 * any(engine) / 5.0 + 1.5 * static_cast<double>(i));
+    robot.wheels.axis_rad.resize(round % 2 == 0 ? 3 : 4);
+    for (std::size_t i = 0; i < robot.wheels.axis_rad.size(); ++i) {
+      robot.wheels.axis_rad[i] = (0.6 * any(engine) / 5.0 + 1.5 * static_cast<double>(i));
     }
     const Kinematics kinematics = make_kinematics(robot);
     const BodyVelocity velocity{any(engine), any(engine), 4.0 * any(engine)};
@@ -154,10 +154,10 @@ TEST(Kinematics, frames_turn_with_the_yaw) {
 
 TEST(Kinematics, robots_that_cannot_be_driven_are_refused) {
   Robot five = bare_robot();
-  five.wheel_axis_rad.push_back(0.0);
+  five.wheels.axis_rad.push_back(0.0);
   EXPECT_THROW(make_kinematics(five), Failure);
   Robot parallel = bare_robot();
-  parallel.wheel_axis_rad = {0.3, 0.3, 0.3};
+  parallel.wheels.axis_rad = {0.3, 0.3, 0.3};
   EXPECT_THROW(make_kinematics(parallel), Failure);
 }
 
@@ -165,16 +165,16 @@ TEST(Kinematics, robots_that_cannot_be_driven_are_refused) {
 TEST(Kinematics, axles_that_are_next_to_parallel_are_refused) {
   Robot robot = bare_robot();
   const auto with_angle = [&](double angle_rad) {
-    robot.wheel_axis_rad = {0.0, angle_rad, std::numbers::pi, std::numbers::pi + angle_rad};
+    robot.wheels.axis_rad = {0.0, angle_rad, std::numbers::pi, std::numbers::pi + angle_rad};
     return make_kinematics(robot);
   };
   for (const double angle_deg : {0.0, 1e-9, 1e-7, 1e-3, 0.03}) {
     EXPECT_THROW((void)with_angle(angle_deg * kDeg), Failure) << angle_deg;
   }
   for (const double radius_m : {0.02, 0.08, 1.5}) {
-    robot.wheel_contact_radius_m = radius_m;
+    robot.wheels.contact_radius_m = radius_m;
     const PerWheel ahead = wheel_speeds_rad_per_s(with_angle(5.0 * kDeg), {1.0, 0.0, 0.0});
-    EXPECT_NEAR(ahead[1], -std::sin(5.0 * kDeg) / robot.wheel_radius_m, 1e-9);
+    EXPECT_NEAR(ahead[1], -std::sin(5.0 * kDeg) / robot.wheels.radius_m, 1e-9);
   }
   for (const std::string& shipped : kShipped) {
     EXPECT_NO_THROW((void)make_kinematics(shipped_robot(shipped)));

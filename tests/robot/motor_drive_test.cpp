@@ -24,7 +24,7 @@ MotorValues motor() {
 
 Robot robot() {
   Robot made;
-  made.battery_V = 24.0;
+  made.battery.nominal_V = 24.0;
   return made;
 }
 
@@ -52,7 +52,7 @@ TEST(DrivePoint, turning_everything_round_turns_the_current_round) {
   std::uniform_real_distribution<double> torque_Nm(-0.5, 0.5);
   std::uniform_real_distribution<double> speed_rad_per_s(-900.0, 900.0);
   Robot limited = robot();
-  limited.current_limit_A = 9.0;
+  limited.drive.current_limit_A = 9.0;
   for (int i = 0; i < 500; ++i) {
     const WheelLoad load{torque_Nm(engine), speed_rad_per_s(engine)};
     const DrivePoint there = drive_point(motor(), limited, load);
@@ -78,7 +78,7 @@ TEST(DrivePoint, torque_at_the_shaft_is_what_was_asked_where_nothing_limits) {
 
 TEST(DrivePoint, current_is_clamped_to_the_limit_of_the_driver) {
   Robot limited = robot();
-  limited.current_limit_A = 2.0;
+  limited.drive.current_limit_A = 2.0;
   const DrivePoint driving = drive_point(motor(), limited, {0.09, 100.0});
   EXPECT_EQ(driving.current_A, 2.0);
   EXPECT_NEAR(driving.current_wanted_A, 3.2, 1e-13);
@@ -99,9 +99,9 @@ TEST(DrivePoint, current_is_clamped_to_what_the_voltage_lets_through) {
 
 TEST(DrivePoint, the_smaller_of_battery_and_command_is_available) {
   Robot limited = robot();
-  limited.voltage_limit_V = 12.5;
+  limited.drive.voltage_limit_V = 12.5;
   EXPECT_EQ(limited.available_V(), 12.5);
-  limited.voltage_limit_V = 40.0;
+  limited.drive.voltage_limit_V = 40.0;
   EXPECT_EQ(limited.available_V(), 24.0);
 }
 
@@ -110,7 +110,7 @@ TEST(DrivePoint, no_clamped_point_needs_more_than_is_available) {
   std::uniform_real_distribution<double> torque_Nm(-3.0, 3.0);
   std::uniform_real_distribution<double> speed_rad_per_s(-790.0, 790.0);
   Robot limited = robot();
-  limited.current_limit_A = 20.0;
+  limited.drive.current_limit_A = 20.0;
   for (int i = 0; i < 1000; ++i) {
     const DrivePoint point = drive_point(motor(), limited, {torque_Nm(engine), speed_rad_per_s(engine)});
     const double back_emf_V = std::abs(0.03 * point.motor_speed_rad_per_s);
@@ -122,8 +122,8 @@ TEST(DrivePoint, no_clamped_point_needs_more_than_is_available) {
 
 TEST(DrivePoint, of_a_current_is_that_current_within_the_same_limits) {
   Robot limited = robot();
-  limited.current_limit_A = 5.0;
-  limited.gear_ratio = 2.0;
+  limited.drive.current_limit_A = 5.0;
+  limited.drive.gear_ratio = 2.0;
   const DrivePoint point = drive_point_of_current(motor(), limited, 4.0, 100.0);
   EXPECT_EQ(point.current_A, 4.0);
   EXPECT_EQ(point.motor_speed_rad_per_s, 200.0);
@@ -144,8 +144,8 @@ TEST(TerminalVoltage, rises_with_the_winding) {
 // Driving, 0.3 N m at 50 rad/s are 0.3/(3 · 0.8) = 0.125 N m at 150 rad/s. Braking returns 0.3/3 · 0.8 = 0.08 N m.
 TEST(Gear, numbers_computed_by_hand) {
   Robot geared = robot();
-  geared.gear_ratio = 3.0;
-  geared.gear_efficiency = 0.8;
+  geared.drive.gear_ratio = 3.0;
+  geared.drive.gear_efficiency = 0.8;
   const DrivePoint driving = drive_point(motor(), geared, {0.3, 50.0});
   EXPECT_EQ(driving.motor_speed_rad_per_s, 150.0);
   EXPECT_NEAR(driving.motor_torque_Nm, 0.125, 1e-15);
@@ -161,15 +161,15 @@ TEST(Gear, makes_no_power) {
   std::uniform_real_distribution<double> speed_rad_per_s(-100.0, 100.0);
   Robot geared = robot();
   for (int i = 0; i < 500; ++i) {
-    geared.gear_ratio = 1.0 + static_cast<double>(i % 7);
-    geared.gear_efficiency = 0.5 + 0.1 * static_cast<double>(i % 6);
+    geared.drive.gear_ratio = 1.0 + static_cast<double>(i % 7);
+    geared.drive.gear_efficiency = 0.5 + 0.1 * static_cast<double>(i % 6);
     const WheelLoad load{torque_Nm(engine), speed_rad_per_s(engine)};
     const DrivePoint point = drive_point(motor(), geared, load);
     const double wheel_W = load.torque_Nm * load.speed_rad_per_s;
     const double shaft_W = point.motor_torque_Nm * point.motor_speed_rad_per_s;
     if (point.limit == DriveLimit::none) {
       EXPECT_LE(wheel_W, shaft_W + 1e-12);
-      EXPECT_NEAR(wheel_W > 0.0 ? wheel_W / shaft_W : shaft_W / wheel_W, geared.gear_efficiency, 1e-9);
+      EXPECT_NEAR(wheel_W > 0.0 ? wheel_W / shaft_W : shaft_W / wheel_W, geared.drive.gear_efficiency, 1e-9);
     }
   }
 }
@@ -201,7 +201,7 @@ TEST(OperatingPoint, has_no_signs) {
 // Driving: I = (0.09 + 0.006)/0.03 = 3.2 A; shaft 0.09·100 = 9 W; terminals 3.2·0.5 + 0.03·100 = 4.6 V, input 4.6·3.2 = 14.72 W.
 TEST(OperatingPoint, has_powers_voltage_and_the_vehicle_of_a_driving_wheel) {
   Robot wheeled = robot();
-  wheeled.wheel_radius_m = 0.03;
+  wheeled.wheels.radius_m = 0.03;
   const OperatingPoint<double> at = operating_point(drive_point(motor(), wheeled, {0.09, 100.0}), motor(), wheeled, 25.0);
   EXPECT_NEAR(at.shaft_power_W, 9.0, 1e-12);
   EXPECT_NEAR(at.input_power_W, 14.72, 1e-12);
@@ -224,8 +224,8 @@ TEST(OperatingPoint, has_negative_powers_where_the_motor_brakes) {
 // A gear of 4 and a wheel at 50 rad/s: the motor turns at 200 rad/s, and the robot rolls at the wheel's speed.
 TEST(OperatingPoint, has_the_wheels_speed_behind_a_gear_and_never_more_modulation_than_the_supply) {
   Robot geared = robot();
-  geared.gear_ratio = 4.0;
-  geared.wheel_radius_m = 0.03;
+  geared.drive.gear_ratio = 4.0;
+  geared.wheels.radius_m = 0.03;
   const OperatingPoint<double> at = operating_point(drive_point(motor(), geared, {0.1, 50.0}), motor(), geared, 25.0);
   EXPECT_NEAR(at.vehicle_speed_m_per_s, 1.5, 1e-13);
   EXPECT_EQ(at.velocity_rad_per_s, 200.0);
@@ -236,7 +236,7 @@ TEST(OperatingPoint, has_the_wheels_speed_behind_a_gear_and_never_more_modulatio
 // Sinusoidal: an amplitude Î and phase amplitudes E/√3, 1.5·Î·E/√3. Ratio of heats: I²·R to 3·(Î²/2)·(R/2).
 TEST(OperatingPoint, sinusoidal_commutation_heats_0_912_of_block) {
   Robot sinusoidal = robot();
-  sinusoidal.commutation = Commutation::sinusoidal;
+  sinusoidal.drive.commutation = Commutation::sinusoidal;
   const DrivePoint point = drive_point(motor(), robot(), {0.09, 100.0});
   const double block_A = operating_point(point, motor(), robot(), 25.0).current_rms_A;
   const double sinusoidal_A = operating_point(point, motor(), sinusoidal, 25.0).current_rms_A;

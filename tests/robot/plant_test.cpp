@@ -158,9 +158,9 @@ TEST(Plant, a_spinning_robot_coasts_on_a_wide_curve) {
 /// With much grip and little slip, wheels and body are one mass: m + Σ J·(t·x/r)².
 TEST(Plant, much_grip_is_a_rigid_coupling) {
   Robot robot = bare_robot();
-  robot.traction_ratio = 50.0;
-  robot.slip_speed_m_per_s = 0.05;
-  robot.center_of_gravity_height_m = 0.0;
+  robot.traction.coefficient_ratio = 50.0;
+  robot.traction.slip_speed_m_per_s = 0.05;
+  robot.body.center_of_gravity_height_m = 0.0;
   const PlantConfig plant = make_plant(robot, bare_motor(), 0.001);
   PlantState state = plant_at_rest(plant);
   PlantInput input;
@@ -179,8 +179,8 @@ TEST(Plant, much_grip_is_a_rigid_coupling) {
 /// 0 V at the terminals is a short circuit. K_t²/R brakes exponentially with τ = m_eff·(R + R_d)·r²/(ΣK_t²·½).
 TEST(Plant, zero_voltage_brakes_exponentially) {
   Robot robot = bare_robot();
-  robot.traction_ratio = 50.0;
-  robot.center_of_gravity_height_m = 0.0;
+  robot.traction.coefficient_ratio = 50.0;
+  robot.body.center_of_gravity_height_m = 0.0;
   const PlantConfig plant = make_plant(robot, bare_motor(), 0.001);
   PlantState state = moving(plant, {1.0, 0.0, 0.0});
   double copper_J = 0.0;
@@ -228,7 +228,7 @@ TEST(Plant, stall_push_turns_all_power_into_heat) {
 /// Full voltage on a slippery floor: the wheels spin, the force stays at μ·N, and the remaining power heats the contact.
 TEST(Plant, too_much_torque_slips) {
   Robot robot = bare_robot();
-  robot.traction_ratio = 0.1;
+  robot.traction.coefficient_ratio = 0.1;
   const PlantConfig plant = make_plant(robot, bare_motor(), 0.001);
   PlantState state = plant_at_rest(plant);
   PlantInput input;
@@ -248,7 +248,7 @@ TEST(Plant, too_much_torque_slips) {
 /// An empty battery gives no power: the robot rolls out, and the energy balance still closes.
 TEST(Plant, an_empty_battery_gives_nothing) {
   Robot robot = lossy_robot();
-  robot.battery_capacity_A_s = 0.3;
+  robot.battery.capacity_A_s = 0.3;
   const PlantConfig plant = make_plant(robot, lossy_motor(), 0.0002);
   PlantState state = moving(plant, {0.5, -0.2, 1.0});
   const double before_J =
@@ -272,14 +272,14 @@ TEST(Plant, an_empty_battery_gives_nothing) {
 
 TEST(Plant, a_robot_that_falls_over_is_refused) {
   Robot robot = bare_robot();
-  robot.wheel_axis_rad = {-0.2, 0.0, 0.2};
+  robot.wheels.axis_rad = {-0.2, 0.0, 0.2};
   EXPECT_THROW(make_plant(robot, bare_motor(), 0.001), Failure);
-  robot.wheel_axis_rad = {-2.0, 0.0, 2.0};
+  robot.wheels.axis_rad = {-2.0, 0.0, 2.0};
   EXPECT_NO_THROW(make_plant(robot, bare_motor(), 0.001));
-  robot.center_of_gravity_x_m = -0.05;
+  robot.body.center_of_gravity_x_m = -0.05;
   EXPECT_THROW(make_plant(robot, bare_motor(), 0.001), Failure);
   robot = bare_robot();
-  robot.center_of_gravity_x_m = 0.03;  // one wheel of four may lift off, three carry the load
+  robot.body.center_of_gravity_x_m = 0.03;  // one wheel of four may lift off, three carry the load
   EXPECT_NO_THROW(make_plant(robot, bare_motor(), 0.001));
 }
 
@@ -295,8 +295,8 @@ TEST(Plant, contacts_sum_up_to_the_weight_in_motion) {
 
 TEST(Plant, limits_of_current_voltage_and_battery_hold) {
   Robot robot = lossy_robot();
-  robot.current_limit_A = 5.0;
-  robot.voltage_limit_V = 12.0;
+  robot.drive.current_limit_A = 5.0;
+  robot.drive.voltage_limit_V = 12.0;
   const PlantConfig plant = make_plant(robot, lossy_motor(), 0.001);
   PlantState state = plant_at_rest(plant);
   for (int i = 0; i < 1000; ++i) {
@@ -313,7 +313,7 @@ TEST(Plant, limits_of_current_voltage_and_battery_hold) {
 
 TEST(Plant, the_bus_clamps_where_the_battery_sags) {
   Robot robot = bare_robot();
-  robot.battery_resistance_ohm = 0.1;
+  robot.battery.resistance_ohm = 0.1;
   const PlantConfig plant = make_plant(robot, bare_motor(), 0.001);
   PlantState state = plant_at_rest(plant);
   // At rest the battery sees four windings in parallel, 0.61/4 Ω, because the motor controllers apply the full bus voltage.
@@ -326,7 +326,7 @@ TEST(Plant, the_bus_clamps_where_the_battery_sags) {
 /// A symmetric robot with mirrored commands drives the mirrored path.
 TEST(Plant, mirrored_commands_have_the_mirrored_path) {
   Robot robot = lossy_robot();
-  robot.center_of_gravity_y_m = 0.0;
+  robot.body.center_of_gravity_y_m = 0.0;
   const PlantConfig plant = make_plant(robot, lossy_motor(), 0.001);
   PlantState there = plant_at_rest(plant);
   PlantState mirrored = plant_at_rest(plant);
@@ -350,7 +350,7 @@ TEST(Plant, mirrored_commands_have_the_mirrored_path) {
 /// With the torques of the inverse dynamics the plant must follow the demanded motion except for slip.
 TEST(Plant, follows_the_inverse_dynamics) {
   Robot robot = lossy_robot();
-  robot.slip_speed_m_per_s = 0.005;
+  robot.traction.slip_speed_m_per_s = 0.005;
   const MotorValues motor = bare_motor();
   const PlantConfig plant = make_plant(robot, motor, 0.00025);
   const BodyConfig& body = plant.body;
@@ -388,7 +388,7 @@ TEST(Driver, sinusoidal_current_heats_less_for_the_same_torque) {
   Robot robot = bare_robot();
   const MotorPoint block =
       motor_point(make_electrics(robot, bare_motor()), make_driver(robot), {MotorCommand::Kind::current, 4.0}, 0.0, 25.0, 25.0, 22.0);
-  robot.commutation = Commutation::sinusoidal;
+  robot.drive.commutation = Commutation::sinusoidal;
   const MotorPoint sinusoidal =
       motor_point(make_electrics(robot, bare_motor()), make_driver(robot), {MotorCommand::Kind::current, 4.0}, 0.0, 25.0, 25.0, 22.0);
   EXPECT_NEAR(block.copper_W, 9.6, 1e-12);
@@ -402,13 +402,13 @@ TEST(Robots, that_are_shipped_can_be_simulated_and_drawn) {
       continue;
     }
     const Robot robot = read_robot(entry.path());
-    EXPECT_GT(robot.speed_limit_m_per_s, 1.0);
-    EXPECT_GT(robot.yaw_acceleration_limit_rad_per_s2, 1.0);
+    EXPECT_GT(robot.limits.speed_m_per_s.value(), 1.0);
+    EXPECT_GT(robot.limits.yaw_acceleration_rad_per_s2.value(), 1.0);
     const MotorValues motor =
-        shipped_motor(robot.drive_motor).nominal.rotor_inertia_kg_m2 > 0.0 ? shipped_motor(robot.drive_motor).nominal : lossy_motor();
+        shipped_motor(robot.drive.motor).nominal.rotor_inertia_kg_m2 > 0.0 ? shipped_motor(robot.drive.motor).nominal : lossy_motor();
     Random random(1, 2);
     const Robot drawn = draw_sample(robot, random);
-    EXPECT_NE(drawn.yaw_inertia_kg_m2, robot.yaw_inertia_kg_m2);
+    EXPECT_NE(drawn.body.yaw_inertia_kg_m2.value(), robot.body.yaw_inertia_kg_m2.value());
     const PlantConfig plant = make_plant(drawn, motor, 0.001);
     PlantState state = plant_at_rest(plant);
     for (int i = 0; i < 500; ++i) {

@@ -70,7 +70,7 @@ TEST(RobotPlausibility, robots_of_the_project_pass) {
       continue;
     }
     const Robot robot = read_robot(entry.path());
-    EXPECT_THAT(lint(robot, std::vector<std::string>{robot.drive_motor}), IsEmpty()) << entry.path();
+    EXPECT_THAT(lint(robot, std::vector<std::string>{robot.drive.motor}), IsEmpty()) << entry.path();
   }
 }
 

@@ -16,40 +16,40 @@ namespace heatsoak {
 inline Robot bare_robot() {
   Robot robot;
   robot.mass_kg = 2.5;
-  robot.wheel_radius_m = 0.03;
-  robot.wheel_contact_radius_m = 0.08;
+  robot.wheels.radius_m = 0.03;
+  robot.wheels.contact_radius_m = 0.08;
   for (const double axis_deg : {-45.0, 45.0, 135.0, -135.0}) {
-    robot.wheel_axis_rad.push_back(axis_deg * std::numbers::pi / 180.0);
+    robot.wheels.axis_rad.push_back(axis_deg * std::numbers::pi / 180.0);
   }
-  robot.battery_V = 22.0;
-  robot.yaw_inertia_kg_m2 = 0.01;
-  robot.center_of_gravity_height_m = 0.05;
-  robot.wheel_inertia_kg_m2 = 3e-5;
-  robot.wheel_friction_torque_Nm = 0.0;
-  robot.wheel_damping_Nm_s_per_rad = 0.0;
-  robot.roller_drag_ratio = 0.0;
-  robot.traction_ratio = 0.7;
-  robot.slip_speed_m_per_s = 0.05;
-  robot.driver_resistance_ohm = 0.01;
-  robot.driver_standby_W = 0.5;
-  robot.battery_full_V = 25.0;
-  robot.battery_empty_V = 20.0;
-  robot.battery_resistance_ohm = 0.05;
-  robot.battery_capacity_A_s = 4680.0;
+  robot.battery.nominal_V = 22.0;
+  robot.body.yaw_inertia_kg_m2 = 0.01;
+  robot.body.center_of_gravity_height_m = 0.05;
+  robot.wheels.inertia_kg_m2 = 3e-5;
+  robot.friction.wheel_torque_Nm = 0.0;
+  robot.friction.wheel_damping_Nm_s_per_rad = 0.0;
+  robot.friction.roller_drag_ratio = 0.0;
+  robot.traction.coefficient_ratio = 0.7;
+  robot.traction.slip_speed_m_per_s = 0.05;
+  robot.drive.driver_resistance_ohm = 0.01;
+  robot.drive.driver_standby_W = 0.5;
+  robot.battery.full_V = 25.0;
+  robot.battery.empty_V = 20.0;
+  robot.battery.resistance_ohm = 0.05;
+  robot.battery.capacity_A_s = 4680.0;
   return robot;
 }
 
 /// bare_robot() with all kinds of losses.
 inline Robot lossy_robot() {
   Robot robot = bare_robot();
-  robot.center_of_gravity_x_m = 0.004;
-  robot.center_of_gravity_y_m = -0.003;
-  robot.wheel_friction_torque_Nm = 0.003;
-  robot.wheel_damping_Nm_s_per_rad = 1e-4;
-  robot.roller_drag_ratio = 0.12;
-  robot.rolling_efficiency = 0.85;
-  robot.gear_ratio = 1.5;
-  robot.gear_efficiency = 0.9;
+  robot.body.center_of_gravity_x_m = 0.004;
+  robot.body.center_of_gravity_y_m = -0.003;
+  robot.friction.wheel_torque_Nm = 0.003;
+  robot.friction.wheel_damping_Nm_s_per_rad = 1e-4;
+  robot.friction.roller_drag_ratio = 0.12;
+  robot.friction.rolling_efficiency = 0.85;
+  robot.drive.gear_ratio = 1.5;
+  robot.drive.gear_efficiency = 0.9;
   return robot;
 }
 

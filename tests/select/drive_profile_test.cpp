@@ -20,10 +20,10 @@ MotorValues motor() {
 
 Robot robot() {
   Robot made;
-  made.battery_V = 24.0;
-  made.wheel_radius_m = 0.028;
-  made.gear_ratio = 2.0;
-  made.gear_efficiency = 0.9;
+  made.battery.nominal_V = 24.0;
+  made.wheels.radius_m = 0.028;
+  made.drive.gear_ratio = 2.0;
+  made.drive.gear_efficiency = 0.9;
   return made;
 }
 

@@ -53,8 +53,8 @@ Motor simple_motor() {
 Robot simple_robot() {
   Robot robot;
   robot.id = "simple";
-  robot.wheel_radius_m = 0.03;
-  robot.battery_V = 24.0;
+  robot.wheels.radius_m = 0.03;
+  robot.battery.nominal_V = 24.0;
   return robot;
 }
 
@@ -105,10 +105,10 @@ TEST(Evaluate, rms_current_is_that_of_the_whole_duty) {
 // value.
 TEST(Evaluate, rms_current_is_the_one_that_heats) {
   Robot robot = simple_robot();
-  robot.commutation = Commutation::sinusoidal;
+  robot.drive.commutation = Commutation::sinusoidal;
   EXPECT_NEAR(evaluate_one(simple_motor(), robot, constant_current(5.0)).current_rms_A, 15.0 / std::numbers::pi, 1e-13);
-  robot.commutation = Commutation::block;
-  robot.current_limit_A = 4.0;
+  robot.drive.commutation = Commutation::block;
+  robot.drive.current_limit_A = 4.0;
   EXPECT_NEAR(evaluate_one(simple_motor(), robot, constant_current(5.0)).current_rms_A, 4.0, 1e-14);
 }
 
@@ -172,7 +172,7 @@ TEST(Evaluate, a_speed_out_of_reach_takes_no_current) {
 
 TEST(Evaluate, infeasible_by_current) {
   Robot robot = simple_robot();
-  robot.current_limit_A = 4.0;
+  robot.drive.current_limit_A = 4.0;
   const MotorEvaluation result = evaluate_one(simple_motor(), robot, constant_current(5.0));
   EXPECT_EQ(result.verdict, Verdict::infeasible);
   EXPECT_EQ(result.limiting_factor, LimitingFactor::current);
@@ -185,7 +185,7 @@ TEST(Evaluate, samples_that_cannot_deliver_make_a_motor_marginal) {
   Duty duty = constant_current(5.0);
   duty.load.spread = Spread{Spread::Kind::tolerance, 0.9, 1.1, true};
   Robot robot = simple_robot();
-  robot.current_limit_A = 5.1;
+  robot.drive.current_limit_A = 5.1;
   Motor motor = simple_motor();
   motor.nominal.winding_limit_C = 390.0;
   const MotorEvaluation result = evaluate_one(motor, robot, duty, {.samples = 4000});
@@ -264,11 +264,11 @@ TEST(Margin, of_a_small_current_reaches_as_far_as_that_of_a_large_one) {
 
 TEST(Margin, ends_where_the_driver_does) {
   Robot robot = simple_robot();
-  robot.current_limit_A = 4.0;
+  robot.drive.current_limit_A = 4.0;
   EXPECT_NEAR(*evaluate_one(simple_motor(), robot, constant_current(3.0)).margin_A, 1.0, 0.03);
-  robot.current_limit_A = 400.0;
+  robot.drive.current_limit_A = 400.0;
   // The voltage for 4 A through 0.5 Ω with the winding at its limit.
-  robot.voltage_limit_V = 0.5 * 4.0 * (1.0 + 0.0039 * 130.0);
+  robot.drive.voltage_limit_V = 0.5 * 4.0 * (1.0 + 0.0039 * 130.0);
   EXPECT_NEAR(*evaluate_one(simple_motor(), robot, constant_current(3.0)).margin_A, 1.0, 0.03);
 }
 
@@ -484,8 +484,8 @@ std::vector<WheelDemand> steady_wheels(double torque_Nm, double duration_s) {
 TEST(Evaluate, resistance_of_the_driver_takes_its_share_of_the_voltage) {
   const Motor motor = simple_motor();
   Robot robot = simple_robot();
-  robot.battery_V = 1.5;
-  robot.driver_resistance_ohm = 0.3;
+  robot.battery.nominal_V = 1.5;
+  robot.drive.driver_resistance_ohm = 0.3;
   double low_K = 0.0;
   double high_K = 1000.0;
   for (int i = 0; i < 60; ++i) {
@@ -502,8 +502,8 @@ TEST(Evaluate, resistance_of_the_driver_takes_its_share_of_the_voltage) {
 TEST(Evaluate, declared_range_of_the_driver_s_resistance_is_propagated) {
   const Motor motor = simple_motor();
   Robot robot = simple_robot();
-  robot.battery_V = 1.5;
-  robot.driver_resistance_ohm = 0.3;
+  robot.battery.nominal_V = 1.5;
+  robot.drive.driver_resistance_ohm = 0.3;
   const auto spread_K = [&] {
     const Duty duty = constant_current(5.0);
     const MotorEvaluation result = evaluate(robot, duty, duty.demand(robot, 1), std::span(&motor, 1), {.samples = 200}).front();

@@ -76,7 +76,7 @@ TEST(TraceInVoltageLimit, columns_agree_with_the_account_and_with_the_driver) {
     const TraceRow& row = trace.rows[i];
     const double resistance_ohm = values.terminal_resistance_ohm * (1.0 + values.temperature_coefficient_per_K * (row.winding_C - 25.0));
     copper_J += row.current_A * row.current_A * resistance_ohm * (trace.rows[i + 1].time_s - row.time_s);
-    most_V = std::max(most_V, std::abs(row.motor_V + row.current_A * robot.driver_resistance_ohm));
+    most_V = std::max(most_V, std::abs(row.motor_V + row.current_A * robot.drive.driver_resistance_ohm.value()));
   }
   const auto copper = std::ranges::find(trace.balance, "copper_loss", &BookedHeat::effect);
   ASSERT_NE(copper, trace.balance.end());

@@ -20,8 +20,8 @@ namespace {
 /// Twente's robot with three wheels at equal angles, and with roller drag instead of the measured curve of four wheels.
 Robot three_wheels() {
   Robot robot = twente();
-  robot.wheel_axis_rad = {-std::numbers::pi / 3.0, std::numbers::pi / 3.0, std::numbers::pi};
-  robot.heading_constant_Nm = kAbsent;
+  robot.wheels.axis_rad = {-std::numbers::pi / 3.0, std::numbers::pi / 3.0, std::numbers::pi};
+  robot.friction.heading.constant_Nm.reset();
   return robot;
 }
 
@@ -240,13 +240,13 @@ TEST(ClosedLoop, a_duel_pushes_at_stall) {
     EXPECT_NEAR(current_A[i], expected_A, 0.1 * std::abs(expected_A)) << i;
   }
   // Loaded contacts creep: s = s_0·x/√(1 − x²), where x is the used share of the grip.
-  EXPECT_LT(fastest_rad_per_s * robot.wheel_radius_m, 2.0 * robot.slip_speed_m_per_s);
+  EXPECT_LT(fastest_rad_per_s * robot.wheels.radius_m, 2.0 * robot.traction.slip_speed_m_per_s.value());
 }
 
 // At 1.2 m/s², because two of three wheels carry the whole acceleration. At Twente's own 2 m/s² the core's traction limit would act.
 TEST(ClosedLoop, three_wheels_follow_as_well) {
   Robot robot = three_wheels();
-  robot.acceleration_limit_m_per_s2 = robot.braking_limit_m_per_s2 = 1.2;
+  robot.limits.acceleration_m_per_s2 = robot.limits.braking_m_per_s2 = 1.2;
   const DriveScore score = drive(robot, ecx_32(), {go(0.0, 1.0, 0.6, 1.0)}, 4.0).score;
   EXPECT_LT(score.tracking_most_m, 0.02);
   EXPECT_EQ(score.arrivals_count, 1.0);

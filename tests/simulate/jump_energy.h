@@ -16,9 +16,10 @@ namespace heatsoak {
 class JumpEnergy {
  public:
   JumpEnergy(const Robot& robot, const Motor& motor)
-      : torque_per_V_(motor.nominal.torque_constant_Nm_per_A * robot.gear_ratio / motor.nominal.terminal_resistance_ohm),
-        slope_Nm_s_per_rad_(robot.traction_ratio * robot.mass_kg * kGravity_m_per_s2 / static_cast<double>(robot.wheel_axis_rad.size()) /
-                            robot.slip_speed_m_per_s * robot.wheel_radius_m * robot.wheel_radius_m) {}
+      : torque_per_V_(motor.nominal.torque_constant_Nm_per_A * robot.drive.gear_ratio / motor.nominal.terminal_resistance_ohm),
+        slope_Nm_s_per_rad_(robot.traction.coefficient_ratio.value() * robot.mass_kg * kGravity_m_per_s2 /
+                            static_cast<double>(robot.wheels.axis_rad.size()) / robot.traction.slip_speed_m_per_s.value() *
+                            robot.wheels.radius_m * robot.wheels.radius_m) {}
 
   void take(const PlantOutput& out) {
     for (int i = 0; i < kMostWheels; ++i) {

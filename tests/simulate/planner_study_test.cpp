@@ -21,7 +21,7 @@ constexpr double kBangBang = std::numeric_limits<double>::infinity();
 // first command has no acceleration and is held.
 TEST(PlannerStudy, much_jerk_is_bang_bang) {
   Robot robot = twente();
-  robot.control_rate_Hz = 1000.0;
+  robot.drive.control_rate_Hz = 1000.0;
   const std::vector<StudyCase> cases{{2.0, 10000.0}, {2.0, kBangBang}};
   const std::vector<StudyResult> results = study_planners(robot, ecx_32(), cases, ideal_drive(), 2);
   const auto& [jerk, bang] = std::tie(results[0], results[1]);
@@ -47,11 +47,11 @@ TEST(PlannerStudy, below_the_grip_nothing_slides_and_beyond_it_the_jerk_limit_he
 TEST(PlannerStudy, grip_is_that_of_the_first_wheel) {
   Robot robot = twente();
   const double grip = grip_m_per_s2(robot);
-  EXPECT_LT(grip, robot.traction_ratio * kGravity_m_per_s2);
-  robot.center_of_gravity_height_m = 0.0;
+  EXPECT_LT(grip, robot.traction.coefficient_ratio.value() * kGravity_m_per_s2);
+  robot.body.center_of_gravity_height_m = 0.0;
   const double flat = grip_m_per_s2(robot);
   EXPECT_GT(flat, grip);  // no load transfer away from the pushing wheels
-  robot.traction_ratio *= 0.5;
+  robot.traction.coefficient_ratio.value() *= 0.5;
   EXPECT_NEAR(grip_m_per_s2(robot), 0.5 * flat, 1e-4 * flat);
 }
 
@@ -66,7 +66,7 @@ TEST(JerkSweep, has_no_acceleration_twice) {
       }
     }
     ASSERT_EQ(accelerations_m_per_s2.size(), count) << robot.id;
-    EXPECT_EQ(accelerations_m_per_s2.front(), std::min(robot.acceleration_limit_m_per_s2, robot.braking_limit_m_per_s2));
+    EXPECT_EQ(accelerations_m_per_s2.front(), std::min(robot.limits.acceleration_m_per_s2.value(), robot.limits.braking_m_per_s2.value()));
     EXPECT_GT(accelerations_m_per_s2.back(), 1.4 * grip_m_per_s2(robot));
   }
 }

@@ -62,7 +62,7 @@ TEST(Noise, is_normal_to_the_fourth_moment) {
 TEST(Sensing, encoder_noise_is_that_of_quantisation) {
   for (const double gear_ratio : {1.0, 3.0}) {
     Robot robot = twente();
-    robot.gear_ratio = gear_ratio;
+    robot.drive.gear_ratio = gear_ratio;
     SimulatedRobot simulated(robot, ecx_32(), 25.0);
     SensingConfig config = silent();
     config.encoder_turn_count = 8192.0;

@@ -17,7 +17,7 @@ std::vector<LintFinding> findings_of(const Check& check) {
   std::vector<LintFinding> all;
   const auto take = [&all](std::vector<LintFinding> findings) { std::ranges::move(findings, std::back_inserter(all)); };
   // A robot's motor may lie anywhere, so that it is known is for `heatsoak lint` to say.
-  const auto of_robot = [&take](const Robot& robot) { take(lint(robot, std::vector{robot.drive_motor})); };
+  const auto of_robot = [&take](const Robot& robot) { take(lint(robot, std::vector{robot.drive.motor})); };
   for (const std::filesystem::path& file : check.files) {
     switch (file_kind(file)) {
       case FileKind::robot:

@@ -162,27 +162,28 @@ std::string_view robot_unit(std::string_view key) {
 
 Description describe_robot(const Robot& robot) {
   std::string limits =
-      std::isfinite(robot.voltage_limit_V) ? fmt::format(", command at most {} V", significant(robot.voltage_limit_V, 4)) : "";
-  limits +=
-      std::isfinite(robot.current_limit_A) ? fmt::format(", at most {} A", significant(robot.current_limit_A, 4)) : ", no current limit";
+      std::isfinite(robot.drive.voltage_limit_V) ? fmt::format(", command at most {} V", significant(robot.drive.voltage_limit_V, 4)) : "";
+  limits += std::isfinite(robot.drive.current_limit_A) ? fmt::format(", at most {} A", significant(robot.drive.current_limit_A, 4))
+                                                       : ", no current limit";
   std::vector<std::string> angles;
-  for (const double angle_rad : robot.wheel_axis_rad) {
+  for (const double angle_rad : robot.wheels.axis_rad) {
     angles.push_back(significant(convert(angle_rad, "rad", "deg"), 4));
   }
   Description result{
       fmt::format(
           "{}: {}\n  mass {} kg, wheel radius {} mm, contact radius {} mm, wheel axes at {} °\n  motor {}, gear {}:1, {} commutation\n"
           "  battery {} V{}\n  source: {}\n",
-          robot.id, robot.name, significant(robot.mass_kg, 4), significant(1e3 * robot.wheel_radius_m, 3),
-          significant(1e3 * robot.wheel_contact_radius_m, 3), fmt::join(angles, ", "), robot.drive_motor, significant(robot.gear_ratio, 3),
-          robot.commutation == Commutation::block ? "block" : "sinusoidal", significant(robot.battery_V, 3), limits, robot.source),
+          robot.id, robot.name, significant(robot.mass_kg, 4), significant(1e3 * robot.wheels.radius_m, 3),
+          significant(1e3 * robot.wheels.contact_radius_m, 3), fmt::join(angles, ", "), robot.drive.motor,
+          significant(robot.drive.gear_ratio, 3), robot.drive.commutation == Commutation::block ? "block" : "sinusoidal",
+          significant(robot.battery.nominal_V, 3), limits, robot.source),
       {{"kind", "robot"},
        {"id", robot.id},
        {"name", robot.name},
-       {"motor", robot.drive_motor},
+       {"motor", robot.drive.motor},
        {"mass_kg", robot.mass_kg},
-       {"wheel_radius_m", robot.wheel_radius_m},
-       {"gear_ratio", robot.gear_ratio},
+       {"wheel_radius_m", robot.wheels.radius_m},
+       {"gear_ratio", robot.drive.gear_ratio},
        {"available_V", robot.available_V()},
        {"source", robot.source}}};
   result.text += robot.parameters.empty() ? "" : "\nparameters (value, origin, range, source)\n";

@@ -108,7 +108,7 @@ ExitCode put_out(const Options& options, const Robot& robot, const Duty& duty, S
 
 ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, const MatchInputs& inputs, Session& session) {
   const Planner planner = options.planner == "bang_bang" ? Planner::bang_bang : Planner::jerk_limited;
-  std::optional<DutyRows> rows = open_table(options, robot.wheel_axis_rad.size(), duty.kind, session);
+  std::optional<DutyRows> rows = open_table(options, robot.wheels.axis_rad.size(), duty.kind, session);
   MatchObserver observer;
   if (rows) {
     observer = [&rows](const MatchMoment& now) { rows->add(now.step_s, now.wheels->torque_Nm, now.wheels->speed_rad_per_s); };
@@ -119,9 +119,11 @@ ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, 
                           kRoleNames[static_cast<std::size_t>(inputs.role)], options.seed, duration_text(load.duration_s), load.play_s,
                           load.distance_m / 1e3, duty.origin, role_table(roles)));
   session.say(slip_text(load.wheels.front()));
-  if (robot.braking_limit_m_per_s2 > robot.acceleration_limit_m_per_s2) {
+  const std::optional<double> acceleration_m_per_s2 = robot.limits.acceleration_m_per_s2;
+  const std::optional<double> braking_m_per_s2 = robot.limits.braking_m_per_s2;
+  if (acceleration_m_per_s2 && braking_m_per_s2 && *braking_m_per_s2 > *acceleration_m_per_s2) {
     session.say(fmt::format("in a match the robot brakes with its acceleration of {} m/s²: its braking limit of {} m/s² is not used\n",
-                            significant(robot.acceleration_limit_m_per_s2, 3), significant(robot.braking_limit_m_per_s2, 3)));
+                            significant(*acceleration_m_per_s2, 3), significant(*braking_m_per_s2, 3)));
   }
   finish_table(rows, options, duty_file(options.out, duty.kind, duty.summary, duty.origin), session);
   session.answer({{"schema", "heatsoak.duty/1"},
@@ -138,7 +140,7 @@ ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, 
 }
 
 ExitCode import(const Options& options, const Robot& robot, Session& session) {
-  std::optional<DutyRows> rows = open_table(options, robot.wheel_axis_rad.size(), DutyKind::torque, session);
+  std::optional<DutyRows> rows = open_table(options, robot.wheels.axis_rad.size(), DutyKind::torque, session);
   GameObserver observer;
   if (rows) {
     observer = [&rows](double duration_s, const WheelDemands& wheels) { rows->add(duration_s, wheels.torque_Nm, wheels.speed_rad_per_s); };

@@ -180,7 +180,7 @@ ExitCode run(Options& options, Session& session) {
   present::add_lines(document.notes, default_spreads_text(motors), present::Severity::note);
   std::vector<ChangeEffect> changes;
   // The motor that the robot is built with if it is among the results, else the best one.
-  const auto own = std::ranges::find(results, robot.drive_motor, &MotorEvaluation::motor_id);
+  const auto own = std::ranges::find(results, robot.drive.motor, &MotorEvaluation::motor_id);
   const MotorEvaluation& subject = own == results.end() ? results.front() : *own;
   const bool suggests = options.suggests || subject.verdict != Verdict::pass;
   if (suggests) {
@@ -215,7 +215,7 @@ ExitCode run(Options& options, Session& session) {
                                    {"deliverable", each.is_deliverable}});
     }
   }
-  answer["is_friction_assumed"] = robot.is_friction_assumed;
+  answer["is_friction_assumed"] = robot.friction.is_assumed;
   const Verdict least_bad = static_cast<Verdict>(std::ranges::find(kFailOn, options.fail_on) - kFailOn.begin() + 1);
   bool exceeded = false;
   answer["motors"] = nlohmann::ordered_json::array();

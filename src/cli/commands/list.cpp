@@ -43,7 +43,7 @@ std::vector<Row> rows(const std::string& what, const DataFolders& folders) {
   } else if (what == "robots") {
     for (const std::string& id : some_ids_in(folders.robots)) {
       const Robot robot = read_robot(folders.robots / (id + ".toml"));
-      result.push_back({id, fmt::format("{}, drives with {}", robot.name, robot.drive_motor)});
+      result.push_back({id, fmt::format("{}, drives with {}", robot.name, robot.drive.motor)});
     }
   } else if (what == "duties") {
     for (const std::string& id : some_ids_in(folders.duties)) {

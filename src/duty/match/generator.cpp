@@ -49,13 +49,15 @@ double least(double a, double b) { return std::isfinite(b) ? std::min(a, b) : a;
 class IdealTracking final : public Follower {
  public:
   IdealTracking(const Robot& robot, double aggressiveness, Planner planner) : planner_(planner) {
-    plane_ = {robot.speed_limit_m_per_s * aggressiveness,
-              std::min(robot.acceleration_limit_m_per_s2, robot.braking_limit_m_per_s2) * aggressiveness,
-              robot.jerk_limit_m_per_s3 * aggressiveness};
+    const RobotLimits& limits = robot.limits;
+    const double acceleration_m_per_s2 = limits.acceleration_m_per_s2.value_or(0.0);
+    plane_ = {limits.speed_m_per_s.value_or(0.0) * aggressiveness,
+              std::min(acceleration_m_per_s2, limits.braking_m_per_s2.value_or(acceleration_m_per_s2)) * aggressiveness,
+              limits.jerk_m_per_s3.value_or(0.0) * aggressiveness};
     // No team publishes a jerk of yaw: a tenth of a second to full angular acceleration.
-    yaw_ = AxisLimits<double>::symmetric(robot.yaw_rate_limit_rad_per_s * aggressiveness,
-                                         robot.yaw_acceleration_limit_rad_per_s2 * aggressiveness,
-                                         10.0 * robot.yaw_acceleration_limit_rad_per_s2 * aggressiveness);
+    yaw_ = AxisLimits<double>::symmetric(limits.yaw_rate_rad_per_s.value_or(0.0) * aggressiveness,
+                                         limits.yaw_acceleration_rad_per_s2.value_or(0.0) * aggressiveness,
+                                         10.0 * limits.yaw_acceleration_rad_per_s2.value_or(0.0) * aggressiveness);
     for (const double limit : {plane_.speed_max, plane_.acceleration_max, plane_.jerk_max, yaw_.velocity_max, yaw_.jerk_max}) {
       if (!(limit > 0.0)) {
         throw bad_input({robot.file.string()}, "limits", "a match needs speed, acceleration, braking, jerk, yaw_rate and yaw_acceleration");

@@ -104,7 +104,7 @@ Script match(const WheelDemand& wheel, const Motor& motor, const Robot& robot, c
     segment.duration_s = std::min(bin.duration_s, kScript_s - sum_s);
     segment.wanted_A =
         aggressiveness * std::abs(drive_point(motor.nominal, robot, {bin.torque_rms_Nm, bin.speed_rms_rad_per_s}).current_wanted_A);
-    segment.speed_rad_per_s = std::min(kFastest_share * rules.most_speed_rad_per_s, robot.gear_ratio * bin.speed_rms_rad_per_s);
+    segment.speed_rad_per_s = std::min(kFastest_share * rules.most_speed_rad_per_s, robot.drive.gear_ratio * bin.speed_rms_rad_per_s);
     segment.is_braking = bin.torque_along_motion_Nm < 0.0;
     segment.ambient_C = rules.hottest_ambient_C;
     sum_s += segment.duration_s;

@@ -14,11 +14,11 @@ constexpr std::size_t kEvery = 2;  ///< every second row of the drive is in the 
 
 /// Friction at the wheel: 20 mN m that varies with the wheel's direction, plus 5 mN m constant, as in README.md of the folder.
 Robot with_dirty_wheel(Robot robot) {
-  robot.heading_double_angle_Nm = 0.0;
-  for (const double axis_rad : robot.wheel_axis_rad) {
-    robot.heading_wheels.push_back({.constant_Nm = 0.005, .sine_Nm = 0.020, .phase_rad = -axis_rad});
+  robot.friction.heading.double_angle_Nm = 0.0;
+  for (const double axis_rad : robot.wheels.axis_rad) {
+    robot.friction.heading.wheels.push_back({.constant_Nm = 0.005, .sine_Nm = 0.020, .phase_rad = -axis_rad});
   }
-  robot.heading_wheels[2].sine_Nm = 0.040;
+  robot.friction.heading.wheels[2].sine_Nm = 0.040;
   return robot;
 }
 

@@ -111,7 +111,7 @@ Run drive(const Level& level, const Known& known, Method method, std::size_t i, 
   Robot robot = level.match.robot;
   if (method == Method::hindsight_cap) {
     // The firmware limits the current through the voltage and the lowest resistance, so a cold winding gets more than a warm one.
-    robot.current_limit_A = cap_A;
+    robot.drive.current_limit_A = cap_A;
   }
   const Game& game = level.games[seed_of(i) - 1];
   const bool has_sensors = method != Method::guard_unsensed;

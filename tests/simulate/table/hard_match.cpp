@@ -33,19 +33,35 @@ constexpr HarderInput kHarder[] = {
 struct HarderParameter {
   const char* name;
   const char* unit;
-  double Robot::*value;
+  std::optional<double>& (*value)(Robot&);
   double hard;
   double per_unit;  ///< displayed unit per SI unit
   const char* remark;
 };
 constexpr HarderParameter kHarderParameters[] = {
-    {"acceleration limit", "m/s²", &Robot::acceleration_limit_m_per_s2, 3.0, 1.0,
-     "harsher than the team's own limit; the braking that TIGERs saw of the robot"},
-    {"braking limit", "m/s²", &Robot::braking_limit_m_per_s2, 3.0, 1.0, kEnd},
-    {"jerk limit", "m/s³", &Robot::jerk_limit_m_per_s3, 20.0, 1.0, "harsher than the team's own limit"},
-    {"coefficient of traction", "", &Robot::traction_ratio, 1.0, 1.0, kEnd},
-    {"constant friction of a wheel", "mN m", &Robot::heading_constant_Nm, 0.038, 1e3, kEnd},
-};
+    {"acceleration limit", "m/s²", [](Robot& robot) -> auto& {return robot.limits.acceleration_m_per_s2;
+}  // namespace
+, 3.0, 1.0, "harsher than the team's own limit; the braking that TIGERs saw of the robot"
+}  // namespace heatsoak::studies
+, {"braking limit", "m/s²", [](Robot& robot) -> auto& {return robot.limits.braking_m_per_s2;
+}
+, 3.0, 1.0, kEnd
+}
+, {"jerk limit", "m/s³", [](Robot& robot) -> auto& {return robot.limits.jerk_m_per_s3;
+}
+, 20.0, 1.0, "harsher than the team's own limit"
+}
+, {"coefficient of traction", "", [](Robot& robot) -> auto& {return robot.traction.coefficient_ratio;
+}
+, 1.0, 1.0, kEnd
+}
+, {"constant friction of a wheel", "mN m", [](Robot& robot) -> auto& {return robot.friction.heading.constant_Nm;
+}
+, 0.038, 1e3, kEnd
+}
+,
+}
+;
 
 }  // namespace
 
@@ -72,7 +88,7 @@ HardMatch make_hard_match(const Robot& robot, double share) {
     figure.value = value;
   }
   for (const HarderParameter& harder : kHarderParameters) {
-    double& value = match.robot.*harder.value;
+    double& value = harder.value(match.robot).value();
     const double changed = std::lerp(value, harder.hard, share);
     match.changed.push_back({harder.name, fmt::format("{:.3g} {}", value * harder.per_unit, harder.unit),
                              fmt::format("{:.3g} {}", changed * harder.per_unit, harder.unit), harder.remark});
@@ -111,7 +127,7 @@ Motor bench_tested(const Motor& motor) {
 Hardship drive_hard(const HardMatch& match, const Game& game, const Way& way, const Motor& motor, std::uint64_t seed, bool with_seconds) {
   Robot known = match.robot;
   if (!std::isnan(way.cap_A)) {
-    known.current_limit_A = way.cap_A;
+    known.drive.current_limit_A = way.cap_A;
   }
   const MotorGuard none;
   const GuardedCore core(known, *way.motor, way.guard != nullptr ? GuardUse::on : GuardUse::off, way.guard != nullptr ? *way.guard : none);

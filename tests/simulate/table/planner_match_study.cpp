@@ -83,7 +83,7 @@ Scores play_all(const Subject& subject, const MatchInputs& inputs, double ambien
     const Setting& setting = kSettings.at(set / kPlanners.size());
     Robot robot = subject.robot;
     if (!setting.has_double_angle) {
-      robot.heading_double_angle_Nm = 0.0;
+      robot.friction.heading.double_angle_Nm = 0.0;
     }
     const robot_core::Config core = make_core_config(robot, subject.motor.nominal, with_tolerance({}, subject.motor));
     MatchRunOptions options;

@@ -53,7 +53,7 @@ struct Input {
 
 /// Finds the motor. The robot's own motor may be missing from the data base: fits from modulation do not need it.
 void find_motor(const Options& options, const DataFolders& folders, Input& input) {
-  input.motor_id = options.motor.empty() ? input.robot.drive_motor : options.motor;
+  input.motor_id = options.motor.empty() ? input.robot.drive.motor : options.motor;
   try {
     input.motor = motor_named(folders, input.motor_id).nominal;
   } catch (const Failure&) {
