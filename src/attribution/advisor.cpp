@@ -189,7 +189,7 @@ double separation_nats(const RefitResult& fit, const LatentFlux& flux, const std
 bool has_nodes_of(const Network& network, const Candidate& candidate) {
   bool has_all = true;
   for (std::size_t role = 0; role < candidate.nodes.size(); ++role) {
-    has_all = has_all && (candidate.type->nodes[role].own_capacity >= 0 || network.find_node(candidate.nodes[role]) >= 0);
+    has_all = has_all && (candidate.type->nodes[role].own_capacity.has_value() || network.find_node(candidate.nodes[role]) >= 0);
   }
   return has_all;
 }

@@ -38,7 +38,7 @@ bool is_in(const ExtendedModel& model, const Candidate& candidate) {
       return false;
     }
     for (std::size_t role = 0; role < candidate.nodes.size(); ++role) {
-      if (candidate.type->nodes[role].own_capacity < 0 && network.node_name(effect.node_index[role]) != candidate.nodes[role]) {
+      if (!candidate.type->nodes[role].own_capacity && network.node_name(effect.node_index[role]) != candidate.nodes[role]) {
         return false;
       }
     }
@@ -51,7 +51,7 @@ std::vector<std::string> usual_nodes(const Network& network, const EffectType& t
   std::vector<std::string> nodes;
   for (const NodeRole& role : type.nodes) {
     std::string node(role.default_node);
-    if (role.own_capacity >= 0) {
+    if (role.own_capacity) {
       for (int number = 2; network.find_node(node) >= 0; ++number) {
         node = fmt::format("{}_{}", role.default_node, number);
       }
@@ -71,7 +71,7 @@ std::vector<std::vector<std::string>> placements(const Network& network, const E
     all.push_back(std::move(usual));
   }
   const bool moves =
-      type.nodes.size() == 1 && type.nodes.front().own_capacity < 0 && (type.candidacy.is_anywhere || network.state_count() > 2);
+      type.nodes.size() == 1 && !type.nodes.front().own_capacity && (type.candidacy.is_anywhere || network.state_count() > 2);
   for (int node = 0; moves && node < network.state_count(); ++node) {
     if (network.node_name(node) != type.nodes.front().default_node) {
       all.push_back({std::string(network.node_name(node))});
@@ -190,7 +190,7 @@ void add_conditional_candidates(const ExtendedModel& model, const std::vector<Me
 
 std::string id_of(const EffectType& type, const std::vector<std::string>& nodes) {
   for (std::size_t role = 0; role < nodes.size(); ++role) {
-    if (type.nodes[role].own_capacity < 0 && nodes[role] != type.nodes[role].default_node) {
+    if (!type.nodes[role].own_capacity && nodes[role] != type.nodes[role].default_node) {
       return fmt::format("{}@{}", type.name, nodes[role]);
     }
   }
@@ -199,7 +199,7 @@ std::string id_of(const EffectType& type, const std::vector<std::string>& nodes)
 
 void add_network_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const MotorSize& size, CandidateList& list) {
   for (const EffectType& type : all_effects()) {
-    if (type.candidacy.size_parameter < 0) {
+    if (!type.candidacy.size_parameter) {
       continue;
     }
     if (const std::vector<std::string_view> names = lacking(type.needs, runs); !names.empty()) {
@@ -248,11 +248,11 @@ void extend(Extended& extended, const Candidate& candidate, std::size_t own, dou
   std::vector<std::size_t> scaled{size};
   std::vector<std::string> nodes = candidate.nodes;
   for (std::size_t role = 0; role < nodes.size(); ++role) {
-    if (const int capacity = candidate.type->nodes[role].own_capacity; capacity >= 0) {
+    if (const std::optional<int> capacity = candidate.type->nodes[role].own_capacity) {
       nodes[role] += fmt::format(" {}", own);
       extended.bodies.push_back(static_cast<Eigen::Index>(extended.state_C.size()));
       extended.state_C.push_back(ambient_C);
-      scaled.push_back(static_cast<std::size_t>(capacity));
+      scaled.push_back(static_cast<std::size_t>(*capacity));
     }
   }
   const double share = scaled.size() > 1 ? kHardly_share : 0.0;
@@ -356,7 +356,7 @@ bool Candidate::is_rare() const {
   return type && condition.empty() && nodes.size() == 1 && nodes.front() != type->nodes.front().default_node;
 }
 
-int Candidate::size_parameter() const { return type ? type->candidacy.size_parameter : 0; }
+int Candidate::size_parameter() const { return type ? type->candidacy.size_parameter.value() : 0; }
 
 const ParameterSpec& Candidate::size_spec() const {
   if (deviation_type) {
@@ -397,7 +397,7 @@ std::vector<int> candidates_with_body(const std::vector<Candidate>& candidates) 
   std::vector<int> found;
   for (int j = 0; j < static_cast<int>(candidates.size()); ++j) {
     const EffectType* const type = candidates[static_cast<std::size_t>(j)].type;
-    if (type && std::ranges::any_of(type->nodes, [](const NodeRole& role) { return role.own_capacity >= 0; })) {
+    if (type && std::ranges::any_of(type->nodes, [](const NodeRole& role) { return role.own_capacity.has_value(); })) {
       found.push_back(j);
     }
   }

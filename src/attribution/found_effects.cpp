@@ -132,8 +132,8 @@ class EffectReport {
           parameter.low = std::max(model.value_of(i, theta[i] - kInterval_sd * sd), spec.range.low);
           parameter.high = std::min(model.value_of(i, theta[i] + kInterval_sd * sd), spec.range.high);
           // The positions of a curve's knots are no evidence for the curve, so only its values count.
-          const int size = in_place.type->candidacy.size_parameter;
-          if (size < 0 ? spec.range.low == 0.0 : static_cast<std::size_t>(size) == p) {
+          const std::optional<int> size = in_place.type->candidacy.size_parameter;
+          if (size ? static_cast<std::size_t>(*size) == p : spec.range.low == 0.0) {
             effect.p_value = std::min(effect.p_value, p_of(theta[i], sd));
           }
           drop_interval_at_bound(i, parameter);

@@ -83,8 +83,8 @@ void add_conditional_effects(const Motor& motor, const std::vector<Recording>& r
     }
     const std::string condition = in_words(effect.condition);
     const auto count = std::ranges::count_if(recordings, [&](const Recording& each) { return holds(each, effect.condition); });
-    const int size = effect.type->candidacy.size_parameter;
-    if (size < 0 && count < std::ssize(recordings)) {
+    const std::optional<int> size = effect.type->candidacy.size_parameter;
+    if (!size && count < std::ssize(recordings)) {
       out.notes.push_back(
           fmt::format("{} acts in every run here, although its condition is {}: an effect of the type {} has no size that could be "
                       "set to 0; leave out the runs without that condition",
@@ -92,9 +92,9 @@ void add_conditional_effects(const Motor& motor, const std::vector<Recording>& r
     } else if (count == 0) {
       out.notes.push_back(fmt::format("{} acts in none of these runs: no log has its condition {}", effect.name, condition));
     }
-    if (size >= 0) {
+    if (size) {
       const auto in_place = std::ranges::find(out.model.model.network.effects(), effect.name, &EffectInPlace::name);
-      out.model.conditional.push_back({effect.name, in_place->parameter_index[static_cast<std::size_t>(size)], 0.0, effect.condition});
+      out.model.conditional.push_back({effect.name, in_place->parameter_index[static_cast<std::size_t>(*size)], 0.0, effect.condition});
     }
   }
 }
@@ -140,7 +140,7 @@ MotorEffect motor_effect(const FoundEffect& found, const RefitResult& fit) {
   const auto in_place = std::ranges::find(network.effects(), found.name, &EffectInPlace::name);
   MotorEffect effect{found.name, in_place->type, {}, {}, found.condition};
   for (std::size_t role = 0; role < in_place->node_index.size(); ++role) {
-    const bool is_own = in_place->type->nodes[role].own_capacity >= 0;
+    const bool is_own = in_place->type->nodes[role].own_capacity.has_value();
     effect.nodes.push_back(is_own ? found.name : std::string(network.node_name(in_place->node_index[role])));
   }
   for (std::size_t p = 0; p < in_place->parameter_index.size(); ++p) {

@@ -125,18 +125,16 @@ class Collector {
 
 void add_operating_points(Collector& all) {
   using Point = OperatingPoint<double>;
-  all.add_where({Signal::speed}, "speed", "rad/s", [](const Point& at) { return at.speed_mean_rad_per_s; });
-  all.add_where({Signal::speed}, "velocity", "rad/s", [](const Point& at) { return at.velocity_rad_per_s; });
-  all.add_where({Signal::current}, "current", "A", [](const Point& at) { return at.current_rms_A; });
-  all.add_where({Signal::modulation}, "modulation", "", [](const Point& at) { return at.modulation_ratio; });
-  all.add_where({Signal::shaft_power, Signal::speed}, "shaft_power", "W", [](const Point& at) { return at.shaft_power_W; });
-  all.add_where({Signal::input_power}, "input_power", "W", [](const Point& at) { return at.input_power_W; });
-  all.add_where({Signal::current, Signal::speed}, "current_speed_squared", "A rad2/s2",
-                [](const Point& at) { return at.current_rms_A * at.speed_rms_rad_per_s * at.speed_rms_rad_per_s; });
-  all.add_where({Signal::speed}, "acceleration", "rad/s2", [](const Point& at) { return at.acceleration_rad_per_s2; });
-  all.add_where({Signal::bus_voltage}, "bus_voltage", "V", [](const Point& at) { return at.bus_V; });
-  all.add_where({Signal::vehicle_speed}, "vehicle_speed", "m/s", [](const Point& at) { return at.vehicle_speed_m_per_s; });
-  all.add_where({Signal::age}, "age", "h", [](const Point& at) { return at.age_h; });
+  for (const OperatingQuantity<double>& each : kQuantities<double>) {
+    if (each.is_driver) {
+      all.add_where({each.signal.value()}, std::string(each.name), std::string(each.unit), [&](const Point& at) { return at.*each.value; });
+    }
+    // Of two signals that are nearly copies, the earlier one is kept.
+    if (each.signal == Signal::input_power) {
+      all.add_where({Signal::current, Signal::speed}, "current_speed_squared", "A rad2/s2",
+                    [](const Point& at) { return at.current_rms_A * at.speed_rms_rad_per_s * at.speed_rms_rad_per_s; });
+    }
+  }
 }
 
 void add_temperatures(Collector& all, const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs) {

@@ -145,9 +145,9 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
   size = std::clamp(size_share * size, range.low, range.high);
   bool brings_body = false;
   for (const NodeRole& role : candidate.type->nodes) {
-    brings_body = brings_body || role.own_capacity >= 0;
-    if (role.own_capacity >= 0) {
-      parameters[static_cast<std::size_t>(role.own_capacity)] *= std::max(0.05, size_share);
+    brings_body = brings_body || role.own_capacity.has_value();
+    if (role.own_capacity) {
+      parameters[static_cast<std::size_t>(*role.own_capacity)] *= std::max(0.05, size_share);
     }
   }
   const EffectInPlace effect =

@@ -210,7 +210,7 @@ void late_answers(const Motor& motor, const Recording& recording, const DataQual
 }  // namespace
 
 Admission admit(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out, bool takes_logs_as_they_are,
-                double ambient_C) {
+                std::optional<double> ambient_C) {
   refuse_repeated(fitted, held_out);
   Admission admission;
   std::vector<std::string>& notes = admission.notes;

@@ -1,6 +1,7 @@
 // Checks whether a log can be used to fit a motor. Runs before any simulation.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,9 +21,9 @@ struct Admission {
 /// - bad_input if rows are given twice, or are both fitted and held out;
 /// - bad_input if units, signs or sensors look wrong in themselves or for this motor (only notes if `takes_logs_as_they_are`);
 /// - cannot_answer if a fitted log contains no information about heat.
-/// `ambient_C` is the user's air temperature for logs without one; NaN if not stated.
+/// `ambient_C` is the user's air temperature for logs without one.
 Admission admit(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out, bool takes_logs_as_they_are,
-                double ambient_C = Assessment::kNotStated_C);
+                std::optional<double> ambient_C = {});
 
 /// Returns true if the fit used rows of this recording. Compares fingerprints of the content; older fit files stored only the name.
 bool was_fitted_to(const MotorFit& fit, const Recording& recording);

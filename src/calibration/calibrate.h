@@ -22,7 +22,7 @@ enum class WrittenFit { best, forecast, innovations };
 
 struct CalibrationOptions {
   FitOptions fit;
-  double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< ambient temperature of logs without one
+  std::optional<double> ambient_C = {};  ///< ambient temperature of logs without one
   WrittenFit written = WrittenFit::best;
 };
 

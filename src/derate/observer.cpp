@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "robot/machine_point.h"
+#include "thermal/lanes.h"
+
 namespace heatsoak {
 
 namespace firmware {
@@ -13,16 +16,38 @@ std::span<const SignalSpec> signals() {
       {"current_A",
        "equivalent DC current (torque per torque constant), rms over the period, with the sign of the speed when the motor drives"},
       {"speed_rad_per_s", "speed of the motor's shaft, signed"},
-      {"ambient_C", "air around the motor; the hottest declared air if it is not measured"},
-      {"vehicle_speed_m_per_s", "speed of the robot through the air, not of its wheels; 0 if it is not known"},
-      {"neighbour_C", "temperature of the motor next to this one; the winding's limit if it is not known"},
-      {"age_h", "operating hours of the motor"},
-      {"acceleration_rad_per_s2", "speed of the motor's shaft, magnitude"},
+      {"ambient_C", "air around the motor; the hottest declared air if it is not measured", quantity_row("ambient")},
+      {"vehicle_speed_m_per_s", "speed of the robot through the air, not of its wheels; 0 if it is not known",
+       quantity_row("vehicle_speed")},
+      {"neighbour_C", "temperature of the motor next to this one; the winding's limit if it is not known",
+       quantity_row("neighbour_temperature")},
+      {"age_h", "operating hours of the motor", quantity_row("age")},
+      {"acceleration_rad_per_s2", "speed of the motor's shaft, magnitude", quantity_row("acceleration")},
   }};
   return kSignals;
 }
 
 }  // namespace firmware
+
+template <class S>
+OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, std::span<const S, firmware::kSignalCount> signals) {
+  const S& current_A = signals[firmware::current];
+  const S& speed_rad_per_s = signals[firmware::speed];
+  const S shaft_power_W = motor.torque_constant_Nm_per_A * current_A * speed_rad_per_s - drag_torque_Nm(motor) * magnitude(speed_rad_per_s);
+  OperatingPoint<S> at = machine_point<S>(motor, robot, current_A, speed_rad_per_s, shaft_power_W);
+  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
+    if (const std::optional<std::size_t> row = firmware::signals()[i].row) {
+      at.*kQuantities<S>[*row].value = signals[i];
+    }
+  }
+  at.neighbour_share = 1.0;
+  at.bus_V = robot.battery.full_V.value_or(robot.battery.nominal_V);
+  return at;
+}
+
+template OperatingPoint<double> operating_point<double>(const MotorValues&, const Robot&, std::span<const double, firmware::kSignalCount>);
+template OperatingPoint<Lanes> operating_point<Lanes>(const MotorValues&, const Robot&, std::span<const Lanes, firmware::kSignalCount>);
+template OperatingPoint<Traced> operating_point<Traced>(const MotorValues&, const Robot&, std::span<const Traced, firmware::kSignalCount>);
 
 namespace {
 

@@ -2,16 +2,16 @@
 #pragma once
 
 #include <array>
-#include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "motor/motor.h"
-#include "robot/machine_point.h"
 #include "robot/robot.h"
 #include "thermal/network.h"
+#include "thermal/operating_point.h"
 #include "thermal/traced.h"
 
 namespace heatsoak {
@@ -20,30 +20,18 @@ namespace heatsoak {
 namespace firmware {
 enum Signal : int { current, speed, ambient, vehicle_speed, neighbour, age, acceleration };
 struct SignalSpec {
-  std::string_view name;     ///< field name in generated code
-  std::string_view meaning;  ///< description with sign convention
+  std::string_view name;                ///< field name in generated code
+  std::string_view meaning;             ///< description with sign convention
+  std::optional<std::size_t> row = {};  ///< row of kQuantities that it sets; current and speed set several
 };
 std::span<const SignalSpec> signals();
 inline constexpr std::size_t kSignalCount = 7;
 }  // namespace firmware
 
-/// Converts the signals to the operating point of the motor's network, for numbers and for traced formulas. The bus has the voltage of a
+/// Converts the signals to the operating point of the motor's network, S is double, Lanes or Traced. The bus has the voltage of a
 /// full battery, if the robot gives one.
 template <class S>
-OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, std::span<const S, firmware::kSignalCount> signals) {
-  const S& current_A = signals[firmware::current];
-  const S& speed_rad_per_s = signals[firmware::speed];
-  const S shaft_power_W = motor.torque_constant_Nm_per_A * current_A * speed_rad_per_s - drag_torque_Nm(motor) * magnitude(speed_rad_per_s);
-  OperatingPoint<S> at = machine_point<S>(motor, robot, current_A, speed_rad_per_s, shaft_power_W);
-  at.ambient_C = signals[firmware::ambient];
-  at.vehicle_speed_m_per_s = signals[firmware::vehicle_speed];
-  at.neighbour_C = signals[firmware::neighbour];
-  at.neighbour_share = 1.0;
-  at.age_h = signals[firmware::age];
-  at.acceleration_rad_per_s2 = signals[firmware::acceleration];
-  at.bus_V = robot.battery.full_V.value_or(robot.battery.nominal_V);
-  return at;
-}
+OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, std::span<const S, firmware::kSignalCount> signals);
 
 /// Rates of the network's temperatures as formulas. Generated heat is multiplied by the safety factor `heat_safety_factor` ≥ 1, so that
 /// motors worse than nominal are covered; conducted heat is not. Winding and stator are the first states, as in every motor's network.

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <set>
 
 #include "base/unknown.h"
 
@@ -58,15 +56,19 @@ std::string column_lacking(const std::string& column, std::span<const Recording>
 }
 
 std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording, const std::vector<double>& time_s) {
-  static const std::set<std::string, std::less<>> kElsewhere{
-      "current_A", "speed_rad_per_s", "bus_V", "power_in_W", "duty_ratio", "vehicle_speed_m_per_s", "neighbour_C", "ambient_C", "age_h"};
+  // The shaft power is torque times speed, so the torque stays a column of its own.
+  const auto is_elsewhere = [](std::string_view key) {
+    return std::ranges::any_of(kQuantities<double>, [&](const OperatingQuantity<double>& each) {
+      return each.column == key && each.signal != Signal::shaft_power;
+    });
+  };
   std::map<std::string, Eigen::VectorXd> columns;
   for (const Channel& channel : recording.channels) {
     // The network's laws use the current's magnitude; its sign is only available from the log.
     const bool has_both_signs = channel.quantity.key == "current_A" &&
                                 std::ranges::any_of(channel.values, [](double a) { return a < 0.0; }) &&
                                 std::ranges::any_of(channel.values, [](double a) { return a > 0.0; });
-    if (channel.quantity.kind != QuantityKind::temperature && (!kElsewhere.contains(channel.quantity.key) || has_both_signs)) {
+    if (channel.quantity.kind != QuantityKind::temperature && (!is_elsewhere(channel.quantity.key) || has_both_signs)) {
       columns.emplace(channel.quantity.key, means_along(channel, recording.time_s, time_s));
     }
   }

@@ -9,21 +9,6 @@
 namespace heatsoak {
 namespace {
 
-struct SignalChannel {
-  Signal signal;
-  std::string_view key;
-  std::string_view words;
-};
-constexpr std::array kSignalChannels{SignalChannel{Signal::current, "current_A", "current"},
-                                     SignalChannel{Signal::speed, "speed_rad_per_s", "speed"},
-                                     SignalChannel{Signal::shaft_power, "torque_Nm", "torque and speed"},
-                                     SignalChannel{Signal::input_power, "power_in_W", "input power"},
-                                     SignalChannel{Signal::modulation, "duty_ratio", "duty ratio"},
-                                     SignalChannel{Signal::bus_voltage, "bus_V", "supply voltage"},
-                                     SignalChannel{Signal::vehicle_speed, "vehicle_speed_m_per_s", "vehicle speed"},
-                                     SignalChannel{Signal::neighbour_temperature, "neighbour_C", "temperature of the neighbour"},
-                                     SignalChannel{Signal::age, "age_h", "hours of running"}};
-
 bool is_there(const Recording& recording, Signal signal, const ShaftTorque& torque) {
   const auto is_recorded = [&](Signal each) { return has_values(recording.find(column_of(each))); };
   if (signal == Signal::modulation && torque.resistance_ohm > 0.0 && torque.per_current_Nm_per_A > 0.0) {
@@ -74,9 +59,9 @@ double of(const std::vector<double>* values, std::size_t row) { return values ? 
 
 }  // namespace
 
-std::string_view column_of(Signal signal) { return std::ranges::find(kSignalChannels, signal, &SignalChannel::signal)->key; }
+std::string_view column_of(Signal signal) { return quantity_of(signal).column; }
 
-std::string_view words_of(Signal signal) { return std::ranges::find(kSignalChannels, signal, &SignalChannel::signal)->words; }
+std::string_view words_of(Signal signal) { return quantity_of(signal).lacking; }
 
 bool has_values(const Channel* channel) {
   return channel && std::ranges::any_of(channel->values, [](double value) { return !std::isnan(value); });
@@ -86,21 +71,29 @@ LogRows::LogRows(const Recording& recording, const MeasuredRunOptions& options)
     : current_A_(values("current_A", recording)),
       speed_rad_per_s_(values("speed_rad_per_s", recording)),
       torque_Nm_(values("torque_Nm", recording)),
-      input_power_W_(values("power_in_W", recording)),
       bus_V_(values("bus_V", recording)),
       modulation_(values("duty_ratio", recording)),
-      vehicle_speed_m_per_s_(values("vehicle_speed_m_per_s", recording)),
       neighbour_C_(values("neighbour_C", recording)),
-      age_h_(values("age_h", recording)),
       surroundings_C_(bridged(values(has_values(recording.find("coolant_C")) ? "coolant_C" : "ambient_C", recording), recording.time_s)),
       is_signed_(has_negative(current_A_) && has_negative(speed_rad_per_s_)),
       is_driven_(current_A_ && std::ranges::any_of(*current_A_, [&](double each_A) { return std::abs(each_A) > options.least_current_A; })),
       time_s_(recording.time_s),
-      options_(options) {}
+      options_(options) {
+  for (std::size_t i = 0; i < kQuantityCount; ++i) {
+    const OperatingQuantity<double>& each = kQuantities<double>[i];
+    columns_[i] = each.from == FromColumn::computed ? nullptr : values(each.column, recording);
+  }
+}
 
 OperatingPoint<double> LogRows::at(std::size_t row) const {
   const double speed_rad_per_s = of(speed_rad_per_s_, row);
   OperatingPoint<double> at;
+  for (std::size_t i = 0; i < kQuantityCount; ++i) {
+    if (const OperatingQuantity<double>& each = kQuantities<double>[i]; each.from != FromColumn::computed) {
+      const double value = of(columns_[i], row);
+      at.*each.value = each.from == FromColumn::magnitude ? std::abs(value) : value;
+    }
+  }
   const bool has_torque_only = !current_A_ && torque_Nm_ && options_.torque.per_current_Nm_per_A > 0.0;
   at.current_rms_A = std::abs(has_torque_only ? current_of_torque_A(of(torque_Nm_, row), speed_rad_per_s) : of(current_A_, row));
   at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = std::abs(speed_rad_per_s);
@@ -108,17 +101,13 @@ OperatingPoint<double> LogRows::at(std::size_t row) const {
   if (speed_rad_per_s_ && row + 1 < time_s_.size()) {
     at.acceleration_rad_per_s2 = std::abs((*speed_rad_per_s_)[row + 1] - speed_rad_per_s) / (time_s_[row + 1] - time_s_[row]);
   }
-  at.ambient_C = surroundings_C_.empty() ? options_.ambient_C : surroundings_C_[row];
+  at.ambient_C = surroundings_C_.empty() ? options_.ambient_C.value_or(kUnknown) : surroundings_C_[row];
   at.shaft_power_W = torque_Nm_ ? of(torque_Nm_, row) * speed_rad_per_s : power_of_current_W(of(current_A_, row), speed_rad_per_s);
-  at.input_power_W = of(input_power_W_, row);
-  at.bus_V = of(bus_V_, row);
   at.modulation_ratio =
       modulation_ ? std::abs(of(modulation_, row)) : modulation_of_current(of(current_A_, row), speed_rad_per_s, at.bus_V);
-  at.vehicle_speed_m_per_s = std::abs(of(vehicle_speed_m_per_s_, row));
   at.neighbour_share = neighbour_C_ && !std::isnan((*neighbour_C_)[row]) ? 1.0 : 0.0;
   at.neighbour_C = neighbour_C_ && at.neighbour_share > 0.0 ? (*neighbour_C_)[row] : 25.0;
   at.unlogged_speed_share = is_driven_ && (!speed_rad_per_s_ || std::isnan(speed_rad_per_s)) ? 1.0 : 0.0;
-  at.age_h = of(age_h_, row);
   return at;
 }
 
@@ -149,35 +138,13 @@ double LogRows::modulation_of_current(double current_A, double speed_rad_per_s, 
   return bus_V > 0.0 ? std::min(1.0, terminal_V / bus_V) : std::isnan(bus_V) ? bus_V : 0.0;
 }
 
-double quantity_of(const OperatingPoint<double>& at, Signal signal) {
-  switch (signal) {
-    case Signal::current:
-      return at.current_rms_A;
-    case Signal::speed:
-      return at.speed_mean_rad_per_s;
-    case Signal::shaft_power:
-      return at.shaft_power_W;
-    case Signal::input_power:
-      return at.input_power_W;
-    case Signal::modulation:
-      return at.modulation_ratio;
-    case Signal::bus_voltage:
-      return at.bus_V;
-    case Signal::vehicle_speed:
-      return at.vehicle_speed_m_per_s;
-    case Signal::neighbour_temperature:
-      return at.neighbour_C;
-    case Signal::age:
-      return at.age_h;
-  }
-  return kUnknown;
-}
+double quantity_of(const OperatingPoint<double>& at, Signal signal) { return at.*quantity_of(signal).value; }
 
 std::vector<Signal> signals_of(const Recording& recording, const ShaftTorque& torque) {
   std::vector<Signal> signals;
-  for (const SignalChannel& each : kSignalChannels) {
-    if (is_there(recording, each.signal, torque)) {
-      signals.push_back(each.signal);
+  for (std::size_t i = 0; i < kSignalCount; ++i) {
+    if (const auto signal = static_cast<Signal>(i); is_there(recording, signal, torque)) {
+      signals.push_back(signal);
     }
   }
   return signals;

@@ -1,6 +1,7 @@
 // Converts the rows of a recording to operating points of a network.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -37,8 +38,9 @@ class LogRows {
   /// Modulation (terminal voltage / supply voltage, at most 1) from back-EMF and resistance. 0 if a constant or a signal is missing.
   [[nodiscard]] double modulation_of_current(double current_A, double speed_rad_per_s, double bus_V) const;
 
-  const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *input_power_W_, *bus_V_, *modulation_, *vehicle_speed_m_per_s_,
-      *neighbour_C_, *age_h_;
+  const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *bus_V_, *modulation_, *neighbour_C_;
+  /// Columns in the order of the table of quantities; null if the log lacks one, or if the quantity is computed.
+  std::array<const std::vector<double>*, kQuantityCount> columns_{};
   std::vector<double> surroundings_C_;
   bool is_signed_;  ///< current and speed both have negative values
   bool is_driven_;  ///< the current exceeds least_current_A at any time

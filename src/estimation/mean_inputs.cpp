@@ -7,26 +7,29 @@ namespace heatsoak {
 namespace {
 
 OperatingPoint<double> squared(OperatingPoint<double> at) {
-  at.current_rms_A *= at.current_rms_A;
-  at.speed_rms_rad_per_s *= at.speed_rms_rad_per_s;
-  at.resistive_headroom_V = 0.0;
+  for (const OperatingQuantity<double>& each : kQuantities<double>) {
+    double& value = at.*each.value;
+    value = each.averaging == AveragingRule::rms ? value * value : each.averaging == AveragingRule::limit ? 0.0 : value;
+  }
   return at;
 }
 
 OperatingPoint<double> rooted(OperatingPoint<double> at) {
-  at.current_rms_A = std::sqrt(std::max(0.0, at.current_rms_A));
-  at.speed_rms_rad_per_s = std::sqrt(std::max(0.0, at.speed_rms_rad_per_s));
-  at.resistive_headroom_V = OperatingPoint<double>{}.resistive_headroom_V;
+  const OperatingPoint<double> unlimited;
+  for (const OperatingQuantity<double>& each : kQuantities<double>) {
+    double& value = at.*each.value;
+    value = each.averaging == AveragingRule::rms     ? std::sqrt(std::max(0.0, value))
+            : each.averaging == AveragingRule::limit ? unlimited.*each.value
+                                                     : value;
+  }
   return at;
 }
 
 /// Copies the motion of `from`. Motion and torque are independent: a motor may push hard at standstill, or turn fast with little torque.
 void set_motion(OperatingPoint<double>& at, const OperatingPoint<double>& from) {
-  at.speed_mean_rad_per_s = from.speed_mean_rad_per_s;
-  at.speed_rms_rad_per_s = from.speed_rms_rad_per_s;
-  at.velocity_rad_per_s = from.velocity_rad_per_s;
-  at.acceleration_rad_per_s2 = from.acceleration_rad_per_s2;
-  at.vehicle_speed_m_per_s = from.vehicle_speed_m_per_s;
+  for (const OperatingQuantity<double>& each : kQuantities<double>) {
+    at.*each.value = each.is_motion ? from.*each.value : at.*each.value;
+  }
 }
 
 }  // namespace

@@ -148,7 +148,7 @@ class Builder {
             {{recording_.file.string()}, std::string(column_of(signal)), "the model needs it, and the log has no such column"});
       }
     }
-    if (!rows_.has_surroundings() && std::isnan(options_.ambient_C)) {
+    if (!rows_.has_surroundings() && !options_.ambient_C) {
       lacking.push_back({{recording_.file.string()}, "ambient_C", "the log has no ambient temperature; state it with --ambient 25degC"});
     }
     if (sensors_.empty()) {

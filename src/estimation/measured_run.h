@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -66,8 +67,7 @@ struct MeasuredRunOptions {
   ShaftTorque torque = {};               ///< used if the recording has no torque but current and speed
   std::vector<SensorFault> faults = {};  ///< stated faults of the sensors
   std::string column = {};               ///< key of the log column that is copied into the operating points
-  double ambient_C = kNotStated_C;       ///< used if the recording has neither coolant nor ambient temperature; NaN: it must have one
-  static constexpr double kNotStated_C = std::numeric_limits<double>::quiet_NaN();
+  std::optional<double> ambient_C = {};  ///< used if the recording has neither coolant nor ambient temperature; empty: it must have one
 };
 
 struct MeasuredRuns {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/quantity.h"
+#include "base/unknown.h"
 
 namespace heatsoak {
 namespace {
@@ -119,7 +120,7 @@ class ColumnsOfRobot {
   static Column directions_rad(const Column& x, const Column& y) {
     Column direction_rad(x.size());
     for (std::size_t row = 0; row < x.size(); ++row) {
-      direction_rad[row] = x[row] == 0.0 && y[row] == 0.0 ? kAbsent : std::atan2(y[row], x[row]);
+      direction_rad[row] = x[row] == 0.0 && y[row] == 0.0 ? kUnknown : std::atan2(y[row], x[row]);
     }
     return direction_rad;
   }

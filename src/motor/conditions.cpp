@@ -16,19 +16,9 @@ namespace {
 /// A hot motor under load, with all signals that a law may need.
 OperatingPoint<double> at_work() {
   OperatingPoint<double> at;
-  at.current_rms_A = 5.0;
-  at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = at.velocity_rad_per_s = 300.0;
-  at.ambient_C = 20.0;
-  at.shaft_power_W = 50.0;
-  at.input_power_W = 80.0;
-  at.bus_V = 24.0;
-  at.modulation_ratio = 0.5;
-  at.vehicle_speed_m_per_s = 2.0;
-  at.neighbour_C = 90.0;
-  at.neighbour_share = 1.0;
-  at.age_h = 100.0;
-  at.acceleration_rad_per_s2 = 100.0;
-  at.copper_loss_W = 10.0;
+  for (const OperatingQuantity<double>& each : kQuantities<double>) {
+    at.*each.value = each.usual;
+  }
   return at;
 }
 
@@ -40,7 +30,7 @@ bool acts_by_default(const MotorEffect& effect, std::span<const double> paramete
   Network network;
   for (std::size_t role = 0; role < effect.nodes.size(); ++role) {
     const std::string& node = effect.nodes[role];
-    const bool is_own = effect.type->nodes[role].own_capacity >= 0;
+    const bool is_own = effect.type->nodes[role].own_capacity.has_value();
     if (!is_own && node != Network::kAmbient && network.find_node(node) < 0) {
       network.add_node(node, 1.0);
     }

@@ -17,7 +17,7 @@ bool is_word(std::string_view name) {
 }
 
 bool brings_node(const EffectType& type) {
-  return std::ranges::any_of(type.nodes, [](const NodeRole& role) { return role.own_capacity >= 0; });
+  return std::ranges::any_of(type.nodes, [](const NodeRole& role) { return role.own_capacity.has_value(); });
 }
 
 struct Entry {
@@ -70,7 +70,7 @@ std::vector<Entry> entries_of(Reader& table) {
 
 void read_nodes(Entry& entry, const std::vector<std::string>& known, MotorEffect& effect) {
   for (const NodeRole& role : entry.type->nodes) {
-    if (role.own_capacity >= 0) {
+    if (role.own_capacity) {
       effect.nodes.push_back(entry.name);
       continue;
     }

@@ -33,19 +33,19 @@ const SensorEffectType* find_sensor_effect(std::string_view name) {
   return found == all_sensor_effects().end() ? nullptr : &*found;
 }
 
-void SensorLaw::apply(std::span<const double> time_s, double size, bool is_change, std::span<double> shown) const {
-  double before_C = shown[0];
-  shown[0] = at_rest(size, before_C, is_change);
+void SensorLaw::apply(std::span<const double> time_s, double size, bool is_change, std::span<double> shown_C) const {
+  double before_C = shown_C[0];
+  shown_C[0] = at_rest(size, before_C, is_change);
   for (std::size_t k = 0; k + 1 < time_s.size(); ++k) {
-    const double now_C = shown[k + 1];
-    shown[k + 1] = next_C(size, time_s[k + 1] - time_s[k], before_C, now_C, shown[k], is_change);
+    const double now_C = shown_C[k + 1];
+    shown_C[k + 1] = next_C(size, time_s[k + 1] - time_s[k], before_C, now_C, shown_C[k], is_change);
     before_C = now_C;
   }
 }
 
-void apply(std::span<const SensorFault> faults, std::span<const double> time_s, bool is_change, std::span<double> shown) {
+void apply(std::span<const SensorFault> faults, std::span<const double> time_s, bool is_change, std::span<double> shown_C) {
   for (const SensorFault& fault : faults) {
-    fault.type->law.apply(time_s, fault.size, is_change, shown);
+    fault.type->law.apply(time_s, fault.size, is_change, shown_C);
   }
 }
 

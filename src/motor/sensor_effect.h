@@ -22,8 +22,8 @@ struct SensorLaw {
   [[nodiscard]] double next_C(double size, double duration_s, double before_C, double now_C, double sensor_C, bool is_change) const {
     return after ? after(size, duration_s, before_C, now_C, sensor_C) : at_rest(size, now_C, is_change);
   }
-  /// Replaces the true temperatures in `shown` (with `is_change` a derivative of them) at `time_s` by the readings.
-  void apply(std::span<const double> time_s, double size, bool is_change, std::span<double> shown) const;
+  /// Replaces the true temperatures in `shown_C` (with `is_change` a derivative of them) at `time_s` by the readings.
+  void apply(std::span<const double> time_s, double size, bool is_change, std::span<double> shown_C) const;
 };
 
 /// A hand-calculated example of the equation; a test runs it for every sensor effect.
@@ -63,7 +63,7 @@ struct SensorFault {
 // A sensor with several faults: each acts on the reading of the one before.
 
 /// Like SensorLaw::apply(), for all faults in order.
-void apply(std::span<const SensorFault> faults, std::span<const double> time_s, bool is_change, std::span<double> shown);
+void apply(std::span<const SensorFault> faults, std::span<const double> time_s, bool is_change, std::span<double> shown_C);
 /// Reading of a constant temperature, and the constant temperature of a reading.
 double sensor_at_rest_C(std::span<const SensorFault> faults, double true_C);
 double true_at_rest_C(std::span<const SensorFault> faults, double sensor_C);

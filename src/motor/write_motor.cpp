@@ -75,7 +75,7 @@ std::string effect_text(const MotorEffect& effect) {
   std::string text = head_of_effect(effect.name, effect.type->name);
   for (std::size_t role = 0; role < effect.nodes.size(); ++role) {
     // A node of the effect's own has the effect's name and is not written.
-    if (effect.type->nodes[role].own_capacity < 0) {
+    if (!effect.type->nodes[role].own_capacity) {
       text += fmt::format("{} = {}\n", effect.type->nodes[role].role, toml_text(effect.nodes[role]));
     }
   }

@@ -221,7 +221,7 @@ void Assessment::report_channels(const RecordingReport& report) {
   }
 }
 
-DataQuality Assessment::conclude(const RecordingReport& report, double ambient_C) {
+DataQuality Assessment::conclude(const RecordingReport& report, std::optional<double> ambient_C) {
   const Recording& rows = condensed_.rows();
   Sampling& sampling = quality_.sampling;
   sampling.duration_s = last_s_ - first_s_;
@@ -248,7 +248,7 @@ DataQuality Assessment::conclude(const RecordingReport& report, double ambient_C
   return std::move(quality_);
 }
 
-DataQuality assess(const Recording& recording, const RecordingReport& report, double ambient_C) {
+DataQuality assess(const Recording& recording, const RecordingReport& report, std::optional<double> ambient_C) {
   Assessment assessment;
   for (std::size_t begin = 0; begin < recording.rows(); begin += CondensedRecording::kMostRows) {
     assessment.add(recording.slice(begin, std::min(begin + CondensedRecording::kMostRows, recording.rows())));

@@ -78,13 +78,11 @@ struct DataQuality {
 /// Assesses a log part by part with bounded memory.
 class Assessment {
  public:
-  static constexpr double kNotStated_C = std::numeric_limits<double>::quiet_NaN();
-
   /// Adds the next part, as returned by RecordingStream.
   void add(const Recording& part);
-  /// Returns the result after the last part. Channels without samples are not listed. `ambient_C`: air temperature stated by the user, NaN
-  /// if not stated.
-  DataQuality conclude(const RecordingReport& report, double ambient_C = kNotStated_C);
+  /// Returns the result after the last part. Channels without samples are not listed. `ambient_C`: air temperature if the
+  /// user states it.
+  DataQuality conclude(const RecordingReport& report, std::optional<double> ambient_C = {});
   [[nodiscard]] const CondensedRecording& condensed() const { return condensed_; }
 
  private:
@@ -109,7 +107,7 @@ class Assessment {
   DataQuality quality_;
 };
 
-DataQuality assess(const Recording& recording, const RecordingReport& report, double ambient_C = Assessment::kNotStated_C);
+DataQuality assess(const Recording& recording, const RecordingReport& report, std::optional<double> ambient_C = {});
 
 /// Throws Failure (cannot_answer) if the recording contains no information about a thermal network: too short, no changes, no temperature
 /// or no heat input.

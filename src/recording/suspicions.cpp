@@ -22,7 +22,7 @@ namespace {
 
 class Suspector {
  public:
-  Suspector(const Recording& recording, const DataQuality& data, double ambient_C)
+  Suspector(const Recording& recording, const DataQuality& data, std::optional<double> ambient_C)
       : recording_(recording), quality_(data), ambient_C_(ambient_C) {}
 
   Suspicions run() {
@@ -269,13 +269,13 @@ class Suspector {
 
   const Recording& recording_;
   const DataQuality& quality_;
-  double ambient_C_;
+  std::optional<double> ambient_C_;
   std::vector<std::string> found_;
 };
 
 }  // namespace
 
-Suspicions suspicions(const Recording& recording, const DataQuality& quality, double ambient_C) {
+Suspicions suspicions(const Recording& recording, const DataQuality& quality, std::optional<double> ambient_C) {
   return Suspector(recording, quality, ambient_C).run();
 }
 

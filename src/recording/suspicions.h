@@ -1,6 +1,7 @@
 // Detects probable wrong units, wrong signs and swapped channels. They are reported to the user, never corrected.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,8 @@ struct Suspicions {
   std::vector<std::string> blocking;             ///< subset about units, signs and sensors that, if true, prevents any fit
   std::vector<std::string> blocking_for_wheels;  ///< subset about a robot's wheels and angles, and about the clock
 };
-/// Returns the suspicions as sentences. `quality` must contain sampling, channels and clock offsets. `ambient_C`: air temperature stated by
-/// the user, NaN if not stated.
-Suspicions suspicions(const Recording& recording, const DataQuality& quality, double ambient_C);
+/// Returns the suspicions as sentences. `quality` must contain sampling, channels and clock offsets. `ambient_C`: air temperature if the
+/// user states it.
+Suspicions suspicions(const Recording& recording, const DataQuality& quality, std::optional<double> ambient_C);
 
 }  // namespace heatsoak

@@ -84,7 +84,7 @@ bool never_falls(const Channel& channel, double degree) {
 
 class Scales {
  public:
-  Scales(const Recording& recording, double ambient_C)
+  Scales(const Recording& recording, std::optional<double> ambient_C)
       : recording_(recording), ambient_(recording.find("ambient_C")), stated_C_(ambient_C) {
     for (const Channel& channel : recording.channels) {
       if (channel.quantity.kind == QuantityKind::temperature) {
@@ -152,10 +152,10 @@ class Scales {
       return std::ranges::all_of(others_C, [=](double other_C) { return std::abs(other_C - value_C) < within_K; });
     };
     constexpr double kAllAlike_K = 10.0;
-    const bool room_is_as_hot = ambient_ == nullptr && std::abs(stated_C_ - start) < kApart_K;
+    const bool room_is_as_hot = ambient_ == nullptr && stated_C_ && std::abs(*stated_C_ - start) < kApart_K;
     const bool all_are_alike = !others_C.empty() && all_within(start, kAllAlike_K) && !room_is_as_hot;
-    if (ambient_ == nullptr && !std::isnan(stated_C_)) {
-      others_C.push_back(stated_C_);
+    if (ambient_ == nullptr && stated_C_) {
+      others_C.push_back(*stated_C_);
     }
     const bool stands_apart = std::ranges::none_of(others_C, [start](double other_C) { return std::abs(other_C - start) < kApart_K; });
     // If the others start at different temperatures, this one may be warm too.
@@ -176,7 +176,7 @@ class Scales {
 
   /// Detects a motor in Fahrenheit: all sensors start alike, far above room temperature, but at room temperature if read as Fahrenheit.
   void motor_in_fahrenheit() {
-    const double room_C = ambient_ != nullptr ? at_start(*ambient_) : stated_C_;
+    const double room_C = ambient_ != nullptr ? at_start(*ambient_) : stated_C_.value_or(kUnknown);
     if (std::isnan(room_C) || sensors_.size() < 2) {
       return;
     }
@@ -196,7 +196,7 @@ class Scales {
 
   /// Detects Fahrenheit from a cool-down: without heat, a motor approaches the air temperature, but in Fahrenheit a value far above it.
   void cooling_in_fahrenheit() {
-    const double room_C = ambient_ != nullptr ? middle_of(ambient_->values) : stated_C_;
+    const double room_C = ambient_ != nullptr ? middle_of(ambient_->values) : stated_C_.value_or(kUnknown);
     if (std::isnan(room_C) || sensors_.empty() || is_told_) {
       return;
     }
@@ -217,7 +217,7 @@ class Scales {
 
   const Recording& recording_;
   const Channel* ambient_;
-  double stated_C_;
+  std::optional<double> stated_C_;
   bool is_told_ = false;                  ///< true: Fahrenheit has already been reported for a sensor of the motor
   std::vector<const Channel*> sensors_;   ///< temperatures of the motor
   std::vector<const Channel*> channels_;  ///< these and the surroundings
@@ -226,6 +226,8 @@ class Scales {
 
 }  // namespace
 
-std::vector<std::string> suspicious_scales(const Recording& recording, double ambient_C) { return Scales(recording, ambient_C).run(); }
+std::vector<std::string> suspicious_scales(const Recording& recording, std::optional<double> ambient_C) {
+  return Scales(recording, ambient_C).run();
+}
 
 }  // namespace heatsoak

@@ -1,6 +1,7 @@
 // Detects temperatures that are probably in kelvin, degrees Fahrenheit or tenths of degrees.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,8 +9,8 @@
 
 namespace heatsoak {
 
-/// Returns sentences about suspicious temperature scales. `ambient_C`: air temperature stated by the user, NaN if not stated; the
+/// Returns sentences about suspicious temperature scales. `ambient_C`: air temperature if the user states it; the
 /// recording's own ambient temperature takes precedence.
-std::vector<std::string> suspicious_scales(const Recording& recording, double ambient_C);
+std::vector<std::string> suspicious_scales(const Recording& recording, std::optional<double> ambient_C);
 
 }  // namespace heatsoak

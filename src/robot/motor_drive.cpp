@@ -6,6 +6,8 @@
 
 #include "base/copper.h"
 #include "robot/machine_point.h"
+#include "thermal/lanes.h"
+#include "thermal/traced.h"
 
 namespace heatsoak {
 namespace {
@@ -64,6 +66,35 @@ double heating_factor(const Robot& robot) {
   // 0.75·R·Î² relative to R·I² at equal torque, with Î = I/(√3·π/6), is (3/π)².
   return robot.drive.commutation == Commutation::sinusoidal ? 3.0 / std::numbers::pi : 1.0;
 }
+
+template <class S>
+S input_power_W(const MotorValues& motor, const S& heating_current_A, const S& shaft_power_W, const S& speed_rad_per_s) {
+  return heating_current_A * heating_current_A * motor.terminal_resistance_ohm + shaft_power_W + drag_torque_Nm(motor) * speed_rad_per_s;
+}
+
+template <class S>
+OperatingPoint<S> machine_point(const MotorValues& motor, const Robot& robot, const S& current_A, const S& velocity_rad_per_s,
+                                const S& shaft_power_W) {
+  OperatingPoint<S> at;
+  at.current_rms_A = magnitude(current_A) * heating_factor(robot);
+  at.speed_mean_rad_per_s = magnitude(velocity_rad_per_s);
+  at.speed_rms_rad_per_s = at.speed_mean_rad_per_s;
+  at.velocity_rad_per_s = velocity_rad_per_s;
+  at.shaft_power_W = shaft_power_W;
+  at.input_power_W = input_power_W(motor, at.current_rms_A, shaft_power_W, at.speed_mean_rad_per_s);
+  at.bus_V = robot.battery.nominal_V;
+  const S terminal_V = current_A * motor.terminal_resistance_ohm + motor.torque_constant_Nm_per_A * velocity_rad_per_s;
+  const S modulation_ratio = magnitude(terminal_V + current_A * robot.series_resistance_ohm()) / robot.battery.nominal_V;
+  at.modulation_ratio = modulation_ratio - positive_part(modulation_ratio - 1.0);
+  return at;
+}
+
+template double input_power_W<double>(const MotorValues&, const double&, const double&, const double&);
+template OperatingPoint<double> machine_point<double>(const MotorValues&, const Robot&, const double&, const double&, const double&);
+template Lanes input_power_W<Lanes>(const MotorValues&, const Lanes&, const Lanes&, const Lanes&);
+template OperatingPoint<Lanes> machine_point<Lanes>(const MotorValues&, const Robot&, const Lanes&, const Lanes&, const Lanes&);
+template Traced input_power_W<Traced>(const MotorValues&, const Traced&, const Traced&, const Traced&);
+template OperatingPoint<Traced> machine_point<Traced>(const MotorValues&, const Robot&, const Traced&, const Traced&, const Traced&);
 
 OperatingPoint<double> operating_point(const DrivePoint& point, const MotorValues& motor, const Robot& robot, double ambient_C) {
   const double speed_rad_per_s = std::abs(point.motor_speed_rad_per_s);

@@ -1,6 +1,8 @@
 // One match in a closed loop: the game's commands as the ideal robot got them, driven by the real one.
 #pragma once
 
+#include <optional>
+
 #include "base/parallel.h"
 #include "duty/match/match_duty.h"
 #include "simulate/drive_score.h"
@@ -10,7 +12,7 @@ namespace heatsoak {
 struct MatchRunOptions {
   Planner planner = Planner::jerk_limited;
   double ambient_C = 25.0;
-  double start_C = kAbsent;  ///< of the motors; absent: ambient
+  std::optional<double> start_C = {};  ///< of the motors; empty: ambient
   DriveOptions drive;
   Progress progress;  ///< in whole seconds of the match
 };

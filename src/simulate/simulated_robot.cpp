@@ -71,11 +71,11 @@ struct SimulatedRobot::Heating {
   int periods = 0;
 };
 
-SimulatedRobot::SimulatedRobot(const Robot& robot, const Motor& motor, double ambient_C, double start_C)
+SimulatedRobot::SimulatedRobot(const Robot& robot, const Motor& motor, double ambient_C, std::optional<double> start_C)
     : plant_(make_plant(robot, motor.nominal, kPeriod_s)),
       state_(plant_at_rest(plant_)),
       ambient_C_(ambient_C),
-      heating_(std::make_unique<Heating>(plant_, motor, ambient_C, std::isnan(start_C) ? ambient_C : start_C)) {
+      heating_(std::make_unique<Heating>(plant_, motor, ambient_C, start_C.value_or(ambient_C))) {
   input_.winding_C.fill(winding_C(0));
   input_.magnet_C.fill(stator_C(0));
   input_.external_height_m = plant_.body.weight.center_of_gravity_height_m;

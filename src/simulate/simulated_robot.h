@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "motor/motor.h"
 #include "robot/plant.h"
@@ -39,9 +40,9 @@ class SimulatedRobot {
   static constexpr double kPeriod_s = 0.001;
   static constexpr double kThermalPeriod_s = 0.01;
 
-  /// Motors start at `start_C`, or at ambient temperature where it is absent. Throws Failure (bad_input) that names what the robot's or
+  /// Motors start at `start_C`, or at ambient temperature without it. Throws Failure (bad_input) that names what the robot's or
   /// the motor's file lacks.
-  SimulatedRobot(const Robot& robot, const Motor& motor, double ambient_C, double start_C = kAbsent);
+  SimulatedRobot(const Robot& robot, const Motor& motor, double ambient_C, std::optional<double> start_C = {});
   ~SimulatedRobot();
   SimulatedRobot(const SimulatedRobot&) = delete;
   SimulatedRobot& operator=(const SimulatedRobot&) = delete;

@@ -1,6 +1,7 @@
 // Effects: an effect is one physical law with its parameters. This header has the description, law.h the law.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -15,15 +16,15 @@ struct Laws;
 struct NodeRole {
   std::string_view role;          ///< key in a motor file by which another node can play the role
   std::string_view default_node;  ///< node that plays the role by default
-  /// Index of the parameter that is the node's heat capacity if the effect adds a node of its own; -1 if it does not.
-  int own_capacity = -1;
+  /// Index of the parameter that is the node's heat capacity if the effect adds a node of its own.
+  std::optional<int> own_capacity = {};
 };
 
 /// How an effect is proposed when a model may lack it: parameter values typical for a motor of about 50 W, one variant for each
 /// distinguishable shape of the law.
 struct Candidacy {
-  /// Index of the parameter that the heat is proportional to; 0 is the model without the effect. -1: the effect is never a candidate.
-  int size_parameter = -1;
+  /// Index of the parameter that the heat is proportional to; 0 is the model without the effect. Empty: the effect is never a candidate.
+  std::optional<int> size_parameter = {};
   std::vector<std::vector<double>> variants;
   std::string_view family;      ///< name of the group while the exact law is undetermined: "speed loss at the stator"
   std::string_view experiment;  ///< measurement that separates it from the effects it is confounded with

@@ -77,8 +77,8 @@ void Network::add_effect(std::string name, const EffectType& type, std::span<con
         {fmt::format("{}.{}", effect.name, spec.key), unit_of(type.parameters, i, parameters), spec.range, parameters[i], spec.choices}));
   }
   for (std::size_t role = 0; role < nodes.size(); ++role) {
-    if (const int capacity = type.nodes[role].own_capacity; capacity >= 0) {
-      add_state(nodes[role], effect.parameter_index[static_cast<std::size_t>(capacity)]);
+    if (const std::optional<int> capacity = type.nodes[role].own_capacity) {
+      add_state(nodes[role], effect.parameter_index[static_cast<std::size_t>(*capacity)]);
     }
   }
   for (const std::string& node : nodes) {

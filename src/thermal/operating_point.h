@@ -1,15 +1,22 @@
-// Operating point of the machine: every quantity that a thermal law may depend on.
+// Operating point of the machine: every quantity that a thermal law may depend on, and the table of these quantities.
 #pragma once
 
+#include <array>
 #include <limits>
+#include <optional>
+#include <string_view>
+#include <utility>
 
 namespace heatsoak {
 
 /// Means over one interval, chosen so that intervals can be merged without changing the heat: I²R uses the RMS current, a loss ∝ |ω| the
 /// mean speed, one ∝ ω² the RMS speed. Products such as |I|·ω² use the product of the means. That is accurate if the interval is short
-/// compared with load changes, like the rows of a log.
+/// compared with load changes, like the rows of a log. The default of a quantity is the assumption without a
+/// measurement.
 template <class S>
 struct OperatingPoint {
+  using Scalar = S;
+
   S current_rms_A = S(0.0);  ///< equivalent DC current at the terminals: I² times the resistance of two phases in series is the heat
   S speed_mean_rad_per_s = S(0.0);  ///< mean of |ω|, motor shaft
   S speed_rms_rad_per_s = S(0.0);   ///< root mean square of ω, motor shaft
@@ -34,33 +41,93 @@ struct OperatingPoint {
   S copper_loss_W = S(0.0);            ///< copper loss of the network, which sets it before it evaluates the other laws
 };
 
-/// Calls f for each quantity, with that quantity of all given points as arguments.
-template <class F, class... Point>
-constexpr void for_each_quantity(F&& f, Point&... at) {
-  f(at.current_rms_A...);
-  f(at.speed_mean_rad_per_s...);
-  f(at.speed_rms_rad_per_s...);
-  f(at.ambient_C...);
-  f(at.resistive_headroom_V...);
-  f(at.series_resistance_ohm...);
-  f(at.shaft_power_W...);
-  f(at.input_power_W...);
-  f(at.bus_V...);
-  f(at.modulation_ratio...);
-  f(at.vehicle_speed_m_per_s...);
-  f(at.neighbour_C...);
-  f(at.neighbour_share...);
-  f(at.unlogged_speed_share...);
-  f(at.age_h...);
-  f(at.velocity_rad_per_s...);
-  f(at.acceleration_rad_per_s2...);
-  f(at.column...);
-  f(at.column_share...);
-  f(at.copper_loss_W...);
-}
-
 /// Signals, other than temperatures, that a law may need. A log without one of them holds no evidence about the law. The copper loss is
 /// computed from the current; velocity and acceleration need the speed.
 enum class Signal { current, speed, shaft_power, input_power, modulation, bus_voltage, vehicle_speed, neighbour_temperature, age };
+inline constexpr std::size_t kSignalCount = 9;
+
+/// How a quantity is averaged over time. RMS: its square is averaged. A limit is not averaged.
+enum class AveragingRule { mean, rms, limit };
+
+/// How a log column becomes the quantity.
+enum class FromColumn {
+  value,
+  magnitude,
+  computed  ///< from several columns: estimation/log_rows.cpp
+};
+
+/// One row of the table of quantities; S as in OperatingPoint.
+template <class S>
+struct OperatingQuantity {
+  S OperatingPoint<S>::*value;
+  std::string_view name;  ///< in messages with spaces: "shaft power"
+  std::string_view unit;
+  double usual = 0.0;  ///< value of a hot motor under load, in SI units (°C, h)
+  AveragingRule averaging = AveragingRule::mean;
+  bool is_motion = false;  ///< varies with the motion, independently of the torque
+  std::optional<Signal> signal = {};
+  std::string_view column = {};  ///< log column of the signal; one quantity of each signal has it
+  FromColumn from = FromColumn::computed;
+  std::string_view lacking = {};  ///< what a log without the signal lacks
+  bool is_driver = false;         ///< can be the input signal of a measured curve (effect `tabulated`)
+  std::string_view meaning = {};  ///< description as an input signal
+};
+
+// clang-format off
+/// Every member of OperatingPoint once; the order of the input signals is also that in which a diagnosis tries them.
+template <class S, class P = OperatingPoint<S>>
+inline constexpr std::array kQuantities{
+    OperatingQuantity<S>{&P::speed_mean_rad_per_s, "speed", "rad/s", 300.0, AveragingRule::mean, true, Signal::speed, "speed_rad_per_s", FromColumn::computed, "speed", true, "mean of |ω|"},
+    OperatingQuantity<S>{&P::velocity_rad_per_s, "velocity", "rad/s", 300.0, AveragingRule::mean, true, Signal::speed, "", FromColumn::computed, "", true, "ω with its sign"},
+    OperatingQuantity<S>{&P::current_rms_A, "current", "A", 5.0, AveragingRule::rms, false, Signal::current, "current_A", FromColumn::computed, "current", true, "rms"},
+    OperatingQuantity<S>{&P::modulation_ratio, "modulation", "", 0.5, AveragingRule::mean, false, Signal::modulation, "duty_ratio", FromColumn::computed, "duty ratio", true, "|V_motor|/V_bus"},
+    OperatingQuantity<S>{&P::shaft_power_W, "shaft_power", "W", 50.0, AveragingRule::mean, false, Signal::shaft_power, "torque_Nm", FromColumn::computed, "torque and speed", true, "more than 0 drives"},
+    OperatingQuantity<S>{&P::input_power_W, "input_power", "W", 80.0, AveragingRule::mean, false, Signal::input_power, "power_in_W", FromColumn::value, "input power", true, "electrical"},
+    OperatingQuantity<S>{&P::acceleration_rad_per_s2, "acceleration", "rad/s2", 100.0, AveragingRule::mean, true, Signal::speed, "", FromColumn::computed, "", true, "mean of |dω/dt|"},
+    OperatingQuantity<S>{&P::bus_V, "bus_voltage", "V", 24.0, AveragingRule::mean, false, Signal::bus_voltage, "bus_V", FromColumn::value, "supply voltage", true, "supply"},
+    OperatingQuantity<S>{&P::vehicle_speed_m_per_s, "vehicle_speed", "m/s", 2.0, AveragingRule::mean, true, Signal::vehicle_speed, "vehicle_speed_m_per_s", FromColumn::magnitude, "vehicle speed", true, "magnitude"},
+    OperatingQuantity<S>{&P::age_h, "age", "h", 100.0, AveragingRule::mean, false, Signal::age, "age_h", FromColumn::value, "hours of running", true, "operating hours"},
+    OperatingQuantity<S>{&P::neighbour_C, "neighbour_temperature", "degC", 90.0, AveragingRule::mean, false, Signal::neighbour_temperature, "neighbour_C", FromColumn::computed, "temperature of the neighbour"},
+    OperatingQuantity<S>{&P::neighbour_share, "neighbour_share", "", 1.0},
+    OperatingQuantity<S>{&P::ambient_C, "ambient", "degC", 20.0, AveragingRule::mean, false, {}, "ambient_C"},
+    OperatingQuantity<S>{&P::speed_rms_rad_per_s, "speed_rms", "rad/s", 300.0, AveragingRule::rms, true, Signal::speed},
+    OperatingQuantity<S>{&P::resistive_headroom_V, "resistive_headroom", "V", std::numeric_limits<double>::infinity(), AveragingRule::limit},
+    OperatingQuantity<S>{&P::series_resistance_ohm, "series_resistance", "ohm"},
+    OperatingQuantity<S>{&P::unlogged_speed_share, "unlogged_speed_share", ""},
+    OperatingQuantity<S>{&P::column, "column", ""},
+    OperatingQuantity<S>{&P::column_share, "column_share", ""},
+    OperatingQuantity<S>{&P::copper_loss_W, "copper_loss", "W", 10.0},
+};
+// clang-format on
+
+inline constexpr std::size_t kQuantityCount = kQuantities<double>.size();
+static_assert(sizeof(OperatingPoint<double>) == kQuantityCount * sizeof(double), "every member of OperatingPoint needs one row");
+
+/// Returns the index of a quantity in the table; kQuantityCount if there is none of that name.
+constexpr std::size_t quantity_row(std::string_view name) {
+  std::size_t row = 0;
+  while (row < kQuantityCount && kQuantities<double>[row].name != name) {
+    ++row;
+  }
+  return row;
+}
+
+/// Returns the row with the log column of a signal.
+constexpr const OperatingQuantity<double>& quantity_of(Signal signal) {
+  for (const OperatingQuantity<double>& each : kQuantities<double>) {
+    if (each.signal == signal && !each.column.empty()) {
+      return each;
+    }
+  }
+  return kQuantities<double>.front();
+}
+
+/// Calls f for each quantity, with that quantity of all given points as arguments.
+template <class F, class... Point>
+constexpr void for_each_quantity(F&& f, Point&... at) {
+  const auto one = [&]<std::size_t i>() { f(at.*(kQuantities<typename Point::Scalar>[i].value)...); };
+  [&]<std::size_t... i>(std::index_sequence<i...>) { (one.template operator()<i>(), ...); }
+  (std::make_index_sequence<kQuantityCount>());
+}
 
 }  // namespace heatsoak

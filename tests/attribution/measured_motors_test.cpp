@@ -24,8 +24,7 @@ Recording read(const std::filesystem::path& log, const std::filesystem::path& ma
   return read_recording(log, mapping_for(log.string(), map.string()), report);
 }
 
-std::vector<MeasuredRun> runs_of(const ModelOfLogs& model, const std::vector<Recording>& recordings,
-                                 double ambient_C = MeasuredRunOptions::kNotStated_C) {
+std::vector<MeasuredRun> runs_of(const ModelOfLogs& model, const std::vector<Recording>& recordings, std::optional<double> ambient_C = {}) {
   std::vector<MeasuredRun> all;
   MeasuredRunOptions how = model.how;
   how.ambient_C = ambient_C;
@@ -44,7 +43,7 @@ struct Diagnosed {
 };
 
 Diagnosed diagnosed(const Motor& motor, const std::vector<Recording>& train, const std::vector<Recording>& holdout,
-                    double ambient_C = MeasuredRunOptions::kNotStated_C) {
+                    std::optional<double> ambient_C = {}) {
   Diagnosed out{model_of_logs(motor, train), {}, {}, {}};
   out.input = {out.model.model, runs_of(out.model, train, ambient_C)};
   out.diagnosis = diagnose(out.input, {});

@@ -33,7 +33,7 @@ std::vector<Recording> logs_of(const TwoNodeTruth& truth, const LogMaking& makin
 
 std::vector<MeasuredRun> runs_of(const ForecastSetup& setup, const std::vector<Recording>& logs) {
   std::vector<std::string> notes;
-  return forecast_runs(setup, logs, MeasuredRunOptions::kNotStated_C, notes);
+  return forecast_runs(setup, logs, std::nullopt, notes);
 }
 
 /// White noise has as many independent samples as samples. For x(k+1) = a·x(k) + noise the share is (1 − a)/(1 + a).

@@ -144,12 +144,12 @@ void make_certain(ParameterValue& figure) {
 TEST_F(EffectsOfAFile, samples_agree_with_the_reference_where_nothing_is_uncertain) {
   std::string everything;
   for (const EffectType& type : all_effects()) {
-    if (type.candidacy.size_parameter < 0) {
+    if (!type.candidacy.size_parameter) {
       continue;
     }
     everything += "\n[effects.my_" + std::string(type.name) + "]\ntype = \"" + std::string(type.name) + "\"\n";
     std::vector<double> values = type.candidacy.variants.front();
-    values[static_cast<std::size_t>(type.candidacy.size_parameter)] *= 0.2;
+    values[static_cast<std::size_t>(*type.candidacy.size_parameter)] *= 0.2;
     for (std::size_t i = 0; i < values.size(); ++i) {
       everything += estimated(std::string(type.parameters[i].key), std::to_string(values[i]) + " " + std::string(type.parameters[i].unit));
     }

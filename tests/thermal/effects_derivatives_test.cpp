@@ -133,7 +133,7 @@ TEST(Linearise, agrees_with_differences_of_the_rate_with_every_effect_in_place) 
       State state = random_state(chance, type);
       std::vector<std::string> nodes;
       for (const NodeRole& role : type.nodes) {
-        nodes.emplace_back(role.own_capacity >= 0 ? type.name : role.default_node);
+        nodes.emplace_back(role.own_capacity ? type.name : role.default_node);
       }
       network.add_effect(std::string(type.name), type, nodes, state.parameters);
     }

@@ -238,11 +238,11 @@ TEST_P(EveryEffect, balance_and_rate_of_a_network_agree) {
 class EveryCandidate : public EveryEffect {
  protected:
   void SetUp() override {
-    if (type().candidacy.size_parameter < 0) {
+    if (!type().candidacy.size_parameter) {
       GTEST_SKIP() << "never a candidate";
     }
   }
-  static std::size_t size_place() { return static_cast<std::size_t>(type().candidacy.size_parameter); }
+  static std::size_t size_place() { return static_cast<std::size_t>(*type().candidacy.size_parameter); }
 };
 INSTANTIATE_TEST_SUITE_P(Registry, EveryCandidate, every_effect(), name_of_effect);
 
@@ -302,7 +302,7 @@ TEST_P(EveryCandidate, of_typical_size_books_watts) {
     at.copper_loss_W = 10.0;
     std::vector<double> temperature_C;
     for (const NodeRole& role : type().nodes) {
-      temperature_C.push_back(role.own_capacity >= 0           ? 35.0
+      temperature_C.push_back(role.own_capacity                ? 35.0
                               : role.default_node == "winding" ? 90.0
                               : role.default_node == "stator"  ? 70.0
                                                                : 25.0);

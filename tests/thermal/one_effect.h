@@ -99,15 +99,15 @@ inline double size_of(const std::vector<double>& values) {
 inline std::vector<std::string> add_alone(Network& network, const std::string& name, const EffectType& type, Chance& chance) {
   std::vector<std::string> nodes;
   for (const NodeRole& role : type.nodes) {
-    nodes.emplace_back(role.own_capacity >= 0 ? name : role.default_node);
-    if (role.own_capacity < 0 && network.find_node(nodes.back()) < 0) {
+    nodes.emplace_back(role.own_capacity ? name : role.default_node);
+    if (!role.own_capacity && network.find_node(nodes.back()) < 0) {
       network.add_node(nodes.back(), chance.by_ratio(1.0, 100.0));
     }
   }
   std::vector<double> parameters = random_parameters(chance, type);
   for (const NodeRole& role : type.nodes) {
-    if (role.own_capacity >= 0) {
-      parameters[static_cast<std::size_t>(role.own_capacity)] = chance.by_ratio(1.0, 100.0);
+    if (role.own_capacity) {
+      parameters[static_cast<std::size_t>(*role.own_capacity)] = chance.by_ratio(1.0, 100.0);
     }
   }
   network.add_effect(name, type, nodes, parameters);

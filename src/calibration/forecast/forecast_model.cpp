@@ -67,11 +67,11 @@ void ForecastModel::find_heat() {
 
 void ForecastModel::find_conditions(const Motor& motor) {
   for (const MotorEffect& effect : motor.effects) {
-    const int size = effect.type->candidacy.size_parameter;
+    const std::optional<int> size = effect.type->candidacy.size_parameter;
     // An effect is not in the network if its condition holds in no recording.
     const EffectInPlace* const in_place = effect_named(network(), effect.name);
-    if (!effect.condition.empty() && size >= 0 && in_place) {
-      conditional_.push_back({in_place->parameter_index[static_cast<std::size_t>(size)], effect.condition});
+    if (!effect.condition.empty() && size && in_place) {
+      conditional_.push_back({in_place->parameter_index[static_cast<std::size_t>(*size)], effect.condition});
     }
   }
 }

@@ -113,7 +113,7 @@ PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, c
   return out;
 }
 
-std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const Recording> recordings, double ambient_C,
+std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const Recording> recordings, std::optional<double> ambient_C,
                                        std::vector<std::string>& notes) {
   MeasuredRunOptions how = how_to_read(setup.motor, setup.heat);
   how.needed = setup.model().motor().needed;

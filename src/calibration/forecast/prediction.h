@@ -1,6 +1,7 @@
 // Predicts logs with a motor file: temperatures, their 90 % band, and their errors.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,12 +41,12 @@ PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, c
                      const MeasuredRun& run);
 
 /// Reads the runs of the recordings with the signals that the setup's model needs. Appends to `notes`. Throws Failure as measured_runs().
-std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const Recording> recordings, double ambient_C,
+std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const Recording> recordings, std::optional<double> ambient_C,
                                        std::vector<std::string>& notes);
 
 struct PredictionOptions {
-  double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< for logs without an ambient temperature
-  bool turns_within_rows = false;                       ///< interpolates speeds whose sign changes from row to row (turning_rows.h)
+  std::optional<double> ambient_C = {};  ///< for logs without an ambient temperature
+  bool turns_within_rows = false;        ///< interpolates speeds whose sign changes from row to row (turning_rows.h)
 };
 
 /// Predicts each recording separately with the heat input that it has: power balance, current, torque or input power. Without a fit in the

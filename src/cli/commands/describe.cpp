@@ -249,10 +249,10 @@ Description describe_duty(const Duty& duty) {
   return result;
 }
 
-std::string_view to_string(Signal signal) {
-  constexpr std::array<std::string_view, 9> kNames{"current",     "speed",         "shaft power",           "input power", "modulation",
-                                                   "bus voltage", "vehicle speed", "neighbour temperature", "age"};
-  return kNames.at(static_cast<std::size_t>(signal));
+std::string in_words(Signal signal) {
+  std::string name(quantity_of(signal).name);
+  std::ranges::replace(name, '_', ' ');
+  return name;
 }
 
 /// Returns lines of a motor file with the typical size, ready to paste.
@@ -260,7 +260,7 @@ std::string motor_file_lines(const EffectType& effect) {
   const std::vector<double>& values = effect.candidacy.variants.empty() ? effect.example.parameters : effect.candidacy.variants.front();
   std::string text = effect_table(effect.name);
   for (const NodeRole& role : effect.nodes) {
-    text += role.own_capacity < 0 ? fmt::format("{} = \"{}\"\n", role.role, role.default_node) : "";
+    text += !role.own_capacity ? fmt::format("{} = \"{}\"\n", role.role, role.default_node) : "";
   }
   for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
     const ParameterSpec& spec = effect.parameters[i];
@@ -288,7 +288,7 @@ void describe_parameters(const EffectType& effect, Description& result) {
     result.json["parameters"].push_back(json);
   }
   for (const NodeRole& role : effect.nodes) {
-    const bool own = role.own_capacity >= 0;
+    const bool own = role.own_capacity.has_value();
     result.text +=
         fmt::format("  {:24} {:10} {}\n", role.role, "node",
                     own ? "of its own, named after the effect in the file" : fmt::format("'{}' unless named", role.default_node));
@@ -307,9 +307,9 @@ Description describe_effect(const EffectType& effect) {
        {"typical", effect.typical},
        {"look_alike", effect.confounded_with}}};
   describe_parameters(effect, result);
-  std::vector<std::string_view> needs;
+  std::vector<std::string> needs;
   for (const Signal signal : effect.needs) {
-    needs.push_back(to_string(signal));
+    needs.push_back(in_words(signal));
   }
   result.json["needs"] = needs;
   const auto say = [&result](std::string_view what, std::string_view text) {
@@ -320,7 +320,7 @@ Description describe_effect(const EffectType& effect) {
   say("confounded", effect.confounded_with);
   const bool has_choice = std::ranges::any_of(effect.parameters, [](const ParameterSpec& spec) { return !spec.choices.empty(); });
   say("needs a log of", has_choice ? "the signal that was chosen" : fmt::format("{}", fmt::join(needs, ", ")));
-  if (effect.candidacy.size_parameter >= 0) {
+  if (effect.candidacy.size_parameter) {
     say("family", effect.candidacy.family);
     say("experiment", effect.candidacy.experiment);
     result.json["family"] = effect.candidacy.family;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace heatsoak {
 
 struct LogOptions {
   std::string map;
-  double ambient_C = MeasuredRunOptions::kNotStated_C;  ///< for logs without an ambient temperature
+  std::optional<double> ambient_C = {};  ///< for logs without an ambient temperature
   bool takes_logs_as_they_are = false;
 };
 

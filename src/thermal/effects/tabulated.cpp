@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include "thermal/law.h"
@@ -9,40 +10,38 @@ enum Node { hot, cold, watched, reference };
 enum Parameter { driver, form, first_knot, last_knot, first_value };
 constexpr int kKnots = 7;
 
-enum Regressor {
-  speed,
-  velocity,
-  acceleration,
-  current,
-  current_speed_squared,
-  shaft_power,
-  input_power,
-  modulation,
-  bus_voltage,
-  vehicle_speed,
-  age,
-  temperature,
-  temperature_difference,
-  neighbour_difference,
-  column,
-};
-constexpr std::array kDrivers{
-    Choice{"speed", "rad/s", "mean of |ω|"},
-    Choice{"velocity", "rad/s", "ω with its sign"},
-    Choice{"acceleration", "rad/s2", "mean of |dω/dt|"},
-    Choice{"current", "A", "rms"},
-    Choice{"current_speed_squared", "A rad2/s2", "|I|·ω²"},
-    Choice{"shaft_power", "W", "more than 0 drives"},
-    Choice{"input_power", "W", "electrical"},
-    Choice{"modulation", "", "|V_motor|/V_bus"},
-    Choice{"bus_voltage", "V", "supply"},
-    Choice{"vehicle_speed", "m/s", "magnitude"},
-    Choice{"age", "h", "operating hours"},
-    Choice{"temperature", "degC", "of the node 'watched'"},
-    Choice{"temperature_difference", "K", "of the node 'watched' above 'reference'"},
-    Choice{"neighbour_difference", "K", "of the next motor above the node 'watched'"},
-    Choice{kColumnChoice, "", "column of a log, named by 'column'; if it is not known, the hottest value of the curve is used"},
-};
+constexpr auto kIsDriver = [](const OperatingQuantity<double>& each) { return each.is_driver; };
+constexpr std::size_t kSignalDrivers = std::ranges::count_if(kQuantities<double>, kIsDriver);
+
+/// Rows of the table of quantities that can be the input signal.
+constexpr std::array<std::size_t, kSignalDrivers> kRows = [] {
+  std::array<std::size_t, kSignalDrivers> rows{};
+  std::size_t count = 0;
+  for (std::size_t row = 0; row < kQuantityCount; ++row) {
+    if (kIsDriver(kQuantities<double>[row])) {
+      rows[count++] = row;
+    }
+  }
+  return rows;
+}();
+
+/// Input signals that are no single quantity; they follow the others.
+enum Regressor { current_speed_squared = kSignalDrivers, temperature, temperature_difference, neighbour_difference, column, driver_count };
+constexpr std::array<Choice, driver_count> kDrivers = [] {
+  std::array<Choice, driver_count> choices{};
+  for (std::size_t i = 0; i < kSignalDrivers; ++i) {
+    const OperatingQuantity<double>& quantity = kQuantities<double>[kRows[i]];
+    choices[i] = {quantity.name, quantity.unit, quantity.meaning};
+  }
+  choices[current_speed_squared] = {"current_speed_squared", "A rad2/s2", "|I|·ω²"};
+  choices[temperature] = {"temperature", "degC", "of the node 'watched'"};
+  choices[temperature_difference] = {"temperature_difference", "K", "of the node 'watched' above 'reference'"};
+  choices[neighbour_difference] = {"neighbour_difference", "K", "of the next motor above the node 'watched'"};
+  choices[column] = {kColumnChoice, "", "column of a log, named by 'column'; if it is not known, the hottest value of the curve is used"};
+  return choices;
+}();
+constexpr int speed = 0;
+static_assert(kDrivers[speed].name == "speed");
 
 enum Form { heat_into, per_copper_loss, per_difference, per_current, per_speed };
 constexpr std::array kForms{
@@ -55,37 +54,20 @@ constexpr std::array kForms{
 
 template <class S>
 S value_of_driver(const Situation<S>& x) {
-  switch (chosen(x.parameter(driver))) {
-    case speed:
-      return x.at.speed_mean_rad_per_s;
-    case velocity:
-      return x.at.velocity_rad_per_s;
-    case acceleration:
-      return x.at.acceleration_rad_per_s2;
-    case current:
-      return x.at.current_rms_A;
+  const int chosen_driver = chosen(x.parameter(driver));
+  switch (chosen_driver) {
     case current_speed_squared:
       return x.at.current_rms_A * x.at.speed_rms_rad_per_s * x.at.speed_rms_rad_per_s;
-    case shaft_power:
-      return x.at.shaft_power_W;
-    case input_power:
-      return x.at.input_power_W;
-    case modulation:
-      return x.at.modulation_ratio;
-    case bus_voltage:
-      return x.at.bus_V;
-    case vehicle_speed:
-      return x.at.vehicle_speed_m_per_s;
-    case age:
-      return x.at.age_h;
     case temperature:
       return x.temperature_C(watched);
     case temperature_difference:
       return x.temperature_C(watched) - x.temperature_C(reference);
+    case neighbour_difference:
+      return x.at.neighbour_share * (x.at.neighbour_C - x.temperature_C(watched));
     case column:
       return x.at.column;
     default:
-      return x.at.neighbour_share * (x.at.neighbour_C - x.temperature_C(watched));
+      return x.at.*kQuantities<S>[kRows[static_cast<std::size_t>(chosen_driver)]].value;
   }
 }
 
@@ -134,28 +116,29 @@ struct Tabulated {
   }
 };
 
-/// Signals of each driver choice, in the order of kDrivers, plus those of the form.
+/// Signals of the input signal, plus those of the form.
 std::vector<Signal> needs_of(std::span<const double> values) {
-  static const std::array<std::vector<Signal>, kDrivers.size()> kOfDriver{{{Signal::speed},
-                                                                           {Signal::speed},
-                                                                           {Signal::speed},
-                                                                           {Signal::current},
-                                                                           {Signal::current, Signal::speed},
-                                                                           {Signal::shaft_power},
-                                                                           {Signal::input_power},
-                                                                           {Signal::modulation},
-                                                                           {Signal::bus_voltage},
-                                                                           {Signal::vehicle_speed},
-                                                                           {Signal::age},
-                                                                           {},
-                                                                           {},
-                                                                           {Signal::neighbour_temperature},
-                                                                           {}}};
   static const std::array<std::vector<Signal>, kForms.size()> kOfForm{{{}, {Signal::current}, {}, {Signal::current}, {Signal::speed}}};
-  std::vector<Signal> needed = kOfDriver[static_cast<std::size_t>(values[driver])];
+  const auto chosen_driver = static_cast<std::size_t>(values[driver]);
+  std::vector<Signal> needed;
+  if (chosen_driver < kSignalDrivers) {
+    needed = {kQuantities<double>[kRows[chosen_driver]].signal.value()};
+  } else if (chosen_driver == current_speed_squared) {
+    needed = {Signal::current, Signal::speed};
+  } else if (chosen_driver == neighbour_difference) {
+    needed = {Signal::neighbour_temperature};
+  }
   const std::vector<Signal>& besides = kOfForm[static_cast<std::size_t>(values[form])];
   needed.insert(needed.end(), besides.begin(), besides.end());
   return needed;
+}
+
+std::vector<Signal> all_signals() {
+  std::vector<Signal> all;
+  for (std::size_t i = 0; i < kSignalCount; ++i) {
+    all.push_back(static_cast<Signal>(i));
+  }
+  return all;
 }
 
 std::vector<ParameterSpec> parameters() {
@@ -192,9 +175,8 @@ EffectType tabulated() {
                   .temperature_C = {60.0, 50.0, 60.0, 50.0},
                   .expected_heat_W = {-20.0, 20.0, 0.0, 0.0}},
       .laws = laws<Tabulated>(),
-      .needs = {Signal::current, Signal::speed, Signal::shaft_power, Signal::input_power, Signal::modulation, Signal::bus_voltage,
-                Signal::vehicle_speed, Signal::neighbour_temperature, Signal::age},
-      .candidacy = {.size_parameter = -1,
+      .needs = all_signals(),
+      .candidacy = {.size_parameter = {},
                     .variants = {{speed, heat_into, 0.0, 600.0, 0.0, 0.2, 0.5, 1.0, 1.5, 2.0, 2.5}},
                     .family = {},
                     .experiment = {}},

@@ -30,7 +30,7 @@ struct Case {
   std::string folder;
   std::vector<Part> fitted;
   std::vector<Part> predicted;
-  double ambient_C = MeasuredRunOptions::kNotStated_C;
+  std::optional<double> ambient_C = {};
 };
 
 std::vector<Case> all_cases() {
