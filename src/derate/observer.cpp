@@ -65,6 +65,11 @@ Observer::Observer(const Network& network, const MotorValues& motor, const Robot
     : heat_safety_factor_(heat_safety_factor) {
   const std::array<Traced, firmware::kSignalCount> signals = traced_signals(formula_);
   const OperatingPoint<Traced> at = operating_point<Traced>(motor, robot, signals);
+  at.current_rms_A.name(std::array<std::string, 1>{"heating_current_A"});
+  at.speed_mean_rad_per_s.name(std::array<std::string, 1>{"speed_magnitude_rad_per_s"});
+  at.shaft_power_W.name(std::array<std::string, 1>{"shaft_power_W"});
+  at.input_power_W.name(std::array<std::string, 1>{"input_power_W"});
+  at.modulation_ratio.name(std::array<std::string, 1>{"modulation_ratio"});
   std::vector<Traced> temperature_C;
   for (int node = 0; node < network.state_count(); ++node) {
     state_names_.emplace_back(network.node_name(node));
@@ -73,6 +78,7 @@ Observer::Observer(const Network& network, const MotorValues& motor, const Robot
   temperature_C.push_back(at.ambient_C);
   std::vector<TracedHeat> heat(temperature_C.size());
   network.trace(at, temperature_C, heat);
+  formula_.begin_law("node_heat");
   const std::vector<double> values = network.values();
   const auto add_rates = [&](double heat_ratio, std::vector<int>& steps) {
     for (int node = 0; node < network.state_count(); ++node) {

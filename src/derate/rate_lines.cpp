@@ -2,61 +2,130 @@
 
 #include <fmt/format.h>
 
-#include <vector>
+#include <algorithm>
+
+#include "derate/export_text.h"
 
 namespace heatsoak {
+namespace {
 
-RateLines::RateLines(const Observer& observer, std::span<const int> rate_steps, const LineStyle& style) : style_(style) {
+/// A longer expression gets a line of its own.
+constexpr std::size_t kLongestInlined = 80;
+
+bool is_arithmetic(Operation operation) {
+  return operation == Operation::add || operation == Operation::subtract || operation == Operation::multiply ||
+         operation == Operation::divide;
+}
+
+/// These use their operand twice, so it must be a name.
+bool repeats_its_operand(Operation operation) { return operation == Operation::magnitude || operation == Operation::positive_part; }
+
+}  // namespace
+
+RateLines::RateLines(const Observer& observer, std::span<const int> rate_steps, const LineStyle& style)
+    : observer_(observer), style_(style), uses_(observer.formula().steps().size(), 0) {
   const Formula& formula = observer.formula();
   const std::vector<char> needed = formula.needed_for(rate_steps);
   for (std::size_t i = 0; i < needed.size(); ++i) {
     const Formula::Step& step = formula.steps()[i];
-    if (needed[i] != 0 && step.operation != Operation::constant && step.operation != Operation::input) {
-      text_ += fmt::format("  const {} t{} = {};\n", style_.number, i, expression(formula, step));
+    if (needed[i] == 0 || step.operation == Operation::constant || step.operation == Operation::input) {
+      continue;
+    }
+    const int times = repeats_its_operand(step.operation) ? 2 : 1;
+    uses_[static_cast<std::size_t>(step.left)] += times;
+    if (step.right >= 0) {
+      ++uses_[static_cast<std::size_t>(step.right)];
     }
   }
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    const Formula::Step& step = formula.steps()[i];
+    if (needed[i] == 0) {
+      continue;
+    }
+    const int place = static_cast<int>(i);
+    Text text = expression(step);
+    if (step.operation != Operation::constant && step.operation != Operation::input &&
+        (is_variable(place) || text.text.size() > kLongestInlined) && std::ranges::find(rate_steps, place) == rate_steps.end()) {
+      const std::string name = name_for(place);
+      text_ += fmt::format("  const {} {} = {};\n", style_.number, name, text.text);
+      text = {name, false};
+    }
+    written_[place] = text;
+  }
   for (std::size_t node = 0; node < observer.state_count(); ++node) {
-    text_ += fmt::format("  rate_K_per_s[{}] = {};\n", node, operand(formula, rate_steps[node]));
+    text_ += fmt::format("  rate_K_per_s[{}] = {};\n", node, written_.at(rate_steps[node]).text);
   }
 }
 
-std::string RateLines::operand(const Formula& formula, int place) const {
+bool RateLines::is_variable(int place) const {
+  const Formula& formula = observer_.formula();
+  return uses_[static_cast<std::size_t>(place)] > 1 || !formula.name_of(place).empty() ||
+         repeats_its_operand(formula.steps()[static_cast<std::size_t>(place)].operation);
+}
+
+std::string RateLines::name_for(int place) {
+  const Formula& formula = observer_.formula();
   const Formula::Step& step = formula.steps()[static_cast<std::size_t>(place)];
-  if (step.operation == Operation::constant) {
-    return style_.literal(step.value);
+  const auto temperature = [&](int of) {
+    const Formula::Step& input = formula.steps()[static_cast<std::size_t>(of)];
+    return input.operation == Operation::input ? formula.inputs()[static_cast<std::size_t>(input.left)] : std::string();
+  };
+  const auto without_unit = [](const std::string& name) { return name.substr(0, name.size() - 2); };
+  std::string name(formula.name_of(place));
+  if (name.empty() && step.operation == Operation::subtract && temperature(step.left).ends_with("_C") &&
+      temperature(step.right).ends_with("_C")) {
+    name = fmt::format("{}_above_{}_K", without_unit(temperature(step.left)), without_unit(temperature(step.right)));
   }
-  if (step.operation != Operation::input) {
-    return fmt::format("t{}", place);
+  if (name.empty()) {
+    const std::string_view law = formula.law_of(place);
+    name = fmt::format("{}_term", law.empty() ? "drive" : law);
   }
-  const auto input = static_cast<std::size_t>(step.left);
-  return input < firmware::kSignalCount ? style_.signal(static_cast<firmware::Signal>(input))
-                                        : fmt::format("state_C[{}]", input - firmware::kSignalCount);
+  name = identifier(name);
+  std::string unique = name;
+  for (int next = 2; !names_.insert(unique).second; ++next) {
+    unique = fmt::format("{}_{}", name, next);
+  }
+  return unique;
 }
 
-std::string RateLines::expression(const Formula& formula, const Formula::Step& step) {
-  const std::string left = operand(formula, step.left);
-  const std::string right = step.right < 0 ? "" : operand(formula, step.right);
+std::string RateLines::operand(int place) const {
+  const Text& text = written_.at(place);
+  return text.is_joined ? fmt::format("({})", text.text) : text.text;
+}
+
+RateLines::Text RateLines::expression(const Formula::Step& step) {
+  if (step.operation == Operation::constant) {
+    return {style_.literal(step.value), false};
+  }
+  if (step.operation == Operation::input) {
+    const auto input = static_cast<std::size_t>(step.left);
+    return {input < firmware::kSignalCount ? style_.signal(static_cast<firmware::Signal>(input))
+                                           : fmt::format("state_C[{}]", input - firmware::kSignalCount),
+            false};
+  }
+  const std::string left = written_.at(step.left).text;
   const std::string zero = style_.literal(0.0);
-  const auto thermal_math = [&](std::string_view function) {
+  const auto thermal_math = [&](std::string_view function) -> Text {
     calls_thermal_math_ = true;
-    return step.right < 0 ? fmt::format("{}({})", function, left) : fmt::format("{}({}, {})", function, left, right);
+    return {
+        step.right < 0 ? fmt::format("{}({})", function, left) : fmt::format("{}({}, {})", function, left, written_.at(step.right).text),
+        false};
   };
+  if (is_arithmetic(step.operation)) {
+    const char sign = step.operation == Operation::add        ? '+'
+                      : step.operation == Operation::subtract ? '-'
+                      : step.operation == Operation::multiply ? '*'
+                                                              : '/';
+    return {fmt::format("{} {} {}", operand(step.left), sign, operand(step.right)), true};
+  }
   switch (step.operation) {
-    case Operation::add:
-      return left + " + " + right;
-    case Operation::subtract:
-      return left + " - " + right;
-    case Operation::multiply:
-      return left + " * " + right;
-    case Operation::divide:
-      return left + " / " + right;
     case Operation::magnitude:
-      return fmt::format("{0} < {1} ? -{0} : {0}", left, zero);
+      return {fmt::format("({0} < {1}) ? -{0} : {0}", left, zero), true};
     case Operation::positive_part:
-      return fmt::format("{0} > {1} ? {0} : {1}", left, zero);
+      return {fmt::format("({0} > {1}) ? {0} : {1}", left, zero), true};
     case Operation::square_root:
       calls_square_root_ = true;
-      return fmt::format("{}({})", style_.square_root, left);
+      return {fmt::format("{}({})", style_.square_root, left), false};
     case Operation::power:
       return thermal_math(style_.power);
     default:

@@ -1,9 +1,12 @@
-// Generates the observer's rates as straight-line statements of a C-like language.
+// Generates the observer's rates as statements of a C-like language.
 #pragma once
 
+#include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "derate/observer.h"
 
@@ -19,8 +22,9 @@ struct LineStyle {
   std::string_view power = "heatsoak_pow";                   ///< of a base and an exponent; 0 for a base that is not positive
 };
 
-/// One line per step that the rates depend on, "  const float t7 = …;", then one per node, "  rate_K_per_s[node] = …;". Temperatures are
-/// state_C[node]. In single precision without contraction (FMA) the results are bit-identical to FormulaRun<float>.
+/// One line per quantity with a name of its own, "  const float copper_loss_W = …;", then one per node, "  rate_K_per_s[node] = …;".
+/// Other steps of the formula stand where they are used. Temperatures are state_C[node]. In single precision without contraction (FMA)
+/// the results are bit-identical to FormulaRun<float>.
 class RateLines {
  public:
   /// `rate_steps`: one of the observer's sets, one step per state.
@@ -33,10 +37,22 @@ class RateLines {
   [[nodiscard]] bool calls_thermal_math() const { return calls_thermal_math_; }
 
  private:
-  [[nodiscard]] std::string operand(const Formula& formula, int place) const;
-  std::string expression(const Formula& formula, const Formula::Step& step);
+  /// How a step is written where it is used.
+  struct Text {
+    std::string text;
+    bool is_joined = false;  ///< two operands and an operator, which need parentheses inside another expression
+  };
 
+  [[nodiscard]] bool is_variable(int place) const;
+  [[nodiscard]] std::string name_for(int place);
+  Text expression(const Formula::Step& step);
+  [[nodiscard]] std::string operand(int place) const;
+
+  const Observer& observer_;
   LineStyle style_;
+  std::vector<int> uses_;        ///< by step
+  std::map<int, Text> written_;  ///< by step
+  std::set<std::string> names_;  ///< of variables
   std::string text_;
   bool calls_square_root_ = false;
   bool calls_thermal_math_ = false;

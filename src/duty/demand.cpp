@@ -26,6 +26,15 @@ double WheelDemand::duration_s() const {
   return std::accumulate(bins.begin(), bins.end(), 0.0, [](double sum_s, const LoadBin& bin) { return sum_s + bin.duration_s; });
 }
 
+WheelDemand hardest(std::vector<WheelDemand> wheels) {
+  const auto effort_Nm2_s = [](const WheelDemand& wheel) {
+    return std::accumulate(wheel.bins.begin(), wheel.bins.end(), 0.0, [](double sum_Nm2_s, const LoadBin& bin) {
+      return sum_Nm2_s + bin.torque_rms_Nm * bin.torque_rms_Nm * bin.duration_s;
+    });
+  };
+  return std::move(*std::ranges::max_element(wheels, {}, effort_Nm2_s));
+}
+
 LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A) {
   const double direction = direction_of(speed_rad_per_s);
   return {.duration_s = duration_s,
@@ -44,20 +53,22 @@ LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s
 
 void LoadMeans::add(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A) {
   const double direction = direction_of(speed_rad_per_s);
-  const std::array<double, integral_count> now{1.0,
-                                               torque_Nm,
-                                               torque_Nm * torque_Nm,
-                                               torque_Nm * direction,
-                                               std::abs(direction),
-                                               speed_rad_per_s,
-                                               std::abs(speed_rad_per_s),
-                                               speed_rad_per_s * speed_rad_per_s,
-                                               torque_Nm * speed_rad_per_s,
-                                               current_A,
-                                               current_A * current_A,
-                                               current_A * direction};
+  const std::array<double, current> now{1.0,
+                                        torque_Nm,
+                                        torque_Nm * torque_Nm,
+                                        torque_Nm * direction,
+                                        std::abs(direction),
+                                        speed_rad_per_s,
+                                        std::abs(speed_rad_per_s),
+                                        speed_rad_per_s * speed_rad_per_s,
+                                        torque_Nm * speed_rad_per_s};
   for (std::size_t i = 0; i < now.size(); ++i) {
     integrals_[i] += duration_s * now[i];
+  }
+  if (current_A != 0.0) {
+    integrals_[current] += duration_s * current_A;
+    integrals_[current_squared] += duration_s * (current_A * current_A);
+    integrals_[current_along_motion] += duration_s * (current_A * direction);
   }
   travelled_rad_per_s_ += std::abs(speed_rad_per_s - last_speed_rad_per_s_.value_or(speed_rad_per_s));
   last_speed_rad_per_s_ = speed_rad_per_s;
@@ -107,7 +118,8 @@ void DemandGatherer::add(double duration_s, double torque_Nm, double speed_rad_p
     }
   }
   // Away from zero, so that a cell asks at least as much as anything in it.
-  Cell cell{cell_of(size[torque], step_[torque]), cell_of(size[speed], step_[speed]), cell_of(size[current], step_[current])};
+  Cell cell{cell_of(size[torque], step_[torque]), cell_of(size[speed], step_[speed]),
+            current_A == 0.0 ? 0 : cell_of(size[current], step_[current])};
   const double direction = direction_of(speed_rad_per_s);
   cell[torque] *= torque_Nm * direction < 0.0 ? -1 : 1;
   cell[current] *= current_A * direction < 0.0 ? -1 : 1;

@@ -54,6 +54,9 @@ struct WheelDemand {
   [[nodiscard]] double duration_s() const;
 };
 
+/// The wheel with the largest ∫M²dt: it stands for the hottest one, which is known only for a motor. Expects at least one.
+WheelDemand hardest(std::vector<WheelDemand> wheels);
+
 /// So long are the bins into which moments are merged: short against a winding's time constant.
 inline constexpr double kBin_s = 0.25;
 

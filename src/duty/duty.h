@@ -28,9 +28,9 @@ class DutyShape {
   [[nodiscard]] virtual bool depends_on_robot() const { return false; }
   /// True if the duty has parameters with ranges, in addition to ambient and load, that draw() samples.
   [[nodiscard]] virtual bool has_unknowns() const { return false; }
-  /// The demand under draw number `draw` of these, and of what the robot's file leaves open. Same seed, same draws.
-  [[nodiscard]] virtual std::vector<WheelDemand> draw(const Robot& robot, std::uint64_t seed, std::uint64_t /*draw*/) const {
-    return demand(robot, seed);
+  /// The hardest wheel's demand under draw number `draw` of these, and of what the robot's file leaves open. Same seed, same draws.
+  [[nodiscard]] virtual WheelDemand draw(const Robot& robot, std::uint64_t seed, std::uint64_t /*draw*/) const {
+    return hardest(demand(robot, seed));
   }
 };
 

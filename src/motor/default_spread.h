@@ -34,11 +34,13 @@ bool needs_spread(std::string_view key);
 std::vector<DefaultSpread> default_spreads(const Motor& motor);
 
 /// A stated spread that is narrower than is credible for the origin of its value: on one side less than a quarter of the default of that
-/// key and origin. For a measured value: less than 1 % and less than a quarter of the default of a data sheet value.
+/// key and origin. For a measured value: less than a quarter of the default of a data sheet value, and less than 1 % if the file records
+/// the fit that gave it, else less than 5 %.
 struct NarrowSpread {
   std::string key;
   const ParameterValue* parameter = nullptr;
-  Spread least;  ///< narrowest credible range, in the unit of the declaration
+  Spread least;            ///< narrowest credible range, in the unit of the declaration
+  bool is_fitted = false;  ///< measured by a fit of the file
 };
 std::vector<NarrowSpread> narrow_spreads(const Motor& motor);
 

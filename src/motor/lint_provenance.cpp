@@ -101,18 +101,17 @@ void exact_values(const Motor& motor, Findings& findings) {
   });
 }
 
-/// A spread of 0.001 % is as unlikely as none. A fit may produce one for a measured value, so there it is a note and the spread is widened.
+/// A spread of 0.001 % is as unlikely as none. A fit of the file may produce one, so there it is a note and the spread is widened.
 void narrow_values(const Motor& motor, Findings& findings) {
   for (const NarrowSpread& each : narrow_spreads(motor)) {
     const ParameterValue& parameter = *each.parameter;
     const auto percent = [&](double bound) { return 100.0 * std::abs(bound / parameter.value - 1.0); };
-    const bool is_measured = parameter.origin == Origin::measured;
     const std::string message = fmt::format(
         "{} of {} ({}) has a spread of -{} to +{} %, expected at least -{} to +{} % for a value of this origin; {}", each.key,
         parameter.printed, to_string(parameter.origin), significant(percent(parameter.spread->low), 2),
         significant(percent(parameter.spread->high), 2), significant(percent(each.least.low), 2), significant(percent(each.least.high), 2),
-        is_measured ? "this spread is assumed" : "state that, or leave tolerance and range out to assume a default by its origin");
-    is_measured ? findings.note_at(parameter.at, message) : findings.error_at(parameter.at, message);
+        each.is_fitted ? "this spread is assumed" : "state that, or leave tolerance and range out to assume a default by its origin");
+    each.is_fitted ? findings.note_at(parameter.at, message) : findings.error_at(parameter.at, message);
   }
 }
 

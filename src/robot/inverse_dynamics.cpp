@@ -142,12 +142,20 @@ void deliver(const BodyConfig& body, const BodyMotion& motion, const Demand& dem
 
 }  // namespace
 
+FieldAxis field_axis(double yaw_rad) {
+  const BodyVelocity axis = to_local(BodyVelocity{1.0, 0.0, 0.0}, yaw_rad);
+  return {axis.x_m_per_s, axis.y_m_per_s};
+}
+
 BodyMotion local_motion(const BodyConfig& body, const Pose& pose, const BodyVelocity& velocity_global,
                         const BodyAcceleration& acceleration_global) {
-  // Both vectors use the same sine and cosine, taken from the field's x axis in the local frame.
-  const BodyVelocity x_axis = to_local(BodyVelocity{1.0, 0.0, 0.0}, pose.yaw_rad);
-  const auto along = [&](double x, double y) { return x * x_axis.x_m_per_s - y * x_axis.y_m_per_s; };
-  const auto across = [&](double x, double y) { return x * x_axis.y_m_per_s + y * x_axis.x_m_per_s; };
+  return local_motion(body, field_axis(pose.yaw_rad), velocity_global, acceleration_global);
+}
+
+BodyMotion local_motion(const BodyConfig& body, const FieldAxis& axis, const BodyVelocity& velocity_global,
+                        const BodyAcceleration& acceleration_global) {
+  const auto along = [&](double x, double y) { return x * axis.x_share - y * axis.y_share; };
+  const auto across = [&](double x, double y) { return x * axis.y_share + y * axis.x_share; };
   const auto& [v_x, v_y, yaw_rate] = velocity_global;
   const auto& [a_x, a_y, yaw_acceleration] = acceleration_global;
   return {{along(v_x, v_y), across(v_x, v_y), yaw_rate},

@@ -11,10 +11,21 @@ struct BodyMotion {
   BodyAcceleration acceleration;   ///< in the inertial frame of the field
   Wrench external;                 ///< wrench on the body from outside (robot, wall, ball); a push by the robot is its negative
   double external_height_m = 0.0;  ///< height above the ground where it acts
+  bool operator==(const BodyMotion&) const = default;
 };
 
 /// Converts a point of a trajectory from the global frame to the robot's frame.
 BodyMotion local_motion(const BodyConfig& body, const Pose& pose, const BodyVelocity& velocity_global,
+                        const BodyAcceleration& acceleration_global);
+
+/// The field's x axis in the local frame.
+struct FieldAxis {
+  double x_share = 1.0;
+  double y_share = 0.0;
+};
+FieldAxis field_axis(double yaw_rad);
+/// The same for a caller that keeps the axis while the robot does not turn.
+BodyMotion local_motion(const BodyConfig& body, const FieldAxis& axis, const BodyVelocity& velocity_global,
                         const BodyAcceleration& acceleration_global);
 
 struct WheelDemands {

@@ -88,33 +88,6 @@ Kinematics make_kinematics(const Robot& robot) {
   return made;
 }
 
-PerWheel rolling_speeds_m_per_s(const Kinematics& kinematics, const BodyVelocity& local) {
-  PerWheel speed_m_per_s{};
-  for (int i = 0; i < kinematics.wheel_count; ++i) {
-    const WheelDirections& wheel = kinematics.wheels[i];
-    speed_m_per_s[i] = wheel.rolling_x_share * local.x_m_per_s + wheel.rolling_y_share * local.y_m_per_s +
-                       kinematics.contact_radius_m * local.yaw_rad_per_s;
-  }
-  return speed_m_per_s;
-}
-
-PerWheel lateral_speeds_m_per_s(const Kinematics& kinematics, const BodyVelocity& local) {
-  PerWheel speed_m_per_s{};
-  for (int i = 0; i < kinematics.wheel_count; ++i) {
-    const WheelDirections& wheel = kinematics.wheels[i];
-    speed_m_per_s[i] = wheel.axle_x_share * local.x_m_per_s + wheel.axle_y_share * local.y_m_per_s;
-  }
-  return speed_m_per_s;
-}
-
-PerWheel wheel_speeds_rad_per_s(const Kinematics& kinematics, const BodyVelocity& local) {
-  PerWheel speed = rolling_speeds_m_per_s(kinematics, local);
-  for (double& each : speed) {
-    each /= kinematics.wheel_radius_m;
-  }
-  return speed;
-}
-
 BodyVelocity body_velocity(const Kinematics& kinematics, const PerWheel& wheel_speed_rad_per_s) {
   BodyVelocity velocity;
   for (int i = 0; i < kinematics.wheel_count; ++i) {
@@ -124,34 +97,6 @@ BodyVelocity body_velocity(const Kinematics& kinematics, const PerWheel& wheel_s
     velocity.yaw_rad_per_s += kinematics.inverse_yaw_per_m[i] * rim_m_per_s;
   }
   return velocity;
-}
-
-PerWheel rolling_forces_N(const Kinematics& kinematics, const Wrench& local) {
-  PerWheel force_N{};
-  for (int i = 0; i < kinematics.wheel_count; ++i) {
-    force_N[i] = kinematics.inverse_x_factor[i] * local.x_N + kinematics.inverse_y_factor[i] * local.y_N +
-                 kinematics.inverse_yaw_per_m[i] * local.yaw_Nm;
-  }
-  return force_N;
-}
-
-Wrench wrench_of_rolling_forces(const Kinematics& kinematics, const PerWheel& force_N) {
-  Wrench wrench;
-  for (int i = 0; i < kinematics.wheel_count; ++i) {
-    wrench.x_N += kinematics.wheels[i].rolling_x_share * force_N[i];
-    wrench.y_N += kinematics.wheels[i].rolling_y_share * force_N[i];
-    wrench.yaw_Nm += kinematics.contact_radius_m * force_N[i];
-  }
-  return wrench;
-}
-
-Wrench wrench_of_lateral_forces(const Kinematics& kinematics, const PerWheel& force_N) {
-  Wrench wrench;
-  for (int i = 0; i < kinematics.wheel_count; ++i) {
-    wrench.x_N += kinematics.wheels[i].axle_x_share * force_N[i];
-    wrench.y_N += kinematics.wheels[i].axle_y_share * force_N[i];
-  }
-  return wrench;
 }
 
 }  // namespace heatsoak

@@ -23,6 +23,7 @@ struct BodyVelocity {
   double x_m_per_s = 0.0;
   double y_m_per_s = 0.0;
   double yaw_rad_per_s = 0.0;
+  bool operator==(const BodyVelocity&) const = default;
 };
 
 /// Acceleration of that point in the inertial frame, in components like BodyVelocity. In local components it differs from the time
@@ -31,6 +32,7 @@ struct BodyAcceleration {
   double x_m_per_s2 = 0.0;
   double y_m_per_s2 = 0.0;
   double yaw_rad_per_s2 = 0.0;
+  bool operator==(const BodyAcceleration&) const = default;
 };
 
 /// Force, and moment about the origin of the local frame.
@@ -38,6 +40,7 @@ struct Wrench {
   double x_N = 0.0;
   double y_N = 0.0;
   double yaw_Nm = 0.0;
+  bool operator==(const Wrench&) const = default;
 };
 
 BodyVelocity to_local(const BodyVelocity& global, double yaw_rad);
@@ -92,22 +95,65 @@ struct Kinematics {
 Kinematics make_kinematics(const Robot& robot);
 
 /// Returns the speed of each contact point along its rolling direction, t·v + R·yaw rate. It equals the rim speed of a wheel without slip.
-PerWheel rolling_speeds_m_per_s(const Kinematics& kinematics, const BodyVelocity& local);
+inline PerWheel rolling_speeds_m_per_s(const Kinematics& kinematics, const BodyVelocity& local) {
+  PerWheel speed_m_per_s{};
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    const WheelDirections& wheel = kinematics.wheels[i];
+    speed_m_per_s[i] = wheel.rolling_x_share * local.x_m_per_s + wheel.rolling_y_share * local.y_m_per_s +
+                       kinematics.contact_radius_m * local.yaw_rad_per_s;
+  }
+  return speed_m_per_s;
+}
 /// Returns the speed of each contact point along its axle, e·v, at which the rollers turn.
-PerWheel lateral_speeds_m_per_s(const Kinematics& kinematics, const BodyVelocity& local);
+inline PerWheel lateral_speeds_m_per_s(const Kinematics& kinematics, const BodyVelocity& local) {
+  PerWheel speed_m_per_s{};
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    const WheelDirections& wheel = kinematics.wheels[i];
+    speed_m_per_s[i] = wheel.axle_x_share * local.x_m_per_s + wheel.axle_y_share * local.y_m_per_s;
+  }
+  return speed_m_per_s;
+}
 
 /// Returns ω = J·v/r for wheels without slip.
-PerWheel wheel_speeds_rad_per_s(const Kinematics& kinematics, const BodyVelocity& local);
+inline PerWheel wheel_speeds_rad_per_s(const Kinematics& kinematics, const BodyVelocity& local) {
+  PerWheel speed = rolling_speeds_m_per_s(kinematics, local);
+  for (double& each : speed) {
+    each /= kinematics.wheel_radius_m;
+  }
+  return speed;
+}
 
 /// Returns v = r·J⁺·ω: for inconsistent speeds of four wheels the least-squares solution.
 BodyVelocity body_velocity(const Kinematics& kinematics, const PerWheel& wheel_speed_rad_per_s);
 
 /// Returns the forces along the rolling directions that produce a wrench, f = J⁺ᵀ·w; with four wheels those of least Σf².
-PerWheel rolling_forces_N(const Kinematics& kinematics, const Wrench& local);
+inline PerWheel rolling_forces_N(const Kinematics& kinematics, const Wrench& local) {
+  PerWheel force_N{};
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    force_N[i] = kinematics.inverse_x_factor[i] * local.x_N + kinematics.inverse_y_factor[i] * local.y_N +
+                 kinematics.inverse_yaw_per_m[i] * local.yaw_Nm;
+  }
+  return force_N;
+}
 
 /// Returns the wrench of forces on the contact points along the rolling directions.
-Wrench wrench_of_rolling_forces(const Kinematics& kinematics, const PerWheel& force_N);
+inline Wrench wrench_of_rolling_forces(const Kinematics& kinematics, const PerWheel& force_N) {
+  Wrench wrench;
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    wrench.x_N += kinematics.wheels[i].rolling_x_share * force_N[i];
+    wrench.y_N += kinematics.wheels[i].rolling_y_share * force_N[i];
+    wrench.yaw_Nm += kinematics.contact_radius_m * force_N[i];
+  }
+  return wrench;
+}
 /// Returns the wrench of forces along the axles; they have no moment about the origin.
-Wrench wrench_of_lateral_forces(const Kinematics& kinematics, const PerWheel& force_N);
+inline Wrench wrench_of_lateral_forces(const Kinematics& kinematics, const PerWheel& force_N) {
+  Wrench wrench;
+  for (int i = 0; i < kinematics.wheel_count; ++i) {
+    wrench.x_N += kinematics.wheels[i].axle_x_share * force_N[i];
+    wrench.y_N += kinematics.wheels[i].axle_y_share * force_N[i];
+  }
+  return wrench;
+}
 
 }  // namespace heatsoak

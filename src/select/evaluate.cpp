@@ -281,16 +281,6 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
   }
 }
 
-/// With draws of a duty it stands for the hottest one, which is known only afterwards.
-WheelDemand hardest(std::vector<WheelDemand> wheels) {
-  const auto effort_Nm2_s = [](const WheelDemand& wheel) {
-    return std::accumulate(wheel.bins.begin(), wheel.bins.end(), 0.0, [](double sum_Nm2_s, const LoadBin& bin) {
-      return sum_Nm2_s + bin.torque_rms_Nm * bin.torque_rms_Nm * bin.duration_s;
-    });
-  };
-  return std::move(*std::ranges::max_element(wheels, {}, effort_Nm2_s));
-}
-
 void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const EvaluateOptions& options, int first_sample) {
   const auto turn = static_cast<std::size_t>(first_sample / kLanes);
   const WheelDemand& demand = options.draws.empty() ? *work.wheel : options.draws[turn % options.draws.size()];
@@ -449,8 +439,7 @@ void add_draws(std::vector<WheelDemand>& draws, const Duty& duty, const Robot& r
   const std::size_t first = draws.size();
   draws.resize(std::max(first, static_cast<std::size_t>(count)));
   const std::size_t more = draws.size() - first;
-  in_parallel(more, threads, 0, more, progress,
-              [&](std::size_t i) { draws[first + i] = hardest(duty.shape_data->draw(robot, seed, first + i)); });
+  in_parallel(more, threads, 0, more, progress, [&](std::size_t i) { draws[first + i] = duty.shape_data->draw(robot, seed, first + i); });
 }
 
 std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,

@@ -4,6 +4,10 @@
 // moves heat between nodes and so conserves energy; source(into, W) generates heat and is used by losses.
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "thermal/effect.h"
 #include "thermal/lanes.h"
 #include "thermal/operating_point.h"
@@ -48,20 +52,35 @@ class HeatBook {
   const int* node_index_;
 };
 
+/// Names of a law's heat in generated code: "winding_to_stator_W", "copper_loss_W".
+struct HeatNames {
+  std::string law;
+  std::vector<std::string> nodes;  ///< as the nodes of the network
+
+  void name_flow(int from_node, int to_node, const Traced& heat_W) const;
+  void name_source(int into_node, const Traced& heat_W) const;
+};
+
 template <>
 class HeatBook<Traced> {
  public:
-  HeatBook(TracedHeat* node_heat, const int* node_index) : node_heat_(node_heat), node_index_(node_index) {}
+  HeatBook(TracedHeat* node_heat, const int* node_index, HeatNames names)
+      : node_heat_(node_heat), node_index_(node_index), names_(std::move(names)) {}
 
   void flow(int from_role, int to_role, const Traced& heat_W) {
+    names_.name_flow(node_index_[from_role], node_index_[to_role], heat_W);
     node_heat_[node_index_[from_role]].moved_W -= heat_W;
     node_heat_[node_index_[to_role]].moved_W += heat_W;
   }
-  void source(int into_role, const Traced& heat_W) { node_heat_[node_index_[into_role]].made_W += heat_W; }
+  void source(int into_role, const Traced& heat_W) {
+    names_.name_source(node_index_[into_role], heat_W);
+    node_heat_[node_index_[into_role]].made_W += heat_W;
+  }
 
  private:
   TracedHeat* node_heat_;
   const int* node_index_;
+  HeatNames names_;
 };
 
 /// One law compiled for every scalar type that the network uses; laws<Law>() makes it from one template.

@@ -177,12 +177,20 @@ void Network::trace(const OperatingPoint<Traced>& at, std::span<const Traced> te
   const std::vector<double> values_of_all = values();
   const std::vector<Traced> parameters(values_of_all.begin(), values_of_all.end());
   std::ranges::fill(node_heat, TracedHeat());
+  Formula* const formula = temperature_C.front().formula();
+  std::vector<std::string> nodes;
+  for (int node = 0; node < node_count(); ++node) {
+    nodes.emplace_back(node_name(node));
+  }
   OperatingPoint<Traced> seen = at;
   for (std::size_t turn = 0; turn < effects_.size(); ++turn) {
     const EffectInPlace& effect = effects_[booked_at(turn)];
     const Situation<Traced> situation(seen, parameters.data(), effect.parameter_index.data(), temperature_C.data(),
                                       effect.node_index.data());
-    HeatBook<Traced> heat_book(node_heat.data(), effect.node_index.data());
+    HeatBook<Traced> heat_book(node_heat.data(), effect.node_index.data(), {std::string(effect.type->name), nodes});
+    if (formula != nullptr) {
+      formula->begin_law(std::string(effect.type->name));
+    }
     effect.type->laws->traced(situation, heat_book);
     if (turn == 0 && copper_effect_ >= 0) {
       seen.copper_loss_W = node_heat[static_cast<std::size_t>(effect.node_index[0])].made_W;

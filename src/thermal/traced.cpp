@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <type_traits>
 
@@ -93,6 +94,27 @@ int Formula::input(std::string name) {
 
 int Formula::apply(Operation operation, int left, int right) { return place_of({operation, left, right}); }
 
+void Formula::name(int step, std::string name) {
+  const Operation operation = steps_[static_cast<std::size_t>(step)].operation;
+  if (operation != Operation::constant && operation != Operation::input) {
+    names_.try_emplace(step, std::move(name));
+  }
+}
+
+std::string_view Formula::name_of(int step) const {
+  const auto found = names_.find(step);
+  return found == names_.end() ? std::string_view() : found->second;
+}
+
+bool Formula::has_name(std::string_view name) const {
+  return std::ranges::any_of(names_, [name](const auto& each) { return each.second == name; });
+}
+
+std::string_view Formula::law_of(int step) const {
+  const auto after = laws_.upper_bound(step);
+  return after == laws_.begin() ? std::string_view() : std::prev(after)->second;
+}
+
 std::vector<char> Formula::needed_for(std::span<const int> results) const {
   std::vector<char> needed(steps_.size(), 0);
   for (const int result : results) {
@@ -168,9 +190,46 @@ Traced Traced::joined(Operation operation, const Traced& a, const Traced& b) {
   return {formula, formula.apply(operation, left, b.step_in(formula))};
 }
 
-Traced operator+(const Traced& a, const Traced& b) { return a.is(0.0) ? b : b.is(0.0) ? a : Traced::joined(Operation::add, a, b); }
+void Traced::name(std::span<const std::string> candidates) const {
+  if (!is_constant()) {
+    const auto unused = std::ranges::find_if(candidates, [&](const std::string& each) { return !formula_->has_name(each); });
+    formula_->name(step_, unused == candidates.end() ? candidates.back() : *unused);
+  }
+}
 
-Traced operator-(const Traced& a, const Traced& b) { return b.is(0.0) ? a : Traced::joined(Operation::subtract, a, b); }
+std::optional<Traced> Traced::negated() const {
+  if (is_constant()) {
+    return std::nullopt;
+  }
+  const std::span<const Formula::Step> steps = formula_->steps();
+  const Formula::Step& step = steps[static_cast<std::size_t>(step_)];
+  const bool is_negative = step.operation == Operation::subtract &&
+                           steps[static_cast<std::size_t>(step.left)].operation == Operation::constant &&
+                           steps[static_cast<std::size_t>(step.left)].value == 0.0;
+  return is_negative ? std::optional(Traced(*formula_, step.right)) : std::nullopt;
+}
+
+Traced operator+(const Traced& a, const Traced& b) {
+  if (a.is(0.0) || b.is(0.0)) {
+    return a.is(0.0) ? b : a;
+  }
+  if (const std::optional<Traced> taken_off = b.negated()) {
+    return Traced::joined(Operation::subtract, a, *taken_off);
+  }
+  if (const std::optional<Traced> taken_off = a.negated()) {
+    return Traced::joined(Operation::subtract, b, *taken_off);
+  }
+  return Traced::joined(Operation::add, a, b);
+}
+
+Traced operator-(const Traced& a, const Traced& b) {
+  if (b.is(0.0)) {
+    return a;
+  }
+  // Heat that leaves a node twice: rounding does not depend on the sign.
+  const std::optional<Traced> first = a.negated();
+  return first ? -(*first + b) : Traced::joined(Operation::subtract, a, b);
+}
 
 Traced operator*(const Traced& a, const Traced& b) {
   if (a.is(0.0) || b.is(0.0)) {

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace heatsoak {
@@ -33,11 +35,23 @@ class Formula {
   int input(std::string name);
   int apply(Operation operation, int left, int right = -1);
 
+  /// Names the value of a step for generated code. The first name of a step stays; constants and inputs get none.
+  void name(int step, std::string name);
+  /// Empty for a step without a name.
+  [[nodiscard]] std::string_view name_of(int step) const;
+  [[nodiscard]] bool has_name(std::string_view name) const;
+  /// The steps from here on belong to this law.
+  void begin_law(std::string law) { laws_[static_cast<int>(steps_.size())] = std::move(law); }
+  /// Empty for a step before the first law.
+  [[nodiscard]] std::string_view law_of(int step) const;
+
  private:
   int place_of(const Step& step);
 
   std::vector<Step> steps_;
   std::vector<std::string> inputs_;
+  std::map<int, std::string> names_;                                     ///< by step
+  std::map<int, std::string> laws_;                                      ///< by first step
   std::map<std::tuple<Operation, int, int, std::uint64_t>, int> known_;  ///< index of each step by its content; constants by their bits
 };
 
@@ -69,8 +83,13 @@ class Traced {
   [[nodiscard]] bool is_constant() const { return formula_ == nullptr; }
   /// Valid for a constant only.
   [[nodiscard]] double value() const { return value_; }
+  /// Null for a constant.
+  [[nodiscard]] Formula* formula() const { return formula_; }
   /// Index of its step in the formula; a constant is added to it.
   [[nodiscard]] int step_in(Formula& formula) const { return is_constant() ? formula.constant(value_) : step_; }
+
+  /// Formula::name() of its step with the first candidate that no other step has, or else the last; nothing for a constant.
+  void name(std::span<const std::string> candidates) const;
 
   Traced& operator+=(const Traced& other) { return *this = *this + other; }
   Traced& operator-=(const Traced& other) { return *this = *this - other; }
@@ -84,6 +103,8 @@ class Traced {
 
  private:
   static Traced joined(Operation operation, const Traced& a, const Traced& b);
+  /// Returns x for a number that was computed as 0 − x.
+  [[nodiscard]] std::optional<Traced> negated() const;
   [[nodiscard]] bool is(double value) const { return is_constant() && value_ == value; }
 
   Formula* formula_ = nullptr;

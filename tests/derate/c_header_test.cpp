@@ -12,6 +12,7 @@
 #include <fstream>
 #include <limits>
 #include <numbers>
+#include <regex>
 #include <sstream>
 
 #include "derate/exporter.h"
@@ -94,6 +95,10 @@ std::string header_text(const std::string& lines = {}) {
     }
   }
   return {};
+}
+
+std::string estimated(const std::string& key, const std::string& value) {
+  return fmt::format("{} = {{ value = \"{}\", origin = \"estimated\", derivation = \"a test\" }}\n", key, value);
 }
 
 class CHeader : public testing::TestWithParam<const char*> {
@@ -403,6 +408,15 @@ TEST(CHeaderText, ConvertsNoCurrentOfABrushedMotor) {
   Derating derating = guarded_ecx_32();
   derating.is_brushless = false;
   EXPECT_THAT(std::ranges::find(all_exporters(), "c_header", &ExporterType::name)->write(derating), testing::Not(HasSubstr("_iq_")));
+}
+
+TEST(CHeaderText, NamesHeatAfterItsLawAndNodes) {
+  const std::string text = header_text("[effects.chassis]\ntype = \"third_node\"\n" + estimated("heat_capacity", "60 J/K") +
+                                       estimated("conductance", "0.3 W/K") + estimated("leak_ratio", "0.2"));
+  for (const char* name : {"copper_loss_W", "no_load_loss_W", "winding_to_stator_W", "stator_to_ambient_W", "stator_to_chassis_W"}) {
+    EXPECT_THAT(text, HasSubstr(fmt::format("const float {} = ", name)));
+  }
+  EXPECT_FALSE(std::regex_search(text, std::regex("\\bt[0-9]+\\b"))) << "names of steps of the formula";
 }
 
 TEST(CHeaderText, ACommentEndsWhereItShould) {

@@ -1,6 +1,9 @@
 // A derating with all data that exporters write, and its exports.
 #pragma once
 
+#include <stdexcept>
+#include <string>
+
 #include "derate/exporter.h"
 #include "guarded_motor.h"
 
@@ -39,6 +42,16 @@ inline std::string exported(std::string_view name, const Derating& derating = ec
   }
   ADD_FAILURE() << "no exporter " << name;
   return {};
+}
+
+/// The same with a binary for this machine.
+inline std::string compiled(const std::string& form, const Derating& derating = ecx_derating()) {
+  for (const ExporterType& each : all_exporters()) {
+    if (each.name == form) {
+      return each.write_compiled(derating, "cc");
+    }
+  }
+  throw std::out_of_range(form);
 }
 
 }  // namespace heatsoak

@@ -30,15 +30,6 @@ conductance = { value = "0.05 W/K", origin = "estimated", derivation = "a test" 
 exponent = { value = "0.8", origin = "estimated", derivation = "a test" }
 )";
 
-std::string compiled(const std::string& form, const Derating& derating) {
-  for (const ExporterType& each : all_exporters()) {
-    if (each.name == form) {
-      return each.write_compiled(derating, "cc");
-    }
-  }
-  throw std::out_of_range(form);
-}
-
 /// Demand of a wheel for a quarter of a second.
 struct Moment {
   double duration_s = 0.0;

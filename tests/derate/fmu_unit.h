@@ -56,7 +56,16 @@ inline std::vector<std::string>& fmu_log() {
 /// One instance of a unit of either version. Status 0 means success.
 class FmuUnit {
  public:
-  FmuUnit(const std::string& bytes, int version, const std::string& token = {}) : version_(version), files_(unpacked(bytes)) {
+  /// Event mode and early return as the importer announces them to FMI 3.0.
+  struct Importer {
+    bool has_event_mode = false;
+    bool takes_early_return = false;
+  };
+
+  FmuUnit(const std::string& bytes, int version, const std::string& token = {})
+      : FmuUnit(bytes, version, token, {.has_event_mode = false, .takes_early_return = false}) {}
+  FmuUnit(const std::string& bytes, int version, const std::string& token, Importer importer)
+      : version_(version), importer_(importer), files_(unpacked(bytes)) {
     const std::string& description = files_.at("modelDescription.xml");
     for (const Attributes& each : elements_with(description, "valueReference")) {
       if (each.contains("name")) {
@@ -144,6 +153,36 @@ class FmuUnit {
     EXPECT_FALSE(event || terminate || early);
     return status;
   }
+
+  /// One step of FMI 3.0 with what it says about events.
+  struct Step {
+    int status = -1;
+    bool is_event = false;
+    bool is_early = false;
+    double last_s = NAN;
+  };
+  Step step_to_event(double now_s, double step_s) {
+    Step step;
+    bool terminate = true;
+    step.status = call<int>("DoStep", instance_, now_s, step_s, false, &step.is_event, &terminate, &step.is_early, &step.last_s);
+    EXPECT_FALSE(terminate);
+    return step;
+  }
+  int enter_event_mode() { return call<int>("EnterEventMode", instance_); }
+  int enter_step_mode() { return call<int>("EnterStepMode", instance_); }
+  /// Returns the status; next_event_s is NaN where the unit names none.
+  int update_discrete_states(double* next_event_s) {
+    bool again = true;
+    bool terminate = true;
+    bool nominals = true;
+    bool values = true;
+    bool has_next = false;
+    double next_s = NAN;
+    const int status = call<int>("UpdateDiscreteStates", instance_, &again, &terminate, &nominals, &values, &has_next, &next_s);
+    EXPECT_FALSE(again || terminate || nominals || values);
+    *next_event_s = has_next ? next_s : NAN;
+    return status;
+  }
   void* keep() {
     void* state = nullptr;
     EXPECT_EQ(call<int>(version_ == 2 ? "GetFMUstate" : "GetFMUState", instance_, &state), 0);
@@ -186,13 +225,14 @@ class FmuUnit {
     if (version_ == 2) {
       instance_ = call<void*>("Instantiate", "unit", 1, token.c_str(), "", static_cast<const Callbacks*>(&callbacks_), 0, 1);
     } else {
-      instance_ = call<void*>("InstantiateCoSimulation", "unit", token.c_str(), "", false, true, false, false,
-                              static_cast<const std::uint32_t*>(nullptr), std::size_t{0}, static_cast<void*>(nullptr), &FmuUnit::log,
-                              static_cast<void*>(nullptr));
+      instance_ = call<void*>("InstantiateCoSimulation", "unit", token.c_str(), "", false, true, importer_.has_event_mode,
+                              importer_.takes_early_return, static_cast<const std::uint32_t*>(nullptr), std::size_t{0},
+                              static_cast<void*>(nullptr), &FmuUnit::log, static_cast<void*>(nullptr));
     }
   }
 
   int version_;
+  Importer importer_;
   std::map<std::string, std::string> files_;
   std::map<std::string, Attributes> variables_;
   std::filesystem::path file_;

@@ -383,12 +383,12 @@ TEST(Match, draws_spread_the_demand) {
   const Robot robot = twente();
   const MatchDuty duty(division_a());
   ASSERT_TRUE(duty.has_unknowns());
-  const auto rms_Nm = [](const std::vector<WheelDemand>& wheels) {
+  const auto rms_Nm = [](const WheelDemand& wheel) {
     double sum_Nm2_s = 0.0;
-    for (const LoadBin& bin : wheels[2].bins) {
+    for (const LoadBin& bin : wheel.bins) {
       sum_Nm2_s += bin.torque_rms_Nm * bin.torque_rms_Nm * bin.duration_s;
     }
-    return std::sqrt(sum_Nm2_s / wheels[2].duration_s());
+    return std::sqrt(sum_Nm2_s / wheel.duration_s());
   };
   std::vector<double> drawn_Nm;
   for (std::uint64_t draw = 0; draw < 6; ++draw) {
@@ -397,7 +397,28 @@ TEST(Match, draws_spread_the_demand) {
   EXPECT_EQ(rms_Nm(duty.draw(robot, 1, 3)), drawn_Nm[3]);
   EXPECT_NE(rms_Nm(duty.draw(robot, 2, 3)), drawn_Nm[3]);
   const auto [least, most] = std::ranges::minmax(drawn_Nm);
-  EXPECT_GT(most - least, 0.1 * rms_Nm(duty.demand(robot, 1)));
+  EXPECT_GT(most - least, 0.1 * rms_Nm(hardest(duty.demand(robot, 1))));
+}
+
+TEST(Match, the_hardest_wheel_alone_has_the_same_demand) {
+  const MatchInputs inputs = division_a();
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const WheelDemand of_all =
+        hardest(play_match(inputs, inputs.nominal(), twente(), seed, Planner::jerk_limited, kBin_s, {}, kDrawnGameStep_s).wheels);
+    const WheelDemand alone =
+        hardest_wheel_of_match(inputs, inputs.nominal(), twente(), seed, Planner::jerk_limited, kBin_s, kDrawnGameStep_s);
+    EXPECT_EQ(alone.wheel, of_all.wheel);
+    EXPECT_EQ(alone.slip_share, of_all.slip_share);
+    ASSERT_EQ(alone.bins.size(), of_all.bins.size());
+    ASSERT_EQ(alone.points.size(), of_all.points.size());
+    for (std::size_t i = 0; i < alone.bins.size(); ++i) {
+      EXPECT_EQ(alone.bins[i].torque_rms_Nm, of_all.bins[i].torque_rms_Nm);
+      EXPECT_EQ(alone.bins[i].power_mean_W, of_all.bins[i].power_mean_W);
+    }
+    for (std::size_t i = 0; i < alone.points.size(); ++i) {
+      EXPECT_EQ(alone.points[i].time_s, of_all.points[i].time_s);
+    }
+  }
 }
 
 TEST(Match, a_keeper_works_less_than_an_attacker) {

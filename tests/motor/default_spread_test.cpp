@@ -127,7 +127,7 @@ Spread of_percent(const ParameterValue& figure, double below_percent, double abo
 // A file states 0.001 % to avoid a larger spread, on both sides or on the side that makes motors hot.
 TEST(DefaultSpread, ANarrowerSpreadThanItsOriginSupportsIsRefusedAndNotUsed) {
   for (const std::string_view key : {"thermal_resistance_stator_ambient", "terminal_resistance", "no_load_current"}) {
-    for (const Origin origin : {Origin::datasheet, Origin::third_party, Origin::derived, Origin::estimated}) {
+    for (const Origin origin : {Origin::datasheet, Origin::third_party, Origin::derived, Origin::measured, Origin::estimated}) {
       Motor missing = ecx_32();
       missing.parameters.at(key).origin = origin;
       missing.parameters.at(key).spread.reset();
@@ -151,6 +151,8 @@ TEST(DefaultSpread, AFitThatIsSurerThanItsSensorsIsWidenedAndNotRefused) {
   ParameterValue& figure = motor.parameters.at("thermal_resistance_stator_ambient");
   figure.origin = Origin::measured;
   figure.spread = of_percent(figure, 0.02, 3.0);
+  EXPECT_THAT(message_of_refusal(motor), HasSubstr("narrow_values")) << "the file records no fit";
+  motor.fit.emplace().parameters = {"thermal_resistance_stator_ambient"};
   EXPECT_EQ(message_of_refusal(motor), "");
   const std::vector<DefaultSpread> found = default_spreads(motor);
   ASSERT_THAT(found, SizeIs(1));

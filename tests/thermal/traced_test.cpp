@@ -30,7 +30,7 @@ std::vector<double> heat_by_formula_W(const EffectType& type, const OperatingPoi
   std::vector<int> place(std::max(parameters.size(), temperature_C.size()));
   std::iota(place.begin(), place.end(), 0);
   std::vector<TracedHeat> heat(temperature_C.size());
-  HeatBook<Traced> book(heat.data(), place.data());
+  HeatBook<Traced> book(heat.data(), place.data(), {"law", std::vector<std::string>(place.size(), "node")});
   type.laws->traced(Situation<Traced>(point, constants.data(), place.data(), temperature.data(), place.data()), book);
   std::vector<int> results;
   for (const TracedHeat& each : heat) {

@@ -157,7 +157,8 @@ std::string description_fmi3(const FmuModel& model) {
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<fmiModelDescription fmiVersion=\"3.0\" modelName=\"{0}\" instantiationToken=\"{1}\" description=\"{2}\" generationTool=\"{3}\" "
       "variableNamingConvention=\"flat\">\n"
-      "  <CoSimulation modelIdentifier=\"{0}\" canHandleVariableCommunicationStepSize=\"true\"{4} canGetAndSetFMUState=\"true\" "
+      "  <CoSimulation modelIdentifier=\"{0}\" canHandleVariableCommunicationStepSize=\"true\"{4} "
+      "hasEventMode=\"true\" mightReturnEarlyFromDoStep=\"true\" canGetAndSetFMUState=\"true\" "
       "canSerializeFMUState=\"true\"/>\n",
       model.identifier, xml_attribute(model.token), xml_attribute(model.description), xml_attribute(tool()),
       model.fixed_step_s ? fmt::format(" fixedInternalStepSize=\"{}\"", number(*model.fixed_step_s)) : "");

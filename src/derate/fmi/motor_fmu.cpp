@@ -19,6 +19,9 @@ const LineStyle kStyle{
     .exponential = "exp",
     .power = "positive_power"};
 
+/// limit_crossing_s before the first crossing.
+constexpr double kNoCrossing_s = -1.0;
+
 void require_expressible(const Derating& derating, std::string_view exporter) {
   for (const ActingEffect& effect : derating.effects) {
     if (!effect.column.empty()) {
@@ -54,6 +57,9 @@ std::vector<FmuVariable> variables(const Derating& derating) {
   all.push_back({"winding_peak_C", "degC", FmuCausality::output, FmuType::real, 0.0,
                  "highest winding temperature since the start, also inside a step"});
   all.push_back({"over_limit", "", FmuCausality::output, FmuType::boolean, 0.0, "whether winding or stator is above its limit"});
+  all.push_back({"limit_crossing_s", "s", FmuCausality::output, FmuType::real, 0.0,
+                 fmt::format("when over_limit last changed, located within the step; {:.0f} s before the first time", kNoCrossing_s),
+                 true});
   all.push_back(
       {"winding_limit_C", "degC", FmuCausality::constant, FmuType::real, derating.rules.limits.winding_C, "limit of the winding"});
   if (derating.rules.limits.stator_C) {
@@ -99,10 +105,12 @@ FmuModel motor_fmu(const Derating& derating, std::string_view exporter) {
   model.sources = fmu_tables(
       model,
       fmt::format("#define MODEL_TAKES_UNKNOWN 0\n#define MODEL_NODES {}\n#define MODEL_FIRST_START at_{}_start_C\n"
-                  "#define MODEL_FIRST_NODE at_{}_C\n#define MODEL_WINDING_LIMIT_C {}\n#define MODEL_STATOR_LIMIT_C {} /* 0: none */\n\n"
-                  "typedef struct {{\n  double step_s; /* step that the last error allows; 0 at the start */\n}} model_part;\n",
+                  "#define MODEL_FIRST_NODE at_{}_C\n#define MODEL_WINDING_LIMIT_C {}\n#define MODEL_STATOR_LIMIT_C {} /* 0: none */\n"
+                  "#define MODEL_NO_CROSSING_S {}\n\ntypedef struct {{\n  double step_s;     /* step that the last error allows; 0 at the "
+                  "start */\n"
+                  "  double crossing_s; /* when over_limit last changed */\n}} model_part;\n",
                   derating.observer.state_count(), first, first, fmu_number(derating.rules.limits.winding_C),
-                  fmu_number(derating.rules.limits.stator_C.value_or(0.0))));
+                  fmu_number(derating.rules.limits.stator_C.value_or(0.0)), fmu_number(kNoCrossing_s)));
   model.sources.push_back({"rates.c", rates_text(derating)});
   return model;
 }

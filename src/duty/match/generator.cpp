@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <string_view>
+#include <utility>
 
 #include "robot_core/trajectory.h"
 
@@ -106,19 +108,25 @@ class IdealTracking final : public Follower {
   double time_s_ = 0.0;
 };
 
+enum class Keep { every_wheel, hardest_wheel };
+
 class Match {
  public:
   Match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner, double bin_s,
-        const MatchObserver& observer, double step_s)
+        const MatchObserver& observer, double step_s, Keep keep)
       : step_s_(step_s),
+        bin_s_(bin_s),
+        keep_(keep),
         random_(seed, 0),
         game_(generate_game(inputs.division, inputs.overtime, values, random_)),
         behaviour_(inputs, values, random_),
         body_(make_body(robot, without_rotor())),
         motion_(ideal_tracking(robot, values.aggressiveness, planner)),
-        observer_(observer) {
-    for (int wheel = 0; wheel < body_.kinematics.wheel_count; ++wheel) {
-      gatherers_.emplace_back(fmt::format("wheel {}", wheel + 1), bin_s, kGrid);
+        observer_(observer),
+        steps_(steps_of_thread()) {
+    steps_.clear();
+    for (int wheel = 0; keep_ == Keep::every_wheel && wheel < body_.kinematics.wheel_count; ++wheel) {
+      gatherers_.push_back(gatherer(wheel));
     }
   }
 
@@ -136,6 +144,9 @@ class Match {
     for (const PhaseLoad& phase : load_.phases) {
       slip_s += phase.slip_s;
     }
+    if (keep_ == Keep::hardest_wheel) {
+      gather_hardest();
+    }
     for (DemandGatherer& each : gatherers_) {
       load_.wheels.push_back(each.finish());
       load_.wheels.back().slip_share = slip_s / load_.duration_s;
@@ -148,6 +159,20 @@ class Match {
     MotorValues motor;
     motor.rotor_inertia_kg_m2 = 0.0;
     return motor;
+  }
+
+  [[nodiscard]] DemandGatherer gatherer(int wheel) const { return {fmt::format("wheel {}", wheel + 1), bin_s_, kGrid}; }
+
+  void gather_hardest() {
+    PerWheel work_Nm2_s{};
+    for (const PhaseLoad& phase : load_.phases) {
+      std::ranges::transform(work_Nm2_s, phase.torque_squared_Nm2_s, work_Nm2_s.begin(), std::plus());
+    }
+    const auto hardest = static_cast<std::size_t>(std::ranges::max_element(work_Nm2_s) - work_Nm2_s.begin());
+    DemandGatherer& one = gatherers_.emplace_back(gatherer(static_cast<int>(hardest)));
+    for (const Step& each : steps_) {
+      one.add(each.duration_s, each.torque_Nm[hardest], each.speed_rad_per_s[hardest]);
+    }
   }
 
   /// In steps, or at one go where nothing moves any more. A duel lasts from when the robot has come to a stand, but
@@ -179,19 +204,33 @@ class Match {
   void moment(Phase phase, const MotionCommand& command, double step_s, bool pushes) {
     const Pose pose = motion_->pose();
     const BodyVelocity velocity = motion_->velocity_global();
-    BodyMotion motion = local_motion(body_, pose, velocity, motion_->acceleration_global());
+    if (pose.yaw_rad != axis_yaw_rad_) {
+      axis_yaw_rad_ = pose.yaw_rad;
+      axis_ = field_axis(axis_yaw_rad_);
+    }
+    BodyMotion motion = local_motion(body_, axis_, velocity, motion_->acceleration_global());
     if (pushes) {
       const double direction_rad = command.push_direction_rad - pose.yaw_rad;
       const double force_N = command.push_share * largest_push_N(body_, direction_rad, motion.external_height_m);
       motion.external = {-force_N * std::cos(direction_rad), -force_N * std::sin(direction_rad), 0.0};
     }
-    const WheelDemands wheels = inverse_dynamics(body_, motion);
+    // At constant speed every moment asks the same of the wheels.
+    if (!(motion == motion_of_wheels_)) {
+      motion_of_wheels_ = motion;
+      wheels_ = inverse_dynamics(body_, motion);
+    }
+    const WheelDemands& wheels = wheels_;
     PhaseLoad& phase_load = load_.phases.at(static_cast<std::size_t>(phase));
     phase_load.time_s += step_s;
     phase_load.duel_s += pushes ? step_s : 0.0;
     phase_load.slip_s += wheels.transmitted_share < 1.0 ? step_s : 0.0;
+    if (keep_ == Keep::hardest_wheel) {
+      steps_.push_back({step_s, wheels.torque_Nm, wheels.speed_rad_per_s});
+    }
     for (std::size_t i = 0; i < gatherers_.size(); ++i) {
       gatherers_[i].add(step_s, wheels.torque_Nm[i], wheels.speed_rad_per_s[i]);
+    }
+    for (int i = 0; i < body_.kinematics.wheel_count; ++i) {
       const double squared_Nm2_s = wheels.torque_Nm[i] * wheels.torque_Nm[i] * step_s;
       phase_load.torque_squared_Nm2_s[i] += squared_Nm2_s;
       phase_load.duel_torque_squared_Nm2_s += pushes ? squared_Nm2_s : 0.0;
@@ -203,7 +242,22 @@ class Match {
     }
   }
 
+  /// Merging loads into bins and points takes a third of a game's time, so they are kept until it is known which wheel counts.
+  struct Step {
+    double duration_s = 0.0;
+    PerWheel torque_Nm{};
+    PerWheel speed_rad_per_s{};
+  };
+
+  /// Fresh memory for every game would cost as much as the robot's dynamics.
+  static std::vector<Step>& steps_of_thread() {
+    thread_local std::vector<Step> steps;
+    return steps;
+  }
+
   double step_s_;
+  double bin_s_;
+  Keep keep_;
   Random random_;
   std::vector<MatchPhase> game_;
   Behaviour behaviour_;
@@ -211,7 +265,12 @@ class Match {
   std::unique_ptr<Follower> motion_;
   const MatchObserver& observer_;
   std::vector<DemandGatherer> gatherers_;
+  std::vector<Step>& steps_;
   MatchLoad load_;
+  BodyMotion motion_of_wheels_;
+  WheelDemands wheels_ = inverse_dynamics(body_, motion_of_wheels_);
+  double axis_yaw_rad_ = 0.0;
+  FieldAxis axis_ = field_axis(0.0);
 };
 
 }  // namespace
@@ -222,7 +281,13 @@ std::unique_ptr<Follower> ideal_tracking(const Robot& robot, double aggressivene
 
 MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner,
                      double bin_s, const MatchObserver& observer, double step_s) {
-  return Match(inputs, values, robot, seed, planner, bin_s, observer, step_s).play();
+  return Match(inputs, values, robot, seed, planner, bin_s, observer, step_s, Keep::every_wheel).play();
+}
+
+WheelDemand hardest_wheel_of_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed,
+                                   Planner planner, double bin_s, double step_s) {
+  const MatchObserver nobody;
+  return std::move(Match(inputs, values, robot, seed, planner, bin_s, nobody, step_s, Keep::hardest_wheel).play().wheels.front());
 }
 
 }  // namespace heatsoak

@@ -83,4 +83,8 @@ inline constexpr double kDrawnGameStep_s = 4e-3;
 MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner,
                      double bin_s = kBin_s, const MatchObserver& observer = {}, double step_s = kGameStep_s);
 
+/// The demand of the wheel with the largest ∫M²dt of the same game, in less time.
+WheelDemand hardest_wheel_of_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed,
+                                   Planner planner, double bin_s, double step_s);
+
 }  // namespace heatsoak

@@ -19,13 +19,12 @@ class MatchDuty final : public DutyShape {
   [[nodiscard]] bool depends_on_robot() const override { return true; }
   [[nodiscard]] bool has_unknowns() const override { return true; }
   /// Another game with other inputs by a robot with other parameters.
-  [[nodiscard]] std::vector<WheelDemand> draw(const Robot& robot, std::uint64_t seed, std::uint64_t draw) const override {
+  [[nodiscard]] WheelDemand draw(const Robot& robot, std::uint64_t seed, std::uint64_t draw) const override {
     constexpr std::uint64_t kBehindTheSamples = std::uint64_t{1} << 32;
     Random random(seed, kBehindTheSamples + draw);
     const MatchValues values = inputs_.draw(random);
-    return play_match(inputs_, values, draw_sample(robot, random), seed + kBehindTheSamples * (draw + 1), Planner::jerk_limited, kBin_s, {},
-                      kDrawnGameStep_s)
-        .wheels;
+    return hardest_wheel_of_match(inputs_, values, draw_sample(robot, random), seed + kBehindTheSamples * (draw + 1), Planner::jerk_limited,
+                                  kBin_s, kDrawnGameStep_s);
   }
 
  private:

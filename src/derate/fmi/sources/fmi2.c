@@ -51,7 +51,7 @@ FMI2_Export fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2St
   if (made->name) {
     strcpy(made->name, name ? name : "");
   }
-  instance_reset(&made->state);
+  instance_make(&made->state, events_inside);
   if (!made->name || type != fmi2CoSimulation || !guid || strcmp(guid, MODEL_TOKEN) != 0) {
     if (made->name) {
       refuse(made, type != fmi2CoSimulation ? "this FMU is for co-simulation" : "the guid is not the one of this FMU");
@@ -112,7 +112,7 @@ FMI2_Export fmi2Status fmi2Reset(fmi2Component of) {
       double value = 0.0;                                                                                                  \
       const char *const problem = instance_get(&me->state, references[i], type, &value);                                   \
       if (problem) {                                                                                                       \
-        return refuse(me, problem);                                                                                          \
+        return refuse(me, problem);                                                                                        \
       }                                                                                                                    \
       values[i] = (Type)value;                                                                                             \
     }                                                                                                                      \
@@ -124,7 +124,7 @@ FMI2_Export fmi2Status fmi2Reset(fmi2Component of) {
     for (i = 0; i < count; ++i) {                                                                                          \
       const char *const problem = instance_set(&me->state, references[i], type, (double)values[i]);                        \
       if (problem) {                                                                                                       \
-        return refuse(me, problem);                                                                                          \
+        return refuse(me, problem);                                                                                        \
       }                                                                                                                    \
     }                                                                                                                      \
     return fmi2OK;                                                                                                         \
@@ -211,8 +211,9 @@ FMI2_Export fmi2Status fmi2GetRealOutputDerivatives(fmi2Component of, const fmi2
 
 FMI2_Export fmi2Status fmi2DoStep(fmi2Component of, fmi2Real current_s, fmi2Real step_s, fmi2Boolean is_final) {
   component *const me = of;
+  int is_event = 0; /* FMI 2.0 has no event mode for co-simulation */
   (void)is_final;
-  return refuse(me, instance_step(&me->state, current_s, step_s));
+  return refuse(me, instance_step(&me->state, current_s, step_s, &is_event));
 }
 
 FMI2_Export fmi2Status fmi2CancelStep(fmi2Component of) {

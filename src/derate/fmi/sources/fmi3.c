@@ -44,8 +44,6 @@ FMI3_Export fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String
   (void)resources;
   (void)visible;
   (void)is_logging;
-  (void)has_event_mode;
-  (void)may_return_early;
   (void)required;
   (void)intermediate;
   if (!made) {
@@ -53,7 +51,7 @@ FMI3_Export fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String
   }
   made->environment = environment;
   made->log = log;
-  instance_reset(&made->state);
+  instance_make(&made->state, !has_event_mode ? events_inside : may_return_early ? events_end_step : events_after_step);
   if (!token || strcmp(token, MODEL_TOKEN) != 0 || required_count > 0) {
     fmi3_refuse(made, required_count > 0 ? "this FMU gives no intermediate values" : "the instantiation token is not the one of this FMU");
     free(made);
@@ -128,11 +126,11 @@ FMI3_Export fmi3Status fmi3Reset(fmi3Instance of) {
       double value = 0.0;                                                                                                               \
       const char *const problem = instance_get(&me->state, references[i], type, &value);                                                \
       if (problem) {                                                                                                                    \
-        return fmi3_refuse(of, problem);                                                                                                  \
+        return fmi3_refuse(of, problem);                                                                                                \
       }                                                                                                                                 \
       values[i] = (Type)value;                                                                                                          \
     }                                                                                                                                   \
-    return fmi3_refuse(of, count == value_count ? 0 : "expected as many values as references, because no variable is an array");          \
+    return fmi3_refuse(of, count == value_count ? 0 : "expected as many values as references, because no variable is an array");        \
   }                                                                                                                                     \
   FMI3_Export fmi3Status set(fmi3Instance of, const fmi3ValueReference references[], size_t count, const Type values[],                 \
                              size_t value_count) {                                                                                      \
@@ -141,10 +139,10 @@ FMI3_Export fmi3Status fmi3Reset(fmi3Instance of) {
     for (i = 0; i < count && i < value_count; ++i) {                                                                                    \
       const char *const problem = instance_set(&me->state, references[i], type, (double)values[i]);                                     \
       if (problem) {                                                                                                                    \
-        return fmi3_refuse(of, problem);                                                                                                  \
+        return fmi3_refuse(of, problem);                                                                                                \
       }                                                                                                                                 \
     }                                                                                                                                   \
-    return fmi3_refuse(of, count == value_count ? 0 : "expected as many values as references, because no variable is an array");          \
+    return fmi3_refuse(of, count == value_count ? 0 : "expected as many values as references, because no variable is an array");        \
   }
 
 VALUES(fmi3Float64, fmi3GetFloat64, fmi3SetFloat64, type_real)
@@ -187,11 +185,36 @@ FMI3_Export fmi3Status fmi3DeserializeFMUState(fmi3Instance of, const fmi3Byte b
 FMI3_Export fmi3Status fmi3DoStep(fmi3Instance of, fmi3Float64 current_s, fmi3Float64 step_s, fmi3Boolean no_earlier_state,
                                   fmi3Boolean *event_needed, fmi3Boolean *terminate, fmi3Boolean *early_return, fmi3Float64 *last_s) {
   component *const me = of;
-  const fmi3Status status = fmi3_refuse(of, instance_step(&me->state, current_s, step_s));
+  int is_event = 0;
+  const fmi3Status status = fmi3_refuse(of, instance_step(&me->state, current_s, step_s, &is_event));
   (void)no_earlier_state;
-  *event_needed = fmi3False;
+  *event_needed = is_event != 0;
   *terminate = fmi3False;
-  *early_return = fmi3False;
   *last_s = me->state.model.value[at_time_s];
+  *early_return = status == fmi3OK && *last_s < current_s + step_s;
   return status;
+}
+
+FMI3_Export fmi3Status fmi3EnterEventMode(fmi3Instance of) {
+  component *const me = of;
+  return fmi3_refuse(of, instance_enter_events(&me->state));
+}
+
+FMI3_Export fmi3Status fmi3UpdateDiscreteStates(fmi3Instance of, fmi3Boolean *need_update, fmi3Boolean *terminate,
+                                                fmi3Boolean *nominals_changed, fmi3Boolean *values_changed, fmi3Boolean *has_next_event,
+                                                fmi3Float64 *next_event_s) {
+  component *const me = of;
+  int has_next = 0;
+  const fmi3Status status = fmi3_refuse(of, instance_end_event(&me->state, &has_next, next_event_s));
+  *need_update = fmi3False;
+  *terminate = fmi3False;
+  *nominals_changed = fmi3False;
+  *values_changed = fmi3False;
+  *has_next_event = has_next != 0;
+  return status;
+}
+
+FMI3_Export fmi3Status fmi3EnterStepMode(fmi3Instance of) {
+  component *const me = of;
+  return fmi3_refuse(of, instance_enter_steps(&me->state));
 }

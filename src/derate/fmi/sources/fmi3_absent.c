@@ -115,17 +115,11 @@ FMI3_Export fmi3Status fmi3GetOutputDerivatives(fmi3Instance of, const fmi3Value
   return fmi3_refuse(of, "this FMU gives no derivatives and no dependencies");
 }
 
-FMI3_Export fmi3Status fmi3EnterEventMode(fmi3Instance of) { return fmi3_refuse(of, "this FMU has no events, clocks or configuration"); }
-
-FMI3_Export fmi3Status fmi3EnterStepMode(fmi3Instance of) { return fmi3_refuse(of, "this FMU has no events, clocks or configuration"); }
-
 FMI3_Export fmi3Status fmi3EnterConfigurationMode(fmi3Instance of) {
-  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no clocks and no configuration");
 }
 
-FMI3_Export fmi3Status fmi3ExitConfigurationMode(fmi3Instance of) {
-  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
-}
+FMI3_Export fmi3Status fmi3ExitConfigurationMode(fmi3Instance of) { return fmi3_refuse(of, "this FMU has no clocks and no configuration"); }
 
 FMI3_Export fmi3Status fmi3GetIntervalDecimal(fmi3Instance of, const fmi3ValueReference references[], size_t count, fmi3Float64 intervals[],
                                               fmi3IntervalQualifier qualifiers[]) {
@@ -133,7 +127,7 @@ FMI3_Export fmi3Status fmi3GetIntervalDecimal(fmi3Instance of, const fmi3ValueRe
   (void)count;
   (void)intervals;
   (void)qualifiers;
-  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no clocks and no configuration");
 }
 
 FMI3_Export fmi3Status fmi3GetIntervalFraction(fmi3Instance of, const fmi3ValueReference references[], size_t count, fmi3UInt64 counters[],
@@ -143,14 +137,14 @@ FMI3_Export fmi3Status fmi3GetIntervalFraction(fmi3Instance of, const fmi3ValueR
   (void)counters;
   (void)resolutions;
   (void)qualifiers;
-  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no clocks and no configuration");
 }
 
 FMI3_Export fmi3Status fmi3GetShiftDecimal(fmi3Instance of, const fmi3ValueReference references[], size_t count, fmi3Float64 shifts[]) {
   (void)references;
   (void)count;
   (void)shifts;
-  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no clocks and no configuration");
 }
 
 FMI3_Export fmi3Status fmi3GetShiftFraction(fmi3Instance of, const fmi3ValueReference references[], size_t count, fmi3UInt64 counters[],
@@ -159,7 +153,7 @@ FMI3_Export fmi3Status fmi3GetShiftFraction(fmi3Instance of, const fmi3ValueRefe
   (void)count;
   (void)counters;
   (void)resolutions;
-  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no clocks and no configuration");
 }
 
 FMI3_Export fmi3Status fmi3SetIntervalDecimal(fmi3Instance of, const fmi3ValueReference references[], size_t count,
@@ -167,7 +161,7 @@ FMI3_Export fmi3Status fmi3SetIntervalDecimal(fmi3Instance of, const fmi3ValueRe
   (void)references;
   (void)count;
   (void)intervals;
-  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no clocks and no configuration");
 }
 
 FMI3_Export fmi3Status fmi3SetIntervalFraction(fmi3Instance of, const fmi3ValueReference references[], size_t count,
@@ -176,7 +170,7 @@ FMI3_Export fmi3Status fmi3SetIntervalFraction(fmi3Instance of, const fmi3ValueR
   (void)count;
   (void)counters;
   (void)resolutions;
-  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no clocks and no configuration");
 }
 
 FMI3_Export fmi3Status fmi3SetShiftDecimal(fmi3Instance of, const fmi3ValueReference references[], size_t count,
@@ -184,7 +178,7 @@ FMI3_Export fmi3Status fmi3SetShiftDecimal(fmi3Instance of, const fmi3ValueRefer
   (void)references;
   (void)count;
   (void)shifts;
-  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no clocks and no configuration");
 }
 
 FMI3_Export fmi3Status fmi3SetShiftFraction(fmi3Instance of, const fmi3ValueReference references[], size_t count,
@@ -193,29 +187,17 @@ FMI3_Export fmi3Status fmi3SetShiftFraction(fmi3Instance of, const fmi3ValueRefe
   (void)count;
   (void)counters;
   (void)resolutions;
-  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no clocks and no configuration");
 }
 
 FMI3_Export fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance of) {
-  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
-}
-
-FMI3_Export fmi3Status fmi3UpdateDiscreteStates(fmi3Instance of, fmi3Boolean *need_update, fmi3Boolean *terminate,
-                                                fmi3Boolean *nominals_changed, fmi3Boolean *values_changed, fmi3Boolean *has_next_event,
-                                                fmi3Float64 *next_event_s) {
-  (void)need_update;
-  (void)terminate;
-  (void)nominals_changed;
-  (void)values_changed;
-  (void)has_next_event;
-  (void)next_event_s;
-  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no clocks and no configuration");
 }
 
 FMI3_Export fmi3Status fmi3ActivateModelPartition(fmi3Instance of, fmi3ValueReference clock, fmi3Float64 time_s) {
   (void)clock;
   (void)time_s;
-  return fmi3_refuse(of, "this FMU has no events, clocks or configuration");
+  return fmi3_refuse(of, "this FMU has no clocks and no configuration");
 }
 
 FMI3_Export fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance of) { return fmi3_refuse(of, "this FMU is for co-simulation"); }

@@ -4,11 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-void instance_reset(instance_state *state) {
+void instance_reset(instance_state *state) { instance_make(state, state->events); }
+
+void instance_make(instance_state *state, model_events events) {
   int i;
   /* also sets the padding between the members: equal states have equal bytes */
   memset(state, 0, sizeof *state);
   strcpy(state->token, MODEL_TOKEN);
+  state->events = events;
   for (i = 0; i < MODEL_VARIABLES; ++i) {
     state->model.value[i] = model_variables[i].value;
   }
@@ -30,12 +33,13 @@ const char *instance_end_initialization(instance_state *state) {
   if (state->mode != mode_initialization) {
     return "initialization mode was not entered";
   }
-  state->mode = mode_stepping;
+  state->mode = state->events == events_inside ? mode_stepping : mode_event;
+  state->is_event_done = 0;
   return model_begin(&state->model);
 }
 
 const char *instance_terminate(instance_state *state) {
-  if (state->mode != mode_stepping) {
+  if (state->mode != mode_stepping && state->mode != mode_event) {
     return "only a running simulation can be terminated";
   }
   state->mode = mode_terminated;
@@ -51,12 +55,14 @@ static instance_state *copy_of(const instance_state *state) {
   return copy;
 }
 
-const char *instance_step(instance_state *state, double current_s, double step_s) {
+const char *instance_step(instance_state *state, double current_s, double step_s, int *is_event) {
   const double now_s = state->model.value[at_time_s];
   instance_state *next;
   const char *problem;
   if (state->mode != mode_stepping) {
-    return "a step needs a running simulation: after initialization, before termination and without an earlier error";
+    return state->mode == mode_event
+               ? "a step needs step mode: end the event and enter step mode first"
+               : "a step needs a running simulation: after initialization, before termination and without an earlier error";
   }
   if (!(fabs(current_s - now_s) <= 1e-9 * (1.0 + fabs(now_s)))) {
     return "the step does not begin at the end of the last one; expected that time, or that of a state that was set before";
@@ -68,7 +74,7 @@ const char *instance_step(instance_state *state, double current_s, double step_s
   if (!next) {
     return "out of memory";
   }
-  problem = model_step(&next->model, current_s + step_s);
+  problem = model_step(&next->model, current_s + step_s, state->events, is_event);
   if (problem) {
     state->mode = mode_failed;
   } else {
@@ -76,6 +82,35 @@ const char *instance_step(instance_state *state, double current_s, double step_s
   }
   free(next);
   return problem;
+}
+
+const char *instance_enter_events(instance_state *state) {
+  if (state->events == events_inside) {
+    return "the importer announced no event mode at instantiation";
+  }
+  if (state->mode != mode_stepping) {
+    return "event mode is entered from step mode";
+  }
+  state->mode = mode_event;
+  state->is_event_done = 0;
+  return 0;
+}
+
+const char *instance_end_event(instance_state *state, int *has_next, double *next_s) {
+  if (state->mode != mode_event) {
+    return "discrete states are updated in event mode";
+  }
+  *has_next = model_end_event(&state->model, next_s);
+  state->is_event_done = 1;
+  return 0;
+}
+
+const char *instance_enter_steps(instance_state *state) {
+  if (state->mode != mode_event || !state->is_event_done) {
+    return "step mode is entered from event mode, after the discrete states were updated";
+  }
+  state->mode = mode_stepping;
+  return 0;
 }
 
 const char *instance_set(instance_state *state, unsigned reference, model_type type, double value) {
@@ -88,7 +123,7 @@ const char *instance_set(instance_state *state, unsigned reference, model_type t
   if (model_variables[reference].kind != kind_input && model_variables[reference].kind != kind_parameter) {
     return "only inputs and parameters can be set";
   }
-  if (model_variables[reference].kind == kind_parameter && state->mode == mode_stepping) {
+  if (model_variables[reference].kind == kind_parameter && (state->mode == mode_stepping || state->mode == mode_event)) {
     return "a parameter is fixed once the simulation runs";
   }
   if (!isfinite(value) && !(MODEL_TAKES_UNKNOWN && model_variables[reference].kind == kind_input)) {
@@ -107,15 +142,24 @@ const char *instance_get(instance_state *state, unsigned reference, model_type t
     /* parameters may have been set since then */
     problem = model_begin(&state->model);
   }
+  if (state->mode == mode_event && model_variables[reference].kind == kind_output) {
+    /* inputs may have been set since then */
+    model_event_outputs(&state->model);
+  }
   *value = state->model.value[reference];
   return problem;
 }
 
 const char *instance_restore(instance_state *state, const void *bytes, size_t size) {
+  const model_events events = state->events;
   if (size != sizeof *state || memcmp(bytes, MODEL_TOKEN, sizeof MODEL_TOKEN) != 0) {
     return "the bytes are not a state of this FMU";
   }
+  if (((const instance_state *)bytes)->mode == mode_event && state->events == events_inside) {
+    return "the state is one of event mode, which the importer did not announce at instantiation";
+  }
   memcpy(state, bytes, size);
+  state->events = events;
   return 0;
 }
 

@@ -1,17 +1,35 @@
 /* A motor's thermal network with its effects, in double precision. Method: Bogacki and Shampine 1989, third order with an embedded second
    order for the step. */
 #include <math.h>
+#include <string.h>
 
 #include "model.h"
 
 /* K per step; the model is compared to a tenth of a kelvin */
 #define TOLERANCE_K 1e-4
 #define MOST_STEPS 10000000L
+/* a crossing of a limit is located to this */
+#define LOCATED_S 1e-6
 
 /* dT/dt of every node, from inputs and temperatures (model_data.c). */
 void motor_rates(const double *value, const double *state_C, double *rate_K_per_s);
 
-static const char *outputs(model_state *state) {
+static int is_over(const double *state_C) {
+  return state_C[0] > MODEL_WINDING_LIMIT_C || (MODEL_STATOR_LIMIT_C > 0.0 && state_C[1] > MODEL_STATOR_LIMIT_C);
+}
+
+void model_event_outputs(model_state *state) {
+  state->value[at_over_limit] = (double)is_over(state->value + MODEL_FIRST_NODE);
+  state->value[at_limit_crossing_s] = state->part.crossing_s;
+}
+
+int model_end_event(model_state *state, double *next_s) {
+  (void)next_s; /* a limit is crossed when the temperature wants it */
+  model_event_outputs(state);
+  return 0;
+}
+
+static const char *outputs(model_state *state, model_events events) {
   int node;
   for (node = 0; node < MODEL_NODES; ++node) {
     if (!isfinite(state->value[MODEL_FIRST_NODE + node])) {
@@ -21,10 +39,9 @@ static const char *outputs(model_state *state) {
   if (state->value[MODEL_FIRST_NODE] > state->value[at_winding_peak_C]) {
     state->value[at_winding_peak_C] = state->value[MODEL_FIRST_NODE];
   }
-  state->value[at_over_limit] = state->value[MODEL_FIRST_NODE] > MODEL_WINDING_LIMIT_C ||
-                                        (MODEL_STATOR_LIMIT_C > 0.0 && state->value[MODEL_FIRST_NODE + 1] > MODEL_STATOR_LIMIT_C)
-                                    ? 1.0
-                                    : 0.0;
+  if (events == events_inside) {
+    model_event_outputs(state);
+  }
   return 0;
 }
 
@@ -35,7 +52,8 @@ const char *model_begin(model_state *state) {
   }
   state->value[at_winding_peak_C] = state->value[MODEL_FIRST_NODE];
   state->part.step_s = 0.0;
-  return outputs(state);
+  state->part.crossing_s = MODEL_NO_CROSSING_S;
+  return outputs(state, events_inside);
 }
 
 /* One attempt; returns its error per tolerance. `first_rate` is the rate at `from_C`, `last_rate` becomes that at `to_C`. */
@@ -65,8 +83,28 @@ static double attempt(const double *value, double step_s, const double *from_C, 
   return error_ratio;
 }
 
-const char *model_step(model_state *state, double until_s) {
-  const double duration_s = until_s - state->value[at_time_s];
+/* Bisection over shorter attempts from the same start: the shortest step after which a limit was crossed, and its end. */
+static double crossing_after_s(const double *value, double step_s, const double *from_C, const double *first_rate, double *to_C,
+                               double *last_rate) {
+  const int was_over = is_over(from_C);
+  double before_s = 0.0;
+  double after_s = step_s;
+  while (after_s - before_s > LOCATED_S) {
+    const double middle_s = 0.5 * (before_s + after_s);
+    attempt(value, middle_s, from_C, first_rate, to_C, last_rate);
+    if (is_over(to_C) == was_over) {
+      before_s = middle_s;
+    } else {
+      after_s = middle_s;
+    }
+  }
+  attempt(value, after_s, from_C, first_rate, to_C, last_rate);
+  return after_s;
+}
+
+const char *model_step(model_state *state, double until_s, model_events events, int *is_event) {
+  const double begin_s = state->value[at_time_s];
+  double duration_s = until_s - begin_s;
   double *const now_C = state->value + MODEL_FIRST_NODE;
   double rate[MODEL_NODES], next_C[MODEL_NODES], next_rate[MODEL_NODES], done_s = 0.0;
   double step_s = state->part.step_s > 0.0 ? state->part.step_s : duration_s;
@@ -82,6 +120,17 @@ const char *model_step(model_state *state, double until_s) {
     }
     if (error_ratio <= 1.0) {
       int node;
+      if (is_over(next_C) != is_over(now_C)) {
+        double crossing_C[MODEL_NODES], crossing_rate[MODEL_NODES];
+        const double after_s = crossing_after_s(state->value, tried_s, now_C, rate, crossing_C, crossing_rate);
+        state->part.crossing_s = begin_s + done_s + after_s;
+        if (events == events_end_step && after_s < left_s) {
+          memcpy(next_C, crossing_C, sizeof next_C);
+          memcpy(next_rate, crossing_rate, sizeof next_rate);
+          duration_s = done_s + after_s;
+          until_s = begin_s + duration_s;
+        }
+      }
       for (node = 0; node < MODEL_NODES; ++node) {
         now_C[node] = next_C[node];
         rate[node] = next_rate[node];
@@ -98,5 +147,8 @@ const char *model_step(model_state *state, double until_s) {
   }
   state->part.step_s = step_s;
   state->value[at_time_s] = until_s;
-  return outputs(state);
+  if (events != events_inside && is_over(now_C) != (state->value[at_over_limit] > 0.5)) {
+    *is_event = 1;
+  }
+  return outputs(state, events);
 }
