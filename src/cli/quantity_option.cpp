@@ -20,9 +20,8 @@ std::function<std::string(const std::string&)> ends_in(const std::string& ending
   };
 }
 
-}  // namespace
-
-CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value, const ParameterSpec& spec) {
+template <class Value>
+CLI::Option* add_quantity_to(CLI::App& app, const std::string& flag, Value& value, const ParameterSpec& spec) {
   const auto parse = [flag, spec, &value](const std::string& text) {
     const std::optional<double> bare = parse_number(text);
     const ParsedQuantity parsed = bare && std::isfinite(*bare) ? ParsedQuantity{*bare, {}} : parse_quantity(text, spec.unit);
@@ -36,6 +35,16 @@ CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value,
     value = parsed.value;
   };
   return app.add_option_function<std::string>(flag, parse, std::string(spec.meaning))->type_name(std::string(spec.unit));
+}
+
+}  // namespace
+
+CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value, const ParameterSpec& spec) {
+  return add_quantity_to(app, flag, value, spec);
+}
+
+CLI::Option* add_quantity(CLI::App& app, const std::string& flag, std::optional<double>& value, const ParameterSpec& spec) {
+  return add_quantity_to(app, flag, value, spec);
 }
 
 CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& meaning) {
