@@ -155,7 +155,8 @@ class CheckReader {
     DerateOptions& options = check_.derate;
     take({"ambient", "degC", Range::between(-40.0, 120.0), "hottest air at the motor"}, options.hottest_ambient_C);
     take({"coldest", "degC", Range::between(-60.0, 120.0), "coldest air"}, options.coldest_ambient_C);
-    take({"approach", "s", Range::between(0.01, 100.0), "in which the winding may approach its limit"}, options.approach_s);
+    options.approach_s =
+        table->quantity({"approach", "s", Range::between(0.01, 100.0), "in which the winding may approach its limit"}, Need::optional);
     take({"period", "s", Range::between(1e-3, 1.0), "between two calls of the firmware"}, options.period_s);
     take({"confidence", "", Range::between(0.5, 0.999), "share of motors that keep their limits"}, options.guarantee.confidence);
     if (const auto samples = whole(*table, {"samples", "", Range::between(1.0, 1e5), "motors drawn to find the safety factor on heat"})) {

@@ -25,7 +25,7 @@ std::string key_of(const Motor& motor) {
 
 std::string key_of(const DerateOptions& options) {
   const GuaranteeOptions& guarantee = options.guarantee;
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}", options.hottest_ambient_C, options.coldest_ambient_C, options.period_s, options.approach_s,
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}", options.hottest_ambient_C, options.coldest_ambient_C, options.period_s, options.approach_s.value_or(0.0),
                      guarantee.confidence, guarantee.samples, guarantee.seed);
 }
 

@@ -38,6 +38,10 @@ double lowest_limit_C(const Motor& motor, std::string_view key, double nominal_C
 
 }  // namespace
 
+double approach_s(const Motor& motor, const DerateOptions& options) {
+  return options.approach_s.value_or(kApproach_ratio * motor.nominal.thermal_time_constant_winding_s);
+}
+
 BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateOptions& options) {
   const MotorValues& values = motor.nominal;
   const double loop_ohm = values.terminal_resistance_ohm + robot.series_resistance_ohm();
@@ -51,10 +55,10 @@ BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateO
                                                    "a higher limit; check winding_limit or state cooler air with --ambient",
                                                    motor.id, rules.limits.winding_C, options.hottest_ambient_C));
   }
-  rules.approach_s = options.approach_s;
+  rules.approach_s = approach_s(motor, options);
   // The stator must approach its limit more slowly than a winding without current gives off its stored heat.
   constexpr double kWindingTimes = 3.0;
-  rules.stator_approach_s = std::max(options.approach_s, kWindingTimes * values.thermal_time_constant_winding_s);
+  rules.stator_approach_s = std::max(rules.approach_s, kWindingTimes * values.thermal_time_constant_winding_s);
   rules.hottest_ambient_C = options.hottest_ambient_C;
   // When braking at full speed, the back-EMF adds to the supply voltage.
   rules.most_current_A = std::min(robot.drive.current_limit_A, 2.0 * robot.available_V() / loop_ohm);
@@ -81,10 +85,10 @@ void require_short_period(const Network& network, const BarrierRules& rules, con
   const double fastest_rad_per_s = std::max(2.0 * rules.most_speed_rad_per_s, rules.no_current_speed_rad_per_s);
   at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = Lanes::Constant(fastest_rad_per_s);
   const double longest_s = 0.2 * longest_step_s(network, parameters, at, rules.limits.winding_C - options.hottest_ambient_C);
-  if (options.period_s > longest_s || options.period_s > 0.1 * options.approach_s) {
+  if (options.period_s > longest_s || options.period_s > 0.1 * rules.approach_s) {
     throw Failure(ExitCode::bad_input, fmt::format("a period of {:.3g} s is too long: expected at most {:.3g} s, the smaller of 1/20 of "
                                                    "this motor's fastest time constant and 1/10 of --approach",
-                                                   options.period_s, std::min(longest_s, 0.1 * options.approach_s)));
+                                                   options.period_s, std::min(longest_s, 0.1 * rules.approach_s)));
   }
 }
 

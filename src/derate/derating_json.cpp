@@ -164,7 +164,7 @@ nlohmann::ordered_json derating_json(const Derating& derating) {
           {"stator_limit_C", derating.rules.limits.stator_C ? Json(*derating.rules.limits.stator_C) : Json()},
           {"hottest_ambient_C", derating.rules.hottest_ambient_C},
           {"period_s", derating.options.period_s},
-          {"approach_s", derating.options.approach_s},
+          {"approach_s", derating.rules.approach_s},
           {"heat_reserve_ratio", rounded(derating.observer.heat_safety_factor(), 4)},
           {"current_per_iq", derating.is_brushless ? Json(std::numbers::sqrt3 * std::numbers::pi / 6.0) : Json()},
           {"limp_current_A", rounded(limp_current_A(derating), 4)},

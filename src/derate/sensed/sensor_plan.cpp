@@ -93,7 +93,7 @@ class PlanSearch {
   /// Returns the smallest sufficient safety factor to 1 %, between 1 and the factor without a sensor.
   [[nodiscard]] double reserve() {
     constexpr double kTolerance = 0.01;
-    const double coarse_s = std::max(model_only_.options.period_s, model_only_.options.approach_s / kStepsPerApproach);
+    const double coarse_s = std::max(model_only_.options.period_s, model_only_.rules.approach_s / kStepsPerApproach);
     double low = 1.0;
     double high = model_only_.observer.heat_safety_factor();
     while (high > low * (1.0 + kTolerance)) {

@@ -13,32 +13,11 @@
 
 namespace heatsoak::studies {
 
-double upper_bound(std::size_t hits, std::size_t count) {
-  constexpr double kMissed = 0.05;
-  if (hits >= count) {
-    return 1.0;
-  }
-  double low = 0.0;
-  double high = 1.0;
-  constexpr int kHalvings = 50;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double share = 0.5 * (low + high);
-    // P(X ≤ hits) of the binomial distribution, term by term.
-    double term = std::pow(1.0 - share, static_cast<double>(count));
-    double sum = term;
-    for (std::size_t k = 0; k < hits; ++k) {
-      term *= static_cast<double>(count - k) / static_cast<double>(k + 1) * share / (1.0 - share);
-      sum += term;
-    }
-    (sum > kMissed ? low : high) = share;
-  }
-  return high;
-}
-
 namespace {
 
 constexpr std::size_t kMatches = 3;
-constexpr std::size_t kMotors = 9;  ///< motors, each assigned to one of the matches
+constexpr std::size_t kFirstSeed = 11;  ///< the guard's approach time was chosen with the matches of seeds 1 to 3
+constexpr std::size_t kMotors = 9;      ///< motors, each assigned to one of the matches
 
 enum class Method : std::uint8_t { none, sheet_cap, hindsight_cap, stator_ramp, overload, guard_unsensed, guard, oracle };
 struct MethodSpec {
@@ -61,7 +40,7 @@ struct Level {
   std::string name;
   const char* key;
   HardMatch match;
-  std::vector<Game> games;  ///< index is the seed − 1
+  std::vector<Game> games;  ///< of the seeds from kFirstSeed on
 };
 
 struct Known {
@@ -87,7 +66,8 @@ struct Cell {
   std::array<std::vector<Run>, kMethods.size()> runs;
 };
 
-std::uint64_t seed_of(std::size_t motor) { return motor % kMatches + 1; }
+const Game& game_of(const Level& level, std::size_t motor) { return level.games[motor % kMatches]; }
+std::uint64_t seed_of(std::size_t motor) { return motor % kMatches + kFirstSeed; }
 
 std::unique_ptr<Limiter> make_limiter(Method method, const Known& known, std::size_t i, const Robot& robot) {
   const Derating& exact = known.exact[i];
@@ -113,7 +93,7 @@ Run drive(const Level& level, const Known& known, Method method, std::size_t i, 
     // The firmware limits the current through the voltage and the lowest resistance, so a cold winding gets more than a warm one.
     robot.drive.current_limit_A = cap_A;
   }
-  const Game& game = level.games[seed_of(i) - 1];
+  const Game& game = game_of(level, i);
   const bool has_sensors = method != Method::guard_unsensed;
   Hardship hardship;
   if (const std::unique_ptr<Limiter> limiter = make_limiter(method, known, i, robot)) {
@@ -206,15 +186,14 @@ std::string number(double value, int decimals) {
 }
 
 std::string cost_table(const Cell& cell) {
-  Sheet sheet{{"way", "keeps the limit", "motors over the limit", "at most, of all motors", "hottest winding / °C", "distance / m",
-               "distance not driven / m", "distance not driven / %", "off the plan / s", "time lost / s"},
+  Sheet sheet{{"way", "keeps the limit", "motors over the limit", "hottest winding / °C", "distance / m", "distance not driven / m",
+               "distance not driven / %", "off the plan / s", "time lost / s"},
               {}};
   for (const MethodSpec& spec : kMethods) {
     const Cost cost = cost_of(cell, spec.method);
     sheet.rows.push_back({name_of(cell, spec), cost.keeps_limit() ? "yes" : "**no**", fmt::format("{} of {}", cost.over_limit, cost.motors),
-                          fmt::format("{:.0f} %", 100.0 * upper_bound(cost.over_limit, cost.motors)), number(cost.hottest_C, 0),
-                          number(cost.driven_m, 0), number(cost.lost_m, 1), number(cost.lost_percent, 1), number(cost.off_plan_s, 0),
-                          number(cost.time_lost_s, 0)});
+                          number(cost.hottest_C, 0), number(cost.driven_m, 0), number(cost.lost_m, 1), number(cost.lost_percent, 1),
+                          number(cost.off_plan_s, 0), number(cost.time_lost_s, 0)});
   }
   return sheet.markdown();
 }
@@ -283,8 +262,8 @@ std::string picture(const std::vector<Level>& levels, const std::vector<Known>& 
                   number(cost_of(file, Method::guard).lost_percent, 1), number(best_rival_percent(file), 1));
   return draw_costs(
       title,
-      {fmt::format("Twente v2024, ECX FLAT 32 L, division_a_match, simulated with real sensing: {} motors drawn within their "
-                   "tolerances, {} synthetic matches, each motor in one; means",
+      {fmt::format("Twente v2024, ECX FLAT 32 L, division_a_match, simulated with real sensing: {} motors that represent "
+                   "the tolerances, {} synthetic matches, each motor in one; means",
                    kMotors, kMatches),
        fmt::format("Against the same motor in the same match without limit. Time lost: more than {:.0f} mm off the plan, beyond "
                    "what the unlimited robot is.",
@@ -295,7 +274,7 @@ std::string picture(const std::vector<Level>& levels, const std::vector<Known>& 
 Known make_known(std::string name, const char* key, Motor motor, const Robot& robot) {
   Known known{std::move(name), key, std::move(motor), {}, {}, {}};
   known.guard = make_guard(known.motor, robot, 40.0, 0);
-  known.drawn = drawn_motors(known.motor, kMotors);
+  known.drawn = representative_motors(known.motor, kMotors);
   std::vector<std::optional<Derating>> exact(kMotors);
   in_parallel(kMotors, 0, [&](std::size_t i) { exact[i].emplace(exact_derating(known.drawn[i], robot)); });
   for (std::optional<Derating>& each : exact) {
@@ -316,7 +295,7 @@ void study_costs(const Subject& subject, const Report& report) {
   std::vector<Level> levels;
   for (const LevelSpec& spec : kLevels) {
     Level level{spec.name, spec.key, make_hard_match(subject.robot, spec.share), {}};
-    for (std::size_t seed = 1; seed <= kMatches; ++seed) {
+    for (std::size_t seed = kFirstSeed; seed < kFirstSeed + kMatches; ++seed) {
       level.games.push_back(play_game(level.match.inputs, level.match.robot, seed));
     }
     levels.push_back(std::move(level));
@@ -336,9 +315,9 @@ void study_costs(const Subject& subject, const Report& report) {
 
   const Overload overload = overload_of(subject.motor.nominal);
   std::string text = fmt::format(
-      "## Three levels\n\n{}\n{} matches, {} drawn motors, each motor in one match. \"At most\": exact upper bound of the share of all "
-      "motors "
-      "over the limit, 95 % confidence (Clopper and Pearson 1934).\n\n"
+      "## Three levels\n\n{}\n{} matches; {} motors that represent the tolerances, each in one match: of 1000 motors drawn within "
+      "the tolerances and ordered by their rise per square of the torque in steady state, the middle of each ninth. The hottest is at the "
+      "94th percentile.\n\n"
       "I²t: continuous {:.2f} A, peak {:.1f} A for {:.3f} s, budget {:.0f} A²s.\n\n",
       level_table(levels), kMatches, kMotors, overload.continuous_A, overload.peak_A, overload.peak_s, overload.budget_A2_s());
   for (const Cell& cell : cells) {

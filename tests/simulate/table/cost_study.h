@@ -37,9 +37,6 @@ struct CostLevel {
 std::string draw_costs(const std::string& title, const std::vector<std::string>& subtitle, const std::vector<std::string>& knowledge,
                        const std::vector<CostLevel>& levels);
 
-/// Returns the exact one-sided upper bound of a share with 95 % confidence (Clopper and Pearson 1934).
-double upper_bound(std::size_t hits, std::size_t count);
-
 /// A robot's knowledge of its motor, and the resulting guard.
 struct Knowledge {
   std::string name;

@@ -69,6 +69,10 @@ Hardship drive_hard(const HardMatch& match, const Game& game, const robot_core::
 /// Draws motors of a file within its tolerances.
 std::vector<Motor> drawn_motors(const Motor& motor, std::size_t count);
 
+/// Draws 1000 motors within the tolerances, orders them by their rise per square of the torque in steady state, and returns the middle of
+/// each of `count` equal groups. Few motors then represent the tolerances: the hottest of nine is at the 94th percentile.
+std::vector<Motor> representative_motors(const Motor& motor, std::size_t count);
+
 /// Finds the largest cap, to 0.05 A, that keeps the true winding within its limit in this match; it is known only in hindsight. The core
 /// applies it through the voltage and the lowest resistance that the motor may have, so a warm motor gets less.
 double largest_cap_A(const HardMatch& match, const Game& game, const Motor& core_motor, const Motor& motor, std::uint64_t seed);

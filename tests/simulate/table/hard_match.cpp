@@ -179,6 +179,21 @@ std::vector<Motor> drawn_motors(const Motor& motor, std::size_t count) {
   return motors;
 }
 
+std::vector<Motor> representative_motors(const Motor& motor, std::size_t count) {
+  constexpr std::size_t kDrawn = 1000;
+  std::vector<Motor> drawn = drawn_motors(motor, kDrawn);
+  std::ranges::sort(drawn, {}, [](const Motor& each) {
+    const MotorValues& values = each.nominal;
+    return (values.thermal_resistance_winding_stator_K_per_W + values.thermal_resistance_stator_ambient_K_per_W) *
+           values.terminal_resistance_ohm / std::pow(values.torque_constant_Nm_per_A, 2);
+  });
+  std::vector<Motor> motors;
+  for (std::size_t i = 0; i < count; ++i) {
+    motors.push_back(drawn[(2 * i + 1) * kDrawn / (2 * count)]);
+  }
+  return motors;
+}
+
 double largest_cap_A(const HardMatch& match, const Game& game, const Motor& core_motor, const Motor& motor, std::uint64_t seed) {
   double low_A = 0.5;
   double high_A = 12.0;
