@@ -105,8 +105,8 @@ const GuardedDrive& Computations::guarded_drive(const Check& check) {
     run.ambient_C = check.duty->ambient_C.value;
     run.drive = real_drive(*check.robot, check.seed);
     const DriveScore score = run_match(game, *check.robot, *check.motor, core.config(), run).score;
-    if (const std::string why = not_driven(score); !why.empty()) {
-      throw Failure(ExitCode::limit_exceeded, fmt::format("the match was not driven: {}", why));
+    if (const std::optional<DriveProblem> problem = drive_problem(score)) {
+      throw Failure(ExitCode::limit_exceeded, fmt::format("the match was not driven: {}", to_string(*problem)));
     }
     return GuardedDrive{score, score.time_s};
   });
