@@ -122,7 +122,7 @@ Document derating_document(const Derating& derating, const Motor& motor) {
           derating.rules.limits.stator_C ? fmt::format(", stator below {:.0f} °C", *derating.rules.limits.stator_C) : "",
           derating.rules.hottest_ambient_C, derating.data_quality)}},
       .paragraphs = {
-          fmt::format("Safety factor on heat {:.2f}. {} (at least {} draws are needed for this).", derating.observer.heat_safety_factor(),
+          fmt::format("Safety factor on heat {:.2f}. {} At least {} draws are needed for this.", derating.observer.heat_safety_factor(),
                       confidence_text(derating), least_samples(derating.options.guarantee)),
           fmt::format("The windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C "
                       "(the hottest).",

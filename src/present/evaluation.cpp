@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/lanes.h"
+#include "base/quantity.h"
 #include "present/verdict_words.h"
 #include "select/decision.h"
 
@@ -230,7 +231,7 @@ std::vector<std::string> paragraphs(std::span<const MotorEvaluation> results, co
 namespace {
 
 std::string shown_value(double value, std::string_view unit) {
-  return unit.empty() ? fmt::format("{:.3g}", value) : fmt::format("{:.3g} {}", value, unit);
+  return unit.empty() ? significant(value, 3) : fmt::format("{} {}", significant(value, 3), unit);
 }
 
 /// "jerk limit from 20 m/s³ to 10 m/s³", "the motor to nanotec_df45l024048_a2".

@@ -25,6 +25,7 @@ class CheckAnswer : public testing::Test {
     outcomes_.back().measured.detail =
         "nominal 47.0 °C, median 47.2 °C, 500 samples of all declared tolerances and the wheel front_left of it, 10 A";
     add(0, "current_margin", 1.0, 0.5, true, "0.5 A is below the limit of 1 A");
+    outcomes_.back().measured.detail = "hottest wheel";
     add(1, "derating_excess", 0.0, std::numeric_limits<double>::quiet_NaN(), false, "guard.h:3:1: has no table");
   }
 
@@ -55,7 +56,7 @@ TEST_F(CheckAnswer, fits_the_terminal) {
 TEST_F(CheckAnswer, says_what_failed_and_why) {
   const std::string text = terminal_text(check_document(outcomes_, false), {.width = 80});
   EXPECT_TRUE(text.starts_with("2 of 3 limits do not hold\n")) << text;
-  for (const char* said : {"ok     winding_peak_p95", "FAIL   current_margin", "ERROR  derating_excess", "0.5 A is below the limit of 1 A",
+  for (const char* said : {"ok    winding_peak_p95", "FAIL  current_margin", "ERROR  derating_excess", "0.5 A is below the limit of 1 A",
                            "guard.h:3:1: has no table"}) {
     EXPECT_THAT(text, HasSubstr(said));
   }

@@ -64,8 +64,8 @@ Document with_prose() {
 }
 
 TEST(Terminal, prose_stands_beside_its_row_or_below_it) {
-  EXPECT_THAT(terminal_text(with_prose(), {.width = 60}), HasSubstr("first_name_of_all  a rather long explanation that does not fit\n"
-                                                                    "                   beside the name on a narrow terminal\n"
+  EXPECT_THAT(terminal_text(with_prose(), {.width = 60}), HasSubstr("first_name_of_all  a rather long explanation that does not\n"
+                                                                    "                   fit beside the name on a narrow terminal\n"
                                                                     "second             short\n"));
   EXPECT_THAT(
       terminal_text(with_prose(), {.width = 40}),

@@ -126,9 +126,25 @@ Document friction_document(const Robot& robot, const FrictionAnswer& answer) {
         "Hold-out error on {} of {} headings: {}{:.3f} V after the fit.", answer.error.headings, answer.error.all_headings,
         answer.has_expectation ? fmt::format("{:.3f} V by {}, ", answer.error.before_V, answer.expected_from) : "", answer.error.after_V));
   }
+  for (const std::string& each : lack_of_fit_words(answer.fit)) {
+    document.add_note(Severity::warning, each);
+  }
   add_given_values(document, answer.fit);
   add_wheel_notes(document, answer.fit);
   return document;
+}
+
+std::vector<std::string> lack_of_fit_words(const FrictionFit& fit) {
+  std::vector<std::string> found;
+  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+    if (const LackOfFit& lack = fit.wheels[i].lack; lack.is_found) {
+      found.push_back(
+          fmt::format("the residual of wheel {} depends on θ: {} V rms beyond the {} V by which {} differ; a sin(θ+φ) + b sign does not "
+                      "hold there, and the intervals are wider by the part that may be in a and b",
+                      i + 1, significant(lack.left_V, 2), significant(lack.repeats_V, 2), lack.repeats));
+    }
+  }
+  return found;
 }
 
 Estimate damping_with_back_emf(const DriveConstants& drive, const Estimate& mechanical_Nm_s_per_rad) {

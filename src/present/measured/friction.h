@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "friction/expected_voltage.h"
 #include "friction/friction_fit.h"
@@ -22,6 +23,9 @@ struct FrictionAnswer {
   std::size_t logs = 0;
 };
 Document friction_document(const Robot& robot, const FrictionAnswer& answer);
+
+/// Returns one sentence for each wheel whose measurements contradict the assumed friction law.
+std::vector<std::string> lack_of_fit_words(const FrictionFit& fit);
 
 /// `drive` must have a drag torque of 0.
 Document roll_out_document(const Robot& robot, const RollOutResult& result, const DriveConstants& drive, std::size_t logs);

@@ -130,7 +130,7 @@ void add_log(Document& document, const Recording& recording, const RecordingRepo
   if (has_wheels || !quality.thermal.is_good()) {
     add_fitness(document, name, "wheel models", quality.drive);
   }
-  document.tables.push_back(summary_table(name, recording, report, quality));
+  document.tables.push_back(summary_table(recording.name, recording, report, quality));
   document.tables.push_back(channel_table(quality));
   for (const std::string& suspicion : quality.suspicions) {
     document.add_note(Severity::warning, fmt::format("{}: {}", recording.name, suspicion));

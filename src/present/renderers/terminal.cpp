@@ -117,13 +117,23 @@ void fit(std::vector<std::size_t>& widths, const std::vector<std::size_t>& shown
   }
 }
 
+std::size_t longest_word(std::string_view text) {
+  std::size_t longest = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    longest = std::max(longest, width_of(text.substr(0, end)));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return longest;
+}
+
 /// Adds prose to the line of its row, or below it if the remaining width is too small.
 std::string with_prose(const std::string& line, std::size_t used, const std::string& prose, std::size_t width) {
   if (prose.empty()) {
     return without_trailing_blanks(line);
   }
   const std::size_t place = used + (used > 0 ? kGap : 0);
-  if (place == 0 || place + std::min(kLeastProse, width_of(prose)) <= width) {
+  if (place == 0 || place + std::max(std::min(kLeastProse, width_of(prose)), longest_word(prose)) <= width) {
     const std::string beside = wrapped(prose, std::string(place, ' '), width);
     return line + beside.substr(used) + "\n";
   }

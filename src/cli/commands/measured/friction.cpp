@@ -140,20 +140,6 @@ std::string source_of(const Options& options) {
                                   : fmt::format("friction test, {} and {} more logs", first, options.logs.size() - 1);
 }
 
-/// Reports wheels whose measurements contradict the assumed friction law.
-Findings of_another_law(const FrictionFit& fit) {
-  Findings found;
-  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-    if (const LackOfFit& lack = fit.wheels[i].lack; lack.is_found) {
-      found.push_back(
-          fmt::format("the residual of wheel {} depends on θ: {} V rms beyond the {} V by which {} differ; a sin(θ+φ) + b sign does not "
-                      "hold there, and the intervals are wider by the part that may be in a and b",
-                      i + 1, significant(lack.left_V, 2), significant(lack.repeats_V, 2), lack.repeats));
-    }
-  }
-  return found;
-}
-
 /// Explains why nothing was learned, with the problem of wheel 1 as the example.
 Failure nothing_learned(const SteadyParts& steady, const FrictionFit& fit, const std::vector<std::string>& suspicions) {
   const std::string suspected = suspicions.empty() ? "" : fmt::format("\nsuspicious: {}", fmt::join(suspicions, "\nsuspicious: "));
@@ -252,7 +238,7 @@ ExitCode steady_state(const Options& options, Input& input, Session& session) {
   if (!fit.is_learned()) {
     throw nothing_learned(steady, fit, input.suspicions);
   }
-  std::ranges::move(of_another_law(fit), std::back_inserter(input.findings));
+  std::ranges::move(present::lack_of_fit_words(fit), std::back_inserter(input.findings));
   const HeldOutError error = error_on_held_out_headings(steady.parts, kinematics, settings, before.voltages);
   present::Document document = present::friction_document(
       input.robot, {steady, fit, error, settings.use_return_legs, static_cast<bool>(before.voltages), before.from, input.logs.size()});
