@@ -44,12 +44,12 @@ std::string_view factor_text(const MotorEvaluation& motor) {
   }
 }
 
-/// On a narrower terminal the winding over time, which is drawn up to the limit, stands in for limit and margin.
+/// On a narrower terminal the winding over time, which is drawn up to the limit, stands in for rank, limit and margin.
 constexpr std::size_t kLeastForLimit = 70;
 
 std::vector<Column> columns() {
   constexpr auto kLeft = Alignment::left;
-  return {{"", "", 0},
+  return {{"", "", 0, Alignment::right, kLeastForLimit},
           {"motor", "", 0, kLeft},
           {"verdict", "", 0, kLeft},
           {"peak", "°C", 0},
@@ -271,7 +271,11 @@ std::string best_change_words(const ChangeEffect* change, std::span<const Change
 void add_changes(Document& document, std::span<const ChangeEffect> effects, const std::string& motor_id) {
   constexpr std::size_t kMost = 3;
   Table table{.title = fmt::format("Changes that help {} most", motor_id),
-              .columns = {{"change", "", 0, Alignment::left}, {"from", "", 1}, {"to", "", 1}, {"saves", "K", 0}, {"±", "K", 2}},
+              .columns = {{"change", "", 0, Alignment::left},
+                          {"from", "", 1, Alignment::right, kLeastForLimit},
+                          {"to", "", 1, Alignment::right, kLeastForLimit},
+                          {"saves", "K", 0},
+                          {"±", "K", 2}},
               .rows = {}};
   const ChangeEffect* best = nullptr;
   for (const ChangeEffect& each : effects) {

@@ -21,11 +21,11 @@ std::string with_digits(double value, double half) {
 
 Table parameter_table(const Calibration& result) {
   Table table{.columns = {{"value", "", 0, Alignment::left},
-                          {"file", "", 0},
+                          {"file", "", 2},
                           {"fit", "", 0},
                           {"95 % interval", "", 0},
-                          {"unit", "", 0, Alignment::left},
-                          {"identifiable", "", 1, Alignment::left}},
+                          {"unit", "", 1, Alignment::left},
+                          {"identifiable", "", 3, Alignment::left}},
               .rows = {}};
   for (const CalibratedParameter& each : result.parameters) {
     const double half = 0.5 * (each.high - each.low);
