@@ -106,14 +106,15 @@ Document calibration_document(const Motor& motor, const Calibration& result, con
   add_errors(errors, "fit", result.fit_error);
   add_errors(errors, result.holdout_after.size() > 1 ? "worst hold-out" : "hold-out", result.holdout_error);
   document.tables.push_back(std::move(errors));
+  // A wrong unit makes all other warnings meaningless, so it comes first.
+  for (const std::string& note : remarks.of_screening) {
+    document.add_note(Severity::warning, note);
+  }
   for (const GrownError& each : result.worse) {
     document.add_note(Severity::warning, words_of(each));
   }
   for (const OpenDirection& each : result.open) {
     document.add_note(Severity::note, fmt::format("Not identifiable: {} ({}). To determine it: {}.", each.what, each.why, each.experiment));
-  }
-  for (const std::string& note : remarks.of_screening) {
-    document.add_note(Severity::note, note);
   }
   for (const CalibrationFinding& each : result.findings) {
     document.add_note(severity_of(each), words_of(each));
