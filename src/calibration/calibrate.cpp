@@ -20,6 +20,7 @@
 #include "estimation/interval.h"
 #include "estimation/log_columns.h"
 #include "estimation/turning_rows.h"
+#include "motor/write_motor.h"
 #include "recording/fingerprint.h"
 #include "recording/quality.h"
 
@@ -64,25 +65,24 @@ class Calibrating {
     all_.effects = setup_.motor.effects;
     all_.motor_model = motor_model(setup_.motor, setup_.heat, setup_.has_speed);
     const double most_loss_W = all_.motor_model.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
-    std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.notes));
-    std::ranges::move(held_sensors(motor, recordings_), std::back_inserter(all_.notes));
+    add_remarks(all_.motor_model.held);
+    add_remarks(held_sensors(motor, recordings_));
     MeasuredRunOptions how = how_to_read(motor, setup_.heat);
     if (std::string lacking = column_lacking(how.column, recordings_); !lacking.empty()) {
-      all_.notes.push_back(std::move(lacking));
+      add_remarks({std::move(lacking)});
     }
     how.needed = all_.motor_model.needed;
     how.ambient_C = options_.ambient_C;
-    all_.runs = runs_of(recordings_, how, all_.notes);
+    std::vector<std::string> remarks;
+    all_.runs = runs_of(recordings_, how, remarks);
+    add_remarks(remarks);
     std::ranges::transform(recordings_, std::back_inserter(all_.fitted), name_and_fingerprint);
     all_.training = motor.fit ? motor.fit->training : TrainingRange{};
     widen(all_.training, recordings_);
     if (most_loss_W > 0.0 && std::ranges::any_of(all_.runs, turns_unseen)) {
       open_loss_at_speed(all_.motor_model, motor);
       setup_.opens_loss_at_speed = true;
-      all_.notes.push_back(
-          fmt::format("the loss at speed is treated as unknown, 0 to {} W (the loss at no-load speed), in logs that have a current but no "
-                      "speed; if the motor stood still, add speed_rad_per_s = 0",
-                      significant(most_loss_W, 2)));
+      all_.findings.push_back(LossAtSpeedUnknown{most_loss_W});
     }
     all_.fit = fit(all_.motor_model.model, all_.runs, options_.fit);
     settle_turning_rows();
@@ -95,17 +95,23 @@ class Calibrating {
     report_large_changes();
     all_.fit_error = errors();
     refuse_where_nothing_is_explained();
-    std::ranges::move(outside_declared_ranges(motor, all_.parameters), std::back_inserter(all_.notes));
+    std::ranges::move(outside_declared_ranges(motor, all_.parameters), std::back_inserter(all_.findings));
     report_common_factor();
     report_terminal_resistance(motor);
-    report_grown_errors("the fitted runs", all_.fit_error);
+    report_grown_errors(false, all_.fit_error);
     refuse_where_nothing_was_learned();
-    report_implausible_values();
+    report_poor_fit();
     score_holdout(motor);
     return std::move(all_);
   }
 
  private:
+  void add_remarks(const std::vector<std::string>& remarks) {
+    for (const std::string& each : remarks) {
+      all_.findings.push_back(Remark{each});
+    }
+  }
+
   /// Runs the forecast fit to whole runs, and writes its parameters if they predict better.
   void forecast() {
     const ForecastModel base = setup_.model();
@@ -120,7 +126,7 @@ class Calibrating {
       parameters();
       keep_unidentifiable(before, all_.parameters);
     }
-    std::ranges::move(forecast_in_words(all_), std::back_inserter(all_.notes));
+    std::ranges::move(forecast_findings(all_), std::back_inserter(all_.findings));
   }
 
   /// Errors of the original and of the written file over the fitted runs.
@@ -143,10 +149,10 @@ class Calibrating {
     }
     all_.holdout_before = predict(motor, holdout_, {options_.ambient_C, false}).runs;
     Prediction after = predict(calibrated_motor(motor, all_), holdout_, {options_.ambient_C, rows_turn_});
-    std::ranges::move(after.notes, std::back_inserter(all_.notes));
+    add_remarks(after.notes);
     all_.holdout_after = std::move(after.runs);
     all_.holdout_error = worst_errors(all_.holdout_before, all_.holdout_after);
-    report_grown_errors("the hold-out runs", all_.holdout_error);
+    report_grown_errors(true, all_.holdout_error);
   }
 
   /// If the motor may have reversed within rows, refits with interpolated speeds and keeps that fit if its evidence is larger.
@@ -167,7 +173,7 @@ class Calibrating {
     all_.fit = std::move(other);
     all_.runs = std::move(turning);
     rows_turn_ = true;
-    all_.notes.emplace_back(kTurningRowsReason);
+    all_.findings.push_back(RowsTurn{});
   }
 
   void warn() {
@@ -181,35 +187,21 @@ class Calibrating {
     constexpr double kAlmost = 0.95;
     constexpr double kMuch_share = 0.1;
     if (most_W > kAlmost * kMostFlux_share * fit.usual_heat_W) {
-      all_.notes.push_back(
-          fmt::format("the model lacks a large effect: the unmodelled heat exceeds {} % of the {} W that flow through the motor on "
-                      "average; `heatsoak diagnose` searches for the effect",
-                      significant(100.0 * kMostFlux_share, 2), significant(fit.usual_heat_W, 2)));
+      all_.findings.push_back(UnmodelledHeat{kMostFlux_share, fit.usual_heat_W, true});
     } else if (most_W > kMuch_share * fit.usual_heat_W) {
-      all_.notes.push_back(
-          fmt::format("the model lacks an effect: the unmodelled heat is {} % of the {} W that flow through the motor on average; "
-                      "`heatsoak diagnose` searches for the effect",
-                      significant(100.0 * most_W / fit.usual_heat_W, 2), significant(fit.usual_heat_W, 2)));
+      all_.findings.push_back(UnmodelledHeat{most_W / fit.usual_heat_W, fit.usual_heat_W, false});
     }
     for (std::size_t kind = 0; kind < fit.drift_K.size(); ++kind) {
-      all_.notes.push_back(
-          fmt::format("the sensor at the {} seems to drift by {} K (standard deviation) over about {} s: either a sensor error or an error "
-                      "of the two-node model",
-                      fit.sensor_nodes[kind], significant(fit.drift_K[kind], 2), significant(fit.drift_time_scale_s, 1)));
+      all_.findings.push_back(SensorDrift{fit.sensor_nodes[kind], fit.drift_K[kind], fit.drift_time_scale_s});
     }
     if (std::ranges::find(fit.sensor_nodes, "winding") == fit.sensor_nodes.end()) {
-      all_.notes.emplace_back(
-          "the values of the winding may be wrong by more than their intervals, because only the stator is measured: heat that follows the "
-          "current but enters the stator directly (iron loss, driver, connections) looks like a faster winding");
+      all_.findings.push_back(WindingNotMeasured{});
     }
     if (fit.free_run_error_K > 0.0) {
-      all_.notes.emplace_back(
-          "the values are those that follow the whole runs best; the response within seconds of a load change needs other values, because "
-          "the motor has more than two thermal nodes or an effect is missing in all of these runs");
+      all_.findings.push_back(ResponseNeedsOtherValues{});
     }
     if (!fit.has_converged) {
-      all_.notes.emplace_back(
-          "the values are accurate to a few tenths of their intervals only, because the fit was stopped before it had fully converged");
+      all_.findings.push_back(FitStoppedEarly{});
     }
   }
 
@@ -249,12 +241,7 @@ class Calibrating {
     const double plain = std::max(0.22, 1.5 * across->prior_sd);
     if (least > plain || most < -plain) {
       const bool is_much = least > 0.0;
-      all_.notes.push_back(
-          fmt::format("all heat capacities are {1} and all resistances {2} than the file's by a factor of {0} or more: the heat of the "
-                      "logs seems too {3} for "
-                      "this motor; is a current a peak value or an amplitude ({4}), is the resistance wrong, or is it another motor?",
-                      significant(std::exp(is_much ? least : -most), 2), is_much ? "larger" : "smaller", is_much ? "smaller" : "larger",
-                      is_much ? "large" : "small", is_much ? "its heat counts double" : "or that of one phase of several"));
+      all_.findings.push_back(HeatSeemsWrong{std::exp(is_much ? least : -most), is_much});
     }
   }
 
@@ -291,26 +278,19 @@ class Calibrating {
     const double ratio = found[0] / stated_ohm;
     constexpr double kFar_ratio = 1.15;
     if (std::max(ratio, 1.0 / ratio) > kFar_ratio) {
-      all_.notes.push_back(fmt::format(
-          "motor_V, current_A and speed of these logs give a terminal resistance of {} ohm at 25 °C, but the file states {} ohm, and every "
-          "value scales with it; check whether it is this motor, and if so state the measured resistance in its file",
-          significant(found[0], 3), significant(stated_ohm, 3)));
+      all_.findings.push_back(ResistanceDiffers{found[0], stated_ohm});
     }
   }
 
   /// Lists signals that are predicted worse than before: with an incomplete model, parameters of the fast response may predict whole runs
   /// worse.
-  void report_grown_errors(const char* runs, const std::vector<ErrorBeforeAfter>& errors) {
+  void report_grown_errors(bool is_holdout, const std::vector<ErrorBeforeAfter>& errors) {
     for (const ErrorBeforeAfter& each : errors) {
       constexpr double kWorse_ratio = 1.1;
       constexpr double kLeast_K = 0.1;
       if (each.after.rmse_K > kWorse_ratio * each.before.rmse_K + kLeast_K) {
-        all_.worse.push_back(fmt::format(
-            "do not forecast such runs with this model: {} of {} is predicted worse than with the values of the file, {} K rms instead of "
-            "{} "
-            "K; {}{} (`heatsoak diagnose` searches for the missing effect)",
-            each.signal, runs, significant(each.after.rmse_K, 3), significant(each.before.rmse_K, 3),
-            &errors == &all_.holdout_error ? "they show something that the fitted ones do not, or " : "", what_does_not_describe(all_)));
+        const bool is_extended = all_.is_forecast_written && !all_.forecast->accepted.empty();
+        all_.worse.push_back({each.signal, is_holdout, each.after.rmse_K, each.before.rmse_K, is_extended});
       }
     }
   }
@@ -321,10 +301,7 @@ class Calibrating {
       const double moved = each.exponents.dot(all_.fit.theta - all_.motor_model.model.theta());
       const double sd = std::sqrt(each.exponents.dot(all_.fit.covariance * each.exponents));
       if (each.is_of_file && std::abs(moved) > kUnlikely_sd * std::hypot(each.prior_sd, sd)) {
-        all_.notes.push_back(
-            fmt::format("{} becomes {} times the value of the file, a change of {} prior standard deviations: is a unit of the logs wrong, "
-                        "or is it another motor?",
-                        each.name, significant(std::exp(moved), 2), significant(std::abs(moved) / each.prior_sd, 2)));
+        all_.findings.push_back(LargeChange{each.name, std::exp(moved), std::abs(moved) / each.prior_sd});
       }
     }
   }
@@ -409,16 +386,13 @@ class Calibrating {
     }
   }
 
-  void report_implausible_values() {
+  void report_poor_fit() {
     constexpr double kFar_K = 15.0;
     constexpr double kFar_share = 0.2;
     for (const ErrorBeforeAfter& each : all_.fit_error) {
       const double moves_K = standard_deviation_K(all_.runs, each.signal);
       if (each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
-        all_.notes.push_back(
-            fmt::format("do not rely on the fitted parameters: the model has an error of {} K rms in {}, which varies by {} K (standard "
-                        "deviation); is it another motor, or is a unit wrong (degrees Fahrenheit, minutes, milliamperes)?",
-                        significant(each.after.rmse_K, 2), each.signal, significant(moves_K, 2)));
+        all_.findings.push_back(PoorFit{each.signal, each.after.rmse_K, moves_K});
       }
     }
   }
@@ -450,7 +424,7 @@ Calibration calibrate(const Motor& motor, std::span<const Recording> recordings,
 }
 
 Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
-  constexpr const char* kSource = "calibration";
+  const std::string kSource(kCalibrationSource);
   Motor result = motor;
   const std::vector<std::string> extensions = add_extensions(calibration, kSource, result);
   MotorFit& fit = result.fit.emplace();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calibration/error_before_after.h"
+#include "calibration/findings.h"
 #include "calibration/forecast/forecast.h"
 #include "calibration/forecast/prediction.h"
 #include "calibration/motor_model.h"
@@ -66,8 +67,8 @@ struct Calibration {
   /// Hold-out runs, predicted by the original and by the written file. Computed last, so that they influence nothing.
   std::vector<PredictedRun> holdout_before, holdout_after;
   std::vector<ErrorBeforeAfter> holdout_error;  ///< per signal: errors in the hold-out run with the largest error after the fit
-  std::vector<std::string> worse;               ///< sentences: signals that the fit predicts worse than the original file
-  std::vector<std::string> notes;               ///< sentences: assumptions and omitted data
+  std::vector<GrownError> worse;                ///< signals that the fit predicts worse than the original file
+  std::vector<CalibrationFinding> findings;     ///< assumptions and limits of the answer
 };
 
 /// Calibrates the motor. The logs must have passed admit() (calibration/admission.h). Throws Failure: bad_input if the logs lack a needed

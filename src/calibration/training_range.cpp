@@ -1,13 +1,13 @@
 #include "calibration/training_range.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
-#include "base/quantity.h"
 #include "recording/spread.h"
 
 namespace heatsoak {
@@ -16,12 +16,11 @@ namespace {
 /// Input whose range limits the validity of a forecast.
 struct RangedInput {
   std::string_view channel;
-  std::string_view words;
   std::string_view unit;
   bool is_size = false;  ///< true: the magnitude counts, and up to 20 % above the largest is in range
 };
-constexpr std::array kInputs{RangedInput{"ambient_C", "an ambient temperature", "°C"},
-                             RangedInput{"speed_rad_per_s", "a speed", "rad/s", true}, RangedInput{"current_A", "a current", "A", true}};
+constexpr std::array kInputs{RangedInput{"ambient_C", "°C"}, RangedInput{"speed_rad_per_s", "rad/s", true},
+                             RangedInput{"current_A", "A", true}};
 constexpr double kAmbient_K = 5.0;
 constexpr double kSize_ratio = 1.2;
 
@@ -54,17 +53,14 @@ void widen(TrainingRange& range, std::span<const Recording> recordings) {
   }
 }
 
-std::vector<std::string> outside(const TrainingRange& range, const Recording& recording) {
-  std::vector<std::string> all;
+std::vector<OutsideTraining> outside(const TrainingRange& range, const Recording& recording) {
+  std::vector<OutsideTraining> all;
   for (const auto& [key, value] : recording.conditions) {
     std::vector<std::string> seen;
     std::ranges::copy_if(range.conditions, std::back_inserter(seen),
                          [start = key + "="](const std::string& each) { return each.starts_with(start); });
     if (!range.inputs.empty() && std::ranges::find(seen, fmt::format("{}={}", key, value)) == seen.end()) {
-      all.push_back(fmt::format(
-          "The forecast of {0} may be far off: its run has {1}={2}, the model was fitted to runs {3}. Calibrate with a run under {1}={2}.",
-          recording.name, key, value,
-          seen.empty() ? fmt::format("that do not state {}", key) : fmt::format("with {}", fmt::join(seen, ", "))));
+      all.push_back(UnseenCondition{recording.name, key, value, std::move(seen)});
     }
   }
   for (const RangedInput& input : kInputs) {
@@ -77,9 +73,8 @@ std::vector<std::string> outside(const TrainingRange& range, const Recording& re
     const bool is_below = !input.is_size && found->low < low - kAmbient_K;
     const bool is_above = found->high > (input.is_size ? kSize_ratio * high : high + kAmbient_K);
     if (is_below || is_above) {
-      all.push_back(fmt::format("The forecast of {} extrapolates: it has {} of {} {}, the fitted runs had {} to {} {}.", recording.name,
-                                input.words, significant(is_above ? found->high : found->low, 3), input.unit, significant(low, 3),
-                                significant(high, 3), input.unit));
+      all.push_back(Extrapolation{recording.name, std::string(input.channel), std::string(input.unit), is_above ? found->high : found->low,
+                                  low, high});
     }
   }
   return all;

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "motor/fit_table.h"
@@ -14,8 +15,25 @@ namespace heatsoak {
 /// so that single outliers do not widen the range.
 void widen(TrainingRange& range, std::span<const Recording> recordings);
 
-/// Returns one sentence for each condition of the recording that no fitted run had, and for each input outside the range of the fitted
-/// runs. Empty if `range` is empty.
-std::vector<std::string> outside(const TrainingRange& range, const Recording& recording);
+/// A condition of a recording that no fitted run had.
+struct UnseenCondition {
+  std::string recording;
+  std::string key;
+  std::string value;
+  std::vector<std::string> seen;  ///< conditions "key=value" of the fitted runs with this key; empty if they do not state it
+};
+/// An input outside the range of the fitted runs.
+struct Extrapolation {
+  std::string recording;
+  std::string channel;
+  std::string unit;
+  double value = 0.0;  ///< value of the recording that is farthest outside
+  double low = 0.0;    ///< range of the fitted runs
+  double high = 0.0;
+};
+using OutsideTraining = std::variant<UnseenCondition, Extrapolation>;
+
+/// Returns what lies outside the range of the fitted runs. Empty if `range` is empty.
+std::vector<OutsideTraining> outside(const TrainingRange& range, const Recording& recording);
 
 }  // namespace heatsoak

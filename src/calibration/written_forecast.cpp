@@ -1,39 +1,15 @@
 #include "calibration/written_forecast.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/quantity.h"
 #include "estimation/interval.h"
 #include "motor/motor.h"
 
 namespace heatsoak {
 namespace {
-
-std::string_view name_of(ForecastSource source) {
-  switch (source) {
-    case ForecastSource::file:
-      return "file";
-    case ForecastSource::ordinary:
-      return "least squares of free runs";
-    case ForecastSource::tempered:
-      return "forecast fit";
-    case ForecastSource::innovations:
-      return "innovations fit";
-  }
-  return "?";
-}
-
-std::string errors_in_words(const RivalScore& rival) {
-  std::vector<std::string> each;
-  for (const auto& [signal, rmse_K] : rival.rmse_K) {
-    each.push_back(fmt::format("{} {} K", signal.substr(0, signal.rfind('_')), significant(rmse_K, 2)));
-  }
-  return fmt::format("{}: {}", name_of(rival.source), fmt::join(each, ", "));
-}
 
 bool is_better_than_innovations(const Forecast& forecast) {
   const auto score_nats = [&](ForecastSource source) {
@@ -85,20 +61,16 @@ Range declared_range(const Motor& motor, std::string_view key) {
   return found == specs.end() ? Range::positive() : found->spec.range;
 }
 
-std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> parameters) {
-  std::vector<std::string> notes;
+std::vector<OutsideDeclaredRange> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> parameters) {
+  std::vector<OutsideDeclaredRange> found;
   Motor declared = motor;
   for (const CalibratedParameter& each : parameters) {
     const ParameterValue* const parameter = each.is_of_file ? find_parameter(declared, each.name) : nullptr;
     if (parameter && parameter->spread && (each.value < parameter->spread->low || each.value > parameter->spread->high)) {
-      notes.push_back(
-          fmt::format("{} becomes {} {}, outside of its declared range of {} to {} {}: check the units of the logs, or whether "
-                      "the range still holds for this motor and its mounting",
-                      each.name, significant(each.value, 3), unit_for_display(each.unit), significant(parameter->spread->low, 3),
-                      significant(parameter->spread->high, 3), unit_for_display(each.unit)));
+      found.push_back({each.name, each.unit, each.value, parameter->spread->low, parameter->spread->high});
     }
   }
-  return notes;
+  return found;
 }
 
 void keep_unidentifiable(std::span<const CalibratedParameter> before, std::vector<CalibratedParameter>& parameters) {
@@ -121,53 +93,32 @@ void write_forecast(Calibration& calibration) {
   calibration.is_forecast_written = true;
 }
 
-std::string what_does_not_describe(const Calibration& calibration) {
-  const bool is_extended = calibration.is_forecast_written && !calibration.forecast->accepted.empty();
-  return fmt::format("{} constant values do not describe this motor",
-                     is_extended ? "the extended network and its" : "two temperatures with");
-}
-
-std::vector<std::string> forecast_in_words(const Calibration& calibration) {
+std::vector<CalibrationFinding> forecast_findings(const Calibration& calibration) {
   const Forecast& forecast = *calibration.forecast;
-  std::vector<std::string> words;
-  if (calibration.is_forecast_written && !std::ranges::all_of(calibration.parameters, &CalibratedParameter::is_identifiable)) {
-    words.emplace_back(
-        "values that are not identifiable are written too: the forecast depends on all values together, so do not use these as "
-        "measurements");
+  const bool is_written = calibration.is_forecast_written;
+  std::vector<CalibrationFinding> found;
+  if (is_written && !std::ranges::all_of(calibration.parameters, &CalibratedParameter::is_identifiable)) {
+    found.push_back(UnidentifiableAreWritten{});
   }
   if (forecast.rivals.empty()) {
-    words.push_back(
-        fmt::format("the network is not extended and the 90 % band of forecasts is wide, because cross-validation can leave out only {} "
-                    "runs that contain heat, and needs at least {}",
-                    forecast.pieces.size(), kLeastPieces));
+    const bool are_runs = std::ranges::all_of(forecast.pieces, [](const Piece& piece) { return piece.seen.empty(); });
+    found.push_back(TooFewPieces{forecast.pieces.size(), kLeastPieces, calibration.runs.size(), are_runs});
   } else {
-    std::vector<std::string> each;
-    std::ranges::transform(forecast.rivals, std::back_inserter(each), errors_in_words);
-    words.push_back(
-        fmt::format("cross-validation error of the left-out pieces ({}), rms: {}", forecast.pieces.size(), fmt::join(each, "; ")));
+    found.push_back(CrossValidation{forecast.pieces.size(), forecast.rivals});
   }
-  if (calibration.is_forecast_written && forecast.source == ForecastSource::tempered) {
-    words.emplace_back("the parameters of the forecast fit are written: they follow whole runs best, not the response within seconds");
+  if (is_written && forecast.source == ForecastSource::tempered) {
+    found.push_back(ForecastFitIsWritten{});
   }
   if (forecast.source == ForecastSource::file) {
-    words.emplace_back(calibration.is_forecast_written
-                           ? "no fit predicts left-out pieces better than the file: its values are written as they are"
-                       : is_better_than_innovations(forecast)
-                           ? "for forecasts the values of the file are better than the written ones: they predict left-out pieces better"
-                           : "no fit predicts left-out pieces better than the file, but the written values predict them as well");
+    found.push_back(FilePredictsBest{is_written, is_better_than_innovations(forecast)});
   } else if (forecast.source == ForecastSource::ordinary) {
-    words.push_back(fmt::format("least squares of free runs predicts left-out pieces best: {}",
-                                calibration.is_forecast_written ? "its parameters are written" : "`--forecast` writes its parameters"));
+    found.push_back(FreeRunsPredictBest{is_written});
   } else if (!forecast.accepted.empty()) {
-    std::vector<std::string> names;
-    std::ranges::transform(forecast.accepted, std::back_inserter(names), &AcceptedExtension::name);
-    words.push_back(fmt::format("{} {}; this is no diagnosis: another effect may be the cause (`heatsoak diagnose`)",
-                                calibration.is_forecast_written
-                                    ? "for better forecasts the network now has"
-                                    : "left-out pieces are predicted best by a network that `--forecast` writes, with",
-                                fmt::join(names, ", ")));
+    ExtendedForForecasts extended{{}, is_written};
+    std::ranges::transform(forecast.accepted, std::back_inserter(extended.effects), &AcceptedExtension::name);
+    found.push_back(std::move(extended));
   }
-  return words;
+  return found;
 }
 
 std::vector<std::string> add_extensions(const Calibration& calibration, const std::string& source, Motor& motor) {

@@ -18,8 +18,8 @@ void score_innovations(const ForecastModel& model, FitOptions options, Calibrati
 /// the innovations fit are the better founded ones.
 bool writes_forecast(WrittenFit wanted, const Forecast& forecast);
 
-/// Returns one sentence per fitted value outside its declared range. Verbs that need a sound motor may refuse such a file.
-std::vector<std::string> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> parameters);
+/// Returns the fitted values outside their declared ranges. Verbs that need a sound motor may refuse such a file.
+std::vector<OutsideDeclaredRange> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> parameters);
 
 /// Marks a value as not identifiable if it was not identifiable in `before`.
 void keep_unidentifiable(std::span<const CalibratedParameter> before, std::vector<CalibratedParameter>& parameters);
@@ -27,11 +27,8 @@ void keep_unidentifiable(std::span<const CalibratedParameter> before, std::vecto
 /// Replaces model, parameters and covariance of the innovations fit by those of the forecast fit. Needs calibration.forecast.
 void write_forecast(Calibration& calibration);
 
-/// Returns the end of a warning: the written network with constant values does not describe this motor.
-std::string what_does_not_describe(const Calibration& calibration);
-
-/// Returns sentences about the compared fits and the chosen one.
-std::vector<std::string> forecast_in_words(const Calibration& calibration);
+/// Returns what the compared fits and the chosen one mean for the answer.
+std::vector<CalibrationFinding> forecast_findings(const Calibration& calibration);
 
 /// Adds the effects and sensor faults of the calibration that the motor file does not have. Returns the names of those that were added for
 /// better forecasts.

@@ -12,95 +12,6 @@
 namespace heatsoak {
 namespace {
 
-constexpr std::size_t kWidth = 80;
-constexpr std::size_t kIndent = 6;
-
-/// Characters, not bytes.
-std::size_t width_of(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
-/// The blank behind which a line may go on: none between a number and its unit.
-std::size_t next_break(std::string_view text, std::size_t from) {
-  constexpr std::size_t kLongestUnit = 6;
-  std::size_t blank = text.find(' ', from);
-  while (blank != std::string_view::npos && blank > 0 && std::isdigit(static_cast<unsigned char>(text[blank - 1])) != 0) {
-    const std::size_t next = std::min(text.find(' ', blank + 1), text.size());
-    if (width_of(text.substr(blank + 1, next - blank - 1)) > kLongestUnit) {
-      break;
-    }
-    blank = next == text.size() ? std::string_view::npos : next;
-  }
-  return std::min(blank, text.size());
-}
-
-/// Broken at blanks, every line indented.
-std::string wrapped(std::string_view text) {
-  std::string result;
-  std::size_t column = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = next_break(text, at);
-    const std::string_view word = text.substr(at, end - at);
-    if (column > 0 && column + 1 + width_of(word) > kWidth) {
-      result += '\n';
-      column = 0;
-    }
-    if (column == 0) {
-      result += std::string(kIndent, ' ');
-      column = kIndent;
-    } else {
-      result += ' ';
-      ++column;
-    }
-    result += word;
-    column += width_of(word);
-    at = end + 1;
-  }
-  return result + "\n";
-}
-
-std::string margin_text(const Outcome& outcome) {
-  const double margin = outcome.margin_value();
-  if (!std::isfinite(margin)) {
-    return "–";
-  }
-  const ThresholdType& type = *outcome.limit.type;
-  if (type.unit == "degC") {
-    return fmt::format("{:+.1f} K", margin);
-  }
-  const std::string text = shown(margin, type);
-  return margin > 0.0 ? "+" + text : text;
-}
-
-std::string_view result_of(const Outcome& outcome) { return outcome.passed ? "ok" : outcome.is_evaluated ? "FAIL" : "ERROR"; }
-
-std::string limit_text(const Outcome& outcome) {
-  return fmt::format("{} {}", to_string(outcome.limit.type->direction), shown(outcome.limit.value, *outcome.limit.type));
-}
-
-/// Robot, duty and motor, as far as the check has them.
-std::string things_of(const Check& check) {
-  std::string text;
-  const auto add = [&text](const std::string& id) { text += (text.empty() ? "" : ", ") + id; };
-  if (check.motor) {
-    add(check.motor->id);
-  }
-  if (check.robot) {
-    add(check.robot->id);
-  }
-  if (check.duty) {
-    add(check.duty->id);
-  }
-  return text;
-}
-
-/// Gives only the reason if the threshold could not be evaluated.
-std::string explanation(const Outcome& outcome) {
-  return !outcome.is_evaluated                               ? outcome.reason
-         : outcome.passed || outcome.measured.detail.empty() ? outcome.measured.detail
-                                                             : fmt::format("{}: {}", outcome.reason, outcome.measured.detail);
-}
-
 struct Counts {
   std::size_t all = 0;
   std::size_t exceeded = 0;
@@ -170,27 +81,42 @@ std::string escaped_command(std::string_view text, bool is_property) {
 
 }  // namespace
 
-std::string table_text(std::span<const Outcome> outcomes) {
-  std::string text;
-  for (const std::span<const Outcome> group : by_check(outcomes)) {
-    const Check& check = *group.front().check;
-    const std::string things = things_of(check);
-    text += fmt::format("{}\n{}", check.name, things.empty() ? "" : wrapped(things));
-    for (const Outcome& each : group) {
-      const auto right = [](const std::string& cell, std::size_t width) {
-        return std::string(width - std::min(width, width_of(cell)), ' ') + cell;
-      };
-      text +=
-          fmt::format("{:5} {:24}{}  {} {}\n", result_of(each), each.limit.type->name,
-                      right(shown(each.measured.value, *each.limit.type), 11), right(limit_text(each), 20), right(margin_text(each), 12));
-      const std::string why = explanation(each);
-      text += why.empty() ? "" : wrapped(why);
-      text += each.before.empty() ? "" : wrapped(fmt::format("limit {} → {}", each.before, each.limit.text));
-    }
-    text += "\n";
+std::string margin_text(const Outcome& outcome) {
+  const double margin = outcome.margin_value();
+  if (!std::isfinite(margin)) {
+    return "–";
   }
-  const std::string header = fmt::format("{:5} {:24}{:>11}  {:>20} {:>12}\n", "", "threshold", "value", "limit", "margin");
-  return header + text;
+  const ThresholdType& type = *outcome.limit.type;
+  if (type.unit == "degC") {
+    return fmt::format("{:+.1f} K", margin);
+  }
+  const std::string text = shown(margin, type);
+  return margin > 0.0 ? "+" + text : text;
+}
+
+std::string limit_text(const Outcome& outcome) {
+  return fmt::format("{} {}", to_string(outcome.limit.type->direction), shown(outcome.limit.value, *outcome.limit.type));
+}
+
+std::string things_of(const Check& check) {
+  std::string text;
+  const auto add = [&text](const std::string& id) { text += (text.empty() ? "" : ", ") + id; };
+  if (check.motor) {
+    add(check.motor->id);
+  }
+  if (check.robot) {
+    add(check.robot->id);
+  }
+  if (check.duty) {
+    add(check.duty->id);
+  }
+  return text;
+}
+
+std::string explanation(const Outcome& outcome) {
+  return !outcome.is_evaluated                               ? outcome.reason
+         : outcome.passed || outcome.measured.detail.empty() ? outcome.measured.detail
+                                                             : fmt::format("{}: {}", outcome.reason, outcome.measured.detail);
 }
 
 std::string junit_xml(std::span<const Outcome> outcomes, std::string_view version) {

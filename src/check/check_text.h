@@ -10,8 +10,17 @@
 
 namespace heatsoak {
 
-/// A table of at most 80 columns, but for names and paths that are longer: result, threshold, value, limit, margin, and what is behind it.
-std::string table_text(std::span<const Outcome> outcomes);
+/// Margin with its sign and unit; "–" if the threshold was not evaluated.
+std::string margin_text(const Outcome& outcome);
+
+/// "at most 150 °C".
+std::string limit_text(const Outcome& outcome);
+
+/// Robot, duty and motor of a check, as far as it has them.
+std::string things_of(const Check& check);
+
+/// What the value rests on, or why the threshold fails or could not be evaluated.
+std::string explanation(const Outcome& outcome);
 
 /// One <testsuite> per check and one <testcase> per threshold, as GitHub, GitLab and Jenkins read it. A limit that is exceeded is a
 /// <failure>, a threshold that could not be evaluated an <error>.

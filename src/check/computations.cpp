@@ -25,8 +25,8 @@ std::string key_of(const Motor& motor) {
 
 std::string key_of(const DerateOptions& options) {
   const GuaranteeOptions& guarantee = options.guarantee;
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}", options.hottest_ambient_C, options.coldest_ambient_C, options.period_s, options.approach_s.value_or(0.0),
-                     guarantee.confidence, guarantee.samples, guarantee.seed);
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}", options.hottest_ambient_C, options.coldest_ambient_C, options.period_s,
+                     options.approach_s.value_or(0.0), guarantee.confidence, guarantee.samples, guarantee.seed);
 }
 
 std::string key_of_load(const Check& check) {
@@ -105,8 +105,8 @@ const GuardedDrive& Computations::guarded_drive(const Check& check) {
     run.ambient_C = check.duty->ambient_C.value;
     run.drive = real_drive(*check.robot, check.seed);
     const DriveScore score = run_match(game, *check.robot, *check.motor, core.config(), run).score;
-    if (const std::string why = not_driven(score); !why.empty()) {
-      throw Failure(ExitCode::limit_exceeded, fmt::format("the match was not driven: {}", why));
+    if (const std::optional<DriveProblem> problem = drive_problem(score)) {
+      throw Failure(ExitCode::limit_exceeded, fmt::format("the match was not driven: {}", to_string(*problem)));
     }
     return GuardedDrive{score, score.time_s};
   });

@@ -24,14 +24,14 @@ namespace heatsoak {
 /// Options that every command has, and the destinations of its output.
 class Session {
  public:
-  void add_data_option(CLI::App& app);   ///< --db
-  void add_json_option(CLI::App& app);   ///< --json
-  void add_text_options(CLI::App& app);  ///< --explain, --quiet and --report, for commands that show() documents
+  void add_data_option(CLI::App& app);     ///< --db
+  void add_answer_options(CLI::App& app);  ///< --explain, --quiet, --report and --json, for commands that show() documents
 
   [[nodiscard]] DataFolders folders() const;
   // All output is kept until the command has finished: finish() writes all of it, or nothing if a file cannot be written.
 
-  /// Adds text for the user: to stdout, or to stderr if the JSON goes to stdout. Control characters are replaced by '?'.
+  /// Adds text for other programs, such as a script: to stdout, or to stderr if the JSON goes to stdout. Control characters are replaced by
+  /// '?'. Answers for people are documents: see show().
   void say(std::string_view text);
   /// Adds a document in the width of the terminal, with the notes selected by --explain and --quiet, and as a file for --report.
   void show(const present::Document& document);
@@ -71,7 +71,7 @@ class Session {
 struct Topic {
   std::string id;
   std::string summary;
-  std::string text;  ///< description for the user
+  std::function<present::Document()> document;
   std::function<nlohmann::ordered_json()> json;
 };
 

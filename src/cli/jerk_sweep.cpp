@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "present/jerk_sweep.h"
 #include "report/chart.h"
 #include "simulate/planner_study.h"
 
@@ -13,23 +14,6 @@ namespace heatsoak {
 namespace {
 
 bool is_bang_bang(const StudyResult& result) { return std::isinf(result.limits.jerk_m_per_s3); }
-
-std::string table(const std::vector<StudyResult>& results, const Robot& robot) {
-  std::string text = fmt::format("{:>12} {:>9} {:>9} {:>9} {:>10} {:>10} {:>10} {:>10} {:>8} {:>8}\n", "acceleration", "jerk", "planned",
-                                 "settled", "slip", "sliding", "error", "overshoot", "peak", "copper");
-  text += fmt::format("{:>12} {:>9} {:>9} {:>9} {:>10} {:>10} {:>10} {:>10} {:>8} {:>8}\n", "m/s2 (grip)", "m/s3", "s", "s", "mm per m",
-                      "mm per m", "mm rms", "mm", "A", "J");
-  for (const StudyResult& each : results) {
-    const double acceleration = each.limits.acceleration_m_per_s2;
-    text += fmt::format("{:>12} {:>9} {:9.2f} {:9.2f} {:10.1f} {:10.2f} {:10.2f} {:10.2f} {:8.1f} {:8.2f}\n",
-                        fmt::format("{:.1f} ({:.0f} %)", acceleration, 100.0 * acceleration / grip_m_per_s2(robot)),
-                        is_bang_bang(each) ? "bang-bang" : fmt::format("{:.1f}", each.limits.jerk_m_per_s3), each.planned_s, each.settled_s,
-                        1e3 * each.slip_share, 1e3 * each.sliding_share, 1e3 * each.tracking_rms_m, 1e3 * each.overshoot_mean_m,
-                        each.peak_current_A, each.copper_J);
-    text += is_bang_bang(each) ? "\n" : "";
-  }
-  return text;
-}
 
 /// Adds a curve for each acceleration, and bang-bang as a dashed line of the same colour.
 void add_curves(ChartPanel& panel, const std::vector<StudyResult>& results, const Robot& robot, bool named, double scale,
@@ -103,15 +87,12 @@ nlohmann::ordered_json json(const std::vector<StudyResult>& results) {
 ExitCode sweep_jerk(const Robot& robot, const Motor& motor, const DriveOptions& drive, const std::string& plot, Session& session) {
   const std::vector<StudyCase> cases = jerk_sweep(robot);
   const std::vector<StudyResult> results = study_planners(robot, motor, cases, drive, 0, progress_bar("driving"));
-  session.say(
-      fmt::format("{} on {}: simulated drives of 0.5, 1 and 2 m in eight directions, from rest to rest, means\ngrip: the acceleration at "
-                  "which the first wheel slides if it transmits no other force; contacts creep earlier, and corrections of the drive core "
-                  "add to the force, so sliding begins somewhat below\n\n{}",
-                  motor.id, robot.id, table(results, robot)));
+  present::Document document = present::jerk_sweep_document(results, robot, motor);
   if (!plot.empty()) {
     session.write(plot, draw_picture(picture(results, robot, motor), plot));
-    session.say(fmt::format("picture: {}\n", plot));
+    document.add_file(plot);
   }
+  session.show(document);
   session.answer({{"schema", "heatsoak.jerk_sweep/1"},
                   {"motor", motor.id},
                   {"robot", robot.id},

@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "cli/default_spreads.h"
-#include "cli/inactive_effects.h"
-#include "present/verdict_words.h"
+#include "present/match.h"
 #include "report/chart.h"
-#include "robot/assumed_friction.h"
 #include "simulate/match_trace.h"
 #include "simulate/reason_name.h"
 
@@ -57,130 +56,15 @@ Played play(const MatchSimulation& wanted, const Game& game, const robot_core::C
 }
 
 /// Verdict over all runs: fail (a limit exceeded) takes precedence over infeasible (not driven).
-std::string_view verdict(const MatchSimulation& wanted, const std::vector<Played>& all) {
+Verdict verdict(const MatchSimulation& wanted, const std::vector<Played>& all) {
   const MotorValues& limits = wanted.motor.nominal;
   const auto too_hot = [&](const Played& each) {
     return each.run.score.winding_peak_C > limits.winding_limit_C || each.run.score.stator_peak_C > limits.stator_limit_C;
   };
   if (std::ranges::any_of(all, too_hot)) {
-    return "fail";
+    return Verdict::fail;
   }
-  return std::ranges::all_of(all, [](const Played& each) { return not_driven(each.run.score).empty(); }) ? "pass" : "infeasible";
-}
-
-double limited_s(const DriveScore& score, robot_core::Reason limit) {
-  return score.limited_s.at(static_cast<std::size_t>(std::ranges::find(kLimits, limit) - kLimits.begin()));
-}
-
-struct TableRow {
-  std::string_view name;
-  std::string (*cell)(const DriveScore& score);
-};
-
-constexpr TableRow kRows[] = {
-    {"driven / m", [](const DriveScore& s) { return fmt::format("{:.0f}", s.distance_m); }},
-    {"slip of a mean wheel / mm per m", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.slip_m / s.distance_m); }},
-    {"  of it sliding", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.sliding_m / s.distance_m); }},
-    {"time in which a wheel slides / s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.sliding_s); }},
-    {"time in which a wheel is lifted / s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.lifted_s); }},
-    {"tracking error / mm rms", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.tracking_rms_m); }},
-    {"  largest / mm", [](const DriveScore& s) { return fmt::format("{:.0f}", 1e3 * s.tracking_most_m); }},
-    {"overshoot / mm, mean of arrivals",
-     [](const DriveScore& s) { return fmt::format("{:.1f} of {:.0f}", 1e3 * s.overshoot_mean_m, s.arrivals_count); }},
-    {"  largest / mm", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.overshoot_most_m); }},
-    {"peak current / A", [](const DriveScore& s) { return fmt::format("{:.1f}", s.peak_current_A); }},
-    {"rms current, hottest motor / A", [](const DriveScore& s) { return fmt::format("{:.2f}", s.current_rms_A); }},
-    {"driver or battery falls short / s", [](const DriveScore& s) { return fmt::format("{:.1f}", s.short_s); }},
-    {"lowest battery voltage / V", [](const DriveScore& s) { return fmt::format("{:.1f}", s.lowest_battery_V); }},
-    {"core limits by traction / s", [](const DriveScore& s) { return fmt::format("{:.1f}", limited_s(s, robot_core::Reason::traction)); }},
-    {"  by voltage, current or sag / s",
-     [](const DriveScore& s) {
-       return fmt::format("{:.1f}", limited_s(s, robot_core::Reason::voltage) + limited_s(s, robot_core::Reason::driver_current) +
-                                        limited_s(s, robot_core::Reason::battery_sag));
-     }},
-    {"faults that the core reports / s", [](const DriveScore& s) { return fmt::format("{:.1f}", s.fault_s); }},
-    {"radio packets lost / %", [](const DriveScore& s) { return fmt::format("{:.1f}", 100.0 * s.lost_packets_share); }},
-    {"battery empty / s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.battery_empty_s); }},
-    {"copper heat, all motors / kJ", [](const DriveScore& s) { return fmt::format("{:.2f}", 1e-3 * s.energy.copper_J); }},
-    {"  per metre / J", [](const DriveScore& s) { return fmt::format("{:.1f}", s.energy.copper_J / s.distance_m); }},
-    {"  of it in duels / %", [](const DriveScore& s) { return fmt::format("{:.0f}", 100.0 * s.duel_copper_share); }},
-    {"winding peak / °C", [](const DriveScore& s) { return fmt::format("{:.1f}", s.winding_peak_C); }},
-    {"stator peak / °C", [](const DriveScore& s) { return fmt::format("{:.1f}", s.stator_peak_C); }},
-};
-
-std::string table(const std::vector<Played>& all) {
-  std::string text = fmt::format("{:36}", "");
-  for (const Played& each : all) {
-    text += fmt::format(" {:>14}", to_string(each.planner));
-  }
-  for (const TableRow& row : kRows) {
-    text += fmt::format("\n{:36}", row.name);
-    for (const Played& each : all) {
-      text += fmt::format(" {:>14}", row.cell(each.run.score));
-    }
-  }
-  return text + "\n";
-}
-
-struct EnergyRow {
-  std::string_view name;
-  double EnergyAccount::*value;
-};
-constexpr EnergyRow kEnergies[] = {{"copper", &EnergyAccount::copper_J},
-                                   {"iron_and_bearings", &EnergyAccount::motor_drag_J},
-                                   {"drivers", &EnergyAccount::driver_J},
-                                   {"battery_resistance", &EnergyAccount::battery_loss_J},
-                                   {"gear", &EnergyAccount::gear_J},
-                                   {"rolling", &EnergyAccount::rolling_J},
-                                   {"wheel_friction", &EnergyAccount::friction_J},
-                                   {"rollers", &EnergyAccount::roller_J},
-                                   {"slip", &EnergyAccount::slip_J}};
-
-std::string energy_text(const std::vector<Played>& all) {
-  std::string text = fmt::format("{:36}", "energy out of the battery / kJ");
-  for (const Played& each : all) {
-    text += fmt::format(" {:14.2f}", 1e-3 * each.run.score.energy.battery_J);
-  }
-  for (const EnergyRow& row : kEnergies) {
-    text += fmt::format("\n  {:34}", row.name);
-    for (const Played& each : all) {
-      const EnergyAccount& energy = each.run.score.energy;
-      text += fmt::format(" {:12.1f} %", 100.0 * energy.*row.value / energy.battery_J);
-    }
-  }
-  text += fmt::format("\n  {:34}", "not accounted for");
-  for (const Played& each : all) {
-    text += fmt::format(" {:12.3f} %", 100.0 * each.run.score.energy.residual_J() / each.run.score.energy.battery_J);
-  }
-  return text + "\n";
-}
-
-std::string sensing_text(const MatchSimulation& wanted) {
-  return wanted.is_sensing_ideal ? std::string("exact sensors and no delays")
-                                 : fmt::format("real sensing and {:.0f} radio packets per second", radio_of(wanted.robot).packet_rate_Hz);
-}
-
-/// Reports what the thermal guard did or, in shadow mode, would have done.
-std::string guard_text(const MatchSimulation& wanted, const MotorGuard& guard, const std::vector<Played>& all) {
-  if (wanted.guard == GuardUse::off) {
-    return "thermal guard: off\n";
-  }
-  if (!guard.guard) {
-    return fmt::format("thermal guard: none, because this motor cannot be guarded: {}\n", guard.why_none);
-  }
-  std::string text;
-  for (const Played& each : all) {
-    const DriveScore& score = each.run.score;
-    const std::string what = wanted.guard == GuardUse::on ? fmt::format("limited a motor for {:.1f} s", score.guard_limited_s)
-                                                          : fmt::format("would have limited a motor for {:.1f} s and taken away {:.1f} A s",
-                                                                        score.guard_limited_s, score.guard_missing_A_s);
-    text += fmt::format(
-        "thermal guard ({}), {}: {} of {}; its observer, with air of {:.0f} °C and its safety factor on heat, reached {:.0f} °C\n",
-        kGuardUses[static_cast<std::size_t>(wanted.guard)], to_string(each.planner), what, duration_text(score.time_s),
-        wanted.is_sensing_ideal ? wanted.duty.ambient_C.value : static_cast<double>(guard.guard->model().hottest_ambient_C),
-        score.guard_winding_peak_C);
-  }
-  return text;
+  return std::ranges::all_of(all, [](const Played& each) { return !drive_problem(each.run.score); }) ? Verdict::pass : Verdict::infeasible;
 }
 
 nlohmann::ordered_json guard_json(const MatchSimulation& wanted, const MotorGuard& guard) {
@@ -198,7 +82,7 @@ nlohmann::ordered_json json(const Played& played) {
     limited[std::string(to_string(kLimits[limit]))] = rounded(s.limited_s[limit], 3);
   }
   nlohmann::ordered_json energy{{"battery_J", rounded(s.energy.battery_J, 2)}};
-  for (const EnergyRow& row : kEnergies) {
+  for (const present::EnergyPart& row : present::energy_parts()) {
     energy[fmt::format("{}_J", row.name)] = rounded(s.energy.*row.value, 2);
   }
   energy["kinetic_J"] = rounded(s.energy.kinetic_J, 4);
@@ -325,8 +209,6 @@ Chart picture(const MatchSimulation& wanted, const std::vector<Played>& all) {
 
 }  // namespace
 
-std::string_view to_string(Planner planner) { return planner == Planner::bang_bang ? "bang_bang" : "jerk_limited"; }
-
 ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
   if (!wanted.out.empty() && wanted.planners.size() > 1) {
     throw Failure(ExitCode::bad_input, "--out holds one run; expected --planner bang_bang or jerk_limited with it");
@@ -350,24 +232,15 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
     session.write(wanted.plot, draw_picture(picture(wanted, all), wanted.plot));
   }
   const DriveScore& first = all.front().run.score;
-  session.say(
-      fmt::format("{} on {}, {} as {}, seed {}: closed loop of {} at 1 kHz with the drive core, {}, {} thermal data\nload: {}\n\n{}\n{}{}"
-                  "hottest: wheel {} at {:.1f} °C (limit {:.0f} °C): {}\n",
-                  wanted.motor.id, wanted.robot.id, wanted.duty.id, kRoleNames.at(static_cast<std::size_t>(wanted.inputs.role)),
-                  wanted.seed, duration_text(first.time_s), sensing_text(wanted), data_quality(wanted.motor), wanted.duty.origin,
-                  table(all), energy_text(all), guard_text(wanted, guard, all), first.hottest_wheel + 1, first.winding_peak_C,
-                  wanted.motor.nominal.winding_limit_C, verdict(wanted, all)));
-  for (const Played& each : all) {
-    if (const std::string why = not_driven(each.run.score); !why.empty()) {
-      session.say(fmt::format("{}: {}\n", to_string(each.planner), why));
-    }
-  }
+  std::vector<DriveScore> scores;
+  std::ranges::transform(all, std::back_inserter(scores), [](const Played& each) { return each.run.score; });
+  present::Document document =
+      present::match_document({wanted.robot, wanted.motor, wanted.duty, wanted.inputs.role, wanted.seed, wanted.guard, guard,
+                               wanted.is_sensing_ideal, wanted.planners, std::move(scores), verdict(wanted, all)});
+  document.add_file(wanted.out);
+  document.add_file(wanted.plot);
+  session.show(document);
   const bool is_guarded = wanted.guard != GuardUse::off;
-  session.say(inactive_effects({&wanted.motor, 1}) + (is_guarded ? default_spreads_text({&wanted.motor, 1}) : "") +
-              assumed_friction_text(wanted.robot));
-  for (const std::string& file : {wanted.out, wanted.plot}) {
-    session.say(file.empty() ? "" : fmt::format("written: {}\n", file));
-  }
   nlohmann::ordered_json planners = nlohmann::ordered_json::array();
   for (const Played& each : all) {
     planners.push_back(json(each));
@@ -385,14 +258,14 @@ ExitCode simulate_match(const MatchSimulation& wanted, Session& session) {
                   {"stator_peak_C", rounded(first.stator_peak_C, 3)},
                   {"winding_limit_C", rounded(wanted.motor.nominal.winding_limit_C, 2)},
                   {"current_rms_A", rounded(first.current_rms_A, 4)},
-                  {"verdict", verdict(wanted, all)},
+                  {"verdict", to_string(verdict(wanted, all))},
                   {"data_quality", data_quality(wanted.motor)},
                   {"is_friction_assumed", wanted.robot.friction.is_assumed},
                   {"sensing", wanted.is_sensing_ideal ? "ideal" : "real"},
                   {"guard", guard_json(wanted, guard)},
                   {"default_spreads", is_guarded ? default_spreads_json({&wanted.motor, 1}) : nlohmann::ordered_json::array()},
                   {"planners", planners}});
-  return verdict(wanted, all) != "pass" ? ExitCode::limit_exceeded : ExitCode::done;
+  return verdict(wanted, all) != Verdict::pass ? ExitCode::limit_exceeded : ExitCode::done;
 }
 
 }  // namespace heatsoak

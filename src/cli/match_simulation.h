@@ -1,4 +1,4 @@
-// `simulate` for a match: the closed loop as text, JSON, CSV and picture, for one planner or for both.
+// `simulate` for a match: the closed loop as answer, JSON, CSV and picture, for one planner or for both.
 #pragma once
 
 #include <string>
@@ -23,8 +23,6 @@ struct MatchSimulation {
   GuardUse guard = GuardUse::shadow;
   bool is_sensing_ideal = false;
 };
-
-std::string_view to_string(Planner planner);
 
 ExitCode simulate_match(const MatchSimulation& wanted, Session& session);
 

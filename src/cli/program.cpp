@@ -104,20 +104,6 @@ std::string printable(std::string_view text) {
 /// Unlike fmt::print this does not throw: a full disk is detected at the end (see run_program), a failing stderr is ignored.
 void put(std::FILE* file, std::string_view text) { static_cast<void>(std::fwrite(text.data(), 1, text.size(), file)); }
 
-/// Breaks the lines that are longer than `width`; the continuation is indented like its line.
-std::string folded(std::string_view text, std::size_t width) {
-  std::string result;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, end);
-    const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
-    result += present::width_of(line) > width ? present::wrapped(line.substr(indent), line.substr(0, indent), width) : std::string(line);
-    result += end < text.size() ? "\n" : "";
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return result;
-}
-
 /// Adds line numbers to diagnostics that have only a file and a key.
 Failure with_places(const Failure& failure) {
   std::vector<Diagnostic> all(failure.diagnostics().begin(), failure.diagnostics().end());
@@ -158,7 +144,8 @@ std::string annotations_of(const Failure& failure) {
 
 int fail(Session& session, const Failure& found) {
   const Failure failure = with_places(found);
-  put(stderr, printable(std::string(failure.what()) + "\n" + annotations_of(failure)));
+  const std::string text = printable(std::string(failure.what()) + "\n" + annotations_of(failure));
+  put(stderr, isatty(STDERR_FILENO) == 1 ? present::folded(text, terminal_width(STDERR_FILENO)) : text);
   session.answer_failure(failure);
   return static_cast<int>(failure.code());
 }
@@ -223,26 +210,22 @@ void Session::add_data_option(CLI::App& app) {
   app.add_option("--db", database_, "folder with motor_db/ (and duty_profiles/, robots/), or with motor files itself")->type_name("DIR");
 }
 
-void Session::add_json_option(CLI::App& app) {
+void Session::add_answer_options(CLI::App& app) {
   const auto names_a_file = [](const std::string& word) {
     return is_output(word) ? "" : fmt::format("{} is not the name of a file; expected one, or - for stdout", word);
   };
+  app.add_flag("--explain", explains_, "show every note, not only the three most important ones");
+  app.add_flag("--quiet", is_quiet_, "show the first lines alone, the answer in short; a list shows only its names");
+  app.add_option("--report", report_,
+                 "write the whole answer as a document, with every column and note, as Markdown or HTML by the file's ending; - is stdout, "
+                 "in place of the text")
+      ->type_name("FILE");
   app.add_option("--json", json_target_, "write the answer as JSON; - is stdout, the text then goes to stderr")
       ->type_name("FILE")
       ->check(names_a_file);
 }
 
-void Session::add_text_options(CLI::App& app) {
-  app.add_flag("--explain", explains_, "show every note, not only the three most important ones");
-  app.add_flag("--quiet", is_quiet_, "show the verdict alone");
-  app.add_option("--report", report_, "write the whole answer as a document, with every column and note; - is stdout, in place of the text")
-      ->type_name("FILE.md");
-}
-
-void Session::say(std::string_view text) {
-  const int descriptor = json_target_ == "-" ? STDERR_FILENO : STDOUT_FILENO;
-  text_ += isatty(descriptor) == 1 ? folded(printable(text), terminal_width(descriptor)) : printable(text);
-}
+void Session::say(std::string_view text) { text_ += printable(text); }
 
 void Session::show(const present::Document& document) {
   const int descriptor = json_target_ == "-" ? STDERR_FILENO : STDOUT_FILENO;
@@ -250,9 +233,11 @@ void Session::show(const present::Document& document) {
     text_ += present::rendered_for("-.md", document);
     return;
   }
-  text_ += present::terminal_text(
-      document,
-      {.width = terminal_width(descriptor), .with_colors = takes_colors(descriptor), .explains = explains_, .is_quiet = is_quiet_});
+  text_ += present::terminal_text(document, {.width = terminal_width(descriptor),
+                                             .with_colors = takes_colors(descriptor),
+                                             .is_terminal = isatty(descriptor) == 1,
+                                             .explains = explains_,
+                                             .is_quiet = is_quiet_});
   if (!report_.empty()) {
     write(report_, present::rendered_for(report_, document));
   }

@@ -48,32 +48,4 @@ std::optional<SensorOptions> sensor_options(const SensorFlags& flags) {
                        .lag_s = flags.thermistor_lag_s};
 }
 
-std::string sensor_text(const Derating& derating) {
-  if (!derating.sensor) {
-    return {};
-  }
-  const SensorPlan& plan = *derating.sensor;
-  std::string text = fmt::format(
-      "\n"
-      "with {} at the {}, error up to {:.3g} K{}: safety factor on heat {:.2f} (without {:.2f}); of {} drawn motors with drawn sensor "
-      "errors {} exceeded a limit, their windings reached {:.0f} °C (95th percentile), {:.0f} °C (the hottest); the cross-check drops the "
-      "correct sensor of {}\n"
-      "a plausible but wrong sensor allows at most {:.2f} A more than without one: the nominal motor then reaches {:.0f} °C, and {} of {} "
-      "drawn motors exceed a limit\n",
-      plan.resistance ? "the resistance from voltage and current" : "a thermistor",
-      plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
-      plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(),
-      derating.observer.heat_safety_factor(), plan.samples, plan.over, plan.winding_p95_C, plan.winding_most_C, plan.dropped,
-      plan.most_gain_A, plan.sensor_fault_nominal_C, plan.sensor_fault_over, derating.options.guarantee.samples);
-  if (plan.resistance) {
-    text += fmt::format("readings need {:.2f} A at rest and {:.3f} A more per rad/s\n", plan.resistance->least_current_A,
-                        plan.resistance->current_per_speed_A_s_per_rad);
-  }
-  text += "continuous current of the nominal motor, A:\n  speed rad/s   without      with\n";
-  for (const LastingCurrent& each : plan.lasting) {
-    text += fmt::format("  {:11.0f} {:9.2f} {:9.2f}\n", each.speed_rad_per_s, each.without_A, each.with_A);
-  }
-  return text;
-}
-
 }  // namespace heatsoak

@@ -25,7 +25,4 @@ void add_sensor_options(CLI::App& app, SensorFlags& flags);
 /// Returns nothing without a sensor. Throws Failure (bad_input) if both sensors are given.
 std::optional<SensorOptions> sensor_options(const SensorFlags& flags);
 
-/// Describes the benefit and the possible faults of the sensor; empty without one.
-std::string sensor_text(const Derating& derating);
-
 }  // namespace heatsoak

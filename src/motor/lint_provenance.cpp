@@ -7,6 +7,7 @@
 #include "motor/datasheet_network.h"
 #include "motor/default_spread.h"
 #include "motor/lint_checks.h"
+#include "motor/write_motor.h"
 
 namespace heatsoak::lint_checks {
 namespace {
@@ -101,11 +102,15 @@ void exact_values(const Motor& motor, Findings& findings) {
   });
 }
 
-/// A spread of 0.001 % is as unlikely as none. A fit of the file may produce one, so there it is a note and the spread is widened.
+/// A spread of 0.001 % is as unlikely as none. A fit may produce one: the spread is widened, and a file of `calibrate` gets no note,
+/// because there is nothing that the user could correct.
 void narrow_values(const Motor& motor, Findings& findings) {
   for (const NarrowSpread& each : narrow_spreads(motor)) {
     const ParameterValue& parameter = *each.parameter;
     const auto percent = [&](double bound) { return 100.0 * std::abs(bound / parameter.value - 1.0); };
+    if (each.is_fitted && parameter.source == kCalibrationSource) {
+      continue;
+    }
     const std::string message = fmt::format(
         "{} of {} ({}) has a spread of -{} to +{} %, expected at least -{} to +{} % for a value of this origin; {}", each.key,
         parameter.printed, to_string(parameter.origin), significant(percent(parameter.spread->low), 2),

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "motor/motor.h"
 
 namespace heatsoak {
+
+/// Source of the values that a calibration writes.
+inline constexpr std::string_view kCalibrationSource = "calibration";
 
 /// Returns the text of a file from which read_motor() gives the same motor, in this program's conventions. Values keep the text of their
 /// original file if they have one.

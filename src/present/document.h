@@ -23,13 +23,22 @@ struct Column {
   std::string unit = {};  ///< empty for text and pure numbers
   int priority = 0;
   Alignment alignment = Alignment::right;
+  std::size_t least_width = 0;  ///< a narrower terminal drops the column, whatever its priority
+  bool is_prose = false;        ///< long text, broken into lines; only the last column may be prose
 };
 
-/// Each row has one cell for each column.
+/// Each row has one cell for each column. If no column has a name, no head is shown.
 struct Table {
   std::string title = {};  ///< may be empty
   std::vector<Column> columns = {};
   std::vector<std::vector<Text>> rows = {};
+};
+
+/// Lines to copy or to read by another program. Files and pipes get them as they are.
+struct Listing {
+  std::string title = {};  ///< may be empty
+  std::string lines = {};
+  bool is_prose = false;  ///< a terminal may break long lines at blanks
 };
 
 /// Severity of a note, in ascending order.
@@ -50,9 +59,16 @@ struct Document {
   std::vector<std::string> paragraphs = {};  ///< what was computed, from which inputs
   std::vector<Table> tables = {};
   std::vector<Note> notes = {};
+  std::vector<std::string> files = {};  ///< names of the files that the command writes
+  std::vector<Listing> listings = {};   ///< shown last
 
   /// Adds a note unless the same one exists already.
   void add_note(Severity severity, std::string_view words);
+  /// Adds the name of a written file; ignores an empty name.
+  void add_file(std::string_view name);
 };
+
+/// Returns a document that has only one sentence as its headline.
+Document short_answer(std::string sentence);
 
 }  // namespace heatsoak::present

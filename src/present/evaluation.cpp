@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/lanes.h"
+#include "base/quantity.h"
 #include "present/verdict_words.h"
 #include "select/decision.h"
 
@@ -43,14 +44,17 @@ std::string_view factor_text(const MotorEvaluation& motor) {
   }
 }
 
+/// On a narrower terminal the winding over time, which is drawn up to the limit, stands in for rank, limit and margin.
+constexpr std::size_t kLeastForLimit = 70;
+
 std::vector<Column> columns() {
   constexpr auto kLeft = Alignment::left;
-  return {{"", "", 0},
+  return {{"", "", 0, Alignment::right, kLeastForLimit},
           {"motor", "", 0, kLeft},
           {"verdict", "", 0, kLeft},
           {"peak", "°C", 0},
-          {"limit", "", 0},
-          {"margin", "K", 0},
+          {"limit", "", 0, Alignment::right, kLeastForLimit},
+          {"margin", "K", 0, Alignment::right, kLeastForLimit},
           {"winding", "", 1, kLeft},
           {"P over", "%", 2},
           {"reached", "", 3},
@@ -224,46 +228,78 @@ std::vector<std::string> paragraphs(std::span<const MotorEvaluation> results, co
 
 }  // namespace
 
+namespace {
+
+std::string shown_value(double value, std::string_view unit) {
+  return unit.empty() ? significant(value, 3) : fmt::format("{} {}", significant(value, 3), unit);
+}
+
+/// "jerk limit from 20 m/s³ to 10 m/s³", "the motor to nanotec_df45l024048_a2".
+std::string change_words(const ChangeEffect& change) {
+  return change.other_motor.empty()
+             ? fmt::format("{} from {} to {}", name_of(change.quantity), shown_value(change.before, unit_of(change.quantity)),
+                           shown_value(change.before * change.factor, unit_of(change.quantity)))
+             : fmt::format("motor to {}", change.other_motor);
+}
+
+/// A change that is not larger than its own scatter does not count, unless the motor needs it to deliver the demand.
+bool counts(const ChangeEffect& change) {
+  const double error_K = std::isfinite(change.standard_error_K) ? change.standard_error_K : 0.0;
+  return change.makes_deliverable || (change.is_deliverable && change.saved_K > std::max(0.5, 2.0 * error_K));
+}
+
+/// States the most helpful change; `change` is null if none counts.
+std::string best_change_words(const ChangeEffect* change, std::span<const ChangeEffect> effects, const std::string& motor_id) {
+  if (change != nullptr) {
+    return change->makes_deliverable
+               ? fmt::format("This change lets {} deliver what the duty demands: {}.", change->other_motor.empty() ? motor_id : "the robot",
+                             change_words(*change))
+               : fmt::format("Of the changes this one cools {} most: {}, by {:.0f} K.", motor_id, change_words(*change), change->saved_K);
+  }
+  const auto largest = std::ranges::max_element(effects, {}, &ChangeEffect::saved_K);
+  if (largest == effects.end() || largest->is_deliverable || !(largest->saved_K > 0.5)) {
+    return "No change of the robot by a usual step cools " + motor_id + " by more than its scatter from game to game.";
+  }
+  return fmt::format(
+      "No change of the robot by a usual step cools {} and lets it deliver what the duty demands. The largest effect has {}: {:.0f} K "
+      "less.",
+      motor_id, change_words(*largest), largest->saved_K);
+}
+
+}  // namespace
+
 void add_changes(Document& document, std::span<const ChangeEffect> effects, const std::string& motor_id) {
   constexpr std::size_t kMost = 3;
-  Table table{.title = fmt::format("Changes of the robot that cool {} most", motor_id),
-              .columns = {{"change", "", 0, Alignment::left}, {"from", "", 0}, {"to", "", 0}, {"saves", "K", 0}, {"±", "K", 1}},
+  Table table{.title = fmt::format("Changes that help {} most", motor_id),
+              .columns = {{"change", "", 0, Alignment::left},
+                          {"from", "", 1, Alignment::right, kLeastForLimit},
+                          {"to", "", 1, Alignment::right, kLeastForLimit},
+                          {"saves", "K", 0},
+                          {"±", "K", 2}},
               .rows = {}};
-  const auto shown = [](double value, std::string_view unit) {
-    return unit.empty() ? fmt::format("{:.3g}", value) : fmt::format("{:.3g} {}", value, unit);
-  };
+  const ChangeEffect* best = nullptr;
   for (const ChangeEffect& each : effects) {
-    const double error_K = std::isfinite(each.standard_error_K) ? each.standard_error_K : 0.0;
-    // A change that is not larger than its own scatter is not listed.
-    if (table.rows.size() < kMost && each.is_deliverable && each.saved_K > std::max(0.5, 2.0 * error_K)) {
-      table.rows.push_back({{std::string(name_of(each.quantity))},
-                            {shown(each.before, unit_of(each.quantity))},
-                            {shown(each.before * each.factor, unit_of(each.quantity))},
-                            {fmt::format("{:.0f}", each.saved_K)},
-                            {std::isfinite(each.standard_error_K) ? fmt::format("{:.0f}", std::ceil(2.0 * each.standard_error_K)) : "–"}});
+    if (table.rows.size() == kMost || !counts(each)) {
+      continue;
     }
+    best = best == nullptr ? &each : best;
+    const std::string_view unit = unit_of(each.quantity);
+    const bool is_value = each.other_motor.empty();
+    table.rows.push_back({{is_value ? std::string(name_of(each.quantity)) : fmt::format("motor {}", each.other_motor)},
+                          {is_value ? shown_value(each.before, unit) : ""},
+                          {is_value ? shown_value(each.before * each.factor, unit) : ""},
+                          {fmt::format("{:.0f}", each.saved_K)},
+                          {std::isfinite(each.standard_error_K) ? fmt::format("{:.0f}", std::ceil(2.0 * each.standard_error_K)) : "–"}});
   }
-  if (table.rows.empty()) {
-    const auto largest = std::ranges::max_element(effects, {}, &ChangeEffect::saved_K);
-    if (largest == effects.end() || largest->is_deliverable || !(largest->saved_K > 0.5)) {
-      document.headline.push_back(
-          {"No change of the robot by a usual step cools " + motor_id + " by more than its scatter from game to game."});
-    } else {
-      document.headline.push_back({fmt::format(
-          "No change of the robot by a usual step cools {} and lets it deliver what the duty demands. The largest effect has {} "
-          "from {} to {}: {:.0f} K less.",
-          motor_id, name_of(largest->quantity), shown(largest->before, unit_of(largest->quantity)),
-          shown(largest->before * largest->factor, unit_of(largest->quantity)), largest->saved_K)});
-    }
+  document.headline.push_back({best_change_words(best, effects, motor_id)});
+  if (best == nullptr) {
     return;
   }
-  document.headline.push_back(
-      {fmt::format("Of the robot's changes this one cools {} most: {} from {} to {}, by {} K.", motor_id, table.rows.front()[0].words,
-                   table.rows.front()[1].words, table.rows.front()[2].words, table.rows.front()[3].words)});
   document.tables.push_back(std::move(table));
   document.add_note(
       Severity::background,
-      fmt::format("Changes: mean of {} games with nominal values, each driven with and without the change; ± is two standard errors.",
+      fmt::format("Changes: mean of {} games with nominal values, each driven with and without the change; ± is two standard errors. The "
+                  "motor is the one of the data base with the largest margin; its mass and size are not compared.",
                   kChangeGames));
 }
 

@@ -16,8 +16,9 @@ inline constexpr std::size_t kMostNotes = 3;
 struct RenderOptions {
   std::size_t width = 80;  ///< characters; at least kLeastWidth
   bool with_colors = false;
-  bool explains = false;  ///< show every note
-  bool is_quiet = false;  ///< show only the headline
+  bool is_terminal = false;  ///< false for files and pipes
+  bool explains = false;     ///< show every note
+  bool is_quiet = false;     ///< show only the headline; without one, the first column of the tables, for scripts
 };
 
 inline constexpr std::size_t kLeastWidth = 20;

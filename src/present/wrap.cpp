@@ -41,4 +41,17 @@ std::string wrapped(std::string_view text, std::string_view first, std::size_t w
   return result + line;
 }
 
+std::string folded(std::string_view text, std::size_t width) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+    result += width_of(line) > width ? wrapped(line.substr(indent), line.substr(0, indent), width) : std::string(line);
+    result += end < text.size() ? "\n" : "";
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return result;
+}
+
 }  // namespace heatsoak::present

@@ -20,4 +20,7 @@ std::string_view trailing(std::string_view text, std::size_t count);
 /// `first`, the others with as many blanks. No line break at the end.
 std::string wrapped(std::string_view text, std::string_view first, std::size_t width);
 
+/// Breaks the lines that are longer than `width`; the continuation is indented like its line.
+std::string folded(std::string_view text, std::size_t width);
+
 }  // namespace heatsoak::present

@@ -1,7 +1,9 @@
-// What a change of the robot would do to a motor's winding: the same games, driven by a robot with one number changed.
+// Effects of changes on a motor's winding: the same games, driven by a robot with one value changed, with longer pauses or another motor.
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -12,25 +14,29 @@
 
 namespace heatsoak {
 
-enum class ChangedQuantity { acceleration, jerk, speed, yaw_acceleration, mass, wheel_radius, gear_ratio };
+enum class ChangedQuantity { acceleration, jerk, speed, yaw_acceleration, mass, wheel_radius, gear_ratio, pauses, motor };
 
 struct ChangeEffect {
   ChangedQuantity quantity = ChangedQuantity::acceleration;
-  double before = 0.0;            ///< value of the robot's file, in unit_of(quantity)
-  double factor = 1.0;            ///< what it was multiplied by
-  double saved_K = 0.0;           ///< fall of the winding's peak, mean of the games; negative where it rises
-  double standard_error_K = 0.0;  ///< of that mean, from the differences game by game; NaN for one game
-  bool is_deliverable = true;     ///< voltage and current suffice in every game
+  double before = 0.0;             ///< present value, in unit_of(quantity); 0 for another motor
+  double factor = 1.0;             ///< by which it was multiplied
+  std::string other_motor = {};    ///< id; only for another motor
+  double saved_K = 0.0;            ///< fall of the winding's peak, mean of the games; negative if it rises
+  double standard_error_K = 0.0;   ///< of that mean, from the differences game by game; NaN for one game
+  bool is_deliverable = true;      ///< voltage and current suffice in every game
+  bool makes_deliverable = false;  ///< they do not suffice without the change
 };
 
 inline constexpr int kChangeGames = 4;
 
-/// Every change that the robot's file has the number for, the most helpful first. Nominal values; each game costs as much as playing it
-/// once. A duty that fixes the wheel's load is one game, and only the gear ratio acts on it.
-std::vector<ChangeEffect> effects_of_changes(const Robot& robot, const Duty& duty, const Motor& motor, std::uint64_t seed, int threads,
-                                             const Progress& progress = {});
+/// Returns the effects of all changes that are possible with these files, the most helpful first. All values are nominal; each game is
+/// played once for each change. A duty that fixes the wheel's load is one game, on which only gear ratio, pauses and motor act. Pauses: the
+/// time without load lasts half as long again. Motor: of `others` the motor that keeps all limits, delivers the demand in every game and
+/// has the largest margin; nothing if none does. `others` may contain `motor`, which is ignored.
+std::vector<ChangeEffect> effects_of_changes(const Robot& robot, const Duty& duty, const Motor& motor, std::span<const Motor> others,
+                                             std::uint64_t seed, int threads, const Progress& progress = {});
 
-/// "acceleration limit", and the unit of `before`.
+/// Returns the name ("acceleration limit") and the unit of `before`.
 std::string_view name_of(ChangedQuantity quantity);
 std::string_view unit_of(ChangedQuantity quantity);
 

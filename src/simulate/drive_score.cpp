@@ -1,7 +1,5 @@
 #include "simulate/drive_score.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -131,20 +129,21 @@ DriveScore DriveScorer::finish() {
   return score_;
 }
 
-std::string not_driven(const DriveScore& score) {
+std::string_view to_string(DriveProblem problem) {
+  constexpr std::array<std::string_view, 3> kNames{"battery empty", "tips", "off its plan"};
+  return kNames.at(static_cast<std::size_t>(problem));
+}
+
+std::optional<DriveProblem> drive_problem(const DriveScore& score) {
   constexpr double kRobot_m = 0.18;
   constexpr double kMostLifted_share = 0.01;
   if (score.battery_empty_s > 0.0) {
-    return fmt::format("the battery is empty after {:.0f} s; the robot stands still for the rest of the match",
-                       score.time_s - score.battery_empty_s);
+    return DriveProblem::battery_empty;
   }
   if (score.lifted_s > kMostLifted_share * score.time_s) {
-    return fmt::format("wheels are off the ground for {:.0f} s: the robot tips", score.lifted_s);
+    return DriveProblem::tips;
   }
-  return score.tracking_rms_m > kRobot_m
-             ? fmt::format("the robot is {:.1f} m (rms) off its plan, more than its own size: motors, driver or grip are too weak",
-                           score.tracking_rms_m)
-             : std::string();
+  return score.tracking_rms_m > kRobot_m ? std::optional(DriveProblem::off_plan) : std::nullopt;
 }
 
 }  // namespace heatsoak

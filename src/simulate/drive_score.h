@@ -2,7 +2,8 @@
 #pragma once
 
 #include <array>
-#include <string>
+#include <optional>
+#include <string_view>
 
 #include "simulate/drive_script.h"
 
@@ -44,8 +45,17 @@ struct DriveScore {
   EnergyAccount energy;
 };
 
-/// Why a match was not driven, whatever the motors' temperatures are; empty where it was.
-std::string not_driven(const DriveScore& score);
+/// Why a match counts as not driven, whatever the motors' temperatures are.
+enum class DriveProblem {
+  battery_empty,  ///< before the end of the match
+  tips,           ///< wheels are off the ground for more than 1 % of the time
+  off_plan        ///< farther from its plan (rms) than the robot's own size
+};
+/// Returns "battery empty", "tips", "off its plan".
+std::string_view to_string(DriveProblem problem);
+
+/// Returns nothing if the match was driven.
+std::optional<DriveProblem> drive_problem(const DriveScore& score);
 
 /// Takes every moment of a run.
 class DriveScorer {

@@ -77,9 +77,7 @@ TEST(OtherMotor, IsSuspectedFromTheVoltageAtItsTerminals) {
     log.channels.push_back({*quantity_named("motor_V"), std::move(motor_V)});
     const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "log.csv"))};
     const Calibration found = calibrate(motor, logs, {}, {});
-    EXPECT_EQ(
-        std::ranges::any_of(found.notes, [](const std::string& note) { return note.find("give a terminal resistance of") != note.npos; }),
-        ratio < 1.0);
+    EXPECT_EQ(has_finding<ResistanceDiffers>(found.findings), ratio < 1.0);
   }
 }
 
@@ -231,8 +229,9 @@ TEST(HeldOutLog, MayLackTheSpeedThatTheFittedOnesHave) {
   };
   const Calibration without_speed = calibrated(still, silent);
   const Calibration stands = calibrated(still, said_to_stand);
-  EXPECT_THAT(without_speed.notes, Contains(HasSubstr("band of held_out is wider, because its log has a current but no speed")));
-  EXPECT_THAT(stands.notes, Not(Contains(HasSubstr("has a current but no speed"))));
+  EXPECT_THAT(remarks_in(without_speed.findings),
+              Contains(HasSubstr("band of held_out is wider, because its log has a current but no speed")));
+  EXPECT_THAT(remarks_in(stands.findings), Not(Contains(HasSubstr("has a current but no speed"))));
   EXPECT_LT(stator_K(without_speed), 0.6 * stator_K(stands));
   EXPECT_EQ(figure(without_speed, "stator_heat_capacity").value, figure(stands, "stator_heat_capacity").value);
   EXPECT_GT(stator_K(calibrated(silent, still)), 0.0);
@@ -260,7 +259,7 @@ TEST(InputPower, LeavesTheNoLoadLossAtTheStator) {
   log.channels.push_back({*quantity_named("speed_rad_per_s"), std::move(speed_rad_per_s)});
   const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "power.csv"))};
   const Calibration found = calibrate(sheet.motor(folder), logs, {}, {});
-  EXPECT_THAT(found.notes, Contains(HasSubstr("the part due to no_load_current is assumed to arise at the stator")));
+  EXPECT_THAT(remarks_in(found.findings), Contains(HasSubstr("the part due to no_load_current is assumed to arise at the stator")));
   const auto is_near = [&](const char* name, double truth) {
     const CalibratedParameter& each = figure(found, name);
     EXPECT_LT(each.low, truth) << name;
@@ -273,7 +272,7 @@ TEST(InputPower, LeavesTheNoLoadLossAtTheStator) {
   Motor guessed = sheet.motor(folder);
   guessed.parameters.find("no_load_current")->second.origin = Origin::estimated;
   for (const Motor& motor : {guessed, Sheet{}.motor(folder)}) {
-    EXPECT_THAT(calibrate(motor, logs, {}, {}).notes, Contains(HasSubstr("all of it is assumed to arise at the winding")));
+    EXPECT_THAT(remarks_in(calibrate(motor, logs, {}, {}).findings), Contains(HasSubstr("all of it is assumed to arise at the winding")));
   }
 }
 

@@ -68,7 +68,7 @@ TEST_F(Recordings, DroneMotorNearStandstill) {
   EXPECT_LT(total_K(found.holdout_error, &ErrorBeforeAfter::after), total_K(found.holdout_error, &ErrorBeforeAfter::before));
   // The runs take minutes and contain no cool-down, so the heat that leaves the stator is not identifiable.
   EXPECT_FALSE(figure(found, "thermal_resistance_stator_ambient").is_identifiable);
-  EXPECT_THAT(found.notes, Contains(HasSubstr("the share of the stated power that becomes heat is held")));
+  EXPECT_THAT(remarks_in(found.findings), Contains(HasSubstr("the share of the stated power that becomes heat is held")));
 }
 
 /// The network that predicts the left-out runs best must also predict a run that was not used for its choice.
@@ -137,7 +137,7 @@ TEST_F(Recordings, TractionMotorHourByHour) {
   EXPECT_GT(figure(found, "winding_heat_capacity").value, 1000.0);
   EXPECT_LT(figure(found, "winding_heat_capacity").value, 3500.0);
   // The model lacks iron loss. The result must show that an effect is missing.
-  EXPECT_GT(found.fit.drift_K.size() + found.notes.size(), 1U);
+  EXPECT_GT(found.fit.drift_K.size() + found.findings.size(), 1U);
 }
 
 }  // namespace

@@ -89,8 +89,8 @@ TEST_F(StatedSensors, FitFindsTheMotorBehindThem) {
   for (const ErrorBeforeAfter& each : seeing.fit_error) {
     EXPECT_LT(each.after.rmse_K, 0.05) << each.signal;
   }
-  EXPECT_THAT(seeing.notes, testing::Contains(testing::HasSubstr("effects.glued_on.time_constant is held at 25 s")));
-  EXPECT_THAT(seeing.notes, testing::Contains(testing::HasSubstr("effects.sensor_offset_stator.offset is held at 4 K")));
+  EXPECT_THAT(remarks_in(seeing.findings), testing::Contains(testing::HasSubstr("effects.glued_on.time_constant is held at 25 s")));
+  EXPECT_THAT(remarks_in(seeing.findings), testing::Contains(testing::HasSubstr("effects.sensor_offset_stator.offset is held at 4 K")));
   const Motor written = calibrated_motor(motor_, seeing);
   ASSERT_EQ(written.sensors.size(), 2U);
   EXPECT_EQ(written.sensors.front().size.value, kLag_s);
@@ -103,7 +103,8 @@ TEST_F(StatedSensors, OfWhichNoLogSpeaksAreSaidToCountForNothing) {
   const Calibration before = calibrate(motor_, logs_, {}, {});
   motor_.sensors = stated();
   const Calibration after = calibrate(motor_, logs_, {}, {});
-  EXPECT_THAT(after.notes, testing::Contains("no log has the stator_C to which effects.glued_on applies: the effect is not used"));
+  EXPECT_THAT(remarks_in(after.findings),
+              testing::Contains("no log has the stator_C to which effects.glued_on applies: the effect is not used"));
   EXPECT_EQ(after.fit.theta, before.fit.theta);
 }
 

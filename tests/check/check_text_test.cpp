@@ -122,17 +122,5 @@ TEST_F(Outcomes, AreAMarkdownTable) {
   EXPECT_EQ(rows, 5);
 }
 
-TEST_F(Outcomes, FitATerminalOf80Columns) {
-  outcomes_[0].measured.detail =
-      "nominal 47.0 °C, median 47.2 °C, 500 samples of all declared tolerances and the wheel front_left of it, 10 A";
-  std::istringstream lines(table_text(outcomes_));
-  for (std::string line; std::getline(lines, line);) {
-    const auto characters = std::ranges::count_if(line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
-    EXPECT_LE(characters, 80) << line;
-  }
-  EXPECT_THAT(table_text(outcomes_), HasSubstr("FAIL  current_margin"));
-  EXPECT_THAT(table_text(outcomes_), HasSubstr("ERROR derating_excess"));
-}
-
 }  // namespace
 }  // namespace heatsoak

@@ -75,7 +75,7 @@ TEST(DerateCommand, EffectThatADiagnosisFoundActsInTheFirmware) {
   ASSERT_EQ(after.exit_code, 0) << after.err;
   EXPECT_THAT(before.json()["nodes"], ElementsAre("winding", "stator"));
   EXPECT_THAT(after.json()["nodes"], ElementsAre("winding", "stator", "enclosure_warm_up"));
-  EXPECT_THAT(after.err, HasSubstr("active effects of the file: enclosure_warm_up"));
+  EXPECT_THAT(after.err, HasSubstr("Active effects of the file: enclosure_warm_up"));
   EXPECT_THAT(content_of(folder.path() / "after.h"), HasSubstr("winding stator enclosure_warm_up"));
   // A calibrated motor needs a smaller safety factor than a data sheet, so more current is allowed.
   EXPECT_LT(after.json()["heat_reserve_ratio"].get<double>(), before.json()["heat_reserve_ratio"].get<double>());

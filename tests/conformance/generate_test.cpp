@@ -303,8 +303,8 @@ TEST(GenerateCore, TellsWhatTheCoreDoesNotKnow) {
   ASSERT_EQ(done.exit_code, 0) << done.err;
   EXPECT_THAT(done.json()["notes"], SizeIs(3));
   EXPECT_THAT(done.json()["notes"][2].get<std::string>(), HasSubstr("effects.my_vehicle_airflow.conductance -33 to +50 % (estimated)"));
-  EXPECT_THAT(done.err, AllOf(HasSubstr("note: my_vehicle_airflow depends on"), HasSubstr("still air"),
-                              HasSubstr("note: my_neighbour_coupling depends on"), HasSubstr("other wheels' guards")));
+  EXPECT_THAT(done.err, AllOf(HasSubstr("- my_vehicle_airflow depends on"), HasSubstr("still air"),
+                              HasSubstr("- my_neighbour_coupling depends on"), HasSubstr("other wheels' guards")));
   EXPECT_THAT(content_of(folder.path() / "core/README.md"), HasSubstr("my_vehicle_airflow"));
 }
 
@@ -318,7 +318,7 @@ TEST(GenerateCore, CurveOverAColumnCountsAtItsHottest) {
   write_motor_with(folder.path() / "gripper.toml", {curve});
   const ProgramRun done = run(generate((folder.path() / "gripper.toml").string(), folder.path() / "core"));
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_THAT(done.out, HasSubstr("note: my_tabulated depends on gripper_ratio of the logs"));
+  EXPECT_THAT(done.out, HasSubstr("- my_tabulated depends on gripper_ratio of the logs"));
   EXPECT_THAT(content_of(folder.path() / "core/motor_guard.cpp"),
               HasSubstr("depends on gripper_ratio of the logs, evaluated at its hottest value"));
 }

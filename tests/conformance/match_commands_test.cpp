@@ -54,7 +54,7 @@ TEST(SimulateMatch, writes_every_signal_in_bounded_memory) {
 TEST(SimulateMatch, both_planners_stand_side_by_side) {
   const ProgramRun result = run(kMatch + Words{"--planner", "both", "--json", "-"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("jerk_limited      bang_bang"));
+  EXPECT_THAT(result.err, HasSubstr("jerk_limited  bang_bang"));
   EXPECT_THAT(result.err, HasSubstr("synthetic"));
   const json planners = result.json().at("planners");
   ASSERT_EQ(planners.size(), 2U);
@@ -263,7 +263,7 @@ TEST(DutyMatch, heat_is_reported_by_phase_and_role) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("keeper"));
   EXPECT_THAT(result.err, HasSubstr("duels (pushing at stall)"));
-  EXPECT_THAT(result.err, HasSubstr("share of torque squared"));
+  EXPECT_THAT(result.err, HasSubstr("Share of torque squared"));
   const json answer = result.json();
   const json roles = answer.at("roles");
   ASSERT_EQ(roles.size(), 3U);

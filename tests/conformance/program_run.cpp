@@ -32,6 +32,8 @@ void redirect(int descriptor, const fs::path& file) {
   if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) {
     ::_exit(126);
   }
+  // Tests look for sentences, which a line of 80 characters would break.
+  ::setenv("COLUMNS", "1000", 1);
   for (const std::string& each : options.environment) {
     const std::size_t equals = each.find('=');
     equals == std::string::npos ? ::unsetenv(each.c_str()) : ::setenv(each.substr(0, equals).c_str(), each.substr(equals + 1).c_str(), 1);

@@ -99,7 +99,7 @@ TEST(MotorWithoutSpreads, GetsDefaultsThatEveryAnswerStates) {
   const ProgramRun core =
       run({"generate", "core", "--robot", kRobot, "--motor", "bare.toml", "--out", "core", "--samples", "100", "--json", "-"}, here);
   ASSERT_EQ(core.exit_code, 0) << core.err;
-  EXPECT_THAT(core.err, HasSubstr("note: the motor's file gives no tolerance for these values"));
+  EXPECT_THAT(core.err, HasSubstr("- the motor's file gives no tolerance for these values"));
   EXPECT_EQ(core.json()["default_spreads"].size(), 7U);
   EXPECT_THAT(content_of(folder.path() / "core/motor_guard.h"), HasSubstr("gives no tolerance for these values"));
 }

@@ -4,11 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <utility>
 
 #include "base/files.h"
 #include "input/data_folders.h"
+#include "motor/lint.h"
 #include "support/shipped.h"
 
 namespace heatsoak {
@@ -160,6 +162,21 @@ TEST(DefaultSpread, AFitThatIsSurerThanItsSensorsIsWidenedAndNotRefused) {
   EXPECT_NEAR(found[0].spread.high, 1.03 * figure.value, 1e-9 * figure.value);
   figure.spread = of_percent(figure, 1.5, 1.5);
   EXPECT_THAT(default_spreads(motor), IsEmpty());
+}
+
+TEST(DefaultSpread, AFileThatACalibrationWroteGetsNoNoteAboutIt) {
+  Motor motor = ecx_32();
+  ParameterValue& figure = motor.parameters.at("thermal_resistance_stator_ambient");
+  figure.origin = Origin::measured;
+  figure.spread = of_percent(figure, 0.02, 3.0);
+  const auto notes = [&] {
+    const std::vector<LintFinding> all = lint(motor);
+    return std::ranges::count(all, "narrow_values", &LintFinding::check);
+  };
+  EXPECT_EQ(notes(), 1) << "the user wrote it";
+  figure.source = "calibration";
+  motor.fit.emplace();
+  EXPECT_EQ(notes(), 0);
 }
 
 TEST(DefaultSpread, MissingOnesAreNoReasonToRefuse) {

@@ -54,6 +54,63 @@ TEST(Terminal, columns_leave_by_priority_and_come_back_in_order) {
   EXPECT_THAT(narrow, HasSubstr("maxon_ec45_flat_70w_30v_402685"));
 }
 
+Document with_prose() {
+  Document document;
+  document.tables = {
+      {.columns = {{"name", "", 0, Alignment::left}, {"meaning", "", 0, Alignment::left, 0, true}},
+       .rows = {{{"first_name_of_all"}, {"a rather long explanation that does not fit beside the name on a narrow terminal"}},
+                {{"second"}, {"short"}}}}};
+  return document;
+}
+
+TEST(Terminal, prose_stands_beside_its_row_or_below_it) {
+  EXPECT_THAT(terminal_text(with_prose(), {.width = 60}), HasSubstr("first_name_of_all  a rather long explanation that does not\n"
+                                                                    "                   fit beside the name on a narrow terminal\n"
+                                                                    "second             short\n"));
+  EXPECT_THAT(
+      terminal_text(with_prose(), {.width = 40}),
+      HasSubstr("first_name_of_all\n    a rather long explanation that does\n    not fit beside the name on a narrow\n    terminal\n"));
+  for (std::size_t width = 30; width <= 120; width += 9) {
+    for (const std::string& line : lines_of(terminal_text(with_prose(), {.width = width}))) {
+      EXPECT_LE(width_of(line), width) << line;
+    }
+  }
+}
+
+TEST(Terminal, a_quiet_list_shows_its_names) {
+  EXPECT_EQ(terminal_text(with_prose(), {.width = 60, .is_quiet = true}), "first_name_of_all\nsecond\n");
+}
+
+TEST(Terminal, a_column_may_need_a_wide_terminal) {
+  Document document = example();
+  document.tables[0].columns[2].least_width = 70;
+  EXPECT_THAT(terminal_text(document, {.width = 69}), Not(HasSubstr("peak")));
+  EXPECT_THAT(terminal_text(document, {.width = 70}), HasSubstr("peak"));
+}
+
+TEST(Terminal, lines_to_copy_come_last_and_whole) {
+  Document document = example();
+  const std::string line(150, 'x');
+  document.listings = {{"to copy:", line + " y\n"}};
+  document.add_file("a.svg");
+  const std::string text = terminal_text(document, {.width = 80, .is_terminal = true});
+  EXPECT_TRUE(text.ends_with("\nwritten: a.svg\n\nto copy:\n" + line + " y\n")) << text;
+  document.listings[0] = {"", "file.toml:1:1: error: " + line.substr(0, 50) + " and more words\n", true};
+  EXPECT_THAT(terminal_text(document, {.width = 80, .is_terminal = true}), HasSubstr("xx and\nmore words\n"));
+  EXPECT_THAT(terminal_text(document, {.width = 80, .is_terminal = false}), HasSubstr("xx and more words\n"));
+}
+
+TEST(Html, holds_everything_and_escapes_it) {
+  Document document = example();
+  document.tables[0].rows[0][1] = {"<b>&"};
+  document.listings = {{"", "a < b\n"}};
+  const std::string text = rendered_for("x.html", document);
+  for (const char* said :
+       {"<td class=\" \">&lt;b&gt;&amp;</td>", "<th>motor</th>", "rms / A", "<b>warning:</b> urgent", "<pre>a &lt; b\n</pre>"}) {
+    EXPECT_THAT(text, HasSubstr(said));
+  }
+}
+
 TEST(Terminal, a_long_name_keeps_its_beginning) {
   const std::string text = terminal_text(example(), {.width = 24});
   EXPECT_THAT(text, HasSubstr("maxon_ec45…30v_402685"));

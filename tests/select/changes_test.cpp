@@ -22,20 +22,45 @@ class Changes : public testing::Test {
 };
 
 // Copper loss at steady state is proportional to the square of the torque. A gear of 1.25 reduces it, and its temperature rise, to 0.64.
-TEST_F(Changes, gear_alone_acts_on_a_fixed_load) {
+// A cycle of 4 s on and 6 s off becomes 4 s and 9 s, which reduces the mean heat to 10/13; the winding's ripple remains.
+TEST_F(Changes, gear_and_pauses_act_on_a_fixed_load) {
   const Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
-  const std::vector<ChangeEffect> all = effects_of_changes(robot_, duty, motor_, 1, 0);
-  ASSERT_EQ(all.size(), 1U);
-  EXPECT_EQ(all[0].quantity, ChangedQuantity::gear_ratio);
-  EXPECT_GT(all[0].saved_K, 0.3 * 55.0);
-  EXPECT_LT(all[0].saved_K, 0.5 * 55.0);
+  const std::vector<ChangeEffect> all = effects_of_changes(robot_, duty, motor_, {}, 1, 0);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_GT(of(all, ChangedQuantity::gear_ratio).saved_K, 0.3 * 55.0);
+  EXPECT_LT(of(all, ChangedQuantity::gear_ratio).saved_K, 0.5 * 55.0);
+  EXPECT_GT(of(all, ChangedQuantity::pauses).saved_K, 0.10 * 55.0);
+  EXPECT_LT(of(all, ChangedQuantity::pauses).saved_K, 0.24 * 55.0);
+}
+
+TEST_F(Changes, another_motor_is_named_only_if_it_passes) {
+  const Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
+  const Motor own = read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
+  const std::vector<Motor> others{own, motor_, read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml")};
+  const std::vector<ChangeEffect> all = effects_of_changes(robot_, duty, own, others, 1, 0);
+  const ChangeEffect& other = of(all, ChangedQuantity::motor);
+  EXPECT_EQ(other.other_motor, "maxon_ecx_flat_42m_24v") << "it has the largest margin";
+  EXPECT_GT(other.saved_K, 50.0);
+  EXPECT_TRUE(other.is_deliverable);
+  const std::vector<ChangeEffect> alone = effects_of_changes(robot_, duty, own, std::span(&own, 1), 1, 0);
+  EXPECT_TRUE(std::ranges::none_of(alone, [](const ChangeEffect& each) { return each.quantity == ChangedQuantity::motor; }));
+}
+
+// At a tenth of the battery's voltage the speed cannot be reached. A higher gear ratio would need even more voltage.
+TEST_F(Changes, a_motor_that_lacks_voltage_gets_a_lower_gear) {
+  const Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
+  Robot weak = robot_;
+  weak.battery.nominal_V = 0.1 * robot_.battery.nominal_V;
+  const std::vector<ChangeEffect> all = effects_of_changes(weak, duty, motor_, {}, 1, 0);
+  EXPECT_LT(of(all, ChangedQuantity::gear_ratio).factor, 1.0);
 }
 
 TEST_F(Changes, a_match_heats_less_with_less_mass_jerk_and_wheel) {
   const Duty duty = read_duty(kSource / "duty_profiles/division_b_match.toml");
-  const std::vector<ChangeEffect> all = effects_of_changes(robot_, duty, motor_, 1, 0);
-  EXPECT_EQ(all.size(), 7U);
-  for (const ChangedQuantity each : {ChangedQuantity::mass, ChangedQuantity::wheel_radius, ChangedQuantity::gear_ratio}) {
+  const std::vector<ChangeEffect> all = effects_of_changes(robot_, duty, motor_, {}, 1, 0);
+  EXPECT_EQ(all.size(), 8U);
+  for (const ChangedQuantity each :
+       {ChangedQuantity::mass, ChangedQuantity::wheel_radius, ChangedQuantity::gear_ratio, ChangedQuantity::pauses}) {
     EXPECT_GT(of(all, each).saved_K, 0.0) << name_of(each);
   }
   for (std::size_t i = 1; i < all.size(); ++i) {
@@ -43,7 +68,7 @@ TEST_F(Changes, a_match_heats_less_with_less_mass_jerk_and_wheel) {
       EXPECT_LE(all[i].saved_K, all[i - 1].saved_K);
     }
   }
-  const std::vector<ChangeEffect> again = effects_of_changes(robot_, duty, motor_, 1, 1);
+  const std::vector<ChangeEffect> again = effects_of_changes(robot_, duty, motor_, {}, 1, 1);
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(all[i].saved_K, again[i].saved_K) << "does not depend on threads";
   }

@@ -15,6 +15,7 @@
 #include "check/run_checks.h"
 #include "cli/command.h"
 #include "cli/quantity_option.h"
+#include "present/check.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -87,18 +88,6 @@ void refuse_shipped(const std::filesystem::path& path, const Options& options) {
   }
 }
 
-std::string conclusion(const std::vector<Outcome>& outcomes, const Options& options) {
-  const auto failed = std::ranges::count(outcomes, false, &Outcome::passed);
-  const auto changed = std::ranges::count_if(outcomes, [](const Outcome& each) { return !each.before.empty(); });
-  const std::string all = counted(outcomes.size(), "limit");
-  std::string text = failed == 0 ? all + (outcomes.size() == 1 ? " holds\n" : " hold\n")
-                                 : fmt::format("{} of {} {} not hold\n", failed, all, failed == 1 ? "does" : "do");
-  if (options.is_update) {
-    text += fmt::format("{} rewritten\n", counted(static_cast<std::size_t>(changed), "limit"));
-  }
-  return text;
-}
-
 /// For GitHub Actions: adds an annotation for each violated limit and a table on the page of the run. If the page cannot be written, the
 /// command only warns.
 void write_github(const std::vector<Outcome>& outcomes, Session& session) {
@@ -132,8 +121,9 @@ ExitCode run(const Options& options, Session& session) {
   if (!options.junit.empty()) {
     session.write(options.junit, junit_xml(outcomes, program_version()));
   }
-  session.say(table_text(outcomes) + conclusion(outcomes, options));
-  session.say(options.junit.empty() ? "" : fmt::format("written: {}\n", options.junit));
+  present::Document document = present::check_document(outcomes, options.is_update);
+  document.add_file(options.junit);
+  session.show(document);
   write_github(outcomes, session);
   const bool passed = std::ranges::all_of(outcomes, &Outcome::passed);
   Json thresholds = Json::array();
@@ -165,7 +155,7 @@ Command check_command() {
                 ->check(whole_number(1024))
                 ->capture_default_str();
             session.add_data_option(app);
-            session.add_json_option(app);
+            session.add_answer_options(app);
             return [options, &session] { return run(*options, session); };
           }};
 }

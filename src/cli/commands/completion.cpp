@@ -3,17 +3,37 @@
 
 #include <CLI/App.hpp>
 #include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "cli/command.h"
 #include "cli/help_page.h"
+#include "derate/exporter.h"
 
 namespace heatsoak::commands {
 namespace {
 
-/// Returns the kind of value of an option. The shell asks the program for ids each time the user completes a word.
-std::string_view kind_of(const std::string& option) {
-  return option == "--motor" || option == "--motors" ? "motors" : option == "--robot" ? "robots" : option == "--duty" ? "duties" : "";
+/// Returns the kind of value of an option or of a word without option. The shell asks the program for the names each time the user
+/// completes a word.
+std::string_view kind_of(std::string_view verb, const std::string& option) {
+  return option == "--motor" || option == "--motors"      ? "motors"
+         : option == "--robot"                            ? "robots"
+         : option == "--duty"                             ? "duties"
+         : verb == "describe" && !option.starts_with('-') ? "topics"
+                                                          : "";
+}
+
+/// Returns the pages with the output formats of `derate`, which the help leaves to `list formats`.
+std::vector<HelpPage> pages_with_formats(std::vector<HelpPage> pages) {
+  for (HelpPage& page : pages) {
+    for (HelpOption& option : page.options) {
+      if (page.verb == "derate" && option.names.back() == "--to") {
+        std::ranges::transform(all_exporters(), std::back_inserter(option.choices),
+                               [](const ExporterType& each) { return std::string(each.name); });
+      }
+    }
+  }
+  return pages;
 }
 
 std::string bash_script(const std::vector<HelpPage>& pages) {
@@ -25,8 +45,12 @@ std::string bash_script(const std::vector<HelpPage>& pages) {
     std::vector<std::string> words;
     for (const HelpOption& option : page.options) {
       words.push_back(option.names.back());
-      if (!option.choices.empty() && option.names.back().starts_with("--")) {
-        values += fmt::format("    {}:{}) words='{}' ;;\n", page.verb, option.names.back(), fmt::join(option.choices, " "));
+      const std::string before = option.names.back().starts_with("--") ? option.names.back() : page.verb;
+      const std::string_view kind = kind_of(page.verb, option.names.back());
+      if (!option.choices.empty()) {
+        values += fmt::format("    {}:{}) words='{}' ;;\n", page.verb, before, fmt::join(option.choices, " "));
+      } else if (!kind.empty()) {
+        values += fmt::format("    {}:{}) words=\"$(heatsoak list {} --quiet 2>/dev/null)\" ;;\n", page.verb, before, kind);
       }
     }
     std::erase_if(words, [](const std::string& word) { return !word.starts_with("--"); });
@@ -39,12 +63,7 @@ _heatsoak() {{
 {1}  esac
   if [ "$COMP_CWORD" -eq 1 ]; then words='{0}'; fi
   case ${{COMP_WORDS[1]}}:$previous in
-{2}    *:--motor|*:--motors) words="$(heatsoak list motors 2>/dev/null | cut -d' ' -f1)" ;;
-    *:--robot) words="$(heatsoak list robots 2>/dev/null | cut -d' ' -f1)" ;;
-    *:--duty) words="$(heatsoak list duties 2>/dev/null | cut -d' ' -f1)" ;;
-    list:list) words='motors robots duties effects formats thresholds' ;;
-    describe:describe) words="$(for kind in motors robots duties effects; do heatsoak list $kind 2>/dev/null; done | cut -d' ' -f1)" ;;
-  esac
+{2}  esac
   COMPREPLY=($(compgen -W "$words" -- "$current"))
   if [ ${{#COMPREPLY[@]}} -eq 0 ]; then COMPREPLY=($(compgen -f -- "$current")); fi
 }}
@@ -61,14 +80,14 @@ std::string zsh_quoted(std::string text) {
   return text;
 }
 
-std::string zsh_value(const HelpOption& option) {
+std::string zsh_value(std::string_view verb, const HelpOption& option) {
   if (!option.takes_value) {
     return "";
   }
-  const std::string_view kind = kind_of(option.names.back());
+  const std::string_view kind = kind_of(verb, option.names.back());
   const std::string action = !option.choices.empty() ? fmt::format("({})", fmt::join(option.choices, " "))
                              : kind.empty()          ? "_files"
-                                                     : fmt::format("{{_values id $(heatsoak list {} | cut -d\" \" -f1)}}", kind);
+                                                     : fmt::format("{{_values id $(heatsoak list {} --quiet)}}", kind);
   return fmt::format(":value:{}", action);
 }
 
@@ -80,7 +99,9 @@ std::string zsh_script(const std::vector<HelpPage>& pages) {
     cases += fmt::format("    {}) _arguments", page.verb);
     for (const HelpOption& option : page.options) {
       if (option.names.back().starts_with("--")) {
-        cases += fmt::format(" \\\n      '{}[{}]{}'", option.names.back(), zsh_quoted(option.meaning), zsh_value(option));
+        cases += fmt::format(" \\\n      '{}[{}]{}'", option.names.back(), zsh_quoted(option.meaning), zsh_value(page.verb, option));
+      } else if (!option.choices.empty() || !kind_of(page.verb, option.names.back()).empty()) {
+        cases += fmt::format(" \\\n      '1{}'", zsh_value(page.verb, option));
       }
     }
     cases += " \\\n      '*:file:_files' ;;\n";
@@ -115,13 +136,14 @@ std::string fish_script(const std::vector<HelpPage>& pages) {
   for (const HelpPage& page : pages) {
     text += fmt::format("complete -c heatsoak -n __fish_use_subcommand -f -a {} -d '{}'\n", page.verb, fish_quoted(page.summary));
     for (const HelpOption& option : page.options) {
-      if (!option.names.back().starts_with("--")) {
-        continue;
-      }
-      const std::string_view kind = kind_of(option.names.back());
+      const std::string_view kind = kind_of(page.verb, option.names.back());
       const std::string values = !option.choices.empty() ? fmt::format(" -f -a '{}'", fmt::join(option.choices, " "))
                                  : kind.empty()          ? ""
-                                                         : fmt::format(" -f -a '(heatsoak list {} | string split -f1 \" \")'", kind);
+                                                         : fmt::format(" -f -a '(heatsoak list {} --quiet)'", kind);
+      if (!option.names.back().starts_with("--")) {
+        text += values.empty() ? "" : fmt::format("complete -c heatsoak -n '__fish_seen_subcommand_from {}'{}\n", page.verb, values);
+        continue;
+      }
       text += fmt::format("complete -c heatsoak -n '__fish_seen_subcommand_from {}' -l {} -d '{}'{}{}\n", page.verb,
                           option.names.back().substr(2), fish_quoted(option.meaning), option.takes_value ? " -r" : "", values);
     }
@@ -139,7 +161,7 @@ Command completion() {
             const auto shell = std::make_shared<std::string>("bash");
             app.add_option("shell", *shell, "bash, zsh or fish")->check(CLI::IsMember({"bash", "zsh", "fish"}));
             return [shell, &app, &session] {
-              const std::vector<HelpPage> pages = help_pages(*app.get_parent());
+              const std::vector<HelpPage> pages = pages_with_formats(help_pages(*app.get_parent()));
               session.say(*shell == "zsh" ? zsh_script(pages) : *shell == "fish" ? fish_script(pages) : bash_script(pages));
               return ExitCode::done;
             };

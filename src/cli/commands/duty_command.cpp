@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/App.hpp>
 #include <algorithm>
@@ -11,7 +12,6 @@
 #include <vector>
 
 #include "base/files.h"
-#include "base/quantity.h"
 #include "cli/command.h"
 #include "cli/match_roles.h"
 #include "cli/named_files.h"
@@ -21,7 +21,7 @@
 #include "duty/game_to_demand.h"
 #include "duty/match/match_duty.h"
 #include "motor/motor.h"
-#include "present/verdict_words.h"
+#include "present/duty.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -66,15 +66,19 @@ std::optional<DutyRows> open_table(const Options& options, std::size_t wheel_cou
   return std::optional<DutyRows>(std::in_place, wheel_count, kind, options.every_s, [&file](std::string_view text) { file.write(text); });
 }
 
-void finish_table(std::optional<DutyRows>& rows, const Options& options, const std::string& description_text, Session& session) {
+/// Completes the table, if there is one, and shows the document.
+void finish(std::optional<DutyRows>& rows, const Options& options, const std::string& description_text, present::Document document,
+            Session& session) {
   if (!rows) {
+    session.show(document);
     return;
   }
   rows->finish();
   std::filesystem::path description = options.out;
   description.replace_extension(".toml");
   session.write(description, description_text);
-  session.say(fmt::format("written: {} and {} (heatsoak evaluate --duty {})\n", options.out, description.string(), description.string()));
+  present::add_duty_files(document, options.out, description.string());
+  session.show(document);
 }
 
 nlohmann::ordered_json phase_json(const MatchLoad& load) {
@@ -94,14 +98,14 @@ nlohmann::ordered_json phase_json(const MatchLoad& load) {
 /// Writes the rows of a duty that is not a match.
 ExitCode put_out(const Options& options, const Robot& robot, const Duty& duty, Session& session) {
   const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
-  session.say(fmt::format("{}: {}\n{}, {:.0f} s\n", duty.id, duty.summary, duty.origin, wheels.front().duration_s()));
   std::optional<DutyRows> rows = open_table(options, wheels.size(), duty.kind, session);
   std::vector<LoadBin> row(wheels.size());
   for (std::size_t at = 0; rows && at < wheels.front().bins.size(); ++at) {
     std::ranges::transform(wheels, row.begin(), [at](const WheelDemand& wheel) { return wheel.bins[at]; });
     rows->add(row);
   }
-  finish_table(rows, options, duty_file(options.out, duty.kind, duty.summary, duty.origin), session);
+  finish(rows, options, duty_file(options.out, duty.kind, duty.summary, duty.origin),
+         present::load_document(duty, wheels.front().duration_s()), session);
   session.answer({{"schema", "heatsoak.duty/1"}, {"duty", duty.id}, {"origin", duty.origin}, {"duration_s", wheels.front().duration_s()}});
   return ExitCode::done;
 }
@@ -115,17 +119,8 @@ ExitCode generate(const Options& options, const Robot& robot, const Duty& duty, 
   }
   const MatchLoad load = play_match(inputs, inputs.nominal(), robot, options.seed, planner, kBin_s, observer);
   const RoleLoads roles = play_roles(inputs, robot, options.seed, planner);
-  session.say(fmt::format("{} of {} as {}, seed {}: {}, {:.0f} s of them play, {:.2f} km\n{}\n\n{}", duty.id, robot.id,
-                          kRoleNames[static_cast<std::size_t>(inputs.role)], options.seed, duration_text(load.duration_s), load.play_s,
-                          load.distance_m / 1e3, duty.origin, role_table(roles)));
-  session.say(slip_text(load.wheels.front()));
-  const std::optional<double> acceleration_m_per_s2 = robot.limits.acceleration_m_per_s2;
-  const std::optional<double> braking_m_per_s2 = robot.limits.braking_m_per_s2;
-  if (acceleration_m_per_s2 && braking_m_per_s2 && *braking_m_per_s2 > *acceleration_m_per_s2) {
-    session.say(fmt::format("in a match the robot brakes with its acceleration of {} m/s²: its braking limit of {} m/s² is not used\n",
-                            significant(*acceleration_m_per_s2, 3), significant(*braking_m_per_s2, 3)));
-  }
-  finish_table(rows, options, duty_file(options.out, duty.kind, duty.summary, duty.origin), session);
+  finish(rows, options, duty_file(options.out, duty.kind, duty.summary, duty.origin),
+         present::match_duty_document(duty, robot, kRoleNames[static_cast<std::size_t>(inputs.role)], options.seed, load, roles), session);
   session.answer({{"schema", "heatsoak.duty/1"},
                   {"duty", duty.id},
                   {"robot", robot.id},
@@ -146,19 +141,15 @@ ExitCode import(const Options& options, const Robot& robot, Session& session) {
     observer = [&rows](double duration_s, const WheelDemands& wheels) { rows->add(duration_s, wheels.torque_Nm, wheels.speed_rad_per_s); };
   }
   const GameDemand game = demand_of_game(options.log, options.player, robot, kBin_s, observer);
-  std::string text;
-  for (const std::string& line : game.sentences) {
-    text += line + "\n";
-  }
   if (game.wheels.empty()) {
     throw Failure(ExitCode::cannot_answer,
-                  fmt::format("{}: no robot is seen long enough to follow its motion\n{}", options.log, text.substr(0, text.rfind('\n'))));
+                  fmt::format("{}: no robot is seen long enough to follow its motion\n{}", options.log, fmt::join(game.sentences, "\n")));
   }
-  session.say(text);
   const std::string summary =
       fmt::format("{} of {}, driven by {}", game.player, std::filesystem::path(options.log).filename().string(), robot.name);
   const std::string origin = "measured motion of a recorded game, wheel torques computed from the robot's file";
-  finish_table(rows, options, duty_file(options.out, DutyKind::torque, summary, origin), session);
+  finish(rows, options, duty_file(options.out, DutyKind::torque, summary, origin),
+         present::recorded_game_document(game, robot, options.log), session);
   session.answer({{"schema", "heatsoak.duty/1"},
                   {"log", options.log},
                   {"player", game.player},
@@ -218,7 +209,7 @@ Command duty_command() {
                 ->type_name("P")
                 ->capture_default_str();
             session.add_data_option(app);
-            session.add_json_option(app);
+            session.add_answer_options(app);
             return [options, &app, &session] {
               for (const CLI::Option* each : app.get_options([](const CLI::Option* option) { return option->count() > 0; })) {
                 options->given.push_back(each->get_name());

@@ -10,11 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "cli/closed_loop_rank.h"
+#include "cli/closed_loop_json.h"
 #include "cli/command.h"
 #include "cli/condition_option.h"
 #include "cli/default_spreads.h"
-#include "cli/inactive_effects.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "cli/verdict_chart.h"
@@ -22,7 +21,9 @@
 #include "duty/match/match_duty.h"
 #include "motor/conditions.h"
 #include "motor/motor.h"
+#include "present/closed_loop.h"
 #include "present/evaluation.h"
+#include "present/motor_notes.h"
 #include "report/chart.h"
 #include "robot/assumed_friction.h"
 #include "robot/robot.h"
@@ -31,6 +32,8 @@
 
 namespace heatsoak::commands {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 /// Values of --fail-on in the order of Verdict, without pass. Exit code 1 from the given verdict on.
 const std::vector<std::string> kFailOn{"marginal", "fail", "infeasible"};
@@ -92,6 +95,18 @@ std::vector<Motor> read_motors(const Options& options, NamedFiles& named) {
     }
     if (const std::optional<Motor> motor = named.motor(name)) {
       motors.push_back(options.model.empty() ? under(*motor, options.conditions) : *motor);
+    }
+  }
+  return motors;
+}
+
+/// Returns the sound motors of the database, which are candidates to replace the robot's motor.
+std::vector<Motor> motors_of_database(const Options& options, const DataFolders& folders) {
+  std::vector<Motor> motors;
+  for (const std::string& id : ids_in(folders.motors)) {
+    NamedFiles named(folders);  // a file with problems is no candidate
+    if (const std::optional<Motor> motor = named.motor(id)) {
+      motors.push_back(under(*motor, options.conditions));
     }
   }
   return motors;
@@ -176,8 +191,8 @@ ExitCode run(Options& options, Session& session) {
     ranks = rank_closed_loop(drive_games(robot, match->inputs(), motors, drive, progress_bar("driving games")), results);
   }
   present::Document document = present::evaluation_document(results, {robot, duty, wheels.front(), options.evaluate.seed, draws.size()});
-  present::add_lines(document.notes, inactive_effects(motors), present::Severity::note);
-  present::add_lines(document.notes, default_spreads_text(motors), present::Severity::note);
+  present::add_lines(document.notes, present::inactive_effects(motors), present::Severity::note);
+  present::add_lines(document.notes, present::default_spreads_text(motors), present::Severity::note);
   std::vector<ChangeEffect> changes;
   // The motor that the robot is built with if it is among the results, else the best one.
   const auto own = std::ranges::find(results, robot.drive.motor, &MotorEvaluation::motor_id);
@@ -185,19 +200,19 @@ ExitCode run(Options& options, Session& session) {
   const bool suggests = options.suggests || subject.verdict != Verdict::pass;
   if (suggests) {
     const std::string id = subject.motor_id;
-    changes = effects_of_changes(robot, duty, *std::ranges::find(motors, id, &Motor::id), options.evaluate.seed, options.evaluate.threads,
-                                 progress_bar("trying changes"));
+    changes = effects_of_changes(robot, duty, *std::ranges::find(motors, id, &Motor::id), motors_of_database(options, session.folders()),
+                                 options.evaluate.seed, options.evaluate.threads, progress_bar("trying changes"));
     present::add_changes(document, changes, id);
   }
   present::add_lines(document.notes, assumed_friction_text(robot), present::Severity::warning);
   if (options.is_closed_loop) {
-    add_closed_loop(document, ranks, options.games, options.evaluate.seed);
+    present::add_closed_loop(document, ranks, options.games, options.evaluate.seed);
   }
-  session.show(document);
   if (!options.plot.empty()) {
     session.write(options.plot, draw_picture(verdict_chart(results, robot, duty), options.plot));
-    session.say(fmt::format("picture: {}\n", options.plot));
+    document.add_file(options.plot);
   }
+  session.show(document);
   nlohmann::ordered_json answer{{"schema", "heatsoak.evaluate/1"},     {"robot", robot.id},
                                 {"conditions", options.conditions},    {"duty", duty.id},
                                 {"duty_origin", duty.origin},          {"seed", options.evaluate.seed},
@@ -208,8 +223,8 @@ ExitCode run(Options& options, Session& session) {
     for (const ChangeEffect& each : changes) {
       answer["changes"].push_back({{"quantity", name_of(each.quantity)},
                                    {"unit", unit_of(each.quantity)},
-                                   {"from", rounded(each.before, 6)},
-                                   {"to", rounded(each.before * each.factor, 6)},
+                                   {"from", each.other_motor.empty() ? rounded(each.before, 6) : Json(subject.motor_id)},
+                                   {"to", each.other_motor.empty() ? rounded(each.before * each.factor, 6) : Json(each.other_motor)},
                                    {"saved_K", rounded(each.saved_K, 2)},
                                    {"standard_error_K", rounded(each.standard_error_K, 2)},
                                    {"deliverable", each.is_deliverable}});
@@ -280,8 +295,7 @@ Command evaluate_command() {
             ->capture_default_str();
         add_picture(app, options->plot, "picture of stator and winding temperature over time");
         session.add_data_option(app);
-        session.add_text_options(app);
-        session.add_json_option(app);
+        session.add_answer_options(app);
         return [options, &session] { return run(*options, session); };
       }};
 }

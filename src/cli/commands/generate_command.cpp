@@ -11,9 +11,9 @@
 #include "cli/guard_options.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
-#include "derate/export_text.h"
 #include "firmware/core_files.h"
 #include "firmware/staged_folder.h"
+#include "present/core_folder.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -28,32 +28,6 @@ struct Options {
   CoreOptions core;
   bool force = false;
 };
-
-std::size_t bytes_of(const CoreFolder& folder) {
-  std::size_t bytes = 0;
-  for (const CoreFile& file : folder.files) {
-    bytes += file.content.size();
-  }
-  return bytes;
-}
-
-std::string report(const CoreFolder& folder, const Derating& derating, const Options& options) {
-  std::string text = fmt::format(
-      "drive core for {} with {}: {}, {} kB in {}\n"
-      "inputs {} {}, configuration check sum {:08x}\n"
-      "control period {:.6g} ms, guard period {:.6g} ms\n"
-      "winding below {:.0f} °C in air up to {:.0f} °C, {} thermal data\n"
-      "safety factor on heat {:.2f}. {}\n"
-      "a wheel whose speed is unknown gets at most {:.2f} A; {:.1f} K are kept as a margin for one full stop\n",
-      derating.robot_id, derating.motor_id, counted(folder.files.size(), "file"), bytes_of(folder) / 1024, options.out, kInputHash,
-      folder.hash, folder.config_check_sum, 1e3 * options.core.period_s, 1e3 * derating.options.period_s, derating.rules.limits.winding_C,
-      derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(), confidence_text(derating),
-      folder.limp_current_A, folder.braking_reserve_K);
-  for (const std::string& note : folder.notes) {
-    text += fmt::format("note: {}\n", note);
-  }
-  return text + fmt::format("next: make -C {0} host   and   make -C {0} firmware\n", options.out);
-}
 
 Json json(const CoreFolder& folder, const Derating& derating, const Motor& motor, const Options& options) {
   const Guarantee& checked = derating.guarantee;
@@ -99,7 +73,7 @@ ExitCode run(Options& options, Session& session) {
   const CoreFolder folder = core_files(*robot, motor, options.core, derating, fmt::format("heatsoak {}", program_version()));
   const auto staged = std::make_shared<StagedFolder>(options.out, folder.files, options.force);
   session.complete_with([staged] { staged->commit(); });
-  session.say(report(folder, derating, options));
+  session.show(present::core_folder_document(folder, derating, options.core, options.out));
   session.answer(json(folder, derating, motor, options));
   return ExitCode::done;
 }
@@ -123,7 +97,7 @@ Command generate_command() {
                          {"period", "s", Range::between(1e-4, 0.1), "between two control steps; 1 ms unless given"});
             add_derate_options(app, options->guard.derate);
             session.add_data_option(app);
-            session.add_json_option(app);
+            session.add_answer_options(app);
             return [options, &session] { return run(*options, session); };
           }};
 }

@@ -12,6 +12,7 @@
 #include "motor/lint.h"
 #include "motor/motor.h"
 #include "motor/read_motor.h"
+#include "present/lint.h"
 #include "robot/robot.h"
 #include "robot/robot_lint.h"
 
@@ -85,17 +86,12 @@ ExitCode run(const std::vector<std::string>& names, Session& session) {
     }
   }
   const DataFolders folders = session.folders();
-  std::string text;
+  std::vector<LintFinding> found;
   nlohmann::ordered_json findings = nlohmann::ordered_json::array();
-  std::size_t errors = 0;
-  std::size_t warnings = 0;
   for (const std::string& file : files) {
     try {
       for (const LintFinding& each : look_into(file, folders)) {
-        errors += each.level == LintFinding::Level::error ? 1 : 0;
-        warnings += each.level == LintFinding::Level::warning ? 1 : 0;
-        text += fmt::format("{}:{}:{}: {}: {}: {}\n", each.at.file, each.at.line, each.at.column, to_string(each.level), each.check,
-                            each.message);
+        found.push_back(each);
         findings.push_back({{"file", each.at.file},
                             {"line", each.at.line},
                             {"column", each.at.column},
@@ -108,14 +104,13 @@ ExitCode run(const std::vector<std::string>& names, Session& session) {
     }
   }
   if (!unreadable.empty() || !unknown.empty()) {
-    session.say(text);
     throw Failure(ExitCode::bad_input, std::move(unknown), std::move(unreadable));
   }
-  const bool sound = errors + warnings == 0;
-  session.say(text + fmt::format("{}: {}\n", counted(files.size(), "file"),
-                                 sound ? "sound" : fmt::format("{}, {}", counted(errors, "error"), counted(warnings, "warning"))));
+  const auto errors = std::ranges::count(found, LintFinding::Level::error, &LintFinding::level);
+  const auto warnings = std::ranges::count(found, LintFinding::Level::warning, &LintFinding::level);
+  session.show(present::lint_document(found, files.size()));
   session.answer({{"schema", "heatsoak.lint/1"}, {"files", files}, {"errors", errors}, {"warnings", warnings}, {"findings", findings}});
-  return sound ? ExitCode::done : ExitCode::limit_exceeded;
+  return errors + warnings == 0 ? ExitCode::done : ExitCode::limit_exceeded;
 }
 
 }  // namespace
@@ -132,7 +127,7 @@ Command lint_command() {
         const auto files = std::make_shared<std::vector<std::string>>();
         app.add_option("files", *files, "TOML files, folders of them, or ids of motors, robots and duties")->required()->type_name("FILE");
         session.add_data_option(app);
-        session.add_json_option(app);
+        session.add_answer_options(app);
         return [files, &session] { return run(*files, session); };
       }};
 }

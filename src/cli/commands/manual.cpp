@@ -3,6 +3,7 @@
 #include <CLI/App.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/command.h"
 #include "cli/help_page.h"
@@ -25,7 +26,8 @@ ExitCode run(const Options& options, const CLI::App& program, Session& session) 
     session.write(folder / (is_man ? fmt::format("heatsoak-{}.1", page.verb) : page.verb + ".md"),
                   is_man ? man_page_of(page) : markdown_of(page));
   }
-  session.say(fmt::format("{} in {}\n", counted(pages.size() + 1, "page"), folder.string()));
+  session.show(present::short_answer(fmt::format("{} in {}", counted(pages.size() + 1, "page"), folder.string())));
+  session.answer({{"schema", "heatsoak.manual/1"}, {"pages", pages.size() + 1}, {"folder", folder.string()}});
   return ExitCode::done;
 }
 
@@ -42,6 +44,7 @@ Command manual() {
                 ->check(CLI::IsMember({"man", "markdown"}))
                 ->type_name("FORMAT");
             app.add_option("--out", options->folder, "folder for the pages")->required()->type_name("DIR");
+            session.add_answer_options(app);
             return [options, &app, &session] { return run(*options, *app.get_parent(), session); };
           }};
 }

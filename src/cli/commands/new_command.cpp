@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "present/document.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -39,7 +40,8 @@ ExitCode run(const Options& options, Session& session) {
   const auto found =
       std::ranges::find_if(texts, [&](const embedded::Text& each) { return each.path.ends_with("/" + options.kind + ".toml"); });
   session.write(options.file, std::string(found->text));
-  session.say(fmt::format("{}: replace every \"?\", then run `heatsoak lint {}`\n", options.file, quoted(options.file)));
+  session.show(
+      present::short_answer(fmt::format("{}: replace every \"?\", then run `heatsoak lint {}`", options.file, quoted(options.file))));
   session.answer({{"schema", "heatsoak.new/1"}, {"kind", options.kind}, {"file", options.file}});
   return ExitCode::done;
 }
@@ -57,7 +59,7 @@ Command new_command() {
               const bool is_named = file.ends_with(".toml") && !std::filesystem::path(file).stem().string().starts_with(".");
               return is_named ? "" : "expected a name that ends in .toml; the part before .toml is the id";
             });
-            session.add_json_option(app);
+            session.add_answer_options(app);
             return [options, &session] { return run(*options, session); };
           }};
 }

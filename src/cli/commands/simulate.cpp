@@ -10,14 +10,13 @@
 #include "base/files.h"
 #include "cli/command.h"
 #include "cli/condition_option.h"
-#include "cli/inactive_effects.h"
 #include "cli/jerk_sweep.h"
 #include "cli/match_simulation.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "cli/verdict_chart.h"
 #include "motor/conditions.h"
-#include "present/verdict_words.h"
+#include "present/match.h"
 #include "report/chart.h"
 #include "robot/assumed_friction.h"
 #include "select/trace.h"
@@ -40,15 +39,6 @@ struct Options {
   std::string sensing = "real";
   std::map<std::string, std::string> conditions;
 };
-
-/// Lists the mean heat of every effect at every node that it books into, in the order of the network.
-std::string balance_text(const Trace& trace) {
-  std::string text = "mean heat into the nodes / W (positive: into)\n";
-  for (const BookedHeat& each : trace.balance) {
-    text += fmt::format("  {:22} {:10} {:+9.3f}\n", each.effect, each.node, each.mean_W);
-  }
-  return text + fmt::format("  {:22} {:10} {:+9.3f}\n", "stored in the motor", "", trace.stored_W);
-}
 
 nlohmann::ordered_json balance_json(const Trace& trace) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -88,16 +78,10 @@ ExitCode run_load(const Options& options, const Robot& robot, const Motor& motor
   if (!options.plot.empty()) {
     session.write(options.plot, draw_picture(verdict_chart(results, robot, duty), options.plot));
   }
-  session.say(
-      fmt::format("{} on {}, {} ({}, {}), {} thermal data\nload: {}\nwinding peak {:.1f} °C (limit {:.0f} °C), stator peak {:.1f} °C, rms "
-                  "current {:.2f} A: {}\n{}{}",
-                  motor.id, robot.id, duty.id, duration_text(duration_s), result.wheel, result.data_quality, duty.origin,
-                  result.winding_peak_C.nominal, result.winding_limit_C, result.stator_peak_C.nominal, result.current_rms_A,
-                  to_string(result.verdict), why_infeasible(result, robot), balance_text(trace)) +
-      inactive_effects(one));
-  for (const std::string& file : {options.out, options.plot}) {
-    session.say(file.empty() ? "" : fmt::format("written: {}\n", file));
-  }
+  present::Document document = present::load_simulation_document(result, trace, robot, motor, duty, duration_s);
+  document.add_file(options.out);
+  document.add_file(options.plot);
+  session.show(document);
   session.answer({{"schema", "heatsoak.simulate/1"},
                   {"motor", motor.id},
                   {"conditions", motor.assumed},
@@ -210,7 +194,7 @@ Command simulate() {
             add_quantity(app, "--every", options->every_s,
                          {"every", "s", Range::between(1e-3, 1e5), "longest time between two rows; 1 s unless given"});
             session.add_data_option(app);
-            session.add_json_option(app);
+            session.add_answer_options(app);
             return [options, &session] { return run(*options, session); };
           }};
 }

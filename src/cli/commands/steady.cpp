@@ -12,13 +12,13 @@
 #include "base/quantity.h"
 #include "cli/command.h"
 #include "cli/condition_option.h"
-#include "cli/inactive_effects.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "motor/conditions.h"
 #include "motor/datasheet_network.h"
 #include "motor/motor.h"
 #include "present/evaluation.h"
+#include "present/motor_notes.h"
 #include "thermal/periodic_state.h"
 #include "thermal/steady_state.h"
 
@@ -78,7 +78,7 @@ ExitCode run(const Options& options, Session& session) {
   const bool runaway = periodic.runaway;
   const bool over = runaway || !(periodic.peak_C[states::winding] <= values.winding_limit_C);
   present::Document document = present::steady_document({motor, periodic, rms, is_bare, options.current.ambient_C, over});
-  present::add_lines(document.notes, inactive_effects({&motor, 1}), present::Severity::note);
+  present::add_lines(document.notes, present::inactive_effects({&motor, 1}), present::Severity::note);
   session.show(document);
   using Json = nlohmann::ordered_json;
   const auto rest = [&](double value_C) { return runaway || rms.runaway ? Json() : Json(value_C); };
@@ -123,8 +123,7 @@ Command steady() {
         add_quantity(app, "--ambient", options->current.ambient_C,
                      {"ambient", "degC", Range::between(-60.0, 200.0), "temperature of the air; 25degC unless given"});
         session.add_data_option(app);
-        session.add_text_options(app);
-        session.add_json_option(app);
+        session.add_answer_options(app);
         return [options, &session] { return run(*options, session); };
       }};
 }

@@ -3,29 +3,24 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <nlohmann/json.hpp>
 
 #include "attribution/run_deviation.h"
-#include "base/quantity.h"
 #include "cli/effect_topic.h"
+#include "present/measured/run_deviation.h"
 
 namespace heatsoak {
-namespace {
-
-std::string in_units(double value, std::string_view unit) {
-  return fmt::format("{}{}{}", significant(value, 3), unit.empty() ? "" : " ", unit_for_display(unit));
-}
-
-}  // namespace
 
 std::vector<Topic> effect_topics() {
   std::vector<Topic> topics;
   for (const RunDeviationType& type : all_run_deviations()) {
-    const std::array lines{TopicLine{"equation", "equation", std::string(type.equation)},
-                           TopicLine{"typical", "typical size", in_units(type.usual, type.size.unit)},
-                           TopicLine{"look_alike", "confounded", std::string(type.confounded_with)},
-                           TopicLine{"experiment", "experiment", std::string(type.experiment)}};
-    topics.push_back(effect_topic(fmt::format("at the {}, in runs of one condition", type.node), type.name, type.summary, type.size, lines,
-                                  "\nfound by diagnose, not part of a motor file\n"));
+    topics.push_back({std::string(type.name), std::string(type.summary), [&type] { return present::run_deviation_description(type); },
+                      [&type] {
+                        const std::string typical = present::typical_size(type);
+                        const std::array lines{TopicLine{"equation", type.equation}, TopicLine{"typical", typical},
+                                               TopicLine{"look_alike", type.confounded_with}, TopicLine{"experiment", type.experiment}};
+                        return effect_json(present::place_of(type), type.name, type.summary, type.size, lines);
+                      }});
   }
   return topics;
 }

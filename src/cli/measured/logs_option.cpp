@@ -9,8 +9,8 @@
 #include <set>
 
 #include "base/diagnostic.h"
-#include "cli/measured/log_text.h"
 #include "cli/quantity_option.h"
+#include "present/measured/log.h"
 #include "recording/mapping.h"
 #include "recording/quality.h"
 #include "recording/read_recording.h"
@@ -72,7 +72,7 @@ std::vector<Recording> read_logs(const DataFolders& folders, const std::vector<s
     for (const std::string& note : report.notes) {
       tell(fmt::format("{}: {}", recording.name, note));
     }
-    for (const std::string& sentence : left_out_sentences(report)) {
+    for (const std::string& sentence : present::left_out_sentences(report)) {
       tell(fmt::format("{}: left out: {}", recording.name, sentence));
     }
     if (part.from_share == 0.0 && part.to_share == 1.0) {

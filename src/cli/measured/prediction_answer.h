@@ -1,19 +1,13 @@
-// Output of `predict`: text, JSON and a chart.
+// Output of `predict`: JSON and a chart.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
-#include <span>
 #include <string>
 
 #include "calibration/forecast/prediction.h"
-#include "present/document.h"
 #include "report/chart.h"
 
 namespace heatsoak {
-
-/// `warnings` report where the model does not hold. The notes listed in `of_logs` (rejected samples) are printed last.
-present::Document prediction_document(const Motor& motor, const Prediction& prediction, std::span<const std::string> warnings,
-                                      std::span<const std::string> of_logs);
 
 /// Returns the answer in the schema heatsoak.prediction/1.
 nlohmann::ordered_json prediction_json(const Motor& motor, const Prediction& prediction);

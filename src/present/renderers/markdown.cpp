@@ -7,6 +7,7 @@ namespace {
 
 using present::Alignment;
 using present::Document;
+using present::Listing;
 using present::Note;
 using present::RenderOptions;
 using present::Severity;
@@ -58,6 +59,13 @@ std::string render(const Document& document, const RenderOptions& /*options*/) {
   }
   for (const Note& note : present::by_urgency(document.notes)) {
     text += fmt::format("- {}{}\n", note.severity == Severity::warning ? "warning: " : "", escaped(note.words));
+  }
+  for (const std::string& file : document.files) {
+    text += fmt::format("\nwritten: {}\n", escaped(file));
+  }
+  for (const Listing& listing : document.listings) {
+    text += listing.title.empty() ? "" : fmt::format("\n{}\n", escaped(listing.title));
+    text += fmt::format("\n```\n{}{}```\n", listing.lines, listing.lines.ends_with('\n') ? "" : "\n");
   }
   return text;
 }

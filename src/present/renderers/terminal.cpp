@@ -13,6 +13,7 @@ using present::Alignment;
 using present::Column;
 using present::Document;
 using present::leading;
+using present::Listing;
 using present::Note;
 using present::RenderOptions;
 using present::Severity;
@@ -42,10 +43,18 @@ std::string toned(const std::string& text, Tone tone, bool with_colors) {
 
 std::string head_of(const Column& column) { return column.unit.empty() ? column.name : fmt::format("{} {}", column.name, column.unit); }
 
-/// Returns the width of the widest cell of each column.
+/// Prose that would get fewer characters beside the other columns goes below its row.
+constexpr std::size_t kLeastProse = 28;
+constexpr std::size_t kProseIndent = 4;
+
+/// Returns the width of the widest cell of each column; 0 for prose, which takes the remaining width.
 std::vector<std::size_t> widths_of(const Table& table) {
   std::vector<std::size_t> widths;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (table.columns[i].is_prose) {
+      widths.push_back(0);
+      continue;
+    }
     std::size_t width = width_of(head_of(table.columns[i]));
     for (const std::vector<Text>& row : table.rows) {
       width = std::max(width, width_of(row[i].words));
@@ -63,6 +72,9 @@ std::vector<std::size_t> shown_columns(const Table& table, const std::vector<std
   std::vector<std::size_t> shown;
   std::size_t used = 0;
   for (const std::size_t i : order) {
+    if (table.columns[i].least_width > width) {
+      continue;
+    }
     const std::size_t more = widths[i] + (used > 0 ? kGap : 0);
     if (table.columns[i].priority > 0 && used + more > width) {
       break;
@@ -89,6 +101,9 @@ std::string without_trailing_blanks(std::string line) { return line.substr(0, li
 /// Narrows the widest left-aligned column if the columns of priority 0 are too wide.
 void fit(std::vector<std::size_t>& widths, const std::vector<std::size_t>& shown, const Table& table, std::size_t width) {
   constexpr std::size_t kLeastCell = 8;
+  if (shown.empty()) {
+    return;
+  }
   std::size_t total = kGap * (shown.size() - 1);
   std::size_t widest = shown.front();
   for (const std::size_t i : shown) {
@@ -102,6 +117,29 @@ void fit(std::vector<std::size_t>& widths, const std::vector<std::size_t>& shown
   }
 }
 
+std::size_t longest_word(std::string_view text) {
+  std::size_t longest = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    longest = std::max(longest, width_of(text.substr(0, end)));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return longest;
+}
+
+/// Adds prose to the line of its row, or below it if the remaining width is too small.
+std::string with_prose(const std::string& line, std::size_t used, const std::string& prose, std::size_t width) {
+  if (prose.empty()) {
+    return without_trailing_blanks(line);
+  }
+  const std::size_t place = used + (used > 0 ? kGap : 0);
+  if (place == 0 || place + std::max(std::min(kLeastProse, width_of(prose)), longest_word(prose)) <= width) {
+    const std::string beside = wrapped(prose, std::string(place, ' '), width);
+    return line + beside.substr(used) + "\n";
+  }
+  return without_trailing_blanks(line) + wrapped(prose, std::string(kProseIndent, ' '), width) + "\n";
+}
+
 std::string text_of(Table table, const RenderOptions& options) {
   for (std::vector<Text>& row : table.rows) {
     for (Text& cell : row) {
@@ -109,27 +147,58 @@ std::string text_of(Table table, const RenderOptions& options) {
     }
   }
   std::vector<std::size_t> widths = widths_of(table);
-  const std::vector<std::size_t> shown = shown_columns(table, widths, options.width);
+  std::vector<std::size_t> shown = shown_columns(table, widths, options.width);
   if (shown.empty()) {
     return "";
   }
+  const bool has_prose = table.columns[shown.back()].is_prose;
+  if (has_prose) {
+    shown.pop_back();
+  }
   fit(widths, shown, table, options.width);
   const std::string gap(kGap, ' ');
-  std::string text = table.title.empty() ? "" : wrapped(printable(table.title), "", options.width) + "\n";
-  std::string head;
+  std::size_t used = shown.empty() ? 0 : kGap * (shown.size() - 1);
   for (const std::size_t i : shown) {
-    head += (head.empty() ? "" : gap) + padded(head_of(table.columns[i]), widths[i], table.columns[i].alignment);
+    used += widths[i];
   }
-  text += without_trailing_blanks(head);
-  for (const std::vector<Text>& row : table.rows) {
+  const auto line_of = [&](const auto& cell_of) {
     std::string line;
     for (const std::size_t i : shown) {
-      line += (i == shown.front() ? "" : gap) +
-              toned(padded(row[i].words, widths[i], table.columns[i].alignment), row[i].tone, options.with_colors);
+      const auto [words, tone] = cell_of(i);
+      line += (i == shown.front() ? "" : gap) + toned(padded(words, widths[i], table.columns[i].alignment), tone, options.with_colors);
     }
-    text += without_trailing_blanks(line);
+    return line;
+  };
+  std::string text = table.title.empty() ? "" : wrapped(printable(table.title), "", options.width) + "\n";
+  if (std::ranges::any_of(table.columns, [](const Column& column) { return !head_of(column).empty(); })) {
+    text += with_prose(line_of([&](std::size_t i) { return Text{head_of(table.columns[i])}; }), used,
+                       has_prose ? head_of(table.columns.back()) : "", options.width);
+  }
+  for (const std::vector<Text>& row : table.rows) {
+    text += with_prose(line_of([&](std::size_t i) { return row[i]; }), used, has_prose ? row.back().words : "", options.width);
   }
   return text;
+}
+
+/// Returns the first cell of each row, without blanks around it.
+std::string names_in(const Document& document) {
+  std::string text;
+  for (const Table& table : document.tables) {
+    for (const std::vector<Text>& row : table.rows) {
+      text += printable(row.front().words) + "\n";
+    }
+  }
+  return text;
+}
+
+std::string text_of(const Listing& listing, const RenderOptions& options) {
+  std::string lines = listing.lines;
+  std::ranges::replace_if(
+      lines, [](unsigned char c) { return (c < ' ' && c != '\n') || c == 0x7f; }, '?');
+  if (options.is_terminal && listing.is_prose) {
+    lines = present::folded(lines, options.width);
+  }
+  return (listing.title.empty() ? "" : wrapped(printable(listing.title), "", options.width) + "\n") + lines;
 }
 
 std::string text_of(const std::vector<Note>& notes, const RenderOptions& options) {
@@ -162,18 +231,21 @@ std::string render(const Document& document, const RenderOptions& given) {
   options.width = std::max(options.width, present::kLeastWidth);
   std::string text = text_of(document.headline, options);
   if (options.is_quiet) {
-    return text;
+    return document.headline.empty() ? names_in(document) : text;
   }
   for (const std::string& paragraph : document.paragraphs) {
     text += wrapped(printable(paragraph), "", options.width) + "\n";
   }
+  const auto add_block = [&text](const std::string& block) { text += (text.empty() || block.empty() ? "" : "\n") + block; };
   for (const Table& table : document.tables) {
-    text += '\n';
-    text += text_of(table, options);
+    add_block(text_of(table, options));
   }
-  if (!document.notes.empty()) {
-    text += '\n';
-    text += text_of(document.notes, options);
+  add_block(text_of(document.notes, options));
+  for (const std::string& file : document.files) {
+    text += wrapped(printable(file), "written: ", options.width) + "\n";
+  }
+  for (const Listing& listing : document.listings) {
+    add_block(text_of(listing, options));
   }
   return text;
 }

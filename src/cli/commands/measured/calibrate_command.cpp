@@ -4,11 +4,9 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "base/quantity.h"
 #include "calibration/admission.h"
 #include "calibration/calibrate.h"
 #include "cli/command.h"
@@ -20,6 +18,8 @@
 #include "cli/terminal.h"
 #include "motor/motor.h"
 #include "motor/write_motor.h"
+#include "present/measured/calibration.h"
+#include "present/measured/calibration_words.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -35,98 +35,6 @@ struct Options {
   bool writes_forecast = false;
   bool writes_innovations = false;
 };
-
-/// Formats a value with the digits that its interval supports: half the interval width has two.
-std::string with_digits(double value, double half) {
-  const double smallest = std::max(half, 1e-6 * std::abs(value));
-  const int digits = 2 + static_cast<int>(std::floor(std::log10(std::abs(value)))) - static_cast<int>(std::floor(std::log10(smallest)));
-  return significant(value, std::clamp(digits, 1, 6));
-}
-
-present::Table parameter_table(const Calibration& result) {
-  present::Table table{.columns = {{"value", "", 0, present::Alignment::left},
-                                   {"file", "", 0},
-                                   {"fit", "", 0},
-                                   {"95 % interval", "", 0},
-                                   {"unit", "", 0, present::Alignment::left},
-                                   {"identifiable", "", 1, present::Alignment::left}},
-                       .rows = {}};
-  for (const CalibratedParameter& each : result.parameters) {
-    const double half = 0.5 * (each.high - each.low);
-    table.rows.push_back({{each.name},
-                          {significant(each.before, 3)},
-                          {with_digits(each.value, half)},
-                          {fmt::format("{}…{}", with_digits(each.low, half), with_digits(each.high, half))},
-                          {std::string(unit_for_display(each.unit))},
-                          {each.is_identifiable ? "yes" : "no"}});
-  }
-  return table;
-}
-
-void add_errors(present::Table& table, const std::string& what, const std::vector<ErrorBeforeAfter>& errors) {
-  for (const ErrorBeforeAfter& each : errors) {
-    table.rows.push_back({{what},
-                          {each.signal},
-                          {fmt::format("{:.2f}", each.before.rmse_K)},
-                          {fmt::format("{:.2f}", each.after.rmse_K)},
-                          {fmt::format("{:.2f}", each.before.max_abs_K)},
-                          {fmt::format("{:.2f}", each.after.max_abs_K)},
-                          {fmt::format("{}", each.after.samples)}});
-  }
-}
-
-std::vector<present::Text> headline_of(const Motor& motor, const Calibration& result) {
-  std::vector<std::string> open;
-  for (const CalibratedParameter& each : result.parameters) {
-    if (!each.is_identifiable) {
-      open.push_back(each.name);
-    }
-  }
-  std::vector<present::Text> sentences{{fmt::format(
-      "{} of {} values of {} are identifiable from {} run{}{}{}.", result.parameters.size() - open.size(), result.parameters.size(),
-      motor.id, result.runs.size(), result.runs.size() == 1 ? "" : "s", open.empty() ? "" : ", all but ", fmt::join(open, ", "))}};
-  if (!result.next_experiment.empty()) {
-    sentences.push_back({fmt::format("Next experiment: {}.", result.next_experiment)});
-  }
-  return sentences;
-}
-
-present::Document document_of(const Motor& motor, const Calibration& result, std::span<const std::string> of_logs) {
-  present::Document document{.headline = headline_of(motor, result)};
-  document.paragraphs.push_back(fmt::format("Unmodelled heat: winding {} W rms, stator {} W rms, correlated over about {} s.",
-                                            significant(result.fit.flux.rms_W[0], 2), significant(result.fit.flux.rms_W[1], 2),
-                                            significant(result.fit.flux.time_scale_s, 1)));
-  if (result.fit.rejected_share > 0.0) {
-    document.paragraphs.back() +=
-        fmt::format(" {} % of the samples were left out as outliers.", significant(100.0 * result.fit.rejected_share, 2));
-  }
-  document.tables.push_back(parameter_table(result));
-  present::Table errors{.title = "Error of the free-running model in K",
-                        .columns = {{"runs", "", 0, present::Alignment::left},
-                                    {"signal", "", 0, present::Alignment::left},
-                                    {"rms: file", "", 0},
-                                    {"fit", "", 0},
-                                    {"largest: file", "", 0},
-                                    {"fit", "", 0},
-                                    {"samples", "", 1}},
-                        .rows = {}};
-  add_errors(errors, "fit", result.fit_error);
-  add_errors(errors, result.holdout_after.size() > 1 ? "worst hold-out" : "hold-out", result.holdout_error);
-  document.tables.push_back(std::move(errors));
-  for (const std::string& worse : result.worse) {
-    document.add_note(present::Severity::warning, worse);
-  }
-  for (const OpenDirection& each : result.open) {
-    document.add_note(present::Severity::note,
-                      fmt::format("Not identifiable: {} ({}). To determine it: {}.", each.what, each.why, each.experiment));
-  }
-  // Notes about rejected samples rank below notes that limit the answer.
-  for (const std::string& note : result.notes) {
-    const bool is_of_logs = std::ranges::find(of_logs, note) != of_logs.end();
-    document.add_note(is_of_logs ? present::Severity::background : present::Severity::note, note);
-  }
-  return document;
-}
 
 nlohmann::ordered_json error_json(const std::vector<ErrorBeforeAfter>& errors, bool after) {
   nlohmann::ordered_json all = nlohmann::ordered_json::object();
@@ -166,7 +74,7 @@ nlohmann::ordered_json forecast_json(const Calibration& calibration) {
             {"width_ratio", number(forecast.band.width_ratio)}}}};
 }
 
-nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, const std::string& out) {
+nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, const present::LogRemarks& remarks, const std::string& out) {
   nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
   for (const CalibratedParameter& each : result.parameters) {
     parameters.push_back({{"name", each.name},
@@ -207,8 +115,8 @@ nlohmann::ordered_json json_of(const Motor& motor, const Calibration& result, co
           {"rejected_share", number(result.fit.rejected_share)},
           {"not_identifiable", open},
           {"next_experiment", result.next_experiment},
-          {"worse_than_before", result.worse},
-          {"notes", result.notes},
+          {"worse_than_before", present::words_of(result.worse)},
+          {"notes", present::all_notes(result, remarks)},
           {"model", out}};
 }
 
@@ -222,16 +130,15 @@ void report_next_steps(std::vector<std::string> steps, std::string& next_experim
 
 ExitCode run(const Options& options, Session& session) {
   const Motor motor = motor_named(session.folders(), options.motor);
-  std::vector<std::string> notes;
-  std::vector<Recording> logs = read_logs(session.folders(), options.logs, options.how, notes);
-  std::vector<Recording> holdout = read_logs(session.folders(), options.holdout, options.how, notes);
-  const std::vector<std::string> of_logs = notes;
+  present::LogRemarks remarks;
+  std::vector<Recording> logs = read_logs(session.folders(), options.logs, options.how, remarks.of_reading);
+  std::vector<Recording> holdout = read_logs(session.folders(), options.holdout, options.how, remarks.of_reading);
   make_names_distinct(logs, holdout);
   if (!options.how.takes_logs_as_they_are) {
     refuse_runs_of_the_file(motor, logs, holdout);
   }
   Admission admission = admit(motor, logs, holdout, options.how.takes_logs_as_they_are, options.how.ambient_C);
-  std::ranges::move(admission.notes, std::back_inserter(notes));
+  remarks.of_screening = std::move(admission.notes);
   const WrittenFit written = options.writes_forecast      ? WrittenFit::forecast
                              : options.writes_innovations ? WrittenFit::innovations
                                                           : WrittenFit::best;
@@ -239,15 +146,15 @@ ExitCode run(const Options& options, Session& session) {
   Calibration result = calibrate(motor, logs, holdout, {options.fit, options.how.ambient_C, written});
   line.reset();
   report_next_steps(admission.next_steps, result.next_experiment);
-  result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   session.write(options.out, to_toml(calibrated_motor(motor, result)));
   if (!options.plot.empty()) {
     session.write(options.plot, draw_picture(calibration_chart(motor, result), options.plot));
   }
-  session.show(document_of(motor, result, of_logs));
-  session.say(fmt::format("written: {}\n", options.out));
-  session.say(options.plot.empty() ? "" : fmt::format("written: {}\n", options.plot));
-  session.answer(json_of(motor, result, options.out));
+  present::Document document = present::calibration_document(motor, result, remarks);
+  document.add_file(options.out);
+  document.add_file(options.plot);
+  session.show(document);
+  session.answer(json_of(motor, result, remarks, options.out));
   return ExitCode::done;
 }
 
@@ -283,8 +190,7 @@ Command calibrate_command() {
                 ->check(whole_number(1024))
                 ->capture_default_str();
             session.add_data_option(app);
-            session.add_text_options(app);
-            session.add_json_option(app);
+            session.add_answer_options(app);
             return [options, &session] { return run(*options, session); };
           }};
 }

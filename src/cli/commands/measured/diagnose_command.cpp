@@ -19,6 +19,7 @@
 #include "estimation/log_columns.h"
 #include "estimation/open_loop.h"
 #include "motor/write_motor.h"
+#include "present/measured/diagnosis.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -71,37 +72,20 @@ void hand_out(const Options& options, const Motor& extended, const Diagnosis& di
   session.write(folder / "diagnosis.html", diagnosis_page(diagnosis, input, score, svg));
 }
 
-/// Returns the verdict as a sentence.
-std::string headline_of(const Diagnosis& diagnosis) {
-  std::vector<std::string> names;
-  for (const FoundEffect& effect : diagnosis.effects) {
-    names.push_back(effect.id);
-  }
-  switch (diagnosis.verdict) {
-    case DiagnosisVerdict::nothing_missing:
-      return "No effect is missing.";
-    case DiagnosisVerdict::effect_found:
-      return fmt::format("The model lacks {}.", fmt::join(names, " and "));
-    case DiagnosisVerdict::unexplained:
-      return "Heat is missing that no effect of the catalogue explains.";
-    case DiagnosisVerdict::not_identifiable:
-      break;
-  }
-  return "These runs do not determine whether an effect is missing.";
-}
-
 ExitCode run(const Options& options, Session& session) {
   const Motor motor = motor_named(session.folders(), options.model);
   std::vector<std::string> notes;
+  std::vector<std::string> warnings;
   std::vector<Recording> train = read_logs(session.folders(), options.train, options.logs, notes);
   std::vector<Recording> holdout = read_logs(session.folders(), options.holdout, options.logs, notes);
   if (motor.fit && !motor.fit->extensions.empty()) {
-    notes.push_back(
+    warnings.push_back(
         fmt::format("an effect that {} imitates may stay unfound, because the file has {} for better forecasts only; calibrate "
                     "with --innovations for a diagnosis",
                     fmt::join(motor.fit->extensions, " and "), motor.fit->extensions.size() == 1 ? "it" : "them"));
   }
   const std::vector<std::string> of_logs = notes;
+  notes.insert(notes.end(), warnings.begin(), warnings.end());
   make_names_distinct(train, holdout);
   std::ranges::move(admit(motor, train, holdout, options.logs.takes_logs_as_they_are, options.logs.ambient_C).notes,
                     std::back_inserter(notes));
@@ -135,16 +119,13 @@ ExitCode run(const Options& options, Session& session) {
     notes.push_back(std::move(lacking));
   }
   diagnosis.notes = notes;
-  present::Document document{.headline = {{headline_of(diagnosis)}}, .paragraphs = diagnosis.words};
-  for (const std::string& note : notes) {
-    const bool is_of_logs = std::ranges::find(of_logs, note) != of_logs.end();
-    document.add_note(is_of_logs ? present::Severity::background : present::Severity::note, note);
-  }
-  session.show(document);
+  present::Document document = present::diagnosis_document(diagnosis, warnings, of_logs);
   if (!options.out.empty()) {
     hand_out(options, extended, diagnosis, input, score, session);
-    session.say(fmt::format("\nwritten: {0}/diagnosis.html, {0}/{1}.toml (the extended model) and more\n", options.out, motor.id));
+    document.add_file(options.out + "/diagnosis.html");
+    document.add_file(fmt::format("{}/{}.toml", options.out, motor.id));
   }
+  session.show(document);
   session.answer(diagnosis_json(diagnosis, input, score));
   return diagnosis.verdict == DiagnosisVerdict::not_identifiable ? ExitCode::cannot_answer : ExitCode::done;
 }
@@ -172,8 +153,7 @@ Command diagnose_command() {
         app.add_option("--out", options->out, "folder for the extended model, page, pictures and JSON")->type_name("DIR");
         add_log_options(app, options->logs);
         session.add_data_option(app);
-        session.add_text_options(app);
-        session.add_json_option(app);
+        session.add_answer_options(app);
         return [options, &session] { return run(*options, session); };
       },
       .topics = effect_topics,

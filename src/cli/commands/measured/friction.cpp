@@ -1,3 +1,5 @@
+#include "present/measured/friction.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -6,7 +8,6 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "base/quantity.h"
 #include "cli/command.h"
@@ -133,111 +134,15 @@ Input read_input(const Options& options, const Session& session) {
 /// Unknown (NaN) values become null.
 Json json(const Estimate& estimate) { return {{"value", estimate.value}, {"ci95", {estimate.low, estimate.high}}}; }
 
-std::string text(const Estimate& estimate, int decimals, double scale = 1.0, const std::string& without_interval = "given") {
-  if (!std::isfinite(estimate.value)) {
-    return "–";
-  }
-  return estimate.is_known() ? fmt::format("{:.{}f} [{:.{}f}…{:.{}f}]", scale * estimate.value, decimals, scale * estimate.low, decimals,
-                                           scale * estimate.high, decimals)
-                             : fmt::format("{:.{}f} ({})", scale * estimate.value, decimals, without_interval);
-}
-
-std::string findings_text(const Findings& findings) {
-  std::string lines;
-  for (const std::string& finding : findings) {
-    lines += finding + "\n";
-  }
-  return lines;
-}
-
-std::string suspicions_text(const std::vector<std::string>& suspicions) {
-  constexpr std::size_t kMost = 8;
-  std::string lines;
-  for (std::size_t i = 0; i < std::min(kMost, suspicions.size()); ++i) {
-    lines += fmt::format("suspicious: {}\n", suspicions[i]);
-  }
-  return suspicions.size() > kMost ? lines + fmt::format("suspicious: {} more like these\n", suspicions.size() - kMost) : lines;
-}
-
 std::string source_of(const Options& options) {
   const std::string first = std::filesystem::path(options.logs.front()).filename().string();
   return options.logs.size() == 1 ? fmt::format("friction test, {}", first)
                                   : fmt::format("friction test, {} and {} more logs", first, options.logs.size() - 1);
 }
 
-/// Writes the updated robot file and reports the notes about it.
-void write_robot(const Options& options, const std::string& content, const Findings& notes, Session& session) {
-  session.write(options.out, content);
-  session.say(findings_text(notes) + fmt::format("written: {}\n", options.out));
-}
-
-std::string table(const FrictionFit& fit, std::size_t rows) {
-  std::string lines = fmt::format("{:>5}  {:30} {:24} {:24} {:24} {:>6} {:>9} {:>9}\n", "wheel", "d / V s/rad", "a / V", "b / V",
-                                  "phase / °", "R²", "rows used", "left out");
-  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-    const WheelFriction& wheel = fit.wheels[i];
-    if (!wheel.is_learned()) {
-      lines += fmt::format("{:>5}  not identifiable: {}\n", i + 1, wheel.problem);
-      continue;
-    }
-    lines +=
-        fmt::format("{:>5}  {:30} {:24} {:24} {:24} {:>6} {:9} {:9}\n", i + 1, text(wheel.damping_V_s_per_rad, 4), text(wheel.sine_V, 3),
-                    text(wheel.constant_V, 3), text(wheel.phase_rad, 1, 180.0 / std::numbers::pi),
-                    std::isfinite(wheel.r2_ratio) ? fmt::format("{:.3f}", wheel.r2_ratio) : "–", wheel.rows_used, rows - wheel.rows_used);
-  }
-  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-    if (std::isfinite(fit.wheels[i].rotation_V.value)) {
-      lines += fmt::format("wheel {} turning on the spot: {} V\n", i + 1, text(fit.wheels[i].rotation_V, 3));
-    }
-  }
-  if (std::ranges::any_of(fit.wheels, &WheelFriction::damping_is_given)) {
-    std::vector<std::string> moves;
-    for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-      if (fit.wheels[i].damping_is_given) {
-        moves.push_back(fmt::format("{} V (wheel {})", significant(0.1 * std::abs(fit.wheels[i].sine_per_damping_V), 2), i + 1));
-      }
-    }
-    lines += fmt::format(
-        "d (given) is the motor's back-EMF from its file, because the legs do not determine d; the intervals hold for this d only: a d 10 "
-        "% larger takes {} from a; legs at a second speed on the same headings determine both\n",
-        fmt::join(moves, ", "));
-  }
-  if (std::ranges::any_of(fit.wheels, &WheelFriction::phase_is_given)) {
-    lines += fmt::format(
-        "phase (given) is a wheel's rolling direction, because its headings are too few to determine it; the intervals allow for {:.0f}° "
-        "to either side; six or more directions all around determine it\n",
-        FitSettings{}.phase_uncertainty_rad * 180.0 / std::numbers::pi);
-  }
-  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-    if (fit.wheels[i].phase_is_bounded) {
-      lines += fmt::format(
-          "wheel {}: the phase is limited by the measured sense of rotation; the friction hardly follows a sin(θ+φ) + b sign\n", i + 1);
-    }
-  }
-  if (std::ranges::any_of(fit.wheels, [](const WheelFriction& wheel) { return wheel.rotation_V.high < 0.0; })) {
-    lines +=
-        "a friction below 0 V is impossible: the voltage is not proportional to the modulation, or the assumed battery voltage is wrong\n";
-  }
-  return lines;
-}
-
-/// Reports wheels whose measurements contradict the assumed friction law.
-Findings of_another_law(const FrictionFit& fit) {
-  Findings found;
-  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-    if (const LackOfFit& lack = fit.wheels[i].lack; lack.is_found) {
-      found.push_back(
-          fmt::format("the residual of wheel {} depends on θ: {} V rms beyond the {} V by which {} differ; a sin(θ+φ) + b sign does not "
-                      "hold there, and the intervals are wider by the part that may be in a and b",
-                      i + 1, significant(lack.left_V, 2), significant(lack.repeats_V, 2), lack.repeats));
-    }
-  }
-  return found;
-}
-
 /// Explains why nothing was learned, with the problem of wheel 1 as the example.
 Failure nothing_learned(const SteadyParts& steady, const FrictionFit& fit, const std::vector<std::string>& suspicions) {
-  const std::string suspected = suspicions.empty() ? "" : "\n" + suspicions_text(suspicions);
+  const std::string suspected = suspicions.empty() ? "" : fmt::format("\nsuspicious: {}", fmt::join(suspicions, "\nsuspicious: "));
   if (steady.parts.empty()) {
     return {
         ExitCode::cannot_answer,
@@ -280,18 +185,18 @@ Json wheels_json(const FrictionFit& fit, const HeldOutError& error, std::size_t 
 }
 
 void draw(const Options& options, const Input& input, const SteadyParts& steady, const FrictionFit& fit, const FitSettings& settings,
-          Session& session) {
+          present::Document& document, Session& session) {
   const std::string of_headings = fmt::format("{} legs on {} headings", steady.parts.size(), fit.headings);
   std::filesystem::path voltage = options.plot;
   voltage.replace_filename(voltage.stem().string() + "_voltage" + voltage.extension().string());
   const Chart chart = friction_chart(fit, input.robot.name, of_headings);
   if (!chart.panels.empty()) {
     session.write(options.plot, draw_picture(chart, options.plot));
-    session.say(fmt::format("written: {}\n", options.plot));
+    document.add_file(options.plot);
   }
   const std::string second = chart.panels.empty() ? options.plot : voltage.string();
   session.write(second, draw_picture(voltage_chart(steady, fit, make_kinematics(input.robot), input.robot.name, settings), second));
-  session.say(fmt::format("written: {}\n", second));
+  document.add_file(second);
 }
 
 void answer(const Input& input, const SteadyParts& steady, const FrictionFit& fit, const HeldOutError& error, const std::string& from,
@@ -333,41 +238,27 @@ ExitCode steady_state(const Options& options, Input& input, Session& session) {
   if (!fit.is_learned()) {
     throw nothing_learned(steady, fit, input.suspicions);
   }
-  std::ranges::move(of_another_law(fit), std::back_inserter(input.findings));
+  std::ranges::move(present::lack_of_fit_words(fit), std::back_inserter(input.findings));
   const HeldOutError error = error_on_held_out_headings(steady.parts, kinematics, settings, before.voltages);
-  session.say(fmt::format("{}: {}, {} rows, {} of them steady in {} on {}; {} {}\n{}{}", input.robot.id, counted(input.logs.size(), "log"),
-                          steady.rows, steady.rows_steady, counted(static_cast<std::size_t>(steady.legs), "leg"),
-                          counted(static_cast<std::size_t>(fit.headings), "heading"),
-                          counted(static_cast<std::size_t>(steady.return_legs), "return leg"),
-                          settings.use_return_legs ? "used too" : "left out", findings_text(input.findings), table(fit, steady.rows)));
-  session.say(suspicions_text(input.suspicions));
-  if (std::isfinite(error.after_V)) {
-    session.say(fmt::format("hold-out error on {} of {} headings: {}{:.3f} V after the fit\n", error.headings, error.all_headings,
-                            before.voltages ? fmt::format("{:.3f} V by {}, ", error.before_V, before.from) : "", error.after_V));
-  }
+  present::Document document = present::friction_document(
+      input.robot, {steady, fit, error, settings.use_return_legs, static_cast<bool>(before.voltages), before.from, input.logs.size()});
+  present::add_findings(document, input.findings, input.suspicions);
   if (!options.out.empty()) {
     if (!input.motor) {
       throw Failure(ExitCode::bad_input, "--out: a robot's file has torques; --motor must name the motor that converts volts to torques");
     }
     Findings notes;
-    const std::string content = with_measured_friction(read_file(input.robot.file, 1'000'000), input.robot,
-                                                       drive_constants(input.robot, *input.motor), fit, source_of(options), notes);
-    write_robot(options, content, notes, session);
+    session.write(options.out, with_measured_friction(read_file(input.robot.file, 1'000'000), input.robot,
+                                                      drive_constants(input.robot, *input.motor), fit, source_of(options), notes));
+    present::add_findings(document, notes, {});
+    document.add_file(options.out);
   }
   if (!options.plot.empty()) {
-    draw(options, input, steady, fit, settings, session);
+    draw(options, input, steady, fit, settings, document, session);
   }
+  session.show(document);
   answer(input, steady, fit, error, before.from, session);
   return ExitCode::done;
-}
-
-std::string run_text(const RollOutRun& run) {
-  const std::string what = run.kind == RollOut::translation
-                               ? fmt::format("towards {:.0f}°, {:.2f} N", run.heading_rad * 180.0 / std::numbers::pi, run.force_N)
-                           : run.kind == RollOut::rotation ? "turning"
-                                                           : fmt::format("wheel {} lifted", run.wheel + 1);
-  return fmt::format("  {}: {:.1f} mN m and {:.3f} mN m s/rad per wheel, R² {:.3f}, {} rows\n", what, 1e3 * run.wheel_torque_Nm,
-                     1e3 * run.wheel_damping_Nm_s_per_rad, run.r2_ratio, run.rows_used);
 }
 
 ExitCode by_roll_out(const Options& options, Input& input, Session& session) {
@@ -383,22 +274,15 @@ ExitCode by_roll_out(const Options& options, Input& input, Session& session) {
   DriveConstants drive = drive_constants(input.robot, *input.motor);
   drive.drag_torque_Nm = 0.0;
   Json wheels = Json::array();
-  session.say(fmt::format("{}: {} in {}, motors assumed open\n{}", input.robot.id, counted(result.runs.size(), "roll-out"),
-                          counted(input.logs.size(), "log"), findings_text(input.findings) + suspicions_text(input.suspicions)));
-  for (const RollOutRun& run : result.runs) {
-    session.say(run_text(run));
-  }
+  present::Document document = present::roll_out_document(input.robot, result, drive, input.logs.size());
+  present::add_findings(document, input.findings, input.suspicions);
   for (std::size_t i = 0; i < result.wheel_damping_Nm_s_per_rad.size(); ++i) {
-    const auto volts = [&](double damping) { return steady_voltage_V(drive, damping, 1.0); };
     const Estimate& mechanical = result.wheel_damping_Nm_s_per_rad[i];
-    const Estimate damping{volts(mechanical.value), volts(mechanical.low), volts(mechanical.high)};
+    const Estimate damping = present::damping_with_back_emf(drive, mechanical);
     std::size_t used = 0;
     for (const RollOutRun& run : result.runs) {
       used += run.wheel < 0 || run.wheel == static_cast<int>(i) ? static_cast<std::size_t>(run.rows_used) : 0U;
     }
-    const auto fitted = [](const Estimate& estimate, int decimals, double scale) { return text(estimate, decimals, scale, "no interval"); };
-    session.say(fmt::format("wheel {}: {} mN m and {} mN m s/rad without the motor's back-EMF, d = {} V s/rad with it\n", i + 1,
-                            fitted(result.wheel_torque_Nm[i], 2, 1e3), fitted(mechanical, 4, 1e3), fitted(damping, 4, 1.0)));
     wheels.push_back({{"index", i + 1},
                       {"damping_V_s_per_rad", json(damping)},
                       {"a_V", json(Estimate{})},
@@ -411,11 +295,11 @@ ExitCode by_roll_out(const Options& options, Input& input, Session& session) {
                       {"rows_left_out", result.rows - used}});
   }
   if (!options.out.empty()) {
-    write_robot(
-        options,
-        with_measured_damping(read_file(input.robot.file, 1'000'000), input.robot, result.wheel_damping_Nm_s_per_rad, source_of(options)),
-        {}, session);
+    session.write(options.out, with_measured_damping(read_file(input.robot.file, 1'000'000), input.robot, result.wheel_damping_Nm_s_per_rad,
+                                                     source_of(options)));
+    document.add_file(options.out);
   }
+  session.show(document);
   session.answer({{"schema", "heatsoak.friction/1"},
                   {"method", "roll_out"},
                   {"robot", input.robot.id},
@@ -473,7 +357,7 @@ Command friction() {
             app.add_option("--out", options->out, "the robot's file with the friction found in it")->type_name("ROBOT.toml");
             add_picture(app, options->plot, "offset and damping over the headings; voltage over speed goes beside it, FILE_voltage.svg");
             session.add_data_option(app);
-            session.add_json_option(app);
+            session.add_answer_options(app);
             return [options, &session] { return run(*options, session); };
           }};
 }

@@ -6,8 +6,9 @@
 
 #include "cli/command.h"
 #include "cli/measured/log_chart.h"
-#include "cli/measured/log_text.h"
+#include "cli/measured/log_json.h"
 #include "cli/quantity_option.h"
+#include "present/measured/log.h"
 #include "recording/quality.h"
 #include "recording/read_recording.h"
 #include "recording/recording_stream.h"
@@ -39,6 +40,7 @@ void check(const Options& options) {
 
 ExitCode inspect(const Options& options, Session& session) {
   ExitCode code = ExitCode::done;
+  present::Document document;
   nlohmann::ordered_json logs = nlohmann::ordered_json::array();
   for (const std::string& name : options.files) {
     const std::filesystem::path file = log_named(session.folders(), name);
@@ -51,16 +53,17 @@ ExitCode inspect(const Options& options, Session& session) {
     }
     const DataQuality quality = assessment.conclude(report);
     const Recording& recording = assessment.condensed().rows();
-    session.say((logs.empty() ? "" : "\n") + log_text(recording, report, quality));
+    present::add_log(document, recording, report, quality);
     logs.push_back(log_json(recording, report, quality));
     if (!quality.thermal.is_good() && !quality.drive.is_good()) {
       code = ExitCode::cannot_answer;
     }
     if (!options.plot.empty()) {
       session.write(options.plot, draw_picture(log_chart(assessment.condensed(), quality, report), options.plot));
-      session.say(fmt::format("written: {}\n", options.plot));
+      document.add_file(options.plot);
     }
   }
+  session.show(document);
   session.answer({{"schema", "heatsoak.log/1"}, {"logs", logs}});
   return code;
 }
@@ -70,8 +73,10 @@ ExitCode convert(const Options& options, Session& session) {
   RecordingReport report;
   const Recording recording = read_recording(file, mapping_for(file, options.map), report);
   session.write(options.out, to_canonical_csv(recording));
-  session.say(fmt::format("written: {} ({} of {} rows, {} channels)\n", options.out, report.rows_kept, report.rows_in_file,
-                          recording.channels.size()));
+  present::Document document = present::short_answer(
+      fmt::format("{} of {} rows and {} channels converted.", report.rows_kept, report.rows_in_file, recording.channels.size()));
+  document.add_file(options.out);
+  session.show(document);
   session.answer({{"schema", "heatsoak.log_convert/1"},
                   {"file", file.string()},
                   {"out", options.out},
@@ -107,7 +112,7 @@ Command log_command() {
             ->type_name("FILE.toml");
         add_picture(app, options->plot, "all channels over time, rejected samples marked");
         add_table(app, options->out, "of convert: the canonical form");
-        session.add_json_option(app);
+        session.add_answer_options(app);
         return [options, &session] { return run(*options, session); };
       }};
 }

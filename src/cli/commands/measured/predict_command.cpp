@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <memory>
@@ -12,6 +10,7 @@
 #include "cli/measured/prediction_answer.h"
 #include "cli/named_files.h"
 #include "cli/quantity_option.h"
+#include "present/measured/prediction.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -34,10 +33,12 @@ ExitCode run(const Options& options, Session& session) {
   std::vector<std::string> warnings;
   for (const Recording& log : logs) {
     if (motor.fit) {
-      std::ranges::move(outside(motor.fit->training, log), std::back_inserter(warnings));
+      for (const OutsideTraining& each : outside(motor.fit->training, log)) {
+        warnings.push_back(present::words_of(each));
+      }
     }
     if (motor.fit && was_fitted_to(*motor.fit, log)) {
-      warnings.push_back(fmt::format("the error of {} is not a forecast error, because the model was fitted to this run", log.name));
+      warnings.push_back(present::fitted_run_words(log.name));
     }
   }
   Prediction prediction = predict(motor, logs, {.ambient_C = options.how.ambient_C});
@@ -45,8 +46,9 @@ ExitCode run(const Options& options, Session& session) {
   if (!options.plot.empty()) {
     session.write(options.plot, draw_picture(prediction_chart(motor, prediction), options.plot));
   }
-  session.show(prediction_document(motor, prediction, warnings, of_logs));
-  session.say(options.plot.empty() ? "" : fmt::format("written: {}\n", options.plot));
+  present::Document document = present::prediction_document(motor, prediction, warnings, of_logs);
+  document.add_file(options.plot);
+  session.show(document);
   prediction.notes.insert(prediction.notes.begin(), warnings.begin(), warnings.end());
   session.answer(prediction_json(motor, prediction));
   return ExitCode::done;
@@ -72,8 +74,7 @@ Command predict_command() {
         add_picture(app, options->plot, "picture of measured and predicted temperatures with the band");
         add_log_options(app, options->how);
         session.add_data_option(app);
-        session.add_text_options(app);
-        session.add_json_option(app);
+        session.add_answer_options(app);
         return [options, &session] { return run(*options, session); };
       }};
 }

@@ -1,4 +1,4 @@
-// Notes about effects of motor files whose inputs a prediction does not know.
+// Notes about motor files: effects whose inputs a prediction does not know, values without a stated tolerance.
 #pragma once
 
 #include <span>
@@ -6,7 +6,7 @@
 
 #include "motor/motor.h"
 
-namespace heatsoak {
+namespace heatsoak::present {
 
 /// Returns a line for each effect with an unknown input and how it is treated; empty if there is none.
 std::string inactive_effects(std::span<const Motor> motors);
@@ -17,4 +17,7 @@ std::string columns_at_their_hottest(std::span<const Motor> motors);
 /// Returns a line for each condition that was stated, and for each effect whose condition is unknown: it acts if it heats, not if it cools.
 std::string effects_under_conditions(std::span<const Motor> motors);
 
-}  // namespace heatsoak
+/// Returns a line for each motor with a value that got a default spread; empty if there is none.
+std::string default_spreads_text(std::span<const Motor> motors);
+
+}  // namespace heatsoak::present

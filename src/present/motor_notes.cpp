@@ -1,4 +1,4 @@
-#include "cli/inactive_effects.h"
+#include "present/motor_notes.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "motor/conditions.h"
+#include "motor/default_spread.h"
 
-namespace heatsoak {
+namespace heatsoak::present {
 
 std::string columns_at_their_hottest(std::span<const Motor> motors) {
   std::string text;
@@ -61,4 +62,17 @@ std::string inactive_effects(std::span<const Motor> motors) {
   return text;
 }
 
-}  // namespace heatsoak
+std::string default_spreads_text(std::span<const Motor> motors) {
+  std::string text;
+  for (const Motor& motor : motors) {
+    if (const std::vector<DefaultSpread> spreads = default_spreads(motor); !spreads.empty()) {
+      text += fmt::format(
+          "{}: the file gives no tolerance for these values, or one that is narrower than their origin supports; defaults by origin are "
+          "assumed: {}; state the real ones\n",
+          motor.id, to_string(spreads));
+    }
+  }
+  return text;
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,125 @@
+// What a calibration found besides values: limits of the answer as data. src/present puts them into words.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "calibration/forecast/forecast.h"
+
+namespace heatsoak {
+
+/// Logs have a current but no speed: the loss at speed is unknown, 0 to `most_W` (the loss at no-load speed).
+struct LossAtSpeedUnknown {
+  double most_W = 0.0;
+};
+/// The motor may have reversed within rows; the fit with interpolated speeds has the larger evidence.
+struct RowsTurn {};
+/// The runs contain heat that the model lacks.
+struct UnmodelledHeat {
+  double share = 0.0;         ///< of the usual heat
+  double usual_heat_W = 0.0;  ///< heat that flows through the motor on average
+  bool exceeds_share = false;
+};
+/// The error of a sensor changes slowly: a sensor error, or an error of the two-node model.
+struct SensorDrift {
+  std::string node;
+  double drift_K = 0.0;  ///< standard deviation
+  double time_scale_s = 0.0;
+};
+/// No sensor is at the winding.
+struct WindingNotMeasured {};
+/// The values follow whole runs best, and the response within seconds needs other values.
+struct ResponseNeedsOtherValues {};
+struct FitStoppedEarly {};
+/// All capacities and resistances moved by one factor, which is the effect of wrong heat.
+struct HeatSeemsWrong {
+  double factor = 1.0;  ///< > 1
+  bool is_too_large = false;
+};
+/// Voltage, current and speed give another terminal resistance than the file.
+struct ResistanceDiffers {
+  double found_ohm = 0.0;
+  double stated_ohm = 0.0;
+};
+struct LargeChange {
+  std::string parameter;
+  double factor = 1.0;
+  double change_sd = 0.0;  ///< size of the change in prior standard deviations
+};
+struct OutsideDeclaredRange {
+  std::string parameter;
+  std::string unit;
+  double value = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+};
+/// The fitted model does not follow the runs well.
+struct PoorFit {
+  std::string signal;
+  double rmse_K = 0.0;
+  double varies_K = 0.0;  ///< standard deviation of the signal
+};
+/// Values that are not identifiable are written, because the forecast depends on all values together.
+struct UnidentifiableAreWritten {};
+/// Cross-validation was not possible: too few parts with heat.
+struct TooFewPieces {
+  std::size_t pieces = 0;
+  std::size_t needed = 0;
+  std::size_t runs = 0;        ///< number of fitted runs
+  bool are_whole_runs = true;  ///< false: the pieces are parts of runs
+};
+/// Errors of the candidate models on left-out pieces.
+struct CrossValidation {
+  std::size_t pieces = 0;
+  std::vector<RivalScore> rivals;
+};
+struct ForecastFitIsWritten {};
+/// No fit predicts left-out pieces better than the file.
+struct FilePredictsBest {
+  bool is_written = false;          ///< the values of the file are written
+  bool is_better_than_fit = false;  ///< than the written values
+};
+struct FreeRunsPredictBest {
+  bool is_written = false;
+};
+/// For better forecasts the network has additional effects; this is no diagnosis.
+struct ExtendedForForecasts {
+  std::vector<std::string> effects;
+  bool is_written = false;
+};
+/// A remark of a layer below, already in words.
+struct Remark {
+  std::string words;
+};
+
+using CalibrationFinding =
+    std::variant<LossAtSpeedUnknown, RowsTurn, UnmodelledHeat, SensorDrift, WindingNotMeasured, ResponseNeedsOtherValues, FitStoppedEarly,
+                 HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit, UnidentifiableAreWritten, TooFewPieces,
+                 CrossValidation, ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest, ExtendedForForecasts, Remark>;
+
+/// Returns the remarks of the layers below.
+std::vector<std::string> remarks_in(const std::vector<CalibrationFinding>& findings);
+
+/// Returns whether a finding of this type exists.
+template <class Finding>
+bool has_finding(const std::vector<CalibrationFinding>& findings) {
+  for (const CalibrationFinding& each : findings) {
+    if (std::holds_alternative<Finding>(each)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// A signal that the fit predicts worse than the original file.
+struct GrownError {
+  std::string signal;
+  bool is_holdout = false;   ///< of the hold-out runs; false: of the fitted runs
+  double after_K = 0.0;      ///< rms error of the written file
+  double before_K = 0.0;     ///< rms error of the original file
+  bool is_extended = false;  ///< the written network has additional effects
+};
+
+}  // namespace heatsoak

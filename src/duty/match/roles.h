@@ -1,0 +1,30 @@
+// One match played in every role: how the torque divides among phases and duels.
+#pragma once
+
+#include <array>
+
+#include "duty/match/generator.h"
+
+namespace heatsoak {
+
+/// The same game played in each role, in the order of kRoleNames.
+using RoleLoads = std::array<MatchLoad, kRoleNames.size()>;
+RoleLoads play_roles(const MatchInputs& inputs, const Robot& robot, std::uint64_t seed, Planner planner);
+
+/// Returns ∫M²dt summed over all wheels, in N²m²s. It is proportional to the copper heat of the motors without the part for their own drag.
+double effort_Nm2_s(const PhaseLoad& phase);
+double effort_Nm2_s(const MatchLoad& load);
+
+/// Returns the part of ∫M²dt that falls into duels, summed over all wheels.
+double duel_effort_Nm2_s(const MatchLoad& load);
+
+/// Returns the largest effort_Nm2_s() of the roles.
+double most_effort_Nm2_s(const RoleLoads& roles);
+
+/// Returns the rms torque of a mean wheel.
+double torque_rms_Nm(const MatchLoad& load);
+
+/// Returns the time spent in duels.
+double duel_s(const MatchLoad& load);
+
+}  // namespace heatsoak

@@ -1,0 +1,65 @@
+#include "present/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "check/check_text.h"
+#include "check/limit.h"
+
+namespace heatsoak::present {
+namespace {
+
+std::vector<Text> conclusion(std::span<const Outcome> outcomes, bool is_update) {
+  const auto failed = std::ranges::count(outcomes, false, &Outcome::passed);
+  const auto changed = std::ranges::count_if(outcomes, [](const Outcome& each) { return !each.before.empty(); });
+  const std::string all = fmt::format("{} limit{}", outcomes.size(), outcomes.size() == 1 ? "" : "s");
+  std::vector<Text> text{{failed == 0 ? fmt::format("{} {}", all, outcomes.size() == 1 ? "holds" : "hold")
+                                      : fmt::format("{} of {} {} not hold", failed, all, failed == 1 ? "does" : "do"),
+                          failed == 0 ? Tone::good : Tone::bad}};
+  if (is_update) {
+    text.push_back({fmt::format("{} limit{} rewritten", changed, changed == 1 ? "" : "s")});
+  }
+  return text;
+}
+
+Table table_of(const Check& check) {
+  const std::string things = things_of(check);
+  return {.title = things.empty() ? check.name : fmt::format("{} ({})", check.name, things),
+          .columns = {{"", "", 0, Alignment::left},
+                      {"threshold", "", 0, Alignment::left},
+                      {"value", "", 0},
+                      {"limit", "", 0},
+                      {"margin", "", 1},
+                      {"", "", 0, Alignment::left, 0, true}},
+          .rows = {}};
+}
+
+}  // namespace
+
+Document check_document(std::span<const Outcome> outcomes, bool is_update) {
+  Document document{.headline = conclusion(outcomes, is_update), .paragraphs = {}};
+  const Check* before = nullptr;
+  for (const Outcome& each : outcomes) {
+    if (each.check != before) {
+      document.tables.push_back(table_of(*each.check));
+      before = each.check;
+    }
+    std::string why = explanation(each);
+    if (!each.before.empty()) {
+      why += fmt::format("{}limit {} → {}", why.empty() ? "" : "; ", each.before, each.limit.text);
+    }
+    document.tables.back().rows.push_back({{each.passed         ? "ok"
+                                            : each.is_evaluated ? "FAIL"
+                                                                : "ERROR",
+                                            each.passed ? Tone::good : Tone::bad},
+                                           {std::string(each.limit.type->name)},
+                                           {shown(each.measured.value, *each.limit.type)},
+                                           {limit_text(each)},
+                                           {margin_text(each)},
+                                           {std::move(why)}});
+  }
+  return document;
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,19 @@
+// Adds the games of `evaluate --closed-loop` to the document of the evaluation.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "present/document.h"
+#include "simulate/closed_loop_rank.h"
+
+namespace heatsoak::present {
+
+/// Puts the verdicts of the driven games first and adds their table and notes to those of the evaluation.
+void add_closed_loop(Document& document, const std::vector<ClosedLoopRank>& ranks, int games, std::uint64_t seed);
+
+/// Returns the consequence of the problem as a sentence, with the values of `score`.
+std::string words_of(DriveProblem problem, const DriveScore& score);
+
+}  // namespace heatsoak::present

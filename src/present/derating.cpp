@@ -1,0 +1,181 @@
+#include "present/derating.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/version.h"
+#include "derate/export_text.h"
+#include "motor/datasheet_network.h"
+#include "present/evaluation.h"
+#include "present/motor_notes.h"
+#include "present/verdict_words.h"
+
+namespace heatsoak::present {
+namespace {
+
+/// Times at which the allowed current of a long use is printed.
+constexpr double kMoments_s[] = {1.0, 10.0, 60.0, 600.0};
+
+double current_at_A(const UsePlayed& played, double time_s) {
+  const auto found = std::ranges::lower_bound(played.time_s, time_s);
+  return found == played.time_s.end() ? played.current_A.back() : played.current_A[static_cast<std::size_t>(found - played.time_s.begin())];
+}
+
+Table allowed_currents(const Derating& derating) {
+  Table table{.title = "Allowed current in A over time if it is always fully used, from a start at air temperature",
+              .columns = {{"speed", "rad/s", 0}},
+              .rows = {}};
+  for (const double time_s : kMoments_s) {
+    table.columns.push_back({fmt::format("at {}", duration_text(time_s)), "", 0});
+  }
+  table.columns.push_back({"lasting", "", 0});
+  for (const UsePlayed& played : derating.uses) {
+    if (played.use.on_s > 0.0) {
+      break;  // the plain case, a current held without pauses, comes first
+    }
+    std::vector<Text> row{{fmt::format("{:.0f}", played.use.speed_share * derating.rules.most_speed_rad_per_s)}};
+    for (const double time_s : kMoments_s) {
+      row.push_back({fmt::format("{:.2f}", current_at_A(played, time_s))});
+    }
+    row.push_back({fmt::format("{:.2f}", played.current_A.back())});
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+/// Adds the notes about the table: range, accuracy, and signals that the firmware must supply.
+void add_table_notes(Document& document, const Derating& derating) {
+  if (derating.rules.most_speed_rad_per_s < derating.reachable_speed_rad_per_s) {
+    document.add_note(
+        Severity::warning,
+        fmt::format("Above {:.0f} of {:.0f} rad/s the motor may exceed a limit even without current: the allowed current falls to 0 A at "
+                    "{:.0f} rad/s.",
+                    derating.rules.most_speed_rad_per_s, derating.reachable_speed_rad_per_s, derating.table.no_current_speed_rad_per_s));
+  }
+  std::vector<std::string_view> asked;
+  for (std::size_t i = firmware::vehicle_speed; i < firmware::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
+      asked.push_back(firmware::signals()[i].name);
+    }
+  }
+  if (!asked.empty()) {
+    document.add_note(Severity::warning,
+                      fmt::format("Besides current, speed and air temperature the firmware must supply {}.", fmt::join(asked, ", ")));
+  }
+  const TableBound& bound = derating.table.bound;
+  document.add_note(
+      Severity::background,
+      fmt::format("Table: {} bytes, never above the exact answer of the network and at most {:.1f} % below it from {:.2g} A up; it changes "
+                  "by at most {:.2g} A per K of the winding, {:.2g} A per K of the stator and {:.2g} A per rad/s.",
+                  derating.table.size_bytes(), 100.0 * bound.shortfall_ratio, derating.table.straight_below_A, bound.winding_slope_A_per_K,
+                  bound.stator_slope_A_per_K, bound.speed_slope_A_s_per_rad));
+}
+
+/// Adds the benefit and the possible faults of the sensor, if there is one.
+void add_sensor(Document& document, const Derating& derating) {
+  if (!derating.sensor) {
+    return;
+  }
+  const SensorPlan& plan = *derating.sensor;
+  document.paragraphs.push_back(fmt::format(
+      "With {} at the {}, error up to {:.3g} K{}: safety factor on heat {:.2f} (without {:.2f}). Of {} drawn motors with drawn sensor "
+      "errors {} exceeded a limit; their windings reached {:.0f} °C (95th percentile), {:.0f} °C (the hottest). The cross-check drops the "
+      "correct sensor of {}.",
+      plan.resistance ? "the resistance from voltage and current" : "a thermistor",
+      plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
+      plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(),
+      derating.observer.heat_safety_factor(), plan.samples, plan.over, plan.winding_p95_C, plan.winding_most_C, plan.dropped));
+  document.add_note(
+      Severity::note,
+      fmt::format("A plausible but wrong sensor allows at most {:.2f} A more than without one: the nominal motor then reaches "
+                  "{:.0f} °C, and {} of {} drawn motors exceed a limit.",
+                  plan.most_gain_A, plan.sensor_fault_nominal_C, plan.sensor_fault_over, derating.options.guarantee.samples));
+  if (plan.resistance) {
+    document.add_note(Severity::note, fmt::format("Readings need {:.2f} A at rest and {:.3f} A more per rad/s.",
+                                                  plan.resistance->least_current_A, plan.resistance->current_per_speed_A_s_per_rad));
+  }
+  Table table{.title = "Continuous current of the nominal motor in A",
+              .columns = {{"speed", "rad/s", 0}, {"without sensor", "", 0}, {"with sensor", "", 0}},
+              .rows = {}};
+  for (const LastingCurrent& each : plan.lasting) {
+    table.rows.push_back(
+        {{fmt::format("{:.0f}", each.speed_rad_per_s)}, {fmt::format("{:.2f}", each.without_A)}, {fmt::format("{:.2f}", each.with_A)}});
+  }
+  document.tables.push_back(std::move(table));
+}
+
+std::string place_text(const TablePlace& place) {
+  return fmt::format("at {:.0f} rad/s, stator {:.1f} °C, winding {:.1f} °C: {:.3f} A, a fresh table {:.3f} A", place.speed_rad_per_s,
+                     place.stator_C, place.winding_C, place.committed_A, place.fresh_A);
+}
+
+}  // namespace
+
+Document derating_document(const Derating& derating, const Motor& motor) {
+  const Guarantee& checked = derating.guarantee;
+  Document document{
+      .headline = {{fmt::format(
+          "{} in {}: winding below {:.0f} °C{} in air of {:.0f} °C, {} thermal data.", derating.motor_id, derating.robot_id,
+          derating.rules.limits.winding_C,
+          derating.rules.limits.stator_C ? fmt::format(", stator below {:.0f} °C", *derating.rules.limits.stator_C) : "",
+          derating.rules.hottest_ambient_C, derating.data_quality)}},
+      .paragraphs = {
+          fmt::format("Safety factor on heat {:.2f}. {} At least {} draws are needed for this.", derating.observer.heat_safety_factor(),
+                      confidence_text(derating), least_samples(derating.options.guarantee)),
+          fmt::format("The windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C "
+                      "(the hottest).",
+                      checked.samples, checked.winding_p50_C, checked.winding_p95_C, checked.winding_most_C)}};
+  std::vector<std::string> own;
+  for (const ActingEffect& effect : derating.effects) {
+    if (std::ranges::find(kDatasheetEffects, effect.name) == kDatasheetEffects.end()) {
+      own.push_back(effect.name == effect.type ? effect.name : fmt::format("{} ({})", effect.name, effect.type));
+    }
+  }
+  if (!own.empty()) {
+    document.paragraphs.push_back(fmt::format("Active effects of the file: {}.", fmt::join(own, ", ")));
+  }
+  document.tables.push_back(allowed_currents(derating));
+  add_table_notes(document, derating);
+  add_sensor(document, derating);
+  add_lines(document.notes, default_spreads_text({&motor, 1}), Severity::note);
+  add_lines(document.notes, columns_at_their_hottest({&motor, 1}) + effects_under_conditions({&motor, 1}), Severity::note);
+  return document;
+}
+
+void add_table_check(Document& document, const Derating& derating, const TableCheck& check) {
+  const TableComparison& found = check.found;
+  document.headline.push_back(
+      {fmt::format("{}: {}", check.committed.file.string(), check.holds ? "still holds" : "no longer holds; write it again with --out"),
+       check.holds ? Tone::good : Tone::bad});
+  if (check.is_other_motor) {
+    document.add_note(Severity::warning, fmt::format("Unsafe: it is the table of another motor, {}; expected one of {}.",
+                                                     check.committed.motor_id, derating.motor_id));
+  }
+  if (found.excess.difference_A > 0.0) {
+    document.add_note(Severity::warning, fmt::format("Unsafe: it allows up to {:.3f} A more than a fresh table, {}.",
+                                                     found.excess.difference_A, place_text(found.excess)));
+  }
+  if (found.differing_line > 0) {
+    document.add_note(Severity::warning,
+                      fmt::format("Unsafe: its observer differs from that of a fresh header, so the table has another meaning. Line {} is "
+                                  "\"{}\", of a fresh header \"{}\".",
+                                  found.differing_line, found.differing_text, found.differing_fresh_text));
+  }
+  if (found.lost.difference_A > 0.0) {
+    document.add_note(Severity::note,
+                      fmt::format("{} it allows up to {:.3f} A less than a fresh table, {}.", check.holds ? "Safe, but" : "At other places",
+                                  found.lost.difference_A, place_text(found.lost)));
+  }
+  if (!check.committed.robot_id.empty() && check.committed.robot_id != derating.robot_id) {
+    document.add_note(Severity::note,
+                      fmt::format("It was written for the robot {}, this is {}.", check.committed.robot_id, derating.robot_id));
+  }
+  if (!check.holds && !check.committed.version.empty() && check.committed.version != program_version()) {
+    document.add_note(Severity::note, fmt::format("It was written by heatsoak {}, this is {}: an upgrade may explain the difference.",
+                                                  check.committed.version, program_version()));
+  }
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "firmware/core_diagram.h"
+#include "present/description.h"
+#include "present/parameter_table.h"
+#include "present/verdict_topic.h"
+
+namespace heatsoak::present {
+namespace {
+
+const SettingText& words_of(Setting setting) { return all_settings()[static_cast<std::size_t>(setting)]; }
+
+void add_settings(Document& document, std::string title, const std::vector<Setting>& settings) {
+  if (settings.empty()) {
+    return;
+  }
+  Table table = labelled_table(std::move(title));
+  for (const Setting setting : settings) {
+    add_labelled(table, words_of(setting).key, words_of(setting).meaning);
+  }
+  document.tables.push_back(std::move(table));
+}
+
+std::string example_of(const ThresholdType& type) {
+  std::string text = "[[check]]\nname = \"what this check is for\"\n";
+  for (const Setting setting : type.needs) {
+    const std::string_view key = words_of(setting).key;
+    text += setting == Setting::temperature                           ? fmt::format("{} = \"100 degC\"\n", key)
+            : setting == Setting::against || setting == Setting::logs ? fmt::format("{} = [\"…\", \"…\"]\n", key)
+                                                                      : fmt::format("{} = \"…\"\n", key);
+  }
+  return text + fmt::format("[check.limits]\n{} = \"{}\"\n", type.name, type.example);
+}
+
+/// Formats the signals of a group that `readers` read: "Input: pose (m, rad), command_age_s (s)".
+std::string signals_text(const SignalGroup& group, robot_core::Blocks readers) {
+  std::vector<std::string> signals;
+  for (const robot_core::SignalText& signal : group.signals) {
+    if ((signal.to & readers) != 0) {
+      signals.push_back(fmt::format("{} ({})", signal.name, signal.unit));
+    }
+  }
+  return signals.empty() ? "" : fmt::format("{}: {}", group.carrier, fmt::join(signals, ", "));
+}
+
+}  // namespace
+
+Document threshold_description(const ThresholdType& type) {
+  Document document{.headline = {{fmt::format("{}: a threshold of `heatsoak check`, such as \"{}\"", type.name, type.example)}},
+                    .paragraphs = {std::string(type.meaning)}};
+  add_settings(document, "Needed in the check", type.needs);
+  add_settings(document, "Optional in the check", type.takes);
+  document.listings.push_back({"in a check file:", example_of(type)});
+  return document;
+}
+
+Document verdict_description() {
+  Document document{.headline = {{"verdict: the result of `evaluate` for a motor on a duty, from the best to the worst"}},
+                    .paragraphs = {}};
+  Table table = labelled_table("");
+  for (const VerdictMeaning& each : verdict_meanings()) {
+    add_labelled(table, to_string(each.verdict), each.meaning);
+  }
+  add_labelled(table, "undecided", undecided_meaning());
+  document.tables.push_back(std::move(table));
+  document.add_note(Severity::note,
+                    "With --closed-loop: fail means that the first game or more than half of the games exceed a limit; infeasible, that a "
+                    "game was not driven; marginal, that any other game exceeds a limit.");
+  return document;
+}
+
+Document core_description() {
+  Document document{
+      .headline = {{"robot_core: the drive core, one control step of a robot on three or four omni wheels, in simulation and in firmware"}},
+      .paragraphs = {
+          "One call of robot_core::step() runs these blocks in this order; sources in robot_core/. `heatsoak describe robot_core "
+          "--diagram core.svg` draws them, `heatsoak generate core` writes the core for a robot."}};
+  const std::vector<SignalGroup> groups = signal_groups();
+  for (const robot_core::BlockText& block : robot_core::kBlocks) {
+    Table table = labelled_table(
+        fmt::format("{} {}, {}: {}() in {}", block.number, block.title, rate_words(block.rate), block.function, block.files));
+    add_labelled(table, "task", block.task);
+    for (const SignalGroup& group : groups) {
+      add_labelled(table, "reads", signals_text(group, robot_core::only(block.block)));
+    }
+    for (const SignalGroup& group : groups) {
+      add_labelled(table, "writes", group.from == block.block ? signals_text(group, ~0U) : "");
+    }
+    document.tables.push_back(std::move(table));
+  }
+  return document;
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,52 @@
+// Documents of `describe`: motors, robots, duties, effects, thresholds, verdicts and the drive core.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "check/threshold.h"
+#include "duty/duty.h"
+#include "motor/motor.h"
+#include "motor/sensor_effect.h"
+#include "present/document.h"
+#include "robot/robot.h"
+#include "thermal/effect.h"
+
+namespace heatsoak::present {
+
+Document motor_description(const Motor& motor);
+Document robot_description(const Robot& robot);
+Document duty_description(const Duty& duty);
+
+/// `file` is a complete duty file of this shape.
+Document shape_description(const ShapeType& shape, const std::string& file);
+
+/// Describes an effect of the thermal network, with lines for a motor file at its typical size.
+Document effect_description(const EffectType& effect);
+Document sensor_description(const SensorEffectType& type);
+
+Document threshold_description(const ThresholdType& type);
+Document verdict_description();
+
+/// Describes the blocks of the drive core with the signals that they read and write.
+Document core_description();
+
+/// Label and words of one line of a description; lines without words are left out.
+struct LabelledWords {
+  std::string_view label;
+  std::string words;
+};
+
+/// Describes an effect that is not part of the thermal network. `where` states its place in a few words.
+Document effect_outside_network(std::string_view where, std::string_view name, std::string_view summary, const ParameterSpec& size,
+                                std::span<const LabelledWords> lines);
+
+/// Returns the unit of a robot value by its key "table.key" or "friction.heading.wheel[0].key".
+std::string_view robot_unit(std::string_view key);
+
+/// Returns the name of a signal that an effect needs.
+std::string signal_name(Signal signal);
+
+}  // namespace heatsoak::present

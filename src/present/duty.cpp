@@ -1,0 +1,87 @@
+#include "present/duty.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "base/quantity.h"
+#include "present/evaluation.h"
+#include "present/verdict_words.h"
+
+namespace heatsoak::present {
+namespace {
+
+Table role_table(const RoleLoads& roles) {
+  Table table{
+      .title = "Share of torque squared, by phase and role", .columns = {{"", "", 0, Alignment::left}, {"time", "s", 1}}, .rows = {}};
+  for (const std::string_view role : kRoleNames) {
+    table.columns.push_back({std::string(role), "", 0});
+  }
+  const auto add = [&](std::string_view name, const std::string& time, const std::function<std::string(const MatchLoad&)>& cell) {
+    std::vector<Text> row{{std::string(name)}, {time}};
+    for (const MatchLoad& load : roles) {
+      row.push_back({cell(load)});
+    }
+    table.rows.push_back(std::move(row));
+  };
+  const auto share = [](double part_Nm2_s, const MatchLoad& load) {
+    return fmt::format("{:.1f} %", 100.0 * part_Nm2_s / effort_Nm2_s(load));
+  };
+  for (std::size_t i = 0; i < kPhaseNames.size(); ++i) {
+    if (const double time_s = roles.back().phases[i].time_s; time_s > 0.0) {
+      add(kPhaseNames[i], fmt::format("{:.0f}", time_s),
+          [&](const MatchLoad& load) { return share(effort_Nm2_s(load.phases[i]) - load.phases[i].duel_torque_squared_Nm2_s, load); });
+    }
+  }
+  const double most_Nm2_s = most_effort_Nm2_s(roles);
+  add("duels (pushing at stall)", "", [&](const MatchLoad& load) { return share(duel_effort_Nm2_s(load), load); });
+  add("  time in them", "", [](const MatchLoad& load) { return fmt::format("{:.0f} s", duel_s(load)); });
+  add("driven", "", [](const MatchLoad& load) { return fmt::format("{:.0f} m", load.distance_m); });
+  add("torque of a mean wheel, rms", "", [](const MatchLoad& load) { return fmt::format("{:.1f} mN m", 1e3 * torque_rms_Nm(load)); });
+  add("torque squared / busiest role's", "",
+      [&](const MatchLoad& load) { return fmt::format("{:.0f} %", 100.0 * effort_Nm2_s(load) / most_Nm2_s); });
+  return table;
+}
+
+}  // namespace
+
+Document load_document(const Duty& duty, double duration_s) {
+  return {.headline = {{fmt::format("{}: {}, {:.0f} s.", duty.id, duty.summary, duration_s)}},
+          .paragraphs = {fmt::format("Load: {}.", duty.origin)}};
+}
+
+Document match_duty_document(const Duty& duty, const Robot& robot, std::string_view role, std::uint64_t seed, const MatchLoad& load,
+                             const RoleLoads& roles) {
+  Document document{.headline = {{fmt::format("{} of {} as {}: {}, {:.0f} s of them play, {:.2f} km.", duty.id, robot.id, role,
+                                              duration_text(load.duration_s), load.play_s, load.distance_m / 1e3)}},
+                    .paragraphs = {fmt::format("Seed {}. Load: {}.", seed, duty.origin)},
+                    .tables = {role_table(roles)}};
+  add_lines(document.notes, slip_text(load.wheels.front()), Severity::note);
+  const std::optional<double> acceleration_m_per_s2 = robot.limits.acceleration_m_per_s2;
+  const std::optional<double> braking_m_per_s2 = robot.limits.braking_m_per_s2;
+  if (acceleration_m_per_s2 && braking_m_per_s2 && *braking_m_per_s2 > *acceleration_m_per_s2) {
+    document.add_note(Severity::note,
+                      fmt::format("In a match the robot brakes with its acceleration of {} m/s²: its braking limit of {} m/s² is not used.",
+                                  significant(*acceleration_m_per_s2, 3), significant(*braking_m_per_s2, 3)));
+  }
+  return document;
+}
+
+Document recorded_game_document(const GameDemand& game, const Robot& robot, const std::string& log) {
+  Document document{.headline = {{fmt::format("{} of {}, driven by {}: {}.", game.player, std::filesystem::path(log).filename().string(),
+                                              robot.id, duration_text(game.wheels.front().duration_s()))}},
+                    .paragraphs = {}};
+  for (const std::string& sentence : game.sentences) {
+    document.paragraphs.push_back(sentence);
+  }
+  return document;
+}
+
+void add_duty_files(Document& document, const std::string& table, const std::string& description) {
+  document.add_file(table);
+  document.add_file(description);
+  document.add_note(Severity::note, fmt::format("Next: `heatsoak evaluate --duty {}` with a robot.", description));
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,31 @@
+#include "present/lint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace heatsoak::present {
+
+Document lint_document(std::span<const LintFinding> findings, std::size_t files) {
+  const auto count = [&](LintFinding::Level level) { return std::ranges::count(findings, level, &LintFinding::level); };
+  const auto errors = count(LintFinding::Level::error);
+  const auto warnings = count(LintFinding::Level::warning);
+  const bool is_sound = errors + warnings == 0;
+  Document document{.headline = {{fmt::format("{} file{}: {}", files, files == 1 ? "" : "s",
+                                              is_sound ? "sound"
+                                                       : fmt::format("{} error{}, {} warning{}", errors, errors == 1 ? "" : "s", warnings,
+                                                                     warnings == 1 ? "" : "s")),
+                                  is_sound ? Tone::good : Tone::bad}},
+                    .paragraphs = {}};
+  Listing listing{.title = {}, .lines = {}, .is_prose = true};
+  for (const LintFinding& each : findings) {
+    listing.lines +=
+        fmt::format("{}:{}:{}: {}: {}: {}\n", each.at.file, each.at.line, each.at.column, to_string(each.level), each.check, each.message);
+  }
+  if (!listing.lines.empty()) {
+    document.listings.push_back(std::move(listing));
+  }
+  return document;
+}
+
+}  // namespace heatsoak::present

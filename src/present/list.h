@@ -1,0 +1,19 @@
+// Document of `list`.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "present/document.h"
+
+namespace heatsoak::present {
+
+struct NamedThing {
+  std::string id;
+  std::string summary;
+};
+
+/// Returns a table without a head and without a headline, so that the quiet form shows only the names.
+Document list_document(std::span<const NamedThing> things);
+
+}  // namespace heatsoak::present

@@ -1,0 +1,201 @@
+#include "present/match.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "present/closed_loop.h"
+#include "present/evaluation.h"
+#include "present/motor_notes.h"
+#include "present/verdict_words.h"
+#include "robot/assumed_friction.h"
+
+namespace heatsoak {
+
+std::string_view to_string(Planner planner) { return planner == Planner::bang_bang ? "bang_bang" : "jerk_limited"; }
+
+}  // namespace heatsoak
+
+namespace heatsoak::present {
+namespace {
+
+double limited_s(const DriveScore& score, robot_core::Reason limit) {
+  return score.limited_s.at(static_cast<std::size_t>(std::ranges::find(kLimits, limit) - kLimits.begin()));
+}
+
+struct ScoreRow {
+  std::string_view name;
+  std::string_view unit;
+  std::string (*cell)(const DriveScore& score);
+};
+
+constexpr ScoreRow kScores[] = {
+    {"driven", "m", [](const DriveScore& s) { return fmt::format("{:.0f}", s.distance_m); }},
+    {"slip of a mean wheel", "mm per m", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.slip_m / s.distance_m); }},
+    {"  of it sliding", "", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.sliding_m / s.distance_m); }},
+    {"time in which a wheel slides", "s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.sliding_s); }},
+    {"time in which a wheel is lifted", "s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.lifted_s); }},
+    {"tracking error", "mm rms", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.tracking_rms_m); }},
+    {"  largest", "mm", [](const DriveScore& s) { return fmt::format("{:.0f}", 1e3 * s.tracking_most_m); }},
+    {"overshoot, mean of arrivals", "mm",
+     [](const DriveScore& s) { return fmt::format("{:.1f} of {:.0f}", 1e3 * s.overshoot_mean_m, s.arrivals_count); }},
+    {"  largest", "mm", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.overshoot_most_m); }},
+    {"peak current", "A", [](const DriveScore& s) { return fmt::format("{:.1f}", s.peak_current_A); }},
+    {"rms current, hottest motor", "A", [](const DriveScore& s) { return fmt::format("{:.2f}", s.current_rms_A); }},
+    {"driver or battery falls short", "s", [](const DriveScore& s) { return fmt::format("{:.1f}", s.short_s); }},
+    {"lowest battery voltage", "V", [](const DriveScore& s) { return fmt::format("{:.1f}", s.lowest_battery_V); }},
+    {"core limits by traction", "s", [](const DriveScore& s) { return fmt::format("{:.1f}", limited_s(s, robot_core::Reason::traction)); }},
+    {"  by voltage, current or sag", "s",
+     [](const DriveScore& s) {
+       return fmt::format("{:.1f}", limited_s(s, robot_core::Reason::voltage) + limited_s(s, robot_core::Reason::driver_current) +
+                                        limited_s(s, robot_core::Reason::battery_sag));
+     }},
+    {"faults that the core reports", "s", [](const DriveScore& s) { return fmt::format("{:.1f}", s.fault_s); }},
+    {"radio packets lost", "%", [](const DriveScore& s) { return fmt::format("{:.1f}", 100.0 * s.lost_packets_share); }},
+    {"battery empty", "s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.battery_empty_s); }},
+    {"copper heat, all motors", "kJ", [](const DriveScore& s) { return fmt::format("{:.2f}", 1e-3 * s.energy.copper_J); }},
+    {"  per metre", "J", [](const DriveScore& s) { return fmt::format("{:.1f}", s.energy.copper_J / s.distance_m); }},
+    {"  of it in duels", "%", [](const DriveScore& s) { return fmt::format("{:.0f}", 100.0 * s.duel_copper_share); }},
+    {"winding peak", "°C", [](const DriveScore& s) { return fmt::format("{:.1f}", s.winding_peak_C); }},
+    {"stator peak", "°C", [](const DriveScore& s) { return fmt::format("{:.1f}", s.stator_peak_C); }},
+};
+
+/// Returns a table whose columns after name and unit are the planners.
+Table planner_table(std::string title, const MatchAnswer& answer) {
+  Table table{.title = std::move(title), .columns = {{"", "", 0, Alignment::left}, {"", "", 0, Alignment::left}}, .rows = {}};
+  for (const Planner planner : answer.planners) {
+    table.columns.push_back({std::string(to_string(planner)), "", 0});
+  }
+  return table;
+}
+
+template <class Cell>
+void add_row(Table& table, const MatchAnswer& answer, std::string_view name, std::string_view unit, const Cell& cell) {
+  std::vector<Text> row{{std::string(name)}, {std::string(unit)}};
+  for (const DriveScore& score : answer.scores) {
+    row.push_back({cell(score)});
+  }
+  table.rows.push_back(std::move(row));
+}
+
+Table score_table(const MatchAnswer& answer) {
+  Table table = planner_table("How well, and at what price, the match was driven", answer);
+  for (const ScoreRow& each : kScores) {
+    add_row(table, answer, each.name, each.unit, each.cell);
+  }
+  return table;
+}
+
+Table energy_table(const MatchAnswer& answer) {
+  Table table = planner_table("Energy out of the battery", answer);
+  add_row(table, answer, "in all", "kJ", [](const DriveScore& score) { return fmt::format("{:.2f}", 1e-3 * score.energy.battery_J); });
+  for (const EnergyPart& each : energy_parts()) {
+    add_row(table, answer, each.name, "%",
+            [&](const DriveScore& score) { return fmt::format("{:.1f}", 100.0 * score.energy.*each.value / score.energy.battery_J); });
+  }
+  add_row(table, answer, "not accounted for", "%",
+          [](const DriveScore& score) { return fmt::format("{:.3f}", 100.0 * score.energy.residual_J() / score.energy.battery_J); });
+  return table;
+}
+
+/// Reports what the thermal guard did or, in shadow mode, would have done.
+void add_guard_notes(Document& document, const MatchAnswer& answer) {
+  if (answer.guard == GuardUse::off) {
+    document.add_note(Severity::note, "thermal guard: off");
+    return;
+  }
+  if (!answer.made_guard.guard) {
+    document.add_note(Severity::warning,
+                      fmt::format("thermal guard: none, because this motor cannot be guarded: {}", answer.made_guard.why_none));
+    return;
+  }
+  for (std::size_t i = 0; i < answer.scores.size(); ++i) {
+    const DriveScore& score = answer.scores[i];
+    const std::string what = answer.guard == GuardUse::on ? fmt::format("limited a motor for {:.1f} s", score.guard_limited_s)
+                                                          : fmt::format("would have limited a motor for {:.1f} s and taken away {:.1f} A s",
+                                                                        score.guard_limited_s, score.guard_missing_A_s);
+    document.add_note(
+        Severity::note,
+        fmt::format(
+            "thermal guard ({}), {}: {} of {}; its observer, with air of {:.0f} °C and its safety factor on heat, reached {:.0f} °C",
+            kGuardUses[static_cast<std::size_t>(answer.guard)], to_string(answer.planners[i]), what, duration_text(score.time_s),
+            answer.is_sensing_ideal ? answer.duty.ambient_C.value : static_cast<double>(answer.made_guard.guard->model().hottest_ambient_C),
+            score.guard_winding_peak_C));
+  }
+}
+
+std::string passes_or(Verdict verdict) {
+  return verdict == Verdict::pass ? "passes" : verdict == Verdict::fail ? "fails" : "cannot drive this match";
+}
+
+}  // namespace
+
+std::span<const EnergyPart> energy_parts() {
+  static constexpr std::array<EnergyPart, 9> kParts{{{"copper", &EnergyAccount::copper_J},
+                                                     {"iron_and_bearings", &EnergyAccount::motor_drag_J},
+                                                     {"drivers", &EnergyAccount::driver_J},
+                                                     {"battery_resistance", &EnergyAccount::battery_loss_J},
+                                                     {"gear", &EnergyAccount::gear_J},
+                                                     {"rolling", &EnergyAccount::rolling_J},
+                                                     {"wheel_friction", &EnergyAccount::friction_J},
+                                                     {"rollers", &EnergyAccount::roller_J},
+                                                     {"slip", &EnergyAccount::slip_J}}};
+  return kParts;
+}
+
+Document match_document(const MatchAnswer& answer) {
+  const DriveScore& first = answer.scores.front();
+  const auto hottest = std::ranges::max_element(answer.scores, {}, &DriveScore::winding_peak_C);
+  Document document{
+      .headline = {{fmt::format(
+                        "{} {}: the hottest winding, of wheel {}{}, reaches {:.1f} °C (limit {:.0f} °C).", answer.motor.id,
+                        passes_or(answer.verdict), hottest->hottest_wheel + 1,
+                        answer.planners.size() > 1
+                            ? fmt::format(" with {}", to_string(answer.planners[static_cast<std::size_t>(hottest - answer.scores.begin())]))
+                            : "",
+                        hottest->winding_peak_C, answer.motor.nominal.winding_limit_C),
+                    tone_of(answer.verdict)}},
+      .paragraphs = {fmt::format(
+          "{} on {} as {}, seed {}: closed loop of {} at 1 kHz with the drive core, {}, {} thermal data. Load: {}.", answer.robot.id,
+          answer.duty.id, kRoleNames.at(static_cast<std::size_t>(answer.role)), answer.seed, duration_text(first.time_s),
+          answer.is_sensing_ideal ? std::string("exact sensors and no delays")
+                                  : fmt::format("real sensing and {:.0f} radio packets per second", radio_of(answer.robot).packet_rate_Hz),
+          data_quality(answer.motor), answer.duty.origin)},
+      .tables = {score_table(answer), energy_table(answer)}};
+  for (std::size_t i = 0; i < answer.scores.size(); ++i) {
+    if (const std::optional<DriveProblem> problem = drive_problem(answer.scores[i])) {
+      document.add_note(Severity::warning, fmt::format("{}: {}", to_string(answer.planners[i]), words_of(*problem, answer.scores[i])));
+    }
+  }
+  add_guard_notes(document, answer);
+  add_lines(document.notes, inactive_effects({&answer.motor, 1}), Severity::note);
+  if (answer.guard != GuardUse::off) {
+    add_lines(document.notes, default_spreads_text({&answer.motor, 1}), Severity::note);
+  }
+  add_lines(document.notes, assumed_friction_text(answer.robot), Severity::warning);
+  return document;
+}
+
+Document load_simulation_document(const MotorEvaluation& result, const Trace& trace, const Robot& robot, const Motor& motor,
+                                  const Duty& duty, double duration_s) {
+  Document document{.headline = {{fmt::format("{} {}: winding peak {:.1f} °C (limit {:.0f} °C).", motor.id, to_string(result.verdict),
+                                              result.winding_peak_C.nominal, result.winding_limit_C),
+                                  tone_of(result.verdict)}},
+                    .paragraphs = {fmt::format("{} on {} ({}, {}): stator peak {:.1f} °C, rms current {:.2f} A, {} thermal data. Load: {}.",
+                                               robot.id, duty.id, duration_text(duration_s), result.wheel, result.stator_peak_C.nominal,
+                                               result.current_rms_A, result.data_quality, duty.origin)}};
+  Table table{.title = "Mean heat into the nodes (positive: into)",
+              .columns = {{"effect", "", 0, Alignment::left}, {"node", "", 0, Alignment::left}, {"heat", "W", 0}},
+              .rows = {}};
+  for (const BookedHeat& each : trace.balance) {
+    table.rows.push_back({{std::string(each.effect)}, {std::string(each.node)}, {fmt::format("{:+.3f}", each.mean_W)}});
+  }
+  table.rows.push_back({{"stored in the motor"}, {""}, {fmt::format("{:+.3f}", trace.stored_W)}});
+  document.tables.push_back(std::move(table));
+  add_lines(document.notes, why_infeasible(result, robot), Severity::warning);
+  add_lines(document.notes, inactive_effects({&motor, 1}), Severity::note);
+  return document;
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,137 @@
+#include "present/measured/calibration.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/quantity.h"
+#include "present/measured/calibration_words.h"
+
+namespace heatsoak::present {
+namespace {
+
+/// Formats a value with the digits that its interval supports: half the interval width has two.
+std::string with_digits(double value, double half) {
+  const double smallest = std::max(half, 1e-6 * std::abs(value));
+  const int digits = 2 + static_cast<int>(std::floor(std::log10(std::abs(value)))) - static_cast<int>(std::floor(std::log10(smallest)));
+  return significant(value, std::clamp(digits, 1, 6));
+}
+
+Table parameter_table(const Calibration& result) {
+  Table table{.columns = {{"value", "", 0, Alignment::left},
+                          {"file", "", 2},
+                          {"fit", "", 0},
+                          {"95 % interval", "", 0},
+                          {"unit", "", 1, Alignment::left},
+                          {"identifiable", "", 3, Alignment::left}},
+              .rows = {}};
+  for (const CalibratedParameter& each : result.parameters) {
+    const double half = 0.5 * (each.high - each.low);
+    table.rows.push_back({{each.name},
+                          {significant(each.before, 3)},
+                          {with_digits(each.value, half)},
+                          {fmt::format("{}…{}", with_digits(each.low, half), with_digits(each.high, half))},
+                          {std::string(unit_for_display(each.unit))},
+                          {each.is_identifiable ? "yes" : "no"}});
+  }
+  return table;
+}
+
+void add_errors(Table& table, const std::string& what, const std::vector<ErrorBeforeAfter>& errors) {
+  for (const ErrorBeforeAfter& each : errors) {
+    table.rows.push_back({{what},
+                          {each.signal},
+                          {fmt::format("{:.2f}", each.before.rmse_K)},
+                          {fmt::format("{:.2f}", each.after.rmse_K)},
+                          {fmt::format("{:.2f}", each.before.max_abs_K)},
+                          {fmt::format("{:.2f}", each.after.max_abs_K)},
+                          {fmt::format("{}", each.after.samples)}});
+  }
+}
+
+std::vector<Text> headline_of(const Motor& motor, const Calibration& result) {
+  std::vector<std::string> open;
+  for (const CalibratedParameter& each : result.parameters) {
+    if (!each.is_identifiable) {
+      open.push_back(each.name);
+    }
+  }
+  std::vector<Text> sentences{{fmt::format("{} of {} values of {} are identifiable from {} run{}{}{}.",
+                                           result.parameters.size() - open.size(), result.parameters.size(), motor.id, result.runs.size(),
+                                           result.runs.size() == 1 ? "" : "s", open.empty() ? "" : ", all but ", fmt::join(open, ", "))}};
+  if (!result.next_experiment.empty()) {
+    sentences.push_back({fmt::format("Next experiment: {}.", result.next_experiment)});
+  }
+  return sentences;
+}
+
+/// Describes the heat that the written model does not contain.
+std::string heat_words(const Calibration& result) {
+  std::string words;
+  if (result.is_forecast_written) {
+    const ForecastBand& band = result.forecast->band;
+    words = fmt::format(
+        "The written forecast model has no unmodelled heat; its error band allows for {} % of the heat at the winding and {} % at the "
+        "stator, correlated over about {} s.",
+        significant(100.0 * band.unknown_heat_share[0], 2), significant(100.0 * band.unknown_heat_share[1], 2),
+        significant(band.time_scale_s, 1));
+  } else {
+    words = fmt::format("Unmodelled heat: winding {} W rms, stator {} W rms, correlated over about {} s.",
+                        significant(result.fit.flux.rms_W[0], 2), significant(result.fit.flux.rms_W[1], 2),
+                        significant(result.fit.flux.time_scale_s, 1));
+  }
+  if (result.fit.rejected_share > 0.0) {
+    words += fmt::format(" {} % of the samples were left out as outliers.", significant(100.0 * result.fit.rejected_share, 2));
+  }
+  return words;
+}
+
+}  // namespace
+
+Document calibration_document(const Motor& motor, const Calibration& result, const LogRemarks& remarks) {
+  Document document{.headline = headline_of(motor, result)};
+  document.paragraphs.push_back(heat_words(result));
+  document.tables.push_back(parameter_table(result));
+  Table errors{.title = "Error of the free-running model in K",
+               .columns = {{"runs", "", 0, Alignment::left},
+                           {"signal", "", 0, Alignment::left},
+                           {"rms: file", "", 0},
+                           {"fit", "", 0},
+                           {"largest: file", "", 0},
+                           {"fit", "", 0},
+                           {"samples", "", 1}},
+               .rows = {}};
+  add_errors(errors, "fit", result.fit_error);
+  add_errors(errors, result.holdout_after.size() > 1 ? "worst hold-out" : "hold-out", result.holdout_error);
+  document.tables.push_back(std::move(errors));
+  // A wrong unit makes all other warnings meaningless, so it comes first.
+  for (const std::string& note : remarks.of_screening) {
+    document.add_note(Severity::warning, note);
+  }
+  for (const GrownError& each : result.worse) {
+    document.add_note(Severity::warning, words_of(each));
+  }
+  for (const OpenDirection& each : result.open) {
+    document.add_note(Severity::note, fmt::format("Not identifiable: {} ({}). To determine it: {}.", each.what, each.why, each.experiment));
+  }
+  for (const CalibrationFinding& each : result.findings) {
+    document.add_note(severity_of(each), words_of(each));
+  }
+  // Rejected samples rank below notes that limit the answer.
+  for (const std::string& note : remarks.of_reading) {
+    document.add_note(Severity::background, note);
+  }
+  return document;
+}
+
+std::vector<std::string> all_notes(const Calibration& result, const LogRemarks& remarks) {
+  std::vector<std::string> all = remarks.of_reading;
+  all.insert(all.end(), remarks.of_screening.begin(), remarks.of_screening.end());
+  const std::vector<std::string> findings = words_of(result.findings);
+  all.insert(all.end(), findings.begin(), findings.end());
+  return all;
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,194 @@
+#include "present/measured/friction.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/quantity.h"
+
+namespace heatsoak::present {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+/// Formats a value with its interval; `without_interval` explains why there is none.
+std::string estimate_text(const Estimate& estimate, int decimals, double scale = 1.0, const std::string& without_interval = "given") {
+  if (!std::isfinite(estimate.value)) {
+    return "–";
+  }
+  return estimate.is_known() ? fmt::format("{:.{}f} [{:.{}f}…{:.{}f}]", scale * estimate.value, decimals, scale * estimate.low, decimals,
+                                           scale * estimate.high, decimals)
+                             : fmt::format("{:.{}f} ({})", scale * estimate.value, decimals, without_interval);
+}
+
+std::string plural_of(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
+
+Table wheel_table(const FrictionFit& fit, std::size_t rows) {
+  Table table{.title = "Voltage of a wheel: d ω + a sin(θ + phase) + b sign",
+              .columns = {{"wheel", "", 0},
+                          {"d", "V s/rad", 0},
+                          {"a", "V", 0},
+                          {"b", "V", 1},
+                          {"phase", "°", 2},
+                          {"R²", "", 3},
+                          {"rows", "", 4},
+                          {"left out", "", 5}},
+              .rows = {}};
+  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+    const WheelFriction& wheel = fit.wheels[i];
+    if (!wheel.is_learned()) {
+      table.rows.push_back({{fmt::format("{}", i + 1)}, {"not identifiable", Tone::bad}, {"–"}, {"–"}, {"–"}, {"–"}, {"–"}, {"–"}});
+      continue;
+    }
+    table.rows.push_back({{fmt::format("{}", i + 1)},
+                          {estimate_text(wheel.damping_V_s_per_rad, 4)},
+                          {estimate_text(wheel.sine_V, 3)},
+                          {estimate_text(wheel.constant_V, 3)},
+                          {estimate_text(wheel.phase_rad, 1, kDegrees)},
+                          {std::isfinite(wheel.r2_ratio) ? fmt::format("{:.3f}", wheel.r2_ratio) : "–"},
+                          {fmt::format("{}", wheel.rows_used)},
+                          {fmt::format("{}", rows - wheel.rows_used)}});
+  }
+  return table;
+}
+
+/// Adds notes about values that the legs do not determine.
+void add_given_values(Document& document, const FrictionFit& fit) {
+  if (std::ranges::any_of(fit.wheels, &WheelFriction::damping_is_given)) {
+    std::vector<std::string> moves;
+    for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+      if (fit.wheels[i].damping_is_given) {
+        moves.push_back(fmt::format("{} V (wheel {})", significant(0.1 * std::abs(fit.wheels[i].sine_per_damping_V), 2), i + 1));
+      }
+    }
+    document.add_note(
+        Severity::note,
+        fmt::format("d (given) is the motor's back-EMF from its file, because the legs do not determine d. The intervals hold for this d "
+                    "only: a d 10 % larger takes {} from a; legs at a second speed on the same headings determine both.",
+                    fmt::join(moves, ", ")));
+  }
+  if (std::ranges::any_of(fit.wheels, &WheelFriction::phase_is_given)) {
+    document.add_note(
+        Severity::note,
+        fmt::format("phase (given) is a wheel's rolling direction, because its headings are too few to determine it; the intervals allow "
+                    "for {:.0f}° to either side; six or more directions all around determine it.",
+                    FitSettings{}.phase_uncertainty_rad * kDegrees));
+  }
+}
+
+void add_wheel_notes(Document& document, const FrictionFit& fit) {
+  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+    const WheelFriction& wheel = fit.wheels[i];
+    if (!wheel.is_learned()) {
+      document.add_note(Severity::warning, fmt::format("Wheel {} is not identifiable: {}.", i + 1, wheel.problem));
+    }
+    if (wheel.phase_is_bounded) {
+      document.add_note(Severity::note, fmt::format("Wheel {}: the phase is limited by the measured sense of rotation; the friction hardly "
+                                                    "follows a sin(θ+φ) + b sign.",
+                                                    i + 1));
+    }
+    if (std::isfinite(wheel.rotation_V.value)) {
+      document.add_note(Severity::background,
+                        fmt::format("Wheel {} turning on the spot: {} V.", i + 1, estimate_text(wheel.rotation_V, 3)));
+    }
+  }
+  if (std::ranges::any_of(fit.wheels, [](const WheelFriction& wheel) { return wheel.rotation_V.high < 0.0; })) {
+    document.add_note(Severity::warning,
+                      "A friction below 0 V is impossible: the voltage is not proportional to the modulation, or the assumed battery "
+                      "voltage is wrong.");
+  }
+}
+
+std::string what_rolls(const RollOutRun& run) {
+  return run.kind == RollOut::translation ? fmt::format("towards {:.0f}°, {:.2f} N", run.heading_rad * kDegrees, run.force_N)
+         : run.kind == RollOut::rotation  ? "turning"
+                                          : fmt::format("wheel {} lifted", run.wheel + 1);
+}
+
+}  // namespace
+
+Document friction_document(const Robot& robot, const FrictionAnswer& answer) {
+  const auto learned = std::ranges::count_if(answer.fit.wheels, &WheelFriction::is_learned);
+  Document document{
+      .headline = {{fmt::format("{}: the friction of {} of {} wheels is identifiable.", robot.id, learned, answer.fit.wheels.size()),
+                    learned == std::ssize(answer.fit.wheels) ? Tone::good : Tone::undecided}},
+      .paragraphs = {fmt::format("{}, {} rows, {} of them steady in {} on {}; {} {}.", plural_of(answer.logs, "log"), answer.steady.rows,
+                                 answer.steady.rows_steady, plural_of(static_cast<std::size_t>(answer.steady.legs), "leg"),
+                                 plural_of(static_cast<std::size_t>(answer.fit.headings), "heading"),
+                                 plural_of(static_cast<std::size_t>(answer.steady.return_legs), "return leg"),
+                                 answer.uses_return_legs ? "used too" : "left out")},
+      .tables = {wheel_table(answer.fit, answer.steady.rows)}};
+  if (std::isfinite(answer.error.after_V)) {
+    document.paragraphs.push_back(fmt::format(
+        "Hold-out error on {} of {} headings: {}{:.3f} V after the fit.", answer.error.headings, answer.error.all_headings,
+        answer.has_expectation ? fmt::format("{:.3f} V by {}, ", answer.error.before_V, answer.expected_from) : "", answer.error.after_V));
+  }
+  for (const std::string& each : lack_of_fit_words(answer.fit)) {
+    document.add_note(Severity::warning, each);
+  }
+  add_given_values(document, answer.fit);
+  add_wheel_notes(document, answer.fit);
+  return document;
+}
+
+std::vector<std::string> lack_of_fit_words(const FrictionFit& fit) {
+  std::vector<std::string> found;
+  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+    if (const LackOfFit& lack = fit.wheels[i].lack; lack.is_found) {
+      found.push_back(
+          fmt::format("the residual of wheel {} depends on θ: {} V rms beyond the {} V by which {} differ; a sin(θ+φ) + b sign does not "
+                      "hold there, and the intervals are wider by the part that may be in a and b",
+                      i + 1, significant(lack.left_V, 2), significant(lack.repeats_V, 2), lack.repeats));
+    }
+  }
+  return found;
+}
+
+Estimate damping_with_back_emf(const DriveConstants& drive, const Estimate& mechanical_Nm_s_per_rad) {
+  const auto volts = [&](double damping) { return steady_voltage_V(drive, damping, 1.0); };
+  return {volts(mechanical_Nm_s_per_rad.value), volts(mechanical_Nm_s_per_rad.low), volts(mechanical_Nm_s_per_rad.high)};
+}
+
+Document roll_out_document(const Robot& robot, const RollOutResult& result, const DriveConstants& drive, std::size_t logs) {
+  Document document{.headline = {{fmt::format("{}: {} in {}, motors assumed open.", robot.id, plural_of(result.runs.size(), "roll-out"),
+                                              plural_of(logs, "log"))}},
+                    .paragraphs = {"Torque and damping of a wheel without the motor's back-EMF; d with it."}};
+  const auto fitted = [](const Estimate& estimate, int decimals, double scale) {
+    return estimate_text(estimate, decimals, scale, "no interval");
+  };
+  Table wheels{.columns = {{"wheel", "", 0}, {"torque", "mN m", 0}, {"damping", "mN m s/rad", 1}, {"d", "V s/rad", 0}}, .rows = {}};
+  for (std::size_t i = 0; i < result.wheel_damping_Nm_s_per_rad.size(); ++i) {
+    const Estimate& mechanical = result.wheel_damping_Nm_s_per_rad[i];
+    wheels.rows.push_back({{fmt::format("{}", i + 1)},
+                           {fitted(result.wheel_torque_Nm[i], 2, 1e3)},
+                           {fitted(mechanical, 4, 1e3)},
+                           {fitted(damping_with_back_emf(drive, mechanical), 4, 1.0)}});
+  }
+  Table runs{
+      .title = "Roll-outs, values per wheel",
+      .columns = {{"run", "", 0, Alignment::left}, {"torque", "mN m", 0}, {"damping", "mN m s/rad", 0}, {"R²", "", 1}, {"rows", "", 2}},
+      .rows = {}};
+  for (const RollOutRun& run : result.runs) {
+    runs.rows.push_back({{what_rolls(run)},
+                         {fmt::format("{:.1f}", 1e3 * run.wheel_torque_Nm)},
+                         {fmt::format("{:.3f}", 1e3 * run.wheel_damping_Nm_s_per_rad)},
+                         {fmt::format("{:.3f}", run.r2_ratio)},
+                         {fmt::format("{}", run.rows_used)}});
+  }
+  document.tables = {std::move(wheels), std::move(runs)};
+  return document;
+}
+
+void add_findings(Document& document, std::span<const std::string> findings, std::span<const std::string> suspicions) {
+  for (const std::string& suspicion : suspicions) {
+    document.add_note(Severity::warning, fmt::format("suspicious: {}", suspicion));
+  }
+  for (const std::string& finding : findings) {
+    document.add_note(Severity::note, finding);
+  }
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,39 @@
+// Documents of `friction`.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "friction/expected_voltage.h"
+#include "friction/friction_fit.h"
+#include "friction/roll_out.h"
+#include "present/document.h"
+#include "robot/robot.h"
+
+namespace heatsoak::present {
+
+struct FrictionAnswer {
+  const SteadyParts& steady;
+  const FrictionFit& fit;
+  const HeldOutError& error;
+  bool uses_return_legs = false;
+  bool has_expectation = false;      ///< true if `error` also contains the error of a robot file without measurement
+  const std::string& expected_from;  ///< source of that expectation
+  std::size_t logs = 0;
+};
+Document friction_document(const Robot& robot, const FrictionAnswer& answer);
+
+/// Returns one sentence for each wheel whose measurements contradict the assumed friction law.
+std::vector<std::string> lack_of_fit_words(const FrictionFit& fit);
+
+/// `drive` must have a drag torque of 0.
+Document roll_out_document(const Robot& robot, const RollOutResult& result, const DriveConstants& drive, std::size_t logs);
+
+/// Returns the voltage per wheel speed that mechanical damping and back-EMF need together.
+Estimate damping_with_back_emf(const DriveConstants& drive, const Estimate& mechanical_Nm_s_per_rad);
+
+/// Adds the findings as notes and the suspicions as warnings.
+void add_findings(Document& document, std::span<const std::string> findings, std::span<const std::string> suspicions);
+
+}  // namespace heatsoak::present

@@ -1,0 +1,146 @@
+#include "present/measured/log.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/quantity.h"
+#include "present/parameter_table.h"
+
+namespace heatsoak::present {
+namespace {
+
+constexpr std::size_t kShownRanges = 6;
+constexpr std::size_t kShownGaps = 8;
+constexpr int kDigits = 4;
+
+std::string list_of(const std::vector<LineRange>& lines, std::size_t most) {
+  std::vector<std::string> words;
+  for (const LineRange& range : lines) {
+    if (words.size() == most) {
+      words.push_back(fmt::format("and {} more range{}{}", lines.size() - most, lines.size() - most == 1 ? "" : "s",
+                                  lines.size() == LeftOut::kMostRanges ? " at least" : ""));
+      break;
+    }
+    words.push_back(range.first == range.last ? fmt::format("{}", range.first) : fmt::format("{}-{}", range.first, range.last));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string plural(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
+
+std::string sampling_text(const DataQuality& quality) {
+  const Sampling& sampling = quality.sampling;
+  return fmt::format("{} s in all, a row every {} s, jitter {} s", significant(sampling.duration_s, kDigits),
+                     significant(sampling.usual_period_s, 3),
+                     sampling.jitter_s < 1e-6 * sampling.usual_period_s ? "0" : significant(sampling.jitter_s, 2));
+}
+
+std::string runs_text(const DataQuality& quality) {
+  if (quality.gaps.empty()) {
+    return "";
+  }
+  std::vector<std::string> begins;
+  for (std::size_t i = 0; i < std::min(kShownGaps, quality.gaps.size()); ++i) {
+    begins.push_back(fmt::format("{} (after {} s)", quality.gaps[i].line, significant(quality.gaps[i].duration_s, 3)));
+  }
+  if (quality.gaps.size() > kShownGaps) {
+    begins.push_back(fmt::format("and {} more", quality.runs - 1 - kShownGaps));
+  }
+  return fmt::format("{}; they begin at line {}", plural(quality.runs, "run"), fmt::join(begins, ", "));
+}
+
+std::string clock_text(const ClockOffset& offset) {
+  if (!offset.delay_s) {
+    return fmt::format("{} against {}: not determinable, {}", offset.temperature, offset.heat_input, offset.why_not);
+  }
+  return fmt::format("{} follows {} by {:+.2g} s ± {} s (standard error); a clock offset and a sensor's lag are indistinguishable",
+                     offset.temperature, offset.heat_input, *offset.delay_s, significant(offset.delay_uncertainty_s, 2));
+}
+
+Table summary_table(const std::string& title, const Recording& recording, const RecordingReport& report, const DataQuality& quality) {
+  Table table = labelled_table(title);
+  add_labelled(table, "rows",
+               fmt::format("{} of {} kept, {:.1f} MB", plural(report.rows_kept, "row"), report.rows_in_file,
+                           static_cast<double>(report.file_bytes) / 1e6));
+  add_labelled(table, "motor", recording.motor);
+  for (const auto& [key, condition] : recording.conditions) {
+    add_labelled(table, key, condition);
+  }
+  add_labelled(table, "sampling", sampling_text(quality));
+  add_labelled(table, "runs", runs_text(quality));
+  for (const ClockOffset& offset : quality.clock_offsets) {
+    add_labelled(table, "clock", clock_text(offset));
+  }
+  return table;
+}
+
+Table channel_table(const DataQuality& quality) {
+  Table table{.columns = {{"channel", "", 0, Alignment::left},
+                          {"samples", "", 2},
+                          {"left out", "", 1},
+                          {"lowest", "", 0},
+                          {"highest", "", 0},
+                          {"step", "", 4},
+                          {"noise", "", 3},
+                          {"kind", "", 5, Alignment::left}},
+              .rows = {}};
+  for (const ChannelQuality& channel : quality.channels) {
+    table.rows.push_back(
+        {{channel.quantity.key},
+         {fmt::format("{}", channel.samples)},
+         {fmt::format("{}", channel.left_out), channel.left_out > 0 ? Tone::undecided : Tone::neutral},
+         {significant(channel.low, kDigits)},
+         {significant(channel.high, kDigits)},
+         {channel.step > 0.0 ? significant(channel.step, 2) : "–"},
+         {significant(channel.noise, 2)},
+         {channel.quantity.key.starts_with("wheel_") ? "of a robot's wheel" : std::string(to_string(channel.quantity.kind))}});
+  }
+  return table;
+}
+
+void add_fitness(Document& document, const std::string& name, const char* what, const Fitness& fitness) {
+  document.headline.push_back({fitness.is_good() ? fmt::format("{}: usable for {}.", name, what)
+                                                 : fmt::format("{}: not usable for {}: {}.", name, what, fmt::join(fitness.lacks, "; ")),
+                               fitness.is_good() ? Tone::good : Tone::bad});
+}
+
+}  // namespace
+
+std::vector<std::string> left_out_sentences(const RecordingReport& report) {
+  std::vector<std::string> sentences;
+  for (const auto& [what, entry] : report.left_out) {
+    sentences.push_back(fmt::format(
+        "{}: {}; line {}{}", what.first.empty() ? plural(entry.count, "row") : plural(entry.count, "sample") + " of " + what.first,
+        to_string(what.second), list_of(entry.lines, kShownRanges), entry.example.empty() ? "" : fmt::format(" (\"{}\")", entry.example)));
+  }
+  return sentences;
+}
+
+void add_log(Document& document, const Recording& recording, const RecordingReport& report, const DataQuality& quality) {
+  // A thermal log without wheel channels gets no remark about wheels, and a drive log none about heat.
+  const auto has = [&](auto is_of) { return std::ranges::any_of(recording.channels, is_of); };
+  const bool has_wheels = has([](const Channel& channel) { return channel.quantity.key.starts_with("wheel_"); });
+  const bool has_temperatures = has([](const Channel& channel) { return channel.quantity.kind == QuantityKind::temperature; });
+  const std::string name = recording.file.string();
+  if (has_temperatures || !quality.drive.is_good()) {
+    add_fitness(document, name, "thermal models", quality.thermal);
+  }
+  if (has_wheels || !quality.thermal.is_good()) {
+    add_fitness(document, name, "wheel models", quality.drive);
+  }
+  document.tables.push_back(summary_table(recording.name, recording, report, quality));
+  document.tables.push_back(channel_table(quality));
+  for (const std::string& suspicion : quality.suspicions) {
+    document.add_note(Severity::warning, fmt::format("{}: {}", recording.name, suspicion));
+  }
+  for (const std::string& sentence : left_out_sentences(report)) {
+    document.add_note(Severity::note, fmt::format("{}: left out: {}", recording.name, sentence));
+  }
+  for (const std::string& note : report.notes) {
+    document.add_note(Severity::note, fmt::format("{}: {}", recording.name, note));
+  }
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,83 @@
+#include "present/measured/prediction.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/quantity.h"
+
+namespace heatsoak::present {
+namespace {
+
+std::string say(const UnseenCondition& of) {
+  return fmt::format(
+      "The forecast of {0} may be far off: its run has {1}={2}, the model was fitted to runs {3}. Calibrate with a run under {1}={2}.",
+      of.recording, of.key, of.value,
+      of.seen.empty() ? fmt::format("that do not state {}", of.key) : fmt::format("with {}", fmt::join(of.seen, ", ")));
+}
+
+std::string say(const Extrapolation& of) {
+  const std::string_view input = of.channel == "ambient_C"         ? "an ambient temperature"
+                                 : of.channel == "speed_rad_per_s" ? "a speed"
+                                                                   : "a current";
+  return fmt::format("The forecast of {} extrapolates: it has {} of {} {}, the fitted runs had {} to {} {}.", of.recording, input,
+                     significant(of.value, 3), of.unit, significant(of.low, 3), significant(of.high, 3), of.unit);
+}
+
+}  // namespace
+
+std::string words_of(const OutsideTraining& finding) {
+  return std::visit([](const auto& each) { return say(each); }, finding);
+}
+
+std::string fitted_run_words(std::string_view run) {
+  return fmt::format("the error of {} is not a forecast error, because the model was fitted to this run", run);
+}
+
+std::string signal_words(const PredictedSignal& signal) { return signal.signal.substr(0, signal.signal.rfind('_')); }
+
+Document prediction_document(const Motor& motor, const Prediction& prediction, std::span<const std::string> warnings,
+                             std::span<const std::string> of_logs) {
+  Document document;
+  const PredictedSignal* worst = nullptr;
+  const PredictedRun* worst_run = nullptr;
+  Table table{.columns = {{"run", "", 0, Alignment::left},
+                          {"signal", "", 0, Alignment::left},
+                          {"rms error", "K", 0},
+                          {"max. error", "K", 0},
+                          {"within 90 % band", "%", 0},
+                          {"samples", "", 1}},
+              .rows = {}};
+  for (const PredictedRun& run : prediction.runs) {
+    for (const PredictedSignal& each : run.signals) {
+      table.rows.push_back({{run.name},
+                            {signal_words(each)},
+                            {fmt::format("{:.2f}", each.rmse_K)},
+                            {fmt::format("{:.2f}", each.max_abs_K)},
+                            {fmt::format("{:.0f}", 100.0 * each.coverage_share)},
+                            {fmt::format("{}", each.samples)}});
+      if (worst == nullptr || each.rmse_K > worst->rmse_K) {
+        worst = &each;
+        worst_run = &run;
+      }
+    }
+  }
+  if (worst != nullptr) {
+    document.headline.push_back(
+        {fmt::format("{} forecasts {} run{}; the largest error is {} K rms, of the {} in {}.", motor.id, prediction.runs.size(),
+                     prediction.runs.size() == 1 ? "" : "s", significant(worst->rmse_K, 2), signal_words(*worst), worst_run->name)});
+  }
+  document.paragraphs.emplace_back("Each run is predicted from its first temperatures and its measured inputs.");
+  document.tables.push_back(std::move(table));
+  for (const std::string& each : warnings) {
+    document.add_note(Severity::warning, each);
+  }
+  for (const std::string& each : prediction.notes) {
+    const bool is_of_logs = std::ranges::find(of_logs, each) != of_logs.end();
+    document.add_note(is_of_logs ? Severity::background : Severity::note, each);
+  }
+  return document;
+}
+
+}  // namespace heatsoak::present

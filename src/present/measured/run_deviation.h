@@ -1,0 +1,19 @@
+// Document of `describe` for deviations of single runs.
+#pragma once
+
+#include <string>
+
+#include "attribution/run_deviation.h"
+#include "present/document.h"
+
+namespace heatsoak::present {
+
+Document run_deviation_description(const RunDeviationType& type);
+
+/// Formats the typical size with its unit.
+std::string typical_size(const RunDeviationType& type);
+
+/// States at which node and in which runs the deviation acts.
+std::string place_of(const RunDeviationType& type);
+
+}  // namespace heatsoak::present
