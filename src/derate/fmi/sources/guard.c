@@ -48,7 +48,7 @@ const char *model_step(model_state *state, double until_s, model_events events, 
     *is_event = 1;
     if (events == events_after_step) {
       call_until(state, due - 1.0);
-    } else if (due > state->part.calls + 1.0 || next_call_s(state) < until_s) {
+    } else if (due > state->part.calls + 1.0 || next_call_s(state) < until_s - 1e-6 * GUARD_PERIOD_S) {
       until_s = next_call_s(state);
     }
   }
