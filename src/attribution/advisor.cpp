@@ -9,7 +9,6 @@
 #include <functional>
 #include <limits>
 
-#include "attribution/rules.h"
 #include "base/diagnostic.h"
 #include "base/quantity.h"
 
@@ -46,6 +45,7 @@ Levels levels_of(const std::vector<MeasuredRun>& runs) {
   }
   most.ambient_C = runs.front().at.front().ambient_C;
   // A temperature rise of 10 K is harmless even if the runs stayed colder.
+  constexpr double kHarmless_K = 10.0;
   most.measured_C = most.ambient_C + kHarmless_K;
   for (const MeasuredRun& run : runs) {
     for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
@@ -168,11 +168,22 @@ double separation_nats(const RefitResult& fit, const LatentFlux& flux, const std
   const std::vector<LinearisedRun> path{plan.path};
   const std::vector<DesignRun> designs =
       design(fit.model.model.network, path, runs, {}, {}, {candidate_columns(pair, fit.model, path.front(), plan.run)});
-  // θ can absorb the difference only within its posterior from the runs so far.
+  const Whitening whitening(path.front(), flux, designs.front().noise);
+  const Eigen::MatrixXd triangle = run_evidence(path.front(), designs.front().columns, whitening, designs.front().start).triangle;
   const Eigen::Index own = fit.model.free_count();
+  std::vector<Eigen::Index> absorbing;
+  for (Eigen::Index i = 0; i < own; ++i) {
+    absorbing.push_back(i);
+  }
+  absorbing.push_back(own + 1);
+  // θ can absorb the difference only within its posterior from the runs so far.
   const Eigen::MatrixXd precision = (fit.covariance + 1e-12 * Eigen::MatrixXd::Identity(own, own)).inverse();
-  const Eigen::MatrixXd left = reduced(products_of(designs, flux, {}), {precision, Eigen::VectorXd::Zero(own)}).products;
-  return 0.5 * size_share * size_share * std::max(0.0, left(0, 0) - left(0, 1) * left(1, 0) / std::max(1e-12, left(1, 1)));
+  Eigen::MatrixXd others = Eigen::MatrixXd::Zero(triangle.rows() + own, own + 1);
+  others.topRows(triangle.rows()) = triangle(Eigen::all, absorbing);
+  others.bottomLeftCorner(own, own) = precision.llt().matrixU();
+  Eigen::VectorXd column = Eigen::VectorXd::Zero(others.rows());
+  column.head(triangle.rows()) = size_share * triangle.col(own);
+  return 0.5 * (column - others * others.colPivHouseholderQr().solve(column)).squaredNorm();
 }
 
 bool has_nodes_of(const Network& network, const Candidate& candidate) {

@@ -6,13 +6,15 @@
 #include <cmath>
 
 #include "attribution/extended_model.h"
-#include "attribution/rules.h"
 #include "estimation/log_rows.h"
 #include "estimation/spans.h"
 #include "thermal/linearised.h"
 
 namespace heatsoak {
 namespace {
+
+/// Heat capacity of the motors for which the catalogue gives typical sizes (about 50 W).
+constexpr double kUsualCapacity_J_per_K = 120.0;
 
 /// Returns the names of the signals that at least one run lacks.
 std::vector<std::string_view> lacking(const std::vector<Signal>& needs, const std::vector<MeasuredRun>& runs) {
@@ -103,6 +105,9 @@ std::vector<double> scaled(const EffectType& type, std::vector<double> parameter
 
 /// Returns the ratio of the 98th percentile of the current to 8 A; 1 if it is within a factor of 2.5, or without current.
 double current_ratio_of(const std::vector<MeasuredRun>& runs) {
+  constexpr double kUsual_A = 8.0;
+  constexpr double kOrder_ratio = 2.5;
+  constexpr double kTop_share = 0.98;
   std::vector<double> current_A;
   for (const MeasuredRun& run : runs) {
     std::ranges::transform(run.at, std::back_inserter(current_A), [](const OperatingPoint<double>& at) { return at.current_rms_A; });

@@ -6,11 +6,17 @@
 #include <array>
 #include <cmath>
 
-#include "attribution/rules.h"
 #include "base/quantity.h"
 
 namespace heatsoak {
 namespace {
+
+/// Fraction of the time in each tail that does not count as part of the range.
+constexpr double kTail_share = 0.02;
+/// Extension of the range, as a fraction of its width or of its upper end.
+constexpr double kReach_share = 0.1;
+/// Fraction of the time outside the range from which a warning is given.
+constexpr double kMuch_share = 0.25;
 
 struct Watched {
   Signal signal;

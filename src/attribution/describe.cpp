@@ -8,7 +8,6 @@
 #include <span>
 
 #include "attribution/diagnosis.h"
-#include "attribution/rules.h"
 #include "base/quantity.h"
 #include "calibration/unlogged_speed.h"
 
@@ -68,6 +67,7 @@ std::string effect_in_words(const FoundEffect& effect) {
 
 /// Returns warnings about the use of the model for other runs.
 std::string reservations(const Diagnosis& diagnosis, const HoldoutScore& score) {
+  constexpr double kElsewhere_ratio = 3.0;
   std::string text;
   const double before_K = rms_K(score.before);
   const double after_K = rms_K(score.after), train_K = rms_K(diagnosis.after_train);
@@ -117,8 +117,8 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
   }
   if (!diagnosis.changed.empty()) {
     return "The runs contradict the file's parameters. Either these have changed (another mounting, another specimen of the motor), "
-           "or a missing effect acts like such a change; these runs do not determine which. No effect is named" +
-           std::string(diagnosis.selection.keeps_file ? "." : ", and the parameters are fitted to these runs.");
+           "or a missing effect acts like such a change; these runs do not determine which. No effect is named, and the parameters are "
+           "fitted to these runs.";
   }
   return !diagnosis.selection.is_undecided()
              ? fmt::format(
@@ -232,10 +232,8 @@ std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore
     all.emplace_back("These runs do not determine whether this has changed, or whether a missing effect acts like such a change.");
   }
   add_unexplained(diagnosis, all);
-  if (diagnosis.selection.keeps_file) {
-    all.emplace_back(diagnosis.selection.is_as_usual
-                         ? "The file's values are kept: the model follows these runs as well as those that it was fitted to."
-                         : "The file's values are kept: parameters refitted to a part of these runs do not predict the rest better.");
+  if (diagnosis.selection.is_as_usual) {
+    all.emplace_back("The file's values are kept: the model follows these runs as well as those that it was fitted to.");
   }
   const bool is_held_out = !score.before.empty();
   const bool is_more = !diagnosis.effects.empty();

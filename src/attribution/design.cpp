@@ -1,7 +1,6 @@
 #include "attribution/design.h"
 
 #include <Eigen/Dense>
-#include <optional>
 
 #include "base/parallel.h"
 #include "estimation/averaged_run.h"
@@ -44,71 +43,38 @@ std::vector<double> measured_start_C(const Network& network, const MeasuredRun& 
   return {start_C.begin(), start_C.end()};
 }
 
-std::vector<Whitening> whitenings_of(const std::vector<DesignRun>& runs, const LatentFlux& flux) {
-  std::vector<std::optional<Whitening>> each(runs.size());
-  in_parallel(runs.size(), 0, [&](std::size_t r) { each[r].emplace(runs[r].run, flux, runs[r].noise); });
-  std::vector<Whitening> all;
-  for (std::optional<Whitening>& one : each) {
-    all.push_back(std::move(*one));
+Products products_of(const std::vector<DesignRun>& runs, const LatentFlux& flux, const std::vector<Eigen::Index>& columns) {
+  Products out;
+  for (const DesignRun& design : runs) {
+    const Whitening whitening(design.run, flux, design.noise);
+    const Eigen::Index x = design.run.states;
+    const Eigen::Index count = columns.empty() ? design.columns.cols() : static_cast<Eigen::Index>(columns.size());
+    Columns tall(design.columns.rows(), x + count + 1);
+    tall.leftCols(x) = design.run.by_start;
+    if (columns.empty()) {
+      tall.middleCols(x, count) = design.columns;
+    } else {
+      tall.middleCols(x, count) = design.columns(Eigen::all, columns);
+    }
+    tall.rightCols<1>() = design.run.residual_K;
+    whitening.apply(tall);
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(tall.cols(), tall.cols());
+    square.selfadjointView<Eigen::Lower>().rankUpdate(tall.transpose());
+    square.triangularView<Eigen::StrictlyUpper>() = square.transpose();
+    const Eigen::VectorXd precision = design.start.sd_K.cwiseAbs2().cwiseInverse();
+    const Eigen::VectorXd pull = precision.cwiseProduct(design.start.mean_K);
+    square.topLeftCorner(x, x).diagonal() += precision;
+    square.topRightCorner(x, 1) += pull;
+    square.bottomLeftCorner(1, x) += pull.transpose();
+    square(x + count, x + count) += design.start.mean_K.dot(pull);
+    const Eigen::LLT<Eigen::MatrixXd> start(square.topLeftCorner(x, x));
+    const Eigen::MatrixXd across = square.topRightCorner(x, count + 1);
+    const Eigen::MatrixXd rest = square.bottomRightCorner(count + 1, count + 1) - across.transpose() * start.solve(across);
+    out.square = out.square.size() == 0 ? rest : Eigen::MatrixXd(out.square + rest);
+    out.log_determinant +=
+        whitening.log_determinant() + 2.0 * start.matrixLLT().diagonal().array().log().sum() - precision.array().log().sum();
   }
-  return all;
-}
-
-std::vector<FluxEstimate> smoothed_flux_of(const std::vector<DesignRun>& runs, const LatentFlux& flux) {
-  std::vector<FluxEstimate> all(runs.size());
-  in_parallel(runs.size(), 0,
-              [&](std::size_t r) { all[r] = Whitening(runs[r].run, flux, runs[r].noise).smoothed_flux(runs[r].run.residual_K); });
-  return all;
-}
-
-namespace {
-
-/// Products of one run, with its start temperatures eliminated.
-Products products_of_run(const DesignRun& design, const Whitening& whitening, const std::vector<Eigen::Index>& columns,
-                         const Columns* more) {
-  const Eigen::Index x = design.run.states;
-  const Eigen::Index own = columns.empty() ? design.columns.cols() : static_cast<Eigen::Index>(columns.size());
-  const Eigen::Index count = own + (more ? more->cols() : 0);
-  Columns tall(design.columns.rows(), x + count + 1);
-  tall.leftCols(x) = design.run.by_start;
-  if (columns.empty()) {
-    tall.middleCols(x, own) = design.columns;
-  } else {
-    tall.middleCols(x, own) = design.columns(Eigen::all, columns);
-  }
-  if (more) {
-    tall.middleCols(x + own, more->cols()) = *more;
-  }
-  tall.rightCols<1>() = design.run.residual_K;
-  whitening.apply(tall);
-  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(tall.cols(), tall.cols());
-  square.selfadjointView<Eigen::Lower>().rankUpdate(tall.transpose());
-  square.triangularView<Eigen::StrictlyUpper>() = square.transpose();
-  const Eigen::VectorXd precision = design.start.sd_K.cwiseAbs2().cwiseInverse();
-  const Eigen::VectorXd pull = precision.cwiseProduct(design.start.mean_K);
-  square.topLeftCorner(x, x).diagonal() += precision;
-  square.topRightCorner(x, 1) += pull;
-  square.bottomLeftCorner(1, x) += pull.transpose();
-  square(x + count, x + count) += design.start.mean_K.dot(pull);
-  const Eigen::LLT<Eigen::MatrixXd> start(square.topLeftCorner(x, x));
-  const Eigen::MatrixXd across = square.topRightCorner(x, count + 1);
-  return {square.bottomRightCorner(count + 1, count + 1) - across.transpose() * start.solve(across),
-          whitening.log_determinant() + 2.0 * start.matrixLLT().diagonal().array().log().sum() - precision.array().log().sum()};
-}
-
-}  // namespace
-
-Products products_of(const std::vector<DesignRun>& runs, const std::vector<Whitening>& whitenings, const std::vector<Eigen::Index>& columns,
-                     const std::vector<Columns>& more) {
-  std::vector<Products> each(runs.size());
-  in_parallel(runs.size(), 0,
-              [&](std::size_t r) { each[r] = products_of_run(runs[r], whitenings[r], columns, more.empty() ? nullptr : &more[r]); });
-  Products sum = std::move(each.front());
-  for (std::size_t r = 1; r < each.size(); ++r) {
-    sum.square += each[r].square;
-    sum.log_determinant += each[r].log_determinant;
-  }
-  return sum;
+  return out;
 }
 
 Reduced reduced(const Products& products, const ThetaPrior& prior) {

@@ -41,17 +41,8 @@ struct Products {
   double log_determinant = 0.0;  ///< ln|V| + ln|posterior precision of the starts| − ln|prior precision of the starts|
 };
 
-/// Returns the smoothed unknown heat of each run.
-std::vector<FluxEstimate> smoothed_flux_of(const std::vector<DesignRun>& runs, const LatentFlux& flux);
-/// Returns the whitening of each run for one assumed unknown heat. The runs must outlive it.
-std::vector<Whitening> whitenings_of(const std::vector<DesignRun>& runs, const LatentFlux& flux);
-
-/// Computes the products of the columns with these indices, in this order; empty: all columns. `more`: further columns per run, or empty.
-Products products_of(const std::vector<DesignRun>& runs, const std::vector<Whitening>& whitenings, const std::vector<Eigen::Index>& columns,
-                     const std::vector<Columns>& more = {});
-inline Products products_of(const std::vector<DesignRun>& runs, const LatentFlux& flux, const std::vector<Eigen::Index>& columns) {
-  return products_of(runs, whitenings_of(runs, flux), columns);
-}
+/// Computes the products of the columns with these indices, in this order; empty: all columns.
+Products products_of(const std::vector<DesignRun>& runs, const LatentFlux& flux, const std::vector<Eigen::Index>& columns);
 
 /// Normal equations of e candidates after the t parameters θ of the model have been eliminated.
 struct Reduced {

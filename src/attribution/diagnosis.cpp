@@ -12,7 +12,6 @@
 #include "attribution/coverage.h"
 #include "attribution/curve.h"
 #include "attribution/mean_heat.h"
-#include "attribution/rules.h"
 #include "attribution/terms.h"
 #include "attribution/unexplained_heat.h"
 #include "base/parallel.h"
@@ -24,6 +23,12 @@
 
 namespace heatsoak {
 namespace {
+
+/// Change of a parameter's logarithm from which another mounting is assumed.
+constexpr double kOtherMounting = 0.1;
+
+/// Ratio from which an error counts as larger.
+constexpr double kWorse_ratio = 1.1;
 
 /// Returns the errors without run deviations, which the motor file does not contain.
 Errors errors_of_file(ExtendedModel model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {
@@ -61,12 +66,11 @@ class DiagnosisReport {
   [[nodiscard]] const RefitResult& after() const { return out_.selection.after; }
 
   void report_changed_parameters() {
-    const RefitResult& fit = out_.selection.keeps_file ? out_.selection.own : after();
-    const Model& model = fit.model.model;
+    const Model& model = after().model.model;
     const Eigen::VectorXd theta = model.theta();
     for (ChangedParameter parameter : out_.selection.changed) {
       const Eigen::Index own = parameter.coordinate;
-      const double reach = kInterval_sd * std::sqrt(fit.covariance(own, own));
+      const double reach = kInterval_sd * std::sqrt(after().covariance(own, own));
       parameter.before = input_.model.model.values[static_cast<std::size_t>(model.free[static_cast<std::size_t>(own)].place)];
       parameter.value = model.value_of(own, theta[own]);
       parameter.low = model.value_of(own, theta[own] - reach);
@@ -84,7 +88,12 @@ class DiagnosisReport {
 
   /// Returns the smoothed unknown heat of every run, fluxes × samples.
   [[nodiscard]] std::vector<FluxEstimate> smoothed(const RefitResult& fit) const {
-    return smoothed_flux_of(design(fit.model.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {}), fit.flux);
+    std::vector<FluxEstimate> all(fit.fitted.size());
+    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
+    in_parallel(all.size(), 0, [&](std::size_t r) {
+      all[r] = Whitening(fit.fitted[r], fit.flux, designs[r].noise).smoothed_flux(fit.fitted[r].residual_K);
+    });
+    return all;
   }
 
   void report_flux() {
@@ -170,7 +179,7 @@ class DiagnosisReport {
   }
 
   [[nodiscard]] std::vector<InnovationTests> tests_of(const RefitResult& fit) const {
-    std::map<std::string, std::vector<Eigen::VectorXd>> innovations;
+    std::map<std::string, Eigen::VectorXd> innovations;
     std::map<std::string, std::vector<NamedInput>> inputs;
     const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
     for (std::size_t r = 0; r < fit.fitted.size(); ++r) {
@@ -179,11 +188,13 @@ class DiagnosisReport {
       const Eigen::VectorXd& weight = out_.selection.weights[r];
       for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
         const std::string& signal = input_.train[r].sensors[static_cast<std::size_t>(sensor)].signal;
-        Eigen::VectorXd& of_run = innovations[signal].emplace_back(path.samples());
+        Eigen::VectorXd& all = innovations[signal];
+        const Eigen::Index begin = all.size();
+        all.conservativeResize(begin + path.samples());
         for (Eigen::Index k = 0; k < path.samples(); ++k) {
           const Eigen::Index row = k * path.sensors() + sensor;
           const bool counts = !std::isnan(path.residual_K[row]) && (weight.size() == 0 || weight[row] > 0.0);
-          of_run[k] = counts ? standardised[row] : std::nan("");
+          all[begin + k] = counts ? standardised[row] : std::nan("");
         }
         add_inputs(input_.train[r], inputs[signal]);
       }
@@ -204,9 +215,10 @@ class DiagnosisReport {
         found = inputs.end() - 1;
       }
       // A run without the signal takes its rows, too: inputs and innovations are compared row by row.
-      Eigen::VectorXd& of_run = found->values.emplace_back(run.samples());
+      const Eigen::Index begin = found->values.size();
+      found->values.conservativeResize(begin + run.samples());
       for (Eigen::Index k = 0; k < run.samples(); ++k) {
-        of_run[k] = run.has(signal) ? value(run.at[static_cast<std::size_t>(std::min(k, run.samples() - 2))]) : std::nan("");
+        found->values[begin + k] = run.has(signal) ? value(run.at[static_cast<std::size_t>(std::min(k, run.samples() - 2))]) : std::nan("");
       }
     };
     using Point = OperatingPoint<double>;

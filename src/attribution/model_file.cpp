@@ -293,9 +293,6 @@ void score_files(const Motor& before, const Motor& after, const std::vector<Reco
 }
 
 Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
-  if (diagnosis.selection.keeps_file) {
-    return motor;
-  }
   Motor result = motor;
   set_parameters(result, model, diagnosis);
   std::vector<std::string> names;

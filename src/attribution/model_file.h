@@ -25,8 +25,8 @@ struct ModelOfLogs {
 /// no recording has are 0. Throws Failure (bad_input) if the recordings have no heat input that an effect of the motor uses.
 ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& recordings);
 
-/// Returns the motor as it is if the selection keeps the file. Else returns it with the parameters, effects and sensor errors of the
-/// diagnosis; to_toml() writes it as a motor file. Run deviations are not properties of a motor and become notes.
+/// Returns the motor with the parameters, effects and sensor errors of the diagnosis; to_toml() writes it as a motor file. Run deviations
+/// are not properties of a motor and become notes.
 Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis);
 
 /// Predicts the hold-out recordings from both motor files with predict(), and replaces the errors before and after in `score`. Per signal

@@ -4,11 +4,13 @@
 #include <cmath>
 
 #include "attribution/open_loop.h"
-#include "attribution/rules.h"
 #include "base/parallel.h"
 
 namespace heatsoak {
 namespace {
+
+/// Largest gap between two runs of one recording at which the second continues the first.
+constexpr double kContinues_s = 30.0;
 
 std::string recording_of(const MeasuredRun& run) {
   const auto found = run.conditions.find("run");

@@ -6,7 +6,6 @@
 #include <limits>
 #include <numeric>
 
-#include "attribution/rules.h"
 #include "attribution/uneven_bodies.h"
 #include "base/diagnostic.h"
 #include "base/parallel.h"
@@ -16,37 +15,42 @@
 namespace heatsoak {
 namespace {
 
-/// Solves least squares for the moving coordinates with the others fixed at `step`. A direction that neither the runs nor the prior
-/// determine gets a coefficient of 0 and a variance of kUnknownVariance.
-LinearFit fit_moving(const Products& all, const ThetaPrior& prior, const std::vector<Eigen::Index>& moving, const Eigen::VectorXd& step) {
-  const Eigen::Index count = step.size();
-  Eigen::VectorXd fit = step;
-  fit(moving).setZero();
-  const Eigen::MatrixXd posterior = all.square.topLeftCorner(count, count) + prior.precision;
-  const Eigen::VectorXd right = all.square.topRightCorner(count, 1) + prior.precision * prior.mean;
-  const Eigen::MatrixXd own_prior = prior.precision(moving, moving);
-  Eigen::MatrixXd own = posterior(moving, moving);
-  own.diagonal().array() += 1.0 / kUnknownVariance;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(own);
-  const Eigen::VectorXd coefficients = factor.solve(Eigen::VectorXd((right - posterior * fit)(moving)));
-  fit(moving) = coefficients;
-  const double misfit =
-      all.square(count, count) + prior.mean.dot(prior.precision * prior.mean) + fit.dot(posterior * fit) - 2.0 * fit.dot(right);
-  double log_prior = 0.0;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of_prior(own_prior, Eigen::EigenvaluesOnly);
-  for (const double precision : of_prior.eigenvalues()) {
-    log_prior += precision > 1.0 / kUnknownVariance ? std::log(precision) : 0.0;
+/// The fit has converged if the next step promises a smaller decrease; differences of 0.1 nats decide nothing.
+constexpr double kConverged_nats = 0.1;
+
+/// Returns the prior of the moving coordinates with the others fixed at `step`.
+ThetaPrior prior_given(const ThetaPrior& prior, const std::vector<Eigen::Index>& moving, const Eigen::VectorXd& step) {
+  const Eigen::MatrixXd own = prior.precision(moving, moving);
+  Eigen::VectorXd held = step - prior.mean;
+  held(moving).setZero();
+  const Eigen::VectorXd pull = (prior.precision * held)(moving);
+  return {own, prior.mean(moving) - Eigen::VectorXd(own.completeOrthogonalDecomposition().solve(pull))};
+}
+
+/// Solves least squares for the moving coordinates with the others fixed at `step`.
+LinearFit fit_moving(const RunEvidence& all, const ThetaPrior& prior, const std::vector<Eigen::Index>& moving,
+                     const Eigen::VectorXd& step) {
+  const auto inner = static_cast<Eigen::Index>(moving.size());
+  Eigen::VectorXd held = step;
+  held(moving).setZero();
+  Eigen::MatrixXd tall(all.triangle.rows(), inner + 1);
+  tall << all.triangle(Eigen::all, moving), all.triangle.rightCols<1>() - all.triangle.leftCols(step.size()) * held;
+  if (moving.empty()) {
+    return {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0), -0.5 * (tall.squaredNorm() + all.log_determinant), tall.squaredNorm()};
   }
-  const double log_posterior = factor.vectorD().cwiseMax(1.0 / kUnknownVariance).array().log().sum();
-  return {coefficients, factor.solve(Eigen::MatrixXd::Identity(own.rows(), own.rows())),
-          -0.5 * (misfit + all.log_determinant + log_posterior - log_prior), misfit};
+  const Eigen::HouseholderQR<Eigen::MatrixXd> decomposition(tall);
+  const RunEvidence reduced{decomposition.matrixQR().topRows(inner + 1).triangularView<Eigen::Upper>(), all.log_determinant, all.count};
+  const ThetaPrior own = prior_given(prior, moving, step);
+  return linear_fit({&reduced, 1}, own.mean, own.precision);
 }
 
 /// Solves bounded least squares (Stark and Parker 1995, bounded-variable least squares). A coordinate that would leave its bounds is fixed
 /// there, and released again if the gradient points inward.
-LinearFit bounded_fit(const Products& all, const ThetaPrior& prior, const Eigen::VectorXd& low, const Eigen::VectorXd& high) {
+LinearFit bounded_fit(const RunEvidence& all, const ThetaPrior& prior, const Eigen::VectorXd& low, const Eigen::VectorXd& high) {
   const Eigen::Index count = prior.mean.size();
+  const auto data = all.triangle.leftCols(count);
   Eigen::VectorXd step = Eigen::VectorXd::Zero(count).cwiseMax(low).cwiseMin(high);
+  const auto residual = [&] { return Eigen::VectorXd(data * step - all.triangle.rightCols<1>()); };
   std::vector<bool> is_held(static_cast<std::size_t>(count), false);
   std::vector<Eigen::Index> moving;
   LinearFit fit;
@@ -75,8 +79,7 @@ LinearFit bounded_fit(const Products& all, const ThetaPrior& prior, const Eigen:
       is_held[static_cast<std::size_t>(first)] = true;
       continue;
     }
-    const Eigen::VectorXd slope =
-        all.square.topLeftCorner(count, count) * step - all.square.topRightCorner(count, 1) + prior.precision * (step - prior.mean);
+    const Eigen::VectorXd slope = data.transpose() * residual() + prior.precision * (step - prior.mean);
     double steepest = 1e-9 * (1.0 + slope.cwiseAbs().maxCoeff());
     for (Eigen::Index i = 0; i < count; ++i) {
       const double inwards = step[i] <= low[i] ? -slope[i] : slope[i];
@@ -94,7 +97,9 @@ LinearFit bounded_fit(const Products& all, const ThetaPrior& prior, const Eigen:
   if (!moving.empty()) {
     covariance(moving, moving) = fit.covariance;
   }
-  return {std::move(step), std::move(covariance), fit.log_evidence, fit.misfit};
+  // The prior misfit of the fixed coordinates is part of the evidence.
+  const double misfit = residual().squaredNorm() + (step - prior.mean).dot(prior.precision * (step - prior.mean));
+  return {std::move(step), std::move(covariance), fit.log_evidence - 0.5 * (misfit - fit.misfit), misfit};
 }
 
 class Fitter {
@@ -117,7 +122,7 @@ class Fitter {
     linearise_all(now_);
     std::vector<DesignRun> designs = design_of(now_);
     for (int step = 0; step < options_.most_steps; ++step) {
-      const Products all = products_of(designs, now_.flux, {});
+      const RunEvidence all = all_runs(designs, now_.flux);
       const double misfit = misfit_of(all, now_);
       const LinearFit fit = bounded_step(all);
       now_.evidence_nats = fit.log_evidence;
@@ -148,13 +153,28 @@ class Fitter {
     return designs;
   }
 
-  /// Returns the sum of squared whitened residuals at the linearisation point, with optimal start temperatures and the priors included.
-  [[nodiscard]] static double misfit_of(const Products& all, const RefitResult& at) {
-    const ThetaPrior prior = prior_here(at.model);
-    return all.square(all.square.rows() - 1, all.square.rows() - 1) + prior.mean.dot(prior.precision * prior.mean);
+  /// Returns the triangular factor of [columns, residual] of all runs.
+  [[nodiscard]] static RunEvidence all_runs(const std::vector<DesignRun>& designs, const LatentFlux& flux) {
+    std::vector<RunEvidence> each(designs.size());
+    in_parallel(designs.size(), 0, [&](std::size_t r) {
+      const DesignRun& one = designs[r];
+      each[r] = run_evidence(one.run, one.columns, Whitening(one.run, flux, one.noise), one.start);
+    });
+    RunEvidence all{stacked(each), 0.0, 0};
+    for (const RunEvidence& run : each) {
+      all.log_determinant += run.log_determinant;
+      all.count += run.count;
+    }
+    return all;
   }
 
-  [[nodiscard]] LinearFit bounded_step(const Products& all) const {
+  /// Returns the sum of squared whitened residuals at the linearisation point, with optimal start temperatures and the priors included.
+  [[nodiscard]] static double misfit_of(const RunEvidence& all, const RefitResult& at) {
+    const ThetaPrior prior = prior_here(at.model);
+    return all.triangle.rightCols<1>().squaredNorm() + prior.mean.dot(prior.precision * prior.mean);
+  }
+
+  [[nodiscard]] LinearFit bounded_step(const RunEvidence& all) const {
     const Eigen::VectorXd theta = now_.model.theta();
     const Eigen::ArrayXd longest = Eigen::ArrayXd::Constant(theta.size(), options_.longest_step_ratio);
     return bounded_fit(all, prior_here(now_.model), (low_ - theta).array().max(-longest), (high_ - theta).array().min(longest));
@@ -182,7 +202,7 @@ class Fitter {
     std::vector<LinearFit> fits;
     double best_nats = -std::numeric_limits<double>::infinity();
     for (const LatentFlux& flux : options_.around) {
-      fits.push_back(bounded_fit(products_of(designs, flux, {}), prior, low, high));
+      fits.push_back(bounded_fit(all_runs(designs, flux), prior, low, high));
       best_nats = std::max(best_nats, fits.back().log_evidence);
     }
     double total_weight = 0.0;
@@ -239,7 +259,7 @@ class Fitter {
       try {
         RefitResult next = moved(fit.coefficients, start_step_K, share);
         std::vector<DesignRun> next_designs = design_of(next);
-        if (misfit_of(products_of(next_designs, now_.flux, {}), next) < misfit + 1e-9) {
+        if (misfit_of(all_runs(next_designs, now_.flux), next) < misfit + 1e-9) {
           now_ = std::move(next);
           designs = std::move(next_designs);
           return true;

@@ -16,7 +16,6 @@ struct RefitResult {
   double evidence_nats = 0.0;
   Eigen::MatrixXd covariance;  ///< posterior covariance of the coordinates; 0 for those at a bound
   bool converged = false;
-  bool is_free_run = false;  ///< plain least squares of the free run decided the parameters
 };
 
 struct RefitOptions {

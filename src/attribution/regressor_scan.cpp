@@ -6,22 +6,25 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include "attribution/curve.h"
-#include "attribution/rules.h"
 #include "attribution/set_search.h"
 #include "base/parallel.h"
 
 namespace heatsoak {
 namespace {
 
+/// Hat functions of a signal, padded to the number of columns that are whitened at once.
+using HatColumns = Eigen::Matrix<double, Eigen::Dynamic, kKnots + 1, Eigen::RowMajor>;
+/// Prior standard deviation of a curve's heat, as a fraction of the mean heat.
+constexpr double kUsual_share = 0.3;
+
 /// Returns the response of the sensors to `heat_W` (intervals × hats), constant over each interval. The heat enters the node with index
 /// `flux` and leaves the node with index `other`; -1: none.
-Columns response(const LinearisedRun& run, const Columns& heat_W, int flux, int other) {
-  Columns shown = Columns::Zero(run.residual_K.size(), heat_W.cols());
-  Columns state = Columns::Zero(run.states, heat_W.cols());
-  Columns next = state;
+HatColumns response(const LinearisedRun& run, const HatColumns& heat_W, int flux, int other) {
+  HatColumns shown = HatColumns::Zero(run.residual_K.size(), heat_W.cols());
+  HatColumns state = HatColumns::Zero(run.states, heat_W.cols());
+  HatColumns next = state;
   for (Eigen::Index k = 0; k + 1 < run.samples(); ++k) {
     const double* const transition = run.transition.data() + k * run.states * run.states;
     const double* const injection = run.injection.data() + k * run.states * run.fluxes;
@@ -65,8 +68,15 @@ struct Family {
   std::vector<double> knots;
   double usual = 1.0;
   std::vector<Eigen::VectorXd> multiplier;  ///< per run
-  std::vector<Columns> shown;               ///< per run, response to every hat at its typical size
+  std::vector<HatColumns> shown;            ///< per run, response to every hat at its typical size
   Scored scored;
+};
+
+/// Data of one run that all curves use, under one assumed unknown heat.
+struct SharedRun {
+  Whitening whitening;
+  Columns columns;           ///< whitened: start temperatures, θ, members, residual
+  Eigen::MatrixXd products;  ///< whitened columns times themselves, with the prior of the start temperatures
 };
 
 class Scanner {
@@ -79,18 +89,16 @@ class Scanner {
     prior_.mean.head(own) = input.prior.mean;
     prior_.precision = Eigen::MatrixXd::Identity(own + more, own + more) / (input.members.companion_sd * input.members.companion_sd);
     prior_.precision.topLeftCorner(own, own) = input.prior.precision;
-    columns_.resize(static_cast<std::size_t>(own));
-    std::iota(columns_.begin(), columns_.end(), 0);
-    columns_.insert(columns_.end(), input.members.companions.begin(), input.members.companions.end());
-    columns_.insert(columns_.end(), input.members.columns.begin(), input.members.columns.end());
   }
 
   std::vector<ScanResult> run(std::size_t most) {
+    constexpr std::size_t kClimbed = 12;
+    constexpr std::size_t kZoomed = 4;
     std::vector<Family> families = all_families();
     const double without_nats = best_without_nats();
     for (const FluxPlace& place : beginnings()) {
-      const std::vector<Whitening>& whitenings = whitenings_at(place);
-      in_parallel(families.size(), 0, [&](std::size_t i) { take_better(families[i], score(families[i], whitenings, place)); });
+      const std::vector<SharedRun>& shared = shared_at(place);
+      in_parallel(families.size(), 0, [&](std::size_t i) { take_better(families[i], score(families[i], shared, place)); });
     }
     const auto keep_best = [&families](std::size_t count) {
       std::ranges::stable_sort(families, std::greater(), [](const Family& each) { return each.scored.nats; });
@@ -126,7 +134,7 @@ class Scanner {
         squares += multiplier.back().squaredNorm();
         count += static_cast<double>(multiplier.back().size());
       }
-      const double usual = rules_.curve_share * input_.mean_heat_W / std::max(1e-9, std::sqrt(squares / std::max(1.0, count)));
+      const double usual = kUsual_share * input_.mean_heat_W / std::max(1e-9, std::sqrt(squares / std::max(1.0, count)));
       for (std::size_t driver = 0; driver < input_.drivers->size(); ++driver) {
         const Regressor& of = (*input_.drivers)[driver];
         if (!goes_with(of, term.multiplier)) {
@@ -149,6 +157,7 @@ class Scanner {
 
   /// Returns the given grid points, and points with far less unknown heat: a correct curve leaves little of it.
   [[nodiscard]] std::vector<FluxPlace> beginnings() const {
+    constexpr int kLess = 2;
     std::vector<FluxPlace> all = input_.places;
     for (FluxPlace place : input_.places) {
       for (std::size_t axis = 0; axis + 1 < place.size(); ++axis) {
@@ -171,7 +180,7 @@ class Scanner {
   /// Moves to the most probable unknown heat for the curve.
   void climb(Family& family) {
     (void)most_probable(input_.grid, family.scored.place, [&](const FluxPlace& place) {
-      Scored scored = score(family, whitenings_at(place), place);
+      Scored scored = score(family, shared_at(place), place);
       const double nats = scored.nats;
       take_better(family, std::move(scored));
       return nats;
@@ -180,6 +189,7 @@ class Scanner {
 
   /// Concentrates the knots: a thermostat or a resonance is narrower than a seventh of the signal's range.
   void zoom(Family& family) {
+    constexpr int kHalvings = 3;
     const Regressor& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
     for (int half = 0; half < kHalvings; ++half) {
       const double low = family.knots.front();
@@ -191,13 +201,13 @@ class Scanner {
         other.shown.clear();
         other.scored = {};
       }
-      const std::vector<Whitening>& whitenings = whitenings_at(family.scored.place);
+      const std::vector<SharedRun>& shared = shared_at(family.scored.place);
       in_parallel(narrower.size(), 0, [&](std::size_t i) {
         set_responses(narrower[i]);
-        take_better(narrower[i], score(narrower[i], whitenings, family.scored.place));
+        take_better(narrower[i], score(narrower[i], shared, family.scored.place));
       });
       Family& best = *std::ranges::max_element(narrower, {}, [](const Family& each) { return each.scored.nats; });
-      if (best.scored.nats < family.scored.nats + rules_.ambiguous_nats) {
+      if (best.scored.nats < family.scored.nats + rules_.narrow_nats) {
         return;
       }
       climb(best);
@@ -210,7 +220,12 @@ class Scanner {
     double best_nats = -std::numeric_limits<double>::infinity();
     for (const FluxPlace& start : input_.places) {
       (void)most_probable(input_.grid, start, [&](const FluxPlace& place) {
-        const Reduced all = reduced(products_of(*input_.designs, whitenings_at(place), columns_), prior_);
+        const std::vector<SharedRun>& shared = shared_at(place);
+        Products sum;
+        for (std::size_t r = 0; r < shared.size(); ++r) {
+          add_run(shared[r].products, (*input_.designs)[r], shared[r].whitening, sum);
+        }
+        const Reduced all = reduced(sum, prior_);
         double own_nats = -std::numeric_limits<double>::infinity();
         for (std::size_t subset = 0; subset < subsets_; ++subset) {
           own_nats = std::max(own_nats, all.base_nats + gain_of(all, subset, false) + prior_of(subset));
@@ -231,11 +246,11 @@ class Scanner {
   }
 
   /// Returns the heat of every hat along a run at the family's typical size.
-  [[nodiscard]] Columns heats_W(const Family& family, std::size_t r) const {
+  [[nodiscard]] HatColumns heats_W(const Family& family, std::size_t r) const {
     const double sign = is_taken_out(family.term.multiplier) ? -1.0 : 1.0;
     const DesignRun& design = (*input_.designs)[r];
     const Regressor& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
-    Columns heat_W = Columns::Zero(design.run.samples() - 1, kKnots);
+    HatColumns heat_W = HatColumns::Zero(design.run.samples() - 1, kKnots + 1);
     for (Eigen::Index k = 0; k < family.multiplier[r].size(); ++k) {
       const double value = driver.values[r][k];
       const Eigen::Index row = design.interval_of[static_cast<std::size_t>(k)];
@@ -252,9 +267,49 @@ class Scanner {
     return heat_W;
   }
 
-  const std::vector<Whitening>& whitenings_at(const FluxPlace& place) {
-    const auto found = whitenings_.find(place);
-    return found != whitenings_.end() ? found->second : whitenings_[place] = whitenings_of(*input_.designs, input_.grid.at(place));
+  const std::vector<SharedRun>& shared_at(const FluxPlace& place) {
+    const auto found = shared_.find(place);
+    return found != shared_.end() ? found->second : shared_[place] = made_at(input_.grid.at(place));
+  }
+
+  [[nodiscard]] std::vector<SharedRun> made_at(const LatentFlux& flux) const {
+    std::vector<SharedRun> shared;
+    for (const DesignRun& design : *input_.designs) {
+      shared.push_back({Whitening(design.run, flux, design.noise), {}, {}});
+      const Eigen::Index starts = design.run.states;
+      const Eigen::Index own = input_.prior.mean.size();
+      const Eigen::Index t = prior_.mean.size();
+      const auto members = static_cast<Eigen::Index>(input_.members.columns.size());
+      Columns& columns = shared.back().columns;
+      columns.resize(design.columns.rows(), starts + t + members + 1);
+      columns.leftCols(starts) = design.run.by_start;
+      columns.middleCols(starts, own) = design.columns.leftCols(own);
+      columns.middleCols(starts + own, t - own) = design.columns(Eigen::all, input_.members.companions);
+      columns.middleCols(starts + t, members) = design.columns(Eigen::all, input_.members.columns);
+      columns.rightCols<1>() = design.run.residual_K;
+      shared.back().whitening.apply(columns);
+      Eigen::MatrixXd& products = shared.back().products;
+      products = columns.transpose() * columns;
+      const Eigen::VectorXd precision = design.start.sd_K.cwiseAbs2().cwiseInverse();
+      const Eigen::VectorXd pull = precision.cwiseProduct(design.start.mean_K);
+      products.topLeftCorner(starts, starts).diagonal() += precision;
+      products.topRightCorner(starts, 1) += pull;
+      products.bottomLeftCorner(1, starts) += pull.transpose();
+      products(products.rows() - 1, products.cols() - 1) += design.start.mean_K.dot(pull);
+    }
+    return shared;
+  }
+
+  /// Eliminates the start temperatures of a run and adds its products and its determinant to `sum`.
+  static void add_run(const Eigen::MatrixXd& square, const DesignRun& design, const Whitening& whitening, Products& sum) {
+    const Eigen::Index starts = design.run.states;
+    const Eigen::Index rest = square.cols() - starts;
+    const Eigen::LLT<Eigen::MatrixXd> start(square.topLeftCorner(starts, starts));
+    const Eigen::MatrixXd across = square.topRightCorner(starts, rest);
+    const Eigen::MatrixXd left = square.bottomRightCorner(rest, rest) - across.transpose() * start.solve(across);
+    sum.square = sum.square.size() == 0 ? left : Eigen::MatrixXd(sum.square + left);
+    sum.log_determinant +=
+        whitening.log_determinant() + 2.0 * start.matrixLLT().diagonal().array().log().sum() + 2.0 * design.start.sd_K.array().log().sum();
   }
 
   [[nodiscard]] std::vector<Eigen::Index> members_of(std::size_t subset) const {
@@ -297,13 +352,32 @@ class Scanner {
   }
 
   /// Returns the normal equations of [members, hats] with θ eliminated.
-  [[nodiscard]] Reduced reduced_with(const Family& family, const std::vector<Whitening>& whitenings) const {
-    return reduced(products_of(*input_.designs, whitenings, columns_, family.shown), prior_);
+  [[nodiscard]] Reduced reduced_with(const Family& family, const std::vector<SharedRun>& shared) const {
+    Products sum;
+    for (std::size_t r = 0; r < shared.size(); ++r) {
+      HatColumns shown = family.shown[r];
+      shared[r].whitening.apply(shown);
+      const auto hats = shown.leftCols<kKnots>();
+      const Eigen::Index before = shared[r].columns.cols() - 1;
+      const Eigen::MatrixXd across = shared[r].columns.transpose() * hats;
+      Eigen::MatrixXd square(before + kKnots + 1, before + kKnots + 1);
+      square.topLeftCorner(before, before) = shared[r].products.topLeftCorner(before, before);
+      square.block(0, before, before, kKnots) = across.topRows(before);
+      square.block(before, 0, kKnots, before) = across.topRows(before).transpose();
+      square.block(before, before, kKnots, kKnots).noalias() = hats.transpose() * hats;
+      square.block(0, before + kKnots, before, 1) = shared[r].products.block(0, before, before, 1);
+      square.block(before + kKnots, 0, 1, before) = shared[r].products.block(before, 0, 1, before);
+      square.block(before, before + kKnots, kKnots, 1) = across.bottomRows(1).transpose();
+      square.block(before + kKnots, before, 1, kKnots) = across.bottomRows(1);
+      square(before + kKnots, before + kKnots) = shared[r].products(before, before);
+      add_run(square, (*input_.designs)[r], shared[r].whitening, sum);
+    }
+    return reduced(sum, prior_);
   }
 
-  [[nodiscard]] Scored score(const Family& family, const std::vector<Whitening>& whitenings, const FluxPlace& place) const {
-    const Reduced all = reduced_with(family, whitenings);
-    const double second_nats = second_signal(family.term.multiplier).empty() ? 0.0 : rules_.curve_gain_nats;
+  [[nodiscard]] Scored score(const Family& family, const std::vector<SharedRun>& shared, const FluxPlace& place) const {
+    const Reduced all = reduced_with(family, shared);
+    const double second_nats = second_signal(family.term.multiplier).empty() ? 0.0 : rules_.second_signal_nats;
     Scored best;
     for (std::size_t subset = 0; subset < subsets_; ++subset) {
       const double nats = all.base_nats + gain_of(all, subset, true) + prior_of(subset) + rules_.curve_nats - second_nats;
@@ -329,7 +403,7 @@ class Scanner {
     out.usual = family.usual;
     out.knots = family.knots;
     out.gain_nats = family.scored.nats - without_nats;
-    const Reduced at = reduced_with(family, whitenings_at(family.scored.place));
+    const Reduced at = reduced_with(family, shared_at(family.scored.place));
     Eigen::VectorXd sizes;
     Eigen::MatrixXd precision;
     (void)gain_of(at, subset, true, &sizes, &precision);
@@ -377,9 +451,8 @@ class Scanner {
   const SelectionRules& rules_;
   Eigen::MatrixXd precision_;
   std::size_t subsets_;
-  ThetaPrior prior_;                   ///< prior of θ and the companions
-  std::vector<Eigen::Index> columns_;  ///< columns of the design: θ, companions, members
-  std::map<FluxPlace, std::vector<Whitening>> whitenings_;
+  ThetaPrior prior_;  ///< prior of θ and the companions
+  std::map<FluxPlace, std::vector<SharedRun>> shared_;
 };
 
 }  // namespace

@@ -6,11 +6,15 @@
 #include <cmath>
 #include <set>
 
-#include "attribution/rules.h"
 #include "base/unknown.h"
 
 namespace heatsoak {
 namespace {
+
+/// Signals with a larger correlation are copies; the earlier one is kept.
+constexpr double kSameCorrelation_ratio = 0.9995;
+/// Smallest number of samples: a few for each of the seven knots of a curve.
+constexpr std::size_t kFewestSamples = 30;
 
 Regressor driver_of(std::string name, std::string unit, DriverKind kind) {
   Regressor driver;
@@ -80,6 +84,7 @@ class Collector {
 
   /// True if the signal hardly varies within any run: it only distinguishes runs.
   [[nodiscard]] static bool is_label(const Regressor& driver) {
+    constexpr double kLeastWithin_share = 0.2;
     return std::ranges::none_of(driver.values, [&](const Eigen::VectorXd& of_run) {
       double low = driver.high;
       double high = driver.low;

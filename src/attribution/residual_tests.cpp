@@ -4,7 +4,6 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <numbers>
-#include <ranges>
 
 namespace heatsoak {
 namespace {
@@ -12,46 +11,39 @@ namespace {
 constexpr int kLjungBoxLags = 40;
 constexpr int kCrossLags = 20;
 
-using PerRun = std::vector<Eigen::VectorXd>;
-
-/// Σ a(k+lag)·b(k) over the pairs within a run and without NaN, and their number.
+/// Σ a(k+lag)·b(k) over the pairs without NaN, and their number.
 struct LaggedSum {
   double sum = 0.0;
   double count = 0.0;
 };
 
-LaggedSum lagged(const PerRun& a, const PerRun& b, Eigen::Index lag) {
+LaggedSum lagged(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Eigen::Index lag) {
   LaggedSum out;
-  for (std::size_t r = 0; r < a.size(); ++r) {
-    for (Eigen::Index k = 0; k + lag < a[r].size(); ++k) {
-      const double product = a[r][k + lag] * b[r][k];
-      if (!std::isnan(product)) {
-        out.sum += product;
-        out.count += 1.0;
-      }
+  for (Eigen::Index k = 0; k + lag < a.size(); ++k) {
+    const double product = a[k + lag] * b[k];
+    if (!std::isnan(product)) {
+      out.sum += product;
+      out.count += 1.0;
     }
   }
   return out;
 }
 
-/// Returns the values with mean 0 and variance 1 over all runs, ignoring NaN.
-PerRun standardised(PerRun values) {
+/// Returns the values with mean 0 and variance 1, ignoring NaN.
+Eigen::VectorXd standardised(const Eigen::VectorXd& values) {
   double sum = 0.0, squares = 0.0, count = 0.0;
-  for (const double value : values | std::views::join) {
+  for (const double value : values) {
     if (!std::isnan(value)) {
       sum += value, squares += value * value, count += 1.0;
     }
   }
   const double mean = sum / std::max(1.0, count);
   const double variance = squares / std::max(1.0, count) - mean * mean;
-  for (Eigen::VectorXd& of_run : values) {
-    of_run = (of_run.array() - mean) / std::sqrt(variance > 0.0 ? variance : 1.0);
-  }
-  return values;
+  return (values.array() - mean) / std::sqrt(variance > 0.0 ? variance : 1.0);
 }
 
 /// Returns the p-value of the Ljung-Box statistic up to lag 40.
-double ljung_box(const PerRun& z, double count) {
+double ljung_box(const Eigen::VectorXd& z, double count) {
   double statistic = 0.0;
   for (int lag = 1; lag <= kLjungBoxLags; ++lag) {
     const LaggedSum pair = lagged(z, z, lag);
@@ -66,11 +58,8 @@ double ljung_box(const PerRun& z, double count) {
 
 /// Returns the largest distance of the cumulative periodogram from a straight line, in units of the 95 % band. At most 400 equally spaced
 /// frequencies; gaps count as 0.
-double periodogram(const PerRun& z, double count) {
-  Eigen::Index n = 0;
-  for (const Eigen::VectorXd& of_run : z) {
-    n += of_run.size();
-  }
+double periodogram(const Eigen::VectorXd& z, double count) {
+  const Eigen::Index n = z.size();
   const Eigen::Index frequencies = std::min<Eigen::Index>(n / 2, 400);
   std::vector<double> cumulated;
   double total = 0.0;
@@ -83,7 +72,7 @@ double periodogram(const PerRun& z, double count) {
       c[i] = std::cos(angle), s[i] = std::sin(angle);
     }
     Eight re = Eight::Zero(), im = Eight::Zero(), phase_re = Eight::Ones(), phase_im = Eight::Zero();
-    for (const double value : z | std::views::join) {
+    for (const double value : z) {
       if (!std::isnan(value)) {
         re += value * phase_re, im += value * phase_im;
       }
@@ -106,12 +95,11 @@ double periodogram(const PerRun& z, double count) {
 
 }  // namespace
 
-InnovationTests test_innovations(std::string signal, const std::vector<Eigen::VectorXd>& innovation,
-                                 const std::vector<NamedInput>& inputs) {
+InnovationTests test_innovations(std::string signal, const Eigen::VectorXd& innovation, const std::vector<NamedInput>& inputs) {
   InnovationTests out;
   out.signal = std::move(signal);
   double squares = 0.0, fourth = 0.0;
-  for (const double value : innovation | std::views::join) {
+  for (const double value : innovation) {
     if (!std::isnan(value)) {
       squares += value * value;
       fourth += value * value * value * value;
@@ -124,11 +112,11 @@ InnovationTests test_innovations(std::string signal, const std::vector<Eigen::Ve
   const auto count = static_cast<double>(out.count);
   out.variance_ratio = squares / count;
   out.kurtosis_ratio = fourth * count / (3.0 * squares * squares);
-  const PerRun z = standardised(innovation);
+  const Eigen::VectorXd z = standardised(innovation);
   out.ljung_box_probability = ljung_box(z, count);
   out.periodogram_ratio = periodogram(z, count);
   for (const NamedInput& input : inputs) {
-    const PerRun u = standardised(input.values);
+    const Eigen::VectorXd u = standardised(input.values);
     int beyond = 0;
     double largest = 0.0;
     for (int lag = 0; lag <= kCrossLags; ++lag) {

@@ -23,10 +23,10 @@ struct InnovationTests {
 
 struct NamedInput {
   std::string name;
-  std::vector<Eigen::VectorXd> values;  ///< per run, one per innovation; NaN: not known
+  Eigen::VectorXd values;  ///< one per innovation; NaN: not known
 };
 
-/// Tests one sensor. `innovation`: per run, in order of time, NaN for a missing sample. Correlations never pair samples of two runs.
-InnovationTests test_innovations(std::string signal, const std::vector<Eigen::VectorXd>& innovation, const std::vector<NamedInput>& inputs);
+/// Tests one sensor. `innovation` is in order of time, NaN for a missing sample.
+InnovationTests test_innovations(std::string signal, const Eigen::VectorXd& innovation, const std::vector<NamedInput>& inputs);
 
 }  // namespace heatsoak

@@ -11,7 +11,6 @@
 
 #include "attribution/mean_heat.h"
 #include "attribution/open_loop.h"
-#include "attribution/rules.h"
 #include "base/parallel.h"
 #include "calibration/motor_model.h"
 #include "calibration/unlogged_speed.h"
@@ -74,7 +73,8 @@ std::vector<CandidateRule> rules_of(const std::vector<Candidate>& candidates, co
   for (const Candidate& each : candidates) {
     CandidateRule rule;
     rule.has_sign = each.size_spec().range.low >= 0.0;
-    rule.prior_nats = rules.inclusion_nats - std::log(static_cast<double>(counts[group(each)]));
+    const double kind_nats = each.condition.empty() ? rules.inclusion_nats : rules.conditional_nats;
+    rule.prior_nats = kind_nats - std::log(static_cast<double>(counts[group(each)]));
     rule.id = each.id;
     // Offsets of the two sensors have different families: their difference can also be explained by heat.
     rule.family = each.sensor_type ? each.id.substr(0, each.id.rfind('_')) : std::string(each.family());
@@ -180,6 +180,7 @@ Judged Rounds::judge() {
     add_points(judged.designs, prior, grid_.star(best_place_), points);
   }
   // The most probable unknown heat with the best set differs from that without effects.
+  constexpr int kMostMoves = 3;
   for (int move = 0; move < kMostMoves; ++move) {
     std::vector<Reduced> all;
     judged.places.clear();
@@ -197,6 +198,7 @@ Judged Rounds::judge() {
       break;
     }
   }
+  constexpr std::size_t kMostFits = 6;
   search_->reconsider(
       [&](const std::vector<int>& members, const SetSearch::AtBest& at) {
         RefitOptions options = final_options(judged.places[at.point]);
@@ -297,7 +299,10 @@ void Rounds::follow(const Judged& judged) {
   out_.weights = weights_by_model(now_.fitted, input_.runs, unit_W_);
 }
 
-double Rounds::away_from_zero(double share) { return std::abs(share) < kLeast_share ? std::copysign(kLeast_share, share) : share; }
+double Rounds::away_from_zero(double share) {
+  constexpr double kLeast_share = 0.1;
+  return std::abs(share) < kLeast_share ? std::copysign(kLeast_share, share) : share;
+}
 
 void Rounds::take_shapes(const EffectInPlace& fitted, Candidate& candidate) const {
   const auto value_of = [&](std::size_t p) { return now_.model.model.values[static_cast<std::size_t>(fitted.parameter_index[p])]; };
@@ -378,6 +383,7 @@ RefitOptions Rounds::plain_options() const {
 }
 
 double Rounds::error_of_ends_K(const RefitResult& start, RefitOptions options) const {
+  constexpr double kSeen_share = 2.0 / 3.0;
   const auto seen = [](const MeasuredRun& run) { return static_cast<Eigen::Index>(kSeen_share * static_cast<double>(run.samples())); };
   for (std::size_t r = 0; r < input_.runs.size(); ++r) {
     const MeasuredRun& run = input_.runs[r];
@@ -426,7 +432,6 @@ RefitResult Rounds::to_predict(RefitResult fit) const {
   plain.flux = fit.flux;
   plain.evidence_nats = fit.evidence_nats;
   plain.converged = fit.converged;
-  plain.is_free_run = true;
   return plain;
 }
 
@@ -452,19 +457,21 @@ std::vector<std::vector<double>> Rounds::starts_of(const ExtendedModel& model) c
 }
 
 std::map<std::string, double> Rounds::left_by(const RefitResult& fit) const {
+  std::vector<Eigen::VectorXd> squares(input_.runs.size());
+  const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.runs, out_.weights, merged_, {});
+  in_parallel(designs.size(), 0, [&](std::size_t r) {
+    const DesignRun& one = designs[r];
+    squares[r] = Whitening(one.run, fit.flux, one.noise).smoothed_flux(one.run.residual_K).mean_W.rowwise().squaredNorm();
+  });
   std::map<std::string, double> left;
-  double count = 0.0;
-  const auto node = [&](std::size_t f) { return std::string(input_.model.model.network.node_name(input_.model.model.flux_nodes[f])); };
-  const std::size_t fluxes = input_.model.model.flux_nodes.size();
-  for (const FluxEstimate& of_run :
-       smoothed_flux_of(design(fit.model.model.network, fit.fitted, input_.runs, out_.weights, merged_, {}), fit.flux)) {
-    count += static_cast<double>(of_run.mean_W.cols());
-    for (std::size_t f = 0; f < fluxes; ++f) {
-      left[node(f)] += of_run.mean_W.row(static_cast<Eigen::Index>(f)).squaredNorm();
+  for (std::size_t f = 0; f < input_.model.model.flux_nodes.size(); ++f) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::size_t r = 0; r < designs.size(); ++r) {
+      sum += squares[r][static_cast<Eigen::Index>(f)];
+      count += static_cast<double>(designs[r].run.samples());
     }
-  }
-  for (auto& [name, value] : left) {
-    value = std::sqrt(value / count);
+    left[std::string(input_.model.model.network.node_name(input_.model.model.flux_nodes[f]))] = std::sqrt(sum / count);
   }
   return left;
 }

@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "attribution/open_loop.h"
 #include "attribution/rounds.h"
@@ -17,6 +18,9 @@
 
 namespace heatsoak {
 namespace {
+
+/// Explanations whose ln probability differs by less than this cannot be distinguished.
+constexpr double kAmbiguous_nats = 5.0;
 
 /// Decides which members of the best set get a name, whether a curve is accepted, and whether unknown heat remains.
 class Selector : Rounds {
@@ -61,8 +65,7 @@ class Selector : Rounds {
     }
     if (are_runs_as_usual()) {
       out_.is_as_usual = true;
-      out_.changed.clear();
-      keep_file(judged);
+      keep_as_it_is(judged);
       return;
     }
     const std::vector<ScanResult>& scan = out_.rounds.back().scan;
@@ -84,9 +87,6 @@ class Selector : Rounds {
       keep_what_helps(best, named);
     }
     build(judged, best, named);
-    if (out_.terms.empty() && !predicts_better_than_file(out_.own)) {
-      keep_file(judged);
-    }
   }
 
   void refuse(int member, const std::string& why) {
@@ -203,29 +203,12 @@ class Selector : Rounds {
            free_run_error_K(input_.model) < rules_.as_usual_ratio * input_.model.usual_error_K;
   }
 
-  /// True if the refitted parameters predict training runs better than the file does, each run from a fit to all others. A single run is
-  /// predicted in its last third.
-  [[nodiscard]] bool predicts_better_than_file(const RefitResult& fit) const {
-    RefitOptions how = fit.is_free_run ? plain_options() : final_options(best_place_);
-    how.flux = fit.is_free_run ? how.flux : fit.flux;
-    how.around.clear();
-    RefitOptions as_it_is = how;
-    as_it_is.most_steps = 0;
-    RefitResult file = fit;
-    file.model = input_.model;
-    if (input_.runs.size() == 1) {
-      return error_of_ends_K(fit, how) < error_of_ends_K(file, as_it_is);
-    }
-    return left_out_error_K2(fit, input_.runs, how) < left_out_error_K2(file, input_.runs, as_it_is);
-  }
-
-  void keep_file(const Judged& judged) {
+  void keep_as_it_is(const Judged& judged) {
     RefitOptions as_it_is = final_options(judged.empty_place);
     as_it_is.most_steps = 0;
     as_it_is.around.clear();
-    out_.after = refit(input_.model, input_.runs, starts_of(input_.model), as_it_is);
+    out_.after = out_.own = refit(input_.model, input_.runs, starts_of(input_.model), as_it_is);
     out_.after.covariance = input_.model.prior().precision.inverse();
-    out_.keeps_file = true;
   }
 
   /// Keeps only names without which the error of whole runs grows to more than 1/`error_share` times its value.
@@ -295,7 +278,7 @@ class Selector : Rounds {
       term.probability = search_->family_probability(best, m);
       term.loss_without_nats = search_->loss_without_nats(best, m);
       term.visibility_ratio = search_->visibility_ratio(member);
-      for (const int other : search_->stand_ins(best, m, rules_.ambiguous_nats)) {
+      for (const int other : search_->stand_ins(best, m, kAmbiguous_nats)) {
         if (!is_parameter(other)) {
           const Candidate& rival = candidates()[static_cast<std::size_t>(other)];
           if (std::ranges::find(term.confusable_with, rival.id) == term.confusable_with.end()) {
@@ -308,28 +291,28 @@ class Selector : Rounds {
     }
   }
 
-  /// Returns the sum over the training runs of the mean square error in K², each predicted from a fit to all others.
-  [[nodiscard]] double left_out_error_K2(const RefitResult& from, const std::vector<MeasuredRun>& runs, const RefitOptions& how) const {
-    double sum_K2 = 0.0;
+  /// Returns the mean square error in K² of each training run, predicted from a fit to all other runs.
+  [[nodiscard]] std::vector<double> left_out_errors_K2(const ExtendedModel& model, const std::vector<MeasuredRun>& runs,
+                                                       const LatentFlux& flux) const {
+    std::vector<double> errors_K2;
     for (std::size_t left_out = 0; left_out < runs.size(); ++left_out) {
       std::vector<MeasuredRun> others;
       std::vector<std::vector<double>> start_C;
-      RefitOptions own = how;
-      own.weights.clear();
-      own.merged.clear();
+      RefitOptions own;
+      own.flux = flux;
       for (std::size_t r = 0; r < runs.size(); ++r) {
         if (r != left_out) {
           others.push_back(runs[r]);
-          start_C.push_back(from.start_C[r]);
+          start_C.push_back(out_.after.start_C[r]);
           own.weights.push_back(out_.weights[r]);
           own.merged.push_back(merged_[r]);
         }
       }
-      const RefitResult fit = try_refit(from.model, others, start_C, own);
-      sum_K2 += std::isfinite(fit.evidence_nats) ? std::pow(rms_K(open_loop_errors(fit.model, {runs[left_out]}, others)), 2)
-                                                 : std::numeric_limits<double>::infinity();
+      const RefitResult fit = try_refit(model, others, start_C, own);
+      errors_K2.push_back(std::isfinite(fit.evidence_nats) ? std::pow(rms_K(open_loop_errors(fit.model, {runs[left_out]}, others)), 2)
+                                                           : std::numeric_limits<double>::infinity());
     }
-    return sum_K2;
+    return errors_K2;
   }
 
   /// Adds the curve to the model if that improves the prediction of left-out training runs. Returns true if it did.
@@ -341,17 +324,14 @@ class Selector : Rounds {
     }
     std::vector<MeasuredRun> runs = input_.runs;
     set_column(runs, curved->column);
-    const RefitOptions options = final_options(judged.best_place);
-    RefitOptions alone = options;
-    alone.around.clear();
-    RefitResult with_it = out_.after;
-    with_it.model = *curved;
-    const double with_K2 = left_out_error_K2(with_it, runs, alone);
-    alone.flux = out_.after.flux;
-    if (!(with_K2 < left_out_error_K2(out_.after, runs, alone))) {
+    const auto sum_K2 = [&](const ExtendedModel& model, const LatentFlux& flux) {
+      const std::vector<double> errors_K2 = left_out_errors_K2(model, runs, flux);
+      return std::accumulate(errors_K2.begin(), errors_K2.end(), 0.0);
+    };
+    if (!(sum_K2(*curved, final_options(judged.best_place).flux) < sum_K2(out_.after.model, out_.after.flux))) {
       return false;
     }
-    RefitResult fit = try_refit(*curved, runs, out_.after.start_C, options);
+    RefitResult fit = try_refit(*curved, runs, out_.after.start_C, final_options(judged.best_place));
     if (!std::isfinite(fit.evidence_nats)) {
       return false;
     }
@@ -362,7 +342,7 @@ class Selector : Rounds {
     term.probability = 1.0;
     for (const ScanResult& each : out_.rounds.back().scan) {
       const std::string& other = out_.drivers[static_cast<std::size_t>(each.term.driver)].name;
-      if (each.gain_nats > curve.gain_nats - rules_.ambiguous_nats && other != driver.name &&
+      if (each.gain_nats > curve.gain_nats - kAmbiguous_nats && other != driver.name &&
           std::ranges::find(term.confusable_with, other) == term.confusable_with.end()) {
         term.confusable_with.push_back(other);
       }

@@ -72,8 +72,7 @@ struct Selection {
   double seen_share = 1.0;               ///< fraction of the tested effects that would be visible
   double nothing_probability = 1.0;      ///< probability of the empty set
   std::vector<Refusal> refused;
-  bool is_as_usual = false;  ///< the file's model predicts these runs as well as those it was fitted to; it is unchanged
-  bool keeps_file = false;   ///< `after` is the file's model: nothing is named, and a refit does not predict left-out training runs better
+  bool is_as_usual = false;     ///< the file's model predicts these runs as well as those it was fitted to; it is unchanged
   bool is_unexplained = false;  ///< material unknown heat remains, and no effect of the catalogue explains it
 
   /// True if the unknown heat at some node exceeds `material_W`.

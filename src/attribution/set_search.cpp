@@ -8,8 +8,6 @@
 #include <numeric>
 #include <set>
 
-#include "attribution/rules.h"
-
 namespace heatsoak {
 namespace {
 
@@ -135,6 +133,7 @@ std::vector<std::vector<int>> SetSearch::best_of_size(std::size_t size, std::siz
 }
 
 void SetSearch::search() {
+  constexpr std::size_t kGrownFrom = 3;
   const auto count = static_cast<int>(candidates_.size());
   score({});
   for (int j = 0; j < count; ++j) {
@@ -183,6 +182,7 @@ void SetSearch::search() {
 }
 
 void SetSearch::reconsider(const std::function<double(const std::vector<int>&, const AtBest&)>& fitted_nats, std::size_t most) {
+  constexpr double kKept_nats = 5.0;
   std::vector<double> change_nats;
   std::size_t winner = 0;
   for (std::size_t i = 0; i < std::min(most, sets_.size()); ++i) {
@@ -190,7 +190,7 @@ void SetSearch::reconsider(const std::function<double(const std::vector<int>&, c
     change_nats.push_back(fitted_nats(sets_[i].members, at) - at.evidence_nats);
     const auto nats = [&](std::size_t set) { return sets_[set].log_probability_nats + change_nats[set]; };
     winner = nats(i) > nats(winner) ? i : winner;
-    if (change_nats.back() > -rules_.ambiguous_nats) {
+    if (change_nats.back() > -kKept_nats) {
       break;
     }
   }

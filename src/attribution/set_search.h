@@ -42,8 +42,8 @@ class SetSearch {
   SetSearch(std::vector<Reduced> points, std::vector<CandidateRule> candidates, const SelectionRules& rules);
 
   /// Replaces the linear evidence by that of nonlinear fits, best set first, because linear evidence along another set's path can be too
-  /// high. Stops at the first set that loses less than `ambiguous_nats`, or after `most` fits. Sets without a fit change by as much as the
-  /// best fitted one.
+  /// high. Stops at the first set that loses less than 5 nats, or after `most` fits. Sets without a fit change by as much as the best
+  /// fitted one.
   void reconsider(const std::function<double(const std::vector<int>& members, const AtBest& at)>& fitted_nats, std::size_t most);
   /// Returns all evaluated sets, best first.
   [[nodiscard]] const std::vector<EffectSet>& sets() const { return sets_; }

@@ -13,6 +13,12 @@ namespace {
 
 /// Prior standard deviation of a size, in typical sizes.
 constexpr double kSizeSpread_share = SelectionRules{}.size_sd;
+/// Prior standard deviation of the logarithm of a shape parameter.
+constexpr double kShapeSpread = 0.3;
+/// Prior standard deviation of the first and last knot of a curve over a temperature, in gaps between knots.
+constexpr double kKnotSpread = 0.5;
+/// Prior standard deviation of the logarithm for an effect with a body: its capacity may be almost anything.
+constexpr double kBodySpread = 1.0;
 
 std::string named(std::string_view name, std::string usual) { return name.empty() ? std::move(usual) : std::string(name); }
 

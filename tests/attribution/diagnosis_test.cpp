@@ -81,20 +81,6 @@ TEST(Examination, NothingMissingIsSaidToBeNothing) {
   }
 }
 
-/// A data sheet is off by up to 25 %, so a fit to some runs predicts the others better. A model fitted to all runs needs no other fit.
-TEST(Examination, IfNothingIsNamedOnlyARefitThatPredictsLeftOutRunsReplacesTheFile) {
-  const Case one = sealed({}, 1);
-  DiagnosisInput input = question(one, record(one));
-  const Diagnosis of_sheet = diagnose(input, {});
-  EXPECT_FALSE(of_sheet.selection.keeps_file);
-  EXPECT_LT(rms_K(of_sheet.after_train), 0.8 * rms_K(of_sheet.before_train));
-  input.model = of_sheet.selection.after.model;
-  const Diagnosis of_fitted = diagnose(input, {});
-  EXPECT_TRUE(of_fitted.effects.empty());
-  EXPECT_TRUE(of_fitted.selection.keeps_file);
-  EXPECT_EQ(of_fitted.selection.after.model.theta(), input.model.theta());
-}
-
 TEST(Examination, TypicalEffectsAreNamedAndHelpOnUnseenRuns) {
   Case one = sealed({}, 11);
   const double floor_of_all_K = floor_K(one);

@@ -91,9 +91,9 @@ const std::vector<Number>& numbers() {
   constexpr double kInfinity = 1e9;
   static const std::vector<Number> all{
       {"inclusion_nats", &SelectionRules::inclusion_nats, 0.0},
+      {"conditional_nats", &SelectionRules::conditional_nats, 0.0},
       {"size_sd", &SelectionRules::size_sd, 100.0},
       {"body_start_K", &SelectionRules::body_start_K, 1e-3},
-      {"curve_share", &SelectionRules::curve_share, 100.0},
       {"curve_nats", &SelectionRules::curve_nats, 0.0},
       {"curve_level_precision_ratio", &SelectionRules::curve_level_precision_ratio, 1e-4},
       {"curve_step_precision_ratio", &SelectionRules::curve_step_precision_ratio, 1e-4},
@@ -101,12 +101,11 @@ const std::vector<Number>& numbers() {
       {"material_K", &SelectionRules::material_K, 0.0},
       {"material_share", &SelectionRules::material_share, 0.0},
       {"curve_gain_nats", &SelectionRules::curve_gain_nats, 0.0},
-      {"ambiguous_nats", &SelectionRules::ambiguous_nats, 0.0},
-      {"beside_unknown_share", &SelectionRules::beside_unknown_share, kInfinity},
+      {"narrow_nats", &SelectionRules::narrow_nats, kInfinity},
+      {"second_signal_nats", &SelectionRules::second_signal_nats, 0.0},
       {"same_shape_share", &SelectionRules::same_shape_share, 0.0},
       {"same_shape_ratio", &SelectionRules::same_shape_ratio, 0.0},
       {"seen_nats", &SelectionRules::seen_nats, 0.0},
-      {"least_seen_share", &SelectionRules::least_seen_share, 0.0},
       {"start_error_K", &SelectionRules::start_error_K, 0.05},
       {"longest_step_ratio", &SelectionRules::longest_step_ratio, kInfinity},
   };
