@@ -348,7 +348,7 @@ TEST(SimpleFocExporter, CompilesBesideTheHeaderAndLimitsTheMotor) {
   out >> is_enabled >> limit_A;
   EXPECT_EQ(is_enabled, 1);
   // After ten minutes at the limit the current is near the permanent one.
-  EXPECT_NEAR(limit_A, 2.22 / kDcPerIq_ratio, 0.1);
+  EXPECT_NEAR(limit_A, 2.46 / kDcPerIq_ratio, 0.1);
   std::filesystem::remove_all(folder);
 }
 
