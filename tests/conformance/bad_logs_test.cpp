@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
                  }),
                  3, "in no interval do the wheels turn steadily", 3, "no wheel changes its speed beyond the noise"},
         BadDrive{"one_heading", [](std::vector<DriveRow>& rows) { rows.resize(rows.size() / 24); }, 3, "nothing is identifiable", 0,
-                 "usable for wheel models: yes"}),
+                 ": usable for wheel models."}),
     [](const auto& each) { return each.param.name; });
 
 /// Rows of a run, cell by cell: time, winding, stator, ambient, current.
@@ -160,7 +160,7 @@ std::function<void(std::vector<Cells>&)> cells(std::function<void(Cells&)> chang
 
 INSTANTIATE_TEST_SUITE_P(
     One, BadRuns,
-    testing::Values(BadRun{"sound", [](std::vector<Cells>&) {}, 0, "usable for thermal models: yes"},
+    testing::Values(BadRun{"sound", [](std::vector<Cells>&) {}, 0, ": usable for thermal models."},
                     BadRun{"fahrenheit", cells([](Cells& row) { row[1] = 32.0 + 1.8 * row[1]; }), 0, "is it in degrees Fahrenheit"},
                     BadRun{"fahrenheit_of_a_motor_that_heats_at_once",
                            [](std::vector<Cells>& rows) {

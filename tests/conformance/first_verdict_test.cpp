@@ -48,7 +48,7 @@ class FirstVerdict : public testing::Test {
  protected:
   TemporaryFolder folder_;
   fs::path picture_ = folder_.path() / "first_verdict.svg";
-  ProgramRun demo_ = run(demo_words(picture_));
+  ProgramRun demo_ = run(demo_words(picture_), {.environment = {"COLUMNS"}});
 };
 
 TEST_F(FirstVerdict, table_of_the_readme_is_what_the_demo_prints) {

@@ -175,7 +175,7 @@ TEST(DefaultSpread, AFileThatACalibrationWroteGetsNoNoteAboutIt) {
   };
   EXPECT_EQ(notes(), 1) << "the user wrote it";
   figure.source = "calibration";
-  motor.fit.emplace();
+  motor.fit.emplace().parameters = {"thermal_resistance_stator_ambient"};
   EXPECT_EQ(notes(), 0);
 }
 

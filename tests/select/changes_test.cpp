@@ -22,7 +22,8 @@ class Changes : public testing::Test {
 };
 
 // Copper loss at steady state is proportional to the square of the torque. A gear of 1.25 reduces it, and its temperature rise, to 0.64.
-// A cycle of 4 s on and 6 s off becomes 4 s and 9 s, which reduces the mean heat to 10/13; the winding's ripple remains.
+// A cycle of 4 s on and 6 s off becomes 4 s and 9 s. At most, the rise falls to 10/13 times the ratio of the resistances at 67 and 80 °C,
+// 0.957, that is by 0.264. The ripple of the winding does not fall.
 TEST_F(Changes, gear_and_pauses_act_on_a_fixed_load) {
   const Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
   const std::vector<ChangeEffect> all = effects_of_changes(robot_, duty, motor_, {}, 1, 0);
@@ -30,7 +31,7 @@ TEST_F(Changes, gear_and_pauses_act_on_a_fixed_load) {
   EXPECT_GT(of(all, ChangedQuantity::gear_ratio).saved_K, 0.3 * 55.0);
   EXPECT_LT(of(all, ChangedQuantity::gear_ratio).saved_K, 0.5 * 55.0);
   EXPECT_GT(of(all, ChangedQuantity::pauses).saved_K, 0.10 * 55.0);
-  EXPECT_LT(of(all, ChangedQuantity::pauses).saved_K, 0.24 * 55.0);
+  EXPECT_LT(of(all, ChangedQuantity::pauses).saved_K, 0.264 * 55.0);
 }
 
 TEST_F(Changes, another_motor_is_named_only_if_it_passes) {
