@@ -80,11 +80,11 @@ Spread spread_by(const Ratios& by, const ParameterValue& parameter, const Range&
 
 /// Returns the narrowest credible bounds. Well documented files of motor_db state at least 27 % of the default spread. A fit can be more
 /// accurate, but no thermal measurement is more accurate than its sensors. A measured value that no fit supports is a claim: a
-/// thermocouple of 1 K gives 5 % of a rise of 20 K.
+/// thermocouple of 1 K gives 2 % of a rise of 50 K, and a winding differs from the next by about 2 % in resistance and torque constant.
 Ratios least_ratios(const DefaultRow& row, Origin origin, bool is_fitted) {
   constexpr double kLeastShare = 0.25;
   constexpr double kLeastFitted = 0.01;
-  constexpr double kLeastMeasured = 0.05;
+  constexpr double kLeastMeasured = 0.02;
   const Ratios& by = ratios(row, origin == Origin::measured ? Origin::datasheet : origin);
   const double low = kLeastShare * (1.0 - by.low);
   const double high = kLeastShare * (by.high - 1.0);
@@ -197,7 +197,8 @@ std::optional<Spread> spread_or_default(const Motor& motor, std::string_view key
     return std::nullopt;
   }
   const DefaultRow* const row = row_of(key);
-  const std::optional<Spread> other = row ? replacement(*row, found->second, spec->spec.range, is_fitted(motor, key, found->second)) : std::nullopt;
+  const std::optional<Spread> other =
+      row ? replacement(*row, found->second, spec->spec.range, is_fitted(motor, key, found->second)) : std::nullopt;
   return other ? other : found->second.spread;
 }
 

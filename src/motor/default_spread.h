@@ -35,7 +35,7 @@ std::vector<DefaultSpread> default_spreads(const Motor& motor);
 
 /// A stated spread that is narrower than is credible for the origin of its value: on one side less than a quarter of the default of that
 /// key and origin. For a measured value: less than a quarter of the default of a data sheet value, and less than 1 % if the file records
-/// the fit that gave it, else less than 5 %.
+/// the fit that gave it, else less than 2 %.
 struct NarrowSpread {
   std::string key;
   const ParameterValue* parameter = nullptr;
