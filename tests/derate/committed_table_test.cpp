@@ -107,12 +107,12 @@ TEST_P(Committed, IsComparedBetweenThePointsOfOtherAxes) {
   EXPECT_EQ(found.excess.fresh_A, 0.0);
   EXPECT_GT(found.excess.committed_A, 1.0);
   double most_A = 0.0;
-  constexpr int kSteps = 40;
+  constexpr int kPoints = 40;
   const double speed_end = other.table.no_current_speed_rad_per_s;
-  for (int i = 0; i <= kSteps; ++i) {
-    for (int k = 0; k <= kSteps; ++k) {
-      const double speed = speed_end * i / kSteps;
-      const double winding_C = std::lerp(fresh_->table.winding_C.front(), fresh_->table.winding_C.back(), static_cast<double>(k) / kSteps);
+  for (int i = 0; i <= kPoints; ++i) {
+    for (int k = 0; k <= kPoints; ++k) {
+      const double speed = speed_end * i / kPoints;
+      const double winding_C = std::lerp(fresh_->table.winding_C.front(), fresh_->table.winding_C.back(), static_cast<double>(k) / kPoints);
       const double stator_C = fresh_->table.stator_C.front();
       most_A = std::max(most_A, other.table.allowed_A(speed, stator_C, winding_C) - fresh_->table.allowed_A(speed, stator_C, winding_C));
     }

@@ -73,7 +73,7 @@ class Fmu : public testing::TestWithParam<int> {
 
 /// Returns the largest difference to CVODES over a match, in K.
 double difference_K(FmuUnit& unit, const Motor& motor, const std::vector<Moment>& match, const std::vector<std::string>& outputs) {
-  constexpr double kAmbient_C = 31.0;
+  constexpr double kAir_C = 31.0;
   constexpr double kStart_C = 44.0;
   const Network network = datasheet_network(motor, nominal_sample(motor));
   std::vector<double> state_C(static_cast<std::size_t>(network.state_count()), kStart_C);
@@ -87,14 +87,14 @@ double difference_K(FmuUnit& unit, const Motor& motor, const std::vector<Moment>
   for (const Moment& moment : match) {
     EXPECT_EQ(unit.set("current_A", moment.current_A), 0);
     EXPECT_EQ(unit.set("speed_rad_per_s", moment.speed_rad_per_s), 0);
-    EXPECT_EQ(unit.set("ambient_C", kAmbient_C), 0);
+    EXPECT_EQ(unit.set("ambient_C", kAir_C), 0);
     if (unit.has("vehicle_speed_m_per_s")) {
       EXPECT_EQ(unit.set("vehicle_speed_m_per_s", moment.vehicle_speed_m_per_s), 0);
     }
     EXPECT_EQ(unit.step(now_s, moment.duration_s), 0);
     now_s += moment.duration_s;
     const std::array<double, firmware::kSignalCount> signals{
-        moment.current_A, moment.speed_rad_per_s, kAmbient_C, moment.vehicle_speed_m_per_s, kAmbient_C, 0.0, 0.0};
+        moment.current_A, moment.speed_rad_per_s, kAir_C, moment.vehicle_speed_m_per_s, kAir_C, 0.0, 0.0};
     TransientOptions options;
     options.start_C = state_C;
     state_C = run_transient(network, network.values(),
