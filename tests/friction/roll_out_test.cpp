@@ -7,33 +7,15 @@
 #include <random>
 
 #include "robot/plant.h"
+#include "robot/robots_for_tests.h"
 
 namespace heatsoak {
 namespace {
 
 PlantConfig rolling_robot() {
-  Robot robot;
-  robot.mass_kg = 2.6;
-  robot.wheels.radius_m = 0.028;
-  robot.wheels.contact_radius_m = 0.08;
-  for (const double axis_deg : {-30.0, 30.0, 135.0, -135.0}) {
-    robot.wheels.axis_rad.push_back(axis_deg * std::numbers::pi / 180.0);
-  }
-  robot.battery.nominal_V = 22.2;
-  robot.body.yaw_inertia_kg_m2 = 0.011;
-  robot.body.center_of_gravity_height_m = 0.05;
-  robot.wheels.inertia_kg_m2 = 2.2e-5;
+  Robot robot = bare_robot();
   robot.friction.wheel_torque_Nm = 0.012;
   robot.friction.wheel_damping_Nm_s_per_rad = 4e-4;
-  robot.friction.roller_drag_ratio = 0.0;
-  robot.traction.coefficient_ratio = 0.7;
-  robot.traction.slip_speed_m_per_s = 0.05;
-  robot.drive.driver_resistance_ohm = 0.05;
-  robot.drive.driver_standby_W = 0.5;
-  robot.battery.full_V = 25.2;
-  robot.battery.empty_V = 19.8;
-  robot.battery.resistance_ohm = 0.06;
-  robot.battery.capacity_A_s = 4680.0;
   MotorValues motor;
   motor.terminal_resistance_ohm = 0.85;
   motor.torque_constant_Nm_per_A = 0.033;
