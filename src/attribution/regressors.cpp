@@ -129,7 +129,7 @@ void add_operating_points(Collector& all) {
     if (each.is_driver) {
       all.add_where({each.signal.value()}, std::string(each.name), std::string(each.unit), [&](const Point& at) { return at.*each.value; });
     }
-    // Of two signals that are nearly copies, the earlier one is kept.
+    // The later of two signals that are nearly copies is left out.
     if (each.signal == Signal::input_power) {
       all.add_where({Signal::current, Signal::speed}, "current_speed_squared", "A rad2/s2",
                     [](const Point& at) { return at.current_rms_A * at.speed_rms_rad_per_s * at.speed_rms_rad_per_s; });

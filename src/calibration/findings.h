@@ -1,4 +1,4 @@
-// What a calibration found besides values: limits of the answer as data. src/present puts them into words.
+// Findings of a calibration as data: limits of the accuracy and validity of its values. src/present puts them into words.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ struct LossAtSpeedUnknown {
 struct RowsTurn {};
 /// The runs contain heat that the model lacks.
 struct UnmodelledHeat {
-  double share = 0.0;         ///< of the usual heat
+  double share = 0.0;         ///< ratio to the usual heat
   double usual_heat_W = 0.0;  ///< heat that flows through the motor on average
   bool exceeds_share = false;
 };
@@ -116,7 +116,7 @@ bool has_finding(const std::vector<CalibrationFinding>& findings) {
 /// A signal that the fit predicts worse than the original file.
 struct GrownError {
   std::string signal;
-  bool is_holdout = false;   ///< of the hold-out runs; false: of the fitted runs
+  bool is_holdout = false;   ///< true: error of the hold-out runs; false: error of the fitted runs
   double after_K = 0.0;      ///< rms error of the written file
   double before_K = 0.0;     ///< rms error of the original file
   bool is_extended = false;  ///< the written network has additional effects

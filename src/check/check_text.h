@@ -19,7 +19,7 @@ std::string limit_text(const Outcome& outcome);
 /// Robot, duty and motor of a check, as far as it has them.
 std::string things_of(const Check& check);
 
-/// What the value rests on, or why the threshold fails or could not be evaluated.
+/// Returns the basis of the value, or the reason why the threshold fails or could not be evaluated.
 std::string explanation(const Outcome& outcome);
 
 /// One <testsuite> per check and one <testcase> per threshold, as GitHub, GitLab and Jenkins read it. A limit that is exceeded is a

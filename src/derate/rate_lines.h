@@ -37,7 +37,7 @@ class RateLines {
   [[nodiscard]] bool calls_thermal_math() const { return calls_thermal_math_; }
 
  private:
-  /// How a step is written where it is used.
+  /// Text of a step as an operand: its name, or its expression if it has no name.
   struct Text {
     std::string text;
     bool is_joined = false;  ///< two operands and an operator, which need parentheses inside another expression
@@ -52,7 +52,7 @@ class RateLines {
   LineStyle style_;
   std::vector<int> uses_;        ///< by step
   std::map<int, Text> written_;  ///< by step
-  std::set<std::string> names_;  ///< of variables
+  std::set<std::string> names_;  ///< names of variables that are in use
   std::string text_;
   bool calls_square_root_ = false;
   bool calls_thermal_math_ = false;

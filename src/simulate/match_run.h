@@ -12,7 +12,7 @@ namespace heatsoak {
 struct MatchRunOptions {
   Planner planner = Planner::jerk_limited;
   double ambient_C = 25.0;
-  std::optional<double> start_C = {};  ///< of the motors; empty: ambient
+  std::optional<double> start_C = {};  ///< initial temperature of the motors; the ambient if empty
   DriveOptions drive;
   Progress progress;  ///< in whole seconds of the match
 };

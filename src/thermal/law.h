@@ -55,7 +55,7 @@ class HeatBook {
 /// Names of a law's heat in generated code: "winding_to_stator_W", "copper_loss_W".
 struct HeatNames {
   std::string law;
-  std::vector<std::string> nodes;  ///< as the nodes of the network
+  std::vector<std::string> nodes;  ///< node names, in the order of the network
 
   void name_flow(int from_node, int to_node, const Traced& heat_W) const;
   void name_source(int into_node, const Traced& heat_W) const;

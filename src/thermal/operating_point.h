@@ -46,10 +46,10 @@ struct OperatingPoint {
 enum class Signal { current, speed, shaft_power, input_power, modulation, bus_voltage, vehicle_speed, neighbour_temperature, age };
 inline constexpr std::size_t kSignalCount = 9;
 
-/// How a quantity is averaged over time. RMS: its square is averaged. A limit is not averaged.
+/// Rule for averaging a quantity over time. `rms` averages its square. `limit` marks a quantity that is not averaged.
 enum class AveragingRule { mean, rms, limit };
 
-/// How a log column becomes the quantity.
+/// Rule for computing the quantity from its log column.
 enum class FromColumn {
   value,
   magnitude,
@@ -68,7 +68,7 @@ struct OperatingQuantity {
   std::optional<Signal> signal = {};
   std::string_view column = {};  ///< log column of the signal; one quantity of each signal has it
   FromColumn from = FromColumn::computed;
-  std::string_view lacking = {};  ///< what a log without the signal lacks
+  std::string_view lacking = {};  ///< words of the message about a log without the signal
   bool is_driver = false;         ///< can be the input signal of a measured curve (effect `tabulated`)
   std::string_view meaning = {};  ///< description as an input signal
 };

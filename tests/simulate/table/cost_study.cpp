@@ -40,7 +40,7 @@ struct Level {
   std::string name;
   const char* key;
   HardMatch match;
-  std::vector<Game> games;  ///< of the seeds from kFirstSeed on
+  std::vector<Game> games;  ///< generated games of the seeds from kFirstSeed on
 };
 
 struct Known {
