@@ -460,6 +460,11 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
   fit.latent_flux_W = calibration.fit.flux.rms_W;
   fit.free_run_error_K = calibration.fit.free_run_error_K;
   fit.latent_flux_time_scale_s = calibration.fit.flux.time_scale_s;
+  for (const CalibrationFinding& each : calibration.findings) {
+    if (const auto* unmodelled = std::get_if<UnmodelledHeat>(&each)) {
+      fit.unmodelled_heat_share = unmodelled->share;
+    }
+  }
   for (std::size_t i = 0; i < calibration.fit.sensor_nodes.size(); ++i) {
     const std::string& node = calibration.fit.sensor_nodes[i];
     const MeasuredRun& run = *std::ranges::find_if(calibration.runs, [&](const MeasuredRun& r) { return r.sensor_at(node) >= 0; });

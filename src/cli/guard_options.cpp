@@ -24,8 +24,8 @@ void add_derate_options(CLI::App& app, DerateOptions& options) {
   add_quantity(
       app, "--approach", options.approach_s,
       {"approach", "s", Range::between(0.01, 100.0),
-       "in which the winding may approach its limit: a shorter time allows higher peaks, a longer one leaves more current later in a "
-       "long load; a quarter of the winding's time constant unless given"});
+       "in which the winding may approach its limit: a shorter time allows higher peaks while it is cold, a longer one leaves more current "
+       "later in a long load, because the safety factor on heat falls; a quarter of the winding's time constant unless given"});
   add_quantity(app, "--confidence", guarantee.confidence,
                {"confidence", "", Range::between(0.5, 0.999),
                 "least share of motors that keep their limits, shown with 95 % certainty; 0.95 unless given"});
@@ -62,8 +62,9 @@ Motor guarded_motor(const GuardOptions& options, NamedFiles& named) {
 
 void check_derate_options(const DerateOptions& options) {
   if (options.coldest_ambient_C >= options.hottest_ambient_C) {
-    throw Failure(ExitCode::bad_input, fmt::format("--coldest {:.4g} °C is not below --ambient {:.4g} °C", options.coldest_ambient_C,
-                                                   options.hottest_ambient_C));
+    throw Failure(ExitCode::bad_input, fmt::format("the hottest air (--ambient, {:.4g} °C) is not above the coldest air (--coldest, {:.4g} "
+                                                   "°C); expected --coldest COLDER or a hotter --ambient",
+                                                   options.hottest_ambient_C, options.coldest_ambient_C));
   }
 }
 

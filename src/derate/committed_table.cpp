@@ -136,6 +136,11 @@ void read_header(const std::string& text, CommittedTable& committed) {
     require_sound(committed, *committed.table, line);
     return;
   }
+  if (text.find("heatsoak_integer_table") != std::string::npos) {
+    throw bad_input({committed.file.string()}, "",
+                    "is an integer header (c_header_q15), which cannot be compared; commit the table as --to csv or --to c_header as well "
+                    "and check that file");
+  }
   throw bad_input({committed.file.string()}, "",
                   "contains no derating table or is truncated; expected a C header or a CSV table that `heatsoak derate` wrote");
 }

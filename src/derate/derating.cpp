@@ -11,6 +11,7 @@
 #include "base/binomial_bound.h"
 #include "base/diagnostic.h"
 #include "derate/sensed/sensor_plan.h"
+#include "derate/smallest_factor.h"
 #include "motor/datasheet_network.h"
 #include "robot/motor_drive.h"
 #include "thermal/ensemble.h"
@@ -19,7 +20,6 @@ namespace heatsoak {
 namespace {
 
 constexpr double kLargestReserve = 16.0;
-constexpr double kReserveTolerance = 0.01;
 /// Offset between the random streams of the search and those of the check.
 constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
 
@@ -86,8 +86,8 @@ void require_short_period(const Network& network, const BarrierRules& rules, con
   at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = Lanes::Constant(fastest_rad_per_s);
   const double longest_s = 0.2 * longest_step_s(network, parameters, at, rules.limits.winding_C - options.hottest_ambient_C);
   if (options.period_s > longest_s || options.period_s > 0.1 * rules.approach_s) {
-    throw Failure(ExitCode::bad_input, fmt::format("a period of {:.3g} s is too long: expected at most {:.3g} s, the smaller of 1/20 of "
-                                                   "this motor's fastest time constant and 1/10 of --approach",
+    throw Failure(ExitCode::bad_input, fmt::format("a period of {:.3g} s is too long: expected --period {:.3g}s or shorter, the smaller "
+                                                   "of 1/20 of this motor's fastest time constant and 1/10 of --approach",
                                                    options.period_s, std::min(longest_s, 0.1 * rules.approach_s)));
   }
 }
@@ -209,26 +209,11 @@ class Search {
   /// Typical number of attempts for motors of the database, including those of the check.
   static constexpr std::size_t kUsualRounds = 10;
 
-  /// Returns the smallest sufficient safety factor, at least `from`, to kReserveTolerance. The result was itself found to be sufficient.
+  /// Returns the smallest sufficient safety factor, at least `from`. Throws too_hot() if there is none.
   template <class IsEnough>
   [[nodiscard]] double smallest(double from, double growth, const IsEnough& is_enough) const {
-    if (is_enough(from)) {
-      return from;
-    }
-    double low = from;
-    double high = from * growth;
-    while (!is_enough(high)) {
-      low = high;
-      high *= growth;
-      if (high > kLargestReserve) {
-        throw too_hot();
-      }
-    }
-    while (high > low * (1.0 + kReserveTolerance)) {
-      const double middle = 0.5 * (low + high);
-      (is_enough(middle) ? high : low) = middle;
-    }
-    return high;
+    const std::optional<double> found = smallest_factor(from, kLargestReserve, growth, is_enough);
+    return found ? *found : throw too_hot();
   }
 
   const Motor& motor_;
@@ -273,6 +258,7 @@ Derating derate(const Motor& as_written, const Robot& robot, const DerateOptions
                   .uses = std::move(promise.attempt.uses),
                   .reachable_speed_rad_per_s = search.reachable().most_speed_rad_per_s,
                   .default_spreads = default_spreads(as_written),
+                  .unmodelled_heat_share = motor.fit ? motor.fit->unmodelled_heat_share : std::nullopt,
                   .is_brushless = motor.type != "brushed",
                   .heating_current_ratio = heating_factor(robot),
                   .nominal = motor.nominal,

@@ -61,6 +61,7 @@ struct Derating {
   double reachable_speed_rad_per_s = 0.0;  ///< above rules.most_speed if beyond that the motor exceeds a limit even without current
   /// Default tolerances of values for which the motor's file gives none.
   std::vector<DefaultSpread> default_spreads = {};
+  std::optional<double> unmodelled_heat_share = {};  ///< MotorFit::unmodelled_heat_share: not covered by the guarantee
   bool is_brushless = true;
   double heating_current_ratio = 1.0;     ///< heating_factor() of the robot: heating current per equivalent DC current
   MotorValues nominal = {};               ///< nominal values of the motor's file

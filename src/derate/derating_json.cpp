@@ -97,8 +97,7 @@ Json table_json(const CurrentTable& table) {
           {"current_squared_A2", square}};
 }
 
-Json guarantee_json(const Derating& derating) {
-  const Guarantee& checked = derating.guarantee;
+Json guarantee_json(const Derating& derating, const Guarantee& checked) {
   return {{"confidence", derating.options.guarantee.confidence},
           {"certainty", kCertainty_share},
           {"least_kept_share", std::floor(1e4 * checked.least_kept_share) / 1e4},
@@ -129,9 +128,10 @@ Json sensor_json(const Derating& derating) {
           {"lag_s", plan.options.lag_s},
           {"heat_reserve_ratio", rounded(plan.observer.heat_safety_factor(), 4)},
           {"winding_speed_ratio", rounded(plan.winding_speed_ratio, 4)},
-          {"samples", plan.samples},
-          {"over", plan.over},
-          {"winding_peak_C", {{"p95", rounded(plan.winding_p95_C, 2)}, {"most", rounded(plan.winding_most_C, 2)}}},
+          {"guarantee", guarantee_json(derating, plan.guarantee)},
+          {"samples", plan.guarantee.samples},
+          {"over", plan.guarantee.over},
+          {"winding_peak_C", {{"p95", rounded(plan.guarantee.winding_p95_C, 2)}, {"most", rounded(plan.guarantee.winding_most_C, 2)}}},
           {"honest_dropped", plan.dropped},
           {"lying",
            {{"most_gain_A", rounded(plan.most_gain_A, 3)},
@@ -170,11 +170,12 @@ nlohmann::ordered_json derating_json(const Derating& derating) {
           {"limp_current_A", rounded(limp_current_A(derating), 4)},
           {"conditions", derating.assumed},
           {"default_spreads", default_spreads(derating)},
+          {"unmodelled_heat_share", derating.unmodelled_heat_share ? Json(*derating.unmodelled_heat_share) : Json()},
           {"nodes", std::vector<std::string>(derating.observer.state_names().begin(), derating.observer.state_names().end())},
           {"signals", signals},
           {"effects", effects},
           {"observer", observer_json(derating)},
-          {"guarantee", guarantee_json(derating)},
+          {"guarantee", guarantee_json(derating, derating.guarantee)},
           {"sensor", sensor_json(derating)},
           {"table", table_json(derating.table)}};
 }

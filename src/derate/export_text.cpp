@@ -30,14 +30,21 @@ std::string identifier(std::string_view id) {
   return name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0 ? "motor_" + name : name;
 }
 
-std::string confidence_text(const Derating& derating) {
-  const Guarantee& checked = derating.guarantee;
+std::string confidence_text(const Derating& derating, const Guarantee& checked) {
   return fmt::format(
       "Confidence {:.6g}: with {:.0f} % certainty at least {:.1f} % of the motors within their tolerances keep every limit in the {} "
-      "hardest "
-      "uses; {} of {} fresh draws exceeded one.",
+      "hardest uses; {} of {} fresh draws exceeded one.",
       derating.options.guarantee.confidence, 100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0,
       derating.uses.size(), checked.over, checked.samples);
+}
+
+std::string unmodelled_heat_text(const Derating& derating) {
+  return derating.unmodelled_heat_share
+             ? fmt::format(
+                   "DOUBTFUL: the calibration found heat that the model lacks, {:.2g} % of the mean heat or more. The guarantee does "
+                   "not cover it.",
+                   100.0 * *derating.unmodelled_heat_share)
+             : std::string();
 }
 
 std::string provenance_lines(const Derating& derating, std::string_view comment) {
@@ -50,7 +57,11 @@ std::string provenance_lines(const Derating& derating, std::string_view comment)
       comment, in_one_line(derating.motor_id), in_one_line(derating.robot_id), in_one_line(derating.provenance.program_version), kInputHash,
       derating.provenance.input_hash, derating.rules.limits.winding_C,
       derating.rules.limits.stator_C ? fmt::format(", stator limit {:.6g} degC", *derating.rules.limits.stator_C) : "",
-      derating.options.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(), confidence_text(derating));
+      derating.options.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),
+      confidence_text(derating, derating.guarantee));
+  if (const std::string lacking = unmodelled_heat_text(derating); !lacking.empty()) {
+    text += fmt::format("{} {}\n", comment, lacking);
+  }
   for (const auto& [key, value] : derating.assumed) {
     text += fmt::format("{} Valid only if {} is {} (--condition).\n", comment, in_one_line(key), in_one_line(value));
   }

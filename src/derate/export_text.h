@@ -17,8 +17,12 @@ inline constexpr double kDcPerIq_ratio = std::numbers::sqrt3 * std::numbers::pi 
 /// a user's text become spaces, so that it cannot end the comment.
 std::string provenance_lines(const Derating& derating, std::string_view comment);
 
-/// Returns the meaning of the confidence and the result of its check as one line.
-std::string confidence_text(const Derating& derating);
+/// Returns the meaning of the confidence and the result of its check as one line: without a sensor `checked` is Derating::guarantee, with
+/// one SensorPlan::guarantee.
+std::string confidence_text(const Derating& derating, const Guarantee& checked);
+
+/// Returns one line about heat that the calibrated model lacks; empty if there is none.
+std::string unmodelled_heat_text(const Derating& derating);
 
 /// Prefix of the names in generated code: the id with each character other than a letter or digit replaced by "_". Begins with "motor_" if
 /// the id is empty or begins with a digit.

@@ -154,13 +154,17 @@ Guarantee check(const Motor& motor, const TemperatureLimits& limits, std::span<c
     std::ranges::copy(found, all.begin() + static_cast<std::ptrdiff_t>(block * kLanes));
   });
   all.resize(static_cast<std::size_t>(options.samples));
+  return guarantee(all);
+}
+
+Guarantee guarantee(std::span<const MotorPeak> peaks) {
   std::vector<double> winding_C;
   std::vector<char> is_over;
-  for (const MotorPeak& each : all) {
+  for (const MotorPeak& each : peaks) {
     winding_C.push_back(each.winding_C);
     is_over.push_back(each.is_over ? 1 : 0);
   }
-  Guarantee result{.samples = options.samples,
+  Guarantee result{.samples = static_cast<int>(peaks.size()),
                    .over = static_cast<int>(std::ranges::count(is_over, char{1})),
                    .over_share = sample_intervals(winding_C, is_over).probability};
   result.least_kept_share = 1.0 - upper_bound_share(result.over, result.samples, kCertainty_share);

@@ -98,6 +98,9 @@ struct Guarantee {
   double winding_most_C = 0.0;
 };
 
+/// Summarises the peaks of drawn motors, at least one.
+Guarantee guarantee(std::span<const MotorPeak> peaks);
+
 /// Draws motors and simulates them with the currents of the uses. Uses the random streams from `first_stream` on.
 Guarantee check(const Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses, const GuaranteeOptions& options,
                 std::uint64_t first_stream, const Progress& progress = {});

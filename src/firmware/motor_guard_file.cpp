@@ -97,7 +97,10 @@ std::string guarantee(const Derating& derating) {
       derating.rules.limits.winding_C,
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
       derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),
-      checked.winding_most_C, confidence_text(derating));
+      checked.winding_most_C, confidence_text(derating, checked));
+  if (const std::string lacking = unmodelled_heat_text(derating); !lacking.empty()) {
+    text += fmt::format("// {}\n", lacking);
+  }
   if (!derating.default_spreads.empty()) {
     text += fmt::format("// The motor's file gives no tolerance for these values; the drawn motors use defaults by origin:\n//   {}\n",
                         to_string(derating.default_spreads));

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kHeatedNodes{"winding", "stator"};
 constexpr double kLargest_W = 1e6;
+constexpr double kMostShare = 10.0;
 
 Eigen::Map<const Eigen::MatrixXd> as_matrix(const Correlation& correlation) {
   const auto count = static_cast<Eigen::Index>(correlation.count());
@@ -61,7 +62,6 @@ Correlation read_correlation(Reader& table, std::size_t count) {
 
 namespace {
 
-constexpr double kMostShare = 10.0;
 constexpr double kLargestInput = 1e5;
 
 std::optional<ForecastBand> read_band(Reader& table) {
@@ -158,6 +158,9 @@ MotorFit read_fit(Reader& table, std::span<const std::string> parameters) {
   }
   fit.latent_flux_time_scale_s =
       table.quantity({"latent_flux_time_scale", "s", Range::positive(), "its correlation time"}, Need::optional).value_or(0.0);
+  fit.unmodelled_heat_share = table.quantity(
+      {"unmodelled_heat", "", Range::between(0.0, kMostShare), "rms of the heat that the model lacks, per mean heat of the runs"},
+      Need::optional);
   fit.free_run_error_K =
       table
           .quantity({"free_run_error", "K", Range::between(1e-3, 20.0), "rms error of the free runs that determined the values"},
@@ -192,6 +195,10 @@ std::string to_toml(const MotorFit& fit) {
     text += fmt::format("latent_flux_{} = \"{} W\"\n", kHeatedNodes[i], significant(fit.latent_flux_W[i], 2));
   }
   text += fmt::format("latent_flux_time_scale = \"{} s\"\n", significant(fit.latent_flux_time_scale_s, 2));
+  if (fit.unmodelled_heat_share) {
+    text += fmt::format("# the model lacks an effect: this share of the mean heat is not modelled\nunmodelled_heat = \"{}\"\n",
+                        significant(*fit.unmodelled_heat_share, 2));
+  }
   text += fit.extensions.empty()
               ? ""
               : fmt::format("# added for better forecasts, no diagnosis\nextensions = [\"{}\"]\n", fmt::join(fit.extensions, "\", \""));

@@ -62,6 +62,8 @@ struct MotorFit {
   std::vector<std::pair<std::string, double>> noise_K;  ///< per node with a sensor: standard deviation of the noise of one sample
   std::vector<double> latent_flux_W;                    ///< rms of the unknown heat flux into winding and stator
   double latent_flux_time_scale_s = 0.0;
+  /// Present if the runs contain much heat that the model lacks: its rms per mean heat of the runs, > 0. Predictions are then doubtful.
+  std::optional<double> unmodelled_heat_share = {};
   /// Above 0 if the parameters were fitted to simulations of whole runs: their rms error. Short-term predictions would then ask for other
   /// parameters, as in a motor with more thermal bodies than the model.
   double free_run_error_K = 0.0;

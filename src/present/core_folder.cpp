@@ -12,11 +12,11 @@ Document core_folder_document(const CoreFolder& folder, const Derating& derating
   for (const CoreFile& file : folder.files) {
     bytes += file.content.size();
   }
-  Document document{
-      .headline = {{fmt::format("Drive core for {} with {}: {} files, {} kB in {}.", derating.robot_id, derating.motor_id,
-                                folder.files.size(), bytes / 1024, out)}},
-      .paragraphs = {fmt::format("Safety factor on heat {:.2f}. {}", derating.observer.heat_safety_factor(), confidence_text(derating)),
-                     fmt::format("Next: `make -C {0} host` and `make -C {0} firmware`.", out)}};
+  Document document{.headline = {{fmt::format("Drive core for {} with {}: {} files, {} kB in {}.", derating.robot_id, derating.motor_id,
+                                              folder.files.size(), bytes / 1024, out)}},
+                    .paragraphs = {fmt::format("Safety factor on heat {:.2f}. {}", derating.observer.heat_safety_factor(),
+                                               confidence_text(derating, derating.guarantee)),
+                                   fmt::format("Next: `make -C {0} host` and `make -C {0} firmware`.", out)}};
   Table table = labelled_table("");
   add_labelled(table, "winding limit",
                fmt::format("{:.0f} °C in air up to {:.0f} °C, {} thermal data", derating.rules.limits.winding_C,

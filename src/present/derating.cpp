@@ -80,15 +80,16 @@ void add_sensor(Document& document, const Derating& derating) {
   }
   const SensorPlan& plan = *derating.sensor;
   document.paragraphs.push_back(fmt::format(
-      "With {} at the {}, error up to {:.3g} K{}: safety factor on heat {:.2f} (without {:.2f}). Of {} drawn motors with drawn sensor "
-      "errors {} exceeded a limit; their windings reached {:.0f} °C (95th percentile), {:.0f} °C (the hottest). The cross-check drops the "
-      "correct sensor of {}.",
+      "With {} at the {}, error up to {:.3g} K{}: safety factor on heat {:.2f} (without {:.2f}). {} Each draw has its own "
+      "sensor error; the windings reached {:.0f} °C (95th percentile), {:.0f} °C (the hottest). The cross-check drops the correct sensor "
+      "of {}.",
       plan.resistance ? "the resistance from voltage and current" : "a thermistor",
       plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
       plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(),
-      derating.observer.heat_safety_factor(), plan.samples, plan.over, plan.winding_p95_C, plan.winding_most_C, plan.dropped));
+      derating.observer.heat_safety_factor(), confidence_text(derating, plan.guarantee), plan.guarantee.winding_p95_C,
+      plan.guarantee.winding_most_C, plan.dropped));
   document.add_note(
-      Severity::note,
+      Severity::warning,
       fmt::format("A plausible but wrong sensor allows at most {:.2f} A more than without one: the nominal motor then reaches "
                   "{:.0f} °C, and {} of {} drawn motors exceed a limit.",
                   plan.most_gain_A, plan.sensor_fault_nominal_C, plan.sensor_fault_over, derating.options.guarantee.samples));
@@ -117,16 +118,19 @@ Document derating_document(const Derating& derating, const Motor& motor) {
   const Guarantee& checked = derating.guarantee;
   Document document{
       .headline = {{fmt::format(
-          "{} in {}: winding below {:.0f} °C{} in air of {:.0f} °C, {} thermal data.", derating.motor_id, derating.robot_id,
-          derating.rules.limits.winding_C,
-          derating.rules.limits.stator_C ? fmt::format(", stator below {:.0f} °C", *derating.rules.limits.stator_C) : "",
-          derating.rules.hottest_ambient_C, derating.data_quality)}},
-      .paragraphs = {
-          fmt::format("Safety factor on heat {:.2f}. {} At least {} draws are needed for this.", derating.observer.heat_safety_factor(),
-                      confidence_text(derating), least_samples(derating.options.guarantee)),
-          fmt::format("The windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C "
-                      "(the hottest).",
-                      checked.samples, checked.winding_p50_C, checked.winding_p95_C, checked.winding_most_C)}};
+                       "{} in {}: winding below {:.0f} °C{} in air of {:.0f} °C, {} thermal data.", derating.motor_id, derating.robot_id,
+                       derating.rules.limits.winding_C,
+                       derating.rules.limits.stator_C ? fmt::format(", stator below {:.0f} °C", *derating.rules.limits.stator_C) : "",
+                       derating.rules.hottest_ambient_C, derating.data_quality)},
+                   {fmt::format("Safety factor on heat {:.2f}; allowed from cold {:.1f} A, lasting at any speed {:.2f} A.",
+                                derating.observer.heat_safety_factor(),
+                                derating.table.allowed_A(0.0, derating.rules.hottest_ambient_C, derating.rules.hottest_ambient_C),
+                                limp_current_A(derating))}},
+      .paragraphs = {fmt::format("{} At least {} draws are needed for this.", confidence_text(derating, checked),
+                                 least_samples(derating.options.guarantee)),
+                     fmt::format("The windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C "
+                                 "(the hottest).",
+                                 checked.samples, checked.winding_p50_C, checked.winding_p95_C, checked.winding_most_C)}};
   std::vector<std::string> own;
   for (const ActingEffect& effect : derating.effects) {
     if (std::ranges::find(kDatasheetEffects, effect.name) == kDatasheetEffects.end()) {
@@ -139,6 +143,7 @@ Document derating_document(const Derating& derating, const Motor& motor) {
   document.tables.push_back(allowed_currents(derating));
   add_table_notes(document, derating);
   add_sensor(document, derating);
+  add_lines(document.notes, doubtful_fits({&motor, 1}), Severity::warning);
   add_lines(document.notes, default_spreads_text({&motor, 1}), Severity::note);
   add_lines(document.notes, columns_at_their_hottest({&motor, 1}) + effects_under_conditions({&motor, 1}), Severity::note);
   return document;

@@ -169,7 +169,7 @@ Document match_document(const MatchAnswer& answer) {
     }
   }
   add_guard_notes(document, answer);
-  add_lines(document.notes, inactive_effects({&answer.motor, 1}), Severity::note);
+  add_motor_notes(document, {&answer.motor, 1});
   if (answer.guard != GuardUse::off) {
     add_lines(document.notes, default_spreads_text({&answer.motor, 1}), Severity::note);
   }
@@ -194,7 +194,7 @@ Document load_simulation_document(const MotorEvaluation& result, const Trace& tr
   table.rows.push_back({{"stored in the motor"}, {""}, {fmt::format("{:+.3f}", trace.stored_W)}});
   document.tables.push_back(std::move(table));
   add_lines(document.notes, why_infeasible(result, robot), Severity::warning);
-  add_lines(document.notes, inactive_effects({&motor, 1}), Severity::note);
+  add_motor_notes(document, {&motor, 1});
   return document;
 }
 

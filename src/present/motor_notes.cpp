@@ -7,8 +7,10 @@
 #include <iterator>
 #include <vector>
 
+#include "base/quantity.h"
 #include "motor/conditions.h"
 #include "motor/default_spread.h"
+#include "present/evaluation.h"
 
 namespace heatsoak::present {
 
@@ -57,6 +59,25 @@ std::string inactive_effects(std::span<const Motor> motors) {
         text += fmt::format("{}: {} is left out, because a duty does not state {}\n", motor.id, effect.name,
                             needs_neighbour ? "the neighbour's temperature" : "the operating hours of the motor");
       }
+    }
+  }
+  return text;
+}
+
+void add_motor_notes(Document& document, std::span<const Motor> motors) {
+  add_lines(document.notes, doubtful_fits(motors), Severity::warning);
+  add_lines(document.notes, inactive_effects(motors), Severity::note);
+}
+
+std::string doubtful_fits(std::span<const Motor> motors) {
+  std::string text;
+  for (const Motor& motor : motors) {
+    if (motor.fit && motor.fit->unmodelled_heat_share) {
+      text += fmt::format(
+          "{}: the calibration found heat that the model lacks, {} % of the mean heat of its runs or more. Temperatures and allowed "
+          "currents "
+          "may be wrong by more than their intervals state; `heatsoak diagnose` searches for the missing effect\n",
+          motor.id, significant(100.0 * *motor.fit->unmodelled_heat_share, 2));
     }
   }
   return text;

@@ -45,7 +45,7 @@ TEST(SensorPlan, ThermistorLowersTheSafetyFactor) {
   EXPECT_GT(plan.lasting[0].with_A, plan.lasting[0].without_A);
   EXPECT_GT(plan.most_gain_A, 0.1);
   EXPECT_LE(plan.sensor_fault_nominal_C, derating.rules.limits.winding_C);
-  EXPECT_LE(plan.over, 0.05 * plan.samples);
+  EXPECT_GE(plan.guarantee.least_kept_share, derating.options.guarantee.confidence);
   RecordProperty("safety_factor_without", fmt::format("{:.3f}", derating.observer.heat_safety_factor()));
   RecordProperty("safety_factor_with", fmt::format("{:.3f}", plan.observer.heat_safety_factor()));
   RecordProperty("most_gain_A", fmt::format("{:.2f}", plan.most_gain_A));

@@ -191,7 +191,7 @@ ExitCode run(Options& options, Session& session) {
     ranks = rank_closed_loop(drive_games(robot, match->inputs(), motors, drive, progress_bar("driving games")), results);
   }
   present::Document document = present::evaluation_document(results, {robot, duty, wheels.front(), options.evaluate.seed, draws.size()});
-  present::add_lines(document.notes, present::inactive_effects(motors), present::Severity::note);
+  present::add_motor_notes(document, motors);
   present::add_lines(document.notes, present::default_spreads_text(motors), present::Severity::note);
   std::vector<ChangeEffect> changes;
   // The motor that the robot is built with if it is among the results, else the best one.

@@ -78,7 +78,7 @@ ExitCode run(const Options& options, Session& session) {
   const bool runaway = periodic.runaway;
   const bool over = runaway || !(periodic.peak_C[states::winding] <= values.winding_limit_C);
   present::Document document = present::steady_document({motor, periodic, rms, is_bare, options.current.ambient_C, over});
-  present::add_lines(document.notes, present::inactive_effects({&motor, 1}), present::Severity::note);
+  present::add_motor_notes(document, {&motor, 1});
   session.show(document);
   using Json = nlohmann::ordered_json;
   const auto rest = [&](double value_C) { return runaway || rms.runaway ? Json() : Json(value_C); };

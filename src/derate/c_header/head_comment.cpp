@@ -6,12 +6,14 @@
 #include "base/version.h"
 #include "derate/c_header/c_text.h"
 #include "derate/c_header/parts.h"
+#include "derate/export_text.h"
 
 namespace heatsoak::c_header {
 namespace {
 
 std::string conditions_text(const Derating& derating) {
-  std::string text;
+  const std::string lacking = unmodelled_heat_text(derating);
+  std::string text = lacking.empty() ? "" : fmt::format(" * {}\n", lacking);
   for (const auto& [key, value] : derating.assumed) {
     text += fmt::format(" * VALID ONLY IF {} is {}: stated with --condition, which selected effects of the motor's file.\n",
                         in_comment(key), in_comment(value));
@@ -54,13 +56,18 @@ std::string guarantee_text(const Derating& derating) {
       " * limit. The safety factor on heat is {:.3g}, for a confidence of {:.3g}: of {} motors drawn from the declared tolerances, {} "
       "exceeded a\n"
       " * limit in one of the {} hardest uses ({:.1f} %; other draws give {:.1f} to {:.1f} %). The hottest winding reached {:.0f} degC.\n"
+      "{}"
       " * Computed, not measured; plausible but wrong sensor readings are not covered.\n",
       derating.rules.limits.winding_C,
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
       derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),
       derating.options.guarantee.confidence, checked.samples, checked.over, derating.uses.size(),
       100.0 * checked.over / std::max(1, checked.samples), 100.0 * checked.over_share.low, 100.0 * checked.over_share.high,
-      checked.winding_most_C);
+      checked.winding_most_C,
+      derating.sensor ? fmt::format(" * All this is without the temperature sensor; with it the safety factor on heat is {:.3g}, see "
+                                    "SENSOR_MOST_GAIN_A below.\n",
+                                    derating.sensor->observer.heat_safety_factor())
+                      : "");
 }
 
 }  // namespace

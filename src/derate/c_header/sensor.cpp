@@ -304,18 +304,20 @@ std::string constants(const Source& source, const SensorPlan& plan) {
 }
 
 std::string comment(const SensorPlan& plan) {
+  const Guarantee& checked = plan.guarantee;
   return fmt::format(
       "\n"
-      "/* With {} at the {} (largest error {:.3g} K{}): safety factor on heat {:.3g} instead of the above while the sensor is used. Of {} "
-      "drawn\n"
-      " * motors, each with a drawn sensor error, {} exceeded a limit; the cross-check drops the correct sensor of {}. A plausible but "
-      "wrong\n"
-      " * sensor allows at most SENSOR_MOST_GAIN_A more than without one: the nominal motor then reaches {:.0f} degC, and {} of the drawn\n"
-      " * motors exceed a limit. */\n",
+      "/* With {} at the {} (largest error {:.3g} K{}): safety factor on heat {:.3g} instead of the above while the sensor is used.\n"
+      " * With {:.0f} % certainty at least {:.1f} % of the motors, each with a drawn sensor error, keep every limit; {} of {} fresh draws\n"
+      " * exceeded one. The cross-check drops the correct sensor of {}.\n"
+      " * A PLAUSIBLE BUT WRONG SENSOR allows at most SENSOR_MOST_GAIN_A more than without one: the nominal motor then reaches {:.0f} "
+      "degC,\n"
+      " * and {} of {} drawn motors exceed a limit. */\n",
       plan.resistance ? "the resistance from voltage and current" : "a thermistor",
       plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
-      plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(), plan.samples,
-      plan.over, plan.dropped, plan.sensor_fault_nominal_C, plan.sensor_fault_over);
+      plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(),
+      100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0, checked.over, checked.samples, plan.dropped,
+      plan.sensor_fault_nominal_C, plan.sensor_fault_over, checked.samples);
 }
 
 /// The table for the lower safety factor, computed with the same rules.

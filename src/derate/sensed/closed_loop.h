@@ -26,9 +26,7 @@ struct SensedLoop {
 };
 
 /// Extremes of one drawn motor over all uses.
-struct SensedPeak {
-  double winding_C = 0.0;
-  bool is_over = false;
+struct SensedPeak : MotorPeak {
   double cold_share = 1.0;    ///< smallest (rise of the node + margin)/(rise of the nominal motor's node), above the air
   double frozen_K = 0.0;      ///< largest change of the nominal node while the true node stayed within the band
   double rate_K_per_s = 0.0;  ///< fastest change of the node

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "derate/current_table.h"
+#include "derate/guarantee.h"
 #include "derate/observer.h"
 #include "motor/datasheet_network.h"
 
@@ -79,11 +80,8 @@ struct SensorPlan {
   double most_gain_A = 0.0;     ///< limit of the current above that of the guard without a sensor; bounds the effect of a faulty sensor
   ReadingCheck check = {};
   std::vector<LastingCurrent> lasting = {};
-  int samples = 0;  ///< drawn motors, each with a drawn sensor error
-  int over = 0;     ///< drawn motors that exceeded a limit
-  double winding_p95_C = 0.0;
-  double winding_most_C = 0.0;
-  int dropped = 0;                      ///< drawn motors whose correct sensor is rejected by the cross-check
+  Guarantee guarantee = {};             ///< check on fresh drawn motors, each with a drawn sensor error
+  int dropped = 0;                      ///< drawn motors of that check whose correct sensor is rejected by the cross-check
   int sensor_fault_over = 0;            ///< drawn motors that exceed a limit with the worst undetected sensor fault
   double sensor_fault_nominal_C = 0.0;  ///< hottest winding of the nominal motor with that fault
 };

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "base/diagnostic.h"
 #include "derate/sensed/closed_loop.h"
 #include "derate/sensed/kalman_design.h"
 #include "derate/sensed/sensor_fault.h"
+#include "derate/smallest_factor.h"
 #include "select/spread.h"
 
 namespace heatsoak {
@@ -16,7 +19,7 @@ namespace {
 
 /// Simulation steps of the search per approach_s.
 constexpr double kStepsPerApproach = 10.0;
-/// Offset between the random streams of the search, which are those of the guard without a sensor, and those of each check.
+/// Offset between the random streams of the search, which are those of the guard without a sensor, and those of the check.
 constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
 /// Exponent of winding_speed_ratio over the ratio of safety factors. A pulse from cold heats the winding in proportion to safety factor
 /// times winding_speed_ratio. With an exponent of 1 that product is the same as without a sensor, and pulses determine the safety factor.
@@ -85,31 +88,65 @@ class PlanSearch {
     return all;
   }
 
-  [[nodiscard]] bool keeps(std::span<const SensedPeak> peaks) const {
-    const auto over = std::ranges::count_if(peaks, &SensedPeak::is_over);
-    return static_cast<double>(over) <= (1.0 - model_only_.options.guarantee.confidence) * static_cast<double>(peaks.size());
+  /// Returns the smallest safety factor at which the share of the search's motors that keep their limits reaches the confidence; nothing if
+  /// none below the factor without a sensor does.
+  [[nodiscard]] std::optional<double> reserve() {
+    constexpr double kGrowth = 1.15;
+    const double coarse_s = std::max(model_only_.options.period_s, model_only_.rules.approach_s / kStepsPerApproach);
+    return smallest(1.0, kGrowth, [&](double tried) {
+      const Guarantee found = guarantee_of(peaks(plan_with(tried), coarse_s, 0));
+      return found.over <= (1.0 - model_only_.options.guarantee.confidence) * found.samples;
+    });
   }
 
-  /// Returns the smallest sufficient safety factor to 1 %, between 1 and the factor without a sensor.
-  [[nodiscard]] double reserve() {
-    constexpr double kTolerance = 0.01;
-    const double coarse_s = std::max(model_only_.options.period_s, model_only_.rules.approach_s / kStepsPerApproach);
-    double low = 1.0;
-    double high = model_only_.observer.heat_safety_factor();
-    while (high > low * (1.0 + kTolerance)) {
-      const double middle = std::sqrt(low * high);
-      (keeps(peaks(plan_with(middle), coarse_s, 0)) ? high : low) = middle;
-      if (progress_) {
-        progress_(std::min(++rounds_, kRounds), kRounds + 2);
+  /// A plan whose check on fresh motors shows the confidence, and the extremes of these motors.
+  struct Promise {
+    SensorPlan plan;
+    std::vector<SensedPeak> peaks;
+  };
+  /// Returns the plan with the smallest safety factor, at least `from`, at which the lower bound on fresh motors reaches the confidence.
+  /// All attempts use the same motors, as without a sensor, so that the confidence level is that of a single check.
+  [[nodiscard]] std::optional<Promise> promise(double from) {
+    constexpr double kGrowth = 1.02;
+    std::optional<Promise> made;
+    const std::optional<double> found = smallest(from, kGrowth, [&](double tried) {
+      SensorPlan plan = plan_with(tried);
+      std::vector<SensedPeak> fresh = peaks(plan, fine_s(), kStreamsApart);
+      plan.guarantee = guarantee_of(fresh);
+      const bool holds = plan.guarantee.least_kept_share >= model_only_.options.guarantee.confidence;
+      if (holds) {
+        made.emplace(Promise{std::move(plan), std::move(fresh)});
       }
-    }
-    return high;
+      return holds;
+    });
+    return found ? std::move(made) : std::nullopt;
   }
+
+  /// Simulation step of the check in s.
+  [[nodiscard]] double fine_s() const { return 2.0 * model_only_.options.period_s; }
 
   [[nodiscard]] const std::vector<LoadPattern>& uses() const { return uses_; }
 
  private:
-  static constexpr std::size_t kRounds = 8;
+  static Guarantee guarantee_of(std::span<const SensedPeak> sensed) {
+    const std::vector<MotorPeak> plain(sensed.begin(), sensed.end());
+    return guarantee(plain);
+  }
+
+  template <class IsEnough>
+  [[nodiscard]] std::optional<double> smallest(double from, double growth, const IsEnough& is_enough) {
+    return smallest_factor(from, model_only_.observer.heat_safety_factor(), growth, [&](double tried) {
+      const bool enough = is_enough(tried);
+      if (progress_) {
+        ++rounds_;
+        progress_(rounds_, std::max(rounds_ + 1, kUsualRounds));
+      }
+      return enough;
+    });
+  }
+
+  /// Typical number of simulations of all drawn motors.
+  static constexpr std::size_t kUsualRounds = 12;
   const Motor& motor_;
   const Robot& robot_;
   const Derating& model_only_;
@@ -145,18 +182,6 @@ void set_check(SensorPlan& plan, std::span<const SensedPeak> peaks) {
       peaks, [&](const SensedPeak& each) { return each.cold_share < check.cold_share || each.frozen_K > check.frozen_K; }));
 }
 
-void set_guarantee(SensorPlan& plan, std::span<const SensedPeak> peaks) {
-  std::vector<double> winding_C;
-  for (const SensedPeak& each : peaks) {
-    winding_C.push_back(each.winding_C);
-  }
-  std::ranges::sort(winding_C);
-  plan.samples = static_cast<int>(peaks.size());
-  plan.over = static_cast<int>(std::ranges::count_if(peaks, &SensedPeak::is_over));
-  plan.winding_p95_C = quantile(winding_C, 0.95);
-  plan.winding_most_C = winding_C.back();
-}
-
 /// Sets the continuous currents of the continuous uses in the plain case, which come first.
 void set_lasting(SensorPlan& plan, const SensedLoop& loop, const Derating& model_only) {
   for (const UsePlayed& each : model_only.uses) {
@@ -185,19 +210,14 @@ SensorPlan plan_sensor(const Motor& as_written, const Robot& robot, const Derati
   require_sensible(model_only.observer, options);
   const Motor motor = with_default_spreads(as_written);
   PlanSearch search(motor, robot, model_only, options, progress);
-  double reserve = search.reserve();
-  constexpr double kRaise = 1.005;
-  constexpr int kMostRaises = 20;
-  const double fine_s = 2.0 * model_only.options.period_s;
-  for (int number = 1; number <= kMostRaises && reserve < model_only.observer.heat_safety_factor(); ++number, reserve *= kRaise) {
-    SensorPlan plan = search.plan_with(reserve);
-    const std::vector<SensedPeak> peaks = search.peaks(plan, fine_s, static_cast<std::uint64_t>(number) * kStreamsApart);
-    if (search.keeps(peaks)) {
-      set_check(plan, peaks);
-      set_guarantee(plan, peaks);
+  if (const std::optional<double> reserve = search.reserve()) {
+    if (std::optional<PlanSearch::Promise> promise = search.promise(*reserve);
+        promise && promise->plan.observer.heat_safety_factor() < model_only.observer.heat_safety_factor()) {
+      SensorPlan& plan = promise->plan;
+      set_check(plan, promise->peaks);
       set_sensor_fault(plan, motor, robot, model_only, search.uses());
-      set_lasting(plan, search.loop(plan, fine_s), model_only);
-      return plan;
+      set_lasting(plan, search.loop(plan, search.fine_s()), model_only);
+      return std::move(plan);
     }
   }
   throw Failure(

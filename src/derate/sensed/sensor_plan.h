@@ -9,8 +9,8 @@ namespace heatsoak {
 
 /// Computes the parameters of the sensor. `model_only` is the guard of the same motor without a sensor.
 /// 1. Gain: sensor_gain().
-/// 2. Safety factor: the smallest one, below that without a sensor, at which the required share of drawn motors keeps every limit in every
-///    use. Each motor has a drawn sensor error. The result is checked on motors that the search did not use.
+/// 2. Safety factor: the smallest one, below that without a sensor, at which on independently drawn motors the lower bound of the share
+///    that keeps every limit in every use (kCertainty_share) reaches the confidence. Each motor has a drawn sensor error.
 /// 3. Cross-check: bounds that at most 1 % of the correct sensors on drawn motors violate.
 /// 4. most_gain_A: the largest current above the guard without a sensor at which the nominal motor keeps its limits although the sensor
 ///    always reads the air temperature.
