@@ -19,6 +19,10 @@ std::string to_string(const Range& range, std::string_view unit) {
   if (!below) {
     return fmt::format("{} {}", range.low_is_open ? "more than" : "at least", with_unit(range.low));
   }
+  if (range.low_is_open || range.high_is_open) {
+    return fmt::format("{} {} and {} {}", range.low_is_open ? "more than" : "at least", with_unit(range.low),
+                       range.high_is_open ? "below" : "at most", with_unit(range.high));
+  }
   return fmt::format("{} to {}", with_unit(range.low), with_unit(range.high));
 }
 

@@ -203,6 +203,10 @@ class CheckReader {
         limits->problem(key, parsed.problem);
         continue;
       }
+      if (const std::string problem = looseness_problem(parsed.value, *text, *type, check_); !problem.empty()) {
+        limits->problem(key, problem);
+        continue;
+      }
       check_.limits.push_back({type, parsed.value, std::move(parsed.unit), *text, limits->at(key)});
     }
   }

@@ -81,6 +81,22 @@ std::string escaped_command(std::string_view text, bool is_property) {
 
 }  // namespace
 
+std::string conclusion_text(std::span<const Outcome> outcomes) {
+  const Counts counts = counts_of(outcomes);
+  const std::string all = fmt::format("{} limit{}", counts.all, counts.all == 1 ? "" : "s");
+  if (counts.exceeded + counts.not_evaluated == 0) {
+    return fmt::format("{} {}", all, counts.all == 1 ? "holds" : "hold");
+  }
+  std::string text;
+  if (counts.exceeded > 0) {
+    text = fmt::format("{} of {} {} not hold", counts.exceeded, all, counts.exceeded == 1 ? "does" : "do");
+  }
+  if (counts.not_evaluated > 0) {
+    text += fmt::format("{}{} of {} cannot be evaluated and counts as failed", text.empty() ? "" : "; ", counts.not_evaluated, all);
+  }
+  return text;
+}
+
 std::string margin_text(const Outcome& outcome) {
   const double margin = outcome.margin_value();
   if (!std::isfinite(margin)) {
@@ -135,13 +151,7 @@ std::string junit_xml(std::span<const Outcome> outcomes, std::string_view versio
 }
 
 std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view version) {
-  const Counts counts = counts_of(outcomes);
-  std::string text =
-      fmt::format("### heatsoak check: {}\n\n",
-                  counts.exceeded + counts.not_evaluated == 0
-                      ? counts.all == 1 ? std::string("the limit holds") : fmt::format("all {} limits hold", counts.all)
-                  : counts.all == 1 ? std::string("the limit does not hold")
-                                    : fmt::format("{} of {} limits do not hold", counts.exceeded + counts.not_evaluated, counts.all));
+  std::string text = fmt::format("### heatsoak check: {}\n\n", conclusion_text(outcomes));
   text += "| | check | threshold | value | limit | margin | |\n|---|---|---|--:|--:|--:|---|\n";
   for (const Outcome& each : outcomes) {
     text += fmt::format("| {} | {} | `{}` | {} | {} | {} | {} |\n", each.passed ? "✅" : "❌", in_markdown(each.check->name),

@@ -10,6 +10,9 @@
 
 namespace heatsoak {
 
+/// Returns how many limits hold, do not hold and cannot be evaluated, without a full stop.
+std::string conclusion_text(std::span<const Outcome> outcomes);
+
 /// Margin with its sign and unit; "–" if the threshold was not evaluated.
 std::string margin_text(const Outcome& outcome);
 

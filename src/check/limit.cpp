@@ -72,6 +72,14 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
   return {parsed.value, unit_behind(quantity), {}};
 }
 
+std::string looseness_problem(double value, std::string_view text, const ThresholdType& type, const Check& check) {
+  const std::optional<LoosestLimit> loosest = type.loosest != nullptr ? type.loosest(check) : std::nullopt;
+  if (!loosest || keeps(type.direction, value, loosest->value)) {
+    return {};
+  }
+  return fmt::format("\"{}\" is looser than {}, {}; expected that or a tighter limit", text, loosest->what, shown(loosest->value, type));
+}
+
 std::string updated_limit(const Measured& measured, const ThresholdType& type, std::string_view unit, double margin_share) {
   const bool is_up = type.direction == Bound::at_most;
   const auto text_of = [&](double value) {

@@ -17,6 +17,9 @@ struct ParsedLimit {
 /// Reads "at most 150 degC" or "at least 0.5 A"; the words must be those of the threshold's direction, the number finite and in its range.
 ParsedLimit parse_limit(std::string_view text, const ThresholdType& type);
 
+/// Returns why the limit `text` of `value` cannot gate this check, because it is looser than ThresholdType::loosest; empty if it can.
+std::string looseness_problem(double value, std::string_view text, const ThresholdType& type, const Check& check);
+
 /// How --update sets a limit: `measured` with `margin_share` of its distance to the origin added, rounded away from the value, so that the
 /// value keeps the limit. Thresholds without room get the value itself. Returns the text in `unit`, "at most 158 degC".
 std::string updated_limit(const Measured& measured, const ThresholdType& type, std::string_view unit, double margin_share);

@@ -41,9 +41,11 @@ std::string with_new_limits(const std::string& content, std::span<Outcome> outco
     Limit& limit = outcome.limit;
     const std::string text = updated_limit(outcome.measured, *limit.type, limit.unit, margin_share);
     const ParsedLimit parsed = parse_limit(text, *limit.type);
-    if (!parsed.problem.empty()) {
-      // A value that no limit may have, such as an error of the numerics: it stays as it is and fails.
-      outcome.reason = fmt::format("no limit can be set to {}: {}", shown(outcome.measured.value, *limit.type), parsed.problem);
+    const std::string problem =
+        parsed.problem.empty() ? looseness_problem(parsed.value, text, *limit.type, *outcome.check) : parsed.problem;
+    if (!problem.empty()) {
+      // The limit stays as it is, so that a motor above its own limit still fails.
+      outcome.reason += fmt::format("{}the limit is not rewritten: {}", outcome.reason.empty() ? "" : "; ", problem);
       continue;
     }
     if (text == limit.text) {
@@ -59,6 +61,7 @@ std::string with_new_limits(const std::string& content, std::span<Outcome> outco
     }
     by_place[begin + 1] = {limit.text.size(), text};
     outcome.before = limit.text;
+    outcome.failed_before = !outcome.passed;
     limit.text = text;
     limit.value = parsed.value;
     judge(outcome);

@@ -12,9 +12,10 @@ namespace heatsoak {
 struct Outcome {
   const Check* check = nullptr;
   Limit limit;
-  Measured measured;        ///< value NaN where it could not be evaluated
-  std::string reason;       ///< why it fails; empty where it passes
-  std::string before = {};  ///< the limit's text before --update, where that changed it
+  Measured measured;           ///< value NaN where it could not be evaluated
+  std::string reason;          ///< why it fails; empty where it passes
+  std::string before = {};     ///< the limit's text before --update, where that changed it
+  bool failed_before = false;  ///< the value did not keep that limit
   bool is_evaluated = false;
   bool passed = false;
 

@@ -1,6 +1,7 @@
 // What a check can put a limit on: one file in src/check/thresholds each.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,6 +37,15 @@ struct Measured {
   std::string detail = {};    ///< one line for people: what the value rests on; may be empty
 };
 
+/// The loosest limit that a check may set, such as the motor's own winding limit.
+struct LoosestLimit {
+  double value = 0.0;  ///< in the unit of the threshold
+  std::string what;    ///< its origin: "the winding limit of the motor"
+};
+
+/// A share of 100 % holds always, so a limit must be below it.
+inline LoosestLimit largest_share_limit() { return {0.999, "the largest share that a limit may permit"}; }
+
 struct ThresholdType {
   std::string_view name;  ///< the file's name; set by all_thresholds()
   std::string_view unit;  ///< UDUNITS text; "" is a pure number
@@ -50,6 +60,8 @@ struct ThresholdType {
   std::string_view example;  ///< a limit that can be pasted
   std::vector<Setting> needs;
   std::vector<Setting> takes = {};  ///< others that change the value
+  /// Null, or returns nothing, where every limit in `range` is permitted.
+  std::optional<LoosestLimit> (*loosest)(const Check& check) = nullptr;
   /// Throws Failure with the reason where the value cannot be determined.
   Measured (*measure)(const Check& check, Computations& computations) = nullptr;
 };

@@ -11,13 +11,10 @@ namespace heatsoak::present {
 namespace {
 
 std::vector<Text> conclusion(std::span<const Outcome> outcomes, bool is_update) {
-  const auto failed = std::ranges::count(outcomes, false, &Outcome::passed);
-  const auto changed = std::ranges::count_if(outcomes, [](const Outcome& each) { return !each.before.empty(); });
-  const std::string all = fmt::format("{} limit{}", outcomes.size(), outcomes.size() == 1 ? "" : "s");
-  std::vector<Text> text{{failed == 0 ? fmt::format("{} {}", all, outcomes.size() == 1 ? "holds" : "hold")
-                                      : fmt::format("{} of {} {} not hold", failed, all, failed == 1 ? "does" : "do"),
-                          failed == 0 ? Tone::good : Tone::bad}};
+  const bool all_pass = std::ranges::all_of(outcomes, &Outcome::passed);
+  std::vector<Text> text{{conclusion_text(outcomes), all_pass ? Tone::good : Tone::bad}};
   if (is_update) {
+    const auto changed = std::ranges::count_if(outcomes, [](const Outcome& each) { return !each.before.empty(); });
     text.push_back({fmt::format("{} limit{} rewritten", changed, changed == 1 ? "" : "s")});
   }
   return text;
@@ -58,6 +55,12 @@ Document check_document(std::span<const Outcome> outcomes, bool is_update) {
                                            {limit_text(each)},
                                            {margin_text(each)},
                                            {std::move(why)}});
+  }
+  const auto loosened = std::ranges::count(outcomes, true, &Outcome::failed_before);
+  if (loosened > 0) {
+    document.add_note(Severity::warning, fmt::format("{} of the rewritten limits did not hold before. Read the difference before you "
+                                                     "commit the file: a limit that follows the value gates nothing.",
+                                                     loosened));
   }
   return document;
 }

@@ -233,7 +233,7 @@ TEST_F(CheckFiles, LintFindsWhatAFileOfAnyKindHolds) {
 TEST_F(CheckFiles, MotorThatCannotDeliverFailsWithTheReason) {
   const std::vector<Outcome> found = outcomes(
       "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"maxon_dcx19s_24v\"\n"
-      "samples = \"80\"\n[check.limits]\nwinding_peak_p95 = \"at most 900 degC\"\nlint_problems = \"at most 0\"\n");
+      "samples = \"80\"\n[check.limits]\nwinding_peak_p95 = \"at most 100 degC\"\nlint_problems = \"at most 0\"\n");
   EXPECT_FALSE(found[0].passed);
   EXPECT_THAT(found[0].reason, HasSubstr("cannot deliver what the duty demands"));
   EXPECT_TRUE(found[1].passed);
@@ -307,6 +307,29 @@ TEST_F(CheckFiles, NewLimitsChangeNothingElse) {
   EXPECT_TRUE(again[0].passed);
   EXPECT_TRUE(again[1].passed);
   EXPECT_EQ(with_new_limits(after, again, 0.05), after);
+}
+
+// A limit that cannot fail, or that is above the motor's own, gates nothing.
+TEST_F(CheckFiles, LimitsLooserThanTheMotorsOwnAreRefused) {
+  const std::string message = message_of(
+      "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"maxon_ecx_flat_32l_48v\"\n"
+      "against = [\"maxon_ecx_flat_42m_24v\", \"nanotec_df45l024048_a2\"]\n[check.limits]\nwinding_peak_p95 = \"at most 156 degC\"\n"
+      "rank = \"at most 3\"\nprobability_over_limit = \"at most 100 %\"\ncurrent_margin = \"at least -0.1 A\"\n");
+  EXPECT_THAT(message, HasSubstr("\"at most 156 degC\" is looser than the motor's own winding limit, 155.0 °C"));
+  EXPECT_THAT(message, HasSubstr("\"at most 3\" is looser than the number of motors in 'against', 2"));
+  EXPECT_THAT(message, HasSubstr("\"at most 100 %\" is looser than the largest share that a limit may permit, 99.9 %"));
+  EXPECT_THAT(message, HasSubstr("\"at least -0.1 A\" is looser than the motor's own limits, 0 A"));
+}
+
+TEST_F(CheckFiles, UpdateDoesNotPassAMotorAboveItsLimit) {
+  const std::string text =
+      "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"maxon_ecx_flat_32l_48v\"\n"
+      "samples = \"80\"\n[check.limits]\nwinding_peak_p95 = \"at most 120 degC\"\n";
+  std::vector<Outcome> found = outcomes(text);
+  ASSERT_GT(found[0].measured.value, 155.0);
+  EXPECT_EQ(with_new_limits(text, found, 0.05), text);
+  EXPECT_FALSE(found[0].passed);
+  EXPECT_THAT(found[0].reason, HasSubstr("the limit is not rewritten"));
 }
 
 TEST_F(CheckFiles, LimitWithAnEscapeIsNotRewritten) {

@@ -83,7 +83,7 @@ TEST_F(CheckCommand, ExceededLimitIsExitOneAtItsLine) {
   EXPECT_THAT(done.out, Not(HasSubstr("\x1b")));
   EXPECT_THAT(content_of(folder_.path() / "check.xml"), HasSubstr("<failure type=\"limit_exceeded\""));
   EXPECT_THAT(content_of(folder_.path() / "summary.md"),
-              testing::AllOf(testing::StartsWith("before\n"), HasSubstr("1 of 2 limits do not hold")));
+              testing::AllOf(testing::StartsWith("before\n"), HasSubstr("1 of 2 limits does not hold")));
   EXPECT_EQ(check(check_with(120.0, 99.0)).exit_code, 1);
 }
 

@@ -33,7 +33,7 @@ TEST(Predict, AnswersAsTheInterfaceSays) {
       EXPECT_LE(run["coverage_90"][signal].get<double>(), 1.0);
     }
   }
-  EXPECT_THAT(done.err, HasSubstr("within 90 % band"));
+  EXPECT_THAT(done.err, HasSubstr("in band"));
   EXPECT_THAT(content_of(folder.path() / "p.svg"), HasSubstr("</svg>"));
 }
 

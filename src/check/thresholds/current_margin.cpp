@@ -26,6 +26,9 @@ ThresholdType current_margin() {
           .example = "at least 0.5 A",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},
+          .loosest = [](const Check&) -> std::optional<LoosestLimit> {
+            return LoosestLimit{0.0, "the motor's own limits"};
+          },
           .measure = measure};
 }
 

@@ -25,6 +25,7 @@ ThresholdType guard_active_share() {
           .example = "at most 0 %",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::seed, Setting::conditions, Setting::derate},
+          .loosest = [](const Check&) -> std::optional<LoosestLimit> { return largest_share_limit(); },
           .measure = measure};
 }
 

@@ -57,6 +57,7 @@ ThresholdType probability_over_limit() {
           .example = "at most 5 %",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},
+          .loosest = [](const Check&) -> std::optional<LoosestLimit> { return largest_share_limit(); },
           .measure = measure};
 }
 

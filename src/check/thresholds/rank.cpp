@@ -38,6 +38,10 @@ ThresholdType rank() {
           .example = "at most 1",
           .needs = {Setting::robot, Setting::duty, Setting::motor, Setting::against},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},
+          .loosest = [](const Check& check) -> std::optional<LoosestLimit> {
+            // The last rank of all motors holds always.
+            return LoosestLimit{std::max(1.0, static_cast<double>(check.against.size())), "the number of motors in 'against'"};
+          },
           .measure = measure};
 }
 

@@ -13,9 +13,14 @@ ThresholdType winding_peak_p95() {
           .example = "at most 120 degC",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},
-          .measure = [](const Check& check, Computations& computations) {
-            return measured_peak(check, computations, &MotorEvaluation::winding_peak_C, &MotorEvaluation::winding_p95_interval_C);
-          }};
+          .loosest = [](const Check& check) -> std::optional<LoosestLimit> {
+            return check.motor ? std::optional<LoosestLimit>({check.motor->nominal.winding_limit_C, "the motor's own winding limit"})
+                               : std::nullopt;
+          },
+          .measure =
+              [](const Check& check, Computations& computations) {
+                return measured_peak(check, computations, &MotorEvaluation::winding_peak_C, &MotorEvaluation::winding_p95_interval_C);
+              }};
 }
 
 }  // namespace heatsoak::thresholds
