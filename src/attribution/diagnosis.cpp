@@ -190,7 +190,8 @@ class DiagnosisReport {
         const std::string& signal = input_.train[r].sensors[static_cast<std::size_t>(sensor)].signal;
         Eigen::VectorXd& all = innovations[signal];
         const Eigen::Index begin = all.size();
-        all.conservativeResize(begin + path.samples());
+        all.conservativeResize(begin + path.samples() + kMostLag);
+        all.tail<kMostLag>().setConstant(std::nan(""));
         for (Eigen::Index k = 0; k < path.samples(); ++k) {
           const Eigen::Index row = k * path.sensors() + sensor;
           const bool counts = !std::isnan(path.residual_K[row]) && (weight.size() == 0 || weight[row] > 0.0);
@@ -216,7 +217,8 @@ class DiagnosisReport {
       }
       // A run without the signal takes its rows, too: inputs and innovations are compared row by row.
       const Eigen::Index begin = found->values.size();
-      found->values.conservativeResize(begin + run.samples());
+      found->values.conservativeResize(begin + run.samples() + kMostLag);
+      found->values.tail<kMostLag>().setConstant(std::nan(""));
       for (Eigen::Index k = 0; k < run.samples(); ++k) {
         found->values[begin + k] = run.has(signal) ? value(run.at[static_cast<std::size_t>(std::min(k, run.samples() - 2))]) : std::nan("");
       }

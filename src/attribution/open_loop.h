@@ -14,7 +14,6 @@ struct ErrorOfSignal {
   double rmse_K = 0.0;
   double max_abs_K = 0.0;
 };
-inline constexpr double kMatters_K = 0.1;  ///< smaller differences between errors are irrelevant
 
 /// Errors by signal, such as "winding_C".
 using Errors = std::map<std::string, ErrorOfSignal>;

@@ -8,7 +8,6 @@
 namespace heatsoak {
 namespace {
 
-constexpr int kLjungBoxLags = 40;
 constexpr int kCrossLags = 20;
 
 /// Σ a(k+lag)·b(k) over the pairs without NaN, and their number.
@@ -45,7 +44,7 @@ Eigen::VectorXd standardised(const Eigen::VectorXd& values) {
 /// Returns the p-value of the Ljung-Box statistic up to lag 40.
 double ljung_box(const Eigen::VectorXd& z, double count) {
   double statistic = 0.0;
-  for (int lag = 1; lag <= kLjungBoxLags; ++lag) {
+  for (int lag = 1; lag <= kMostLag; ++lag) {
     const LaggedSum pair = lagged(z, z, lag);
     if (pair.count > 0.0) {
       const double correlation = pair.sum / pair.count;
@@ -53,7 +52,7 @@ double ljung_box(const Eigen::VectorXd& z, double count) {
     }
   }
   statistic *= count;
-  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(kLjungBoxLags), statistic));
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(kMostLag), statistic));
 }
 
 /// Returns the largest distance of the cumulative periodogram from a straight line, in units of the 95 % band. At most 400 equally spaced
@@ -106,7 +105,7 @@ InnovationTests test_innovations(std::string signal, const Eigen::VectorXd& inno
       ++out.count;
     }
   }
-  if (out.count < 4 * kLjungBoxLags) {
+  if (out.count < 4 * kMostLag) {
     return out;
   }
   const auto count = static_cast<double>(out.count);

@@ -26,6 +26,9 @@ struct NamedInput {
   Eigen::VectorXd values;  ///< one per innovation; NaN: not known
 };
 
+/// Largest lag of a correlation, in samples. This number of missing samples between two runs keeps them apart.
+inline constexpr int kMostLag = 40;
+
 /// Tests one sensor. `innovation` is in order of time, NaN for a missing sample.
 InnovationTests test_innovations(std::string signal, const Eigen::VectorXd& innovation, const std::vector<NamedInput>& inputs);
 

@@ -129,7 +129,7 @@ void add_lint_errors(const Motor& motor, Diagnostics& diagnostics) {
   }
   for (const LintFinding& each : lint(checked)) {
     // A line that could not be read has a problem already; a value missing because of it is not reported again.
-    if (each.level == LintFinding::Level::error && each.check != "spreads" && !lines.contains(each.at.line)) {
+    if (each.level == LintFinding::Level::error && !lines.contains(each.at.line)) {
       diagnostics.add(each.at, each.check, each.message);
     }
   }

@@ -84,8 +84,9 @@ void estimates(const Motor& motor, Findings& findings) {
 void spreads(const Motor& motor, Findings& findings) {
   for (const auto& [key, parameter] : motor.parameters) {
     if (!is_agreed(key) && !parameter.spread) {
-      findings.error(key, fmt::format("{} of {} has neither tolerance nor range; expected one of the two (see motor_db/README.md)", key,
-                                      parameter.printed));
+      findings.warning(key, fmt::format("{} of {} has neither tolerance nor range; expected one of the two (see motor_db/README.md). Until "
+                                        "then a default by its origin is assumed",
+                                        key, parameter.printed));
     }
   }
 }

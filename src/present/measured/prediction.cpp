@@ -46,7 +46,7 @@ Document prediction_document(const Motor& motor, const Prediction& prediction, s
                           {"signal", "", 0, Alignment::left},
                           {"rms error", "K", 0},
                           {"max. error", "K", 0},
-                          {"within 90 % band", "%", 0},
+                          {"in band", "%", 0},
                           {"samples", "", 1}},
               .rows = {}};
   for (const PredictedRun& run : prediction.runs) {
@@ -68,7 +68,8 @@ Document prediction_document(const Motor& motor, const Prediction& prediction, s
         {fmt::format("{} forecasts {} run{}; the largest error is {} K rms, of the {} in {}.", motor.id, prediction.runs.size(),
                      prediction.runs.size() == 1 ? "" : "s", significant(worst->rmse_K, 2), signal_words(*worst), worst_run->name)});
   }
-  document.paragraphs.emplace_back("Each run is predicted from its first temperatures and its measured inputs.");
+  document.paragraphs.emplace_back(
+      "Each run is predicted from its first temperatures and its measured inputs. A correct 90 % band contains 90 % of the samples.");
   document.tables.push_back(std::move(table));
   for (const std::string& each : warnings) {
     document.add_note(Severity::warning, each);

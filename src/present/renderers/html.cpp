@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "base/xml_text.h"
@@ -21,8 +22,8 @@ using present::Tone;
 constexpr std::string_view kStyle =
     "body{font:15px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:0 1em}table{border-collapse:collapse;margin:1em 0}"
     "th,td{padding:.2em .7em;border-bottom:1px solid #ddd;text-align:left;vertical-align:top}.number{text-align:right}"
-    ".good{color:#1a7f37}.undecided{color:#9a6700}.bad{color:#cf222e}h1 p{font-size:1.1rem;margin:.3em "
-    "0}pre{background:#f6f8fa;padding:1em}";
+    ".good{color:#1a7f37}.undecided{color:#9a6700}.bad{color:#cf222e}h1{font-size:1.3rem}.lead{font-weight:bold}"
+    "pre{background:#f6f8fa;padding:1em}";
 
 /// Returns the text with XML entities; control characters become '?'.
 std::string in_html(std::string_view text) { return xml_text(text); }
@@ -34,12 +35,15 @@ std::string_view class_of(Tone tone) {
 
 std::string table_of(const Table& table) {
   std::string text = table.title.empty() ? "" : fmt::format("<h2>{}</h2>\n", in_html(table.title));
-  text += "<table>\n<tr>";
-  for (const present::Column& column : table.columns) {
-    text += fmt::format("<th{}>{}{}</th>", column.alignment == Alignment::right ? " class=\"number\"" : "", in_html(column.name),
-                        column.unit.empty() ? "" : " / " + in_html(column.unit));
+  text += "<table>\n";
+  if (!std::ranges::all_of(table.columns, [](const present::Column& each) { return each.name.empty(); })) {
+    text += "<tr>";
+    for (const present::Column& column : table.columns) {
+      text += fmt::format("<th{}>{}{}</th>", column.alignment == Alignment::right ? " class=\"number\"" : "", in_html(column.name),
+                          column.unit.empty() ? "" : " / " + in_html(column.unit));
+    }
+    text += "</tr>\n";
   }
-  text += "</tr>\n";
   for (const std::vector<Text>& row : table.rows) {
     text += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
@@ -52,13 +56,13 @@ std::string table_of(const Table& table) {
 }
 
 std::string render(const Document& document, const RenderOptions& /*options*/) {
-  std::string text = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{}</title><style>{}</style></head>\n<body>\n<h1>",
-      document.headline.empty() ? "Heatsoak" : in_html(document.headline.front().words), kStyle);
+  std::string text =
+      fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{}</title><style>{}</style></head>\n<body>\n",
+                  document.headline.empty() ? "Heatsoak" : in_html(document.headline.front().words), kStyle);
   for (const Text& sentence : document.headline) {
-    text += fmt::format("<p class=\"{}\">{}</p>", class_of(sentence.tone), in_html(sentence.words));
+    const std::string_view element = &sentence == &document.headline.front() ? "h1" : "p";
+    text += fmt::format("<{0} class=\"lead {1}\">{2}</{0}>\n", element, class_of(sentence.tone), in_html(sentence.words));
   }
-  text += "</h1>\n";
   for (const std::string& paragraph : document.paragraphs) {
     text += fmt::format("<p>{}</p>\n", in_html(paragraph));
   }
