@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "attribution/extended_model.h"
+#include "estimation/open_loop.h"
 
 namespace heatsoak {
 

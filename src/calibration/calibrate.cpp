@@ -117,14 +117,14 @@ class Calibrating {
     const ForecastModel base = setup_.model();
     all_.forecast = forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads);
     score_innovations(setup_.model(), options_.fit, all_);
-    if (writes_forecast(options_.written, *all_.forecast)) {
+    if (writes_forecast(options_.written, base, all_)) {
       write_forecast(all_);
       all_.effects = all_.forecast->setup.motor.effects;
       widen_by_rows();
       // The forecast fit assumes no unknown heat; parameters that are not identifiable beside such heat stay so.
       const std::vector<CalibratedParameter> before = std::exchange(all_.parameters, {});
       parameters();
-      keep_unidentifiable(before, all_.parameters);
+      carry_identifiability(*all_.forecast, before, all_.parameters);
     }
     std::ranges::move(forecast_findings(all_), std::back_inserter(all_.findings));
   }

@@ -6,16 +6,62 @@
 #include <cmath>
 
 #include "estimation/interval.h"
+#include "estimation/open_loop.h"
 #include "motor/motor.h"
 
 namespace heatsoak {
 namespace {
 
 bool is_better_than_innovations(const Forecast& forecast) {
-  const auto score_nats = [&](ForecastSource source) {
-    return std::ranges::find(forecast.rivals, source, &RivalScore::source)->score_nats;
+  if (forecast.rivals.empty()) {
+    return false;
+  }
+  const auto rival = [&](ForecastSource source) { return *std::ranges::find(forecast.rivals, source, &RivalScore::source); };
+  const RivalScore best = rival(forecast.source);
+  const RivalScore other = rival(ForecastSource::innovations);
+  const auto matters = [&](const auto& signal_and_error) {
+    const auto same = std::ranges::find(best.rmse_K, signal_and_error.first, [](const auto& each) { return each.first; });
+    return same == best.rmse_K.end() || signal_and_error.second > same->second + kMatters_K;
   };
-  return !forecast.rivals.empty() && score_nats(ForecastSource::innovations) > score_nats(forecast.source) + kLeastGain_nats;
+  return other.score_nats > best.score_nats + kLeastGain_nats && std::ranges::any_of(other.rmse_K, matters);
+}
+
+/// Compares the free-run errors of forecast and innovations fit over the fitted runs, where no piece could be left out.
+bool follows_fitted_runs_better(const ForecastModel& base, const Calibration& calibration) {
+  constexpr double kBetter_share = 0.95;
+  const Forecast& forecast = *calibration.forecast;
+  const auto over_runs = [&](const ForecastModel& model, const Eigen::VectorXd& theta) {
+    std::vector<PredictedRun> predicted;
+    for (const MeasuredRun& run : calibration.runs) {
+      predicted.push_back(predict(model, theta, Eigen::MatrixXd::Zero(model.count(), model.count()), forecast.band, run));
+    }
+    return predicted;
+  };
+  const std::vector<ErrorBeforeAfter> errors =
+      errors_over_runs(over_runs(base, calibration.fit.theta), over_runs(forecast.model(), forecast.fit.theta));
+  const auto is_better = [](const ErrorBeforeAfter& each) {
+    return each.after.rmse_K < kBetter_share * each.before.rmse_K && each.after.rmse_K + kMatters_K < each.before.rmse_K;
+  };
+  const auto is_worse = [](const ErrorBeforeAfter& each) { return each.after.rmse_K > each.before.rmse_K + kMatters_K; };
+  return std::ranges::any_of(errors, is_better) && std::ranges::none_of(errors, is_worse);
+}
+
+/// Returns the matrix of ones and zeros that selects, for each coordinate of `to`, the one with the same name in `from`; a row of zeros if
+/// there is none.
+Eigen::MatrixXd shared_coordinates(const Model& from, const Model& to) {
+  Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(to.free_count(), from.free_count());
+  for (Eigen::Index i = 0; i < to.free_count(); ++i) {
+    for (Eigen::Index j = 0; j < from.free_count(); ++j) {
+      shared(i, j) = to.name(i) == from.name(j) ? 1.0 : 0.0;
+    }
+  }
+  return shared;
+}
+
+/// True if enough whole runs were left out to select a network.
+bool has_left_out_runs(const Forecast& forecast) {
+  return forecast.pieces.size() >= kLeastPieces &&
+         std::ranges::all_of(forecast.pieces, [](const Piece& piece) { return piece.seen.empty(); });
 }
 
 }  // namespace
@@ -40,12 +86,13 @@ void score_innovations(const ForecastModel& model, FitOptions options, Calibrati
   forecast.rivals.push_back(rival_score(ForecastSource::innovations, score, calibration.runs));
 }
 
-bool writes_forecast(WrittenFit wanted, const Forecast& forecast) {
+bool writes_forecast(WrittenFit wanted, const ForecastModel& base, const Calibration& calibration) {
+  const Forecast& forecast = *calibration.forecast;
   if (wanted != WrittenFit::best) {
     return wanted == WrittenFit::forecast;
   }
-  const bool are_runs = std::ranges::all_of(forecast.pieces, [](const Piece& piece) { return piece.seen.empty(); });
-  return are_runs && forecast.source != ForecastSource::file && is_better_than_innovations(forecast);
+  const bool is_better = forecast.rivals.empty() ? follows_fitted_runs_better(base, calibration) : is_better_than_innovations(forecast);
+  return forecast.source != ForecastSource::file && is_better;
 }
 
 Range declared_range(const Motor& motor, std::string_view key) {
@@ -73,10 +120,14 @@ std::vector<OutsideDeclaredRange> outside_declared_ranges(const Motor& motor, st
   return found;
 }
 
-void keep_unidentifiable(std::span<const CalibratedParameter> before, std::vector<CalibratedParameter>& parameters) {
+void carry_identifiability(const Forecast& forecast, std::span<const CalibratedParameter> before,
+                           std::vector<CalibratedParameter>& parameters) {
+  const bool is_supported = has_left_out_runs(forecast);
   for (CalibratedParameter& each : parameters) {
     const auto same = std::ranges::find(before, each.name, &CalibratedParameter::name);
-    each.is_identifiable = each.is_identifiable && (same == before.end() || same->is_identifiable);
+    if (same != before.end()) {
+      each.is_identifiable = same->is_identifiable && (each.is_identifiable || !is_supported);
+    }
   }
 }
 
@@ -84,9 +135,17 @@ void write_forecast(Calibration& calibration) {
   const Forecast& forecast = *calibration.forecast;
   const ForecastModel model = forecast.model();
   const Eigen::Index inner = model.motor().model.free_count();
+  const Model before = calibration.motor_model.model;
+  const Eigen::VectorXd theta_before = calibration.fit.theta;
+  const Eigen::MatrixXd covariance_before = calibration.fit.covariance;
   calibration.motor_model = model.motor();
   calibration.fit.theta = forecast.fit.theta.head(inner);
   calibration.fit.covariance = forecast.fit.covariance.topLeftCorner(inner, inner);
+  if (!has_left_out_runs(forecast)) {
+    const Eigen::MatrixXd shared = shared_coordinates(before, model.motor().model);
+    const Eigen::VectorXd moved = shared * theta_before - shared.rowwise().sum().cwiseProduct(calibration.fit.theta);
+    calibration.fit.covariance += moved * moved.transpose() + shared * covariance_before * shared.transpose();
+  }
   constexpr double kLeast_K = 1e-3;
   constexpr double kMost_K = 20.0;
   calibration.fit.free_run_error_K = std::clamp(forecast.fit.error_K, kLeast_K, kMost_K);
@@ -100,10 +159,11 @@ std::vector<CalibrationFinding> forecast_findings(const Calibration& calibration
   if (is_written && !std::ranges::all_of(calibration.parameters, &CalibratedParameter::is_identifiable)) {
     found.push_back(UnidentifiableAreWritten{});
   }
-  if (forecast.rivals.empty()) {
+  if (forecast.pieces.size() < kLeastPieces) {
     const bool are_runs = std::ranges::all_of(forecast.pieces, [](const Piece& piece) { return piece.seen.empty(); });
     found.push_back(TooFewPieces{forecast.pieces.size(), kLeastPieces, calibration.runs.size(), are_runs});
-  } else {
+  }
+  if (!forecast.rivals.empty()) {
     found.push_back(CrossValidation{forecast.pieces.size(), forecast.rivals});
   }
   if (is_written && forecast.source == ForecastSource::tempered) {

@@ -46,9 +46,9 @@ class Search {
     out_.pieces = pieces_of(*model_, out_.fit, runs_);
     const ForecastRules rules = of_piece();
     score_ = score_pieces(*model_, runs_, out_.pieces, out_.fit.theta, &rules);
-    if (out_.pieces.size() >= kLeastPieces) {
-      for (int round = 0; round < kMostExtensions && could_gain() && extend(); ++round) {
-      }
+    for (int round = 0; out_.pieces.size() >= kLeastPieces && round < kMostExtensions && could_gain() && extend(); ++round) {
+    }
+    if (out_.pieces.size() >= kLeastToCompare) {
       choose();
     }
     set_band();

@@ -30,7 +30,7 @@ struct Forecast {
   ForecastSource source = ForecastSource::tempered;
   ForecastFit fit;
   std::vector<AcceptedExtension> accepted;
-  std::vector<Piece> pieces;       ///< left-out pieces; with fewer than kLeastPieces nothing is selected
+  std::vector<Piece> pieces;       ///< left-out pieces; fewer than kLeastPieces select no network
   std::vector<RivalScore> rivals;  ///< empty if there are too few pieces
   ForecastBand band;
 

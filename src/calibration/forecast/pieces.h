@@ -19,8 +19,9 @@ struct Piece {
 /// Returns the pieces: all runs, or four blocks of a single run. A piece counts only if the predicted winding temperature varies in it by
 /// at least a quarter of its range over all runs.
 std::vector<Piece> pieces_of(const ForecastModel& model, const ForecastFit& base, std::span<const MeasuredRun> runs);
-/// Fewer pieces do not suffice to select a network.
+/// Smallest number of pieces that can select a network, and that can compare fits of the same network.
 inline constexpr std::size_t kLeastPieces = 3;
+inline constexpr std::size_t kLeastToCompare = 2;
 
 /// Prediction of a piece by a fit that did not use it.
 struct PredictedPiece {
