@@ -17,8 +17,9 @@
 namespace heatsoak {
 namespace {
 
-/// Simulation steps of the search per approach_s.
+/// Simulation steps per approach_s of the search and of the check. A longer step holds the current longer, which heats more.
 constexpr double kStepsPerApproach = 10.0;
+constexpr double kCheckStepsPerApproach = 60.0;
 /// Offset between the random streams of the search, which are those of the guard without a sensor, and those of the check.
 constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
 /// Exponent of winding_speed_ratio over the ratio of safety factors. A pulse from cold heats the winding in proportion to safety factor
@@ -123,7 +124,9 @@ class PlanSearch {
   }
 
   /// Simulation step of the check in s.
-  [[nodiscard]] double fine_s() const { return 2.0 * model_only_.options.period_s; }
+  [[nodiscard]] double fine_s() const {
+    return std::max(2.0 * model_only_.options.period_s, model_only_.rules.approach_s / kCheckStepsPerApproach);
+  }
 
   [[nodiscard]] const std::vector<LoadPattern>& uses() const { return uses_; }
 

@@ -22,7 +22,8 @@ using present::Tone;
 constexpr std::string_view kStyle =
     "body{font:15px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:0 1em}table{border-collapse:collapse;margin:1em 0}"
     "th,td{padding:.2em .7em;border-bottom:1px solid #ddd;text-align:left;vertical-align:top}.number{text-align:right}"
-    ".good{color:#1a7f37}.undecided{color:#9a6700}.bad{color:#cf222e}h1{font-size:1.3rem}.lead{font-weight:bold}"
+    ".good{color:#1a7f37}.undecided{color:#9a6700}.bad{color:#cf222e}h1{font-size:1.3rem}h2{font-size:1.1rem}.lead{font-weight:bold}td."
+    "number{white-space:nowrap}"
     "pre{background:#f6f8fa;padding:1em}";
 
 /// Returns the text with XML entities; control characters become '?'.
