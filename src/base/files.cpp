@@ -22,7 +22,7 @@ namespace heatsoak {
 namespace {
 
 [[noreturn]] void cannot_read(const std::filesystem::path& path, const std::string& reason) {
-  throw bad_input({path.string()}, "", "cannot be read: " + reason);
+  throw bad_input({path.string()}, "", fmt::format("cannot be read: {}", reason));
 }
 
 struct Inputs {
@@ -97,6 +97,8 @@ namespace {
   throw bad_input({path.string()}, "", fmt::format("cannot be written: {}", std::strerror(error)));
 }
 
+}  // namespace
+
 /// An output file that is invisible until publish(). It has no name (O_TMPFILE), so that even a killed process leaves no partial file. File
 /// systems without O_TMPFILE (NFS) and systems without /proc get a temporary name instead.
 class UnfinishedFile {
@@ -168,12 +170,14 @@ class UnfinishedFile {
   bool has_temporary_name_ = false;
 };
 
-struct Target {
+struct OutputTarget {
   std::filesystem::path path;
   bool in_place = false;
 };
 
-Target target_of(const std::filesystem::path& path) {
+namespace {
+
+OutputTarget target_of(const std::filesystem::path& path) {
   struct stat about {};
   const bool exists = ::stat(path.c_str(), &about) == 0;
   if (exists && S_ISDIR(about.st_mode)) {
@@ -199,7 +203,7 @@ struct StreamedFile::State {
     buffer.clear();
   }
 
-  Target target;
+  OutputTarget target;
   UnfinishedFile file;
   std::string buffer;
 };
@@ -218,7 +222,7 @@ void StreamedFile::write(std::string_view content) {
 void write_files(std::span<const OutputFile> files, std::span<const std::unique_ptr<StreamedFile>> streamed) {
   std::vector<std::unique_ptr<UnfinishedFile>> unfinished;
   std::vector<std::filesystem::path> taken;
-  const auto take = [&taken](const std::filesystem::path& path, const Target& target) {
+  const auto take = [&taken](const std::filesystem::path& path, const OutputTarget& target) {
     if (!target.in_place && std::ranges::find(taken, target.path) != taken.end()) {
       throw bad_input({path.string()}, "", "is the target of two outputs");
     }
@@ -229,7 +233,7 @@ void write_files(std::span<const OutputFile> files, std::span<const std::unique_
     each->state_->flush();
   }
   for (const OutputFile& file : files) {
-    const Target target = target_of(file.path);
+    const OutputTarget target = target_of(file.path);
     take(file.path, target);
     unfinished.push_back(std::make_unique<UnfinishedFile>(target.path, target.in_place));
     unfinished.back()->write(file.content);

@@ -88,7 +88,7 @@ void check_words(const CLI::App& app, std::span<const char* const> words) {
     }
     if (name.starts_with("--") && std::ranges::find(known, name) == known.end()) {
       unknown.push_back(fmt::format("there is no option {}{} (`{}{} --help` lists them)", name, did_you_mean(name, known), app.get_name(),
-                                    verb ? " " + verb->get_name() : ""));
+                                    verb ? fmt::format(" {}", verb->get_name()) : ""));
     }
   }
   if (!unknown.empty()) {

@@ -18,13 +18,13 @@ namespace {
 constexpr std::size_t kChunk = std::size_t{1} << 18;
 constexpr int kGzipWindow = 15 + 16;  // zlib's way to ask for gzip's header and checksum
 
-struct Close {
-  void operator()(std::FILE* file) const { (void)std::fclose(file); }
-};
-
 }  // namespace
 
 struct LogBytes::State {
+  struct Close {
+    void operator()(std::FILE* opened) const { (void)std::fclose(opened); }
+  };
+
   std::unique_ptr<std::FILE, Close> file;
   std::uint64_t file_size = 0;
   std::uint64_t file_read = 0;

@@ -34,6 +34,8 @@ std::string_view trimmed(std::string_view text) {
   return first == std::string_view::npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
+}  // namespace
+
 /// Reads a file line by line through a buffer.
 class LineReader {
  public:
@@ -148,6 +150,8 @@ class LineReader {
   bool is_at_end_ = false;
   bool has_open_end_ = false;
 };
+
+namespace {
 
 /// Splits one record into cells with libcsv. Returns nothing if the quoting is invalid.
 std::optional<std::vector<std::string>> quoted_cells(std::string_view record, char separator) {

@@ -12,7 +12,7 @@ namespace {
 /// Formats a deviation in percent: "+9"; below 1 % with one significant digit.
 std::string percent_off(double bound, double value) {
   const double percent = 100.0 * (bound - value) / std::abs(value);
-  return (percent < 0.0 ? "" : "+") + (std::abs(percent) < 1.0 ? significant(percent, 1) : fmt::format("{:.0f}", percent));
+  return fmt::format("{}{}", percent < 0.0 ? "" : "+", std::abs(percent) < 1.0 ? significant(percent, 1) : fmt::format("{:.0f}", percent));
 }
 
 std::string range_text(std::string_view unit, const ParameterValue& parameter) {

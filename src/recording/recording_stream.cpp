@@ -53,8 +53,10 @@ std::string other_separator(std::span<const std::string> header) {
   return " (a foreign log is read with --map; [file] header_rows and names_row of the mapping skip lines above its header)";
 }
 
+}  // namespace
+
 /// Rows of the file before checks.
-struct Rows {
+struct RawRows {
   std::vector<double> time_s;
   std::vector<int> line;
   std::vector<double> run_value;  ///< empty without a run column
@@ -70,18 +72,18 @@ struct Rows {
     std::ranges::for_each(columns, change);
   }
   /// Returns rows [begin, end).
-  [[nodiscard]] Rows slice(std::size_t begin, std::size_t end) const {
+  [[nodiscard]] RawRows slice(std::size_t begin, std::size_t end) const {
     const auto of = [begin, end]<class T>(const std::vector<T>& all) {
       return all.empty() ? all
                          : std::vector<T>(all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(end));
     };
-    Rows some{of(time_s), of(line), of(run_value), {}};
+    RawRows some{of(time_s), of(line), of(run_value), {}};
     for (const std::vector<double>& column : columns) {
       some.columns.push_back(of(column));
     }
     return some;
   }
-  void append(const Rows& more) {
+  void append(const RawRows& more) {
     const auto add = []<class T>(std::vector<T>& to, const std::vector<T>& from) { to.insert(to.end(), from.begin(), from.end()); };
     add(time_s, more.time_s);
     add(line, more.line);
@@ -103,8 +105,6 @@ struct Rows {
   }
 };
 
-}  // namespace
-
 class RecordingStream::Intake {
  public:
   Intake(const std::filesystem::path& log, const Mapping& mapping, RecordingReport& report)
@@ -121,13 +121,13 @@ class RecordingStream::Intake {
     }
     const std::size_t judged = is_at_end_ ? rows_.size() : rows_.size() - margin_;
     const std::vector<char> stays = increasing(judged);
-    const Rows ahead = rows_.slice(judged, rows_.size());
+    const RawRows ahead = rows_.slice(judged, rows_.size());
     const auto last = static_cast<std::size_t>(std::count(stays.begin(), stays.begin() + static_cast<std::ptrdiff_t>(judged), 1));
     if (std::ranges::count(stays, 0) > 0) {
       rows_.keep(stays);
     }
     const std::size_t first = std::exchange(context_, std::min(margin_, last));
-    Rows next = rows_.slice(last - context_, last);
+    RawRows next = rows_.slice(last - context_, last);
     next.append(ahead);
     part = checked(first, last);
     rows_ = std::move(next);
@@ -398,7 +398,7 @@ class RecordingStream::Intake {
   double furthest_offset_s_ = 0.0;
   std::vector<char> keep_;
   std::vector<double> block_time_s_;
-  Rows rows_;
+  RawRows rows_;
   std::size_t context_ = 0;  ///< number of leading rows that were already returned
   std::size_t margin_ = 0;   ///< number of rows kept before a part and read after it
   bool is_at_end_ = false;

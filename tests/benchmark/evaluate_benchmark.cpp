@@ -36,12 +36,12 @@ BENCHMARK_CAPTURE(evaluate_database, samples_500_with_curves, 500, true)->Unit(b
 
 /// A duty of 40 minutes in pieces of 0.1 s, like a recorded one, with all curves that a picture needs.
 void evaluate_long_recording(benchmark::State& state, bool with_curves) {
-  constexpr int kPieces = 24'000;
+  constexpr int kRecordedPieces = 24'000;
   const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
   Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
   const std::vector<Motor> motors{read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml")};
   WheelDemand wheel{.wheel = "wheel 1", .bins = {}, .points = {}};
-  for (int i = 0; i < kPieces; ++i) {
+  for (int i = 0; i < kRecordedPieces; ++i) {
     wheel.bins.push_back(constant_bin(0.1, 0.01 * (i % 20), 5.0 * (i % 17), 0.0));
   }
   for (auto _ : state) {

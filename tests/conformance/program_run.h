@@ -9,11 +9,11 @@
 namespace heatsoak {
 
 struct RunOptions {
-  std::filesystem::path folder;          ///< working directory; if empty, the test's own
-  std::vector<std::string> environment;  ///< "NAME=value" sets a variable, "NAME" removes it
+  std::filesystem::path folder = {};          ///< working directory; if empty, the test's own
+  std::vector<std::string> environment = {};  ///< "NAME=value" sets a variable, "NAME" removes it
   std::string program = HEATSOAK_PROGRAM;
-  std::filesystem::path stdout_file;  ///< for devices; if empty, stdout is captured
-  std::filesystem::path stderr_file;
+  std::filesystem::path stdout_file = {};  ///< for devices; if empty, stdout is captured
+  std::filesystem::path stderr_file = {};
   unsigned time_limit_s = 120;  ///< multiplied by ten in builds with sanitizers or counters
 };
 

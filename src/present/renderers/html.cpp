@@ -41,7 +41,7 @@ std::string table_of(const Table& table) {
     text += "<tr>";
     for (const present::Column& column : table.columns) {
       text += fmt::format("<th{}>{}{}</th>", column.alignment == Alignment::right ? " class=\"number\"" : "", in_html(column.name),
-                          column.unit.empty() ? "" : " / " + in_html(column.unit));
+                          column.unit.empty() ? "" : fmt::format(" / {}", in_html(column.unit)));
     }
     text += "</tr>\n";
   }

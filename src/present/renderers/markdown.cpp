@@ -32,10 +32,10 @@ std::string text_of(const Table& table) {
   std::string rule = "|";
   text += "|";
   for (const present::Column& column : table.columns) {
-    text += fmt::format(" {}{} |", escaped(column.name), column.unit.empty() ? "" : " / " + escaped(column.unit));
+    text += fmt::format(" {}{} |", escaped(column.name), column.unit.empty() ? "" : fmt::format(" / {}", escaped(column.unit)));
     rule += column.alignment == Alignment::right ? "---:|" : "---|";
   }
-  text += "\n" + rule + "\n";
+  text += fmt::format("\n{}\n", rule);
   for (const std::vector<Text>& row : table.rows) {
     text += "|";
     for (const Text& cell : row) {

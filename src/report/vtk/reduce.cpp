@@ -124,7 +124,7 @@ RippledPiece without_ripple(const std::vector<CurvePoint>& piece) {
 }
 
 std::vector<std::vector<CurvePoint>> markers(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical,
-                                             double marker_px) {
+                                             double length_px) {
   std::vector<std::vector<CurvePoint>> pieces;
   std::set<std::pair<double, double>> taken;
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -134,7 +134,7 @@ std::vector<std::vector<CurvePoint>> markers(const ChartCurve& curve, const Axis
       continue;
     }
     if (taken.emplace(x_px, y_px).second) {
-      pieces.push_back({{x_px - 0.5 * marker_px, y_px}, {x_px + 0.5 * marker_px, y_px}});
+      pieces.push_back({{x_px - 0.5 * length_px, y_px}, {x_px + 0.5 * length_px, y_px}});
     }
   }
   return pieces;

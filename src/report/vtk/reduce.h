@@ -19,9 +19,9 @@ struct BandPoint {
   double high_px = 0.0;
 };
 
-/// Returns one short line, `marker_px` long, for each visible sample; of several samples in one pixel only one is kept.
+/// Returns one short line, `length_px` long, for each visible sample; of several samples in one pixel only one is kept.
 std::vector<std::vector<CurvePoint>> markers(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical,
-                                             double marker_px);
+                                             double length_px);
 
 /// Returns the unbroken pieces of a curve, reduced to minimum, maximum, first and last sample of each pixel column.
 std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical);
