@@ -13,7 +13,6 @@
 #include "cli/terminal.h"
 #include "input/data_folders.h"
 #include "present/document.h"
-#include "select/evaluate.h"
 
 namespace CLI {
 class App;
@@ -87,9 +86,6 @@ std::vector<Command> all_commands();
 
 /// Formats a count with its noun: "1 file", "2 files".
 std::string counted(std::size_t count, std::string_view what);
-
-/// Returns a JSON number rounded to `decimals`, or null for NaN.
-nlohmann::ordered_json rounded(double value, int decimals);
 
 /// Runs the whole program and returns the exit code. Never throws.
 int run_program(int argc, const char* const* argv);

@@ -1,41 +1,22 @@
 #include "cli/effect_topic.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "motor/sensor_effect.h"
 #include "present/description.h"
+#include "present/description_json.h"
 
 namespace heatsoak {
 namespace {
 
 Topic sensor_topic(const SensorEffectType& type) {
   return {std::string(type.name), std::string(type.summary), [&type] { return present::sensor_description(type); },
-          [&type] {
-            const std::array lines{TopicLine{"equation", type.equation}, TopicLine{"typical", type.typical},
-                                   TopicLine{"look_alike", type.confounded_with}, TopicLine{"experiment", type.experiment},
-                                   TopicLine{"reference", type.reference}};
-            return effect_json(fmt::format("reading of the sensor of {}", type.signal), type.name, type.summary, type.size, lines);
-          }};
+          [&type] { return present::sensor_json(type); }};
 }
 
 }  // namespace
-
-nlohmann::ordered_json effect_json(std::string_view where, std::string_view name, std::string_view summary, const ParameterSpec& size,
-                                   std::span<const TopicLine> lines) {
-  nlohmann::ordered_json json{{"kind", "effect"}, {"id", name}, {"summary", summary}, {"where", where}};
-  json["parameters"].push_back({{"key", size.key}, {"unit", size.unit}, {"meaning", size.meaning}});
-  for (const auto& [key, words] : lines) {
-    if (!words.empty()) {
-      json[std::string(key)] = words;
-    }
-  }
-  return json;
-}
 
 std::vector<Topic> all_topics() {
   std::vector<Topic> topics;

@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
-#include "cli/named_files.h"
 #include "derate/derating.h"
+#include "duty/named_files.h"
 
 namespace heatsoak {
 

@@ -6,14 +6,12 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <span>
-#include <sstream>
 
 #include "base/files.h"
 #include "base/version.h"
@@ -24,6 +22,7 @@
 #include "cli/terminal.h"
 #include "cli/usage.h"
 #include "input/document.h"
+#include "present/json.h"
 #include "present/renderer.h"
 #include "present/wrap.h"
 
@@ -302,19 +301,7 @@ void Session::answer_failure(const Failure& failure) {
   rewritten_.clear();
   streams_.clear();
   last_ = nullptr;
-  nlohmann::ordered_json diagnostics = nlohmann::ordered_json::array();
-  for (const Diagnostic& each : failure.diagnostics()) {
-    diagnostics.push_back(
-        {{"file", each.at.file}, {"line", each.at.line}, {"column", each.at.column}, {"key", each.key}, {"message", each.message}});
-  }
-  if (diagnostics.empty()) {
-    std::istringstream lines(failure.message());
-    for (std::string line; std::getline(lines, line) && !line.starts_with('`');) {
-      diagnostics.push_back({{"file", ""}, {"line", 0}, {"column", 0}, {"key", ""}, {"message", line}});
-    }
-  }
-  const std::string message = failure.message().empty() ? "the input is wrong" : failure.message();
-  answer({{"error", {{"code", static_cast<int>(failure.code())}, {"message", message}, {"diagnostics", diagnostics}}}});
+  answer(present::failure_json(failure));
   try {
     finish();
   } catch (const Failure& unwritable) {
@@ -335,14 +322,6 @@ std::vector<Command> all_commands() {
 }
 
 std::string counted(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
-
-nlohmann::ordered_json rounded(double value, int decimals) {
-  if (!std::isfinite(value)) {
-    return nullptr;
-  }
-  const double scale = std::pow(10.0, decimals);
-  return std::round(value * scale) / scale;
-}
 
 int run_program(int argc, const char* const* argv) {
   // With SIGXFSZ ignored, a file beyond the user's size limit fails like a full disk, with a message.

@@ -7,29 +7,12 @@
 #include <cmath>
 
 #include "base/quantity.h"
+#include "input/toml_text.h"
 
 namespace heatsoak {
 namespace {
 
 constexpr int kDigits = 6;
-
-/// Quotes a text as a TOML basic string.
-std::string toml_text(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (c == '\n') {
-      out += "\\n";
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
-}
 
 std::string amount(double value, const std::string& unit) {
   return unit.empty() ? significant(value, kDigits) : fmt::format("{} {}", significant(value, kDigits), unit);

@@ -1,14 +1,19 @@
-// Document of `check`.
+// Document and JSON of `check`.
 #pragma once
 
 #include <span>
+#include <string>
+#include <vector>
 
 #include "check/run_checks.h"
 #include "present/document.h"
+#include "present/json.h"
 
 namespace heatsoak::present {
 
 /// One table for each check: result, threshold, value, limit, margin, and what the value rests on. `is_update`: limits were rewritten.
 Document check_document(std::span<const Outcome> outcomes, bool is_update);
+/// `files` are the names as the user gave them.
+Json check_json(std::span<const Outcome> outcomes, const std::vector<std::string>& files);
 
 }  // namespace heatsoak::present

@@ -1,10 +1,11 @@
-// Documents of `derate`.
+// Documents and JSON of `derate`.
 #pragma once
 
 #include "derate/committed_table.h"
 #include "derate/derating.h"
 #include "motor/motor.h"
 #include "present/document.h"
+#include "present/json.h"
 
 namespace heatsoak::present {
 
@@ -20,5 +21,6 @@ struct TableCheck {
 
 /// Adds what changed since the file was written: unsafe changes are warnings, the others notes.
 void add_table_check(Document& document, const Derating& derating, const TableCheck& check);
+Json table_check_json(const TableCheck& check);
 
 }  // namespace heatsoak::present

@@ -44,19 +44,21 @@ Table role_table(const RoleLoads& roles) {
   return table;
 }
 
-}  // namespace
-
-Document load_document(const Duty& duty, double duration_s) {
-  return {.headline = {{fmt::format("{}: {}, {:.0f} s.", duty.id, duty.summary, duration_s)}},
+Document document_of(const DutyAnswer& answer, const PrescribedLoad& load) {
+  const Duty& duty = *answer.duty;
+  return {.headline = {{fmt::format("{}: {}, {:.0f} s.", duty.id, duty.summary, load.duration_s)}},
           .paragraphs = {fmt::format("Load: {}.", duty.origin)}};
 }
 
-Document match_duty_document(const Duty& duty, const Robot& robot, std::string_view role, std::uint64_t seed, const MatchLoad& load,
-                             const RoleLoads& roles) {
-  Document document{.headline = {{fmt::format("{} of {} as {}: {}, {:.0f} s of them play, {:.2f} km.", duty.id, robot.id, role,
-                                              duration_text(load.duration_s), load.play_s, load.distance_m / 1e3)}},
-                    .paragraphs = {fmt::format("Seed {}. Load: {}.", seed, duty.origin)},
-                    .tables = {role_table(roles)}};
+Document document_of(const DutyAnswer& answer, const GeneratedMatch& match) {
+  const Duty& duty = *answer.duty;
+  const Robot& robot = answer.robot;
+  const MatchLoad& load = match.load;
+  Document document{.headline = {{fmt::format("{} of {} as {}: {}, {:.0f} s of them play, {:.2f} km.", duty.id, robot.id,
+                                              kRoleNames.at(static_cast<std::size_t>(match.role)), duration_text(load.duration_s),
+                                              load.play_s, load.distance_m / 1e3)}},
+                    .paragraphs = {fmt::format("Seed {}. Load: {}.", match.seed, duty.origin)},
+                    .tables = {role_table(match.roles)}};
   add_lines(document.notes, slip_text(load.wheels.front()), Severity::note);
   const std::optional<double> acceleration_m_per_s2 = robot.limits.acceleration_m_per_s2;
   const std::optional<double> braking_m_per_s2 = robot.limits.braking_m_per_s2;
@@ -68,14 +70,21 @@ Document match_duty_document(const Duty& duty, const Robot& robot, std::string_v
   return document;
 }
 
-Document recorded_game_document(const GameDemand& game, const Robot& robot, const std::string& log) {
-  Document document{.headline = {{fmt::format("{} of {}, driven by {}: {}.", game.player, std::filesystem::path(log).filename().string(),
-                                              robot.id, duration_text(game.wheels.front().duration_s()))}},
-                    .paragraphs = {}};
+Document document_of(const DutyAnswer& answer, const GameDemand& game) {
+  Document document{
+      .headline = {{fmt::format("{} of {}, driven by {}: {}.", game.player, std::filesystem::path(answer.log).filename().string(),
+                                answer.robot.id, duration_text(game.wheels.front().duration_s()))}},
+      .paragraphs = {}};
   for (const std::string& sentence : game.sentences) {
     document.paragraphs.push_back(sentence);
   }
   return document;
+}
+
+}  // namespace
+
+Document duty_document(const DutyAnswer& answer) {
+  return std::visit([&](const auto& content) { return document_of(answer, content); }, answer.content);
 }
 
 void add_duty_files(Document& document, const std::string& table, const std::string& description) {

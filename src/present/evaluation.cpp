@@ -8,7 +8,10 @@
 
 #include "base/lanes.h"
 #include "base/quantity.h"
+#include "present/closed_loop.h"
+#include "present/motor_notes.h"
 #include "present/verdict_words.h"
+#include "robot/assumed_friction.h"
 #include "select/decision.h"
 
 namespace heatsoak::present {
@@ -115,7 +118,7 @@ std::string what_happens(const MotorEvaluation& motor, bool is_drawn) {
   const std::string over = fmt::format("{:.0f} % of the samples exceed a limit", 100.0 * motor.probability_over_limit);
   switch (motor.verdict) {
     case Verdict::fail:
-      return "fails: " + (is_drawn ? over : reaches);
+      return fmt::format("fails: {}", is_drawn ? over : reaches);
     case Verdict::marginal:
       return fmt::format("is marginal: {}",
                          motor.short_probability > std::max(motor.probability_over_limit, kMarginalProbability)
@@ -133,20 +136,21 @@ std::string load_words(const Duty& duty) {
              : fmt::format("{} (a fixed wheel load: mass and wheel size of the robot do not matter)", duty.id);
 }
 
-std::vector<Text> headline(std::span<const MotorEvaluation> results, const EvaluationContext& context) {
+std::vector<Text> headline(const EvaluationAnswer& answer) {
+  const std::vector<MotorEvaluation>& results = answer.results;
   const auto sentence = [&](const MotorEvaluation& motor, std::string_view prefix) {
     const Tone tone = motor.samples_needed ? Tone::undecided : tone_of(motor.verdict);
-    return Text{fmt::format("{}{} {}.", prefix, motor.motor_id, what_happens(motor, context.draws > 0)), tone};
+    return Text{fmt::format("{}{} {}.", prefix, motor.motor_id, what_happens(motor, answer.draw_count > 0)), tone};
   };
   const auto good =
       std::ranges::count_if(results, [](const MotorEvaluation& each) { return each.verdict == Verdict::pass && !each.samples_needed; });
   const auto undecided = std::ranges::count_if(results, [](const MotorEvaluation& each) { return each.samples_needed.has_value(); });
   std::vector<Text> sentences{{fmt::format("{} of {} motor{} pass{} {}{}.", good, results.size(), results.size() == 1 ? "" : "s",
-                                           good == 1 || results.size() == 1 ? "es" : "", load_words(context.duty),
+                                           good == 1 || results.size() == 1 ? "es" : "", load_words(answer.duty),
                                            undecided > 0 ? fmt::format("; {} undecided", undecided) : ""),
                                good == 0 ? Tone::bad : Tone::good}};
   sentences.push_back(sentence(results.front(), results.size() > 1 ? "Best: " : ""));
-  const auto own = std::ranges::find(results, context.robot.drive.motor, &MotorEvaluation::motor_id);
+  const auto own = std::ranges::find(results, answer.robot.drive.motor, &MotorEvaluation::motor_id);
   if (own != results.end() && own != results.begin()) {
     sentences.push_back(sentence(*own, "The robot's own "));
   }
@@ -186,8 +190,8 @@ std::string undecided_note(const MotorEvaluation& motor) {
                      to_string(motor.verdict));
 }
 
-void add_notes(Document& document, const MotorEvaluation& motor, const EvaluationContext& context) {
-  add_lines(document.notes, why_infeasible(motor, context.robot), Severity::warning);
+void add_notes(Document& document, const MotorEvaluation& motor, const EvaluationAnswer& answer) {
+  add_lines(document.notes, why_infeasible(motor, answer.robot), Severity::warning);
   if (motor.samples_needed) {
     document.add_note(Severity::warning, undecided_note(motor));
   }
@@ -208,14 +212,15 @@ std::string counted(std::span<const MotorEvaluation> results, int MotorEvaluatio
   return fmt::format("{} {}{}", number, unit, most.*count == 1 ? "" : "s");
 }
 
-std::vector<std::string> paragraphs(std::span<const MotorEvaluation> results, const EvaluationContext& context) {
+std::vector<std::string> paragraphs(const EvaluationAnswer& answer) {
+  const std::vector<MotorEvaluation>& results = answer.results;
   const bool is_sampled = results.front().samples > 0;
-  std::string first = fmt::format("{} on {}: {}, ambient {:.0f} °C, {}.", context.robot.id, context.duty.id,
-                                  duration_text(context.demand.duration_s()), context.duty.ambient_C.value,
-                                  is_sampled ? fmt::format("{} of all declared tolerances, seed {}",
-                                                           counted(results, &MotorEvaluation::samples, "sample"), context.seed)
-                                             : "nominal values only");
-  if (context.draws > 0) {
+  std::string first = fmt::format(
+      "{} on {}: {}, ambient {:.0f} °C, {}.", answer.robot.id, answer.duty.id, duration_text(answer.demand.duration_s()),
+      answer.duty.ambient_C.value,
+      is_sampled ? fmt::format("{} of all declared tolerances, seed {}", counted(results, &MotorEvaluation::samples, "sample"), answer.seed)
+                 : "nominal values only");
+  if (answer.draw_count > 0) {
     first += fmt::format(" {} with other inputs and robot parameters; verdict, range and P over are of all of them.",
                          counted(results, &MotorEvaluation::games, "game"));
   }
@@ -225,10 +230,6 @@ std::vector<std::string> paragraphs(std::span<const MotorEvaluation> results, co
   }
   return {first};
 }
-
-}  // namespace
-
-namespace {
 
 std::string shown_value(double value, std::string_view unit) {
   return unit.empty() ? significant(value, 3) : fmt::format("{} {}", significant(value, 3), unit);
@@ -258,7 +259,7 @@ std::string best_change_words(const ChangeEffect* change, std::span<const Change
   }
   const auto largest = std::ranges::max_element(effects, {}, &ChangeEffect::saved_K);
   if (largest == effects.end() || largest->is_deliverable || !(largest->saved_K > 0.5)) {
-    return "No change of the robot by a usual step cools " + motor_id + " by more than its scatter from game to game.";
+    return fmt::format("No change of the robot by a usual step cools {} by more than its scatter from game to game.", motor_id);
   }
   return fmt::format(
       "No change of the robot by a usual step cools {} and lets it deliver what the duty demands. The largest effect has {}: {:.0f} K "
@@ -266,9 +267,9 @@ std::string best_change_words(const ChangeEffect* change, std::span<const Change
       motor_id, change_words(*largest), largest->saved_K);
 }
 
-}  // namespace
-
-void add_changes(Document& document, std::span<const ChangeEffect> effects, const std::string& motor_id) {
+/// Adds a table of the changes that cool the winding most, three at most.
+void add_changes(Document& document, const SuggestedChanges& changes) {
+  const auto& [motor_id, effects] = changes;
   constexpr std::size_t kMost = 3;
   Table table{.title = fmt::format("Changes that help {} most", motor_id),
               .columns = {{"change", "", 0, Alignment::left},
@@ -302,6 +303,8 @@ void add_changes(Document& document, std::span<const ChangeEffect> effects, cons
                   "motor is the one of the data base with the largest margin; its mass and size are not compared.",
                   kChangeGames));
 }
+
+}  // namespace
 
 Tone tone_of(Verdict verdict) { return verdict == Verdict::pass ? Tone::good : verdict == Verdict::marginal ? Tone::undecided : Tone::bad; }
 
@@ -339,30 +342,34 @@ std::string sparkline(const MotorEvaluation& motor, double ambient_C) {
 
 std::string_view verdict_word(const MotorEvaluation& motor) { return motor.samples_needed ? "undecided" : to_string(motor.verdict); }
 
-Document evaluation_document(std::span<const MotorEvaluation> results, const EvaluationContext& context) {
-  Document document{.headline = headline(results, context), .paragraphs = paragraphs(results, context)};
+namespace {
+
+/// Returns the ranking by samples with its notes.
+Document ranking_document(const EvaluationAnswer& answer) {
+  const std::vector<MotorEvaluation>& results = answer.results;
+  Document document{.headline = headline(answer), .paragraphs = paragraphs(answer)};
   Table table{.columns = columns()};
   for (std::size_t i = 0; i < results.size(); ++i) {
-    table.rows.push_back(row(i + 1, results[i], context.duty.ambient_C.value));
+    table.rows.push_back(row(i + 1, results[i], answer.duty.ambient_C.value));
   }
   document.tables.push_back(std::move(table));
   for (const MotorEvaluation& each : results) {
-    add_notes(document, each, context);
+    add_notes(document, each, answer);
   }
   if (std::ranges::any_of(results, [](const MotorEvaluation& each) { return each.data_quality == "estimated"; })) {
     document.add_note(Severity::note,
                       "The verdicts depend on estimated thermal values where data is \"estimated\": no manufacturer publishes them "
                       "(`heatsoak describe MOTOR` shows each derivation). Calibrate on a bench before you rely on them.");
   }
-  add_lines(document.notes, slip_text(context.demand), Severity::note);
-  if (context.duty.shape_data->depends_on_robot()) {
+  add_lines(document.notes, slip_text(answer.demand), Severity::note);
+  if (answer.duty.shape_data->depends_on_robot()) {
     document.add_note(
         Severity::background,
         "`heatsoak simulate` gives other temperatures: it adds slip, noisy sensors and the sag of the battery, while here the plan "
         "is followed exactly at the nominal voltage. --closed-loop ranks motors with all that.");
   }
-  document.add_note(Severity::background, fmt::format("Load: {}.", context.duty.origin));
-  if (context.draws > 0) {
+  document.add_note(Severity::background, fmt::format("Load: {}.", answer.duty.origin));
+  if (answer.draw_count > 0) {
     document.add_note(Severity::background, "The nominal peak, margin, reached, A rms and more A are of one game, that of the seed.");
   } else if (results.front().samples > 0) {
     document.add_note(Severity::background, sampling_error(results));
@@ -372,6 +379,22 @@ Document evaluation_document(std::span<const MotorEvaluation> results, const Eva
                     "ambient to limit; P over, share of samples over a limit; reached, time until the first limit; more A, remaining rms "
                     "current; P interval and p95 interval, the range that other samples would give (P: 95 % for all looks at the games "
                     "together, 97.5 % or more for each). `heatsoak describe verdict` defines the verdicts.");
+  return document;
+}
+
+}  // namespace
+
+Document evaluation_document(const EvaluationAnswer& answer) {
+  Document document = ranking_document(answer);
+  add_motor_notes(document, answer.motors);
+  add_lines(document.notes, default_spreads_text(answer.motors), Severity::note);
+  if (answer.changes) {
+    add_changes(document, *answer.changes);
+  }
+  add_lines(document.notes, assumed_friction_text(answer.robot), Severity::warning);
+  if (answer.closed_loop) {
+    add_closed_loop(document, answer.ranks, answer.closed_loop->games, answer.seed);
+  }
   return document;
 }
 

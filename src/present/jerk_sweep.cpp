@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace heatsoak::present {
 namespace {
 
-bool is_bang_bang(const StudyResult& result) { return std::isinf(result.limits.jerk_m_per_s3); }
-
 /// States the jerk limit whose drives settle first, for the robot's own acceleration, which comes first.
-Text headline(std::span<const StudyResult> results) {
+Text headline(const std::vector<StudyResult>& results) {
   const double own_m_per_s2 = results.front().limits.acceleration_m_per_s2;
   const StudyResult* best = &results.front();
   for (const StudyResult& each : results) {
@@ -21,17 +18,17 @@ Text headline(std::span<const StudyResult> results) {
   }
   return {fmt::format("With an acceleration of {:.1f} m/s² the drives settle first, after {:.2f} s, with {}.", own_m_per_s2,
                       best->settled_s,
-                      is_bang_bang(*best) ? "bang-bang" : fmt::format("a jerk limit of {:.1f} m/s³", best->limits.jerk_m_per_s3))};
+                      best->is_bang_bang() ? "bang-bang" : fmt::format("a jerk limit of {:.1f} m/s³", best->limits.jerk_m_per_s3))};
 }
 
 }  // namespace
 
-Document jerk_sweep_document(std::span<const StudyResult> results, const Robot& robot, const Motor& motor) {
-  const double grip = grip_m_per_s2(robot);
+Document jerk_sweep_document(const JerkSweep& sweep) {
+  const double grip = grip_m_per_s2(sweep.robot);
   Document document{
-      .headline = {headline(results)},
-      .paragraphs = {
-          fmt::format("{} on {}: simulated drives of 0.5, 1 and 2 m in eight directions, from rest to rest; means.", motor.id, robot.id)}};
+      .headline = {headline(sweep.results)},
+      .paragraphs = {fmt::format("{} on {}: simulated drives of 0.5, 1 and 2 m in eight directions, from rest to rest; means.",
+                                 sweep.motor.id, sweep.robot.id)}};
   Table table{.columns = {{"acceleration", "m/s²", 0},
                           {"of grip", "%", 4},
                           {"jerk", "m/s³", 0},
@@ -44,11 +41,11 @@ Document jerk_sweep_document(std::span<const StudyResult> results, const Robot& 
                           {"peak", "A", 7},
                           {"copper", "J", 1}},
               .rows = {}};
-  for (const StudyResult& each : results) {
+  for (const StudyResult& each : sweep.results) {
     const double acceleration_m_per_s2 = each.limits.acceleration_m_per_s2;
     table.rows.push_back({{fmt::format("{:.1f}", acceleration_m_per_s2)},
                           {fmt::format("{:.0f}", 100.0 * acceleration_m_per_s2 / grip)},
-                          {is_bang_bang(each) ? "bang-bang" : fmt::format("{:.1f}", each.limits.jerk_m_per_s3)},
+                          {each.is_bang_bang() ? "bang-bang" : fmt::format("{:.1f}", each.limits.jerk_m_per_s3)},
                           {fmt::format("{:.2f}", each.planned_s)},
                           {fmt::format("{:.2f}", each.settled_s)},
                           {fmt::format("{:.1f}", 1e3 * each.slip_share)},

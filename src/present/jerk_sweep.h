@@ -1,13 +1,13 @@
-// Document of `simulate --jerk-sweep`.
+// Document and JSON of `simulate --jerk-sweep`.
 #pragma once
 
-#include <span>
-
 #include "present/document.h"
+#include "present/json.h"
 #include "simulate/planner_study.h"
 
 namespace heatsoak::present {
 
-Document jerk_sweep_document(std::span<const StudyResult> results, const Robot& robot, const Motor& motor);
+Document jerk_sweep_document(const JerkSweep& sweep);
+Json jerk_sweep_json(const JerkSweep& sweep);
 
 }  // namespace heatsoak::present

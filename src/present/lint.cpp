@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace heatsoak::present {
 
-Document lint_document(std::span<const LintFinding> findings, std::size_t files) {
-  const auto count = [&](LintFinding::Level level) { return std::ranges::count(findings, level, &LintFinding::level); };
-  const auto errors = count(LintFinding::Level::error);
-  const auto warnings = count(LintFinding::Level::warning);
+Document lint_document(const FilesLint& lint) {
+  const std::size_t files = lint.files.size();
+  const std::size_t errors = lint.count(LintFinding::Level::error);
+  const std::size_t warnings = lint.count(LintFinding::Level::warning);
   const bool is_sound = errors + warnings == 0;
   Document document{.headline = {{fmt::format("{} file{}: {}", files, files == 1 ? "" : "s",
                                               is_sound ? "sound"
@@ -18,7 +16,7 @@ Document lint_document(std::span<const LintFinding> findings, std::size_t files)
                                   is_sound ? Tone::good : Tone::bad}},
                     .paragraphs = {}};
   Listing listing{.title = {}, .lines = {}, .is_prose = true};
-  for (const LintFinding& each : findings) {
+  for (const LintFinding& each : lint.findings) {
     listing.lines +=
         fmt::format("{}:{}:{}: {}: {}: {}\n", each.at.file, each.at.line, each.at.column, to_string(each.level), each.check, each.message);
   }

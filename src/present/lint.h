@@ -1,14 +1,14 @@
-// Document of `lint`.
+// Document and JSON of `lint`.
 #pragma once
 
-#include <span>
-
-#include "motor/lint.h"
+#include "duty/lint_files.h"
 #include "present/document.h"
+#include "present/json.h"
 
 namespace heatsoak::present {
 
 /// The findings are lines "file:line:column: level: check: message", which editors understand.
-Document lint_document(std::span<const LintFinding> findings, std::size_t files);
+Document lint_document(const FilesLint& lint);
+Json lint_json(const FilesLint& lint);
 
 }  // namespace heatsoak::present

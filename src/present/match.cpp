@@ -11,12 +11,6 @@
 #include "present/verdict_words.h"
 #include "robot/assumed_friction.h"
 
-namespace heatsoak {
-
-std::string_view to_string(Planner planner) { return planner == Planner::bang_bang ? "bang_bang" : "jerk_limited"; }
-
-}  // namespace heatsoak
-
 namespace heatsoak::present {
 namespace {
 
@@ -62,24 +56,24 @@ constexpr ScoreRow kScores[] = {
 };
 
 /// Returns a table whose columns after name and unit are the planners.
-Table planner_table(std::string title, const MatchAnswer& answer) {
+Table planner_table(std::string title, const MatchSimulation& answer) {
   Table table{.title = std::move(title), .columns = {{"", "", 0, Alignment::left}, {"", "", 0, Alignment::left}}, .rows = {}};
-  for (const Planner planner : answer.planners) {
-    table.columns.push_back({std::string(to_string(planner)), "", 0});
+  for (const DrivenMatch& each : answer.runs) {
+    table.columns.push_back({std::string(to_string(each.planner)), "", 0});
   }
   return table;
 }
 
 template <class Cell>
-void add_row(Table& table, const MatchAnswer& answer, std::string_view name, std::string_view unit, const Cell& cell) {
+void add_row(Table& table, const MatchSimulation& answer, std::string_view name, std::string_view unit, const Cell& cell) {
   std::vector<Text> row{{std::string(name)}, {std::string(unit)}};
-  for (const DriveScore& score : answer.scores) {
-    row.push_back({cell(score)});
+  for (const DrivenMatch& each : answer.runs) {
+    row.push_back({cell(each.run.score)});
   }
   table.rows.push_back(std::move(row));
 }
 
-Table score_table(const MatchAnswer& answer) {
+Table score_table(const MatchSimulation& answer) {
   Table table = planner_table("How well, and at what price, the match was driven", answer);
   for (const ScoreRow& each : kScores) {
     add_row(table, answer, each.name, each.unit, each.cell);
@@ -87,7 +81,7 @@ Table score_table(const MatchAnswer& answer) {
   return table;
 }
 
-Table energy_table(const MatchAnswer& answer) {
+Table energy_table(const MatchSimulation& answer) {
   Table table = planner_table("Energy out of the battery", answer);
   add_row(table, answer, "in all", "kJ", [](const DriveScore& score) { return fmt::format("{:.2f}", 1e-3 * score.energy.battery_J); });
   for (const EnergyPart& each : energy_parts()) {
@@ -100,27 +94,28 @@ Table energy_table(const MatchAnswer& answer) {
 }
 
 /// Reports what the thermal guard did or, in shadow mode, would have done.
-void add_guard_notes(Document& document, const MatchAnswer& answer) {
-  if (answer.guard == GuardUse::off) {
+void add_guard_notes(Document& document, const MatchSimulation& answer) {
+  if (answer.guard_use == GuardUse::off) {
     document.add_note(Severity::note, "thermal guard: off");
     return;
   }
-  if (!answer.made_guard.guard) {
+  if (!answer.guard.guard) {
     document.add_note(Severity::warning,
-                      fmt::format("thermal guard: none, because this motor cannot be guarded: {}", answer.made_guard.why_none));
+                      fmt::format("thermal guard: none, because this motor cannot be guarded: {}", answer.guard.why_none));
     return;
   }
-  for (std::size_t i = 0; i < answer.scores.size(); ++i) {
-    const DriveScore& score = answer.scores[i];
-    const std::string what = answer.guard == GuardUse::on ? fmt::format("limited a motor for {:.1f} s", score.guard_limited_s)
-                                                          : fmt::format("would have limited a motor for {:.1f} s and taken away {:.1f} A s",
-                                                                        score.guard_limited_s, score.guard_missing_A_s);
+  for (const DrivenMatch& each : answer.runs) {
+    const DriveScore& score = each.run.score;
+    const std::string what = answer.guard_use == GuardUse::on
+                                 ? fmt::format("limited a motor for {:.1f} s", score.guard_limited_s)
+                                 : fmt::format("would have limited a motor for {:.1f} s and taken away {:.1f} A s", score.guard_limited_s,
+                                               score.guard_missing_A_s);
     document.add_note(
         Severity::note,
         fmt::format(
             "thermal guard ({}), {}: {} of {}; its observer, with air of {:.0f} °C and its safety factor on heat, reached {:.0f} °C",
-            kGuardUses[static_cast<std::size_t>(answer.guard)], to_string(answer.planners[i]), what, duration_text(score.time_s),
-            answer.is_sensing_ideal ? answer.duty.ambient_C.value : static_cast<double>(answer.made_guard.guard->model().hottest_ambient_C),
+            kGuardUses[static_cast<std::size_t>(answer.guard_use)], to_string(each.planner), what, duration_text(score.time_s),
+            answer.is_sensing_ideal ? answer.duty.ambient_C.value : static_cast<double>(answer.guard.guard->model().hottest_ambient_C),
             score.guard_winding_peak_C));
   }
 }
@@ -144,41 +139,39 @@ std::span<const EnergyPart> energy_parts() {
   return kParts;
 }
 
-Document match_document(const MatchAnswer& answer) {
-  const DriveScore& first = answer.scores.front();
-  const auto hottest = std::ranges::max_element(answer.scores, {}, &DriveScore::winding_peak_C);
+Document match_document(const MatchSimulation& answer) {
+  const DrivenMatch& hottest =
+      *std::ranges::max_element(answer.runs, {}, [](const DrivenMatch& each) { return each.run.score.winding_peak_C; });
   Document document{
-      .headline = {{fmt::format(
-                        "{} {}: the hottest winding, of wheel {}{}, reaches {:.1f} °C (limit {:.0f} °C).", answer.motor.id,
-                        passes_or(answer.verdict), hottest->hottest_wheel + 1,
-                        answer.planners.size() > 1
-                            ? fmt::format(" with {}", to_string(answer.planners[static_cast<std::size_t>(hottest - answer.scores.begin())]))
-                            : "",
-                        hottest->winding_peak_C, answer.motor.nominal.winding_limit_C),
+      .headline = {{fmt::format("{} {}: the hottest winding, of wheel {}{}, reaches {:.1f} °C (limit {:.0f} °C).", answer.motor.id,
+                                passes_or(answer.verdict), hottest.run.score.hottest_wheel + 1,
+                                answer.runs.size() > 1 ? fmt::format(" with {}", to_string(hottest.planner)) : "",
+                                hottest.run.score.winding_peak_C, answer.motor.nominal.winding_limit_C),
                     tone_of(answer.verdict)}},
       .paragraphs = {fmt::format(
           "{} on {} as {}, seed {}: closed loop of {} at 1 kHz with the drive core, {}, {} thermal data. Load: {}.", answer.robot.id,
-          answer.duty.id, kRoleNames.at(static_cast<std::size_t>(answer.role)), answer.seed, duration_text(first.time_s),
+          answer.duty.id, kRoleNames.at(static_cast<std::size_t>(answer.role)), answer.seed,
+          duration_text(answer.runs.front().run.score.time_s),
           answer.is_sensing_ideal ? std::string("exact sensors and no delays")
                                   : fmt::format("real sensing and {:.0f} radio packets per second", radio_of(answer.robot).packet_rate_Hz),
           data_quality(answer.motor), answer.duty.origin)},
       .tables = {score_table(answer), energy_table(answer)}};
-  for (std::size_t i = 0; i < answer.scores.size(); ++i) {
-    if (const std::optional<DriveProblem> problem = drive_problem(answer.scores[i])) {
-      document.add_note(Severity::warning, fmt::format("{}: {}", to_string(answer.planners[i]), words_of(*problem, answer.scores[i])));
+  for (const DrivenMatch& each : answer.runs) {
+    if (const std::optional<DriveProblem> problem = drive_problem(each.run.score)) {
+      document.add_note(Severity::warning, fmt::format("{}: {}", to_string(each.planner), words_of(*problem, each.run.score)));
     }
   }
   add_guard_notes(document, answer);
   add_motor_notes(document, {&answer.motor, 1});
-  if (answer.guard != GuardUse::off) {
+  if (answer.guard_use != GuardUse::off) {
     add_lines(document.notes, default_spreads_text({&answer.motor, 1}), Severity::note);
   }
   add_lines(document.notes, assumed_friction_text(answer.robot), Severity::warning);
   return document;
 }
 
-Document load_simulation_document(const MotorEvaluation& result, const Trace& trace, const Robot& robot, const Motor& motor,
-                                  const Duty& duty, double duration_s) {
+Document load_simulation_document(const LoadSimulation& simulation) {
+  const auto& [robot, motor, duty, duration_s, result, trace] = simulation;
   Document document{.headline = {{fmt::format("{} {}: winding peak {:.1f} °C (limit {:.0f} °C).", motor.id, to_string(result.verdict),
                                               result.winding_peak_C.nominal, result.winding_limit_C),
                                   tone_of(result.verdict)}},

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include "motor/datasheet_network.h"
+#include "present/motor_notes.h"
 #include "thermal/transient.h"
 
 namespace heatsoak::present {
 namespace {
 
-Text headline(const SteadyAnswer& answer) {
+Text headline(const OnOffAnswer& answer) {
   const PeriodicState& periodic = answer.periodic;
   const std::string& id = answer.motor.id;
   if (periodic.destroyed_s) {
@@ -25,16 +26,8 @@ Text headline(const SteadyAnswer& answer) {
           answer.is_over_limit ? Tone::bad : Tone::good};
 }
 
-}  // namespace
-
-Document steady_document(const SteadyAnswer& answer) {
-  Document document{.headline = {headline(answer)},
-                    .paragraphs = {fmt::format("{} thermal data, rms current {:.2f} A, ambient {:.0f} °C.", data_quality(answer.motor),
-                                               answer.under_rms.current_rms_A, answer.ambient_C)}};
+void add_temperatures(Document& document, const OnOffAnswer& answer) {
   const PeriodicState& periodic = answer.periodic;
-  if (periodic.runaway || periodic.destroyed_s) {
-    return document;
-  }
   const auto shown = [](double value_C) { return Text{fmt::format("{:.1f}", value_C)}; };
   Table table{.columns = {{"", "", 0, Alignment::left}, {"mean", "°C", 0}, {"highest", "°C", 0}}};
   table.rows.push_back({{"winding"}, shown(periodic.mean_C[states::winding]), shown(periodic.peak_C[states::winding])});
@@ -52,6 +45,18 @@ Document steady_document(const SteadyAnswer& answer) {
                                   answer.motor.nominal.thermal_time_constant_winding_s));
   }
   document.tables.push_back(std::move(table));
+}
+
+}  // namespace
+
+Document steady_document(const OnOffAnswer& answer) {
+  Document document{.headline = {headline(answer)},
+                    .paragraphs = {fmt::format("{} thermal data, rms current {:.2f} A, ambient {:.0f} °C.", data_quality(answer.motor),
+                                               answer.under_rms.current_rms_A, answer.current.ambient_C)}};
+  if (!answer.is_runaway() && !answer.periodic.destroyed_s) {
+    add_temperatures(document, answer);
+  }
+  add_motor_notes(document, {&answer.motor, 1});
   return document;
 }
 

@@ -1,21 +1,13 @@
-// Formats the answer of `steady` as a document.
+// Document and JSON of `steady`.
 #pragma once
 
-#include "motor/motor.h"
+#include "motor/on_off_load.h"
 #include "present/document.h"
-#include "thermal/periodic_state.h"
-#include "thermal/steady_state.h"
+#include "present/json.h"
 
 namespace heatsoak::present {
 
-struct SteadyAnswer {
-  const Motor& motor;
-  const PeriodicState& periodic;      ///< result for the whole network
-  const OnOffSteadyState& under_rms;  ///< equations (8) to (12), or the network under the RMS current if the file adds effects
-  bool is_of_the_equations = true;    ///< true if `under_rms` comes from the equations
-  double ambient_C = 25.0;
-  bool is_over_limit = false;
-};
-Document steady_document(const SteadyAnswer& answer);
+Document steady_document(const OnOffAnswer& answer);
+Json steady_json(const OnOffAnswer& answer);
 
 }  // namespace heatsoak::present

@@ -146,7 +146,6 @@ class LaterRounds {
 std::vector<MotorEvaluation> evaluate_until_decided(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
                                                     std::span<const Motor> motors, EvaluateOptions options, int most,
                                                     std::vector<WheelDemand>& draws, const ProgressFor& progress) {
-  const auto progress_for = [&](const char* what) { return progress ? progress(what) : Progress(); };
   double play_s = 0.0;
   double evaluate_s = 0.0;
   const auto run = [&](std::span<const Motor> wanted, const Progress& playing, const Progress& evaluating) {
@@ -158,7 +157,7 @@ std::vector<MotorEvaluation> evaluate_until_decided(const Robot& robot, const Du
     evaluate_s = seconds_since(begin) - play_s;
     return found;
   };
-  std::vector<MotorEvaluation> results = run(motors, progress_for("playing games"), progress_for("evaluating"));
+  std::vector<MotorEvaluation> results = run(motors, progress_of(progress, "playing games"), progress_of(progress, "evaluating"));
   std::optional<LaterRounds> later;
   while (options.samples < most) {
     std::vector<Motor> open;
@@ -175,7 +174,7 @@ std::vector<MotorEvaluation> evaluate_until_decided(const Robot& robot, const Du
     if (!later) {
       const auto samples = static_cast<double>(options.samples) * static_cast<double>(motors.size());
       later.emplace(play_s / static_cast<double>(std::max<std::size_t>(1, draws.size())), evaluate_s / samples,
-                    progress_for("undecided, drawing more samples"));
+                    progress_of(progress, "undecided, drawing more samples"));
     }
     const int before = draw_count(duty, options.samples);
     options.samples = std::min(most, 2 * options.samples);

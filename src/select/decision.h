@@ -1,7 +1,6 @@
 // Whether the samples decide a verdict, and how many more it takes where they do not.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -30,9 +29,6 @@ int most_samples(const Duty& duty);
 
 /// The most samples that can be asked for. A drawn game takes 0.6 MB and a tenth of a second: memory and hours end there.
 int most_samples_at_all(bool is_drawn);
-
-/// A progress of its own for every round of work, by its name.
-using ProgressFor = std::function<Progress(const char* what)>;
 
 /// Draws demands as draw_demands() does, evaluates with `options.samples`, then doubles the samples of the motors whose verdict is not
 /// decided, up to `most`. The first samples of a longer round are those of the shorter one. `draws` receives all drawn

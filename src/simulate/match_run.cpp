@@ -1,7 +1,10 @@
 #include "simulate/match_run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+
+#include "base/diagnostic.h"
 
 namespace heatsoak {
 
@@ -34,6 +37,12 @@ MatchRun run_match(const Game& game, const Robot& robot, const Motor& motor, con
   });
   run.score = scorer.finish();
   return run;
+}
+
+void require_rotor_inertia(const Motor& motor) {
+  if (std::isnan(motor.nominal.rotor_inertia_kg_m2)) {
+    throw bad_input({motor.file.string()}, "figures.rotor_inertia", "is missing: without it no acceleration of a wheel can be calculated");
+  }
 }
 
 }  // namespace heatsoak

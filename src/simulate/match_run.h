@@ -37,6 +37,9 @@ struct Game {
 };
 Game play_game(const MatchInputs& inputs, const Robot& robot, std::uint64_t seed);
 
+/// Throws Failure (bad_input) if the motor's file has no inertia of the rotor.
+void require_rotor_inertia(const Motor& motor);
+
 /// Drives a game. `core` is the robot's (guarded_core.h). `observer` sees every period of the plant.
 /// Throws Failure (bad_input) that names what the files of robot or motor lack.
 MatchRun run_match(const Game& game, const Robot& robot, const Motor& motor, const robot_core::Config& core, const MatchRunOptions& options,

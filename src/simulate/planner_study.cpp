@@ -8,8 +8,10 @@
 #include <numbers>
 
 #include "firmware/core_config.h"
+#include "robot/assumed_friction.h"
 #include "robot/inverse_dynamics.h"
 #include "simulate/drive_score.h"
+#include "simulate/match_run.h"
 
 namespace heatsoak {
 namespace {
@@ -136,6 +138,14 @@ std::vector<StudyCase> jerk_sweep(const Robot& robot) {
     cases.push_back({acceleration_m_per_s2, std::numeric_limits<double>::infinity()});
   }
   return cases;
+}
+
+JerkSweep sweep_jerk(const Robot& robot, const Motor& motor, bool is_sensing_ideal, std::uint64_t seed, const Progress& progress) {
+  require_rotor_inertia(motor);
+  JerkSweep sweep{with_assumed_friction(robot), motor, {}};
+  const DriveOptions drive = is_sensing_ideal ? ideal_drive() : real_drive(sweep.robot, seed);
+  sweep.results = study_planners(sweep.robot, motor, jerk_sweep(sweep.robot), drive, 0, progress);
+  return sweep;
 }
 
 }  // namespace heatsoak

@@ -1,6 +1,8 @@
 // What a planner's limits do to slip, time, precision and heat: the same short drives under many of them.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -28,6 +30,8 @@ struct StudyResult {
   double overshoot_mean_m = 0.0;  ///< beyond the target after the plan has ended
   double peak_current_A = 0.0;    ///< the highest of all drives
   double copper_J = 0.0;          ///< of all motors, per drive
+
+  [[nodiscard]] bool is_bang_bang() const { return std::isinf(limits.jerk_m_per_s3); }
 };
 inline constexpr double kSettled_m = 0.01;
 
@@ -39,6 +43,17 @@ std::vector<StudyResult> study_planners(const Robot& robot, const Motor& motor, 
 /// Cases around a robot's own limits: its acceleration, its grip and half as much again, each with twelve jerks from 3
 /// to 60 m/s³ and bang-bang. Where two of the three are within 5 % of each other, the robot's own stands for both.
 std::vector<StudyCase> jerk_sweep(const Robot& robot);
+
+/// The answer of `simulate --jerk-sweep`.
+struct JerkSweep {
+  Robot robot;  ///< with assumed friction if its file has none
+  Motor motor;
+  std::vector<StudyResult> results;  ///< of jerk_sweep()
+};
+
+/// Runs the study of jerk_sweep() with ideal or real sensing; `seed` is that of sensors and radio. Throws Failure (bad_input) that names
+/// what the files of robot or motor lack.
+JerkSweep sweep_jerk(const Robot& robot, const Motor& motor, bool is_sensing_ideal, std::uint64_t seed, const Progress& progress = {});
 
 /// The acceleration from rest at which the first wheel slides, in the least favourable direction: less than μ·g, because
 /// some wheels bear less and push more than others.

@@ -11,7 +11,7 @@
 #include "given_demand.h"
 #include "motor/conditions.h"
 #include "select/evaluate.h"
-#include "select/trace.h"
+#include "select/load_simulation.h"
 #include "support/source_folder.h"
 
 namespace heatsoak {
@@ -70,7 +70,9 @@ class EffectsOfAFile : public testing::Test {
         duty_(read_duty(kSource / "duty_profiles/paper_intermittent.toml")) {
     give(duty_, {{300.0, 0.08, 60.0, 0.0}, {300.0, 0.0, 0.0, 0.0}, {200.0, 0.05, 40.0, 0.0}});
   }
-  [[nodiscard]] Trace trace(const Motor& motor) const { return run_trace(robot_, duty_, duty_.demand(robot_, 1).front(), motor, 5.0); }
+  [[nodiscard]] Trace trace(const Motor& motor) const {
+    return simulate_load({.robot = robot_, .motor = motor, .duty = duty_, .every_s = 5.0}).trace;
+  }
   [[nodiscard]] MotorEvaluation evaluation(const Motor& motor, int samples) const {
     EvaluateOptions options;
     options.samples = samples;

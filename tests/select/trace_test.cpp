@@ -7,6 +7,7 @@
 
 #include "given_demand.h"
 #include "motor/datasheet_network.h"
+#include "select/load_simulation.h"
 #include "support/source_folder.h"
 
 namespace heatsoak {
@@ -19,7 +20,7 @@ class PaperTrace : public testing::Test {
     Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
     shorten(duty, 40);
     const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
-    trace_ = new Trace(run_trace(robot, duty, duty.demand(robot, 1).front(), *motor_, 0.1));
+    trace_ = new Trace(simulate_load({.robot = robot, .motor = *motor_, .duty = duty, .every_s = 0.1}).trace);
   }
   static void TearDownTestSuite() {
     delete trace_;
@@ -68,7 +69,7 @@ TEST(TraceInVoltageLimit, columns_agree_with_the_account_and_with_the_driver) {
   Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
   shorten(duty, 40);
   const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
-  const Trace trace = run_trace(robot, duty, duty.demand(robot, 1).front(), motor, 0.02);
+  const Trace trace = simulate_load({.robot = robot, .motor = motor, .duty = duty, .every_s = 0.02}).trace;
   const MotorValues& values = motor.nominal;
   double copper_J = 0.0;
   double most_V = 0.0;

@@ -20,8 +20,6 @@
 namespace heatsoak::commands {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t kLargestFile_bytes = 1'000'000;
 
 struct Options {
@@ -35,26 +33,6 @@ struct Options {
 std::string environment(const char* name) {
   const char* const value = std::getenv(name);
   return value ? value : "";
-}
-
-Json json(const Outcome& each) {
-  const ThresholdType& type = *each.limit.type;
-  return {{"name", fmt::format("{}: {}", each.check->name, type.name)},
-          {"check", each.check->name},
-          {"threshold", type.name},
-          {"value", rounded(each.measured.value, 6)},
-          {"direction", type.direction == Bound::at_most ? "at_most" : "at_least"},
-          {"limit", rounded(each.limit.value, 6)},
-          {"margin", rounded(each.margin_value(), 6)},
-          {"unit", type.unit},
-          {"passed", each.passed},
-          {"evaluated", each.is_evaluated},
-          {"reason", each.reason},
-          {"detail", each.measured.detail},
-          {"limit_before", each.before.empty() ? Json() : Json(each.before)},
-          {"file", each.limit.at.file},
-          {"line", each.limit.at.line},
-          {"column", each.limit.at.column}};
 }
 
 /// Reads all files and reports the problems of all of them together.
@@ -126,9 +104,7 @@ ExitCode run(const Options& options, Session& session) {
   session.show(document);
   write_github(outcomes, session);
   const bool passed = std::ranges::all_of(outcomes, &Outcome::passed);
-  Json thresholds = Json::array();
-  std::ranges::transform(outcomes, std::back_inserter(thresholds), json);
-  session.answer({{"schema", "heatsoak.check/1"}, {"files", options.files}, {"passed", passed}, {"thresholds", thresholds}});
+  session.answer(present::check_json(outcomes, options.files));
   return passed ? ExitCode::done : ExitCode::limit_exceeded;
 }
 

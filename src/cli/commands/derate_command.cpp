@@ -10,18 +10,18 @@
 
 #include "cli/command.h"
 #include "cli/guard_options.h"
-#include "cli/named_files.h"
 #include "cli/quantity_option.h"
 #include "cli/sensor_options.h"
 #include "derate/committed_table.h"
 #include "derate/derating_json.h"
 #include "derate/exporter.h"
+#include "duty/named_files.h"
 #include "present/derating.h"
 
 namespace heatsoak::commands {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using present::Json;
 
 struct Options {
   GuardOptions guard;
@@ -46,25 +46,13 @@ const ExporterType& exporter_named(const std::string& name) {
   throw Failure(ExitCode::bad_input, fmt::format("--to {}: expected one of {}{}", name, expected, did_you_mean(name, names)));
 }
 
-Json json(const TablePlace& place) {
-  return {{"difference_A", rounded(place.difference_A, 4)}, {"committed_A", rounded(place.committed_A, 4)},
-          {"fresh_A", rounded(place.fresh_A, 4)},           {"speed_rad_per_s", rounded(place.speed_rad_per_s, 3)},
-          {"stator_C", rounded(place.stator_C, 2)},         {"winding_C", rounded(place.winding_C, 2)}};
-}
-
 ExitCode compare_with(const CommittedTable& committed, const Derating& derating, present::Document& document, Json& answer) {
   const TableComparison found = compare(committed, derating);
   const bool is_other_motor = !committed.motor_id.empty() && committed.motor_id != derating.motor_id;
   const bool holds = !is_other_motor && found.excess.difference_A == 0.0 && found.differing_line == 0;
-  present::add_table_check(document, derating, {committed, found, is_other_motor, holds});
-  answer["check"] = {{"file", committed.file.string()},
-                     {"motor", committed.motor_id.empty() ? Json() : Json(committed.motor_id)},
-                     {"robot", committed.robot_id.empty() ? Json() : Json(committed.robot_id)},
-                     {"written_by", committed.version.empty() ? Json() : Json(committed.version)},
-                     {"holds", holds},
-                     {"excess", json(found.excess)},
-                     {"lost", json(found.lost)},
-                     {"differing_line", found.differing_line > 0 ? Json(found.differing_line) : Json()}};
+  const present::TableCheck check{committed, found, is_other_motor, holds};
+  present::add_table_check(document, derating, check);
+  answer["check"] = present::table_check_json(check);
   return holds ? ExitCode::done : ExitCode::limit_exceeded;
 }
 

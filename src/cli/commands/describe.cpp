@@ -10,10 +10,9 @@
 #include "cli/verdict_topic.h"
 #include "duty/duty.h"
 #include "duty/file_kind.h"
-#include "duty/match/match_duty.h"
 #include "firmware/core_diagram.h"
-#include "motor/datasheet_network.h"
 #include "present/description.h"
+#include "present/description_json.h"
 #include "robot/robot.h"
 
 namespace heatsoak::commands {
@@ -25,169 +24,16 @@ origin = "source, or whose judgement it is"
 ambient = { value = "25 degC", origin = "estimated", derivation = "why this value", range = ["20 degC", "32 degC"] }
 )";
 
-using Json = nlohmann::ordered_json;
+using present::Json;
 
 struct Description {
   present::Document document;
   Json json;
 };
 
-Json parameter_json(std::string_view key, std::string_view unit, const ParameterValue& parameter) {
-  Json json{
-      {"key", key}, {"value", parameter.value}, {"unit", unit}, {"origin", to_string(parameter.origin)}, {"source", parameter.source}};
-  if (parameter.spread) {
-    json["range"] = {parameter.spread->low, parameter.spread->high};
-  }
-  for (const Confirmation& each : parameter.confirmed_by) {
-    json["confirmed_by"][each.source] = each.value;
-  }
-  if (!parameter.derivation.empty()) {
-    json["derivation"] = parameter.derivation;
-  }
-  return json;
-}
-
-/// Returns the effects that the file adds to those of every motor.
-Json own_effects(const Motor& motor) {
-  Json all;
-  for (const MotorEffect& effect : motor.effects) {
-    Json json = {{"name", effect.name}, {"type", effect.type->name}, {"nodes", effect.nodes}, {"condition", effect.condition}};
-    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      if (effect.type->parameters[i].choices.empty()) {
-        const std::string_view unit = unit_of(effect.type->parameters, i, effect.values());
-        json["figures"].push_back(parameter_json(effect.type->parameters[i].key, unit, effect.parameters[i]));
-      }
-    }
-    all.push_back(std::move(json));
-  }
-  return all;
-}
-
-Json motor_json(const Motor& motor) {
-  Json result{{"kind", "motor"},
-              {"id", motor.id},
-              {"manufacturer", motor.manufacturer},
-              {"name", motor.name},
-              {"data_quality", data_quality(motor)}};
-  for (const MotorParameterSpec& each : motor_parameter_specs()) {
-    if (const auto found = motor.parameters.find(each.spec.key); found != motor.parameters.end()) {
-      result["figures"].push_back(parameter_json(each.spec.key, each.spec.unit, found->second));
-    }
-  }
-  const Network network = datasheet_network(motor, nominal_sample(motor));
-  for (const NetworkParameter& each : network.parameters()) {
-    result["network"].push_back(
-        {{"name", each.name},
-         {"value", each.choices.empty() ? Json(each.value) : Json(each.choices[static_cast<std::size_t>(each.value)].name)},
-         {"unit", each.unit}});
-  }
-  for (const MotorEffect& effect : motor.effects) {
-    if (!effect.column.empty()) {
-      result["network"].push_back({{"name", effect.name + ".column"}, {"value", effect.column}, {"unit", ""}});
-    }
-  }
-  if (!motor.effects.empty()) {
-    result["effects"] = own_effects(motor);
-  }
-  for (const MotorSensor& sensor : motor.sensors) {
-    Json json = parameter_json(sensor.type->size.key, sensor.type->size.unit, sensor.size);
-    json["name"] = sensor.name;
-    json["type"] = sensor.type->name;
-    result["sensors"].push_back(std::move(json));
-  }
-  result["sources"] = motor.sources;
-  result["notes"] = motor.notes;
-  return result;
-}
-
-Json robot_json(const Robot& robot) {
-  Json result{{"kind", "robot"},
-              {"id", robot.id},
-              {"name", robot.name},
-              {"motor", robot.drive.motor},
-              {"mass_kg", robot.mass_kg},
-              {"wheel_radius_m", robot.wheels.radius_m},
-              {"gear_ratio", robot.drive.gear_ratio},
-              {"available_V", robot.available_V()},
-              {"source", robot.source}};
-  for (const auto& [key, parameter] : robot.parameters) {
-    result["figures"].push_back(parameter_json(key, present::robot_unit(key), parameter));
-  }
-  return result;
-}
-
-Json duty_json(const Duty& duty) {
-  Json result{{"kind", "duty"},        {"id", duty.id},       {"summary", duty.summary},
-              {"origin", duty.origin}, {"shape", duty.shape}, {"ambient_C", duty.ambient_C.value},
-              {"notes", duty.notes}};
-  for (const auto& [spec, parameter] : duty.parameters) {
-    result["figures"].push_back(parameter.printed.empty() ? Json{{"key", spec.key}, {"value", parameter.value}, {"unit", spec.unit}}
-                                                          : parameter_json(spec.key, spec.unit, parameter));
-  }
-  if (const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data)) {
-    for (std::size_t i = 0; i < match->inputs().parameters.size(); ++i) {
-      const ParameterSpec& spec = match_input_specs()[i].spec;
-      Json json = parameter_json(spec.key, spec.unit, match->inputs().parameters[i]);
-      json["meaning"] = spec.meaning;
-      result["figures"].push_back(json);
-    }
-  }
-  return result;
-}
-
-Json network_effect_json(const EffectType& effect) {
-  Json result{{"kind", "effect"},
-              {"id", effect.name},
-              {"summary", effect.summary},
-              {"equation", effect.equation},
-              {"reference", effect.reference},
-              {"typical", effect.typical},
-              {"look_alike", effect.confounded_with}};
-  for (const ParameterSpec& spec : effect.parameters) {
-    Json json{{"key", spec.key}, {"unit", spec.unit}, {"meaning", spec.meaning}};
-    for (const Choice& choice : spec.choices) {
-      json["choices"].push_back({{"name", choice.name}, {"unit", choice.unit}, {"meaning", choice.meaning}});
-    }
-    result["parameters"].push_back(json);
-  }
-  for (const NodeRole& role : effect.nodes) {
-    result["nodes"].push_back({{"key", role.role}, {"default", role.own_capacity ? Json() : Json(role.default_node)}});
-  }
-  result["needs"] = Json::array();
-  for (const Signal signal : effect.needs) {
-    result["needs"].push_back(present::signal_name(signal));
-  }
-  if (effect.candidacy.size_parameter) {
-    result["family"] = effect.candidacy.family;
-    result["experiment"] = effect.candidacy.experiment;
-  }
-  return result;
-}
-
-Json core_json() {
-  Json result{{"kind", "core"}, {"id", "robot_core"}};
-  for (const robot_core::BlockText& block : robot_core::kBlocks) {
-    result["blocks"].push_back({{"number", block.number},
-                                {"function", block.function},
-                                {"files", block.files},
-                                {"title", block.title},
-                                {"task", block.task},
-                                {"rate", rate_words(block.rate)}});
-  }
-  for (const robot_core::SignalText& signal : robot_core::kSignals) {
-    const bool is_input = signal.from == robot_core::Block::firmware;
-    result["signals"].push_back({{"carrier", signal.carrier},
-                                 {"name", signal.name},
-                                 {"unit", signal.unit},
-                                 {"from", is_input ? "firmware" : text_of(signal.from).number},
-                                 {"to", numbers_of(signal.to)}});
-  }
-  return result;
-}
-
-Description description_of(const Motor& motor) { return {present::motor_description(motor), motor_json(motor)}; }
-Description description_of(const Robot& robot) { return {present::robot_description(robot), robot_json(robot)}; }
-Description description_of(const Duty& duty) { return {present::duty_description(duty), duty_json(duty)}; }
+Description description_of(const Motor& motor) { return {present::motor_description(motor), present::motor_json(motor)}; }
+Description description_of(const Robot& robot) { return {present::robot_description(robot), present::robot_json(robot)}; }
+Description description_of(const Duty& duty) { return {present::duty_description(duty), present::duty_file_json(duty)}; }
 
 constexpr std::string_view kCore = "robot_core";
 
@@ -209,16 +55,16 @@ Description describe(const std::string& name, const DataFolders& folders) {
     return describe_file(name);
   }
   if (const EffectType* effect = find_effect(name)) {
-    return {present::effect_description(*effect), network_effect_json(*effect)};
+    return {present::effect_description(*effect), present::network_effect_json(*effect)};
   }
   for (const ShapeType& shape : all_shapes()) {
     if (shape.name == name) {
       const std::string file = kDutyHead + std::string(shape.example);
-      return {present::shape_description(shape, file), {{"kind", "shape"}, {"id", shape.name}, {"example", file}}};
+      return {present::shape_description(shape, file), present::shape_json(shape, file)};
     }
   }
   if (name == kCore) {
-    return {present::core_description(), core_json()};
+    return {present::core_description(), present::core_json()};
   }
   std::vector<std::string> known{std::string(kCore)};
   for (const ShapeType& shape : all_shapes()) {

@@ -7,18 +7,15 @@
 
 #include "base/version.h"
 #include "cli/command.h"
-#include "cli/default_spreads.h"
 #include "cli/guard_options.h"
-#include "cli/named_files.h"
 #include "cli/quantity_option.h"
+#include "duty/named_files.h"
 #include "firmware/core_files.h"
 #include "firmware/staged_folder.h"
 #include "present/core_folder.h"
 
 namespace heatsoak::commands {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string what;
@@ -28,37 +25,6 @@ struct Options {
   CoreOptions core;
   bool force = false;
 };
-
-Json json(const CoreFolder& folder, const Derating& derating, const Motor& motor, const Options& options) {
-  const Guarantee& checked = derating.guarantee;
-  Json files = Json::array();
-  for (const CoreFile& file : folder.files) {
-    files.push_back({{"path", file.path}, {"bytes", file.content.size()}});
-  }
-  return {{"schema", "heatsoak.core/1"},
-          {"robot", derating.robot_id},
-          {"motor", derating.motor_id},
-          {"out", options.out},
-          {"period_s", options.core.period_s},
-          {"input_hash", {{"name", kInputHash}, {"value", folder.hash}}},
-          {"config_check_sum", fmt::format("{:08x}", folder.config_check_sum)},
-          {"files", files},
-          {"derating",
-           {{"data_quality", derating.data_quality},
-            {"seed", derating.options.guarantee.seed},
-            {"guard_period_s", derating.options.period_s},
-            {"winding_limit_C", derating.rules.limits.winding_C},
-            {"hottest_ambient_C", derating.rules.hottest_ambient_C},
-            {"heat_reserve_ratio", rounded(derating.observer.heat_safety_factor(), 4)},
-            {"confidence", derating.options.guarantee.confidence},
-            {"samples", checked.samples},
-            {"over", checked.over},
-            {"limp_current_A", rounded(folder.limp_current_A, 4)},
-            {"braking_reserve_K", rounded(folder.braking_reserve_K, 3)},
-            {"nodes", derating.observer.state_names()}}},
-          {"default_spreads", default_spreads_json({&motor, 1})},
-          {"notes", folder.notes}};
-}
 
 ExitCode run(Options& options, Session& session) {
   check_derate_options(options.guard.derate);
@@ -74,7 +40,7 @@ ExitCode run(Options& options, Session& session) {
   const auto staged = std::make_shared<StagedFolder>(options.out, folder.files, options.force);
   session.complete_with([staged] { staged->commit(); });
   session.show(present::core_folder_document(folder, derating, options.core, options.out));
-  session.answer(json(folder, derating, motor, options));
+  session.answer(present::core_folder_json(folder, derating, motor, options.core, options.out));
   return ExitCode::done;
 }
 

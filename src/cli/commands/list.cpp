@@ -149,12 +149,8 @@ ExitCode run(const std::string& what, Session& session) {
                               fmt::join(kind_names(), ", ")));
   }
   const std::vector<present::NamedThing> all = std::ranges::find(kKinds, what, &Kind::name)->rows(session.folders());
-  nlohmann::ordered_json items = nlohmann::ordered_json::array();
-  for (const present::NamedThing& row : all) {
-    items.push_back({{"id", row.id}, {"summary", row.summary}});
-  }
   session.show(present::list_document(all));
-  session.answer({{"schema", "heatsoak.list/1"}, {"kind", what}, {"items", items}});
+  session.answer(present::list_json(what, all));
   return ExitCode::done;
 }
 

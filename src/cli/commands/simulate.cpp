@@ -2,24 +2,23 @@
 
 #include <CLI/App.hpp>
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
-#include "base/files.h"
 #include "cli/command.h"
 #include "cli/condition_option.h"
-#include "cli/jerk_sweep.h"
-#include "cli/match_simulation.h"
-#include "cli/named_files.h"
 #include "cli/quantity_option.h"
-#include "cli/verdict_chart.h"
+#include "duty/match/match_duty.h"
+#include "duty/named_files.h"
 #include "motor/conditions.h"
+#include "present/jerk_sweep.h"
+#include "present/jerk_sweep_chart.h"
 #include "present/match.h"
-#include "report/chart.h"
-#include "robot/assumed_friction.h"
-#include "select/trace.h"
+#include "present/match_chart.h"
+#include "present/verdict_chart.h"
+#include "simulate/planner_study.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -40,67 +39,75 @@ struct Options {
   std::map<std::string, std::string> conditions;
 };
 
-nlohmann::ordered_json balance_json(const Trace& trace) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const BookedHeat& each : trace.balance) {
-    rows.push_back({{"effect", each.effect}, {"node", each.node}, {"mean_W", rounded(each.mean_W, 6)}});
-  }
-  return rows;
+void show(present::Document document, const Options& options, Session& session) {
+  document.add_file(options.out);
+  document.add_file(options.plot);
+  session.show(document);
 }
 
 /// Simulates a prescribed load of one wheel.
-ExitCode run_load(const Options& options, const Robot& robot, const Motor& motor, const Duty& duty, Session& session) {
+ExitCode run_load(const Options& options, LoadJob job, Session& session) {
   if (options.planner != "jerk_limited") {
-    throw Failure(ExitCode::bad_input, fmt::format("--planner is for matches; {} is {}", duty.id, duty.shape));
+    throw Failure(ExitCode::bad_input, fmt::format("--planner is for matches; {} is {}", job.duty.id, job.duty.shape));
   }
   const Options usual;
   if (options.guard != usual.guard || options.sensing != usual.sensing) {
     throw Failure(ExitCode::bad_input,
-                  fmt::format("--guard and --sensing are for matches, which the drive core drives; {} is {}", duty.id, duty.shape));
+                  fmt::format("--guard and --sensing are for matches, which the drive core drives; {} is {}", job.duty.id, job.duty.shape));
   }
-  constexpr double kMostRows = 5e6;  // about 1 GB
-  const std::vector<WheelDemand> wheels = duty.demand(robot, options.seed);
-  const double duration_s = wheels.front().duration_s();
-  if (duration_s / options.every_s > kMostRows) {
-    throw Failure(ExitCode::bad_input, fmt::format("--every {} s makes more than {:.0f} rows out of {:.0f} s; expected a longer time",
-                                                   options.every_s, kMostRows, duration_s));
-  }
-  const std::vector<Motor> one{motor};
-  EvaluateOptions nominal;
-  nominal.samples = 0;
-  nominal.with_curves = !options.plot.empty();
-  const std::vector<MotorEvaluation> results = evaluate(robot, duty, wheels, one, nominal);
-  const MotorEvaluation& result = results.front();
-  const Trace trace = run_trace(robot, duty, *std::ranges::find(wheels, result.wheel, &WheelDemand::wheel), motor, options.every_s);
+  job.seed = options.seed;
+  job.every_s = options.every_s;
+  job.with_curves = !options.plot.empty();
+  const LoadSimulation simulation = simulate_load(job);
   if (!options.out.empty()) {
-    session.write(options.out, to_csv(trace));
+    session.write(options.out, to_csv(simulation.trace));
   }
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_picture(verdict_chart(results, robot, duty), options.plot));
+    session.write(options.plot, draw_picture(present::verdict_chart({simulation.result}, simulation.robot, simulation.duty), options.plot));
   }
-  present::Document document = present::load_simulation_document(result, trace, robot, motor, duty, duration_s);
-  document.add_file(options.out);
-  document.add_file(options.plot);
-  session.show(document);
-  session.answer({{"schema", "heatsoak.simulate/1"},
-                  {"motor", motor.id},
-                  {"conditions", motor.assumed},
-                  {"robot", robot.id},
-                  {"duty", duty.id},
-                  {"duty_origin", duty.origin},
-                  {"wheel", result.wheel},
-                  {"winding_peak_C", rounded(result.winding_peak_C.nominal, 3)},
-                  {"stator_peak_C", rounded(result.stator_peak_C.nominal, 3)},
-                  {"winding_limit_C", rounded(result.winding_limit_C, 2)},
-                  {"current_rms_A", rounded(result.current_rms_A, 4)},
-                  {"verdict", to_string(result.verdict)},
-                  {"data_quality", result.data_quality},
-                  {"balance", balance_json(trace)},
-                  {"stored_W", rounded(trace.stored_W, 6)}});
-  return result.verdict == Verdict::pass ? ExitCode::done : ExitCode::limit_exceeded;
+  show(present::load_simulation_document(simulation), options, session);
+  session.answer(present::load_simulation_json(simulation));
+  return simulation.result.verdict == Verdict::pass ? ExitCode::done : ExitCode::limit_exceeded;
 }
 
-GuardUse guard_use(const std::string& name) { return static_cast<GuardUse>(std::ranges::find(kGuardUses, name) - std::begin(kGuardUses)); }
+ExitCode run_match(const Options& options, MatchJob job, Session& session) {
+  job.planners.clear();
+  if (options.planner != "bang_bang") {
+    job.planners.push_back(Planner::jerk_limited);
+  }
+  if (options.planner != "jerk_limited") {
+    job.planners.push_back(Planner::bang_bang);
+  }
+  job.seed = options.seed;
+  job.guard = static_cast<GuardUse>(std::ranges::find(kGuardUses, options.guard) - std::begin(kGuardUses));
+  job.is_sensing_ideal = options.sensing == "ideal";
+  job.with_table = !options.out.empty();
+  job.every_s = options.every_s;
+  job.with_rows = !options.plot.empty();
+  MatchSimulation match = simulate_match(job, progress_bar);
+  if (job.with_table) {
+    session.write(options.out, std::move(match.runs.front().csv));
+  }
+  if (job.with_rows) {
+    session.write(options.plot, draw_picture(present::match_chart(match), options.plot));
+  }
+  show(present::match_document(match), options, session);
+  session.answer(present::match_json(match));
+  return match.verdict == Verdict::pass ? ExitCode::done : ExitCode::limit_exceeded;
+}
+
+ExitCode run_sweep(const Options& options, const Robot& robot, const Motor& motor, Session& session) {
+  if (!options.out.empty()) {
+    throw Failure(ExitCode::bad_input, "--jerk-sweep has no signals to write; expected --plot or --json in place of --out");
+  }
+  const JerkSweep sweep = sweep_jerk(robot, motor, options.sensing == "ideal", options.seed, progress_bar("driving"));
+  if (!options.plot.empty()) {
+    session.write(options.plot, draw_picture(present::jerk_sweep_chart(sweep), options.plot));
+  }
+  show(present::jerk_sweep_document(sweep), options, session);
+  session.answer(present::jerk_sweep_json(sweep));
+  return ExitCode::done;
+}
 
 ExitCode run(const Options& options, Session& session) {
   if (options.duty.empty() != options.jerk_sweep) {
@@ -110,43 +117,16 @@ ExitCode run(const Options& options, Session& session) {
     throw Failure(ExitCode::bad_input, "expected one of --motor M and --model FILE");
   }
   NamedFiles named(session.folders());
-  const std::optional<Robot> robot_read = named.robot(options.robot);
-  const std::optional<Motor> motor_read = named.motor(options.model.empty() ? options.motor : options.model);
-  const std::optional<Duty> duty_read = options.jerk_sweep ? std::nullopt : named.duty(options.duty);
+  const std::optional<Robot> robot = named.robot(options.robot);
+  const std::optional<Motor> as_named = named.motor(options.model.empty() ? options.motor : options.model);
+  const std::optional<Duty> duty = options.jerk_sweep ? std::nullopt : named.duty(options.duty);
   named.throw_if_any();
-  const bool is_driven = options.jerk_sweep || std::dynamic_pointer_cast<const MatchDuty>(duty_read->shape_data) != nullptr;
-  const Robot robot = is_driven ? with_assumed_friction(*robot_read) : *robot_read;
-  const Motor motor = under(*motor_read, options.conditions);
-  const auto needs_a_plant = [&motor] {
-    if (std::isnan(motor.nominal.rotor_inertia_kg_m2)) {
-      throw bad_input({motor.file.string()}, "figures.rotor_inertia",
-                      "is missing: without it no acceleration of a wheel can be calculated");
-    }
-  };
-  if (options.jerk_sweep) {
-    needs_a_plant();
-    if (!options.out.empty()) {
-      throw Failure(ExitCode::bad_input, "--jerk-sweep has no signals to write; expected --plot or --json in place of --out");
-    }
-    const DriveOptions drive = options.sensing == "ideal" ? ideal_drive() : real_drive(robot, options.seed);
-    return sweep_jerk(robot, motor, drive, options.plot, session);
+  const Motor motor = under(*as_named, options.conditions);
+  if (!duty) {
+    return run_sweep(options, *robot, motor, session);
   }
-  const Duty& duty = *duty_read;
-  const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data);
-  if (!match) {
-    return run_load(options, robot, motor, duty, session);
-  }
-  needs_a_plant();
-  std::vector<Planner> planners;
-  if (options.planner != "bang_bang") {
-    planners.push_back(Planner::jerk_limited);
-  }
-  if (options.planner != "jerk_limited") {
-    planners.push_back(Planner::bang_bang);
-  }
-  return simulate_match({robot, motor, duty, match->inputs(), planners, options.seed, options.out, options.plot, options.every_s,
-                         guard_use(options.guard), options.sensing == "ideal"},
-                        session);
+  return is_match(*duty) ? run_match(options, {.robot = *robot, .motor = motor, .duty = *duty}, session)
+                         : run_load(options, {.robot = *robot, .motor = motor, .duty = *duty}, session);
 }
 
 }  // namespace

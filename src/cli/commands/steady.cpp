@@ -1,26 +1,18 @@
 #include "present/steady.h"
 
-#include <fmt/format.h>
-
 #include <CLI/App.hpp>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
-#include <vector>
 
-#include "base/quantity.h"
 #include "cli/command.h"
 #include "cli/condition_option.h"
-#include "cli/named_files.h"
 #include "cli/quantity_option.h"
+#include "duty/named_files.h"
 #include "motor/conditions.h"
-#include "motor/datasheet_network.h"
-#include "motor/motor.h"
-#include "present/evaluation.h"
-#include "present/motor_notes.h"
-#include "thermal/periodic_state.h"
-#include "thermal/steady_state.h"
+#include "motor/on_off_load.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -31,72 +23,14 @@ struct Options {
   OnOffCurrent current;
 };
 
-/// Returns the cycle of an on/off or constant current at standstill, so that only copper loss heats the motor, as in the equations.
-std::vector<Interval> cycle_of(const OnOffCurrent& current) {
-  OperatingPoint<double> on;
-  on.current_rms_A = current.current_on_A;
-  on.ambient_C = current.ambient_C;
-  OperatingPoint<double> off;
-  off.ambient_C = current.ambient_C;
-  return {{current.time_on_s, on}, {current.time_off_s, off}};
-}
-
-/// Returns the result of the closed-form equations. If the motor's file adds effects, returns the steady state of the network under the RMS
-/// current instead.
-OnOffSteadyState rest_under_rms(const MotorValues& values, const Network& network, bool is_bare, const OnOffCurrent& current) {
-  OnOffSteadyState state =
-      on_off_steady_state({.terminal_resistance_25C_ohm = values.terminal_resistance_ohm,
-                           .temperature_coefficient_per_K = values.temperature_coefficient_per_K,
-                           .thermal_resistance_winding_stator_K_per_W = values.thermal_resistance_winding_stator_K_per_W,
-                           .thermal_resistance_stator_ambient_K_per_W = values.thermal_resistance_stator_ambient_K_per_W},
-                          current);
-  if (!is_bare) {
-    OnOffCurrent constant = current;
-    constant.current_on_A = state.current_rms_A;
-    constant.time_off_s = 0.0;
-    const PeriodicState rest = periodic_state(network, cycle_of(constant));
-    state.runaway = rest.runaway;
-    if (!rest.runaway) {
-      state.winding_C = rest.mean_C[states::winding];
-      state.stator_C = rest.mean_C[states::stator];
-    }
-  }
-  return state;
-}
-
 ExitCode run(const Options& options, Session& session) {
   NamedFiles named(session.folders());
-  const std::optional<Motor> read = named.motor(options.motor);
+  const std::optional<Motor> motor = named.motor(options.motor);
   named.throw_if_any();
-  const Motor motor = under(*read, options.conditions);
-  const MotorValues& values = motor.nominal;
-  const Network network = datasheet_network(motor, nominal_sample(motor));
-  const bool is_bare = network.effects().size() == kDatasheetEffects.size();
-  const OnOffSteadyState rms = rest_under_rms(values, network, is_bare, options.current);
-  PeriodicState periodic = periodic_state(network, cycle_of(options.current));
-  periodic.runaway = periodic.runaway || (is_bare && rms.runaway);
-  const bool runaway = periodic.runaway;
-  const bool over = runaway || !(periodic.peak_C[states::winding] <= values.winding_limit_C);
-  present::Document document = present::steady_document({motor, periodic, rms, is_bare, options.current.ambient_C, over});
-  present::add_motor_notes(document, {&motor, 1});
-  session.show(document);
-  using Json = nlohmann::ordered_json;
-  const auto rest = [&](double value_C) { return runaway || rms.runaway ? Json() : Json(value_C); };
-  const auto of_winding = [&](const std::vector<double>& value_C) { return runaway ? Json() : Json(value_C[states::winding]); };
-  session.answer({{"schema", "heatsoak.steady/1"},
-                  {"motor", motor.id},
-                  {"conditions", motor.assumed},
-                  {"ambient_C", options.current.ambient_C},
-                  {"current_rms_A", rms.current_rms_A},
-                  {"winding_C", rest(rms.winding_C)},
-                  {"stator_C", rest(rms.stator_C)},
-                  {"winding_mean_C", of_winding(periodic.mean_C)},
-                  {"stator_mean_C", runaway ? Json() : Json(periodic.mean_C[states::stator])},
-                  {"winding_peak_C", of_winding(periodic.peak_C)},
-                  {"winding_limit_C", values.winding_limit_C},
-                  {"destroyed_after_s", periodic.destroyed_s ? Json(*periodic.destroyed_s) : Json()},
-                  {"runaway", runaway}});
-  return over ? ExitCode::limit_exceeded : ExitCode::done;
+  const OnOffAnswer answer = under_on_off_current(under(*motor, options.conditions), options.current);
+  session.show(present::steady_document(answer));
+  session.answer(present::steady_json(answer));
+  return answer.is_over_limit ? ExitCode::limit_exceeded : ExitCode::done;
 }
 
 }  // namespace

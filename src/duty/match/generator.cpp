@@ -290,4 +290,6 @@ WheelDemand hardest_wheel_of_match(const MatchInputs& inputs, const MatchValues&
   return std::move(Match(inputs, values, robot, seed, planner, bin_s, nobody, step_s, Keep::hardest_wheel).play().wheels.front());
 }
 
+std::string_view to_string(Planner planner) { return planner == Planner::bang_bang ? "bang_bang" : "jerk_limited"; }
+
 }  // namespace heatsoak

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "duty/demand.h"
@@ -30,6 +31,7 @@ class Follower {
 };
 
 enum class Planner { jerk_limited, bang_bang };
+std::string_view to_string(Planner planner);
 
 /// Follows the planner exactly: re-planned at every command from the state of the moment.
 std::unique_ptr<Follower> ideal_tracking(const Robot& robot, double aggressiveness, Planner planner);

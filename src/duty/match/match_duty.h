@@ -31,4 +31,7 @@ class MatchDuty final : public DutyShape {
   MatchInputs inputs_;
 };
 
+/// Returns whether the duty is a match, which the drive core can drive.
+inline bool is_match(const Duty& duty) { return dynamic_cast<const MatchDuty*>(duty.shape_data.get()) != nullptr; }
+
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-// Document of `calibrate`.
+// Document and JSON of `calibrate`.
 #pragma once
 
 #include <string>
@@ -6,6 +6,7 @@
 
 #include "calibration/calibrate.h"
 #include "present/document.h"
+#include "present/json.h"
 
 namespace heatsoak::present {
 
@@ -15,6 +16,8 @@ struct LogRemarks {
   std::vector<std::string> of_screening;  ///< properties that look wrong but may be right
 };
 Document calibration_document(const Motor& motor, const Calibration& result, const LogRemarks& remarks);
+/// `out` is the name of the model's file.
+Json calibration_json(const Motor& motor, const Calibration& result, const LogRemarks& remarks, const std::string& out);
 
 /// Returns all remarks and findings as sentences, for the JSON.
 std::vector<std::string> all_notes(const Calibration& result, const LogRemarks& remarks);

@@ -1,6 +1,7 @@
-// Documents of `friction`.
+// Documents and JSON of `friction`.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "friction/friction_fit.h"
 #include "friction/roll_out.h"
 #include "present/document.h"
+#include "present/json.h"
 #include "robot/robot.h"
 
 namespace heatsoak::present {
@@ -24,11 +26,20 @@ struct FrictionAnswer {
 };
 Document friction_document(const Robot& robot, const FrictionAnswer& answer);
 
+/// What is known beside the result, for the JSON.
+struct FrictionRemarks {
+  std::optional<std::string> motor_id;  ///< nothing if no file of the robot's motor was found
+  std::vector<std::string> findings;
+  std::vector<std::string> suspicions;
+};
+Json friction_json(const Robot& robot, const FrictionAnswer& answer, const FrictionRemarks& remarks);
+
 /// Returns one sentence for each wheel whose measurements contradict the assumed friction law.
 std::vector<std::string> lack_of_fit_words(const FrictionFit& fit);
 
 /// `drive` must have a drag torque of 0.
 Document roll_out_document(const Robot& robot, const RollOutResult& result, const DriveConstants& drive, std::size_t logs);
+Json roll_out_json(const Robot& robot, const RollOutResult& result, const DriveConstants& drive, const FrictionRemarks& remarks);
 
 /// Returns the voltage per wheel speed that mechanical damping and back-EMF need together.
 Estimate damping_with_back_emf(const DriveConstants& drive, const Estimate& mechanical_Nm_s_per_rad);

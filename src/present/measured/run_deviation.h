@@ -1,14 +1,16 @@
-// Document of `describe` for deviations of single runs.
+// Document and JSON of `describe` for deviations of single runs.
 #pragma once
 
 #include <string>
 
 #include "attribution/run_deviation.h"
 #include "present/document.h"
+#include "present/json.h"
 
 namespace heatsoak::present {
 
 Document run_deviation_description(const RunDeviationType& type);
+Json run_deviation_json(const RunDeviationType& type);
 
 /// Formats the typical size with its unit.
 std::string typical_size(const RunDeviationType& type);

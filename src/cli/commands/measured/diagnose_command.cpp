@@ -11,15 +11,15 @@
 #include "base/quantity.h"
 #include "calibration/admission.h"
 #include "cli/command.h"
-#include "cli/measured/diagnosis_answer.h"
 #include "cli/measured/effect_topics.h"
 #include "cli/measured/logs_option.h"
-#include "cli/named_files.h"
 #include "cli/terminal.h"
+#include "duty/named_files.h"
 #include "estimation/log_columns.h"
 #include "estimation/open_loop.h"
 #include "motor/write_motor.h"
 #include "present/measured/diagnosis.h"
+#include "present/measured/diagnosis_answer.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -63,13 +63,13 @@ void hand_out(const Options& options, const Motor& extended, const Diagnosis& di
   const std::filesystem::path folder(options.out);
   session.make_folder(folder);
   std::vector<std::pair<std::string, std::string>> svg;
-  for (const DiagnosisPicture& picture : diagnosis_pictures(diagnosis, input, score)) {
+  for (const present::DiagnosisPicture& picture : present::diagnosis_pictures(diagnosis, input, score)) {
     svg.emplace_back(picture.name, draw_svg(picture.chart));
     session.write(folder / (picture.name + ".svg"), svg.back().second);
   }
   session.write(folder / (extended.id + ".toml"), to_toml(extended));
-  session.write(folder / "diagnosis.json", diagnosis_json(diagnosis, input, score).dump(2) + "\n");
-  session.write(folder / "diagnosis.html", diagnosis_page(diagnosis, input, score, svg));
+  session.write(folder / "diagnosis.json", present::diagnosis_json(diagnosis, input, score).dump(2) + "\n");
+  session.write(folder / "diagnosis.html", present::diagnosis_page(diagnosis, input, score, svg));
 }
 
 ExitCode run(const Options& options, Session& session) {
@@ -126,7 +126,7 @@ ExitCode run(const Options& options, Session& session) {
     document.add_file(fmt::format("{}/{}.toml", options.out, motor.id));
   }
   session.show(document);
-  session.answer(diagnosis_json(diagnosis, input, score));
+  session.answer(present::diagnosis_json(diagnosis, input, score));
   return diagnosis.verdict == DiagnosisVerdict::not_identifiable ? ExitCode::cannot_answer : ExitCode::done;
 }
 

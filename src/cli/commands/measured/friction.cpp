@@ -11,21 +11,19 @@
 
 #include "base/quantity.h"
 #include "cli/command.h"
-#include "cli/measured/friction_chart.h"
-#include "cli/named_files.h"
 #include "cli/quantity_option.h"
+#include "duty/named_files.h"
 #include "friction/expected_voltage.h"
 #include "friction/friction_suspicions.h"
 #include "friction/read_friction_log.h"
 #include "friction/robot_file.h"
 #include "friction/roll_out.h"
+#include "present/measured/friction_chart.h"
 #include "recording/quality.h"
 #include "recording/read_recording.h"
 
 namespace heatsoak::commands {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string robot;
@@ -131,9 +129,6 @@ Input read_input(const Options& options, const Session& session) {
   return input;
 }
 
-/// Unknown (NaN) values become null.
-Json json(const Estimate& estimate) { return {{"value", estimate.value}, {"ci95", {estimate.low, estimate.high}}}; }
-
 std::string source_of(const Options& options) {
   const std::string first = std::filesystem::path(options.logs.front()).filename().string();
   return options.logs.size() == 1 ? fmt::format("friction test, {}", first)
@@ -154,68 +149,24 @@ Failure nothing_learned(const SteadyParts& steady, const FrictionFit& fit, const
                       counted(static_cast<std::size_t>(fit.headings), "heading"), fit.wheels.front().problem, suspected)};
 }
 
-Json wheels_json(const FrictionFit& fit, const HeldOutError& error, std::size_t rows) {
-  Json wheels = Json::array();
-  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-    const WheelFriction& wheel = fit.wheels[i];
-    wheels.push_back({{"index", i + 1},
-                      {"damping_V_s_per_rad", json(wheel.damping_V_s_per_rad)},
-                      {"a_V", json(wheel.sine_V)},
-                      {"b_V", json(wheel.constant_V)},
-                      {"phase_rad", json(wheel.phase_rad)},
-                      {"rotation_V", json(wheel.rotation_V)},
-                      {"r2", wheel.r2_ratio},
-                      {"rmse_V", wheel.rmse_V},
-                      {"rows_used", wheel.rows_used},
-                      {"rows_left_out", rows - wheel.rows_used},
-                      {"legs_used", wheel.parts_used},
-                      {"legs_standing", wheel.parts_standing},
-                      {"legs_outlying", wheel.parts_outlying},
-                      {"damping_given", wheel.damping_is_given},
-                      {"phase_given", wheel.phase_is_given},
-                      {"phase_bounded", wheel.phase_is_bounded},
-                      {"lack_of_fit", wheel.lack.is_found},
-                      {"left_V", wheel.lack.left_V},
-                      {"repeats_V", wheel.lack.repeats_V},
-                      {"before_rmse_V", error.before_of_wheel_V[i]},
-                      {"after_rmse_V", error.after_of_wheel_V[i]},
-                      {"problem", wheel.problem}});
-  }
-  return wheels;
-}
-
 void draw(const Options& options, const Input& input, const SteadyParts& steady, const FrictionFit& fit, const FitSettings& settings,
           present::Document& document, Session& session) {
   const std::string of_headings = fmt::format("{} legs on {} headings", steady.parts.size(), fit.headings);
   std::filesystem::path voltage = options.plot;
   voltage.replace_filename(voltage.stem().string() + "_voltage" + voltage.extension().string());
-  const Chart chart = friction_chart(fit, input.robot.name, of_headings);
+  const Chart chart = present::friction_chart(fit, input.robot.name, of_headings);
   if (!chart.panels.empty()) {
     session.write(options.plot, draw_picture(chart, options.plot));
     document.add_file(options.plot);
   }
   const std::string second = chart.panels.empty() ? options.plot : voltage.string();
-  session.write(second, draw_picture(voltage_chart(steady, fit, make_kinematics(input.robot), input.robot.name, settings), second));
+  session.write(second,
+                draw_picture(present::voltage_chart(steady, fit, make_kinematics(input.robot), input.robot.name, settings), second));
   document.add_file(second);
 }
 
-void answer(const Input& input, const SteadyParts& steady, const FrictionFit& fit, const HeldOutError& error, const std::string& from,
-            Session& session) {
-  session.answer({{"schema", "heatsoak.friction/1"},
-                  {"method", "steady_state"},
-                  {"robot", input.robot.id},
-                  {"motor", input.motor ? Json(input.motor_id) : Json()},
-                  {"wheels", wheels_json(fit, error, steady.rows)},
-                  {"before", {{"rmse", error.before_V}, {"unit", "V"}, {"from", from}}},
-                  {"after", {{"rmse", error.after_V}, {"unit", "V"}}},
-                  {"headings", fit.headings},
-                  {"headings_held_out", error.headings},
-                  {"rows", steady.rows},
-                  {"rows_steady", steady.rows_steady},
-                  {"legs", steady.legs},
-                  {"return_legs", steady.return_legs},
-                  {"findings", input.findings},
-                  {"suspicions", input.suspicions}});
+present::FrictionRemarks remarks_of(const Input& input) {
+  return {input.motor ? std::optional(input.motor_id) : std::nullopt, input.findings, input.suspicions};
 }
 
 ExitCode steady_state(const Options& options, Input& input, Session& session) {
@@ -240,8 +191,9 @@ ExitCode steady_state(const Options& options, Input& input, Session& session) {
   }
   std::ranges::move(present::lack_of_fit_words(fit), std::back_inserter(input.findings));
   const HeldOutError error = error_on_held_out_headings(steady.parts, kinematics, settings, before.voltages);
-  present::Document document = present::friction_document(
-      input.robot, {steady, fit, error, settings.use_return_legs, static_cast<bool>(before.voltages), before.from, input.logs.size()});
+  const present::FrictionAnswer answer{
+      steady, fit, error, settings.use_return_legs, static_cast<bool>(before.voltages), before.from, input.logs.size()};
+  present::Document document = present::friction_document(input.robot, answer);
   present::add_findings(document, input.findings, input.suspicions);
   if (!options.out.empty()) {
     if (!input.motor) {
@@ -257,7 +209,7 @@ ExitCode steady_state(const Options& options, Input& input, Session& session) {
     draw(options, input, steady, fit, settings, document, session);
   }
   session.show(document);
-  answer(input, steady, fit, error, before.from, session);
+  session.answer(present::friction_json(input.robot, answer, remarks_of(input)));
   return ExitCode::done;
 }
 
@@ -273,42 +225,15 @@ ExitCode by_roll_out(const Options& options, Input& input, Session& session) {
   }
   DriveConstants drive = drive_constants(input.robot, *input.motor);
   drive.drag_torque_Nm = 0.0;
-  Json wheels = Json::array();
   present::Document document = present::roll_out_document(input.robot, result, drive, input.logs.size());
   present::add_findings(document, input.findings, input.suspicions);
-  for (std::size_t i = 0; i < result.wheel_damping_Nm_s_per_rad.size(); ++i) {
-    const Estimate& mechanical = result.wheel_damping_Nm_s_per_rad[i];
-    const Estimate damping = present::damping_with_back_emf(drive, mechanical);
-    std::size_t used = 0;
-    for (const RollOutRun& run : result.runs) {
-      used += run.wheel < 0 || run.wheel == static_cast<int>(i) ? static_cast<std::size_t>(run.rows_used) : 0U;
-    }
-    wheels.push_back({{"index", i + 1},
-                      {"damping_V_s_per_rad", json(damping)},
-                      {"a_V", json(Estimate{})},
-                      {"b_V", json(Estimate{})},
-                      {"phase_rad", json(Estimate{})},
-                      {"wheel_damping_Nm_s_per_rad", json(mechanical)},
-                      {"wheel_torque_Nm", json(result.wheel_torque_Nm[i])},
-                      {"r2", Json()},
-                      {"rows_used", used},
-                      {"rows_left_out", result.rows - used}});
-  }
   if (!options.out.empty()) {
     session.write(options.out, with_measured_damping(read_file(input.robot.file, 1'000'000), input.robot, result.wheel_damping_Nm_s_per_rad,
                                                      source_of(options)));
     document.add_file(options.out);
   }
   session.show(document);
-  session.answer({{"schema", "heatsoak.friction/1"},
-                  {"method", "roll_out"},
-                  {"robot", input.robot.id},
-                  {"motor", input.motor_id},
-                  {"wheels", wheels},
-                  {"before", {{"rmse", Json()}}},
-                  {"after", {{"rmse", Json()}}},
-                  {"findings", input.findings},
-                  {"suspicions", input.suspicions}});
+  session.answer(present::roll_out_json(input.robot, result, drive, remarks_of(input)));
   return ExitCode::done;
 }
 

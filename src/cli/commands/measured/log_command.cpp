@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
-#include "cli/measured/log_chart.h"
-#include "cli/measured/log_json.h"
 #include "cli/quantity_option.h"
 #include "present/measured/log.h"
+#include "present/measured/log_chart.h"
+#include "present/measured/log_json.h"
 #include "recording/quality.h"
 #include "recording/read_recording.h"
 #include "recording/recording_stream.h"
@@ -41,7 +41,7 @@ void check(const Options& options) {
 ExitCode inspect(const Options& options, Session& session) {
   ExitCode code = ExitCode::done;
   present::Document document;
-  nlohmann::ordered_json logs = nlohmann::ordered_json::array();
+  std::vector<present::Json> logs;
   for (const std::string& name : options.files) {
     const std::filesystem::path file = log_named(session.folders(), name);
     RecordingReport report;
@@ -54,17 +54,17 @@ ExitCode inspect(const Options& options, Session& session) {
     const DataQuality quality = assessment.conclude(report);
     const Recording& recording = assessment.condensed().rows();
     present::add_log(document, recording, report, quality);
-    logs.push_back(log_json(recording, report, quality));
+    logs.push_back(present::log_json(recording, report, quality));
     if (!quality.thermal.is_good() && !quality.drive.is_good()) {
       code = ExitCode::cannot_answer;
     }
     if (!options.plot.empty()) {
-      session.write(options.plot, draw_picture(log_chart(assessment.condensed(), quality, report), options.plot));
+      session.write(options.plot, draw_picture(present::log_chart(assessment.condensed(), quality, report), options.plot));
       document.add_file(options.plot);
     }
   }
   session.show(document);
-  session.answer({{"schema", "heatsoak.log/1"}, {"logs", logs}});
+  session.answer(present::logs_json(logs));
   return code;
 }
 
@@ -77,12 +77,7 @@ ExitCode convert(const Options& options, Session& session) {
       fmt::format("{} of {} rows and {} channels converted.", report.rows_kept, report.rows_in_file, recording.channels.size()));
   document.add_file(options.out);
   session.show(document);
-  session.answer({{"schema", "heatsoak.log_convert/1"},
-                  {"file", file.string()},
-                  {"out", options.out},
-                  {"rows_in_file", report.rows_in_file},
-                  {"rows_kept", report.rows_kept},
-                  {"channels", recording.channels.size()}});
+  session.answer(present::conversion_json(file, options.out, recording, report));
   return ExitCode::done;
 }
 

@@ -7,10 +7,10 @@
 #include "calibration/training_range.h"
 #include "cli/command.h"
 #include "cli/measured/logs_option.h"
-#include "cli/measured/prediction_answer.h"
-#include "cli/named_files.h"
 #include "cli/quantity_option.h"
+#include "duty/named_files.h"
 #include "present/measured/prediction.h"
+#include "present/measured/prediction_chart.h"
 
 namespace heatsoak::commands {
 namespace {
@@ -44,13 +44,13 @@ ExitCode run(const Options& options, Session& session) {
   Prediction prediction = predict(motor, logs, {.ambient_C = options.how.ambient_C});
   prediction.notes.insert(prediction.notes.begin(), notes.begin(), notes.end());
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_picture(prediction_chart(motor, prediction), options.plot));
+    session.write(options.plot, draw_picture(present::prediction_chart(motor, prediction), options.plot));
   }
   present::Document document = present::prediction_document(motor, prediction, warnings, of_logs);
   document.add_file(options.plot);
   session.show(document);
   prediction.notes.insert(prediction.notes.begin(), warnings.begin(), warnings.end());
-  session.answer(prediction_json(motor, prediction));
+  session.answer(present::prediction_json(motor, prediction));
   return ExitCode::done;
 }
 

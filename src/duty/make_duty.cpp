@@ -1,0 +1,100 @@
+#include "duty/make_duty.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "duty/match/match_duty.h"
+#include "input/toml_text.h"
+
+namespace heatsoak {
+namespace {
+
+/// Returns the table, whose rows are put out as they are produced; nothing if the job has none.
+std::optional<DutyRows> table_of(const DutyJob& job, std::size_t wheel_count, DutyKind kind) {
+  return job.put_table ? std::optional<DutyRows>(std::in_place, wheel_count, kind, job.every_s, job.put_table) : std::nullopt;
+}
+
+PrescribedLoad put_out(const DutyJob& job, const Duty& duty) {
+  if (job.seed || job.planner) {
+    throw Failure(ExitCode::bad_input, fmt::format("{} is for matches; {} is {}", job.seed ? "--seed" : "--planner", duty.id, duty.shape));
+  }
+  const std::vector<WheelDemand> wheels = duty.demand(job.robot, job.seed.value_or(1));
+  std::optional<DutyRows> rows = table_of(job, wheels.size(), duty.kind);
+  if (rows) {
+    std::vector<LoadBin> row(wheels.size());
+    for (std::size_t at = 0; at < wheels.front().bins.size(); ++at) {
+      std::ranges::transform(wheels, row.begin(), [at](const WheelDemand& wheel) { return wheel.bins[at]; });
+      rows->add(row);
+    }
+    rows->finish();
+  }
+  return {wheels.front().duration_s()};
+}
+
+GeneratedMatch generate(const DutyJob& job, const Duty& duty, const MatchInputs& inputs) {
+  const Planner planner = job.planner.value_or(Planner::jerk_limited);
+  GeneratedMatch match{.role = inputs.role, .seed = job.seed.value_or(1), .load = {}, .roles = {}};
+  std::optional<DutyRows> rows = table_of(job, job.robot.wheels.axis_rad.size(), duty.kind);
+  MatchObserver observer;
+  if (rows) {
+    observer = [&rows](const MatchMoment& now) { rows->add(now.step_s, now.wheels->torque_Nm, now.wheels->speed_rad_per_s); };
+  }
+  match.load = play_match(inputs, inputs.nominal(), job.robot, match.seed, planner, kBin_s, observer);
+  match.roles = play_roles(inputs, job.robot, match.seed, planner);
+  if (rows) {
+    rows->finish();
+  }
+  return match;
+}
+
+GameDemand import_game(const DutyJob& job) {
+  std::optional<DutyRows> rows = table_of(job, job.robot.wheels.axis_rad.size(), DutyKind::torque);
+  GameObserver observer;
+  if (rows) {
+    observer = [&rows](double duration_s, const WheelDemands& wheels) { rows->add(duration_s, wheels.torque_Nm, wheels.speed_rad_per_s); };
+  }
+  GameDemand game = demand_of_game(job.log, job.player, job.robot, kBin_s, observer);
+  if (game.wheels.empty()) {
+    throw Failure(ExitCode::cannot_answer,
+                  fmt::format("{}: no robot is seen long enough to follow its motion\n{}", job.log, fmt::join(game.sentences, "\n")));
+  }
+  if (rows) {
+    rows->finish();
+  }
+  return game;
+}
+
+}  // namespace
+
+DutyAnswer make_duty(const DutyJob& job) {
+  DutyAnswer answer{job.robot, job.duty, job.log, {}};
+  if (!job.duty) {
+    answer.content = import_game(job);
+  } else if (const auto match = std::dynamic_pointer_cast<const MatchDuty>(job.duty->shape_data)) {
+    answer.content = generate(job, *job.duty, match->inputs());
+  } else {
+    answer.content = put_out(job, *job.duty);
+  }
+  return answer;
+}
+
+std::string duty_file(const DutyAnswer& answer, const std::filesystem::path& csv) {
+  const auto* const game = std::get_if<GameDemand>(&answer.content);
+  const std::string summary =
+      game ? fmt::format("{} of {}, driven by {}", game->player, std::filesystem::path(answer.log).filename().string(), answer.robot.name)
+           : answer.duty->summary;
+  const std::string origin =
+      game ? "measured motion of a recorded game, wheel torques computed from the robot's file" : answer.duty->origin;
+  const bool is_torque = game || answer.duty->kind == DutyKind::torque;
+  return fmt::format(
+      "summary = {}\norigin = {}\nshape = \"recorded\"\n"
+      "ambient = {{ value = \"25 degC\", origin = \"estimated\", derivation = \"not recorded\", range = [\"20 degC\", \"32 degC\"] }}\n\n"
+      "[recorded]\nfile = {}\nquantity = \"{}\"\n",
+      toml_text(summary), toml_text(origin), toml_text(csv.filename().string()), is_torque ? "torque" : "current");
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,54 @@
+// The answer of `duty`: a generated match, a prescribed load or a recorded game as demand of a robot's wheels.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "duty/duty.h"
+#include "duty/duty_rows.h"
+#include "duty/game_to_demand.h"
+#include "duty/match/roles.h"
+#include "robot/robot.h"
+
+namespace heatsoak {
+
+struct DutyJob {
+  Robot robot;
+  std::optional<Duty> duty = {};  ///< nothing: the recorded game `log`
+  std::string log = {};
+  std::string player = {};                 ///< of the recorded game, "yellow 3"; empty: the busiest one
+  double every_s = 0.01;                   ///< time between two rows of the table
+  std::optional<std::uint64_t> seed = {};  ///< of a match; 1 if nothing
+  std::optional<Planner> planner = {};     ///< of a match; jerk_limited if nothing
+  DutyRows::Put put_table = {};            ///< gets the text of the table as it is made; empty: no table
+};
+
+struct PrescribedLoad {
+  double duration_s = 0.0;
+};
+
+struct GeneratedMatch {
+  Role role;
+  std::uint64_t seed = 1;
+  MatchLoad load;
+  RoleLoads roles;  ///< the same game in every role
+};
+
+struct DutyAnswer {
+  Robot robot;
+  std::optional<Duty> duty;  ///< nothing for a recorded game
+  std::string log;           ///< of a recorded game
+  std::variant<PrescribedLoad, GeneratedMatch, GameDemand> content;
+};
+
+/// Throws Failure: bad_input if seed or planner is given for a duty that is not a match, cannot_answer if no robot of a recorded game is
+/// seen long enough.
+DutyAnswer make_duty(const DutyJob& job);
+
+/// Returns the duty file that describes the table `csv` beside it, so that `evaluate --duty FILE.toml` can read it.
+std::string duty_file(const DutyAnswer& answer, const std::filesystem::path& csv);
+
+}  // namespace heatsoak

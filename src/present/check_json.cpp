@@ -1,0 +1,43 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "present/check.h"
+
+namespace heatsoak::present {
+namespace {
+
+Json json(const Outcome& each) {
+  const ThresholdType& type = *each.limit.type;
+  return {{"name", fmt::format("{}: {}", each.check->name, type.name)},
+          {"check", each.check->name},
+          {"threshold", type.name},
+          {"value", rounded(each.measured.value, 6)},
+          {"direction", type.direction == Bound::at_most ? "at_most" : "at_least"},
+          {"limit", rounded(each.limit.value, 6)},
+          {"margin", rounded(each.margin_value(), 6)},
+          {"unit", type.unit},
+          {"passed", each.passed},
+          {"evaluated", each.is_evaluated},
+          {"reason", each.reason},
+          {"detail", each.measured.detail},
+          {"limit_before", each.before.empty() ? Json() : Json(each.before)},
+          {"file", each.limit.at.file},
+          {"line", each.limit.at.line},
+          {"column", each.limit.at.column}};
+}
+
+}  // namespace
+
+Json check_json(std::span<const Outcome> outcomes, const std::vector<std::string>& files) {
+  Json thresholds = Json::array();
+  std::ranges::transform(outcomes, std::back_inserter(thresholds), [](const Outcome& each) { return json(each); });
+  return {{"schema", "heatsoak.check/1"},
+          {"files", files},
+          {"passed", std::ranges::all_of(outcomes, &Outcome::passed)},
+          {"thresholds", thresholds}};
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,42 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "present/core_folder.h"
+#include "present/default_spreads_json.h"
+
+namespace heatsoak::present {
+
+Json core_folder_json(const CoreFolder& folder, const Derating& derating, const Motor& motor, const CoreOptions& options,
+                      const std::string& out) {
+  const Guarantee& checked = derating.guarantee;
+  Json files = Json::array();
+  for (const CoreFile& file : folder.files) {
+    files.push_back({{"path", file.path}, {"bytes", file.content.size()}});
+  }
+  return {{"schema", "heatsoak.core/1"},
+          {"robot", derating.robot_id},
+          {"motor", derating.motor_id},
+          {"out", out},
+          {"period_s", options.period_s},
+          {"input_hash", {{"name", kInputHash}, {"value", folder.hash}}},
+          {"config_check_sum", fmt::format("{:08x}", folder.config_check_sum)},
+          {"files", files},
+          {"derating",
+           {{"data_quality", derating.data_quality},
+            {"seed", derating.options.guarantee.seed},
+            {"guard_period_s", derating.options.period_s},
+            {"winding_limit_C", derating.rules.limits.winding_C},
+            {"hottest_ambient_C", derating.rules.hottest_ambient_C},
+            {"heat_reserve_ratio", rounded(derating.observer.heat_safety_factor(), 4)},
+            {"confidence", derating.options.guarantee.confidence},
+            {"samples", checked.samples},
+            {"over", checked.over},
+            {"limp_current_A", rounded(folder.limp_current_A, 4)},
+            {"braking_reserve_K", rounded(folder.braking_reserve_K, 3)},
+            {"nodes", derating.observer.state_names()}}},
+          {"default_spreads", default_spreads_json({&motor, 1})},
+          {"notes", folder.notes}};
+}
+
+}  // namespace heatsoak::present

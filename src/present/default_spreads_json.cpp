@@ -1,0 +1,23 @@
+#include "present/default_spreads_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "motor/default_spread.h"
+
+namespace heatsoak::present {
+
+Json default_spreads_json(std::span<const Motor> motors) {
+  Json rows = Json::array();
+  for (const Motor& motor : motors) {
+    for (const DefaultSpread& each : default_spreads(motor)) {
+      rows.push_back({{"motor", motor.id},
+                      {"key", each.key},
+                      {"origin", to_string(each.origin)},
+                      {"low_ratio", rounded(each.spread.low / each.value, 4)},
+                      {"high_ratio", rounded(each.spread.high / each.value, 4)}});
+    }
+  }
+  return rows;
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "present/closed_loop_json.h"
+#include "present/default_spreads_json.h"
+#include "present/evaluation.h"
+
+namespace heatsoak::present {
+namespace {
+
+Json json(const Spread95& peak) {
+  return {
+      {"nominal", rounded(peak.nominal, 2)}, {"p05", rounded(peak.p05, 2)}, {"p50", rounded(peak.p50, 2)}, {"p95", rounded(peak.p95, 2)}};
+}
+
+Json json(const MotorEvaluation& each) {
+  const auto optional = [](const std::optional<double>& value, int decimals) { return value ? rounded(*value, decimals) : Json(); };
+  const auto interval = [](const std::optional<Interval95>& value, int decimals) {
+    return value ? Json{rounded(value->low, decimals), rounded(value->high, decimals)} : Json();
+  };
+  return {{"id", each.motor_id},
+          {"winding_limit_C", rounded(each.winding_limit_C, 2)},
+          {"winding_peak_C", json(each.winding_peak_C)},
+          {"stator_peak_C", json(each.stator_peak_C)},
+          {"samples", each.samples},
+          {"samples_needed", each.samples_needed ? Json(*each.samples_needed) : Json()},
+          {"probability_over_limit", rounded(each.probability_over_limit, 4)},
+          {"probability_ci95", interval(each.probability_interval, 4)},
+          {"winding_p95_ci95_C", interval(each.winding_p95_interval_C, 2)},
+          {"time_to_limit_s", optional(each.time_to_limit_s, 3)},
+          {"current_rms_A", rounded(each.current_rms_A, 4)},
+          {"verdict", to_string(each.verdict)},
+          {"limiting_factor", to_string(each.limiting_factor)},
+          {"data_quality", each.data_quality},
+          {"wheel", each.wheel},
+          {"margin_K", rounded(each.margin_K, 2)},
+          {"stator_margin_K", optional(each.stator_margin_K, 2)},
+          {"margin_A", optional(each.margin_A, 4)},
+          {"stator_limit_C", optional(each.stator_limit_C, 2)},
+          {"delivered_share", rounded(each.least_torque_share, 4)},
+          {"short_time_share", rounded(each.short_time_share, 4)},
+          {"short_probability", rounded(each.short_probability, 4)},
+          {"voltage_needed_V", rounded(each.highest_voltage_V, 3)},
+          {"runaway", each.destroyed}};
+}
+
+Json changes_json(const SuggestedChanges& changes) {
+  Json all = Json::array();
+  for (const ChangeEffect& each : changes.effects) {
+    const bool is_value = each.other_motor.empty();
+    all.push_back({{"quantity", name_of(each.quantity)},
+                   {"unit", unit_of(each.quantity)},
+                   {"from", is_value ? rounded(each.before, 6) : Json(changes.motor_id)},
+                   {"to", is_value ? rounded(each.before * each.factor, 6) : Json(each.other_motor)},
+                   {"saved_K", rounded(each.saved_K, 2)},
+                   {"standard_error_K", rounded(each.standard_error_K, 2)},
+                   {"deliverable", each.is_deliverable}});
+  }
+  return all;
+}
+
+}  // namespace
+
+Json evaluation_json(const EvaluationAnswer& answer) {
+  Json result{{"schema", "heatsoak.evaluate/1"}, {"robot", answer.robot.id},          {"conditions", answer.conditions},
+              {"duty", answer.duty.id},          {"duty_origin", answer.duty.origin}, {"seed", answer.seed},
+              {"samples", answer.samples},       {"duty_draws", answer.draw_count}};
+  result["default_spreads"] = default_spreads_json(answer.motors);
+  if (answer.changes) {
+    result["changes"] = changes_json(*answer.changes);
+  }
+  result["is_friction_assumed"] = answer.robot.friction.is_assumed;
+  result["motors"] = Json::array();
+  for (std::size_t i = 0; i < answer.results.size(); ++i) {
+    result["motors"].push_back(json(answer.results[i]));
+    if (answer.closed_loop) {
+      result["motors"].back()["closed_loop"] = closed_loop_json(answer.ranks[i], answer.seed);
+    }
+  }
+  return result;
+}
+
+}  // namespace heatsoak::present

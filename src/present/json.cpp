@@ -1,0 +1,34 @@
+#include "present/json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+namespace heatsoak::present {
+
+Json rounded(double value, int decimals) {
+  if (!std::isfinite(value)) {
+    return nullptr;
+  }
+  const double scale = std::pow(10.0, decimals);
+  return std::round(value * scale) / scale;
+}
+
+Json failure_json(const Failure& failure) {
+  Json diagnostics = Json::array();
+  for (const Diagnostic& each : failure.diagnostics()) {
+    diagnostics.push_back(
+        {{"file", each.at.file}, {"line", each.at.line}, {"column", each.at.column}, {"key", each.key}, {"message", each.message}});
+  }
+  if (diagnostics.empty()) {
+    std::istringstream lines(failure.message());
+    for (std::string line; std::getline(lines, line) && !line.starts_with('`');) {
+      diagnostics.push_back({{"file", ""}, {"line", 0}, {"column", 0}, {"key", ""}, {"message", line}});
+    }
+  }
+  const std::string message = failure.message().empty() ? "the input is wrong" : failure.message();
+  return {{"error", {{"code", static_cast<int>(failure.code())}, {"message", message}, {"diagnostics", diagnostics}}}};
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,18 @@
+// Parts of the JSON answers that all verbs share.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "base/diagnostic.h"
+
+namespace heatsoak::present {
+
+using Json = nlohmann::ordered_json;
+
+/// Returns a JSON number rounded to `decimals`, or null for NaN and infinity.
+Json rounded(double value, int decimals);
+
+/// Returns the answer of a command that failed.
+Json failure_json(const Failure& failure);
+
+}  // namespace heatsoak::present

@@ -1,0 +1,12 @@
+// Chart of `simulate` for a match: one planner in detail, or two planners side by side.
+#pragma once
+
+#include "report/chart.h"
+#include "simulate/match_simulation.h"
+
+namespace heatsoak::present {
+
+/// The runs must have their rows.
+Chart match_chart(const MatchSimulation& match);
+
+}  // namespace heatsoak::present

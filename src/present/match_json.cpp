@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "present/default_spreads_json.h"
+#include "present/match.h"
+#include "simulate/reason_name.h"
+
+namespace heatsoak::present {
+namespace {
+
+Json guard_json(const MatchSimulation& match) {
+  const MotorGuard& guard = match.guard;
+  const bool is_missing = match.guard_use != GuardUse::off && !guard.guard;
+  return {{"use", is_missing ? kGuardUses[0] : kGuardUses[static_cast<std::size_t>(match.guard_use)]},
+          {"asked_for", kGuardUses[static_cast<std::size_t>(match.guard_use)]},
+          {"why_none", is_missing ? Json(guard.why_none) : Json()},
+          {"heat_reserve_ratio", guard.derating ? rounded(guard.derating->observer.heat_safety_factor(), 4) : Json()}};
+}
+
+Json json(const DrivenMatch& driven) {
+  const DriveScore& s = driven.run.score;
+  Json limited;
+  for (std::size_t limit = 0; limit < kLimits.size(); ++limit) {
+    limited[std::string(to_string(kLimits[limit]))] = rounded(s.limited_s[limit], 3);
+  }
+  Json energy{{"battery_J", rounded(s.energy.battery_J, 2)}};
+  for (const EnergyPart& row : energy_parts()) {
+    energy[fmt::format("{}_J", row.name)] = rounded(s.energy.*row.value, 2);
+  }
+  energy["kinetic_J"] = rounded(s.energy.kinetic_J, 4);
+  energy["external_J"] = rounded(s.energy.external_J, 4);
+  energy["residual_J"] = rounded(s.energy.residual_J(), 4);
+  Json phases = Json::array();
+  for (std::size_t i = 0; i < driven.run.phases.size(); ++i) {
+    phases.push_back({{"phase", kPhaseNames[i]},
+                      {"time_s", rounded(driven.run.phases[i].time_s, 3)},
+                      {"copper_J", rounded(driven.run.phases[i].copper_J, 3)}});
+  }
+  return {{"planner", to_string(driven.planner)},
+          {"distance_m", rounded(s.distance_m, 2)},
+          {"slip_m", rounded(s.slip_m, 4)},
+          {"sliding_m", rounded(s.sliding_m, 4)},
+          {"sliding_s", rounded(s.sliding_s, 3)},
+          {"lifted_s", rounded(s.lifted_s, 3)},
+          {"tracking_rms_m", rounded(s.tracking_rms_m, 6)},
+          {"tracking_most_m", rounded(s.tracking_most_m, 5)},
+          {"arrivals", s.arrivals_count},
+          {"overshoot_mean_m", rounded(s.overshoot_mean_m, 6)},
+          {"overshoot_most_m", rounded(s.overshoot_most_m, 5)},
+          {"peak_current_A", rounded(s.peak_current_A, 3)},
+          {"current_rms_A", rounded(s.current_rms_A, 4)},
+          {"short_s", rounded(s.short_s, 3)},
+          {"lowest_battery_V", rounded(s.lowest_battery_V, 3)},
+          {"battery_empty_s", rounded(s.battery_empty_s, 3)},
+          {"winding_peak_C", rounded(s.winding_peak_C, 3)},
+          {"stator_peak_C", rounded(s.stator_peak_C, 3)},
+          {"duel_copper_share", rounded(s.duel_copper_share, 4)},
+          {"guard_limited_s", rounded(s.guard_limited_s, 3)},
+          {"guard_missing_A_s", rounded(s.guard_missing_A_s, 3)},
+          {"guard_winding_peak_C", rounded(s.guard_winding_peak_C, 3)},
+          {"limited_s", limited},
+          {"fault_s", rounded(s.fault_s, 3)},
+          {"lost_packets_share", rounded(s.lost_packets_share, 5)},
+          {"energy", energy},
+          {"phases", phases}};
+}
+
+Json balance_json(const Trace& trace) {
+  Json rows = Json::array();
+  for (const BookedHeat& each : trace.balance) {
+    rows.push_back({{"effect", each.effect}, {"node", each.node}, {"mean_W", rounded(each.mean_W, 6)}});
+  }
+  return rows;
+}
+
+}  // namespace
+
+Json match_json(const MatchSimulation& match) {
+  const DriveScore& first = match.runs.front().run.score;
+  Json planners = Json::array();
+  for (const DrivenMatch& each : match.runs) {
+    planners.push_back(json(each));
+  }
+  return {{"schema", "heatsoak.simulate/1"},
+          {"motor", match.motor.id},
+          {"conditions", match.motor.assumed},
+          {"robot", match.robot.id},
+          {"duty", match.duty.id},
+          {"duty_origin", match.duty.origin},
+          {"seed", match.seed},
+          {"duration_s", rounded(first.time_s, 3)},
+          {"wheel", fmt::format("wheel {}", first.hottest_wheel + 1)},
+          {"winding_peak_C", rounded(first.winding_peak_C, 3)},
+          {"stator_peak_C", rounded(first.stator_peak_C, 3)},
+          {"winding_limit_C", rounded(match.motor.nominal.winding_limit_C, 2)},
+          {"current_rms_A", rounded(first.current_rms_A, 4)},
+          {"verdict", to_string(match.verdict)},
+          {"data_quality", data_quality(match.motor)},
+          {"is_friction_assumed", match.robot.friction.is_assumed},
+          {"sensing", match.is_sensing_ideal ? "ideal" : "real"},
+          {"guard", guard_json(match)},
+          {"default_spreads", match.guard_use != GuardUse::off ? default_spreads_json({&match.motor, 1}) : Json::array()},
+          {"planners", planners}};
+}
+
+Json load_simulation_json(const LoadSimulation& simulation) {
+  const MotorEvaluation& result = simulation.result;
+  return {{"schema", "heatsoak.simulate/1"},
+          {"motor", simulation.motor.id},
+          {"conditions", simulation.motor.assumed},
+          {"robot", simulation.robot.id},
+          {"duty", simulation.duty.id},
+          {"duty_origin", simulation.duty.origin},
+          {"wheel", result.wheel},
+          {"winding_peak_C", rounded(result.winding_peak_C.nominal, 3)},
+          {"stator_peak_C", rounded(result.stator_peak_C.nominal, 3)},
+          {"winding_limit_C", rounded(result.winding_limit_C, 2)},
+          {"current_rms_A", rounded(result.current_rms_A, 4)},
+          {"verdict", to_string(result.verdict)},
+          {"data_quality", result.data_quality},
+          {"balance", balance_json(simulation.trace)},
+          {"stored_W", rounded(simulation.trace.stored_W, 6)}};
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "present/measured/calibration.h"
+#include "present/measured/calibration_words.h"
+#include "present/measured/prediction.h"
+
+namespace heatsoak::present {
+namespace {
+
+Json error_json(const std::vector<ErrorBeforeAfter>& errors, bool after) {
+  Json all = Json::object();
+  for (const ErrorBeforeAfter& each : errors) {
+    const SignalError& error = after ? each.after : each.before;
+    all[each.signal] = {{"rmse_K", rounded(error.rmse_K, 4)}, {"max_abs_K", rounded(error.max_abs_K, 4)}, {"samples", error.samples}};
+  }
+  return all;
+}
+
+/// Rounds to six significant digits, which are the same on every machine.
+Json number(double value) { return std::stod(fmt::format("{:.6g}", value)); }
+
+Json forecast_json(const Calibration& calibration) {
+  const Forecast& forecast = *calibration.forecast;
+  constexpr std::array kSources{"file", "least_squares", "forecast_fit", "innovations_fit"};
+  Json left_out = Json::object();
+  for (const RivalScore& rival : forecast.rivals) {
+    for (const auto& [signal, rmse_K] : rival.rmse_K) {
+      left_out[kSources[static_cast<std::size_t>(rival.source)]][signal] = {{"rmse_K", rounded(rmse_K, 4)}};
+    }
+  }
+  Json extensions = Json::array();
+  for (const AcceptedExtension& each : forecast.accepted) {
+    extensions.push_back({{"id", each.name}, {"nats", rounded(each.gain_nats, 3)}});
+  }
+  return {{"best", kSources[static_cast<std::size_t>(forecast.source)]},
+          {"written", calibration.is_forecast_written ? kSources[static_cast<std::size_t>(forecast.source)] : kSources.back()},
+          {"left_out_pieces", forecast.pieces.size()},
+          {"left_out_error", left_out},
+          {"extensions", extensions},
+          {"band",
+           {{"unknown_heat_winding_share", number(forecast.band.unknown_heat_share[0])},
+            {"unknown_heat_stator_share", number(forecast.band.unknown_heat_share[1])},
+            {"time_scale_s", number(forecast.band.time_scale_s)},
+            {"heat_factor_sd", number(forecast.band.heat_factor_sd)},
+            {"width_ratio", number(forecast.band.width_ratio)}}}};
+}
+
+}  // namespace
+
+Json calibration_json(const Motor& motor, const Calibration& result, const LogRemarks& remarks, const std::string& out) {
+  Json parameters = Json::array();
+  for (const CalibratedParameter& each : result.parameters) {
+    parameters.push_back({{"name", each.name},
+                          {"value", number(each.value)},
+                          {"unit", each.unit},
+                          {"ci95", {number(each.low), number(each.high)}},
+                          {"identifiable", each.is_identifiable},
+                          {"before", number(each.before)},
+                          {"interval", each.by_profile ? "profile_likelihood" : "curvature"}});
+  }
+  Json open = Json::array();
+  for (const OpenDirection& each : result.open) {
+    open.push_back({{"parameters", each.what}, {"why", each.why}, {"experiment", each.experiment}});
+  }
+  Json correlation = Json::array();
+  for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < result.correlation.cols(); ++j) {
+      row.push_back(rounded(result.correlation(i, j), 4));
+    }
+    correlation.push_back(std::move(row));
+  }
+  return {{"schema", "heatsoak.calibration/1"},
+          {"motor", motor.id},
+          {"runs", result.runs.size()},
+          {"parameters", parameters},
+          {"correlation", correlation},
+          {"error", error_json(result.fit_error, true)},
+          {"error_before", error_json(result.fit_error, false)},
+          {"holdout_error", error_json(result.holdout_error, true)},
+          {"holdout_error_before", error_json(result.holdout_error, false)},
+          {"holdout", {{"before", runs_json(result.holdout_before)}, {"after", runs_json(result.holdout_after)}}},
+          {"forecast", forecast_json(result)},
+          {"latent_flux",
+           {{"winding_W", number(result.fit.flux.rms_W[0])},
+            {"stator_W", number(result.fit.flux.rms_W[1])},
+            {"time_scale_s", number(result.fit.flux.time_scale_s)}}},
+          {"rejected_share", number(result.fit.rejected_share)},
+          {"not_identifiable", open},
+          {"next_experiment", result.next_experiment},
+          {"worse_than_before", words_of(result.worse)},
+          {"notes", all_notes(result, remarks)},
+          {"model", out}};
+}
+
+}  // namespace heatsoak::present

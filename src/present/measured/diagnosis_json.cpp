@@ -1,0 +1,184 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "present/measured/diagnosis_answer.h"
+#include "present/measured/prediction.h"
+
+namespace heatsoak::present {
+namespace {
+
+/// NaN and infinity become null, because JSON cannot represent them.
+Json errors_json(const Errors& errors) {
+  Json json = Json::object();
+  for (const auto& [signal, error] : errors) {
+    json[signal] = {{"rmse_K", rounded(error.rmse_K, 4)}, {"max_abs_K", rounded(error.max_abs_K, 4)}};
+  }
+  return json;
+}
+
+/// Returns the names in the catalogue: "constant_heat" for "constant_heat@stator in run4".
+std::vector<std::string> plain_ids(const std::vector<std::string>& candidates) {
+  std::vector<std::string> ids;
+  for (const std::string& candidate : candidates) {
+    std::string id = candidate.substr(0, candidate.find_first_of("@ "));
+    if (std::ranges::find(ids, id) == ids.end()) {
+      ids.push_back(std::move(id));
+    }
+  }
+  return ids;
+}
+
+Json effect_json(const FoundEffect& effect) {
+  Json parameters = Json::array();
+  for (const FittedParameter& parameter : effect.parameters) {
+    const bool is_fitted = parameter.low < parameter.high;
+    parameters.push_back({{"name", parameter.name},
+                          {"value", parameter.value},
+                          {"unit", parameter.unit},
+                          {"ci95", {parameter.low, parameter.high}},
+                          {"fitted", is_fitted}});
+  }
+  Json json{
+      {"id", effect.id},
+      {"name", effect.name},
+      {"node", effect.node},
+      {"parameters", parameters},
+      {"condition", effect.condition},
+      {"drivers", effect.drivers},
+      {"heat_W", {{"mean", rounded(effect.mean_W, 4)}, {"max", rounded(effect.peak_W, 4)}}},
+      {"evidence", {{"delta_bic", rounded(effect.delta_bic, 2)}, {"p_value", effect.p_value}, {"nats", rounded(effect.gain_nats, 2)}}},
+      {"confusable_with", plain_ids(effect.confusable_with)},
+      {"look_alike", effect.confounded_with}};
+  if (effect.is_from_catalogue) {
+    json["visibility"] = rounded(effect.visibility_ratio, 4);
+  }
+  return json;
+}
+
+Json tests_json(const std::vector<InnovationTests>& tests) {
+  Json json = Json::object();
+  for (const InnovationTests& test : tests) {
+    Json correlated = Json::object();
+    for (const auto& [name, correlation] : test.correlated_with) {
+      correlated[name] = rounded(correlation, 4);
+    }
+    json[test.signal] = {{"samples", test.count},
+                         {"variance_ratio", rounded(test.variance_ratio, 4)},
+                         {"ljung_box_p", test.ljung_box_probability},
+                         {"cumulated_periodogram_over_band", rounded(test.periodogram_ratio, 3)},
+                         {"kurtosis_over_normal", rounded(test.kurtosis_ratio, 3)},
+                         {"correlated_with", correlated}};
+  }
+  return json;
+}
+
+Json unexplained_json(const Unexplained& heat) {
+  Json json{{"node", heat.node},
+            {"drivers", heat.drivers},
+            {"heat_W", {{"mean", rounded(heat.mean_W, 4)}, {"max", rounded(heat.peak_W, 4)}}},
+            {"time_scale_s", rounded(heat.time_scale_s, 1)},
+            {"nats", rounded(heat.gain_nats, 2)},
+            {"in_model", heat.is_in_model}};
+  if (heat.drivers.empty()) {
+    json["heat_W"]["rms"] = rounded(heat.rms_W, 4);
+  }
+  if (!heat.or_nodes.empty()) {
+    json["or_nodes"] = heat.or_nodes;
+  }
+  if (!heat.times.empty()) {
+    json["drivers"].push_back(heat.times);
+    json["times"] = heat.times;
+  }
+  if (!heat.knots.empty()) {
+    json["curve"] = {
+        {"driver", heat.knots}, {"driver_unit", heat.driver_unit}, {"value", heat.curve}, {"sd", heat.curve_sd}, {"unit", heat.curve_unit}};
+  }
+  return json;
+}
+
+Json words_of(const std::vector<Refusal>& refused) {
+  Json words = Json::array();
+  for (const Refusal& each : refused) {
+    words.push_back(each.words);
+  }
+  return words;
+}
+
+Json ladder_json(const Selection& selection) {
+  Json rounds = Json::array();
+  for (const Round& round : selection.rounds) {
+    Json candidates = Json::array();
+    for (const JudgedCandidate& each : round.ladder) {
+      candidates.push_back({{"id", each.candidate.id},
+                            {"variant", each.candidate.variant},
+                            {"nats", rounded(each.gain_nats, 2)},
+                            {"visibility", rounded(each.visibility_ratio, 4)},
+                            {"probability", rounded(each.probability, 4)}});
+    }
+    Json curves = Json::array();
+    for (const ScanResult& each : round.scan) {
+      curves.push_back({{"node", each.term.node},
+                        {"other", each.term.other},
+                        {"driver", selection.drivers[static_cast<std::size_t>(each.term.driver)].name},
+                        {"per", to_string(each.term.multiplier)},
+                        {"nats", rounded(each.gain_nats, 2)}});
+    }
+    rounds.push_back({{"effects", candidates}, {"curves", curves}, {"taken", round.taken}, {"taken_nats", rounded(round.taken_nats, 2)}});
+  }
+  return rounds;
+}
+
+}  // namespace
+
+Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score) {
+  Json json{{"schema", "heatsoak.diagnosis/1"}, {"verdict", to_string(diagnosis.verdict)}, {"effects", Json::array()}};
+  for (const FoundEffect& effect : diagnosis.effects) {
+    json["effects"].push_back(effect_json(effect));
+  }
+  json["before"] = {{"train", errors_json(diagnosis.before_train)}, {"holdout", errors_json(score.before)}};
+  json["after"] = {{"train", errors_json(diagnosis.after_train)}, {"holdout", errors_json(score.after)}};
+  json["refitted"] = {{"train", errors_json(diagnosis.refitted_train)}, {"holdout", errors_json(score.refitted)}};
+  json["model_file"] = {{"train", errors_json(diagnosis.file_train)}, {"holdout", errors_json(score.file)}};
+  json["residual_tests"] = {{"before", tests_json(diagnosis.tests_before)}, {"after", tests_json(diagnosis.tests_after)}};
+  json["description"] = diagnosis.description;
+  json["figures_contradicted"] = Json::array();
+  for (const ChangedParameter& parameter : diagnosis.changed) {
+    json["figures_contradicted"].push_back({{"name", parameter.name},
+                                            {"unit", parameter.unit},
+                                            {"before", parameter.before},
+                                            {"value", parameter.value},
+                                            {"ci95", {parameter.low, parameter.high}},
+                                            {"nats", rounded(parameter.gain_nats, 2)}});
+  }
+  if (!diagnosis.unexplained.empty()) {
+    json["unexplained"] = unexplained_json(*std::ranges::max_element(diagnosis.unexplained, {}, &Unexplained::mean_W));
+    json["unexplained_all"] = Json::array();
+    for (const Unexplained& heat : diagnosis.unexplained) {
+      json["unexplained_all"].push_back(unexplained_json(heat));
+    }
+  }
+  json["runs"] = {{"train", Json::array()}, {"holdout", Json::object()}};
+  for (const MeasuredRun& run : input.train) {
+    json["runs"]["train"].push_back(
+        {{"name", run.name}, {"error", errors_json(open_loop_errors(diagnosis.selection.after.model, {run}, {}))}});
+  }
+  json["runs"]["holdout"] = {{"before", runs_json(score.runs_before)}, {"after", runs_json(score.runs_after)}};
+  json["ladder"] = ladder_json(diagnosis.selection);
+  json["refused"] = words_of(diagnosis.selection.refused);
+  json["would_not_show"] = diagnosis.selection.unseen;
+  json["not_judged"] = diagnosis.selection.not_judged;
+  json["unknown_heat_rms_W"] = {{"before", diagnosis.flux_rms_before_W}, {"after", diagnosis.flux_rms_after_W}};
+  json["power_balance_W"] = Json::object();
+  for (const BalanceRow& row : diagnosis.balance) {
+    json["power_balance_W"][row.effect] = row.heat_W;
+  }
+  json["next_experiments"] = Json::array();
+  for (const Experiment& each : diagnosis.experiments) {
+    json["next_experiments"].push_back({{"tells", each.rivals}, {"what", each.what}, {"expected_nats", rounded(each.expected_nats, 1)}});
+  }
+  json["notes"] = diagnosis.notes;
+  return json;
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estimation/interval.h"
+#include "present/measured/diagnosis_answer.h"
+
+namespace heatsoak::present {
+namespace {
+
+constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
+
+/// Places runs one after the other on the time axis, with a gap between them.
+struct Axis {
+  double begin_min = 0.0;
+  double put(const MeasuredRun& run, std::vector<double>& x) const {
+    for (const double time_s : run.time_s) {
+      x.push_back(begin_min + (time_s - run.time_s.front()) / 60.0);
+    }
+    x.push_back(x.back());
+    return x.back() + 0.5;
+  }
+};
+
+/// Lists the runs in the order in which they are drawn.
+std::string listed(const std::vector<std::string>& runs) {
+  constexpr std::size_t kMost = 6;
+  return runs.size() > kMost ? fmt::format("{} runs, {} to {}", runs.size(), runs.front(), runs.back())
+                             : fmt::format("{}", fmt::join(runs, ", "));
+}
+
+ChartPanel residual_panel(const std::string& signal, const ExtendedModel& before, const ExtendedModel& after,
+                          const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them, const std::string& title) {
+  ChartPanel panel{title, "measured − model / K", {}, {}, {}};
+  ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
+  std::vector<std::string> names;
+  Axis axis;
+  for (const MeasuredRun& run : runs) {
+    const auto found = std::ranges::find(run.sensors, signal, &Sensor::signal);
+    if (found == run.sensors.end()) {
+      continue;
+    }
+    names.push_back(run.name);
+    const Eigen::Index sensor = found - run.sensors.begin();
+    for (const auto& [curve, model] : {std::pair(&old, &before), std::pair(&now, &after)}) {
+      const Eigen::VectorXd off_K = run.measured_C.col(sensor) - open_loop_C(*model, run, before_them).col(sensor);
+      curve->y.insert(curve->y.end(), off_K.begin(), off_K.end());
+      curve->y.push_back(kGap);
+      axis.put(run, curve->x);
+    }
+    axis.begin_min = now.x.back() + 0.5;
+  }
+  panel.title += ": " + listed(names);
+  panel.curves = {old, now};
+  return panel;
+}
+
+DiagnosisPicture residuals(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score) {
+  Chart chart{"Residual in K before and after",
+              "runs one behind the other; the model runs freely from the first measured temperatures",
+              "time / min",
+              {}};
+  for (const auto& [signal, error] : diagnosis.before_train) {
+    const std::string name = signal.substr(0, signal.rfind('_'));
+    chart.panels.push_back(residual_panel(signal, input.model, diagnosis.selection.after.model, input.train, {}, name + ", training runs"));
+    if (!score.runs.empty()) {
+      chart.panels.push_back(
+          residual_panel(signal, input.model, diagnosis.selection.after.model, score.runs, input.train, name + ", hold-out runs"));
+    }
+  }
+  chart.panel_height_px = 260;
+  return {"residual_K", chart};
+}
+
+DiagnosisPicture unknown_heat(const Diagnosis& diagnosis) {
+  Chart chart{"Unknown heat in W before and after",
+              "unknown heat flux into the node that explains the measured temperatures; band: 95 % after, given the model",
+              "time / min",
+              {}};
+  for (const auto& [node, rms_W] : diagnosis.flux_rms_after_W) {
+    ChartPanel panel{"into the " + node, "heat / W", {}, {}, {}};
+    ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
+    ChartBand band{"95 %", {}, {}, {}, 0};
+    std::vector<std::string> names;
+    double begin_min = 0.0;
+    for (const FluxTrace& trace : diagnosis.flux) {
+      if (trace.node != node) {
+        continue;
+      }
+      names.push_back(trace.run);
+      for (std::size_t k = 0; k < trace.time_s.size(); ++k) {
+        const double x = begin_min + (trace.time_s[k] - trace.time_s.front()) / 60.0;
+        old.x.push_back(x), old.y.push_back(trace.before_W[k]);
+        now.x.push_back(x), now.y.push_back(trace.after_W[k]);
+        band.x.push_back(x);
+        band.low.push_back(trace.after_W[k] - kInterval_sd * trace.after_sd_W[k]);
+        band.high.push_back(trace.after_W[k] + kInterval_sd * trace.after_sd_W[k]);
+      }
+      old.x.push_back(old.x.back()), old.y.push_back(kGap);
+      now.x.push_back(now.x.back()), now.y.push_back(kGap);
+      begin_min = now.x.back() + 0.5;
+    }
+    panel.title += ": " + listed(names);
+    panel.curves = {old, now};
+    panel.bands = {band};
+    chart.panels.push_back(panel);
+  }
+  chart.panel_height_px = 260;
+  return {"unknown_heat_W", chart};
+}
+
+}  // namespace
+
+std::vector<DiagnosisPicture> diagnosis_pictures(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score) {
+  std::vector<DiagnosisPicture> pictures{residuals(diagnosis, input, score), unknown_heat(diagnosis)};
+  for (const Unexplained& heat : diagnosis.unexplained) {
+    if (heat.knots.size() < 2) {
+      continue;
+    }
+    Chart chart{fmt::format("Curve found at the {}", heat.node),
+                fmt::format("linear between seven knots; band: 95 %{}", heat.is_in_model ? "" : "; the extended model does not have it"),
+                heat.drivers.front() + (heat.driver_unit.empty() ? "" : " / " + heat.driver_unit),
+                {}};
+    ChartPanel panel{"", heat.curve_unit.empty() ? "share of the copper loss" : "curve / " + heat.curve_unit, {}, {}, {}};
+    ChartBand band{"95 %", heat.knots, {}, {}, 0};
+    for (std::size_t i = 0; i < heat.curve.size(); ++i) {
+      band.low.push_back(heat.curve[i] - kInterval_sd * heat.curve_sd[i]);
+      band.high.push_back(heat.curve[i] + kInterval_sd * heat.curve_sd[i]);
+    }
+    panel.curves = {{"curve", heat.knots, heat.curve, 0, false}};
+    panel.bands = {band};
+    chart.panels = {panel};
+    // The number keeps names unique: two curves may share node and input signal, such as a heating and a cooling one.
+    pictures.push_back({fmt::format("curve_{}_{}_{}", pictures.size() - 1, heat.node, heat.drivers.front()), chart});
+  }
+  return pictures;
+}
+
+}  // namespace heatsoak::present

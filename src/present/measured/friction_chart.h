@@ -1,0 +1,19 @@
+// Charts of a friction test, after parameters 4, 6, 7 and 8 of ETDP 2025; one colour per wheel in all of them.
+#pragma once
+
+#include <string>
+
+#include "friction/friction_fit.h"
+#include "friction/steady_parts.h"
+#include "report/chart.h"
+
+namespace heatsoak::present {
+
+/// Offset of every heading with the fitted f(θ), and the damping of every heading, over the direction of travel.
+Chart friction_chart(const FrictionFit& fit, const std::string& robot, const std::string& subtitle);
+
+/// Voltage over wheel speed: one heading with lines whose offsets are the static friction, and all headings after subtracting the friction.
+Chart voltage_chart(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics, const std::string& robot,
+                    const FitSettings& settings);
+
+}  // namespace heatsoak::present

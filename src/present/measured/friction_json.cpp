@@ -1,0 +1,92 @@
+#include <nlohmann/json.hpp>
+
+#include "present/measured/friction.h"
+
+namespace heatsoak::present {
+namespace {
+
+/// Unknown (NaN) values become null.
+Json json(const Estimate& estimate) { return {{"value", estimate.value}, {"ci95", {estimate.low, estimate.high}}}; }
+
+Json wheels_json(const FrictionFit& fit, const HeldOutError& error, std::size_t rows) {
+  Json wheels = Json::array();
+  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+    const WheelFriction& wheel = fit.wheels[i];
+    wheels.push_back({{"index", i + 1},
+                      {"damping_V_s_per_rad", json(wheel.damping_V_s_per_rad)},
+                      {"a_V", json(wheel.sine_V)},
+                      {"b_V", json(wheel.constant_V)},
+                      {"phase_rad", json(wheel.phase_rad)},
+                      {"rotation_V", json(wheel.rotation_V)},
+                      {"r2", wheel.r2_ratio},
+                      {"rmse_V", wheel.rmse_V},
+                      {"rows_used", wheel.rows_used},
+                      {"rows_left_out", rows - wheel.rows_used},
+                      {"legs_used", wheel.parts_used},
+                      {"legs_standing", wheel.parts_standing},
+                      {"legs_outlying", wheel.parts_outlying},
+                      {"damping_given", wheel.damping_is_given},
+                      {"phase_given", wheel.phase_is_given},
+                      {"phase_bounded", wheel.phase_is_bounded},
+                      {"lack_of_fit", wheel.lack.is_found},
+                      {"left_V", wheel.lack.left_V},
+                      {"repeats_V", wheel.lack.repeats_V},
+                      {"before_rmse_V", error.before_of_wheel_V[i]},
+                      {"after_rmse_V", error.after_of_wheel_V[i]},
+                      {"problem", wheel.problem}});
+  }
+  return wheels;
+}
+
+}  // namespace
+
+Json friction_json(const Robot& robot, const FrictionAnswer& answer, const FrictionRemarks& remarks) {
+  const SteadyParts& steady = answer.steady;
+  return {{"schema", "heatsoak.friction/1"},
+          {"method", "steady_state"},
+          {"robot", robot.id},
+          {"motor", remarks.motor_id ? Json(*remarks.motor_id) : Json()},
+          {"wheels", wheels_json(answer.fit, answer.error, steady.rows)},
+          {"before", {{"rmse", answer.error.before_V}, {"unit", "V"}, {"from", answer.expected_from}}},
+          {"after", {{"rmse", answer.error.after_V}, {"unit", "V"}}},
+          {"headings", answer.fit.headings},
+          {"headings_held_out", answer.error.headings},
+          {"rows", steady.rows},
+          {"rows_steady", steady.rows_steady},
+          {"legs", steady.legs},
+          {"return_legs", steady.return_legs},
+          {"findings", remarks.findings},
+          {"suspicions", remarks.suspicions}};
+}
+
+Json roll_out_json(const Robot& robot, const RollOutResult& result, const DriveConstants& drive, const FrictionRemarks& remarks) {
+  Json wheels = Json::array();
+  for (std::size_t i = 0; i < result.wheel_damping_Nm_s_per_rad.size(); ++i) {
+    const Estimate& mechanical = result.wheel_damping_Nm_s_per_rad[i];
+    std::size_t used = 0;
+    for (const RollOutRun& run : result.runs) {
+      used += run.wheel < 0 || run.wheel == static_cast<int>(i) ? static_cast<std::size_t>(run.rows_used) : 0U;
+    }
+    wheels.push_back({{"index", i + 1},
+                      {"damping_V_s_per_rad", json(damping_with_back_emf(drive, mechanical))},
+                      {"a_V", json(Estimate{})},
+                      {"b_V", json(Estimate{})},
+                      {"phase_rad", json(Estimate{})},
+                      {"wheel_damping_Nm_s_per_rad", json(mechanical)},
+                      {"wheel_torque_Nm", json(result.wheel_torque_Nm[i])},
+                      {"r2", Json()},
+                      {"rows_used", used},
+                      {"rows_left_out", result.rows - used}});
+  }
+  return {{"schema", "heatsoak.friction/1"},
+          {"method", "roll_out"},
+          {"robot", robot.id},
+          {"motor", remarks.motor_id ? Json(*remarks.motor_id) : Json()},
+          {"wheels", wheels},
+          {"before", {{"rmse", Json()}}},
+          {"after", {{"rmse", Json()}}},
+          {"findings", remarks.findings},
+          {"suspicions", remarks.suspicions}};
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,87 @@
+#include "present/measured/log_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace heatsoak::present {
+namespace {
+
+Json channels_json(const DataQuality& quality) {
+  Json channels = Json::array();
+  for (const ChannelQuality& channel : quality.channels) {
+    channels.push_back({{"name", channel.quantity.key},
+                        {"kind", to_string(channel.quantity.kind)},
+                        {"unit", channel.quantity.unit},
+                        {"samples", channel.samples},
+                        {"left_out", channel.left_out},
+                        {"lowest", channel.low},
+                        {"highest", channel.high},
+                        {"step", channel.step > 0.0 ? Json(channel.step) : Json(nullptr)},
+                        {"noise", channel.noise}});
+  }
+  return channels;
+}
+
+Json left_out_json(const RecordingReport& report) {
+  Json all = Json::array();
+  for (const auto& [what, entry] : report.left_out) {
+    Json lines = Json::array();
+    for (const LineRange& range : entry.lines) {
+      lines.push_back({range.first, range.last});
+    }
+    all.push_back({{"channel", what.first.empty() ? Json(nullptr) : Json(what.first)},
+                   {"reason", to_string(what.second)},
+                   {"count", entry.count},
+                   {"lines", lines},
+                   {"example", entry.example}});
+  }
+  return all;
+}
+
+Json clocks_json(const DataQuality& quality) {
+  Json clocks = Json::array();
+  for (const ClockOffset& offset : quality.clock_offsets) {
+    clocks.push_back({{"temperature", offset.temperature},
+                      {"heat_input", offset.heat_input},
+                      {"delay_s", offset.delay_s ? Json(*offset.delay_s) : Json()},
+                      {"standard_error_s", offset.delay_s ? Json(offset.delay_uncertainty_s) : Json()},
+                      {"why_not", offset.why_not}});
+  }
+  return clocks;
+}
+
+}  // namespace
+
+Json log_json(const Recording& recording, const RecordingReport& report, const DataQuality& quality) {
+  Json gaps = Json::array();
+  for (const Gap& gap : quality.gaps) {
+    gaps.push_back({{"line", gap.line}, {"begin_s", gap.begin_s}, {"duration_s", gap.duration_s}});
+  }
+  return {{"file", recording.file.string()},
+          {"motor", recording.motor},
+          {"conditions", recording.conditions},
+          {"rows_in_file", report.rows_in_file},
+          {"rows_kept", report.rows_kept},
+          {"sampling",
+           {{"duration_s", quality.sampling.duration_s},
+            {"usual_period_s", quality.sampling.usual_period_s},
+            {"jitter_s", quality.sampling.jitter_s},
+            {"longest_gap_s", quality.sampling.longest_gap_s}}},
+          {"runs", quality.runs},
+          {"gaps", gaps},
+          {"channels", channels_json(quality)},
+          {"left_out", left_out_json(report)},
+          {"clock_offsets", clocks_json(quality)},
+          {"suspicions", quality.suspicions},
+          {"notes", report.notes},
+          {"thermal", {{"good", quality.thermal.is_good()}, {"lacks", quality.thermal.lacks}}},
+          {"drive", {{"good", quality.drive.is_good()}, {"lacks", quality.drive.lacks}}}};
+}
+
+Json logs_json(const std::vector<Json>& logs) { return {{"schema", "heatsoak.log/1"}, {"logs", logs}}; }
+
+Json conversion_json(const std::filesystem::path& file, const std::string& out, const Recording& recording, const RecordingReport& report) {
+  return {{"schema", "heatsoak.log_convert/1"},  {"file", file.string()},         {"out", out},
+          {"rows_in_file", report.rows_in_file}, {"rows_kept", report.rows_kept}, {"channels", recording.channels.size()}};
+}
+
+}  // namespace heatsoak::present

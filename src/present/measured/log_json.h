@@ -1,0 +1,24 @@
+// JSON of `log`.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "present/json.h"
+#include "recording/quality.h"
+#include "recording/recording.h"
+#include "recording/recording_report.h"
+
+namespace heatsoak::present {
+
+/// `recording` holds at least the data that the assessment keeps.
+Json log_json(const Recording& recording, const RecordingReport& report, const DataQuality& quality);
+
+/// Returns the answer of `log inspect`; `logs` are results of log_json().
+Json logs_json(const std::vector<Json>& logs);
+
+/// Returns the answer of `log convert`.
+Json conversion_json(const std::filesystem::path& file, const std::string& out, const Recording& recording, const RecordingReport& report);
+
+}  // namespace heatsoak::present

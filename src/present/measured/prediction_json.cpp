@@ -1,0 +1,25 @@
+#include <nlohmann/json.hpp>
+
+#include "present/measured/prediction.h"
+
+namespace heatsoak::present {
+
+Json runs_json(const std::vector<PredictedRun>& runs) {
+  Json all = Json::array();
+  for (const PredictedRun& run : runs) {
+    Json error = Json::object();
+    Json coverage = Json::object();
+    for (const PredictedSignal& each : run.signals) {
+      error[each.signal] = {{"rmse_K", rounded(each.rmse_K, 4)}, {"max_abs_K", rounded(each.max_abs_K, 4)}, {"samples", each.samples}};
+      coverage[each.signal] = rounded(each.coverage_share, 4);
+    }
+    all.push_back({{"name", run.name}, {"error", error}, {"coverage_90", coverage}});
+  }
+  return all;
+}
+
+Json prediction_json(const Motor& motor, const Prediction& prediction) {
+  return {{"schema", "heatsoak.prediction/1"}, {"motor", motor.id}, {"runs", runs_json(prediction.runs)}, {"notes", prediction.notes}};
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,29 @@
+#include <nlohmann/json.hpp>
+
+#include "present/derating.h"
+
+namespace heatsoak::present {
+namespace {
+
+Json json(const TablePlace& place) {
+  return {{"difference_A", rounded(place.difference_A, 4)}, {"committed_A", rounded(place.committed_A, 4)},
+          {"fresh_A", rounded(place.fresh_A, 4)},           {"speed_rad_per_s", rounded(place.speed_rad_per_s, 3)},
+          {"stator_C", rounded(place.stator_C, 2)},         {"winding_C", rounded(place.winding_C, 2)}};
+}
+
+}  // namespace
+
+Json table_check_json(const TableCheck& check) {
+  const CommittedTable& committed = check.committed;
+  const auto text = [](const std::string& words) { return words.empty() ? Json() : Json(words); };
+  return {{"file", committed.file.string()},
+          {"motor", text(committed.motor_id)},
+          {"robot", text(committed.robot_id)},
+          {"written_by", text(committed.version)},
+          {"holds", check.holds},
+          {"excess", json(check.found.excess)},
+          {"lost", json(check.found.lost)},
+          {"differing_line", check.found.differing_line > 0 ? Json(check.found.differing_line) : Json()}};
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,120 @@
+#include "present/verdict_chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "present/evaluation.h"
+
+namespace heatsoak::present {
+namespace {
+
+std::vector<double> in_minutes(std::vector<double> times_s) {
+  for (double& time : times_s) {
+    time /= 60.0;
+  }
+  return times_s;
+}
+
+/// Returns the robot's own motor first, then the others from the best on.
+std::vector<const MotorEvaluation*> chosen(const std::vector<MotorEvaluation>& results, const Robot& robot) {
+  std::vector<const MotorEvaluation*> all;
+  for (const MotorEvaluation& each : results) {
+    all.push_back(&each);
+  }
+  std::stable_partition(all.begin(), all.end(), [&](const MotorEvaluation* each) { return each->motor_id == robot.drive.motor; });
+  all.resize(std::min(all.size(), kMostCurves));
+  return all;
+}
+
+double at(const TemperatureCurves& curves, const std::vector<double>& values, double time_s) {
+  const auto next = std::ranges::lower_bound(curves.time_s, time_s);
+  return values[static_cast<std::size_t>(std::min(next, curves.time_s.end() - 1) - curves.time_s.begin())];
+}
+
+/// Returns whether two lines nearly coincide: the second is then dashed, so that both are visible.
+bool coincide(const TemperatureCurves& one, const std::vector<double>& one_C, const TemperatureCurves& other,
+              const std::vector<double>& other_C) {
+  constexpr int kLooks = 60;
+  constexpr double kLine_K = 1.0;
+  int alike = 0;
+  for (int i = 1; i <= kLooks; ++i) {
+    const double time_s = one.time_s.back() * i / kLooks;
+    alike += std::abs(at(one, one_C, time_s) - at(other, other_C, time_s)) < kLine_K ? 1 : 0;
+  }
+  return 2 * alike > kLooks;
+}
+
+/// Returns the number of motors with a band. Bands of many motors would cover each other, so only the first two get one then.
+std::size_t bands_of(std::size_t motors) {
+  constexpr std::size_t kMostWithAreas = 4;
+  return motors > kMostWithAreas ? 2 : motors;
+}
+
+ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_winding) {
+  ChartPanel result{.title = of_winding ? "Winding" : "Stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
+  std::map<double, std::vector<std::string>> limits_C;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const TemperatureCurves& curves = shown[i]->curves;
+    const std::string name =
+        of_winding ? fmt::format("{}, {:.0f} °C, {}", shown[i]->motor_id, shown[i]->winding_peak_C.nominal, verdict_word(*shown[i]))
+                   : std::string();
+    const int color = static_cast<int>(i);
+    const auto values_of = [of_winding](const TemperatureCurves& c) -> const std::vector<double>& {
+      return of_winding ? c.winding_C : c.stator_C;
+    };
+    const bool is_hidden = std::any_of(shown.begin(), shown.begin() + color, [&](const MotorEvaluation* before) {
+      return coincide(curves, values_of(curves), before->curves, values_of(before->curves));
+    });
+    result.curves.push_back({name, in_minutes(curves.time_s), values_of(curves), color, is_hidden, false, true});
+    if (!curves.band_time_s.empty() && i < bands_of(shown.size())) {
+      result.bands.push_back({"", in_minutes(curves.band_time_s), of_winding ? curves.winding_p05_C : curves.stator_p05_C,
+                              of_winding ? curves.winding_p95_C : curves.stator_p95_C, color});
+    }
+    if (of_winding) {
+      limits_C[shown[i]->winding_limit_C].push_back(shown[i]->motor_id);
+    } else if (shown[i]->stator_limit_C) {
+      limits_C[*shown[i]->stator_limit_C].push_back(shown[i]->motor_id);
+    }
+  }
+  for (const auto& [limit_C, motors] : limits_C) {
+    const std::string whose = limits_C.size() == 1 ? ""
+                              : motors.size() == 1 ? fmt::format(" of {}", motors.front())
+                                                   : fmt::format(" of {} motors", motors.size());
+    result.levels.push_back({fmt::format("limit {:.0f} °C{}", limit_C, whose), limit_C});
+  }
+  return result;
+}
+
+std::string title_of(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty) {
+  const auto good =
+      std::ranges::count_if(results, [](const MotorEvaluation& each) { return each.verdict == Verdict::pass && !each.samples_needed; });
+  const auto open = std::ranges::count_if(results, [](const MotorEvaluation& each) { return each.samples_needed.has_value(); });
+  const std::string verdict = results.size() == 1 ? fmt::format("{}: {}", results.front().motor_id, verdict_word(results.front()))
+                                                  : fmt::format("{} of {} motors pass{}", good, results.size(),
+                                                                open > 0 ? fmt::format(", {} undecided", open) : "");
+  return fmt::format("{}, {} on {}", verdict, robot.name, duty.id);
+}
+
+}  // namespace
+
+Chart verdict_chart(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty) {
+  const std::vector<const MotorEvaluation*> shown = chosen(results, robot);
+  const bool sampled = std::ranges::any_of(shown, [](const MotorEvaluation* each) { return !each->curves.band_time_s.empty(); });
+  const bool estimated = std::ranges::any_of(shown, [](const MotorEvaluation* each) { return each->data_quality == "estimated"; });
+  return {.title = title_of(results, robot, duty),
+          .subtitle = fmt::format(
+              "{}{}{}{}", shown.size() < results.size() ? fmt::format("the robot's motor and the best of {}, ", results.size()) : "",
+              duty.summary,
+              sampled ? fmt::format("; lines: nominal, areas{}: 5\u00a0% to 95\u00a0% of samples at each moment",
+                                    bands_of(shown.size()) < shown.size() ? " of the first two motors" : "")
+                      : "; nominal values",
+              estimated ? "; thermal data partly estimated" : ""),
+          .x_label = "time / min",
+          .panels = {panel(shown, true), panel(shown, false)}};
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,17 @@
+// Chart of a verdict: winding (top) and stator (bottom) temperature over time, with the limits.
+#pragma once
+
+#include <vector>
+
+#include "duty/duty.h"
+#include "report/chart.h"
+#include "robot/robot.h"
+#include "select/evaluate.h"
+
+namespace heatsoak::present {
+
+/// Maximum number of motors: the one that the robot is built with, then the best of the others.
+inline constexpr std::size_t kMostCurves = 6;
+Chart verdict_chart(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty);
+
+}  // namespace heatsoak::present

@@ -1,0 +1,56 @@
+#include "select/candidates.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <set>
+
+#include "motor/conditions.h"
+
+namespace heatsoak {
+
+std::vector<Motor> named_candidates(const CandidateNames& names, NamedFiles& files) {
+  std::vector<std::string> single;
+  for (const std::string& name : names.motors) {
+    const std::vector<std::string> all = name == "all" ? ids_in(files.folders().motors) : std::vector<std::string>{name};
+    single.insert(single.end(), all.begin(), all.end());
+  }
+  std::vector<Motor> motors;
+  const std::optional<Motor> model = names.model.empty() ? std::nullopt : files.motor(names.model);
+  if (model) {
+    motors.push_back(under(*model, names.conditions));
+  }
+  std::set<std::filesystem::path> taken;
+  for (const std::string& name : single) {
+    const std::optional<std::filesystem::path> file = files.motor_file(name);
+    const bool is_replaced = file && model && model->fit && model->fit->motor == file->stem();
+    if (!file || is_replaced || !taken.insert(*file).second) {
+      continue;
+    }
+    const auto same =
+        std::ranges::find_if(taken, [&](const std::filesystem::path& other) { return other != *file && other.stem() == file->stem(); });
+    if (same != taken.end()) {
+      throw Failure(ExitCode::bad_input, fmt::format("{} and {} are two motors with the same id, '{}'; rename one of the files",
+                                                     same->string(), file->string(), file->stem().string()));
+    }
+    if (const std::optional<Motor> motor = files.motor(name)) {
+      motors.push_back(names.model.empty() ? under(*motor, names.conditions) : *motor);
+    }
+  }
+  return motors;
+}
+
+std::vector<Motor> motors_of_database(const DataFolders& folders, const std::map<std::string, std::string>& conditions) {
+  std::vector<Motor> motors;
+  for (const std::string& id : ids_in(folders.motors)) {
+    NamedFiles files(folders);
+    if (const std::optional<Motor> motor = files.motor(id)) {
+      motors.push_back(under(*motor, conditions));
+    }
+  }
+  return motors;
+}
+
+}  // namespace heatsoak

@@ -1,0 +1,25 @@
+// Motors to evaluate, by the names on the command line.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "duty/named_files.h"
+
+namespace heatsoak {
+
+struct CandidateNames {
+  std::vector<std::string> motors;                     ///< ids or files; "all": the whole data base
+  std::string model = {};                              ///< a calibrated motor that replaces the one it was fitted from; empty: none
+  std::map<std::string, std::string> conditions = {};  ///< as under() takes them
+};
+
+/// Reads the model, then the motors in the order of their names, each once. `files` collects problems of files. Throws Failure (bad_input)
+/// if two files have the same id.
+std::vector<Motor> named_candidates(const CandidateNames& names, NamedFiles& files);
+
+/// Returns the sound motors of the data base under `conditions`. A file with problems is no candidate.
+std::vector<Motor> motors_of_database(const DataFolders& folders, const std::map<std::string, std::string>& conditions);
+
+}  // namespace heatsoak

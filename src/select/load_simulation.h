@@ -1,0 +1,32 @@
+// One motor under the prescribed load of a wheel, nominal: evaluation and trace.
+#pragma once
+
+#include <cstdint>
+
+#include "select/evaluate.h"
+#include "select/trace.h"
+
+namespace heatsoak {
+
+struct LoadJob {
+  Robot robot;
+  Motor motor;
+  Duty duty;                 ///< not a match
+  std::uint64_t seed = 1;    ///< of the duty's demand
+  double every_s = 1.0;      ///< longest time between two rows of the trace
+  bool with_curves = false;  ///< keep the temperatures over time in `result`
+};
+
+struct LoadSimulation {
+  Robot robot;
+  Motor motor;
+  Duty duty;
+  double duration_s = 0.0;
+  MotorEvaluation result;  ///< of the wheel whose winding gets hottest
+  Trace trace;             ///< of the same wheel
+};
+
+/// Throws Failure (bad_input) if the trace would have more rows than memory allows.
+LoadSimulation simulate_load(const LoadJob& job);
+
+}  // namespace heatsoak

@@ -1,0 +1,54 @@
+// The answer of `simulate` for a match: one game in the closed loop, driven once with each planner.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "select/evaluate.h"
+#include "simulate/guarded_core.h"
+#include "simulate/match_run.h"
+#include "simulate/match_trace.h"
+
+namespace heatsoak {
+
+struct MatchJob {
+  Robot robot;
+  Motor motor;
+  Duty duty;  ///< a match
+  std::vector<Planner> planners{Planner::jerk_limited};
+  std::uint64_t seed = 1;  ///< of game, sensors and radio
+  GuardUse guard = GuardUse::shadow;
+  bool is_sensing_ideal = false;
+  bool with_table = false;  ///< make the CSV; for one planner only
+  double every_s = 1.0;     ///< time between two rows of the CSV
+  bool with_rows = false;   ///< keep rows for a picture
+};
+
+struct DrivenMatch {
+  Planner planner = Planner::jerk_limited;
+  MatchRun run;
+  std::string csv;
+  std::vector<MatchRow> rows;  ///< every kMatchRow_s
+};
+inline constexpr double kMatchRow_s = 2.0;
+
+struct MatchSimulation {
+  Robot robot;  ///< with assumed friction if its file has none
+  Motor motor;
+  Duty duty;
+  Role role = Role::attacker;
+  std::uint64_t seed = 1;
+  GuardUse guard_use = GuardUse::shadow;
+  MotorGuard guard;  ///< empty if its use is off
+  bool is_sensing_ideal = false;
+  std::vector<DrivenMatch> runs;  ///< one for each planner
+  /// Over all runs: fail (a limit exceeded) takes precedence over infeasible (not driven).
+  Verdict verdict = Verdict::pass;
+};
+
+/// Throws Failure (bad_input) if the files of robot or motor lack values that motion needs, or the CSV would be too large.
+MatchSimulation simulate_match(const MatchJob& job, const ProgressFor& progress = {});
+
+}  // namespace heatsoak

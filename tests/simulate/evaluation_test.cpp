@@ -1,0 +1,68 @@
+// The call behind `evaluate`: order of results and ranks, changes only on request or where the motor does not pass.
+#include "simulate/evaluation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/diagnostic.h"
+#include "robot/assumed_friction.h"
+#include "support/shipped.h"
+
+namespace heatsoak {
+namespace {
+
+Duty shipped_duty(const std::string& id) { return read_duty(kSource / "duty_profiles" / (id + ".toml")); }
+
+EvaluationJob nominal_job(const std::string& duty, std::vector<Motor> motors) {
+  return {.robot = twente(), .duty = shipped_duty(duty), .motors = std::move(motors), .samples = 0};
+}
+
+TEST(Evaluation, closed_loop_needs_a_match) {
+  EvaluationJob job = nominal_job("paper_intermittent", {ecx_32()});
+  job.closed_loop.emplace();
+  EXPECT_THROW(run_evaluation(job), Failure);
+}
+
+TEST(Evaluation, refuses_more_samples_than_possible) {
+  EvaluationJob job = nominal_job("division_a_match", {ecx_32()});
+  job.samples = 1'000'000;
+  EXPECT_THROW(run_evaluation(job), Failure);
+}
+
+TEST(Evaluation, ranks_and_results_have_the_same_order) {
+  EvaluationJob job = nominal_job("division_a_match", {ecx_32(), shipped_motor("maxon_ecx_flat_42m_24v")});
+  job.closed_loop = ClosedLoopJob{.games = 1, .guard = GuardUse::off};
+  const EvaluationAnswer answer = run_evaluation(job);
+  ASSERT_EQ(answer.results.size(), 2U);
+  ASSERT_EQ(answer.ranks.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(answer.ranks[i].drives.motor_id, answer.results[i].motor_id);
+  }
+  EXPECT_LE(answer.ranks[0].verdict, answer.ranks[1].verdict);
+  EXPECT_EQ(answer.worst_verdict(), answer.ranks[1].verdict);
+  EXPECT_TRUE(answer.robot.friction.is_assumed || has_friction(answer.robot));
+}
+
+TEST(Evaluation, reads_the_data_base_only_to_search_changes) {
+  int reads = 0;
+  EvaluationJob job = nominal_job("paper_intermittent", {shipped_motor("maxon_ec45_flat_70w_24v"), ecx_32()});
+  job.database = [&reads] {
+    ++reads;
+    return std::vector<Motor>{shipped_motor("maxon_ecx_flat_42m_48v")};
+  };
+  const EvaluationAnswer answer = run_evaluation(job);
+  const auto own = std::ranges::find(answer.results, twente().drive.motor, &MotorEvaluation::motor_id);
+  ASSERT_NE(own, answer.results.end());
+  EXPECT_EQ(answer.changes.has_value(), own->verdict != Verdict::pass);
+  EXPECT_EQ(reads, answer.changes ? 1 : 0);
+  job.suggests = true;
+  reads = 0;
+  const EvaluationAnswer asked = run_evaluation(job);
+  ASSERT_TRUE(asked.changes);
+  EXPECT_EQ(asked.changes->motor_id, twente().drive.motor);
+  EXPECT_EQ(reads, 1);
+}
+
+}  // namespace
+}  // namespace heatsoak
