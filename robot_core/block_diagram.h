@@ -116,6 +116,7 @@ inline constexpr SignalText kSignals[] = {
     {"Validated", "ambient_C", "°C", validate_input, only(run_guards)},
     {"Validated", "elapsed_s", "s", validate_input, run_guards | control_body_velocity | control_wheel_speeds | apply_limits},
     {"Validated", "guard_periods", "count", validate_input, only(run_guards)},
+    {"Validated", "were_sensors_compared", "flag", validate_input, only(run_guards)},
     {"Validated", "mode", "code", validate_input, control_body_velocity | feed_forward | control_wheel_speeds},
     {"Validated", "command_fault", "code", validate_input, control_body_velocity | apply_limits | make_output},
     {"Validated", "robot_fault", "code", validate_input,

@@ -132,7 +132,7 @@ void step_valid(const Config& config, State& state, const Input& input, bool was
 }
 
 /// Restarts State. After a single flipped bit the known faults are kept; memory that was never started keeps nothing.
-[[gnu::cold]] void restart(const Config& config, State& state) {
+[[gnu::cold, gnu::noinline]] void restart(const Config& config, State& state) {
   const KnownFaults known{state.comparison, state.battery_source_V};
   const std::uint32_t flips = state.is_valid ^ kStarted;
   if (start(config, state, {}) && (flips & (flips - 1)) == 0) {

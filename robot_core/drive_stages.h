@@ -28,12 +28,16 @@ struct Validated {
   float ambient_C = 0.0F;
   float elapsed_s = 0.0F;  ///< time since the last step, a whole number of periods
   int guard_periods = 1;   ///< elapsed periods; one more whenever small delays add up to a period
-  float spread_V = 0.0F;  ///< bound of the difference between estimates of one back-EMF from different sensors; infinite: use speed_range()
+  PerWheel rim_m_per_s;    ///< sensed rim speed without the rotation of the robot; NaN if the sensor is not accepted
+  float spread_V = 0.0F;   ///< bound of the difference between estimates of one back-EMF from different sensors; infinite: unknown
   bool is_redundancy_reduced = false;  ///< true: three wheels, or a speed sensor or the gyro is not accepted
   bool is_checked = true;              ///< true: enough sensors are left for a wrong one to contradict the others
+  /// True: with one spare sensor two swapped ones may go unnoticed, so until a swap is ruled out every sample may belong to each wheel.
+  bool is_any_possible = false;
   bool are_all_sensed = true;
-  bool are_samples_compared = false;  ///< true: too few sensors are accepted, so implied speeds come from all samples
-  Mode mode = Mode::coast;            ///< mode after faults of the command
+  bool were_sensors_compared = false;  ///< true: compare_sensors() used its turn in this step
+  bool are_samples_compared = false;   ///< true: too few sensors are accepted, so implied speeds come from all samples
+  Mode mode = Mode::coast;             ///< mode after faults of the command
   Reason command_fault = Reason::none;
   Reason robot_fault = Reason::none;
 };

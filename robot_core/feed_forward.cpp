@@ -5,9 +5,6 @@
 // to a constant, with the share γ = s²·(3 − 2·s), s = min(1, R·|yaw rate|/|v|).
 #include "robot_core/drive_stages.h"
 
-// Optimised for size, because it runs in every second step only.
-#pragma GCC optimize("Os")
-
 namespace robot_core {
 namespace {
 

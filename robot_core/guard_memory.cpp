@@ -91,6 +91,7 @@ Restored restore_guard(const GuardModel& model, GuardState& state, const GuardSt
   for (int node = 0; node < model.node_count; ++node) {
     state.state_C[node] = larger(is_known ? now_C[node] : peak_C[node], least_C);
   }
+  state.gap_s = saved.gap_s;
   seal(state);
   return is_known ? Restored::cooled : Restored::time_unknown;
 }

@@ -7,7 +7,6 @@
 namespace robot_core {
 namespace {
 
-constexpr float kLongestGap_s = 1.0F;
 // A guard that started at its limit counts as known when it allows this share of the cold motor's current, or the driver's limit.
 constexpr float kKnown_share = 0.8F;
 
@@ -101,36 +100,18 @@ void take_stator_sample(const GuardModel& model, State& state, const Input& inpu
   }
 }
 
-/// The current during a gap is unknown: assume the largest one at standstill for the whole gap, up to the temperature limit.
-[[gnu::cold]] void heat_for_gap(const Config& config, WheelState& wheel, GuardState& guard, float gap_s) {
-  const GuardModel& model = *config.guard;
-  if (!(gap_s <= kLongestGap_s) || !is_started(model, guard)) {
-    start_guard(model, guard, model.winding_limit_C);
-    wheel.guard_fault = static_cast<std::uint8_t>(Reason::guard_unknown);
-    return;
+/// A guard counts a gap in its next step, because its limit holds until then anyway.
+[[gnu::cold]] void note_gap(const Config& config, State& state, float gap_s) {
+  for (int i = 0; i < config.wheel_count; ++i) {
+    add_gap(state.guard[i], gap_s);
   }
-  float signal[kGuardSignals] = {};
-  signal[guard_current_A] = model.most_current_A;
-  signal[guard_ambient_C] = model.hottest_ambient_C;
-  signal[guard_neighbour_C] = model.winding_limit_C;
-  float rate_K_per_s[kMostGuardNodes];
-  model.rates(model.context, signal, guard.state_C, rate_K_per_s);
-  for (int node = 0; node < model.node_count; ++node) {
-    const float heated_C = guard.state_C[node] + gap_s * larger(0.0F, rate_K_per_s[node]);
-    guard.state_C[node] = larger(guard.state_C[node], smaller(heated_C, model.winding_limit_C));
-  }
-  seal(guard);
 }
 
 /// Steps the guards whose period has passed.
 void run_due_guards(const Config& config, State& state, const Input& input, const Validated& validated, int periods) {
-  const bool is_gap = validated.robot_fault == Reason::time_jump;
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     const int steps = wheel.guard_steps;
-    if (is_gap) {
-      heat_for_gap(config, wheel, state.guard[i], validated.elapsed_s);
-    }
     if (steps >= periods) {
       take_stator_sample(*config.guard, state, input, i);
       step_wheel_guard(config, state, validated, i, static_cast<float>(steps));
@@ -159,8 +140,17 @@ void run_guards(const Config& config, State& state, const Input& input, const Va
     wheel.guard_steps = static_cast<std::uint16_t>(steps);
     most_steps = larger(most_steps, steps);
   }
-  if (most_steps >= periods || validated.robot_fault == Reason::time_jump) {
+  if (validated.robot_fault == Reason::time_jump) {
+    note_gap(config, state, validated.elapsed_s);
+  }
+  // Comparisons of sensors, guards and estimates do not share a step. A guard waits for one period if its period leaves time for that.
+  constexpr int kLeastPeriods = 4;
+  constexpr std::uint32_t kPeriodsPerEstimate = 32;
+  if (most_steps >= periods + (validated.were_sensors_compared && periods >= kLeastPeriods ? 1 : 0)) {
     run_due_guards(config, state, input, validated, periods);
+  } else if (state.steps % kPeriodsPerEstimate == 1) {
+    const std::uint32_t turn = state.steps / kPeriodsPerEstimate % static_cast<std::uint32_t>(config.wheel_count);
+    estimate_time_to_limit(*config.guard, state.guard[turn], config.braking_reserve_K);
   }
 }
 

@@ -137,35 +137,52 @@ void validate_ambient(const Config& config, State& state, const Input& input, Va
   }
 }
 
-/// Normal equations of the body's velocity: Σ t·tᵀ·v = Σ t·(r·ω/slip − R·yaw rate) over the wheels used.
+/// Least squares of the body's velocity over some wheels: Σ t·tᵀ·v = Σ t·(r·ω/slip − R·yaw rate).
 struct PlaneFit {
   float xx = 0.0F;
   float xy = 0.0F;
   float yy = 0.0F;
-  float x_m_per_s = 0.0F;
+  float x_m_per_s = 0.0F;  ///< sums; after solve() the velocity
   float y_m_per_s = 0.0F;
+  float determinant = 0.0F;
 
-  [[gnu::noinline]] void add(const WheelConfig& wheel, float rim_m_per_s, float sign) {
-    const float t_x = sign * wheel.rolling_x_share;
-    const float t_y = sign * wheel.rolling_y_share;
-    xx += t_x * wheel.rolling_x_share;
-    xy += t_x * wheel.rolling_y_share;
-    yy += t_y * wheel.rolling_y_share;
+  void add(const WheelConfig& wheel, float rim_m_per_s) {
+    const float t_x = wheel.rolling_x_share;
+    const float t_y = wheel.rolling_y_share;
+    xx += t_x * t_x;
+    xy += t_x * t_y;
+    yy += t_y * t_y;
     x_m_per_s += t_x * rim_m_per_s;
     y_m_per_s += t_y * rim_m_per_s;
   }
   /// Returns false if the wheels do not determine both directions.
-  bool solve(float& x, float& y) const {
-    constexpr float kLeastDeterminant = 0.02F;  // two wheels whose rolling directions are 8 degrees apart
-    const float determinant = xx * yy - xy * xy;
+  bool solve() {
+    determinant = xx * yy - xy * xy;
     if (!(determinant > kLeastDeterminant)) {
       return false;
     }
     const float inverse = 1.0F / determinant;
-    x = (x_m_per_s * yy - y_m_per_s * xy) * inverse;
-    y = (y_m_per_s * xx - x_m_per_s * xy) * inverse;
+    const float x = (x_m_per_s * yy - y_m_per_s * xy) * inverse;
+    y_m_per_s = (y_m_per_s * xx - x_m_per_s * xy) * inverse;
+    x_m_per_s = x;
     return true;
   }
+  float rim_of(const WheelConfig& wheel) const { return wheel.rolling_x_share * x_m_per_s + wheel.rolling_y_share * y_m_per_s; }
+  /// Sets `rim_m_per_s` of a wheel of the fit to the speed that the others imply: its residual grows by 1/(1 − leverage), as in
+  /// find_from_all(). Returns false if they do not determine it.
+  bool leave_out(const WheelConfig& wheel, float& rim_m_per_s) const {
+    const float t_x = wheel.rolling_x_share;
+    const float t_y = wheel.rolling_y_share;
+    const float of_others = determinant - (yy * t_x * t_x - 2.0F * xy * t_x * t_y + xx * t_y * t_y);
+    if (!(of_others > kLeastDeterminant)) {
+      return false;
+    }
+    rim_m_per_s -= (rim_m_per_s - rim_of(wheel)) * determinant / of_others;
+    return true;
+  }
+
+ private:
+  static constexpr float kLeastDeterminant = 0.02F;  // two wheels whose rolling directions are 8 degrees apart
 };
 
 /// All sensors are accepted: least squares with a constant matrix. Leaving one wheel out multiplies its residual by 1/(1 − leverage)
@@ -173,7 +190,7 @@ struct PlaneFit {
 void find_from_all(const Config& config, Validated& validated) {
   const DerivedConfig& derived = config.derived;
   const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
-  PerWheel rim_m_per_s = {};
+  PerWheel& rim_m_per_s = validated.rim_m_per_s;
   float x_m_per_s = 0.0F;
   float y_m_per_s = 0.0F;
 #pragma GCC unroll 4
@@ -197,40 +214,31 @@ void find_from_all(const Config& config, Validated& validated) {
   validated.spread_V = derived.spread_V_s_per_m * disagreement_m_per_s;
 }
 
-constexpr float kUnknown = std::numeric_limits<float>::infinity();
-
-/// Three wheels, or a rejected sensor: at most one more may be wrong. Each wheel then needs its speed_range().
+/// Three wheels, or a rejected sensor: at most one more may be wrong.
 [[gnu::cold, gnu::noinline]] void check_redundancy(const Config& config, const State& state, Validated& validated) {
-  const bool is_gyro_trusted = state.yaw_fault == 0;
-  int spare = is_gyro_trusted ? -2 : -3;
+  int sensed = state.yaw_fault == 0 ? 1 : 0;
   for (int i = 0; i < config.wheel_count; ++i) {
-    spare += validated.wheel[i].is_speed_sensed ? 1 : 0;
+    sensed += validated.wheel[i].is_speed_sensed ? 1 : 0;
   }
   validated.is_redundancy_reduced = true;
-  validated.is_checked = spare > 0;
-  validated.spread_V = kUnknown;
+  validated.rim_m_per_s[kMostWheels - 1] = kNoSample;  // in case the robot has three wheels
+  validated.is_checked = sensed > 3;
+  validated.is_any_possible = sensed == kMostWheels && state.comparison.is_checked == 0;
 }
 
 /// If too few sensors are left, every sample is compared with all others, even with rejected ones. Sensors that were lost together and
 /// agree with each other again are so accepted again.
 [[gnu::cold]] void compare_samples(const Config& config, const State& state, Validated& validated) {
-  PerWheel rim_m_per_s = {};
+  const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
+  PlaneFit all;
   for (int i = 0; i < config.wheel_count; ++i) {
-    rim_m_per_s[i] =
-        rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - config.contact_radius_m * validated.yaw_rate_rad_per_s;
+    all.add(config.wheel[i], rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - turning_m_per_s);
   }
+  all.solve();
   for (int i = 0; i < config.wheel_count; ++i) {
-    PlaneFit others;
-    for (int j = 0; j < config.wheel_count; ++j) {
-      others.add(config.wheel[j], rim_m_per_s[j], j == i ? 0.0F : 1.0F);
-    }
-    float x_m_per_s = 0.0F;
-    float y_m_per_s = 0.0F;
-    const WheelConfig& wheel = config.wheel[i];
-    if (others.solve(x_m_per_s, y_m_per_s)) {
-      const float implied_m_per_s = wheel.rolling_x_share * x_m_per_s + wheel.rolling_y_share * y_m_per_s;
-      validated.wheel[i].implied_rad_per_s =
-          state.wheel[i].raw_speed_rad_per_s + (implied_m_per_s - rim_m_per_s[i]) * wheel.speed_per_rim_per_m;
+    float implied_m_per_s = rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - turning_m_per_s;
+    if (all.leave_out(config.wheel[i], implied_m_per_s)) {
+      validated.wheel[i].implied_rad_per_s = (implied_m_per_s + turning_m_per_s) * config.wheel[i].speed_per_rim_per_m;
     }
   }
 }
@@ -239,40 +247,41 @@ constexpr float kUnknown = std::numeric_limits<float>::infinity();
 [[gnu::cold]] void find_from_some(const Config& config, const State& state, Validated& validated) {
   const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
   PlaneFit all;
-  PerWheel rim_m_per_s = {};
   for (int i = 0; i < config.wheel_count; ++i) {
+    float& rim_m_per_s = validated.rim_m_per_s[i];
+    rim_m_per_s = kNoSample;
     if (validated.wheel[i].is_speed_sensed) {
-      rim_m_per_s[i] = rim_speed_m_per_s(config, i, validated.wheel[i].speed_rad_per_s) - turning_m_per_s;
-      all.add(config.wheel[i], rim_m_per_s[i], 1.0F);
+      rim_m_per_s = rim_speed_m_per_s(config, i, validated.wheel[i].speed_rad_per_s) - turning_m_per_s;
+      all.add(config.wheel[i], rim_m_per_s);
     }
   }
-  validated.velocity = state.velocity_reference;
-  validated.velocity.yaw = validated.yaw_rate_rad_per_s;
-  const bool is_known = all.solve(validated.velocity.x, validated.velocity.y);
+  const bool is_known = all.solve();
+  if (!is_known) {
+    all.x_m_per_s = state.velocity_reference.x;
+    all.y_m_per_s = state.velocity_reference.y;
+  }
+  validated.velocity = {all.x_m_per_s, all.y_m_per_s, validated.yaw_rate_rad_per_s};
   validated.are_samples_compared = !is_known;
+  float disagreement_m_per_s = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelConfig& wheel = config.wheel[i];
-    Vector3 others = validated.velocity;
-    bool is_implied = is_known;
-    if (validated.wheel[i].is_speed_sensed) {
-      PlaneFit rest = all;
-      rest.add(wheel, rim_m_per_s[i], -1.0F);
-      is_implied = rest.solve(others.x, others.y);
+    ValidatedWheel& found = validated.wheel[i];
+    if (found.is_speed_sensed) {
+      float rim_m_per_s = validated.rim_m_per_s[i];
+      disagreement_m_per_s += absolute(rim_m_per_s - all.rim_of(wheel));
+      const bool is_implied = is_known && all.leave_out(wheel, rim_m_per_s);
+      found.implied_rad_per_s = is_implied ? (rim_m_per_s + turning_m_per_s) * wheel.speed_per_rim_per_m : found.speed_rad_per_s;
+      found.is_speed_known = true;
+      continue;
     }
-    const float implied_m_per_s = wheel.rolling_x_share * others.x + wheel.rolling_y_share * others.y + turning_m_per_s;
-    float& implied_rad_per_s = validated.wheel[i].implied_rad_per_s;
-    implied_rad_per_s = is_implied ? implied_m_per_s * config.wheel[i].speed_per_rim_per_m : validated.wheel[i].speed_rad_per_s;
-    if (!validated.wheel[i].is_speed_sensed) {
-      // Without the gyro three wheels still determine the fourth, but two do not determine a third.
-      const SpeedRange range = speed_range(config, state, validated, i);
-      is_implied = range.is_known();
-      implied_rad_per_s = is_implied ? clamped(implied_rad_per_s, range.slowest_rad_per_s, range.fastest_rad_per_s) : implied_rad_per_s;
-    }
-    validated.wheel[i].is_speed_known = validated.wheel[i].is_speed_sensed || is_implied;
-    if (!validated.wheel[i].is_speed_sensed) {
-      validated.wheel[i].speed_rad_per_s = is_implied ? validated.wheel[i].implied_rad_per_s : 0.0F;
-    }
+    // Without the gyro three wheels still determine the fourth, but two do not determine a third.
+    const SpeedRange range = is_known ? speed_range(config, state, validated, i) : SpeedRange{};
+    found.is_speed_known = range.is_known();
+    const float implied_rad_per_s = (all.rim_of(wheel) + turning_m_per_s) * wheel.speed_per_rim_per_m;
+    found.speed_rad_per_s = found.is_speed_known ? clamped(implied_rad_per_s, range.slowest_rad_per_s, range.fastest_rad_per_s) : 0.0F;
+    found.implied_rad_per_s = found.speed_rad_per_s;
   }
+  validated.spread_V = config.derived.spread_V_s_per_m * disagreement_m_per_s;
   if (!is_known) {
     compare_samples(config, state, validated);
   }
@@ -323,6 +332,7 @@ void take_samples(const Config& config, State& state, const Input& input, Valida
       state.steps == 0 ? 2.0F * most_rad_per_s
                        : config.derived.jump_rad_per_s + config.largest_acceleration_rad_per_s2 * (validated.elapsed_s - config.period_s);
   validated.are_all_sensed = true;
+  bool are_faults_new = false;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
@@ -331,9 +341,7 @@ void take_samples(const Config& config, State& state, const Input& input, Valida
     const bool is_plain = absolute(sample) <= most_rad_per_s && absolute(change_rad_per_s) <= jump_rad_per_s;
     if (!is_plain || change_rad_per_s == 0.0F || wheel.speed_fault != 0) {
       take_doubtful_sample(config, wheel, sample, jump_rad_per_s, validated.wheel[i]);
-      if (wheel.speed_fault != state.comparison.speed_fault[i]) {
-        note_faults(state);
-      }
+      are_faults_new = are_faults_new || wheel.speed_fault != state.comparison.speed_fault[i];
       validated.are_all_sensed = validated.are_all_sensed && validated.wheel[i].is_speed_sensed;
       continue;
     }
@@ -341,6 +349,9 @@ void take_samples(const Config& config, State& state, const Input& input, Valida
     wheel.raw_speed_rad_per_s = sample;
     validated.wheel[i].is_speed_sensed = true;
     validated.wheel[i].speed_rad_per_s = sample;
+  }
+  if (are_faults_new) {
+    note_faults(state);
   }
 }
 
@@ -386,13 +397,16 @@ Validated validate_input(const Config& config, State& state, const Input& input)
   validate_ambient(config, state, input, validated);
   take_samples(config, state, input, validated);
   validate_yaw_rate(config, state, input, validated);
+  if (!validated.are_all_sensed || state.yaw_fault != 0 || config.wheel_count < kMostWheels) {
+    check_redundancy(config, state, validated);
+  }
   if (validated.are_all_sensed) {
     find_from_all(config, validated);
   } else {
     find_from_some(config, state, validated);
   }
-  if (!validated.are_all_sensed || state.yaw_fault != 0 || config.wheel_count < kMostWheels) {
-    check_redundancy(config, state, validated);
+  if (validated.is_any_possible || validated.are_samples_compared) {
+    validated.spread_V = std::numeric_limits<float>::infinity();
   }
   compare_sensors(config, state, input, validated);
   if (state.comparison.is_runaway != 0 && validated.robot_fault == Reason::none) {

@@ -109,12 +109,16 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
   return absolute(voltage_V) <= kRounding * most_V;
 }
 
-/// Keeps a voltage within the current limit for every speed that the wheel may have. Returns false if no voltage does, or for NaN. If the
-/// spread of the estimates is smaller than the room to the limit, single estimates are not needed.
+/// Returns true if a voltage keeps the current limit for every speed that the wheel may have, because the spread of their estimates is
+/// smaller than the room to the limit.
+bool is_within(const Config& config, const Validated& validated, const WheelDemand& demand, float voltage_V) {
+  return absolute(voltage_V - demand.back_V) + validated.spread_V < config.lowest_resistance_ohm * demand.most_A;
+}
+
+/// Keeps a voltage within the current limit for every speed that the wheel may have. Returns false if no voltage does, or for NaN.
 bool hold_window(const Config& config, const State& state, const Validated& validated, const WheelDemand& demand, int i, float most_V,
                  float& voltage_V, Reason& reason) {
-  const float band_V = config.lowest_resistance_ohm * demand.most_A;
-  return absolute(voltage_V - demand.back_V) + validated.spread_V < band_V ||
+  return is_within(config, validated, demand, voltage_V) ||
          move_into_window(config, state, validated, demand, i, most_V, voltage_V, reason);
 }
 
@@ -129,13 +133,12 @@ bool hold_window(const Config& config, const State& state, const Validated& vali
 /// Keeps the limit by the sensed current. The new current is the sensed one plus the change of voltage over resistance, at any speed. Noise
 /// within the slack is ignored if the speed estimates agree, because they keep the limit already.
 void hold_sensed_current(const Config& config, const Validated& all, int i, const WheelState& wheel, float most_A, float& voltage_V) {
-  const ValidatedWheel& validated = all.wheel[i];
   if (wheel.is_open != 0) {
     return;
   }
-  const float slack_V = validated.is_speed_sensed ? larger(0.0F, config.derived.sensed_slack_V - all.spread_V) : 0.0F;
+  const float slack_V = all.is_redundancy_reduced ? 0.0F : larger(0.0F, config.derived.sensed_slack_V - all.spread_V);
   const float room_V = config.lowest_resistance_ohm * most_A + slack_V;
-  const float back_V = wheel.voltage_V - config.lowest_resistance_ohm * validated.current_A;
+  const float back_V = wheel.voltage_V - config.lowest_resistance_ohm * all.wheel[i].current_A;
   voltage_V = clamped(voltage_V, back_V - room_V, back_V + room_V);
 }
 
@@ -158,8 +161,8 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
 /// always use the braking reserve. All wheels may use it while the wanted currents take power out of the body. This must hold without the
 /// wheel that brakes most, because its speed sensor may be faulty. Otherwise a wheel that is pulled along and drives for a moment would
 /// take the brakes from all the others through the common factor.
-[[gnu::cold, gnu::noinline]] float apply_guards(const Config& config, State& state, const Validated& validated, const BodyReference& body,
-                                                float most_V, WheelDemand* demand, LimitedVoltages& limited, float least) {
+[[gnu::noinline]] float apply_guards(const Config& config, State& state, const Validated& validated, const BodyReference& body,
+                                     float most_V, WheelDemand* demand, LimitedVoltages& limited, float least) {
   float body_W = 0.0F;
   float most_braking_W = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -174,11 +177,12 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
     const bool brakes = body_brakes || demand[i].back_V * demand[i].current_A < 0.0F;
     // The stop after a command fault was not commanded, so it gets no reserve.
     const float allowed_A = brakes && validated.command_fault == Reason::none ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
+    const float earlier_A = demand[i].most_A;
     would_limit = apply_guard(config, state, allowed_A, validated.elapsed_s, demand[i]) || would_limit;
     if (are_speeds_dead) {
       demand[i].most_A = smaller(demand[i].most_A, config.limp_current_A);
     }
-    if (validated.wheel[i].is_speed_known) {
+    if (validated.wheel[i].is_speed_known && demand[i].most_A < earlier_A) {
       least = share_of_wheel(config, i, most_V, demand[i], limited.wheel[i].reason, least);
     }
     if (are_speeds_dead) {
@@ -258,14 +262,28 @@ Reason strongest(const WheelState& wheel, Reason limit) {
   return is_held && is_finite(voltage_V) && !(sensed.is_current_sensed && is_overcurrent(config, sensed, wheel));
 }
 
+/// Returns true if the sensed current and the current that it predicts for a voltage keep the limit.
+[[gnu::noinline]] bool is_within_by_current(const Config& config, WheelState& wheel, float sensed_A, float most_A, float voltage_V) {
+  const float next_A = sensed_A + (voltage_V - wheel.voltage_V) * config.derived.per_lowest_resistance_A_per_V;
+  const bool is_within = wheel.is_open == 0 && absolute(sensed_A) <= most_A && absolute(next_A) <= most_A;
+  wheel.current_bound_A = is_within ? larger(most_A, kBoundDecay * wheel.current_bound_A) : wheel.current_bound_A;
+  return is_within;
+}
+
 /// Limits the wanted voltage of one wheel. Returns true if its bridge has to open.
 bool finish_wheel(const Config& config, State& state, const Validated& validated, const WheelDemand& demand, int i, float most_V,
                   float& voltage_V, Reason& reason) {
   voltage_V = demand.back_V + config.lowest_resistance_ohm * demand.current_A;
   const ValidatedWheel& sensed = validated.wheel[i];
+  WheelState& wheel = state.wheel[i];
   if (sensed.is_speed_known && !sensed.is_current_sensed) {
-    state.wheel[i].current_bound_A = demand.most_A;
+    wheel.current_bound_A = demand.most_A;
     return !hold_window(config, state, validated, demand, i, most_V, voltage_V, reason);
+  }
+  // The common case of hold_wheel(): speeds and sensed current agree that the voltage keeps the limit.
+  if (sensed.is_speed_known && is_within(config, validated, demand, voltage_V) &&
+      is_within_by_current(config, wheel, sensed.current_A, demand.most_A, voltage_V)) {
+    return false;
   }
   return !hold_wheel(config, state, validated, demand, i, most_V, voltage_V, reason);
 }

@@ -92,7 +92,7 @@ void compare_heat(const Config& config, State& state, const Validated& validated
 }
 
 /// Compares speed and current sensor of one wheel with the other wheels and the motor equation.
-[[gnu::cold]] void compare_wheel(const Config& config, State& state, const Input& input, Validated& validated, int i, float since_s) {
+[[gnu::cold]] void compare_wheel(const Config& config, State& state, const Input& input, const Validated& validated, int i, float since_s) {
   WheelState& wheel = state.wheel[i];
   ComparisonState& comparison = state.comparison;
   const float sample = wheel.raw_speed_rad_per_s;
@@ -114,10 +114,8 @@ void compare_heat(const Config& config, State& state, const Validated& validated
     comparison.agreement_s[i] = is_confirmed ? comparison.agreement_s[i] + since_s : 0.0F;
     // A sensor with a constant sample may recover only while no current flows.
     if (comparison.agreement_s[i] >= kSteadyAgain_s && (!is_same || wheel.is_open != 0)) {
-      wheel.speed_fault = 0;
+      wheel.speed_fault = 0;  // accepted from the next step on
       comparison.disagreement_s[i] = 0.0F;
-      validated.wheel[i].is_speed_sensed = validated.wheel[i].is_speed_known = true;
-      validated.wheel[i].speed_rad_per_s = sample;
     }
   }
   wheel.has_spoken_wrongly = 0;
@@ -157,8 +155,9 @@ bool is_controlled(Mode mode) { return mode == Mode::body_velocity || mode == Mo
     }
     const float driven_V = wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * wheel.raw_speed_rad_per_s;
     // The limits may leave less than the limp current if the gyro contradicts wheels that seem to stand.
-    const float evidence_V = larger(absolute(driven_V), validated.mode == Mode::coast ? 0.0F : validated.spread_V);
-    is_driven = is_driven || evidence_V > config.lowest_resistance_ohm * config.limp_current_A;
+    const bool is_held_back = validated.mode != Mode::coast && (validated.is_redundancy_reduced ||
+                                                                validated.spread_V > config.lowest_resistance_ohm * config.limp_current_A);
+    is_driven = is_driven || is_held_back || absolute(driven_V) > config.lowest_resistance_ohm * config.limp_current_A;
   }
   // Counts up to twice the threshold: the limp current keeps the evidence below it afterwards.
   float& standing_s = state.comparison.standing_s;
@@ -331,19 +330,31 @@ float yaw_rate_of_wheels(const Config& config, const Validated& validated) {
 
 void seal(ComparisonState& comparison) { comparison.check_sum = check_sum_of(comparison); }
 
+namespace {
+
+/// Speeds before a gap in time cannot be compared with those after it. Earlier findings stay.
+[[gnu::cold, gnu::noinline]] void restart_comparisons(State& state) {
+  ComparisonState& comparison = state.comparison;
+  PerWheel current_error_s;
+  __builtin_memcpy(current_error_s, comparison.current_error_s, sizeof(current_error_s));
+  const float standing_s = comparison.standing_s;
+  const std::uint8_t is_checked = comparison.is_checked;
+  comparison = {};
+  for (int i = 0; i < kMostWheels; ++i) {
+    comparison.current_error_s[i] = current_error_s[i];
+    comparison.last_rad_per_s[i] = state.wheel[i].raw_speed_rad_per_s;
+  }
+  comparison.standing_s = standing_s;
+  comparison.is_checked = is_checked;
+  copy_faults(state);
+  seal(state.comparison);
+}
+
+}  // namespace
+
 void compare_sensors(const Config& config, State& state, const Input& input, Validated& validated) {
   if (validated.robot_fault == Reason::time_jump) {
-    // Speeds before the gap cannot be compared with those after it. Earlier findings stay.
-    ComparisonState after;
-    for (int i = 0; i < kMostWheels; ++i) {
-      after.current_error_s[i] = state.comparison.current_error_s[i];
-      after.last_rad_per_s[i] = state.wheel[i].raw_speed_rad_per_s;
-    }
-    after.standing_s = state.comparison.standing_s;
-    after.is_checked = state.comparison.is_checked;
-    state.comparison = after;
-    copy_faults(state);
-    seal(state.comparison);
+    restart_comparisons(state);
     return;
   }
   // Step 0: two wheels. Step 8: the other two and the yaw rate. Step 4: all pairs.
@@ -351,6 +362,7 @@ void compare_sensors(const Config& config, State& state, const Input& input, Val
   if (turn != 0 && turn != 4 && turn != 8) {
     return;
   }
+  validated.were_sensors_compared = true;
   if (state.comparison.check_sum != check_sum_of(state.comparison)) {
     // The speed faults are also in `wheel`. Assume the worst for the rest: currents distrusted and speeds dead until they agree again.
     state.comparison = {};

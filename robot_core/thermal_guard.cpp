@@ -6,16 +6,17 @@ namespace {
 // Makes a state of zeros invalid.
 constexpr std::uint64_t kStarted = 0x4845415453544152U;
 constexpr float kMostTemperature_C = 1000.0F;
-// Smoothing time of heating and load for the time until the guard limits, and number of steps between two estimates.
+// Smoothing time of heating and load for the time until the guard limits.
 constexpr float kSmoothing_s = 3.0F;
-constexpr std::uint32_t kStepsPerEstimate = 50;
+constexpr float kLongestGap_s = 1.0F;
 
 /// Returns false for NaN.
 bool is_between(float low, float x, float high) { return x >= low && x <= high; }
 
 bool is_temperature(const GuardModel& model, float x_C) { return is_between(model.coldest_ambient_C - 1.0F, x_C, kMostTemperature_C); }
 
-std::uint64_t check_sum_of(const GuardState& state) {
+// One copy of the unrolled sum.
+[[gnu::noinline]] std::uint64_t check_sum_of(const GuardState& state) {
   return kStarted + sum_of_words<1, sizeof(GuardState) / sizeof(std::uint64_t)>(&state);
 }
 
@@ -54,8 +55,12 @@ unsigned replace_implausible(const GuardModel& model, float* signal) {
   signal[which] = hottest;
 }
 
-/// Uses two passes if several signals are unknown, because a signal's hottest value may depend on another signal.
+/// Uses two passes if several signals have candidates, because a signal's hottest value may depend on another signal. A single candidate
+/// is the signal's value already.
 [[gnu::cold]] void find_hottest_rates(const GuardModel& model, unsigned unknown, float* signal, const float* state_C, float* rate_K_per_s) {
+  for (int i = 0; i < kGuardSignals; ++i) {
+    unknown &= model.plausible_range[i].possible_count > 1 ? ~0U : ~(1U << static_cast<unsigned>(i));
+  }
   const int passes = (unknown & (unknown - 1)) != 0 ? 2 : 1;
   for (int pass = 0; pass < passes; ++pass) {
     for (int i = 0; i < kGuardSignals; ++i) {
@@ -80,6 +85,23 @@ unsigned replace_implausible(const GuardModel& model, float* signal) {
 
 void seal(GuardState& state) { state.check_sum = check_sum_of(state); }
 
+namespace {
+
+/// Changes a member in the upper half of an 8-byte word. The check sum is a sum of words, so adding the change keeps a valid sum valid and
+/// a wrong one wrong.
+void change(GuardState& state, float& member, float value) {
+  const auto bits = [](float x) { return std::uint64_t{__builtin_bit_cast(std::uint32_t, x)} << 32U; };
+  state.check_sum += bits(value) - bits(member);
+  member = value;
+}
+
+}  // namespace
+
+[[gnu::cold]] void add_gap(GuardState& state, float gap_s) {
+  static_assert(__builtin_offsetof(GuardState, gap_s) % sizeof(std::uint64_t) == sizeof(float));
+  change(state, state.gap_s, gap_s <= kLongestGap_s ? state.gap_s + gap_s : std::numeric_limits<float>::infinity());
+}
+
 bool is_started(const GuardModel& model, const GuardState& state) {
   bool started = state.check_sum == check_sum_of(state);
   for (int node = 0; node < model.node_count; ++node) {
@@ -99,52 +121,79 @@ namespace {
   return heatsoak_allowed_A2(&table, &row, winding_C);
 }
 
-/// Temperature at which the table allows only `current_A`; the squared current is linear between the axis points.
+/// Temperature at which the table allows only `current_A`; the squared current falls linearly between the axis points.
 [[gnu::cold]] float limiting_temperature_C(const heatsoak_current_table& table, heatsoak_row row, float current_A) {
   const heatsoak_axis& axis = table.winding_C;
   const float square_A2 = current_A * larger(current_A, table.straight_below_A);
   const float hotter_K = row.hotter_K;
   row.hotter_K = 0.0F;
-  float low_A2 = square_at_A2(table, row, axis.points[0]);
-  int above = 1;
-  float high_A2 = square_at_A2(table, row, axis.points[above]);
-  while (above + 1 < axis.count && high_A2 >= square_A2) {
-    ++above;
-    low_A2 = high_A2;
-    high_A2 = square_at_A2(table, row, axis.points[above]);
+  int below = 0;
+  int above = axis.count - 1;
+  while (above - below > 1) {
+    const int middle = (below + above) / 2;
+    (square_at_A2(table, row, axis.points[middle]) >= square_A2 ? below : above) = middle;
   }
+  const float low_A2 = square_at_A2(table, row, axis.points[below]);
+  const float high_A2 = square_at_A2(table, row, axis.points[above]);
   const float share = low_A2 > high_A2 ? clamped((low_A2 - square_A2) / (low_A2 - high_A2), 0.0F, 1.0F) : 0.0F;
-  return axis.points[above - 1] + share * (axis.points[above] - axis.points[above - 1]) - hotter_K;
+  return axis.points[below] + share * (axis.points[above] - axis.points[below]) - hotter_K;
 }
 
-/// Time until the guard limits at the present load. Linear extrapolation of the smoothed heating: too short near the steady state.
-float find_time_to_limit_s(const GuardModel& model, const GuardState& state, const heatsoak_row& row, const GuardOutput& out,
-                           float braking_reserve_K) {
-  const float load_A = square_root(state.load_squared_A2);
-  if (load_A > out.allowed_A) {
-    return 0.0F;
+float hottest_body_C(const GuardModel& model, const GuardState& state) {
+  float hottest_C = state.state_C[1];
+  for (int node = 2; node < model.node_count; ++node) {
+    hottest_C = larger(hottest_C, state.state_C[node]);
   }
-  constexpr float kLeastHeating_K_per_s = 0.01F;
-  if (!(state.heating_K_per_s > kLeastHeating_K_per_s)) {
-    return kLongTime_s;
-  }
-  const float limiting_C = limiting_temperature_C(model.table, row, load_A) - braking_reserve_K;
-  return clamped((limiting_C - out.winding_C) / state.heating_K_per_s, 0.0F, kLongTime_s);
+  return hottest_C;
 }
 
 }  // namespace
+
+[[gnu::cold]] void estimate_time_to_limit(const GuardModel& model, GuardState& state, float braking_reserve_K) {
+  static_assert(__builtin_offsetof(GuardState, time_to_limit_s) % sizeof(std::uint64_t) == sizeof(float));
+  const heatsoak_row row = row_at(model.table, absolute(state.speed_rad_per_s), hottest_body_C(model, state));
+  const float limiting_C = limiting_temperature_C(model.table, row, square_root(state.load_squared_A2)) - braking_reserve_K;
+  const float room_K = limiting_C - state.state_C[0];
+  constexpr float kLeastHeating_K_per_s = 0.01F;
+  float time_s = room_K < 0.0F ? 0.0F : kLongTime_s;
+  if (room_K >= 0.0F && state.heating_K_per_s > kLeastHeating_K_per_s) {
+    time_s = smaller(room_K / state.heating_K_per_s, kLongTime_s);
+  }
+  change(state, state.time_to_limit_s, time_s);
+}
 
 [[gnu::cold]] float allowed_current_A(const GuardModel& model, float speed_rad_per_s, float stator_C, float winding_C) {
   const heatsoak_row row = row_at(model.table, speed_rad_per_s, stator_C);
   return heatsoak_current_A(&model.table, &row, square_at_A2(model.table, row, winding_C));
 }
 
+namespace {
+
+/// The current during a gap is unknown: assume the largest one at standstill for the whole gap, up to the temperature limit.
+[[gnu::cold, gnu::noinline]] void heat_for_gap(const GuardModel& model, GuardState& state) {
+  float signal[kGuardSignals] = {};
+  signal[guard_current_A] = model.most_current_A;
+  signal[guard_ambient_C] = model.hottest_ambient_C;
+  signal[guard_neighbour_C] = model.winding_limit_C;
+  float rate_K_per_s[kMostGuardNodes];
+  model.rates(model.context, signal, state.state_C, rate_K_per_s);
+  for (int node = 0; node < model.node_count; ++node) {
+    const float heated_C = state.state_C[node] + state.gap_s * larger(0.0F, rate_K_per_s[node]);
+    state.state_C[node] = larger(state.state_C[node], smaller(heated_C, model.winding_limit_C));
+  }
+  state.gap_s = 0.0F;
+}
+
+}  // namespace
+
 GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K) {
   GuardOutput out;
   out.allowed_A = out.allowed_braking_A = 0.0F;
-  out.was_started = is_started(model, state);
+  out.was_started = is_started(model, state) && is_finite(state.gap_s);
   if (!out.was_started) {
     start_guard(model, state, model.winding_limit_C);
+  } else if (state.gap_s != 0.0F) {
+    heat_for_gap(model, state);
   }
   float validated[kGuardSignals];
   for (int i = 0; i < kGuardSignals; ++i) {
@@ -163,10 +212,7 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
     state.state_C[node] = next_C > model.coldest_ambient_C ? next_C : model.coldest_ambient_C;
   }
   out.winding_C = state.state_C[0];
-  out.hottest_body_C = state.state_C[1];
-  for (int node = 2; node < model.node_count; ++node) {
-    out.hottest_body_C = larger(out.hottest_body_C, state.state_C[node]);
-  }
+  out.hottest_body_C = hottest_body_C(model, state);
   out.is_unknown_input = unknown != 0;
   const float smoothing = model.period_s / kSmoothing_s;
   state.heating_K_per_s += smoothing * (rate_K_per_s[0] - state.heating_K_per_s);
@@ -179,9 +225,6 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
     const float driving_A2 = smaller(braking_A2, square_at_A2(model.table, row, out.winding_C + braking_reserve_K));
     out.allowed_braking_A = heatsoak_current_A(&model.table, &row, braking_A2);
     out.allowed_A = heatsoak_current_A(&model.table, &row, driving_A2);
-    if (state.steps % kStepsPerEstimate == 0) {
-      state.time_to_limit_s = find_time_to_limit_s(model, state, row, out, braking_reserve_K);
-    }
   }
   seal(state);
   return out;

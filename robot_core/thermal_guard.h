@@ -61,7 +61,7 @@ struct alignas(8) GuardState {
   float load_squared_A2 = 0.0F;  ///< squared current, smoothed
   float time_to_limit_s = 0.0F;  ///< estimated time until the allowed current falls below the present load; kLongTime_s: never
   std::uint32_t steps = 0;
-  std::uint32_t unused = 0;
+  float gap_s = 0.0F;  ///< time with unknown current that the temperatures do not include yet
 };
 
 inline constexpr float kLongTime_s = 3600.0F;
@@ -85,9 +85,16 @@ bool is_started(const GuardModel& model, const GuardState& state);
 /// Updates the check sum after a change of the temperatures from outside.
 void seal(GuardState& state);
 
+/// Adds to GuardState::gap_s, which the next step of the guard counts: with the largest current at standstill in the hottest air. After a
+/// gap of more than 1 s it starts at its temperature limit.
+void add_gap(GuardState& state, float gap_s);
+
 /// Runs one guard period. `signal` has kGuardSignals values; its current flowed since the last call. `braking_reserve_K` is kept free below
 /// the limit for braking: the driving current is read from the table for a winding that much hotter.
 GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K);
+
+/// Updates GuardState::time_to_limit_s. Extrapolates the smoothed heating linearly at the present load: too short near the steady state.
+void estimate_time_to_limit(const GuardModel& model, GuardState& state, float braking_reserve_K);
 
 /// Allowed current of the table at one point; 0 for NaN and above the highest speed or temperature.
 float allowed_current_A(const GuardModel& model, float speed_rad_per_s, float stator_C, float winding_C);

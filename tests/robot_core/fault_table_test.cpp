@@ -163,7 +163,10 @@ TEST(FaultTable, period_invalid) {
 }
 
 TEST(FaultTable, time_jump) {
-  const Case test{.code = Reason::time_jump, .periods = 1, .spoil = [](Input& input, State&, int) { input.elapsed_s = 0.05F; }};
+  // Each guard counts the gap in its next step, at most one guard period and one control period later.
+  const Case test{.code = Reason::time_jump, .periods = 11, .spoil = [](Input& input, State&, int k) {
+                    input.elapsed_s = k == 0 ? 0.05F : input.elapsed_s;
+                  }};
   const Record record = check(test, 0, 0);
   // 14 A for 50 ms heat 6 J/K by (1.3·14²·1 ohm)·0.05 s/6 = 2.1 K, independent of the true current.
   EXPECT_GT(record.hottest_guard_C, run(test, true).hottest_guard_C + 1.5);

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <vector>
@@ -84,6 +85,9 @@ TEST(DriveCoreOnTarget, MinuteOfPlayAgreesBitForBit) {
   EXPECT_LE(target.summary.memory_bytes, kMostMemory_bytes);
   const CallGraph::Depth depth = depth_of_step(kStepOfImage, false);
   EXPECT_LE(target.summary.most_stack_bytes, depth.bytes) << testing::PrintToString(depth.path);
+  EXPECT_LE(target.mean_instructions(), kMeanInstructionsWithFaults);
+  const auto most = std::ranges::max_element(target.instructions);
+  EXPECT_LE(*most, kMostInstructions) << "in step " << most - target.instructions.begin();
   RecordProperty("memory_bytes", std::to_string(target.summary.memory_bytes));
   RecordProperty("mean_instructions", std::to_string(target.mean_instructions()));
   RecordProperty("most_instructions", std::to_string(target.most_instructions()));

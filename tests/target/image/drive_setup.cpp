@@ -7,23 +7,8 @@ using robot_core::Config;
 
 constexpr int kStators = 2;
 constexpr int kWindings = 8;
-constexpr int kCandidates = 33;
 constexpr float kMostCurrent_A = 23.1481476F;
 constexpr float kMostSpeed_rad_per_s = 419.207306F;
-
-template <int count>
-struct Numbers {
-  float values[count];
-};
-
-/// Returns numbers evenly spread from -most to most.
-constexpr Numbers<kCandidates> spread(float most) {
-  Numbers<kCandidates> numbers{};
-  for (int i = 0; i < kCandidates; ++i) {
-    numbers.values[i] = most * static_cast<float>(i - kCandidates / 2) / static_cast<float>(kCandidates / 2);
-  }
-  return numbers;
-}
 
 // Calculated by `heatsoak derate`; for this motor the table does not depend on the speed.
 constexpr float kSpeed_rad_per_s[] = {0.0F};
@@ -34,8 +19,8 @@ constexpr float kSquare_A2[kStators * kWindings] = {
     286.41F, 176.56F, 118.39F, 59.561F, 26.542F, 9.7872F, -0.0073453F, -5.2682F,
 };
 
-constexpr Numbers<kCandidates> kPossibleCurrent_A = spread(kMostCurrent_A);
-constexpr Numbers<kCandidates> kPossibleSpeed_rad_per_s = spread(kMostSpeed_rad_per_s);
+constexpr float kPossibleCurrent_A[] = {kMostCurrent_A};
+constexpr float kPossibleSpeed_rad_per_s[] = {kMostSpeed_rad_per_s};
 constexpr float kPossibleAmbient_C[] = {40.0F};
 
 constexpr float kSafetyFactor = 2.12109375F;
@@ -68,9 +53,9 @@ constexpr robot_core::GuardModel make_guard() {
                  .most_speed_rad_per_s = kMostSpeed_rad_per_s,
                  .no_current_speed_rad_per_s = 845.12195F,
                  .winding_per_stator_K = 1.0F};
-  guard.plausible_range[robot_core::guard_current_A] = {true, -kMostCurrent_A, kMostCurrent_A, kPossibleCurrent_A.values, kCandidates};
+  guard.plausible_range[robot_core::guard_current_A] = {true, -kMostCurrent_A, kMostCurrent_A, kPossibleCurrent_A, 1};
   guard.plausible_range[robot_core::guard_speed_rad_per_s] = {true, -1.05F * kMostSpeed_rad_per_s, 1.05F * kMostSpeed_rad_per_s,
-                                                              kPossibleSpeed_rad_per_s.values, kCandidates};
+                                                              kPossibleSpeed_rad_per_s, 1};
   guard.plausible_range[robot_core::guard_ambient_C] = {true, 0.0F, 40.0F, kPossibleAmbient_C, 1};
   guard.rates = rates;
   return guard;
