@@ -217,7 +217,11 @@ struct alignas(8) ComparisonState {
   float residual_m2_per_s2 = 0.0F;          ///< leaky mean square of the samples' residuals against one motion of the body
   float yaw_disagreement_s = 0.0F;
   float yaw_agreement_s = 0.0F;
-  /// Copies of WheelState::speed_fault and State::yaw_fault. They survive a flipped bit in the rest of State.
+  /// Copy of State::ambient_C. This and the next three survive a flipped bit in the rest of State.
+  float ambient_C = kNoSample;
+  std::uint8_t fitted = 0;  ///< bit i: WheelState::has_current of wheel i, bit 4 + i: has_stator
+  std::uint8_t unused[3] = {};
+  /// Copies of WheelState::speed_fault and State::yaw_fault.
   std::uint8_t speed_fault[kMostWheels] = {};
   std::uint8_t yaw_fault = 0;
   std::uint8_t is_checked = 0;         ///< 1 if no pair of wheel sensors is swapped: each pair has kConfirmations
@@ -274,6 +278,9 @@ struct Output {
 };
 
 inline constexpr float kLongestGap_periods = 3.0F;
+/// Time after which the watchdog of the firmware resets the controller, which opens the bridges. An invalid Input::elapsed_s may hide a gap
+/// of this length.
+inline constexpr float kWatchdog_s = 0.02F;
 /// A sensor that was faulty is accepted again after it has agreed with the other sensors for this time.
 inline constexpr float kSteadyAgain_s = 0.25F;
 /// If driven wheels show no changed sample for this time, their sensors are dead or the robot is held.

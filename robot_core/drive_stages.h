@@ -140,6 +140,9 @@ struct KnownFaults {
   float battery_source_V;
 };
 void recall_faults(const KnownFaults& known, State& state);
+/// Marks the sensors as fitted that had samples before a restart, so that their absence is a fault, and continues from the last air
+/// temperature. Returns false if the copy fails its check sum.
+bool recall_sensors(const ComparisonState& known, State& state);
 
 /// Updates the check sum of the comparisons.
 void seal(ComparisonState& comparison);

@@ -1,5 +1,7 @@
 #include "robot_core/guard_memory.h"
 
+#include "robot_core/drive_stages.h"
+
 namespace robot_core {
 namespace {
 
@@ -96,14 +98,17 @@ Restored restore_guard(const GuardModel& model, GuardState& state, const GuardSt
   return is_known ? Restored::cooled : Restored::time_unknown;
 }
 
-bool restore_guards(const Config& config, State& state, const GuardState* saved, float elapsed_s, float board_C) {
+bool restore(const Config& config, State& state, const State& saved, float elapsed_s, float board_C) {
   // The check sum of State is a sum of words, so adding the change keeps a valid sum valid and a wrong one wrong.
   constexpr unsigned kEnd = __builtin_offsetof(State, comparison) / sizeof(std::uint64_t);
   const std::uint64_t before = sum_of_words<1, kEnd>(&state);
+  if (recall_sensors(saved.comparison, state)) {
+    note_faults(state);
+  }
   bool are_all = config.guard != nullptr;
   for (int i = 0; i < config.wheel_count && config.guard != nullptr; ++i) {
     GuardState& guard = state.guard[i];
-    if (restore_guard(*config.guard, guard, saved[i], elapsed_s, board_C) == Restored::nothing) {
+    if (restore_guard(*config.guard, guard, saved.guard[i], elapsed_s, board_C) == Restored::nothing) {
       are_all = false;
       continue;
     }

@@ -1,6 +1,7 @@
-// Restores the temperatures of the thermal guards after a loss of power, from a copy of the State in backup RAM or flash.
+// Restores the temperatures of the thermal guards and the list of sensors after a loss of power, from a copy of the State in backup RAM or
+// flash.
 //
-//   once, while the robot stands:  start(config, state, {});  restore_guards(config, state, copy.guard, elapsed_s, board_C);
+//   once, while the robot stands:  start(config, state, {});  restore(config, state, copy, elapsed_s, board_C);
 //   after each step:               copy the State to the backup RAM
 //
 // step() and start() do not need this file, so a controller without such a memory does not contain it.
@@ -24,7 +25,8 @@ Restored restore_guard(const GuardModel& model, GuardState& state, const GuardSt
 inline constexpr int kMostCoolingSteps = 4096;
 
 /// Restores all guards from an earlier State with the same Config; call it after start(). Wheels without a valid copy keep the temperature
-/// limit. Returns false if there is such a wheel or no guard.
-bool restore_guards(const Config& config, State& state, const GuardState* saved, float elapsed_s, float board_C);
+/// limit. Returns false if there is such a wheel or no guard. Also restores which sensors are fitted, so that a missing sample of a
+/// current, stator or air temperature stays a fault (120, 150, 151).
+bool restore(const Config& config, State& state, const State& saved, float elapsed_s, float board_C);
 
 }  // namespace robot_core

@@ -100,10 +100,14 @@ void take_stator_sample(const GuardModel& model, State& state, const Input& inpu
   }
 }
 
-/// A guard counts a gap in its next step, because its limit holds until then anyway.
-[[gnu::cold]] void note_gap(const Config& config, State& state, float gap_s) {
+/// A guard counts a gap in its next step, because its limit holds until then anyway. Without a valid time the gap is as long as the
+/// watchdog lets it be, unless the bridge was open.
+[[gnu::cold]] void note_gap(const Config& config, State& state, const Validated& validated) {
+  const bool is_jump = validated.robot_fault == Reason::time_jump;
   for (int i = 0; i < config.wheel_count; ++i) {
-    add_gap(state.guard[i], gap_s);
+    if (is_jump || state.wheel[i].is_open == 0) {
+      add_gap(state.guard[i], is_jump ? validated.elapsed_s : kWatchdog_s);
+    }
   }
 }
 
@@ -140,8 +144,8 @@ void run_guards(const Config& config, State& state, const Input& input, const Va
     wheel.guard_steps = static_cast<std::uint16_t>(steps);
     most_steps = larger(most_steps, steps);
   }
-  if (validated.robot_fault == Reason::time_jump) {
-    note_gap(config, state, validated.elapsed_s);
+  if (validated.robot_fault == Reason::time_jump || validated.robot_fault == Reason::period_invalid) {
+    note_gap(config, state, validated);
   }
   // Comparisons of sensors, guards and estimates do not share a step. A guard waits for one period if its period leaves time for that.
   constexpr int kLeastPeriods = 4;

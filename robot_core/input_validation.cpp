@@ -274,11 +274,15 @@ void find_from_all(const Config& config, Validated& validated) {
       found.is_speed_known = true;
       continue;
     }
-    // Without the gyro three wheels still determine the fourth, but two do not determine a third.
-    const SpeedRange range = is_known ? speed_range(config, state, validated, i) : SpeedRange{};
-    found.is_speed_known = range.is_known();
-    const float implied_rad_per_s = (all.rim_of(wheel) + turning_m_per_s) * wheel.speed_per_rim_per_m;
-    found.speed_rad_per_s = found.is_speed_known ? clamped(implied_rad_per_s, range.slowest_rad_per_s, range.fastest_rad_per_s) : 0.0F;
+    found.speed_rad_per_s = (all.rim_of(wheel) + turning_m_per_s) * wheel.speed_per_rim_per_m;
+    found.is_speed_known = is_known;
+    if (state.yaw_fault != 0) {
+      // Without the gyro three wheels still determine the fourth, but two do not determine a third.
+      const SpeedRange range = speed_range(config, state, validated, i);
+      found.is_speed_known = is_known && range.is_known();
+      found.speed_rad_per_s = range.slowest_rad_per_s;
+    }
+    found.speed_rad_per_s = found.is_speed_known ? found.speed_rad_per_s : 0.0F;
     found.implied_rad_per_s = found.speed_rad_per_s;
   }
   validated.spread_V = config.derived.spread_V_s_per_m * disagreement_m_per_s;

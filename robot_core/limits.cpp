@@ -97,7 +97,9 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
 [[gnu::cold, gnu::noinline]] bool move_into_window(const Config& config, const State& state, const Validated& validated,
                                                    const WheelDemand& demand, int i, float most_V, float& voltage_V, Reason& reason) {
   const float band_V = config.lowest_resistance_ohm * demand.most_A;
-  const SpeedRange range = speed_range(config, state, validated, i);
+  // Without a spare sensor a single set of sensors determines each speed.
+  const float speed_rad_per_s = validated.wheel[i].speed_rad_per_s;
+  const SpeedRange range = validated.is_checked ? speed_range(config, state, validated, i) : SpeedRange{speed_rad_per_s, speed_rad_per_s};
   const float low_V = config.derived.geared_constant_V_s_per_rad * range.fastest_rad_per_s - band_V;
   const float high_V = config.derived.geared_constant_V_s_per_rad * range.slowest_rad_per_s + band_V;
   if (!(demand.most_A > 0.0F) || !(low_V <= high_V)) {

@@ -11,7 +11,9 @@
 // | 101 R  | State fails its check sum (bit flip, never started)         | State restarts, keeps known sensor faults; guard  | next step; guard cools down     |
 // |        |                                                             | starts at its limit. If ComparisonState fails:    |                                 |
 // |        |                                                             | current sensors distrusted, limp current for all  | sensors agree again             |
-// | 102 R  | Input::elapsed_s not finite or below half a period          | all bridges open for this step                    | next valid step                 |
+// | 102 R  | Input::elapsed_s not finite or below half a period          | all bridges open for this step; the guard counts  | next valid step                 |
+// |        |                                                             | the largest current for kWatchdog_s if the bridge |                                 |
+// |        |                                                             | was not open before                               |                                 |
 // | 103 R  | Input::elapsed_s above kLongestGap_periods periods          | integrators and references restart; the guard     | next valid step                 |
 // |        |                                                             | counts the largest current for the whole gap      |                                 |
 // | 104 R  | command with a value that is not finite, or unknown mode    | brake to a standstill, then open the bridges      | next valid command              |
@@ -34,14 +36,17 @@
 // | 116 R  | wheels turn for kRunaway_s without slowing down although    | all bridges open                                  | the wheels stand                |
 // |        | the robot should stand, before swapped sensors are ruled    |                                                   |                                 |
 // |        | out: swapped sensors, or a push                             |                                                   |                                 |
-// | 120 W  | motor current not finite or more than the battery can drive | current from voltage, speed and guard temperature | next valid sample               |
+// | 120 W  | motor current seen once, also before a restart; now not     | current from voltage, speed and guard temperature | next valid sample               |
+// |        | finite or more than the battery can drive                   |                                                   |                                 |
 // | 121 W  | motor current contradicts voltage and speed (stuck sensor)  | as 120; the guard uses the larger magnitude       | kSteadyAgain_s of agreement     |
 // | 130 R  | battery voltage not finite, below half of the lowest or     | PWM for a full battery, limits for an empty one   | next valid sample               |
 // |        | above 1.1 times the full voltage                            |                                                   |                                 |
 // | 140 R  | yaw rate not finite, out of sensor range, or jumping        | yaw rate from the wheels                          | kSteadyAgain_s of agreement     |
 // | 141 R  | yaw rate constant while the wheels turn the robot           | as 140                                            | as 140                          |
-// | 150 R  | air temperature seen once, now not finite or out of range   | hottest declared air temperature                  | next valid sample               |
-// | 151 W  | stator temperature seen once, now not finite or impossible  | guard model without the sample                    | next valid sample               |
+// | 150 R  | air temperature seen once, also before a restart; now not   | hottest declared air temperature                  | next valid sample               |
+// |        | finite or out of range                                      |                                                   |                                 |
+// | 151 W  | stator temperature seen once, also before a restart; now    | guard model without the sample                    | next valid sample               |
+// |        | not finite or impossible                                    |                                                   |                                 |
 // | 160 W  | guard state unknown: power-up without known rest, bit flip  | guard starts at its temperature limit             | guard cools down                |
 // clang-format on
 //
@@ -73,10 +78,11 @@
 //   - A gyro with a wrong sign, scale or offset: the robot turns at a wrong rate.
 //   - A pose that jumps, or is wrong although its age is valid: a pose target then leads to a wrong place.
 //   - An air temperature that is too low from the start: the guard is too cold by the same amount.
-//   - An invalid timer (102) that hides a gap: the heat of that gap is not counted. The watchdog of the firmware bounds it.
+//   - An invalid timer (102) that hides a gap longer than kWatchdog_s, in firmware without such a watchdog.
 //   - A battery sensor with a constant wrong factor since the start or a fault, or one that sinks more slowly than 0.4 % of the full
 //     battery per second, or reads too low for minutes: the current may exceed its limit by that factor.
 //   - A wrong command with plausible values.
+// A restart is one by fault 101, or one after a loss of power with restore() of guard_memory.h.
 // Faults 111, 112 and 121 are found later or never if the robot file has no current limit of the driver.
 #pragma once
 

@@ -52,9 +52,13 @@ std::uint64_t check_sum_of(const ComparisonState& comparison) {
 }
 
 void copy_faults(State& state) {
+  unsigned fitted = 0;
   for (int i = 0; i < kMostWheels; ++i) {
     state.comparison.speed_fault[i] = state.wheel[i].speed_fault;
+    fitted |= static_cast<unsigned>(state.wheel[i].has_current | (state.wheel[i].has_stator << kMostWheels)) << static_cast<unsigned>(i);
   }
+  state.comparison.fitted = static_cast<std::uint8_t>(fitted);
+  state.comparison.ambient_C = state.ambient_C;
   state.comparison.yaw_fault = state.yaw_fault;
 }
 
@@ -314,8 +318,20 @@ float yaw_rate_of_wheels(const Config& config, const Validated& validated) {
   }  // else damaged: the next comparison reports it
 }
 
+[[gnu::cold]] bool recall_sensors(const ComparisonState& known, State& state) {
+  if (known.check_sum != check_sum_of(known)) {
+    return false;
+  }
+  for (int i = 0; i < kMostWheels; ++i) {
+    state.wheel[i].has_current = (known.fitted >> i) & 1U;
+    state.wheel[i].has_stator = (known.fitted >> (kMostWheels + i)) & 1U;
+  }
+  state.ambient_C = known.ambient_C;
+  return true;
+}
+
 [[gnu::cold]] void recall_faults(const KnownFaults& known, State& state) {
-  if (known.comparison.check_sum == check_sum_of(known.comparison)) {
+  if (recall_sensors(known.comparison, state)) {
     state.comparison = known.comparison;
     for (int i = 0; i < kMostWheels; ++i) {
       state.wheel[i].speed_fault = known.comparison.speed_fault[i];

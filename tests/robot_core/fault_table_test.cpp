@@ -162,6 +162,30 @@ TEST(FaultTable, period_invalid) {
   }
 }
 
+// An invalid time may hide a gap up to the watchdog's time; further ones find the bridges open.
+TEST(FaultTable, period_invalid_counts_the_gap_that_it_may_hide) {
+  const auto heated_K = [](int invalid_periods, bool is_open) {
+    const Config config = make_config(4);
+    State state;
+    Random random(4);
+    EXPECT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 60.0F}));
+    const Plant plant(config, {});
+    Output out;
+    for (int k = 0; k < 60; ++k) {
+      Input input = plant.sense(random, 0.0F, true);
+      input.command.mode = is_open ? Mode::coast : Mode::brake;
+      input.elapsed_s = k >= 30 && k < 30 + invalid_periods ? kNone : input.elapsed_s;
+      out = robot_core::step(config, state, input);
+    }
+    return static_cast<double>(out.winding_C[kWheel]) - 60.0;
+  };
+  const double least_K = heated_K(0, false);
+  // 14 A for 20 ms heat 6 J/K by (1.3·14²·1.14 ohm)·0.02 s/6 = 0.97 K.
+  EXPECT_NEAR(heated_K(1, false) - least_K, 0.97, 0.15);
+  EXPECT_NEAR(heated_K(20, false), heated_K(1, false), 0.05);
+  EXPECT_NEAR(heated_K(1, true), least_K, 0.05);
+}
+
 TEST(FaultTable, time_jump) {
   // Each guard counts the gap in its next step, at most one guard period and one control period later.
   const Case test{.code = Reason::time_jump, .periods = 11, .spoil = [](Input& input, State&, int k) {

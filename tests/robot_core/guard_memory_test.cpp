@@ -87,18 +87,29 @@ TEST(GuardMemory, AFlippedBitCountsAsAtTheLimit) {
   }
 }
 
+/// Returns a State whose guards have carried a current for a while.
+State worked_state(const Config& config, int steps, float current_A) {
+  State saved;
+  EXPECT_TRUE(start(config, saved, {}));
+  for (GuardState& each : saved.guard) {
+    each = worked(*config.guard, steps, current_A);
+  }
+  return saved;
+}
+
+Input standing(const Config& config) {
+  Input input;
+  input.elapsed_s = config.period_s;
+  input.battery_V = config.battery_full_V;
+  return input;
+}
+
 TEST(GuardMemory, TheDriveCoreGoesOnFromIt) {
   const Config config = make_config(4);
   State state;
   ASSERT_TRUE(start(config, state, {}));
-  GuardState saved[kMostWheels];
-  for (GuardState& each : saved) {
-    each = worked(*config.guard, 500, 2.0F);
-  }
-  EXPECT_TRUE(restore_guards(config, state, saved, 2.0F, 25.0F));
-  Input input;
-  input.elapsed_s = config.period_s;
-  const Output out = step(config, state, input);
+  EXPECT_TRUE(restore(config, state, worked_state(config, 500, 2.0F), 2.0F, 25.0F));
+  const Output out = step(config, state, standing(config));
   EXPECT_NE(out.robot_reason, Reason::state_corrupted);
   EXPECT_GT(out.allowed_current_A[0], 0.0F);
   EXPECT_LT(out.winding_C[0], config.guard->winding_limit_C - 10.0F);
@@ -108,9 +119,9 @@ TEST(GuardMemory, AWheelWithoutACopyStaysAtItsLimit) {
   const Config config = make_config(4);
   State state;
   ASSERT_TRUE(start(config, state, {}));
-  GuardState saved[kMostWheels] = {};
-  saved[0] = worked(*config.guard, 500, 2.0F);
-  EXPECT_FALSE(restore_guards(config, state, saved, 2.0F, 25.0F));
+  State saved = worked_state(config, 500, 2.0F);
+  saved.guard[1] = {};
+  EXPECT_FALSE(restore(config, state, saved, 2.0F, 25.0F));
   EXPECT_LT(state.guard[0].state_C[0], config.guard->winding_limit_C);
   EXPECT_EQ(state.guard[1].state_C[0], config.guard->winding_limit_C);
 }
@@ -121,14 +132,68 @@ TEST(GuardMemory, HealsNoCorruptState) {
   State state;
   ASSERT_TRUE(start(config, state, {}));
   state.yaw_integral_rad = 3.0F;
-  GuardState saved[kMostWheels];
-  for (GuardState& each : saved) {
-    each = worked(*config.guard, 100);
+  restore(config, state, worked_state(config, 100, 4.0F), 2.0F, 25.0F);
+  EXPECT_EQ(step(config, state, standing(config)).robot_reason, Reason::state_corrupted);
+}
+
+/// A State that has seen currents, stator temperatures and air of 30 degC.
+State with_all_sensors(const Config& config) {
+  State state;
+  EXPECT_TRUE(start(config, state, {.is_rested = true, .body_C = 30.0F}));
+  Input input = standing(config);
+  input.ambient_C = 30.0F;
+  for (int i = 0; i < kMostWheels; ++i) {
+    input.motor_current_A[i] = 0.0F;
+    input.stator_C[i] = 30.0F;
   }
-  restore_guards(config, state, saved, 2.0F, 25.0F);
-  Input input;
-  input.elapsed_s = config.period_s;
-  EXPECT_EQ(step(config, state, input).robot_reason, Reason::state_corrupted);
+  for (int k = 0; k < 40; ++k) {
+    EXPECT_EQ(step(config, state, input).robot_reason, Reason::none);
+  }
+  return state;
+}
+
+/// Runs without these sensors and expects faults 150 of the robot, and 120 or else 151 of a wheel.
+void expect_missing(const Config& config, State state, bool are_currents_missing) {
+  Input input = standing(config);
+  for (float& current_A : input.motor_current_A) {
+    current_A = are_currents_missing ? kNoSample : 0.0F;
+  }
+  Output out;
+  for (int k = 0; k < 40; ++k) {
+    out = step(config, state, input);
+  }
+  EXPECT_EQ(out.robot_reason, Reason::ambient_missing);
+  EXPECT_EQ(out.reason[2], are_currents_missing ? Reason::current_missing : Reason::stator_missing);
+}
+
+// A sensor that had samples before the restart is missing afterwards.
+TEST(GuardMemory, KeepsTheListOfSensors) {
+  const Config config = make_config(4);
+  const State saved = with_all_sensors(config);
+  for (const bool are_currents_missing : {true, false}) {
+    State restored;
+    ASSERT_TRUE(start(config, restored, {}));
+    restore(config, restored, saved, 1.0F, 25.0F);
+    expect_missing(config, saved, are_currents_missing);
+    State flipped = saved;
+    flipped.yaw_integral_rad = 1.0F;
+    Input input = standing(config);
+    EXPECT_EQ(step(config, flipped, input).robot_reason, Reason::state_corrupted);
+    for (const auto& each : {&restored, &flipped}) {
+      EXPECT_EQ(each->wheel[2].has_current, 1);
+      EXPECT_EQ(each->wheel[2].has_stator, 1);
+      EXPECT_EQ(each->ambient_C, saved.ambient_C);
+    }
+    if (are_currents_missing) {
+      expect_missing(config, flipped, true);
+    }
+  }
+  // Without any sample before, a missing sensor is no fault.
+  State empty;
+  ASSERT_TRUE(start(config, empty, {}));
+  State restored = empty;
+  restore(config, restored, empty, 1.0F, 25.0F);
+  EXPECT_EQ(step(config, restored, standing(config)).robot_reason, Reason::none);
 }
 
 }  // namespace
