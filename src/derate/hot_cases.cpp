@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
+#include "base/random.h"
 #include "motor/datasheet_network.h"
 
 namespace heatsoak {
@@ -151,6 +153,59 @@ std::vector<double> with_hottest(std::vector<double> values, const Observer& obs
   return values;
 }
 
+/// Returns random inputs of the formula: every signal and every node by itself, as often at an end of its range as inside.
+std::vector<std::vector<float>> random_inputs(const Observer& observer, const BarrierRules& rules) {
+  constexpr int kPlaces = 1024;
+  constexpr double kMargin_K = 50.0;
+  const double hottest_C = rules.limits.winding_C + kMargin_K;
+  const double coldest_C = -kMargin_K;
+  std::vector<std::pair<double, double>> ranges(firmware::kSignalCount + observer.state_count(), {coldest_C, hottest_C});
+  ranges[firmware::current] = {-rules.most_current_A, rules.most_current_A};
+  ranges[firmware::speed] = {-rules.most_speed_rad_per_s, rules.most_speed_rad_per_s};
+  ranges[firmware::vehicle_speed] = {0.0, rules.most_vehicle_speed_m_per_s};
+  for (const Scan& scan : scans(rules)) {
+    ranges[scan.signal] = scan.signal == firmware::neighbour ? ranges[scan.signal] : std::pair(scan.values.front(), scan.values.back());
+  }
+  Random random(1, 0);
+  std::vector<std::vector<float>> places(kPlaces);
+  for (std::vector<float>& place : places) {
+    for (const auto& [low, high] : ranges) {
+      const double share = std::clamp(2.0 * random.uniform() - 0.5, 0.0, 1.0);
+      place.push_back(static_cast<float>(std::lerp(low, high, share)));
+    }
+  }
+  return places;
+}
+
+/// Removes each value for which another value heats every node at least as much, at random inputs and temperatures. The guard then finds
+/// the same highest rates in a shorter search: losses that grow with the speed leave one of its values.
+std::vector<double> without_dominated(std::vector<double> values, const Observer& observer, const BarrierRules& rules,
+                                      firmware::Signal signal) {
+  FormulaRun<float> run(observer.formula(), observer.rate_steps());
+  std::vector<std::vector<float>> rates(values.size());
+  for (std::vector<float>& inputs : random_inputs(observer, rules)) {
+    std::vector<float> rate(observer.state_count());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      inputs[signal] = static_cast<float>(values[i]);
+      run.run(inputs, rate);
+      rates[i].insert(rates[i].end(), rate.begin(), rate.end());
+    }
+  }
+  for (std::size_t i = 0; i < values.size();) {
+    const bool is_dominated = std::ranges::any_of(rates, [&](const std::vector<float>& other) {
+      return &other != &rates[i] && std::ranges::equal(other, rates[i], std::greater_equal{});
+    });
+    const auto at = static_cast<std::ptrdiff_t>(i);
+    if (is_dominated) {
+      values.erase(values.begin() + at);
+      rates.erase(rates.begin() + at);
+    } else {
+      ++i;
+    }
+  }
+  return values;
+}
+
 }  // namespace
 
 Signals HotCase::signals(const BarrierRules& rules, double current_A, double speed_rad_per_s) const {
@@ -163,9 +218,12 @@ std::vector<double> values_if_unknown(const Observer& observer, const BarrierRul
   constexpr int kMany = 33;
   switch (signal) {
     case firmware::current:
-      return with_hottest(evenly(-rules.most_current_A, rules.most_current_A, kMany), observer, rules, signal);
+      return without_dominated(with_hottest(evenly(-rules.most_current_A, rules.most_current_A, kMany), observer, rules, signal), observer,
+                               rules, signal);
     case firmware::speed:
-      return with_hottest(evenly(-rules.most_speed_rad_per_s, rules.most_speed_rad_per_s, kMany), observer, rules, signal);
+      return without_dominated(
+          with_hottest(evenly(-rules.most_speed_rad_per_s, rules.most_speed_rad_per_s, kMany), observer, rules, signal), observer, rules,
+          signal);
     case firmware::ambient:
       return {rules.hottest_ambient_C};
     default:
@@ -184,7 +242,7 @@ std::vector<double> values_if_unknown(const Observer& observer, const BarrierRul
   values.push_back(scan.values.back());
   std::ranges::sort(values);
   values.erase(std::unique(values.begin(), values.end()), values.end());
-  return values;
+  return without_dominated(values, observer, rules, signal);
 }
 
 std::vector<HotCase> hot_cases(const Observer& observer, const BarrierRules& rules) {

@@ -53,8 +53,9 @@ struct HotCase {
 /// the motor's laws: other directions, and the values of each signal that heat the winding most and the bodies most, found by a scan.
 std::vector<HotCase> hot_cases(const Observer& observer, const BarrierRules& rules);
 
-/// Returns candidate values of an unknown signal, ascending: samples of its range, including the values that heat winding and bodies most.
-/// Current and speed range over both directions up to the maxima of the rules; the air is always the hottest declared.
+/// Returns candidate values of an unknown signal, ascending: samples of its range, including the values that heat winding and bodies most,
+/// without those for which another one heats every node at least as much. Current and speed range over both directions up to the maxima of
+/// the rules; the air is always the hottest declared.
 std::vector<double> values_if_unknown(const Observer& observer, const BarrierRules& rules, firmware::Signal signal);
 
 /// Returns the highest speed in rad/s up to which, in every hot case, all nodes stop heating without current at some temperature of the

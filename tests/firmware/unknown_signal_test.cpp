@@ -1,0 +1,151 @@
+// Compares the guard's search over the candidate values of an unknown signal with a search over many values.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "derate/guarded_motor.h"
+#include "firmware/host_guard.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr int kSearched = 33;
+
+class Uniform {
+ public:
+  explicit Uniform(unsigned seed) : engine_(seed) {}
+  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Returns random inputs of the observer's formula: signals, then temperatures.
+std::vector<float> random_place(const Observer& observer, const BarrierRules& rules, Uniform& uniform) {
+  std::vector<float> place;
+  for (const auto& [low, high] : std::initializer_list<std::pair<double, double>>{{-rules.most_current_A, rules.most_current_A},
+                                                                                  {-rules.most_speed_rad_per_s, rules.most_speed_rad_per_s},
+                                                                                  {0.0, 60.0},
+                                                                                  {0.0, rules.most_vehicle_speed_m_per_s},
+                                                                                  {20.0, 160.0},
+                                                                                  {0.0, 10000.0},
+                                                                                  {0.0, 5000.0}}) {
+    place.push_back(static_cast<float>(uniform.between(low, high)));
+  }
+  for (std::size_t node = 0; node < observer.state_count(); ++node) {
+    place.push_back(static_cast<float>(uniform.between(0.0, rules.limits.winding_C + 10.0)));
+  }
+  return place;
+}
+
+/// Returns the highest rate of each node over the values.
+std::vector<float> hottest(FormulaRun<float>& run, std::vector<float> place, firmware::Signal signal, const std::vector<double>& values,
+                           std::size_t nodes) {
+  std::vector<float> most(nodes, -std::numeric_limits<float>::infinity());
+  std::vector<float> rate(nodes);
+  for (const double value : values) {
+    place[signal] = static_cast<float>(value);
+    run.run(place, rate);
+    std::ranges::transform(most, rate, most.begin(), [](float a, float b) { return std::max(a, b); });
+  }
+  return most;
+}
+
+void expect_as_hot(const Observer& observer, const BarrierRules& rules, const std::string& text) {
+  FormulaRun<float> run(observer.formula(), observer.rate_steps());
+  Uniform uniform(5);
+  for (const firmware::Signal signal : {firmware::current, firmware::speed}) {
+    const double most = signal == firmware::current ? rules.most_current_A : rules.most_speed_rad_per_s;
+    const std::vector<double> few = values_if_unknown(observer, rules, signal);
+    for (int i = 0; i < 4000; ++i) {
+      const std::vector<float> place = random_place(observer, rules, uniform);
+      const std::vector<float> found = hottest(run, place, signal, few, observer.state_count());
+      const std::vector<float> searched = hottest(run, place, signal, evenly(-most, most, kSearched), observer.state_count());
+      for (std::size_t node = 0; node < found.size(); ++node) {
+        ASSERT_GE(found[node], searched[node]) << text << ", " << firmware::signals()[signal].name << ", node " << node;
+      }
+    }
+  }
+}
+
+TEST(UnknownSignal, HeatsEveryShippedMotorAsMuchAsAnyValueOfALongSearch) {
+  for (const auto& entry : std::filesystem::directory_iterator(kSource / "motor_db")) {
+    if (entry.path().extension() != ".toml") {
+      continue;
+    }
+    const Motor motor = read_motor(entry.path());
+    const Network network = datasheet_network(motor, nominal_sample(motor));
+    expect_as_hot(Observer(network, motor.nominal, twente(), 1.5), rules_for(motor), entry.path().stem().string());
+  }
+}
+
+TEST(UnknownSignal, HeatsAsMuchIfTheHottestSpeedDependsOnTheTemperature) {
+  const Motor motor = ecx_32_with(hump("driver = \"speed\"\nhot = \"stator\"\n"
+                                       "first_knot = { value = \"0 rad/s\", origin = \"estimated\", derivation = \"a test\" }\n"
+                                       "last_knot = { value = \"400 rad/s\", origin = \"estimated\", derivation = \"a test\" }\n",
+                                       1.0) +
+                                  "[effects.fan]\ntype = \"speed_dependent_convection\"\n"
+                                  "conductance = { value = \"0.04 W/K\", origin = \"estimated\", derivation = \"a test\" }\n"
+                                  "exponent = { value = \"0.5\", origin = \"estimated\", derivation = \"a test\" }\n");
+  const Network network = datasheet_network(motor, nominal_sample(motor));
+  const Observer observer(network, motor.nominal, twente(), 1.5);
+  EXPECT_GT(values_if_unknown(observer, rules_for(motor), firmware::speed).size(), 2U);
+  expect_as_hot(observer, rules_for(motor), "hump");
+}
+
+// The drive core's own search: never a higher current than with all values.
+TEST(UnknownSignal, GuardAllowsNoMoreCurrentThanWithALongSearch) {
+  const GuardedMotor guarded(ecx_32(), rules_for(ecx_32()), 1.5);
+  const HostGuard guard({.motor_id = "guarded",
+                         .robot_id = "roboteam_twente_v2024",
+                         .data_quality = "estimated",
+                         .torque_constant_Nm_per_A = guarded.motor.nominal.torque_constant_Nm_per_A,
+                         .observer = guarded.observer,
+                         .rules = guarded.rules,
+                         .table = guarded.table,
+                         .options = {},
+                         .assumed = {},
+                         .effects = {},
+                         .guarantee = {.samples = 400, .over = 10, .over_share = {0.01, 0.05}},
+                         .uses = {},
+                         .reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s});
+  EXPECT_EQ(guard.model().plausible_range[robot_core::guard_speed_rad_per_s].possible_count, 1);
+  robot_core::GuardModel searching = guard.model();
+  std::vector<float> currents;
+  std::vector<float> speeds;
+  for (const double share : evenly(-1.0, 1.0, kSearched)) {
+    currents.push_back(static_cast<float>(share * guarded.rules.most_current_A));
+    speeds.push_back(static_cast<float>(share * guarded.rules.most_speed_rad_per_s));
+  }
+  const auto search = [&](int signal, const std::vector<float>& values) {
+    searching.plausible_range[signal].possible = values.data();
+    searching.plausible_range[signal].possible_count = static_cast<int>(values.size());
+  };
+  search(robot_core::guard_current_A, currents);
+  search(robot_core::guard_speed_rad_per_s, speeds);
+  robot_core::GuardState few;
+  robot_core::GuardState all;
+  robot_core::start_guard(guard.model(), few, 30.0F);
+  robot_core::start_guard(searching, all, 30.0F);
+  Uniform uniform(6);
+  for (int step = 0; step < 100000; ++step) {
+    const double unknown = uniform.between(0.0, 1.0);
+    float signal[robot_core::kGuardSignals] = {};
+    signal[robot_core::guard_current_A] = static_cast<float>(unknown < 0.002 ? NAN : uniform.between(-6.0, 6.0));
+    signal[robot_core::guard_speed_rad_per_s] = static_cast<float>(unknown < 0.3 ? NAN : uniform.between(-400.0, 400.0));
+    signal[robot_core::guard_ambient_C] = static_cast<float>(unknown < 0.1 ? NAN : 25.0);
+    const robot_core::GuardOutput found = robot_core::step_guard(guard.model(), few, signal, 2.0F);
+    const robot_core::GuardOutput searched = robot_core::step_guard(searching, all, signal, 2.0F);
+    ASSERT_LE(found.allowed_A, searched.allowed_A) << step;
+    ASSERT_GE(few.state_C[0], all.state_C[0]) << step;
+    ASSERT_GE(few.state_C[1], all.state_C[1]) << step;
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak
