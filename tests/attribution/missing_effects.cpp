@@ -325,7 +325,7 @@ Missing thermostat_fan(double size) {
 
 const std::vector<Outsider> kStrangers{
     {"a fan that starts at 45 °C and stops at 38 °C", "stator", {}, thermostat_fan},
-    {"a motor next to it that nobody logs", "stator", {}, unlogged_neighbour},
+    {"a neighbouring motor without a log", "stator", {}, unlogged_neighbour},
     {"a lamp that somebody turns on and off",
      "stator",
      {},
@@ -334,11 +334,11 @@ const std::vector<Outsider> kStrangers{
      "stator",
      {},
      [](double s) { return heat([s](const Moment& m, PerPart& q) { to_air(m, q, drawn(m, 300.0, 3) < 0.35 ? 0.12 * s : 0.0); }); }},
-    {"0.7 W that wander at the stator",
+    {"0.7 W that drift at the stator",
      "stator",
      {},
      [](double s) { return heat([s](const Moment& m, PerPart& q) { into_iron(q, 0.7 * s * drifting(m, 240.0, 4)); }); }},
-    {"0.7 W that wander in the copper",
+    {"0.7 W that drift in the copper",
      "winding",
      {},
      [](double s) { return heat([s](const Moment& m, PerPart& q) { into_copper(q, 0.7 * s * drifting(m, 240.0, 5)); }); }},

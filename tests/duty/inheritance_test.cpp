@@ -56,7 +56,7 @@ TEST_F(Inheritance, states_only_what_differs) {
   EXPECT_EQ(duty.summary, "ours");
   EXPECT_EQ(duty.origin, base.origin);
   EXPECT_EQ(duty.ambient_C.value, 31.0);
-  EXPECT_FALSE(duty.ambient_C.spread) << "a figure is replaced as a whole";
+  EXPECT_FALSE(duty.ambient_C.spread) << "a value is replaced as a whole";
   EXPECT_EQ(inputs_of(duty).role, Role::keeper);
   EXPECT_EQ(inputs_of(duty).nominal().running_mean_s, inputs_of(base).nominal().running_mean_s);
 }

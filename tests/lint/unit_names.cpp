@@ -51,7 +51,7 @@ const std::set<std::string, std::less<>> kPureNumbers{"count",
                                                       "periods"};
 
 /// Names whose unit is documented elsewhere.
-const std::set<std::string, std::less<>> kUnitBeside{// figures, ranges and tolerances: their ParameterSpec or comment has the unit
+const std::set<std::string, std::less<>> kUnitBeside{// values, ranges and tolerances: their ParameterSpec or comment has the unit
                                                      "value", "values", "low", "high", "absolute", "kUnknown", "slope", "intercept",
                                                      // thresholds: their ThresholdType has the unit
                                                      "limit_value", "origin_value",

@@ -77,7 +77,7 @@ TEST(Plant, energy_is_conserved_to_second_order) {
   const Balance fine = balance_of_a_second(robot, lossy_motor(), 8);
   const Balance finer = balance_of_a_second(robot, lossy_motor(), 16);
   std::cout << "out of the battery " << finer.battery_J << " J, heat " << finer.heat_J << " J, motion " << finer.kinetic_J
-            << " J; left over " << balance_of_a_second(robot, lossy_motor(), 2).residual_J() << " J at 1 kHz, " << coarse.residual_J()
+            << " J; residual " << balance_of_a_second(robot, lossy_motor(), 2).residual_J() << " J at 1 kHz, " << coarse.residual_J()
             << " J at 2 kHz, " << fine.residual_J() << " J at 4 kHz, " << finer.residual_J() << " J at 8 kHz\n";
   EXPECT_GT(finer.heat_J, 5.0);
   EXPECT_LT(std::abs(finer.residual_J()), 1e-4 * finer.heat_J);

@@ -264,7 +264,7 @@ void print_table(Marks& marks) {
   row("single effects: detected", "", in_words(marks.detected));
   row("single effects: right, of those detected", ">= 98 %", in_words(marks.right_of_detected));
   row("single effects: right, of those visible", ">= 95 %", in_words(marks.right_of_visible));
-  row("single effects: named or among its look-alikes, of those detected", ">= 99 %", in_words(marks.among_confounded));
+  row("single effects: named or confounded with it, of those detected", ">= 99 %", in_words(marks.among_confounded));
   row("pairs: both right, nothing else", ">= 90 %", in_words(marks.pairs_right));
   row("pairs: at least one right", "", in_words(marks.one_of_pair));
   row("outside the catalogue: unexplained, node and driver right", ">= 90 %", in_words(marks.outsiders_right));

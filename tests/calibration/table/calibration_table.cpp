@@ -35,7 +35,7 @@ void tabulate(const std::string& title, const Sheet& sheet, const Case& like, in
     one.seed = first_seed + i;
     results[i] = calibrate_case(sheet, one);
   });
-  fmt::print("\n{}: {} cases of {} runs\n{:36} {:>8} {:>13} {:>10} {:>10} {:>9} {:>10} {:>9}\n", title, cases, like.runs, "figure",
+  fmt::print("\n{}: {} cases of {} runs\n{:36} {:>8} {:>13} {:>10} {:>10} {:>9} {:>10} {:>9}\n", title, cases, like.runs, "parameter",
              "covered", "95 % of that", "median err", "90 % err", "rms z", "half width", "averaged");
   std::vector<double> seconds_s;
   for (std::size_t f = 0; f < results.front().marks.size(); ++f) {
