@@ -8,11 +8,8 @@ namespace robot_core {
 namespace {
 
 constexpr float kStanding_m_per_s = 0.03F;
-constexpr float kStanding_rad_per_s = 0.3F;
 // A command that jumps is approached with this multiple of the acceleration limit: more than a planned motion needs.
 constexpr float kApproach_ratio = 2.0F;
-// Multiple for the stop after a command fault: a planned motion brakes at least as hard.
-constexpr float kFaultyApproach_ratio = 1.0F;
 constexpr float kMostYawIntegral_rad = 0.5F;
 // Speed at which the reference follows a robot that its limits hold back, and lead of the reference over the robot.
 constexpr float kHoldBack_s = 0.1F;
@@ -27,8 +24,6 @@ Vector3 turned(const Vector3& v, const SineCosine& turn) {
 }
 
 float length(const Vector3& v) { return square_root(v.x * v.x + v.y * v.y); }
-
-bool is_standing(const Vector3& v) { return length(v) < kStanding_m_per_s && absolute(v.yaw) < kStanding_rad_per_s; }
 
 Vector3 scaled(const Vector3& v, float plane, float yaw) { return {v.x * plane, v.y * plane, v.yaw * yaw}; }
 
@@ -86,19 +81,14 @@ void hold_back(State& state, const Vector3& wanted, const Validated& validated, 
   }
 }
 
-float approach_ratio_of(const Validated& validated) {
-  return validated.command_fault == Reason::none ? kApproach_ratio : kFaultyApproach_ratio;
-}
-
 /// Turns the last reference into the robot's present heading and moves it towards the wanted one.
 void approach(const Config& config, const State& state, const Validated& validated, float since_s, BodyReference& body) {
   // Within a period the robot turns by at most a tenth of a radian; after a gap the reference has been set anew.
   const float angle_rad = clamped(-validated.yaw_rate_rad_per_s * since_s, -0.3F, 0.3F);
   const Vector3 last = turned(state.velocity_reference, {angle_rad, 1.0F - 0.5F * angle_rad * angle_rad});
   Vector3 change{body.velocity.x - last.x, body.velocity.y - last.y, body.velocity.yaw - last.yaw};
-  const float approach_ratio = approach_ratio_of(validated);
-  const float most_m_per_s = approach_ratio * config.acceleration_limit_m_per_s2 * since_s;
-  const float most_rad_per_s = approach_ratio * config.yaw_acceleration_limit_rad_per_s2 * since_s;
+  const float most_m_per_s = kApproach_ratio * config.acceleration_limit_m_per_s2 * since_s;
+  const float most_rad_per_s = kApproach_ratio * config.yaw_acceleration_limit_rad_per_s2 * since_s;
   if (limit(change, most_m_per_s, most_rad_per_s)) {
     body.velocity = {last.x + change.x, last.y + change.y, last.yaw + change.yaw};
     const float rate_per_s = 1.0F / (kApproach_ratio * since_s);
@@ -116,9 +106,8 @@ void close_loop(const Config& config, State& state, const Validated& validated, 
   body.acceleration.x += config.body_gain_per_s * (body.velocity.x - validated.velocity.x);
   body.acceleration.y += config.body_gain_per_s * (body.velocity.y - validated.velocity.y);
   body.acceleration.yaw += config.yaw_gain_per_s * yaw_error_rad_per_s + config.yaw_integral_per_s2 * state.yaw_integral_rad;
-  const float approach_ratio = approach_ratio_of(validated);
-  const float most_m_per_s2 = approach_ratio * config.acceleration_limit_m_per_s2;
-  limit(body.acceleration, most_m_per_s2, approach_ratio * config.yaw_acceleration_limit_rad_per_s2);
+  limit(body.acceleration, kApproach_ratio * config.acceleration_limit_m_per_s2,
+        kApproach_ratio * config.yaw_acceleration_limit_rad_per_s2);
   // Every packet corrects the velocity by a small step, which would act as a force impulse.
   const float share = smaller(1.0F, since_s / kForce_s);
   Vector3& smoothed = state.acceleration_reference;
@@ -144,7 +133,8 @@ BodyReference control_body_velocity(const Config& config, State& state, const In
     state.yaw_integral_rad = 0.0F;
   }
   body.is_wheelwise = validated.mode == Mode::wheel_speed || validated.mode == Mode::wheel_torque;
-  body.is_open = validated.mode == Mode::coast || (validated.command_fault != Reason::none && is_standing(validated.velocity));
+  // While the bridges are open the reference follows the robot. Otherwise the robot would have to catch up with it afterwards.
+  body.is_open = validated.mode == Mode::coast || validated.robot_fault == Reason::period_invalid;
   if (body.is_open || body.is_wheelwise) {
     state.velocity_reference = validated.velocity;
     state.acceleration_reference = {};

@@ -48,7 +48,7 @@ struct BodyReference {
   Vector3 acceleration;       ///< seen from the field, resolved in the local frame
   Vector3 push;               ///< force and moment on an external object, local frame
   bool is_wheelwise = false;  ///< true in the modes wheel_speed and wheel_torque: no body motion is commanded
-  bool is_open = false;       ///< true: coast
+  bool is_open = false;       ///< true: open all bridges
 };
 
 /// Result of stage 3: reference of one wheel.

@@ -84,8 +84,8 @@ void validate_command(const Config& config, const Input& input, Validated& valid
              (config.plan_step == nullptr || !(sum(input.pose) <= kMostCommand) || !is_fresh(config, input.pose_age_s))) {
     validated.command_fault = Reason::pose_invalid;
   }
-  if (validated.command_fault != Reason::none && validated.mode != Mode::coast) {
-    validated.mode = Mode::brake;
+  if (validated.command_fault != Reason::none) {
+    validated.mode = Mode::coast;
   }
 }
 
@@ -221,7 +221,9 @@ void find_from_all(const Config& config, Validated& validated) {
     sensed += validated.wheel[i].is_speed_sensed ? 1 : 0;
   }
   validated.is_redundancy_reduced = true;
-  validated.rim_m_per_s[kMostWheels - 1] = kNoSample;  // in case the robot has three wheels
+  if (config.wheel_count < kMostWheels) {
+    validated.rim_m_per_s[kMostWheels - 1] = kNoSample;
+  }
   validated.is_checked = sensed > 3;
   validated.is_any_possible = sensed == kMostWheels && state.comparison.is_checked == 0;
 }
@@ -401,16 +403,17 @@ Validated validate_input(const Config& config, State& state, const Input& input)
   validate_ambient(config, state, input, validated);
   take_samples(config, state, input, validated);
   validate_yaw_rate(config, state, input, validated);
-  if (!validated.are_all_sensed || state.yaw_fault != 0 || config.wheel_count < kMostWheels) {
-    check_redundancy(config, state, validated);
-  }
   if (validated.are_all_sensed) {
     find_from_all(config, validated);
-  } else {
-    find_from_some(config, state, validated);
   }
-  if (validated.is_any_possible || validated.are_samples_compared) {
-    validated.spread_V = std::numeric_limits<float>::infinity();
+  if (!validated.are_all_sensed || state.yaw_fault != 0 || config.wheel_count < kMostWheels) {
+    check_redundancy(config, state, validated);
+    if (!validated.are_all_sensed) {
+      find_from_some(config, state, validated);
+    }
+    if (validated.is_any_possible || validated.are_samples_compared) {
+      validated.spread_V = std::numeric_limits<float>::infinity();
+    }
   }
   compare_sensors(config, state, input, validated);
   if (state.comparison.is_runaway != 0 && validated.robot_fault == Reason::none) {

@@ -177,8 +177,7 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
   bool would_limit = false;
   for (int i = 0; i < config.wheel_count; ++i) {
     const bool brakes = body_brakes || demand[i].back_V * demand[i].current_A < 0.0F;
-    // The stop after a command fault was not commanded, so it gets no reserve.
-    const float allowed_A = brakes && validated.command_fault == Reason::none ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
+    const float allowed_A = brakes ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
     const float earlier_A = demand[i].most_A;
     would_limit = apply_guard(config, state, allowed_A, validated.elapsed_s, demand[i]) || would_limit;
     if (are_speeds_dead) {
@@ -298,7 +297,7 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
   WheelDemand demand[kMostWheels];
   const float most_V = smaller(config.voltage_limit_V, validated.battery_V);
   const float share = find_demands(config, state, validated, body, voltage, most_V, demand, limited);
-  const bool is_all_open = body.is_open || validated.robot_fault == Reason::period_invalid || state.comparison.is_runaway != 0;
+  const bool is_all_open = body.is_open || state.comparison.is_runaway != 0;
   state.is_limited = !is_all_open && share < 1.0F ? 1 : 0;
   // Back-calculation: the integrators follow the voltages after the limits.
   const float feedback_share = smaller(1.0F, validated.elapsed_s * config.derived.per_tracking_time_per_s);

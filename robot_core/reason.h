@@ -1,7 +1,7 @@
 // Reasons why a wheel gets less than the command asks for. Limits are normal operation, faults are not.
 //
-// Fault table. W concerns one wheel, R the whole robot. No reaction allows more current than the limits allow without the fault. Braking to
-// a standstill takes current. Wheels without a fault still take their normal current while another one is held to Config::limp_current_A.
+// Fault table. W concerns one wheel, R the whole robot. No reaction allows more current than the limits allow without the fault. Wheels
+// without a fault still take their normal current while another one is held to Config::limp_current_A.
 // clang-format off
 //
 // | code   | condition                                                   | reaction                                          | clears                          |
@@ -16,10 +16,10 @@
 // |        |                                                             | was not open before                               |                                 |
 // | 103 R  | Input::elapsed_s above kLongestGap_periods periods          | integrators and references restart; the guard     | next valid step                 |
 // |        |                                                             | counts the largest current for the whole gap      |                                 |
-// | 104 R  | command with a value that is not finite, or unknown mode    | brake to a standstill, then open the bridges      | next valid command              |
-// | 105 R  | Input::command_age_s above Config::command_timeout_s, or    | brake to a standstill, then open the bridges      | next fresh command              |
+// | 104 R  | command with a value that is not finite, or unknown mode    | all bridges open: the robot rolls out             | next valid command              |
+// | 105 R  | Input::command_age_s above Config::command_timeout_s, or    | all bridges open: the robot rolls out             | next fresh command              |
 // |        | not a number, or negative                                   |                                                   |                                 |
-// | 106 R  | pose target without planner, or with a pose not finite or   | brake to a standstill, then open the bridges      | next valid pose                 |
+// | 106 R  | pose target without planner, or with a pose not finite or   | all bridges open: the robot rolls out             | next valid pose                 |
 // |        | Input::pose_age_s not a number, negative or above           |                                                   |                                 |
 // |        | Config::command_timeout_s                                   |                                                   |                                 |
 // | 110 W  | wheel speed not finite or above fastest_wheel_rad_per_s     | speed from the other wheels and the gyro,         | kSteadyAgain_s of agreement     |
@@ -63,7 +63,8 @@
 //     assumed until driving has ruled them out (kConfirmations). The search for fault 113 also ends there. Without a spare sensor every
 //     current is limited to limp_current_A (limit 17).
 //   - The bridge opens if no voltage keeps the limit by the current sensor and by the speeds.
-//   - The stop after a command fault (104 to 106) keeps the acceleration limit and uses no braking reserve of the guard.
+//   - A command fault (104 to 106) opens the bridges, because braking takes more current than rolling. A robot that must brake gets
+//   Mode::brake.
 //
 // Not recognised (tests/robot_core/adversarial_test.cpp has the magnitudes). Current limits and guard hold unless stated otherwise:
 //   - Swapped wheel sensors until they are found, after 0.1 to 0.4 s of driving on average. Swapped samples of opposite wheels, or of any
