@@ -167,16 +167,21 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
                                      float most_V, WheelDemand* demand, LimitedVoltages& limited, float least) {
   float body_W = 0.0F;
   float most_braking_W = 0.0F;
+  PerWheel driving_W;
   for (int i = 0; i < config.wheel_count; ++i) {
-    const float driving_W = demand[i].back_V * demand[i].current_A;
-    body_W += driving_W;
-    most_braking_W = smaller(most_braking_W, driving_W);
+    driving_W[i] = demand[i].back_V * demand[i].current_A;
+    // After a sensor fault a wheel brakes only if all estimates of its speed agree on the direction.
+    if (validated.is_redundancy_reduced && !(absolute(demand[i].back_V) > validated.spread_V)) {
+      driving_W[i] = absolute(driving_W[i]);
+    }
+    body_W += driving_W[i];
+    most_braking_W = smaller(most_braking_W, driving_W[i]);
   }
   const bool body_brakes = body_W < most_braking_W && !body.is_wheelwise;
   const bool are_speeds_dead = state.comparison.standing_s > kStanding_s;
   bool would_limit = false;
   for (int i = 0; i < config.wheel_count; ++i) {
-    const bool brakes = body_brakes || demand[i].back_V * demand[i].current_A < 0.0F;
+    const bool brakes = body_brakes || driving_W[i] < 0.0F;
     const float allowed_A = brakes ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
     const float earlier_A = demand[i].most_A;
     would_limit = apply_guard(config, state, allowed_A, validated.elapsed_s, demand[i]) || would_limit;

@@ -10,8 +10,10 @@
 //   - a battery sensor that is wrong by a constant factor since the start, or sinks more slowly than a battery does (0.4 %/s);
 //   - a wrong command with plausible values: the twin gets it too.
 // Tests 1.2e7 faulty inputs. With HEATSOAK_HOSTILE_FACTOR=10 (2.4e7) no single fault exceeds the limits, nor does any combination with at
-// most one fault of a speed. Of combinations of any three faults, 4 in 3600 exceed them: by up to 0.15 A on four wheels, 0.08 A on three. A
-// stuck gyro beside a jumping wheel on three wheels gives 2.1 A for five steps.
+// most one fault of a speed. Of combinations of any three faults, 1 in 3600 exceeds them, on three wheels with two faults of a speed: the
+// offset of a wheel sensor begins within a gap of the time (103), which explains any change of a speed, and the stuck gyro is rejected
+// instead. No sensor is left that contradicts the offset, so the limp current is calculated for a wrong speed: 2.1 A too much in every
+// second step, five times, because the sensed current opens the bridge in between. Without a current sensor it would last longer.
 #include <gtest/gtest.h>
 
 #include <algorithm>
