@@ -269,18 +269,6 @@ static inline void maxon_ecx_flat_42m_24v_nominal_rates(const maxon_ecx_flat_42m
   rate_K_per_s[1] = (no_load_loss_W + (winding_to_stator_W - stator_to_ambient_W)) * 0.02f;
 }
 
-/* possible values of an unknown input */
-static const float maxon_ecx_flat_42m_24v_possible_current_A[33] = {
-    -116.27907f, -109.01163f, -101.74419f, -94.476746f, -87.209305f, -79.941864f, -72.674416f, -65.406975f, -58.139534f, -50.872093f,
-    -43.604652f, -36.337208f, -29.069767f, -21.802326f, -14.5348835f, -7.2674417f, 0.0f, 7.2674417f, 14.5348835f, 21.802326f,
-    29.069767f, 36.337208f, 43.604652f, 50.872093f, 58.139534f, 65.406975f, 72.674416f, 79.941864f, 87.209305f, 94.476746f,
-    101.74419f, 109.01163f, 116.27907f,};
-static const float maxon_ecx_flat_42m_24v_possible_speed_rad_per_s[33] = {
-    -487.58865f, -457.11435f, -426.64008f, -396.16577f, -365.6915f, -335.2172f, -304.74292f, -274.26862f, -243.79433f, -213.32004f,
-    -182.84575f, -152.37146f, -121.89716f, -91.422874f, -60.94858f, -30.47429f, 0.0f, 30.47429f, 60.94858f, 91.422874f,
-    121.89716f, 152.37146f, 182.84575f, 213.32004f, 243.79433f, 274.26862f, 304.74292f, 335.2172f, 365.6915f, 396.16577f,
-    426.64008f, 457.11435f, 487.58865f,};
-
 /* speed_rad_per_s: magnitude; stator_C: the hottest node other than the winding */
 static inline float maxon_ecx_flat_42m_24v_allowed_A(float speed_rad_per_s, float stator_C, float winding_C) {
   const heatsoak_row row = heatsoak_find_row(&maxon_ecx_flat_42m_24v_table, speed_rad_per_s, stator_C);
@@ -304,27 +292,6 @@ static inline void maxon_ecx_flat_42m_24v_start(maxon_ecx_flat_42m_24v_state *st
   state->started = MAXON_ECX_FLAT_42M_24V_STARTED;
 }
 
-/* Each node takes its largest heating rate over the possible values; the input takes the value that heats the winding most. */
-static inline void maxon_ecx_flat_42m_24v_sweep(const maxon_ecx_flat_42m_24v_input *in, float *input, const float *possible, int count, const float *state_C, float *most_K_per_s) {
-  float rate_K_per_s[2];
-  float hottest = possible[0];
-  float hottest_K_per_s = -1e30f;
-  int i;
-  int node;
-  for (i = 0; i < count; ++i) {
-    *input = possible[i];
-    maxon_ecx_flat_42m_24v_rates(in, state_C, rate_K_per_s);
-    for (node = 0; node < 2; ++node) {
-      most_K_per_s[node] = rate_K_per_s[node] > most_K_per_s[node] ? rate_K_per_s[node] : most_K_per_s[node];
-    }
-    if (rate_K_per_s[0] > hottest_K_per_s) {
-      hottest_K_per_s = rate_K_per_s[0];
-      hottest = possible[i];
-    }
-  }
-  *input = hottest;
-}
-
 /* One period; the rounding error of each step is carried to the next (Kahan 1965). */
 static inline void maxon_ecx_flat_42m_24v_advance(float *state_C, float *carry_K, const float *rate_K_per_s) {
   int node;
@@ -344,7 +311,6 @@ static inline maxon_ecx_flat_42m_24v_output maxon_ecx_flat_42m_24v_step(maxon_ec
   float hottest_body_C;
   float speed_rad_per_s;
   int node;
-  int pass;
   bool is_started = state->started == MAXON_ECX_FLAT_42M_24V_STARTED;
   uint32_t unknown = 0u;
   for (node = 0; node < 2; ++node) {
@@ -355,11 +321,11 @@ static inline maxon_ecx_flat_42m_24v_output maxon_ecx_flat_42m_24v_step(maxon_ec
     maxon_ecx_flat_42m_24v_start(state, MAXON_ECX_FLAT_42M_24V_WINDING_LIMIT_C);
   }
   if (!maxon_ecx_flat_42m_24v_is_between((-1162.7906f), in.current_A, 1162.7906f)) {
-    in.current_A = (-116.27907f);
+    in.current_A = 116.27907f;
     unknown |= 1u;
   }
   if (!maxon_ecx_flat_42m_24v_is_between((-982.9787f), in.speed_rad_per_s, 982.9787f)) {
-    in.speed_rad_per_s = (-487.58865f);
+    in.speed_rad_per_s = 487.58865f;
     unknown |= 2u;
   }
   if (!maxon_ecx_flat_42m_24v_is_between(0.05f, in.ambient_C, 300.0f)) {
@@ -367,14 +333,6 @@ static inline maxon_ecx_flat_42m_24v_output maxon_ecx_flat_42m_24v_step(maxon_ec
     unknown |= 4u;
   }
   maxon_ecx_flat_42m_24v_rates(&in, state->state_C, rate_K_per_s);
-  for (pass = 0; pass < 2; ++pass) {
-    if ((unknown & 1u) != 0u) {
-      maxon_ecx_flat_42m_24v_sweep(&in, &in.current_A, maxon_ecx_flat_42m_24v_possible_current_A, 33, state->state_C, rate_K_per_s);
-    }
-    if ((unknown & 2u) != 0u) {
-      maxon_ecx_flat_42m_24v_sweep(&in, &in.speed_rad_per_s, maxon_ecx_flat_42m_24v_possible_speed_rad_per_s, 33, state->state_C, rate_K_per_s);
-    }
-  }
   maxon_ecx_flat_42m_24v_nominal_rates(&in, state->nominal_C, nominal_K_per_s);
   maxon_ecx_flat_42m_24v_advance(state->state_C, state->carry_K, rate_K_per_s);
   maxon_ecx_flat_42m_24v_advance(state->nominal_C, state->nominal_carry_K, nominal_K_per_s);

@@ -117,7 +117,7 @@ class Calibrating {
     const ForecastModel base = setup_.model();
     all_.forecast = forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads);
     score_innovations(setup_.model(), options_.fit, all_);
-    if (writes_forecast(options_.written, base, all_)) {
+    if (writes_forecast(options_.written, *all_.forecast)) {
       write_forecast(all_);
       all_.effects = all_.forecast->setup.motor.effects;
       widen_by_rows();

@@ -26,26 +26,6 @@ bool is_better_than_innovations(const Forecast& forecast) {
   return other.score_nats > best.score_nats + kLeastGain_nats && std::ranges::any_of(other.rmse_K, matters);
 }
 
-/// Compares the free-run errors of forecast and innovations fit over the fitted runs, where no piece could be left out.
-bool follows_fitted_runs_better(const ForecastModel& base, const Calibration& calibration) {
-  constexpr double kBetter_share = 0.95;
-  const Forecast& forecast = *calibration.forecast;
-  const auto over_runs = [&](const ForecastModel& model, const Eigen::VectorXd& theta) {
-    std::vector<PredictedRun> predicted;
-    for (const MeasuredRun& run : calibration.runs) {
-      predicted.push_back(predict(model, theta, Eigen::MatrixXd::Zero(model.count(), model.count()), forecast.band, run));
-    }
-    return predicted;
-  };
-  const std::vector<ErrorBeforeAfter> errors =
-      errors_over_runs(over_runs(base, calibration.fit.theta), over_runs(forecast.model(), forecast.fit.theta));
-  const auto is_better = [](const ErrorBeforeAfter& each) {
-    return each.after.rmse_K < kBetter_share * each.before.rmse_K && each.after.rmse_K + kMatters_K < each.before.rmse_K;
-  };
-  const auto is_worse = [](const ErrorBeforeAfter& each) { return each.after.rmse_K > each.before.rmse_K + kMatters_K; };
-  return std::ranges::any_of(errors, is_better) && std::ranges::none_of(errors, is_worse);
-}
-
 /// Returns the matrix of ones and zeros that selects, for each coordinate of `to`, the one with the same name in `from`; a row of zeros if
 /// there is none.
 Eigen::MatrixXd shared_coordinates(const Model& from, const Model& to) {
@@ -58,11 +38,12 @@ Eigen::MatrixXd shared_coordinates(const Model& from, const Model& to) {
   return shared;
 }
 
-/// True if enough whole runs were left out to select a network.
-bool has_left_out_runs(const Forecast& forecast) {
-  return forecast.pieces.size() >= kLeastPieces &&
-         std::ranges::all_of(forecast.pieces, [](const Piece& piece) { return piece.seen.empty(); });
+bool are_whole_runs(const Forecast& forecast) {
+  return std::ranges::all_of(forecast.pieces, [](const Piece& piece) { return piece.seen.empty(); });
 }
+
+/// True if enough whole runs were left out to select a network.
+bool has_left_out_runs(const Forecast& forecast) { return forecast.pieces.size() >= kLeastPieces && are_whole_runs(forecast); }
 
 }  // namespace
 
@@ -86,13 +67,12 @@ void score_innovations(const ForecastModel& model, FitOptions options, Calibrati
   forecast.rivals.push_back(rival_score(ForecastSource::innovations, score, calibration.runs));
 }
 
-bool writes_forecast(WrittenFit wanted, const ForecastModel& base, const Calibration& calibration) {
-  const Forecast& forecast = *calibration.forecast;
+bool writes_forecast(WrittenFit wanted, const Forecast& forecast) {
   if (wanted != WrittenFit::best) {
     return wanted == WrittenFit::forecast;
   }
-  const bool is_better = forecast.rivals.empty() ? follows_fitted_runs_better(base, calibration) : is_better_than_innovations(forecast);
-  return forecast.source != ForecastSource::file && is_better;
+  // Quarters of one run do not show how the motor behaves under other conditions.
+  return are_whole_runs(forecast) && forecast.source != ForecastSource::file && is_better_than_innovations(forecast);
 }
 
 Range declared_range(const Motor& motor, std::string_view key) {
@@ -122,11 +102,14 @@ std::vector<OutsideDeclaredRange> outside_declared_ranges(const Motor& motor, st
 
 void carry_identifiability(const Forecast& forecast, std::span<const CalibratedParameter> before,
                            std::vector<CalibratedParameter>& parameters) {
+  constexpr double kWider_ratio = 2.0;
   const bool is_supported = has_left_out_runs(forecast);
+  const auto width = [](const CalibratedParameter& each) { return std::log(each.high / each.low); };
   for (CalibratedParameter& each : parameters) {
     const auto same = std::ranges::find(before, each.name, &CalibratedParameter::name);
     if (same != before.end()) {
-      each.is_identifiable = same->is_identifiable && (each.is_identifiable || !is_supported);
+      const bool is_alike = !is_supported && width(each) < kWider_ratio * width(*same);
+      each.is_identifiable = same->is_identifiable && (each.is_identifiable || is_alike);
     }
   }
 }

@@ -14,15 +14,14 @@ namespace heatsoak {
 void score_innovations(const ForecastModel& model, FitOptions options, Calibration& calibration);
 
 /// Returns whether the forecast's parameters are written. With WrittenFit::best they must come from a fit, not from the file, and predict
-/// the left-out pieces better than the innovations fit, by kLeastGain_nats and by 0.1 K rms in at least one signal.
-/// Without such pieces it must follow the fitted runs better by as much. `base` is the forecast model without extensions.
-bool writes_forecast(WrittenFit wanted, const ForecastModel& base, const Calibration& calibration);
+/// at least two left-out runs better than the innovations fit, by kLeastGain_nats and by 0.1 K rms in at least one signal.
+bool writes_forecast(WrittenFit wanted, const Forecast& forecast);
 
 /// Returns the fitted values outside their declared ranges. Verbs that need a sound motor may refuse such a file.
 std::vector<OutsideDeclaredRange> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> parameters);
 
 /// Marks a value as not identifiable if it was not identifiable in `before`, the innovations fit. Unless three left-out runs support the
-/// forecast, that fit alone decides, because the written intervals also contain the difference between both fits.
+/// forecast, that fit alone decides, as long as the written interval is less than twice as wide as its own.
 void carry_identifiability(const Forecast& forecast, std::span<const CalibratedParameter> before,
                            std::vector<CalibratedParameter>& parameters);
 

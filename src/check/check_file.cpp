@@ -35,6 +35,7 @@ class CheckReader {
     read_derate();
     table_.finish();
     compare_settings();
+    compare_with_loosest();
     return std::move(check_);
   }
 
@@ -203,10 +204,6 @@ class CheckReader {
         limits->problem(key, parsed.problem);
         continue;
       }
-      if (const std::string problem = looseness_problem(parsed.value, *text, *type, check_); !problem.empty()) {
-        limits->problem(key, problem);
-        continue;
-      }
       check_.limits.push_back({type, parsed.value, std::move(parsed.unit), *text, limits->at(key)});
     }
   }
@@ -221,6 +218,15 @@ class CheckReader {
       return std::ranges::find(limit.type->needs, setting) != limit.type->needs.end() ||
              std::ranges::find(limit.type->takes, setting) != limit.type->takes.end();
     });
+  }
+
+  /// Reports limits that cannot fail. Needs the motors of the check.
+  void compare_with_loosest() {
+    for (const Limit& limit : check_.limits) {
+      if (std::string problem = looseness_problem(limit.value, limit.text, *limit.type, check_); !problem.empty()) {
+        table_.add({limit.at, fmt::format("limits.{}", limit.type->name), std::move(problem)});
+      }
+    }
   }
 
   void compare_settings() {

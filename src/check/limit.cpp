@@ -74,7 +74,10 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
 
 std::string looseness_problem(double value, std::string_view text, const ThresholdType& type, const Check& check) {
   const std::optional<LoosestLimit> loosest = type.loosest != nullptr ? type.loosest(check) : std::nullopt;
-  if (!loosest || keeps(type.direction, value, loosest->value)) {
+  // A limit of 99.9 % is not exactly 0.999.
+  constexpr double kRounding = 1e-9;
+  const double slack = kRounding * (type.direction == Bound::at_most ? 1.0 : -1.0);
+  if (!loosest || keeps(type.direction, value, loosest->value + slack)) {
     return {};
   }
   return fmt::format("\"{}\" is looser than {}, {}; expected that or a tighter limit", text, loosest->what, shown(loosest->value, type));

@@ -64,6 +64,13 @@ void add_table_notes(Document& document, const Derating& derating) {
     document.add_note(Severity::warning,
                       fmt::format("Besides current, speed and air temperature the firmware must supply {}.", fmt::join(asked, ", ")));
   }
+  if (derating.rules.limits.winding_C < derating.nominal.winding_limit_C) {
+    document.add_note(
+        Severity::note,
+        fmt::format("The file gives the winding limit as a range around {:.0f} °C. Its lower end counts here, because the true "
+                    "limit is unknown.",
+                    derating.nominal.winding_limit_C));
+  }
   const TableBound& bound = derating.table.bound;
   document.add_note(
       Severity::background,
