@@ -118,7 +118,7 @@ TEST(DerateCommand, SaysWhatIsWrongAndLeavesNothing) {
       {{"--motor", kMotor, "--to", "json", "--out", "missing/x.json"}, 2, "missing"},
       {{"--motor", "maxon_dcx19s_24v", "--out", "x.h", "--ambient", "110degC"}, 2, "is not above the hottest air"},
       {{"--motor", kMotor, "--out", "-"}, 2, "/dev/stdout"},
-      {{"--motor", kMotor, "--out", "x.h", "--coldest", "50degC"}, 2, "is not below"},
+      {{"--motor", kMotor, "--out", "x.h", "--coldest", "50degC"}, 2, "is not above the coldest air"},
       {{"--motor", kMotor, "--model", "maxon_ecx_flat_32l_48v", "--out", "x.h"}, 2, "is not a model of"},
       {{"--motor", kMotor, "--out", "x.h", "--confidence", "95"}, 2, "--confidence"},
       {{"--motor", kMotor, "--out", "x.h", "--ambient", "120degC", "--condition", "fan=on"}, 2, "no effect of"},

@@ -372,7 +372,7 @@ TEST(GenerateCore, SaysWhatIsWrongAndLeavesNothing) {
       {with_motor + Words{"--out", "file/x"}, 2, "file"},
       {with_motor + Words{"--out", "missing/x"}, 2, "make it first"},
       {with_motor + Words{"--out", "/proc/heatsoak_core"}, 2, "cannot be written"},
-      {with_motor + Words{"--out", "x", "--coldest", "50degC"}, 2, "is not below"},
+      {with_motor + Words{"--out", "x", "--coldest", "50degC"}, 2, "is not above the coldest air"},
       {with_motor + Words{"--out", "x", "--json", "missing/y.json"}, 2, "missing"},
       {with_motor + Words{"--out", "x", "--samples", "3"}, 2, "--samples"},
       {{"--motor", "maxon_dcx19s_24v", "--out", "x", "--ambient", "110degC"}, 2, "is not above the hottest air"},
