@@ -129,7 +129,7 @@ Document derating_document(const Derating& derating, const Motor& motor) {
                        derating.rules.limits.winding_C,
                        derating.rules.limits.stator_C ? fmt::format(", stator below {:.0f} °C", *derating.rules.limits.stator_C) : "",
                        derating.rules.hottest_ambient_C, derating.data_quality)},
-                   {fmt::format("Safety factor on heat {:.2f}; allowed from cold {:.1f} A, lasting at any speed {:.2f} A.",
+                   {fmt::format("Safety factor on heat {:.2f}; current {:.1f} A from cold, {:.2f} A lasting.",
                                 derating.observer.heat_safety_factor(),
                                 derating.table.allowed_A(0.0, derating.rules.hottest_ambient_C, derating.rules.hottest_ambient_C),
                                 limp_current_A(derating))}},
