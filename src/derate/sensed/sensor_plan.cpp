@@ -19,7 +19,7 @@ namespace {
 
 /// Simulation steps per approach_s of the search and of the check. A longer step holds the current longer, which heats more.
 constexpr double kStepsPerApproach = 10.0;
-constexpr double kCheckStepsPerApproach = 60.0;
+constexpr double kCheckStepsPerApproach = 30.0;
 /// Offset between the random streams of the search, which are those of the guard without a sensor, and those of the check.
 constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
 /// Exponent of winding_speed_ratio over the ratio of safety factors. A pulse from cold heats the winding in proportion to safety factor
