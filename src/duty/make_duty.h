@@ -19,10 +19,10 @@ struct DutyJob {
   Robot robot;
   std::optional<Duty> duty = {};  ///< nothing: the recorded game `log`
   std::string log = {};
-  std::string player = {};                 ///< of the recorded game, "yellow 3"; empty: the busiest one
+  std::string player = {};                 ///< name in the recorded game, "yellow 3"; empty: the busiest one
   double every_s = 0.01;                   ///< time between two rows of the table
-  std::optional<std::uint64_t> seed = {};  ///< of a match; 1 if nothing
-  std::optional<Planner> planner = {};     ///< of a match; jerk_limited if nothing
+  std::optional<std::uint64_t> seed = {};  ///< seed of a match; 1 if nothing
+  std::optional<Planner> planner = {};     ///< planner of a match; jerk_limited if nothing
   DutyRows::Put put_table = {};            ///< gets the text of the table as it is made; empty: no table
 };
 
@@ -40,7 +40,7 @@ struct GeneratedMatch {
 struct DutyAnswer {
   Robot robot;
   std::optional<Duty> duty;  ///< nothing for a recorded game
-  std::string log;           ///< of a recorded game
+  std::string log;           ///< file of a recorded game
   std::variant<PrescribedLoad, GeneratedMatch, GameDemand> content;
 };
 

@@ -10,7 +10,7 @@ namespace heatsoak {
 struct OnOffAnswer {
   Motor motor;
   OnOffCurrent current;
-  PeriodicState periodic;           ///< of the whole network
+  PeriodicState periodic;           ///< periodic state of the whole network
   OnOffSteadyState under_rms;       ///< equations (8) to (12), or the network under the RMS current if the motor's file adds effects
   bool is_of_the_equations = true;  ///< true if `under_rms` comes from the equations
   bool is_over_limit = false;       ///< the highest temperature of the winding exceeds its limit, or there is no steady state

@@ -12,7 +12,7 @@ namespace heatsoak {
 struct CandidateNames {
   std::vector<std::string> motors;                     ///< ids or files; "all": the whole data base
   std::string model = {};                              ///< a calibrated motor that replaces the one it was fitted from; empty: none
-  std::map<std::string, std::string> conditions = {};  ///< as under() takes them
+  std::map<std::string, std::string> conditions = {};  ///< conditions for under()
 };
 
 /// Reads the model, then the motors in the order of their names, each once. `files` collects problems of files. Throws Failure (bad_input)

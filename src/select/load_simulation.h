@@ -12,7 +12,7 @@ struct LoadJob {
   Robot robot;
   Motor motor;
   Duty duty;                 ///< not a match
-  std::uint64_t seed = 1;    ///< of the duty's demand
+  std::uint64_t seed = 1;    ///< seed of the duty's demand
   double every_s = 1.0;      ///< longest time between two rows of the trace
   bool with_curves = false;  ///< keep the temperatures over time in `result`
 };
@@ -22,8 +22,8 @@ struct LoadSimulation {
   Motor motor;
   Duty duty;
   double duration_s = 0.0;
-  MotorEvaluation result;  ///< of the wheel whose winding gets hottest
-  Trace trace;             ///< of the same wheel
+  MotorEvaluation result;  ///< evaluation of the wheel whose winding gets hottest
+  Trace trace;             ///< trace of the same wheel
 };
 
 /// Throws Failure (bad_input) if the trace would have more rows than memory allows.

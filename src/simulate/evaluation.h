@@ -25,8 +25,8 @@ struct EvaluationJob {
   Robot robot;
   Duty duty;
   std::vector<Motor> motors;                           ///< at least one, with different ids
-  std::map<std::string, std::string> conditions = {};  ///< under which the motors were read
-  std::uint64_t seed = 1;                              ///< of the samples, and of the first game
+  std::map<std::string, std::string> conditions = {};  ///< conditions under which the motors were read
+  std::uint64_t seed = 1;                              ///< seed of the samples and of the first game
   std::optional<int> samples = {};                     ///< nothing: first_samples(), and more until the verdicts are decided
   int threads = 0;                                     ///< 0: all cores; the result does not depend on it
   bool with_bands = false;                             ///< keep the range of the samples over time
@@ -48,7 +48,7 @@ struct EvaluationAnswer {
   std::vector<Motor> motors;
   std::map<std::string, std::string> conditions;
   std::uint64_t seed = 1;
-  int samples = 0;                       ///< of the first round
+  int samples = 0;                       ///< samples of the first round
   WheelDemand demand;                    ///< nominal demand of one of the wheels
   std::size_t draw_count = 0;            ///< number of simulated games; 0 for a duty without random samples
   std::vector<MotorEvaluation> results;  ///< with nominal curves; in the order of `ranks` in a closed loop, else as evaluate() sorts them

@@ -18,7 +18,7 @@ struct MatchJob {
   Motor motor;
   Duty duty;  ///< a match
   std::vector<Planner> planners{Planner::jerk_limited};
-  std::uint64_t seed = 1;  ///< of game, sensors and radio
+  std::uint64_t seed = 1;  ///< seed of game, sensors and radio
   GuardUse guard = GuardUse::shadow;
   bool is_sensing_ideal = false;
   bool with_table = false;  ///< make the CSV; for one planner only

@@ -48,7 +48,7 @@ std::vector<StudyCase> jerk_sweep(const Robot& robot);
 struct JerkSweep {
   Robot robot;  ///< with assumed friction if its file has none
   Motor motor;
-  std::vector<StudyResult> results;  ///< of jerk_sweep()
+  std::vector<StudyResult> results;  ///< results of jerk_sweep()
 };
 
 /// Runs the study of jerk_sweep() with ideal or real sensing; `seed` is that of sensors and radio. Throws Failure (bad_input) that names

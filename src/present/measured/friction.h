@@ -26,7 +26,7 @@ struct FrictionAnswer {
 };
 Document friction_document(const Robot& robot, const FrictionAnswer& answer);
 
-/// What is known beside the result, for the JSON.
+/// Inputs that the JSON repeats beside the result.
 struct FrictionRemarks {
   std::optional<std::string> motor_id;  ///< nothing if no file of the robot's motor was found
   std::vector<std::string> findings;
