@@ -12,6 +12,12 @@ namespace heatsoak::thresholds {
 /// No winding of this world is outside; 70 K, meant as a rise, is.
 inline constexpr Range kPlausible_C = Range::between(-60.0, 1000.0);
 
+/// Returns the motor's own limit as the loosest one; nothing without a motor or if its file gives no such limit.
+inline std::optional<LoosestLimit> own_limit(const Check& check, double MotorValues::*limit_C, const char* what) {
+  const bool is_known = check.motor && std::isfinite(check.motor->nominal.*limit_C);
+  return is_known ? std::optional<LoosestLimit>({check.motor->nominal.*limit_C, what}) : std::nullopt;
+}
+
 /// The upper end of the 95 % interval of a peak's 95th percentile, with the air as the origin of its rise. Throws Failure where the samples
 /// are too few to have one.
 inline Measured measured_peak(const Check& check, Computations& computations, Spread95 MotorEvaluation::*peak,

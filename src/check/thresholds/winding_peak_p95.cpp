@@ -13,10 +13,7 @@ ThresholdType winding_peak_p95() {
           .example = "at most 120 degC",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},
-          .loosest = [](const Check& check) -> std::optional<LoosestLimit> {
-            return check.motor ? std::optional<LoosestLimit>({check.motor->nominal.winding_limit_C, "the motor's own winding limit"})
-                               : std::nullopt;
-          },
+          .loosest = [](const Check& check) { return own_limit(check, &MotorValues::winding_limit_C, "the motor's own winding limit"); },
           .measure =
               [](const Check& check, Computations& computations) {
                 return measured_peak(check, computations, &MotorEvaluation::winding_peak_C, &MotorEvaluation::winding_p95_interval_C);
