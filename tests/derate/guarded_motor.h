@@ -87,4 +87,21 @@ class RandomLoad {
   Wish wish_;
 };
 
+/// Returns a derating with the observer and the table of `guarded`; motor and robot have the ids "guarded" and "roboteam_twente_v2024".
+inline Derating derating_of(const GuardedMotor& guarded) {
+  return {.motor_id = "guarded",
+          .robot_id = "roboteam_twente_v2024",
+          .data_quality = "estimated",
+          .torque_constant_Nm_per_A = guarded.motor.nominal.torque_constant_Nm_per_A,
+          .observer = guarded.observer,
+          .rules = guarded.rules,
+          .table = guarded.table,
+          .options = {},
+          .assumed = {},
+          .effects = {},
+          .guarantee = {.samples = 400, .over = 10, .over_share = {0.01, 0.05}},
+          .uses = {},
+          .reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s};
+}
+
 }  // namespace heatsoak

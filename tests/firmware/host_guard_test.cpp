@@ -27,22 +27,7 @@ namespace {
 
 using Record = std::array<float, firmware::kSignalCount>;
 
-Derating derating_of(const Motor& motor) {
-  const GuardedMotor guarded(motor, rules_for(ecx_32()), 1.5);
-  return {.motor_id = "guarded",
-          .robot_id = "roboteam_twente_v2024",
-          .data_quality = "estimated",
-          .torque_constant_Nm_per_A = guarded.motor.nominal.torque_constant_Nm_per_A,
-          .observer = guarded.observer,
-          .rules = guarded.rules,
-          .table = guarded.table,
-          .options = {},
-          .assumed = {},
-          .effects = {},
-          .guarantee = {.samples = 400, .over = 10, .over_share = {0.01, 0.05}},
-          .uses = {},
-          .reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s};
-}
+Derating derating_of(const Motor& motor) { return derating_of(GuardedMotor(motor, rules_for(ecx_32()), 1.5)); }
 
 /// Laws with exponential, power and square root over every signal, and a third node.
 constexpr const char* kManyLaws = R"([effects.knee]

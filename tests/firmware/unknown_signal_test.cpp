@@ -101,19 +101,7 @@ TEST(UnknownSignal, HeatsAsMuchIfTheHottestSpeedDependsOnTheTemperature) {
 // The drive core's own search: never a higher current than with all values.
 TEST(UnknownSignal, GuardAllowsNoMoreCurrentThanWithALongSearch) {
   const GuardedMotor guarded(ecx_32(), rules_for(ecx_32()), 1.5);
-  const HostGuard guard({.motor_id = "guarded",
-                         .robot_id = "roboteam_twente_v2024",
-                         .data_quality = "estimated",
-                         .torque_constant_Nm_per_A = guarded.motor.nominal.torque_constant_Nm_per_A,
-                         .observer = guarded.observer,
-                         .rules = guarded.rules,
-                         .table = guarded.table,
-                         .options = {},
-                         .assumed = {},
-                         .effects = {},
-                         .guarantee = {.samples = 400, .over = 10, .over_share = {0.01, 0.05}},
-                         .uses = {},
-                         .reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s});
+  const HostGuard guard(derating_of(guarded));
   EXPECT_EQ(guard.model().plausible_range[robot_core::guard_speed_rad_per_s].possible_count, 1);
   robot_core::GuardModel searching = guard.model();
   std::vector<float> currents;
