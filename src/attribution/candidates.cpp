@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attribution/extended_model.h"
 #include "estimation/log_rows.h"
+#include "estimation/model_along_run.h"
 #include "estimation/spans.h"
 #include "thermal/linearised.h"
 
@@ -27,8 +27,8 @@ std::vector<std::string_view> lacking(const std::vector<Signal>& needs, const st
   return names;
 }
 
-bool is_in(const ExtendedModel& model, const Candidate& candidate) {
-  const Network& network = model.model.network;
+bool is_in(const Model& model, const Candidate& candidate) {
+  const Network& network = model.network;
   return std::ranges::any_of(network.effects(), [&](const EffectInPlace& effect) {
     if (effect.type->name != candidate.type->name) {
       return false;
@@ -154,9 +154,8 @@ std::vector<Condition> conditions_of(const std::vector<MeasuredRun>& runs) {
 }
 
 /// Adds candidates that act only in some runs and appear in no signal: airflow, constant heat, and run deviations.
-void add_conditional_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const MotorSize& size,
-                                CandidateList& list) {
-  const Network& network = model.model.network;
+void add_conditional_candidates(const Model& model, const std::vector<MeasuredRun>& runs, const MotorSize& size, CandidateList& list) {
+  const Network& network = model.network;
   for (const Condition& condition : conditions_of(runs)) {
     for (const std::string_view name : {"airflow", "constant_heat"}) {
       const EffectType& type = *find_effect(name);
@@ -197,7 +196,7 @@ std::string id_of(const EffectType& type, const std::vector<std::string>& nodes)
   return std::string(type.name);
 }
 
-void add_network_candidates(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const MotorSize& size, CandidateList& list) {
+void add_network_candidates(const Model& model, const std::vector<MeasuredRun>& runs, const MotorSize& size, CandidateList& list) {
   for (const EffectType& type : all_effects()) {
     if (!type.candidacy.size_parameter) {
       continue;
@@ -206,7 +205,7 @@ void add_network_candidates(const ExtendedModel& model, const std::vector<Measur
       list.not_judged.push_back(fmt::format("{}: not every log has {}", type.name, fmt::join(names, " and ")));
       continue;
     }
-    for (const std::vector<std::string>& nodes : placements(model.model.network, type)) {
+    for (const std::vector<std::string>& nodes : placements(model.network, type)) {
       int variant = 0;
       for (const std::vector<double>& parameters : type.candidacy.variants) {
         Candidate candidate{&type, nullptr, nullptr, id_of(type, nodes), nodes, scaled(type, parameters, size), variant++, 1.0, {}};
@@ -379,9 +378,9 @@ std::string_view Candidate::experiment() const {
   return type ? type->candidacy.experiment : sensor_type->experiment;
 }
 
-CandidateList candidates_for(const ExtendedModel& model, const std::vector<MeasuredRun>& runs) {
+CandidateList candidates_for(const Model& model, const std::vector<MeasuredRun>& runs) {
   CandidateList list;
-  const MotorSize size = size_of(model.model, runs);
+  const MotorSize size = size_of(model, runs);
   add_network_candidates(model, runs, size, list);
   add_conditional_candidates(model, runs, size, list);
   for (const SensorEffectType& type : all_sensor_effects()) {
@@ -404,10 +403,10 @@ std::vector<int> candidates_with_body(const std::vector<Candidate>& candidates) 
   return found;
 }
 
-Columns candidate_columns(const std::vector<Candidate>& candidates, const ExtendedModel& model, const LinearisedRun& fitted,
+Columns candidate_columns(const std::vector<Candidate>& candidates, const Model& model, const LinearisedRun& fitted,
                           const MeasuredRun& run) {
   const std::vector<double> parameters = model.values_in(run);
-  Extended extended{model.model.network, {}, {}, {}, {}, {}};
+  Extended extended{model.network, {}, {}, {}, {}, {}};
   const Eigen::VectorXd start_C = fitted.state_C.col(0);
   extended.state_C.assign(start_C.begin(), start_C.end());
   for (std::size_t j = 0; j < candidates.size(); ++j) {
@@ -417,7 +416,7 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Extend
     if (candidates[j].type) {
       extend(extended, candidates[j], j, run.at.front().ambient_C);
     } else if (candidates[j].deviation_type) {
-      for (const int place : candidates[j].deviation_type->places_in(model.model.network)) {
+      for (const int place : candidates[j].deviation_type->places_in(model.network)) {
         extended.wanted.push_back(place);
         extended.slope.push_back(candidates[j].typical_size() * parameters[static_cast<std::size_t>(place)]);
         extended.own.push_back(j);

@@ -4,14 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "attribution/run_deviation.h"
 #include "estimation/linearised_run.h"
 #include "estimation/model.h"
+#include "estimation/run_deviation.h"
 #include "motor/sensor_effect.h"
 
 namespace heatsoak {
-
-struct ExtendedModel;
 
 /// One candidate effect: a variant of a network effect at given nodes, a sensor error, or a run deviation. Exactly one of the three types
 /// is set.
@@ -44,14 +42,14 @@ struct CandidateList {
 /// Returns the candidates that these runs can test: all needed signals and sensors are logged, and the model does not contain the effect
 /// yet. Includes candidates limited to runs with one condition, for every condition that divides the runs; each run alone is such a
 /// condition.
-CandidateList candidates_for(const ExtendedModel& model, const std::vector<MeasuredRun>& runs);
+CandidateList candidates_for(const Model& model, const std::vector<MeasuredRun>& runs);
 
 /// Returns the indices of the candidates that add a body (node with a heat capacity) of their own, ascending.
 std::vector<int> candidates_with_body(const std::vector<Candidate>& candidates);
 
 /// Returns the columns of one run (n·s rows), in K, at the model's present parameters. First one column per candidate, per typical size.
 /// Then one per candidate with a body, per kelvin of the body's start temperature above ambient, at the typical size.
-Columns candidate_columns(const std::vector<Candidate>& candidates, const ExtendedModel& model, const LinearisedRun& fitted,
+Columns candidate_columns(const std::vector<Candidate>& candidates, const Model& model, const LinearisedRun& fitted,
                           const MeasuredRun& run);
 
 }  // namespace heatsoak

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "attribution/extended_model.h"
+#include "estimation/model_along_run.h"
 
 namespace heatsoak {
 
@@ -22,11 +22,8 @@ struct ChangedParameter {
   double high = 0.0;
 };
 
-/// Returns the prior with the variance of one coordinate increased by `sheet_sd`², where `sheet_sd` is the standard deviation of the
-/// logarithm on a data sheet.
-Prior with_prior_sd(const Prior& prior, Eigen::Index coordinate, double sheet_sd);
-
-/// Returns the coordinates of positive parameters whose prior standard deviation is less than half of `sheet_sd`.
-std::vector<Eigen::Index> well_known_values(const ExtendedModel& model, double sheet_sd);
+/// Returns the coordinates of positive parameters whose prior standard deviation is less than half of `sheet_sd`, the standard deviation
+/// of the logarithm on a data sheet.
+std::vector<Eigen::Index> well_known_values(const Model& model, double sheet_sd);
 
 }  // namespace heatsoak

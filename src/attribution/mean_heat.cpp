@@ -6,15 +6,14 @@
 
 namespace heatsoak {
 
-double mean_heat_W(const ExtendedModel& extended, const std::vector<MeasuredRun>& runs) {
-  const Model& model = extended.model;
+double mean_heat_W(const Model& model, const std::vector<MeasuredRun>& runs) {
   const auto nodes = static_cast<std::size_t>(model.network.node_count());
   std::vector<double> heat_W(model.network.effects().size() * nodes);
   double energy_J = 0.0;
   double time_s = 0.0;
   for (const MeasuredRun& run : runs) {
     const std::vector<double> state_C = measured_start_C(model.network, run);
-    const std::vector<double> values = extended.values_in(run);
+    const std::vector<double> values = model.values_in(run);
     for (std::size_t k = 0; k < run.at.size(); ++k) {
       const double duration_s = run.time_s[k + 1] - run.time_s[k];
       model.network.balance_W(run.at[k], values, state_C, heat_W);
@@ -29,8 +28,8 @@ double mean_heat_W(const ExtendedModel& extended, const std::vector<MeasuredRun>
   return time_s > 0.0 ? energy_J / time_s : 0.0;
 }
 
-void heat_along(const RefitResult& fit, const MeasuredRun& run, const LinearisedRun& path, const HeatVisit& visit) {
-  const Network& network = fit.model.model.network;
+void heat_along(const Posterior& fit, const MeasuredRun& run, const LinearisedRun& path, const HeatVisit& visit) {
+  const Network& network = fit.model.network;
   const std::vector<double> values = fit.model.values_in(run);
   std::vector<double> heat_W(network.effects().size() * static_cast<std::size_t>(network.node_count()));
   for (std::size_t k = 0; k < run.at.size(); ++k) {
@@ -40,9 +39,9 @@ void heat_along(const RefitResult& fit, const MeasuredRun& run, const Linearised
   }
 }
 
-HeatOfEffect heat_of(const RefitResult& fit, const std::vector<MeasuredRun>& runs, const std::function<bool(const EffectInPlace&)>& counts,
+HeatOfEffect heat_of(const Posterior& fit, const std::vector<MeasuredRun>& runs, const std::function<bool(const EffectInPlace&)>& counts,
                      const Condition& condition) {
-  const Network& network = fit.model.model.network;
+  const Network& network = fit.model.network;
   const auto nodes = static_cast<std::size_t>(network.node_count());
   std::vector<std::size_t> places;
   for (std::size_t effect = 0; effect < network.effects().size(); ++effect) {

@@ -5,11 +5,11 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "attribution/design.h"
-#include "attribution/flux_grid.h"
 #include "attribution/regressors.h"
 #include "attribution/rules.h"
 #include "attribution/scan_term.h"
+#include "estimation/design.h"
+#include "estimation/flux_grid.h"
 
 namespace heatsoak {
 

@@ -10,11 +10,11 @@
 #include <set>
 
 #include "attribution/mean_heat.h"
-#include "attribution/open_loop.h"
 #include "base/parallel.h"
 #include "calibration/motor_model.h"
 #include "calibration/unlogged_speed.h"
 #include "estimation/averaged_run.h"
+#include "estimation/free_run_errors.h"
 #include "estimation/model_screening.h"
 
 namespace heatsoak {
@@ -115,14 +115,14 @@ void Rounds::begin() {
   std::vector<std::vector<double>> start_C;
   std::vector<LinearisedRun> paths;
   for (const MeasuredRun& run : input_.runs) {
-    start_C.push_back(measured_start_C(input_.model.model.network, run));
+    start_C.push_back(measured_start_C(input_.model.network, run));
     paths.push_back(linearise(input_.model, start_C.back(), run));
     merged_.push_back(mergeable_samples(paths.back()));
   }
   unit_W_ = rules_.material_K / std::max(1e-6, steady_rise_K_per_W(paths));
-  now_ = refit(input_.model, input_.runs, start_C, plain_options());
-  out_.material_W = std::max({unit_W_, rules_.material_share * out_.mean_heat_W, rules_.as_usual_ratio * input_.model.usual_flux_W});
-  grid_ = flux_grid(unit_W_, travel_K(input_.runs), input_.model.model.flux_nodes.size());
+  now_ = posterior_of(input_.model, input_.runs, start_C, plain_options());
+  out_.material_W = std::max({unit_W_, rules_.material_share * out_.mean_heat_W, rules_.as_usual_ratio * input_.usual.flux_W});
+  grid_ = flux_grid(unit_W_, travel_K(input_.runs), input_.model.flux_nodes.size());
   out_.weights = weights_by_model(now_.fitted, input_.runs, unit_W_);
   list_ = candidates_for(input_.model, input_.runs);
   if (is_speed_open_) {
@@ -133,7 +133,7 @@ void Rounds::begin() {
   parameters_ = well_known_values(input_.model, kSheet_sd);
   set_rules_ = rules_of(candidates(), rules_);
   for (const Eigen::Index parameter : parameters_) {
-    const std::string name = "parameter " + input_.model.model.name(parameter);
+    const std::string name = "parameter " + input_.model.name(parameter);
     set_rules_.push_back({false, rules_.inclusion_nats, name, name});
   }
   bodies_ = candidates_with_body(candidates());
@@ -150,12 +150,12 @@ void Rounds::begin() {
 
 Judged Rounds::judge() {
   Judged judged;
-  const ExtendedModel base = base_here();
+  const Model base = base_here();
   std::vector<Columns> extra(input_.runs.size());
   judged.fitted.resize(input_.runs.size());
   in_parallel(input_.runs.size(), 0, [&](std::size_t r) {
     const MeasuredRun& run = input_.runs[r];
-    judged.fitted[r] = linearise_along(base, now_.fitted[r].state_C.topRows(base.model.network.state_count()), run);
+    judged.fitted[r] = linearise_along(base, now_.fitted[r].state_C.topRows(base.network.state_count()), run);
     const auto own = static_cast<Eigen::Index>(set_rules_.size());
     const auto bodies = static_cast<Eigen::Index>(bodies_.size());
     const auto runs = static_cast<Eigen::Index>(input_.runs.size());
@@ -170,7 +170,7 @@ Judged Rounds::judge() {
       extra[r].col(static_cast<Eigen::Index>(candidates().size() + i)) = kSheet_sd * judged.fitted[r].by_parameter.col(parameters_[i]);
     }
   });
-  judged.designs = design(base.model.network, judged.fitted, input_.runs, out_.weights, merged_, extra);
+  judged.designs = design(base.network, judged.fitted, input_.runs, out_.weights, merged_, extra);
   const ThetaPrior prior = prior_here(base);
   judged.empty_place = best_place(judged.designs, prior, {}, place_);
   std::map<FluxPlace, Reduced> points;
@@ -201,10 +201,10 @@ Judged Rounds::judge() {
   constexpr std::size_t kMostFits = 6;
   search_->reconsider(
       [&](const std::vector<int>& members, const SetSearch::AtBest& at) {
-        RefitOptions options = final_options(judged.places[at.point]);
+        PosteriorOptions options = final_options(judged.places[at.point]);
         options.around.clear();
-        const ExtendedModel model = with_members(members, at, ShapesAre::free);
-        return try_refit(model, input_.runs, starts_of(model), options).evidence_nats;
+        const Model model = with_members(members, at, ShapesAre::free);
+        return try_posterior_of(model, input_.runs, starts_of(model), options).evidence_nats;
       },
       kMostFits);
   if (search_->sets().front().members != judged.best) {
@@ -248,8 +248,8 @@ FluxPlace Rounds::best_place(const std::vector<DesignRun>& designs, const ThetaP
   });
 }
 
-ExtendedModel Rounds::with_members(const std::vector<int>& members, const SetSearch::AtBest& at, ShapesAre shapes) const {
-  ExtendedModel model = base_here();
+Model Rounds::with_members(const std::vector<int>& members, const SetSearch::AtBest& at, ShapesAre shapes) const {
+  Model model = base_here();
   Eigen::VectorXd theta = model.theta() + at.theta;
   for (Eigen::Index i = 0; i < theta.size(); ++i) {
     theta[i] = std::clamp(theta[i], model.low(i), model.high(i));
@@ -258,7 +258,7 @@ ExtendedModel Rounds::with_members(const std::vector<int>& members, const SetSea
   for (std::size_t m = 0; m < members.size(); ++m) {
     if (is_parameter(members[m])) {
       const Eigen::Index parameter = parameter_of(members[m]);
-      model.model.prior = with_prior_sd(model.model.prior, parameter, kSheet_sd);
+      model.prior.widen(parameter, kSheet_sd);
       Eigen::VectorXd moved = model.theta();
       moved[parameter] =
           std::clamp(moved[parameter] + kSheet_sd * at.sizes[static_cast<Eigen::Index>(m)], model.low(parameter), model.high(parameter));
@@ -275,23 +275,23 @@ ExtendedModel Rounds::with_members(const std::vector<int>& members, const SetSea
 }
 
 void Rounds::follow(const Judged& judged) {
-  RefitOptions options;
+  PosteriorOptions options;
   options.flux = grid_.at(judged.best_place);
   options.weights = out_.weights;
   options.merged = merged_;
-  RefitResult next = try_refit(with_members(judged.best, judged.at_best, ShapesAre::free), input_.runs, now_.start_C, options);
+  Posterior next = try_posterior_of(with_members(judged.best, judged.at_best, ShapesAre::free), input_.runs, now_.start_C, options);
   if (!std::isfinite(next.evidence_nats)) {
     return;
   }
   now_ = std::move(next);
-  std::size_t instance = input_.model.model.network.effects().size();
+  std::size_t instance = input_.model.network.effects().size();
   for (const int member : judged.best) {
     if (is_parameter(member)) {
       continue;
     }
     Candidate& candidate = list_.candidates[static_cast<std::size_t>(member)];
     if (candidate.type) {
-      take_shapes(now_.model.model.network.effects()[instance++], candidate);
+      take_shapes(now_.model.network.effects()[instance++], candidate);
     } else if (candidate.sensor_type) {
       candidate.column_at_share = away_from_zero(now_.model.theta()[size_coordinate(now_.model, candidate, {})]);
     }
@@ -305,7 +305,7 @@ double Rounds::away_from_zero(double share) {
 }
 
 void Rounds::take_shapes(const EffectInPlace& fitted, Candidate& candidate) const {
-  const auto value_of = [&](std::size_t p) { return now_.model.model.values[static_cast<std::size_t>(fitted.parameter_index[p])]; };
+  const auto value_of = [&](std::size_t p) { return now_.model.values[static_cast<std::size_t>(fitted.parameter_index[p])]; };
   const auto size = static_cast<std::size_t>(candidate.size_parameter());
   const double share = away_from_zero(value_of(size) / candidate.typical_size());
   for (std::size_t p = 0; p < candidate.parameters.size(); ++p) {
@@ -360,8 +360,8 @@ void Rounds::note_sight() {
   out_.seen_share = 1.0 - static_cast<double>(out_.unseen.size()) / all;
 }
 
-RefitOptions Rounds::final_options(const FluxPlace& place) const {
-  RefitOptions options;
+PosteriorOptions Rounds::final_options(const FluxPlace& place) const {
+  PosteriorOptions options;
   options.flux = grid_.at(place);
   options.weights = out_.weights;
   options.merged = merged_;
@@ -371,18 +371,18 @@ RefitOptions Rounds::final_options(const FluxPlace& place) const {
   return options;
 }
 
-RefitOptions Rounds::plain_options() const {
-  RefitOptions plain;
+PosteriorOptions Rounds::plain_options() const {
+  PosteriorOptions plain;
   plain.white_noise_K = rules_.start_error_K;
   plain.longest_step_ratio = rules_.longest_step_ratio;
   plain.most_steps = 20;
-  plain.flux = {std::vector<double>(input_.model.model.flux_nodes.size(), 0.0), 100.0};
+  plain.flux = {std::vector<double>(input_.model.flux_nodes.size(), 0.0), 100.0};
   plain.weights = out_.weights;
   plain.merged = merged_;
   return plain;
 }
 
-double Rounds::error_of_ends_K(const RefitResult& start, RefitOptions options) const {
+double Rounds::error_of_ends_K(const Posterior& start, PosteriorOptions options) const {
   constexpr double kSeen_share = 2.0 / 3.0;
   const auto seen = [](const MeasuredRun& run) { return static_cast<Eigen::Index>(kSeen_share * static_cast<double>(run.samples())); };
   for (std::size_t r = 0; r < input_.runs.size(); ++r) {
@@ -393,7 +393,7 @@ double Rounds::error_of_ends_K(const RefitResult& start, RefitOptions options) c
     }
     options.weights[r].tail((run.samples() - seen(run)) * sensors).setZero();
   }
-  const RefitResult fit = try_refit(start.model, input_.runs, start.start_C, options);
+  const Posterior fit = try_posterior_of(start.model, input_.runs, start.start_C, options);
   if (!std::isfinite(fit.evidence_nats)) {
     return std::numeric_limits<double>::infinity();
   }
@@ -412,15 +412,15 @@ double Rounds::error_of_ends_K(const RefitResult& start, RefitOptions options) c
   return std::sqrt(sum_K2 / std::max(1.0, count));
 }
 
-RefitResult Rounds::to_predict(RefitResult fit) const {
+Posterior Rounds::to_predict(Posterior fit) const {
   if (fit.flux.drift_K <= 0.0 || !std::isfinite(fit.evidence_nats)) {
     return fit;
   }
-  RefitResult plain = try_refit(fit.model, input_.runs, fit.start_C, plain_options());
+  Posterior plain = try_posterior_of(fit.model, input_.runs, fit.start_C, plain_options());
   if (!std::isfinite(plain.evidence_nats)) {
     return fit;
   }
-  RefitOptions whitened;
+  PosteriorOptions whitened;
   whitened.flux = fit.flux;
   whitened.weights = out_.weights;
   whitened.merged = merged_;
@@ -436,42 +436,42 @@ RefitResult Rounds::to_predict(RefitResult fit) const {
 }
 
 void Rounds::own_parameters(const Judged& judged) {
-  const ExtendedModel start = base_here();
-  out_.before = refit(start, input_.runs, starts_of(start), final_options(judged.empty_place));
+  const Model start = base_here();
+  out_.before = posterior_of(start, input_.runs, starts_of(start), final_options(judged.empty_place));
   out_.own = out_.before;
   std::vector<int> doubted;
   std::ranges::copy_if(judged.best, std::back_inserter(doubted), [&](int member) { return is_parameter(member); });
   if (!doubted.empty()) {
-    const ExtendedModel with_changes = with_members(doubted, search_->at_best(doubted), ShapesAre::held);
-    out_.own = refit(with_changes, input_.runs, starts_of(with_changes), final_options(judged.best_place));
+    const Model with_changes = with_members(doubted, search_->at_best(doubted), ShapesAre::held);
+    out_.own = posterior_of(with_changes, input_.runs, starts_of(with_changes), final_options(judged.best_place));
   }
   out_.own = to_predict(std::move(out_.own));
 }
 
-std::vector<std::vector<double>> Rounds::starts_of(const ExtendedModel& model) const {
+std::vector<std::vector<double>> Rounds::starts_of(const Model& model) const {
   std::vector<std::vector<double>> start_C = now_.start_C;
   for (std::vector<double>& each : start_C) {
-    each.resize(std::min(each.size(), static_cast<std::size_t>(model.model.network.state_count())));
+    each.resize(std::min(each.size(), static_cast<std::size_t>(model.network.state_count())));
   }
   return start_C;
 }
 
-std::map<std::string, double> Rounds::left_by(const RefitResult& fit) const {
+std::map<std::string, double> Rounds::left_by(const Posterior& fit) const {
   std::vector<Eigen::VectorXd> squares(input_.runs.size());
-  const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.runs, out_.weights, merged_, {});
+  const std::vector<DesignRun> designs = design(fit.model.network, fit.fitted, input_.runs, out_.weights, merged_, {});
   in_parallel(designs.size(), 0, [&](std::size_t r) {
     const DesignRun& one = designs[r];
     squares[r] = Whitening(one.run, fit.flux, one.noise).smoothed_flux(one.run.residual_K).mean_W.rowwise().squaredNorm();
   });
   std::map<std::string, double> left;
-  for (std::size_t f = 0; f < input_.model.model.flux_nodes.size(); ++f) {
+  for (std::size_t f = 0; f < input_.model.flux_nodes.size(); ++f) {
     double sum = 0.0;
     double count = 0.0;
     for (std::size_t r = 0; r < designs.size(); ++r) {
       sum += squares[r][static_cast<Eigen::Index>(f)];
       count += static_cast<double>(designs[r].run.samples());
     }
-    left[std::string(input_.model.model.network.node_name(input_.model.model.flux_nodes[f]))] = std::sqrt(sum / count);
+    left[std::string(input_.model.network.node_name(input_.model.flux_nodes[f]))] = std::sqrt(sum / count);
   }
   return left;
 }

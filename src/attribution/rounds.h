@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "attribution/flux_grid.h"
 #include "attribution/selection.h"
 #include "attribution/set_search.h"
 #include "attribution/terms.h"
+#include "estimation/flux_grid.h"
 
 namespace heatsoak {
 
@@ -37,7 +37,7 @@ class Rounds {
   [[nodiscard]] Eigen::Index free_count() const { return input_.model.free_count(); }
   void begin();
   /// Returns the base model with the parameter values of the last fit.
-  [[nodiscard]] ExtendedModel base_here() const { return with_values_of(input_.model, now_.model); }
+  [[nodiscard]] Model base_here() const { return with_values_of(input_.model, now_.model); }
   /// Runs one round along the path of the last fit.
   Judged judge();
   /// Adds the normal equations at those grid points that `points` does not contain yet.
@@ -47,7 +47,7 @@ class Rounds {
   [[nodiscard]] FluxPlace best_place(const std::vector<DesignRun>& designs, const ThetaPrior& prior, const std::vector<int>& members,
                                      const FluxPlace& start) const;
   /// Returns the model with a set of effects, at the sizes and θ of the linear solution.
-  [[nodiscard]] ExtendedModel with_members(const std::vector<int>& members, const SetSearch::AtBest& at, ShapesAre shapes) const;
+  [[nodiscard]] Model with_members(const std::vector<int>& members, const SetSearch::AtBest& at, ShapesAre shapes) const;
   /// Refits the best set and linearises along its free run. The columns of its members get their fitted shapes and sizes.
   void follow(const Judged& judged);
   /// Returns the size, or ±0.1 if it is closer to 0, where columns would vanish.
@@ -58,27 +58,27 @@ class Rounds {
   void note();
   /// Records the effects whose expected gain at typical size is below `seen_nats`.
   void note_sight();
-  [[nodiscard]] RefitOptions final_options(const FluxPlace& place) const;
+  [[nodiscard]] PosteriorOptions final_options(const FluxPlace& place) const;
   /// Sensor drift means that the network lacks bodies, and whitened residuals may then not give the most predictive parameters. Refits to
   /// the free runs if that predicts the ends of the runs better; the change is added to the covariance.
-  [[nodiscard]] RefitResult to_predict(RefitResult fit) const;
+  [[nodiscard]] Posterior to_predict(Posterior fit) const;
   /// Fits the first two thirds of all runs and returns the RMS error in K of the predicted last thirds; ∞ if the fit fails.
-  [[nodiscard]] double error_of_ends_K(const RefitResult& start, RefitOptions options) const;
+  [[nodiscard]] double error_of_ends_K(const Posterior& start, PosteriorOptions options) const;
   /// Returns options for plain least squares of the free runs, without unknown heat.
-  [[nodiscard]] RefitOptions plain_options() const;
+  [[nodiscard]] PosteriorOptions plain_options() const;
   /// Fits the model without effects: once with the file's priors (`before`), once with wider priors for the contradicted parameters
   /// (`own`).
   void own_parameters(const Judged& judged);
   /// Returns the start temperatures of the last fit. Nodes that it does not contain start at ambient temperature.
-  [[nodiscard]] std::vector<std::vector<double>> starts_of(const ExtendedModel& model) const;
+  [[nodiscard]] std::vector<std::vector<double>> starts_of(const Model& model) const;
   /// Returns the RMS of the smoothed unknown heat in W of a fit, by node.
-  [[nodiscard]] std::map<std::string, double> left_by(const RefitResult& fit) const;
+  [[nodiscard]] std::map<std::string, double> left_by(const Posterior& fit) const;
 
   const SelectionInput& input_;
   const SelectionRules& rules_;
   bool is_speed_open_;  ///< speed was not logged: heat at the stator may be the loss at speed
   Selection out_;
-  RefitResult now_;  ///< fit along which the equations are linearised
+  Posterior now_;  ///< fit along which the equations are linearised
   std::vector<int> merged_;
   /// Unknown heat in W that warms the outermost node by `material_K`; scale of the grid.
   double unit_W_ = 0.0;

@@ -10,9 +10,9 @@
 #include <map>
 #include <numeric>
 
-#include "attribution/open_loop.h"
 #include "attribution/rounds.h"
 #include "calibration/motor_model.h"
+#include "estimation/free_run_errors.h"
 #include "estimation/log_columns.h"
 #include "estimation/smoothed_path.h"
 
@@ -29,10 +29,10 @@ class Selector : Rounds {
 
   double evidence_without_effects_nats() {
     begin();
-    const std::vector<DesignRun> designs = design(now_.model.model.network, now_.fitted, input_.runs, out_.weights, merged_, {});
-    RefitOptions options = final_options(best_place(designs, prior_here(now_.model), {}, place_));
+    const std::vector<DesignRun> designs = design(now_.model.network, now_.fitted, input_.runs, out_.weights, merged_, {});
+    PosteriorOptions options = final_options(best_place(designs, prior_here(now_.model), {}, place_));
     options.around.clear();
-    return refit(now_.model, input_.runs, now_.start_C, options).evidence_nats;
+    return posterior_of(now_.model, input_.runs, now_.start_C, options).evidence_nats;
   }
 
   Selection run() {
@@ -43,10 +43,10 @@ class Selector : Rounds {
  private:
   void decide(const Judged& judged) {
     const EffectSet& best = search_->sets().front();
-    RefitOptions options = final_options(judged.best_place);
+    PosteriorOptions options = final_options(judged.best_place);
     options.around.clear();
-    const ExtendedModel with_best = with_members(best.members, judged.at_best, ShapesAre::held);
-    const RefitResult full = try_refit(with_best, input_.runs, starts_of(with_best), options);
+    const Model with_best = with_members(best.members, judged.at_best, ShapesAre::held);
+    const Posterior full = try_posterior_of(with_best, input_.runs, starts_of(with_best), options);
     out_.left_W = left_by(std::isfinite(full.evidence_nats) ? full : out_.before);
     std::vector<std::size_t> named;
     for (std::size_t m = 0; m < best.members.size(); ++m) {
@@ -83,7 +83,7 @@ class Selector : Rounds {
       keep_what_outweighs(best, named);
       out_.is_unexplained = named.empty();
     }
-    if (input_.model.usual_flux_W > 0.0) {
+    if (input_.usual.flux_W > 0.0) {
       keep_what_helps(best, named);
     }
     build(judged, best, named);
@@ -99,8 +99,8 @@ class Selector : Rounds {
 
   void add_changed(const EffectSet& best, std::size_t place) {
     const Eigen::Index coordinate = parameter_of(best.members[place]);
-    const FreeParameter& free = input_.model.model.free[static_cast<std::size_t>(coordinate)];
-    const NetworkParameter& parameter = input_.model.model.network.parameters()[static_cast<std::size_t>(free.place)];
+    const FreeParameter& free = input_.model.free[static_cast<std::size_t>(coordinate)];
+    const NetworkParameter& parameter = input_.model.network.parameters()[static_cast<std::size_t>(free.place)];
     ChangedParameter changed;
     changed.coordinate = coordinate;
     changed.name = parameter.name;
@@ -111,16 +111,16 @@ class Selector : Rounds {
 
   void scan(const Judged& judged, const EffectSet& best) {
     constexpr std::size_t kMostReported = 8;
-    const ExtendedModel base = base_here();
+    const Model base = base_here();
     // With much missing heat, curves depend on smoothed measured temperatures. Multipliers stay those of the model: measurement noise in
     // them would correlate with the residual.
     std::vector<LinearisedRun> path = judged.fitted;
     for (std::size_t r = 0; out_.is_material() && r < path.size(); ++r) {
-      const std::vector<DesignRun> own = design(now_.model.model.network, {now_.fitted[r]}, {input_.runs[r]}, {out_.weights[r]}, {}, {});
+      const std::vector<DesignRun> own = design(now_.model.network, {now_.fitted[r]}, {input_.runs[r]}, {out_.weights[r]}, {}, {});
       path[r].state_C = smoothed_path_C(now_.fitted[r], grid_.at(judged.best_place), own.front().noise).topRows(path[r].states);
     }
-    out_.drivers = drivers_of(base.model, path, input_.runs);
-    ScanInput input{&base.model,
+    out_.drivers = drivers_of(base, path, input_.runs);
+    ScanInput input{&base,
                     &input_.runs,
                     &judged.fitted,
                     &out_.drivers,
@@ -161,7 +161,7 @@ class Selector : Rounds {
     std::vector<std::size_t> beside;
     std::ranges::copy_if(named, std::back_inserter(beside), stays);
     const std::vector<Refusal> refused = out_.refused;
-    if (input_.model.usual_flux_W > 0.0) {
+    if (input_.usual.flux_W > 0.0) {
       keep_what_helps(best, beside);
     }
     build(judged, best, beside);
@@ -182,7 +182,7 @@ class Selector : Rounds {
     return true;
   }
 
-  [[nodiscard]] double free_run_error_K(const ExtendedModel& model) const { return rms_K(open_loop_errors(model, input_.runs, {})); }
+  [[nodiscard]] double free_run_error_K(const Model& model) const { return rms_K(open_loop_errors(model, input_.runs, {})); }
 
   /// Returns the RMS error in K of whole training runs with some members of the best set; ∞ if the fit fails.
   [[nodiscard]] double error_with_K(const EffectSet& best, const std::vector<std::size_t>& members) const {
@@ -190,25 +190,25 @@ class Selector : Rounds {
     std::ranges::transform(members, std::back_inserter(kept), [&](std::size_t m) { return best.members[m]; });
     std::ranges::sort(kept);
     const SetSearch::AtBest at = search_->at_best(kept);
-    const ExtendedModel model = with_members(kept, at, ShapesAre::held);
-    RefitOptions options = final_options(best_place_);
+    const Model model = with_members(kept, at, ShapesAre::held);
+    PosteriorOptions options = final_options(best_place_);
     options.around.clear();
-    const RefitResult fit = to_predict(try_refit(model, input_.runs, starts_of(model), options));
+    const Posterior fit = to_predict(try_posterior_of(model, input_.runs, starts_of(model), options));
     return std::isfinite(fit.evidence_nats) ? free_run_error_K(fit.model) : std::numeric_limits<double>::infinity();
   }
 
   /// True if whole runs decided the file's parameters, and the model predicts these runs about as well as those.
   [[nodiscard]] bool are_runs_as_usual() const {
-    return input_.model.usual_flux_W > 0.0 && input_.model.usual_error_K > 0.0 &&
-           free_run_error_K(input_.model) < rules_.as_usual_ratio * input_.model.usual_error_K;
+    return input_.usual.flux_W > 0.0 && input_.usual.error_K > 0.0 &&
+           free_run_error_K(input_.model) < rules_.as_usual_ratio * input_.usual.error_K;
   }
 
   void keep_as_it_is(const Judged& judged) {
-    RefitOptions as_it_is = final_options(judged.empty_place);
+    PosteriorOptions as_it_is = final_options(judged.empty_place);
     as_it_is.most_steps = 0;
     as_it_is.around.clear();
-    out_.after = out_.own = refit(input_.model, input_.runs, starts_of(input_.model), as_it_is);
-    out_.after.covariance = input_.model.prior().precision.inverse();
+    out_.after = out_.own = posterior_of(input_.model, input_.runs, starts_of(input_.model), as_it_is);
+    out_.after.covariance = input_.model.full_prior().precision.inverse();
   }
 
   /// Keeps only names without which the error of whole runs grows to more than 1/`error_share` times its value.
@@ -232,7 +232,7 @@ class Selector : Rounds {
 
   /// Evidence alone is not sufficient: a calibrated model leaves some unknown heat even in the runs it was fitted to.
   void keep_what_helps(const EffectSet& best, std::vector<std::size_t>& named) {
-    keep_what_reduces_error(best, named, input_.model.usual_error_K > 0.0 ? rules_.plainly_better_share : rules_.better_share,
+    keep_what_reduces_error(best, named, input_.usual.error_K > 0.0 ? rules_.plainly_better_share : rules_.better_share,
                             "it hardly improves the prediction of whole runs");
   }
 
@@ -250,8 +250,8 @@ class Selector : Rounds {
       }
     }
     const SetSearch::AtBest at = search_->at_best(kept);
-    const ExtendedModel model = with_members(kept, at, ShapesAre::free);
-    RefitResult fit = try_refit(model, input_.runs, starts_of(model), final_options(judged.best_place));
+    const Model model = with_members(kept, at, ShapesAre::free);
+    Posterior fit = try_posterior_of(model, input_.runs, starts_of(model), final_options(judged.best_place));
     if (!std::isfinite(fit.evidence_nats)) {
       out_.is_unexplained = true;
       return;
@@ -262,12 +262,12 @@ class Selector : Rounds {
 
   void add_terms(const EffectSet& best, const std::vector<std::size_t>& named, const std::vector<int>& kept) {
     // The network contains the instances in the order in which they were added.
-    const std::size_t first = input_.model.model.network.effects().size();
+    const std::size_t first = input_.model.network.effects().size();
     std::map<int, std::string> names;
     std::size_t instance = first;
     for (const int member : kept) {
       if (!is_parameter(member) && candidates()[static_cast<std::size_t>(member)].type) {
-        names[member] = out_.after.model.model.network.effects()[instance++].name;
+        names[member] = out_.after.model.network.effects()[instance++].name;
       }
     }
     for (const std::size_t m : named) {
@@ -292,13 +292,13 @@ class Selector : Rounds {
   }
 
   /// Returns the mean square error in K² of each training run, predicted from a fit to all other runs.
-  [[nodiscard]] std::vector<double> left_out_errors_K2(const ExtendedModel& model, const std::vector<MeasuredRun>& runs,
+  [[nodiscard]] std::vector<double> left_out_errors_K2(const Model& model, const std::vector<MeasuredRun>& runs,
                                                        const LatentFlux& flux) const {
     std::vector<double> errors_K2;
     for (std::size_t left_out = 0; left_out < runs.size(); ++left_out) {
       std::vector<MeasuredRun> others;
       std::vector<std::vector<double>> start_C;
-      RefitOptions own;
+      PosteriorOptions own;
       own.flux = flux;
       for (std::size_t r = 0; r < runs.size(); ++r) {
         if (r != left_out) {
@@ -308,7 +308,7 @@ class Selector : Rounds {
           own.merged.push_back(merged_[r]);
         }
       }
-      const RefitResult fit = try_refit(model, others, start_C, own);
+      const Posterior fit = try_posterior_of(model, others, start_C, own);
       errors_K2.push_back(std::isfinite(fit.evidence_nats) ? std::pow(rms_K(open_loop_errors(fit.model, {runs[left_out]}, others)), 2)
                                                            : std::numeric_limits<double>::infinity());
     }
@@ -318,26 +318,26 @@ class Selector : Rounds {
   /// Adds the curve to the model if that improves the prediction of left-out training runs. Returns true if it did.
   bool adopt_curve(const Judged& judged, const ScanResult& curve) {
     const Regressor& driver = out_.drivers[static_cast<std::size_t>(curve.term.driver)];
-    const std::optional<ExtendedModel> curved = with_curve(out_.after.model, curve, driver);
+    const std::optional<Model> curved = with_curve(out_.after.model, curve, driver);
     if (!curved || input_.runs.size() < 2 || driver.name == kTimeDriver) {
       return false;
     }
     std::vector<MeasuredRun> runs = input_.runs;
     set_column(runs, curved->column);
-    const auto sum_K2 = [&](const ExtendedModel& model, const LatentFlux& flux) {
+    const auto sum_K2 = [&](const Model& model, const LatentFlux& flux) {
       const std::vector<double> errors_K2 = left_out_errors_K2(model, runs, flux);
       return std::accumulate(errors_K2.begin(), errors_K2.end(), 0.0);
     };
     if (!(sum_K2(*curved, final_options(judged.best_place).flux) < sum_K2(out_.after.model, out_.after.flux))) {
       return false;
     }
-    RefitResult fit = try_refit(*curved, runs, out_.after.start_C, final_options(judged.best_place));
+    Posterior fit = try_posterior_of(*curved, runs, out_.after.start_C, final_options(judged.best_place));
     if (!std::isfinite(fit.evidence_nats)) {
       return false;
     }
     AcceptedTerm term;
     term.curve = curve;
-    term.effect_name = fit.model.model.network.effects().back().name;
+    term.effect_name = fit.model.network.effects().back().name;
     term.loss_without_nats = curve.gain_nats;
     term.probability = 1.0;
     for (const ScanResult& each : out_.rounds.back().scan) {

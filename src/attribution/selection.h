@@ -7,16 +7,24 @@
 #include <string_view>
 #include <vector>
 
+#include "attribution/candidates.h"
 #include "attribution/changed_parameters.h"
-#include "attribution/refit.h"
 #include "attribution/regressor_scan.h"
 #include "attribution/rules.h"
+#include "estimation/posterior.h"
 
 namespace heatsoak {
 
+/// What the model leaves unexplained in the runs that its file was fitted to.
+struct UsualErrors {
+  double error_K = 0.0;  ///< RMS error of whole runs if these decided the parameters (free_run_error_K of MotorFit); else 0
+  double flux_W = 0.0;   ///< RMS of the unknown heat; 0: not known
+};
+
 struct SelectionInput {
-  ExtendedModel model;
+  Model model;
   std::vector<MeasuredRun> runs;  ///< at least one
+  UsualErrors usual = {};
 };
 
 /// A candidate evaluated alone, as a set of one effect.
@@ -56,9 +64,9 @@ struct Refusal {
 
 /// Result of the selection.
 struct Selection {
-  RefitResult before;  ///< fit of the model's own parameters, without effects
-  RefitResult after;
-  RefitResult own;  ///< same as `before`, with wider priors for contradicted parameters
+  Posterior before;  ///< fit of the model's own parameters, without effects
+  Posterior after;
+  Posterior own;  ///< same as `before`, with wider priors for contradicted parameters
   std::vector<ChangedParameter> changed;
   std::vector<AcceptedTerm> terms;
   std::vector<Round> rounds;

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "attribution/design.h"
 #include "attribution/rules.h"
+#include "estimation/design.h"
 
 namespace heatsoak {
 

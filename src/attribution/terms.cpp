@@ -50,7 +50,7 @@ const EffectInPlace& add(Model& model, const std::string& name, const EffectType
 /// Frees a parameter with a prior mean of 0.
 void set_free_around_zero(Model& model, int place, double scale, const Range& range, double spread) {
   model.set_free({.place = place, .by_log = false, .scale = scale, .low = range.low, .high = range.high}, spread);
-  model.prior.mean[model.free_count() - 1] = 0.0;
+  model.prior.mean[model.network_count() - 1] = 0.0;
 }
 
 std::optional<double> choice_value(const ParameterSpec& spec, std::string_view name) {
@@ -83,8 +83,7 @@ Eigen::VectorXd passive(const ScanResult& curve) {
   return (curve.curve.array() - shift).cwiseMax(0.0);
 }
 
-std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanResult& curve, const Regressor& driver,
-                                        std::string_view name) {
+std::optional<Model> with_table(const Model& model, const ScanResult& curve, const Regressor& driver, std::string_view name) {
   const EffectType& type = *find_effect("tabulated");
   const std::optional<double> choice = choice_value(type.parameters[0], driver.choice);
   const std::optional<double> form = choice_value(type.parameters[1], form_of(curve.term.multiplier));
@@ -100,32 +99,30 @@ std::optional<ExtendedModel> with_table(const ExtendedModel& model, const ScanRe
   const std::string reference = driver.reference.empty() ? ambient : driver.reference;
   std::vector<double> parameters{*choice, *form, curve.knots.front(), curve.knots.back()};
   parameters.insert(parameters.end(), values.begin(), values.end());
-  ExtendedModel out = model;
+  Model out = model;
   out.column = is_column ? driver.name : model.column;
-  const EffectInPlace effect = add(out.model, named(name, as_word(fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name))), type,
+  const EffectInPlace effect = add(out, named(name, as_word(fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name))), type,
                                    {curve.term.node, cold, watched, reference}, parameters);
   const double gap = (curve.knots.back() - curve.knots.front()) / static_cast<double>(values.size() - 1);
   for (const std::size_t end : {2U, 3U}) {
     // The scan used measured temperatures with noise and sensor errors, so the knots may be off.
     if (driver.kind == DriverKind::node_temperature) {
       const double knot = parameters[end];
-      out.model.set_free(
-          {.place = effect.parameter_index[end], .by_log = false, .scale = gap, .low = knot - 2.0 * gap, .high = knot + 2.0 * gap},
-          kKnotSpread);
+      out.set_free({.place = effect.parameter_index[end], .by_log = false, .scale = gap, .low = knot - 2.0 * gap, .high = knot + 2.0 * gap},
+                   kKnotSpread);
     }
   }
   for (Eigen::Index knot = 0; knot < values.size(); ++knot) {
-    set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(4 + knot)], curve.usual, Range::non_negative(), 1.0);
+    set_free_around_zero(out, effect.parameter_index[static_cast<std::size_t>(4 + knot)], curve.usual, Range::non_negative(), 1.0);
   }
-  out.model.prior.precision.bottomRightCorner(values.size(), values.size()) = curve_precision(values.size(), {});
+  out.prior.precision.bottomRightCorner(values.size(), values.size()) = curve_precision(values.size(), {});
   return out;
 }
 
 }  // namespace
 
-ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candidate, double size_share, std::string_view name,
-                             ShapesAre shapes) {
-  ExtendedModel out = model;
+Model with_candidate(const Model& model, const Candidate& candidate, double size_share, std::string_view name, ShapesAre shapes) {
+  Model out = model;
   if (candidate.sensor_type) {
     const Range& faults = candidate.sensor_type->size.range;
     out.sensors.push_back({candidate.sensor_type, std::clamp(size_share * candidate.typical_size(), faults.low, faults.high),
@@ -151,21 +148,21 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
     }
   }
   const EffectInPlace effect =
-      add(out.model, std::string(name.empty() ? candidate.type->name : name), *candidate.type, candidate.nodes, parameters);
+      add(out, std::string(name.empty() ? candidate.type->name : name), *candidate.type, candidate.nodes, parameters);
   for (std::size_t p = 0; shapes == ShapesAre::free && p < parameters.size(); ++p) {
     const ParameterSpec& spec = candidate.type->parameters[p];
     if (static_cast<int>(p) != candidate.size_parameter() && spec.choices.empty() && parameters[p] > 0.0 && spec.range.low >= 0.0) {
       // Exponents, thresholds and capacities have a prior around the typical value.
-      out.model.set_free({.place = effect.parameter_index[p],
-                          .by_log = true,
-                          .scale = 1.0,
-                          .low = std::max(spec.range.low, parameters[p] / 20.0),
-                          .high = std::min(spec.range.high, parameters[p] * 20.0)},
-                         brings_body ? kBodySpread : kShapeSpread);
+      out.set_free({.place = effect.parameter_index[p],
+                    .by_log = true,
+                    .scale = 1.0,
+                    .low = std::max(spec.range.low, parameters[p] / 20.0),
+                    .high = std::min(spec.range.high, parameters[p] * 20.0)},
+                   brings_body ? kBodySpread : kShapeSpread);
     }
   }
-  set_free_around_zero(out.model, effect.parameter_index[static_cast<std::size_t>(candidate.size_parameter())], candidate.typical_size(),
-                       range, kSizeSpread_share);
+  set_free_around_zero(out, effect.parameter_index[static_cast<std::size_t>(candidate.size_parameter())], candidate.typical_size(), range,
+                       kSizeSpread_share);
   if (!candidate.condition.empty()) {
     out.conditional.push_back(
         {effect.name, effect.parameter_index[static_cast<std::size_t>(candidate.size_parameter())], 0.0, candidate.condition});
@@ -173,31 +170,30 @@ ExtendedModel with_candidate(const ExtendedModel& model, const Candidate& candid
   return out;
 }
 
-Eigen::Index size_coordinate(const ExtendedModel& model, const Candidate& candidate, std::string_view effect_name) {
+Eigen::Index size_coordinate(const Model& model, const Candidate& candidate, std::string_view effect_name) {
   if (candidate.sensor_type) {
-    return model.model.free_count() + (std::ranges::find(model.sensors, candidate.sensor_type, &SensorTerm::type) - model.sensors.begin());
+    return model.network_count() + (std::ranges::find(model.sensors, candidate.sensor_type, &SensorTerm::type) - model.sensors.begin());
   }
   if (candidate.deviation_type) {
     const auto is_own = [&](const RunDeviation& each) { return each.is_same(candidate.deviation_type, candidate.condition); };
     return model.first_deviation() + (std::ranges::find_if(model.deviations, is_own) - model.deviations.begin());
   }
-  const auto effect = std::ranges::find(model.model.network.effects(), effect_name, &EffectInPlace::name);
+  const auto effect = std::ranges::find(model.network.effects(), effect_name, &EffectInPlace::name);
   const int place = effect->parameter_index[static_cast<std::size_t>(candidate.size_parameter())];
-  return std::ranges::find(model.model.free, place, &FreeParameter::place) - model.model.free.begin();
+  return std::ranges::find(model.free, place, &FreeParameter::place) - model.free.begin();
 }
 
-std::optional<ExtendedModel> with_curve(const ExtendedModel& model, const ScanResult& curve, const Regressor& driver,
-                                        std::string_view name) {
+std::optional<Model> with_curve(const Model& model, const ScanResult& curve, const Regressor& driver, std::string_view name) {
   return driver.choice.empty() ? std::nullopt : with_table(model, curve, driver, name);
 }
 
-ExtendedModel with_values_of(ExtendedModel model, const ExtendedModel& other) {
-  const std::span<const NetworkParameter> names = model.model.network.parameters();
-  const std::span<const NetworkParameter> others = other.model.network.parameters();
+Model with_values_of(Model model, const Model& other) {
+  const std::span<const NetworkParameter> names = model.network.parameters();
+  const std::span<const NetworkParameter> others = other.network.parameters();
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto found = std::ranges::find(others, names[i].name, &NetworkParameter::name);
     if (found != others.end()) {
-      model.model.values[i] = other.model.values[static_cast<std::size_t>(found - others.begin())];
+      model.values[i] = other.values[static_cast<std::size_t>(found - others.begin())];
     }
   }
   for (SensorTerm& term : model.sensors) {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "attribution/advisor.h"
+#include "diagnosis/advisor.h"
 #include "drive_rows.h"
 #include "scoring.h"
 
@@ -22,10 +22,10 @@ Case sealed(const Missing& missing, std::uint64_t seed) {
 const Subject& subject(std::string_view name) { return *std::ranges::find(subjects(), name, &Subject::name); }
 
 /// Returns the model fitted to the runs, with a standard deviation of sd_share for every parameter.
-ExtendedModel known_to(double sd_share, const DiagnosisInput& input) {
-  ExtendedModel known = diagnose(input, {}).selection.before.model;
-  const Eigen::Index count = known.model.free_count();
-  known.model.prior = {known.model.theta(), Eigen::MatrixXd::Identity(count, count) / (sd_share * sd_share)};
+Model known_to(double sd_share, const DiagnosisInput& input) {
+  Model known = diagnose(input, {}).selection.before.model;
+  const Eigen::Index count = known.network_count();
+  known.prior = {known.theta(), Eigen::MatrixXd::Identity(count, count) / (sd_share * sd_share)};
   return known;
 }
 
@@ -172,7 +172,7 @@ TEST(Examination, HeatThatFollowsNoLoggedSignalIsReportedInWattsAndRarelyNamed) 
       EXPECT_EQ(heat.node, one.node);
       EXPECT_GT(heat.rms_W, 0.2) << account(answer);
       EXPECT_LT(heat.rms_W, 2.0) << account(answer);
-      EXPECT_THAT(answer.diagnosis.selection.after.model.model.network.effects(), testing::SizeIs(3)) << "nothing was added";
+      EXPECT_THAT(answer.diagnosis.selection.after.model.network.effects(), testing::SizeIs(3)) << "nothing was added";
     }
   }
   EXPECT_GE(unnamed, 0.8 * cases);
@@ -184,7 +184,7 @@ TEST(Examination, AnOutdatedParameterIsReportedAndRefittedAndIsNoEffect) {
   const Runs runs = record(one);
   DiagnosisInput input = question(one, runs);
   input.model = known_to(0.02, input);
-  Model& known = input.model.model;
+  Model& known = input.model;
   EXPECT_THAT(diagnose(input, {}).changed, testing::IsEmpty());
   Eigen::Index coordinate = 0;
   while (known.name(coordinate) != "stator_ambient.thermal_resistance") {
@@ -343,7 +343,7 @@ TEST(Examination, WindingsForAnotherVoltageGetTheSameNames) {
         at.current_rms_A /= kTurns_ratio;
       }
     }
-    Model& model = input.model.model;
+    Model& model = input.model;
     for (std::size_t place = 0; place < model.values.size(); ++place) {
       if (model.network.parameters()[place].name == "copper_loss.terminal_resistance") {
         model.values[place] *= kTurns_ratio * kTurns_ratio;
@@ -356,7 +356,7 @@ TEST(Examination, WindingsForAnotherVoltageGetTheSameNames) {
 }
 
 TEST(Examination, TheBoundOfASearchIsReachedExactly) {
-  Model model = model_before(record(sealed({}, 1)).make, 1).model;
+  Model model = model_before(record(sealed({}, 1)).make, 1);
   Eigen::VectorXd theta = model.theta();
   for (const double bound : {3.0, 0.7, 1.9}) {
     FreeParameter& first = model.free.front();

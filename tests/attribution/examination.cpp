@@ -95,19 +95,19 @@ Calibrated calibrated(const Case& sealed, const MotorMake& make, const std::vect
   Calibrated all{model_before(make, sealed.seed), {}};
   std::vector<MeasuredRun> rows;
   std::ranges::transform(runs, std::back_inserter(rows), measured);
-  all.fit = fit(all.model.model, rows, {});
+  all.fit = fit(all.model, rows, {});
   all.model.set_theta(all.fit.theta);
-  all.model.model.prior = {all.fit.theta, all.fit.covariance.inverse()};
-  all.model.usual_error_K = all.fit.free_run_error_K;
-  all.model.usual_flux_W = std::ranges::max(all.fit.flux.rms_W);
+  all.model.prior = {all.fit.theta, all.fit.covariance.inverse()};
+  all.usual.error_K = all.fit.free_run_error_K;
+  all.usual.flux_W = std::ranges::max(all.fit.flux.rms_W);
   return all;
 }
 
-ExtendedModel model_before(const MotorMake& make, std::uint64_t seed) {
+Model model_before(const MotorMake& make, std::uint64_t seed) {
   Dice dice(seed * 104729 + 5);
   const auto off = [&dice](double value) { return value * dice.uniform(0.8, 1.25); };
-  ExtendedModel out;
-  Network& network = out.model.network;
+  Model out;
+  Network& network = out.network;
   network.add_node("winding", off(make.copper_capacity_J_per_K));
   network.add_node("stator", off(make.iron_capacity_J_per_K));
   const auto add = [&](const char* name, const char* type, std::vector<std::string> nodes, std::vector<double> parameters) {
@@ -117,14 +117,14 @@ ExtendedModel model_before(const MotorMake& make, std::uint64_t seed) {
   add("winding_stator", "conduction", {"winding", "stator"}, {off(make.copper_to_iron_K_per_W)});
   add("stator_ambient", "conduction", {"stator", "ambient"}, {off(make.iron_to_air_K_per_W)});
   network.limit_current_by("copper_loss");
-  out.model.values = network.values();
-  out.model.flux_nodes = {0, 1};
-  out.model.prior = {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
+  out.values = network.values();
+  out.flux_nodes = {0, 1};
+  out.prior = {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
   for (std::size_t place = 0; place < network.parameters().size(); ++place) {
     const std::string& name = network.parameters()[place].name;
     if (name.find("heat_capacity") != std::string::npos || name.find("thermal_resistance") != std::string::npos) {
-      const double value = out.model.values[place];
-      out.model.set_free({static_cast<int>(place), true, 1.0, value / 20.0, value * 20.0}, 1.1);
+      const double value = out.values[place];
+      out.set_free({static_cast<int>(place), true, 1.0, value / 20.0, value * 20.0}, 1.1);
     }
   }
   return out;
@@ -136,16 +136,16 @@ MeasuredRun measured(const TrueRun& run) {
   return measured_runs(run.log, options).runs.front();
 }
 
-double rms_error_K(const ExtendedModel& model, const std::vector<TrueRun>& runs) {
+double rms_error_K(const Model& model, const std::vector<TrueRun>& runs) {
   double squares_K2 = 0.0;
   double count = 0.0;
   for (const TrueRun& run : runs) {
     MeasuredRun as_run = measured(run);
     set_column(as_run, model.column);
-    std::vector<double> start_C(static_cast<std::size_t>(model.model.network.state_count()), as_run.at.front().ambient_C);
+    std::vector<double> start_C(static_cast<std::size_t>(model.network.state_count()), as_run.at.front().ambient_C);
     start_C[0] = run.winding_C.front();
     start_C[1] = run.stator_C.front();
-    const LinearisedRun path = linearise(model.model.network, model.values_in(as_run), {}, {}, start_C, as_run);
+    const LinearisedRun path = linearise(model.network, model.values_in(as_run), {}, {}, start_C, as_run);
     for (Eigen::Index k = 0; k < path.samples(); ++k) {
       const auto row = static_cast<std::size_t>(std::llround(as_run.time_s[static_cast<std::size_t>(k)]));
       squares_K2 += std::pow(path.state_C(0, k) - run.winding_C[row], 2) + std::pow(path.state_C(1, k) - run.stator_C[row], 2);
@@ -157,7 +157,12 @@ double rms_error_K(const ExtendedModel& model, const std::vector<TrueRun>& runs)
 
 DiagnosisInput question(const Case& sealed, const Runs& runs) {
   DiagnosisInput input;
-  input.model = runs.earlier.empty() ? model_before(runs.make, sealed.seed) : calibrated(sealed, runs.make, runs.earlier).model;
+  Calibrated before{model_before(runs.make, sealed.seed), {}};
+  if (!runs.earlier.empty()) {
+    before = calibrated(sealed, runs.make, runs.earlier);
+  }
+  input.model = std::move(before.model);
+  input.usual = before.usual;
   for (const TrueRun& run : runs.training) {
     input.train.push_back(measured(run));
   }
@@ -197,6 +202,7 @@ double floor_K(Case sealed) {
   SelectionInput input;
   input.model = std::move(given.model);
   input.runs = std::move(given.train);
+  input.usual = given.usual;
   SelectionRules rules;
   rules.scans_drivers = false;
   rules.most_effects = 0;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "attribution/diagnosis.h"
+#include "diagnosis/diagnosis.h"
 #include "estimation/fit.h"
 #include "missing_effects.h"
 #include "truth_motor.h"
@@ -35,11 +35,12 @@ struct Runs {
 Runs record(const Case& sealed);
 
 /// Model before a calibration: the copper resistance is right, every other parameter is off by up to 25 %.
-ExtendedModel model_before(const MotorMake& make, std::uint64_t seed);
+Model model_before(const MotorMake& make, std::uint64_t seed);
 
 struct Calibrated {
-  ExtendedModel model;
+  Model model;
   Fit fit;
+  UsualErrors usual = {};
 };
 /// Calibrates model_before() with runs of that motor.
 Calibrated calibrated(const Case& sealed, const MotorMake& make, const std::vector<TrueRun>& runs);
@@ -67,6 +68,6 @@ Answer examine(const Case& sealed);
 double floor_K(Case sealed);
 
 /// Open-loop RMS error of the model against the true temperatures of the runs.
-double rms_error_K(const ExtendedModel& model, const std::vector<TrueRun>& runs);
+double rms_error_K(const Model& model, const std::vector<TrueRun>& runs);
 
 }  // namespace heatsoak::truth

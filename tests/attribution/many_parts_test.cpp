@@ -66,6 +66,7 @@ TEST(ManyParts, AreNoMissingEffect) {
     DiagnosisInput input = question(one, runs);
     input.train = holdout(runs);
     input.model = found.model;
+    input.usual = found.usual;
     const Diagnosis diagnosis = diagnose(input, {});
     EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::nothing_missing) << seed << diagnosis.description;
     EXPECT_THAT(diagnosis.effects, testing::IsEmpty()) << seed;
@@ -79,6 +80,7 @@ TEST(ManyParts, HideNothingThatWholeRunsTell) {
     one.missing = std::ranges::find(subjects(), "enclosure_warm_up", &Subject::name)->make(1.5);
     DiagnosisInput input = question(one, record(one));
     input.model = found.model;
+    input.usual = found.usual;
     const Diagnosis diagnosis = diagnose(input, {});
     EXPECT_NE(diagnosis.verdict, DiagnosisVerdict::nothing_missing) << seed << diagnosis.description;
   }

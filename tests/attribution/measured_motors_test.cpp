@@ -8,8 +8,8 @@
 #include <iterator>
 
 #include "../support/measured_data.h"
-#include "attribution/model_file.h"
 #include "calibration/calibrate.h"
+#include "diagnosis/model_file.h"
 #include "recording/mapping.h"
 #include "recording/read_recording.h"
 #include "support/source_folder.h"
@@ -45,14 +45,14 @@ struct Diagnosed {
 Diagnosed diagnosed(const Motor& motor, const std::vector<Recording>& train, const std::vector<Recording>& holdout,
                     std::optional<double> ambient_C = {}) {
   Diagnosed out{model_of_logs(motor, train), {}, {}, {}};
-  out.input = {out.model.model, runs_of(out.model, train, ambient_C)};
+  out.input = {out.model.model, runs_of(out.model, train, ambient_C), out.model.usual};
   out.diagnosis = diagnose(out.input, {});
   out.score = score_holdout(out.input, out.diagnosis, runs_of(out.model, holdout, ambient_C));
   return out;
 }
 
 /// RMS error of a free-running simulation over all samples of one signal.
-double rms_K(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const char* signal) {
+double rms_K(const Model& model, const std::vector<MeasuredRun>& runs, const char* signal) {
   return open_loop_errors(model, runs, {}).at(signal).rmse_K;
 }
 
@@ -104,7 +104,7 @@ Diagnosed diagnosed(Drone& all, double cut) {
 
 /// Checks the fitted first part of run 4 and the unseen second part.
 void expect_follows_the_fan(Drone& all, const Diagnosed& found) {
-  const ExtendedModel& after = found.diagnosis.selection.after.model;
+  const Model& after = found.diagnosis.selection.after.model;
   const std::vector<MeasuredRun> run4 = runs_of(found.model, {all.run["run4"]});
   const std::vector<MeasuredRun> fitted = runs_of(found.model, {part_of(all.run["run4"], 0.0, 0.6)});
   for (const char* const signal : {"winding_C", "stator_C"}) {

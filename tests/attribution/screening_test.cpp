@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "../support/measured_data.h"
-#include "attribution/model_file.h"
 #include "attribution/selection.h"
+#include "diagnosis/model_file.h"
 #include "estimation/model_screening.h"
 #include "recording/mapping.h"
 #include "recording/read_recording.h"
@@ -180,7 +180,7 @@ TEST(Screening, FindsWrongSamplesAndLeavesGoodOnes) {
     }
     SelectionRules rules;
     rules.scans_drivers = false;
-    const Selection selection = select_effects({model.model, runs}, rules);
+    const Selection selection = select_effects({model.model, runs, model.usual}, rules);
     for (std::size_t r = 0; r < runs.size(); ++r) {
       add(runs[r], selection.weights[r], log_of_run[r], motor, single);
       add_stuck(runs[r], selection.weights[r], log_of_run[r], motor, selection.after.fitted[r].sensor_C, stuck);

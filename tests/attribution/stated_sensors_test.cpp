@@ -8,8 +8,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "attribution/model_file.h"
 #include "attribution/terms.h"
+#include "diagnosis/model_file.h"
 #include "examination.h"
 #include "motor/write_motor.h"
 
@@ -119,6 +119,7 @@ Diagnosed diagnosed(const Motor& motor, const std::vector<Recording>& logs) {
   Diagnosed out{model_of_logs(motor, logs), {}};
   DiagnosisInput input;
   input.model = out.model.model;
+  input.usual = out.model.usual;
   for (const Recording& log : logs) {
     for (MeasuredRun& run : measured_runs(log, out.model.how).runs) {
       input.train.push_back(std::move(run));

@@ -2,7 +2,7 @@
 // half-hour runs at 1 Hz.
 #include <benchmark/benchmark.h>
 
-#include "attribution/diagnosis.h"
+#include "diagnosis/diagnosis.h"
 #include "examination.h"
 #include "missing_effects.h"
 

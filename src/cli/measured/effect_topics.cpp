@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "attribution/run_deviation.h"
 #include "cli/effect_topic.h"
+#include "estimation/run_deviation.h"
 #include "present/measured/run_deviation.h"
 
 namespace heatsoak {

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "attribution/diagnosis.h"
+#include "diagnosis/diagnosis.h"
 #include "present/document.h"
 
 namespace heatsoak::present {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "attribution/diagnosis.h"
+#include "diagnosis/diagnosis.h"
 #include "present/json.h"
 #include "report/chart.h"
 

@@ -98,7 +98,7 @@ std::string outcome_of(const Round& round) {
                      round.taken_nats);
 }
 
-/// Keeps the best variant of each effect; variants differ only in the start of their refit.
+/// Keeps the best variant of each effect; variants differ only in the start of their fit.
 std::vector<JudgedCandidate> best_of_each(std::vector<JudgedCandidate> ladder) {
   std::ranges::stable_sort(ladder, std::greater(), &JudgedCandidate::gain_nats);
   std::set<std::string> printed;

@@ -32,8 +32,8 @@ std::string listed(const std::vector<std::string>& runs) {
                              : fmt::format("{}", fmt::join(runs, ", "));
 }
 
-ChartPanel residual_panel(const std::string& signal, const ExtendedModel& before, const ExtendedModel& after,
-                          const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them, const std::string& title) {
+ChartPanel residual_panel(const std::string& signal, const Model& before, const Model& after, const std::vector<MeasuredRun>& runs,
+                          const std::vector<MeasuredRun>& before_them, const std::string& title) {
   ChartPanel panel{title, "measured − model / K", {}, {}, {}};
   ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
   std::vector<std::string> names;

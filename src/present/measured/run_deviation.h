@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "attribution/run_deviation.h"
+#include "estimation/run_deviation.h"
 #include "present/document.h"
 #include "present/json.h"
 

@@ -7,13 +7,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "attribution/model_file.h"
 #include "base/quantity.h"
 #include "calibration/admission.h"
 #include "cli/command.h"
 #include "cli/measured/effect_topics.h"
 #include "cli/measured/logs_option.h"
 #include "cli/terminal.h"
+#include "diagnosis/model_file.h"
 #include "duty/named_files.h"
 #include "estimation/log_columns.h"
 #include "estimation/open_loop.h"
@@ -95,6 +95,7 @@ ExitCode run(const Options& options, Session& session) {
   how.ambient_C = options.logs.ambient_C;
   DiagnosisInput input;
   input.model = model.model;
+  input.usual = model.usual;
   input.train = runs_of(train, how, notes);
   if (std::string note = settle_turning_rows(input); !note.empty()) {
     notes.push_back(std::move(note));

@@ -1,4 +1,4 @@
-#include "attribution/advisor.h"
+#include "diagnosis/advisor.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -114,8 +114,8 @@ struct Plan {
   LinearisedRun path;
 };
 
-double hottest_C(const ExtendedModel& model, const MeasuredRun& run, LinearisedRun& path) {
-  const std::vector<double> start_C(static_cast<std::size_t>(model.model.network.state_count()), run.at.front().ambient_C);
+double hottest_C(const Model& model, const MeasuredRun& run, LinearisedRun& path) {
+  const std::vector<double> start_C(static_cast<std::size_t>(model.network.state_count()), run.at.front().ambient_C);
   try {
     path = linearise(model, start_C, run);
   } catch (const Failure&) {
@@ -162,12 +162,12 @@ std::vector<Plan> plans(const Selection& selection, const std::vector<MeasuredRu
 }
 
 /// Returns ½‖column − its projection on θ and the rival‖² in whitened space, with the posterior of θ as prior.
-double separation_nats(const RefitResult& fit, const LatentFlux& flux, const std::vector<Candidate>& pair, double size_share,
+double separation_nats(const Posterior& fit, const LatentFlux& flux, const std::vector<Candidate>& pair, double size_share,
                        const Plan& plan) {
   const std::vector<MeasuredRun> runs{plan.run};
   const std::vector<LinearisedRun> path{plan.path};
   const std::vector<DesignRun> designs =
-      design(fit.model.model.network, path, runs, {}, {}, {candidate_columns(pair, fit.model, path.front(), plan.run)});
+      design(fit.model.network, path, runs, {}, {}, {candidate_columns(pair, fit.model, path.front(), plan.run)});
   const Whitening whitening(path.front(), flux, designs.front().noise);
   const Eigen::MatrixXd triangle = run_evidence(path.front(), designs.front().columns, whitening, designs.front().start).triangle;
   const Eigen::Index own = fit.model.free_count();
@@ -216,8 +216,8 @@ std::vector<Experiment> next_experiments(const Selection& selection, const std::
       Experiment best{fmt::format("{} or {}", term.candidate->id, term.confusable_with[rival]), term.experiments[rival], 0.0};
       const JudgedCandidate* const other = judged(selection, term.confusable_with[rival]);
       // The base model has no node for an effect at a body that another effect added.
-      if (!other || !has_nodes_of(selection.before.model.model.network, *term.candidate) ||
-          !has_nodes_of(selection.before.model.model.network, other->candidate)) {
+      if (!other || !has_nodes_of(selection.before.model.network, *term.candidate) ||
+          !has_nodes_of(selection.before.model.network, other->candidate)) {
         experiments.push_back(std::move(best));
         continue;
       }

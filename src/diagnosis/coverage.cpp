@@ -1,4 +1,4 @@
-#include "attribution/coverage.h"
+#include "diagnosis/coverage.h"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
 // Linear algebra of an attribution. Products are compared with the matrix decomposition of the fit, linearised equations with free runs.
-#include "attribution/design.h"
+#include "estimation/design.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "attribution/flux_grid.h"
+#include "estimation/flux_grid.h"
 #include "estimation/smoothed_path.h"
 #include "runs_for_tests.h"
 
@@ -32,14 +32,8 @@ MeasuredRun run_of(std::uint64_t seed, int samples) {
   return run;
 }
 
-ExtendedModel model_of() {
-  ExtendedModel model;
-  model.model = two_node_model({}, 1.0);
-  return model;
-}
-
 TEST(Design, ProductsAreTheSquareOfTheTrianglesThatFitsUse) {
-  const ExtendedModel model = model_of();
+  const Model model = two_node_model({}, 1.0);
   const std::vector<MeasuredRun> runs{run_of(1, 200), run_of(2, 150)};
   std::vector<LinearisedRun> fitted;
   std::vector<Columns> extra;
@@ -47,7 +41,7 @@ TEST(Design, ProductsAreTheSquareOfTheTrianglesThatFitsUse) {
     fitted.push_back(linearise(model, std::vector<double>{25.0, 26.0}, run));
     extra.emplace_back(fitted.back().by_parameter.cwiseAbs2());
   }
-  const std::vector<DesignRun> designs = design(model.model.network, fitted, runs, {}, {}, extra);
+  const std::vector<DesignRun> designs = design(model.network, fitted, runs, {}, {}, extra);
   const LatentFlux flux{{0.2, 0.3}, 100.0};
   const Products products = products_of(designs, flux, {});
   std::vector<RunEvidence> each;
@@ -69,10 +63,10 @@ TEST(Design, ProductsAreTheSquareOfTheTrianglesThatFitsUse) {
 
 /// Without added effects the evidence of the base model equals the evidence of the linear least-squares fit, up to a constant.
 TEST(Design, EvidenceOfTheBaseIsThatOfItsLinearFit) {
-  const ExtendedModel model = model_of();
+  const Model model = two_node_model({}, 1.0);
   const std::vector<MeasuredRun> runs{run_of(3, 200)};
   const std::vector<LinearisedRun> fitted{linearise(model, std::vector<double>{25.0, 26.0}, runs.front())};
-  const std::vector<DesignRun> designs = design(model.model.network, fitted, runs, {}, {}, {});
+  const std::vector<DesignRun> designs = design(model.network, fitted, runs, {}, {}, {});
   const ThetaPrior prior = prior_here(model);
   std::vector<double> difference_nats;
   for (const double flux_W : {0.02, 0.3, 2.0}) {
@@ -89,7 +83,7 @@ TEST(Design, EvidenceOfTheBaseIsThatOfItsLinearFit) {
 }
 
 TEST(Design, EquationsAboutTheFreeRunAreTheFreeRun) {
-  const ExtendedModel model = model_of();
+  const Model model = two_node_model({}, 1.0);
   const MeasuredRun run = run_of(4, 200);
   const LinearisedRun freely = linearise(model, std::vector<double>{25.0, 26.0}, run);
   const LinearisedRun along = linearise_along(model, freely.state_C, run);
@@ -100,7 +94,7 @@ TEST(Design, EquationsAboutTheFreeRunAreTheFreeRun) {
 /// Equations linearised about a path with error e predict the free run from the path's start. Their error is of order e², because copper
 /// loss is slightly non-linear.
 TEST(Design, EquationsAboutAnotherPathPredictTheFreeRun) {
-  const ExtendedModel model = model_of();
+  const Model model = two_node_model({}, 1.0);
   const MeasuredRun run = run_of(5, 300);
   const LinearisedRun freely = linearise(model, std::vector<double>{25.0, 26.0}, run);
   std::vector<double> off_K;
@@ -117,13 +111,13 @@ TEST(Design, EquationsAboutAnotherPathPredictTheFreeRun) {
 
 /// 2 W of unmodelled heat for 100 of 300 s: the smoothed path must follow the true temperatures.
 TEST(Design, SmoothedPathFollowsUnknownHeat) {
-  const ExtendedModel model = model_of();
+  const Model model = two_node_model({}, 1.0);
   MeasuredRun run = run_of(6, 300);
-  ExtendedModel truth = model;
-  truth.model.network.add_effect("lamp", *find_effect("constant_heat"), std::vector<std::string>{"stator"}, std::vector<double>{2.0});
-  truth.model.values = truth.model.network.values();
-  truth.model.free.clear();
-  truth.model.prior = {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
+  Model truth = model;
+  truth.network.add_effect("lamp", *find_effect("constant_heat"), std::vector<std::string>{"stator"}, std::vector<double>{2.0});
+  truth.values = truth.network.values();
+  truth.free.clear();
+  truth.prior = {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
   const LinearisedRun real = linearise(truth, std::vector<double>{25.0, 26.0}, run);
   Random random(9, 0);
   for (Eigen::Index k = 0; k < run.samples(); ++k) {

@@ -1,4 +1,4 @@
-#include "attribution/unexplained_heat.h"
+#include "diagnosis/unexplained_heat.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,7 +43,7 @@ class UnexplainedHeatReport {
     return most;
   }
 
-  [[nodiscard]] const RefitResult& after() const { return told_.selection.after; }
+  [[nodiscard]] const Posterior& after() const { return told_.selection.after; }
   [[nodiscard]] double time_scale_s() const { return after().flux.time_scale_s; }
 
   [[nodiscard]] bool has_sensor(const std::string& node) const {
@@ -93,8 +93,8 @@ class UnexplainedHeatReport {
     heat.is_in_model = true;
     heat.mean_W = heat.rms_W = effect->mean_W;
     heat.peak_W = effect->peak_W;
-    const Model& model = after().model.model;
-    const EffectInPlace& in_place = *effect_named(after().model.model.network, term.effect_name);
+    const Model& model = after().model;
+    const EffectInPlace& in_place = *effect_named(after().model.network, term.effect_name);
     const std::size_t first = in_place.parameter_index.size() - heat.curve.size();
     const auto value = [&](std::size_t parameter) { return model.values[static_cast<std::size_t>(in_place.parameter_index[parameter])]; };
     heat.knots = knots_from({value(first - 2), value(first - 1)});

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "attribution/diagnosis.h"
+#include "diagnosis/diagnosis.h"
 
 namespace heatsoak {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "attribution/extended_model.h"
 #include "estimation/evidence.h"
+#include "estimation/model_along_run.h"
 
 namespace heatsoak {
 
@@ -30,7 +30,7 @@ std::vector<DesignRun> design(const Network& network, const std::vector<Linearis
                               const std::vector<Columns>& extra);
 
 /// Returns the prior of the model's coordinates relative to their present values.
-ThetaPrior prior_here(const ExtendedModel& model);
+ThetaPrior prior_here(const Model& model);
 
 /// Returns the start temperature of every state node in °C, from the first samples. A node without a sensor gets the mean of the sensors.
 std::vector<double> measured_start_C(const Network& network, const MeasuredRun& run);

@@ -1,4 +1,4 @@
-#include "attribution/model_file.h"
+#include "diagnosis/model_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -36,8 +36,8 @@ std::vector<Signal> signals_of(const EffectInPlace& effect, const Model& model) 
 
 void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recording>& recordings) {
   std::set<Signal> wanted;
-  for (const EffectInPlace& effect : out.model.model.network.effects()) {
-    const std::vector<Signal> needed = signals_of(effect, out.model.model);
+  for (const EffectInPlace& effect : out.model.network.effects()) {
+    const std::vector<Signal> needed = signals_of(effect, out.model);
     wanted.insert(needed.begin(), needed.end());
   }
   bool has_heat = false;
@@ -56,9 +56,9 @@ void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recordin
             "no log has a heat input for {}; expected current_A, or power_in_W with an effect input_power_loss; add one to the logs",
             motor.id));
   }
-  for (const EffectInPlace& effect : out.model.model.network.effects()) {
+  for (const EffectInPlace& effect : out.model.network.effects()) {
     std::vector<std::string_view> lacking;
-    for (const Signal signal : signals_of(effect, out.model.model)) {
+    for (const Signal signal : signals_of(effect, out.model)) {
       if (std::ranges::find(out.how.needed, signal) == out.how.needed.end()) {
         lacking.push_back(column_of(signal));
       }
@@ -93,7 +93,7 @@ void add_conditional_effects(const Motor& motor, const std::vector<Recording>& r
       out.notes.push_back(fmt::format("{} acts in none of these runs: no log has its condition {}", effect.name, condition));
     }
     if (size) {
-      const auto in_place = std::ranges::find(out.model.model.network.effects(), effect.name, &EffectInPlace::name);
+      const auto in_place = std::ranges::find(out.model.network.effects(), effect.name, &EffectInPlace::name);
       out.model.conditional.push_back({effect.name, in_place->parameter_index[static_cast<std::size_t>(*size)], 0.0, effect.condition});
     }
   }
@@ -135,8 +135,8 @@ void add_sensor(Motor& motor, const MotorSensor& sensor) {
   motor.sensors.push_back(std::move(added));
 }
 
-MotorEffect motor_effect(const FoundEffect& found, const RefitResult& fit) {
-  const Network& network = fit.model.model.network;
+MotorEffect motor_effect(const FoundEffect& found, const Posterior& fit) {
+  const Network& network = fit.model.network;
   const auto in_place = std::ranges::find(network.effects(), found.name, &EffectInPlace::name);
   MotorEffect effect{found.name, in_place->type, {}, {}, found.condition};
   for (std::size_t role = 0; role < in_place->node_index.size(); ++role) {
@@ -145,7 +145,7 @@ MotorEffect motor_effect(const FoundEffect& found, const RefitResult& fit) {
   }
   for (std::size_t p = 0; p < in_place->parameter_index.size(); ++p) {
     const ParameterSpec& spec = in_place->type->parameters[p];
-    const double value = fit.model.model.values[static_cast<std::size_t>(in_place->parameter_index[p])];
+    const double value = fit.model.values[static_cast<std::size_t>(in_place->parameter_index[p])];
     if (!spec.choices.empty()) {
       ParameterValue chosen;
       chosen.value = value;
@@ -162,9 +162,9 @@ MotorEffect motor_effect(const FoundEffect& found, const RefitResult& fit) {
 
 /// Writes the fitted values, intervals and correlations of the file's parameters.
 void set_parameters(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
-  const RefitResult& fit = diagnosis.selection.after;
-  const auto free = model.model.model.free_count();
-  const Eigen::VectorXd moved = fit.model.model.theta().head(free) - model.model.model.theta();
+  const Posterior& fit = diagnosis.selection.after;
+  const auto free = model.model.network_count();
+  const Eigen::VectorXd moved = fit.model.theta().head(free) - model.model.theta();
   const Eigen::MatrixXd covariance = fit.covariance.topLeftCorner(free, free);
   std::vector<const CalibratedValue*> of_file;
   for (const CalibratedValue& each : model.parameters) {
@@ -260,9 +260,11 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
                     "named, and no curve over another signal is added",
                     significant(most_loss_at_speed_W(motor), 2)));
   }
-  out.model.model = std::move(built.model);
-  out.model.usual_error_K = everywhere.fit ? everywhere.fit->free_run_error_K : 0.0;
-  out.model.usual_flux_W = everywhere.fit && !everywhere.fit->latent_flux_W.empty() ? std::ranges::max(everywhere.fit->latent_flux_W) : 0.0;
+  const std::string column = std::move(out.model.column);
+  out.model = std::move(built.model);
+  out.model.column = column;
+  out.usual.error_K = everywhere.fit ? everywhere.fit->free_run_error_K : 0.0;
+  out.usual.flux_W = everywhere.fit && !everywhere.fit->latent_flux_W.empty() ? std::ranges::max(everywhere.fit->latent_flux_W) : 0.0;
   out.parameters = std::move(built.parameters);
   out.notes.insert(out.notes.end(), built.held.begin(), built.held.end());
   std::ranges::move(held_sensors(motor, recordings), std::back_inserter(out.notes));

@@ -4,15 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "attribution/diagnosis.h"
 #include "calibration/motor_model.h"
+#include "diagnosis/diagnosis.h"
 #include "motor/motor.h"
 
 namespace heatsoak {
 
 /// A motor's model as the logs require it.
 struct ModelOfLogs {
-  ExtendedModel model;
+  Model model;
+  UsualErrors usual;
   std::vector<CalibratedValue> parameters;  ///< parameters of the motor file, as functions of the model's coordinates
   MeasuredRunOptions how;                   ///< required signals and options for reading the runs, except for the ambient temperature
   std::vector<std::string> fitted;          ///< logs that the file's parameters were fitted to, as name_and_fingerprint()

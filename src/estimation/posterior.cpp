@@ -1,4 +1,4 @@
-#include "attribution/refit.h"
+#include "estimation/posterior.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -6,11 +6,11 @@
 #include <limits>
 #include <numeric>
 
-#include "attribution/uneven_bodies.h"
 #include "base/diagnostic.h"
 #include "base/parallel.h"
 #include "estimation/averaged_run.h"
 #include "estimation/open_loop.h"
+#include "estimation/uneven_bodies.h"
 
 namespace heatsoak {
 namespace {
@@ -104,7 +104,7 @@ LinearFit bounded_fit(const RunEvidence& all, const ThetaPrior& prior, const Eig
 
 class Fitter {
  public:
-  Fitter(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C, const RefitOptions& options)
+  Fitter(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C, const PosteriorOptions& options)
       : runs_(runs), options_(options) {
     now_.model = std::move(model);
     now_.start_C = std::move(start_C);
@@ -118,7 +118,7 @@ class Fitter {
     }
   }
 
-  RefitResult run() {
+  Posterior run() {
     linearise_all(now_);
     std::vector<DesignRun> designs = design_of(now_);
     for (int step = 0; step < options_.most_steps; ++step) {
@@ -139,13 +139,13 @@ class Fitter {
   }
 
  private:
-  void linearise_all(RefitResult& at) const {
+  void linearise_all(Posterior& at) const {
     at.fitted.resize(runs_.size());
     in_parallel(runs_.size(), 0, [&](std::size_t r) { at.fitted[r] = linearise(at.model, at.start_C[r], runs_[r]); });
   }
 
-  [[nodiscard]] std::vector<DesignRun> design_of(const RefitResult& at, const std::vector<Columns>& extra = {}) const {
-    std::vector<DesignRun> designs = design(at.model.model.network, at.fitted, runs_, options_.weights, options_.merged, extra);
+  [[nodiscard]] std::vector<DesignRun> design_of(const Posterior& at, const std::vector<Columns>& extra = {}) const {
+    std::vector<DesignRun> designs = design(at.model.network, at.fitted, runs_, options_.weights, options_.merged, extra);
     for (DesignRun& each : designs) {
       std::ranges::transform(each.noise.noise_K, each.noise.noise_K.begin(),
                              [&](double own_K) { return options_.white_noise_K > 0.0 ? options_.white_noise_K : own_K; });
@@ -169,7 +169,7 @@ class Fitter {
   }
 
   /// Returns the sum of squared whitened residuals at the linearisation point, with optimal start temperatures and the priors included.
-  [[nodiscard]] static double misfit_of(const RunEvidence& all, const RefitResult& at) {
+  [[nodiscard]] static double misfit_of(const RunEvidence& all, const Posterior& at) {
     const ThetaPrior prior = prior_here(at.model);
     return all.triangle.rightCols<1>().squaredNorm() + prior.mean.dot(prior.precision * prior.mean);
   }
@@ -233,8 +233,8 @@ class Fitter {
   }
 
   /// Returns the result after a fraction of the step. Throws Failure if the temperatures diverge.
-  [[nodiscard]] RefitResult moved(const Eigen::VectorXd& step, const std::vector<Eigen::VectorXd>& start_step_K, double share) const {
-    RefitResult next;
+  [[nodiscard]] Posterior moved(const Eigen::VectorXd& step, const std::vector<Eigen::VectorXd>& start_step_K, double share) const {
+    Posterior next;
     next.model = now_.model;
     next.model.set_theta((now_.model.theta() + share * step).cwiseMax(low_).cwiseMin(high_));
     next.flux = now_.flux;
@@ -257,7 +257,7 @@ class Fitter {
     const std::vector<Eigen::VectorXd> start_step_K = start_steps_K(fit.coefficients, designs);
     for (double share = 1.0; share > 0.05; share *= 0.5) {
       try {
-        RefitResult next = moved(fit.coefficients, start_step_K, share);
+        Posterior next = moved(fit.coefficients, start_step_K, share);
         std::vector<DesignRun> next_designs = design_of(next);
         if (misfit_of(all_runs(next_designs, now_.flux), next) < misfit + 1e-9) {
           now_ = std::move(next);
@@ -272,24 +272,24 @@ class Fitter {
   }
 
   const std::vector<MeasuredRun>& runs_;
-  const RefitOptions& options_;
-  RefitResult now_;
+  const PosteriorOptions& options_;
+  Posterior now_;
   Eigen::VectorXd low_, high_;
 };
 
 }  // namespace
 
-RefitResult refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
-                  const RefitOptions& options) {
+Posterior posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
+                       const PosteriorOptions& options) {
   return Fitter(std::move(model), runs, std::move(start_C), options).run();
 }
 
-RefitResult try_refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
-                      const RefitOptions& options) {
+Posterior try_posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
+                           const PosteriorOptions& options) {
   try {
-    return refit(std::move(model), runs, std::move(start_C), options);
+    return posterior_of(std::move(model), runs, std::move(start_C), options);
   } catch (const Failure&) {
-    RefitResult none;
+    Posterior none;
     none.flux = options.flux;
     none.evidence_nats = -std::numeric_limits<double>::infinity();
     return none;

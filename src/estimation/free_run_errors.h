@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "attribution/extended_model.h"
+#include "estimation/model_along_run.h"
 #include "estimation/open_loop.h"
 
 namespace heatsoak {
@@ -21,9 +21,9 @@ using Errors = std::map<std::string, ErrorOfSignal>;
 
 /// Simulates each run freely from its first measured temperatures and returns the errors by signal. A run that continues one of
 /// `before_them` within 30 s starts from the simulated end of that run; later samples are not used.
-Errors open_loop_errors(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them);
+Errors open_loop_errors(const Model& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them);
 /// Returns the predicted readings of one run in °C, n × sensors.
-Eigen::MatrixXd open_loop_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it);
+Eigen::MatrixXd open_loop_C(const Model& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it);
 /// Returns the RMS over all signals, with equal weights.
 double rms_K(const Errors& errors);
 

@@ -1,4 +1,4 @@
-#include "attribution/residual_tests.h"
+#include "estimation/residual_tests.h"
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>

@@ -7,9 +7,9 @@
 #include <set>
 #include <span>
 
-#include "attribution/diagnosis.h"
 #include "base/quantity.h"
 #include "calibration/unlogged_speed.h"
+#include "diagnosis/diagnosis.h"
 
 namespace heatsoak {
 namespace {

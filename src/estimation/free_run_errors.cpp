@@ -1,10 +1,10 @@
-#include "estimation/open_loop.h"
+#include "estimation/free_run_errors.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "attribution/open_loop.h"
 #include "base/parallel.h"
+#include "estimation/open_loop.h"
 
 namespace heatsoak {
 namespace {
@@ -18,7 +18,7 @@ std::string recording_of(const MeasuredRun& run) {
 }
 
 /// Returns the stated errors of a sensor, followed by those of the model.
-std::vector<SensorFault> all_faults(const ExtendedModel& model, const Sensor& sensor) {
+std::vector<SensorFault> all_faults(const Model& model, const Sensor& sensor) {
   std::vector<SensorFault> faults = sensor.faults;
   for (const SensorTerm& term : model.sensors) {
     if (term.type->signal == sensor.signal) {
@@ -28,8 +28,8 @@ std::vector<SensorFault> all_faults(const ExtendedModel& model, const Sensor& se
   return faults;
 }
 
-std::vector<double> start_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it) {
-  const Network& network = model.model.network;
+std::vector<double> start_C(const Model& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it) {
+  const Network& network = model.network;
   for (const MeasuredRun& before : before_it) {
     const double gap_s = run.time_s.front() - before.time_s.back();
     if (recording_of(before) == recording_of(run) && gap_s > -1e-9 && gap_s < kContinues_s) {
@@ -51,15 +51,15 @@ std::vector<double> start_C(const ExtendedModel& model, const MeasuredRun& run, 
 
 }  // namespace
 
-Eigen::MatrixXd open_loop_C(const ExtendedModel& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it) {
+Eigen::MatrixXd open_loop_C(const Model& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it) {
   // Removing the free parameters saves the sensitivities, which are not needed.
-  ExtendedModel settled = model;
-  settled.model.free.clear();
-  settled.model.flux_nodes.clear();
+  Model settled = model;
+  settled.free.clear();
+  settled.flux_nodes.clear();
   return linearise(settled, start_C(model, run, before_it), run).sensor_C;
 }
 
-Errors open_loop_errors(const ExtendedModel& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {
+Errors open_loop_errors(const Model& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {
   Errors errors;
   std::map<std::string, double> counts;
   std::vector<Eigen::MatrixXd> off_K(runs.size());

@@ -1,4 +1,4 @@
-#include "attribution/design.h"
+#include "estimation/design.h"
 
 #include <Eigen/Dense>
 
@@ -33,8 +33,8 @@ std::vector<DesignRun> design(const Network& network, const std::vector<Linearis
   return all;
 }
 
-ThetaPrior prior_here(const ExtendedModel& model) {
-  const Prior prior = model.prior();
+ThetaPrior prior_here(const Model& model) {
+  const Prior prior = model.full_prior();
   return {prior.precision, prior.mean - model.theta()};
 }
 

@@ -1,4 +1,4 @@
-#include "attribution/found_effects.h"
+#include "diagnosis/found_effects.h"
 
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
@@ -30,9 +30,9 @@ class EffectReport {
       report_deviation(*term.candidate, effect);
       return effect;
     }
-    const EffectInPlace& in_place = *effect_named(after().model.model.network, term.effect_name);
+    const EffectInPlace& in_place = *effect_named(after().model.network, term.effect_name);
     effect.id = in_place.type->name;
-    effect.node = after().model.model.network.node_name(in_place.node_index.front());
+    effect.node = after().model.network.node_name(in_place.node_index.front());
     effect.description = in_place.type->summary;
     effect.confounded_with = in_place.type->confounded_with;
     for (const ConditionalTerm& conditional : after().model.conditional) {
@@ -88,7 +88,7 @@ class EffectReport {
     effect.confounded_with = type.confounded_with;
     report_size(candidate, type.size, type.usual, std::max(-1.0, type.size.range.low), effect);
     const double value = effect.parameters.front().value;
-    const Network& network = after().model.model.network;
+    const Network& network = after().model.network;
     const HeatOfEffect heat = heat_of(
         after(), runs_, [&](const EffectInPlace& in_place) { return type.concerns(network, in_place); }, candidate.condition);
     effect.mean_W = std::abs(type.part_ratio(value)) * heat.mean_W;
@@ -101,7 +101,7 @@ class EffectReport {
 
   void drop_interval_at_bound(Eigen::Index coordinate, FittedParameter& parameter) const {
     constexpr double kThere = 1e-6;
-    const ExtendedModel& model = after().model;
+    const Model& model = after().model;
     const double theta = model.theta()[coordinate];
     if (theta < model.low(coordinate) + kThere && model.low(coordinate) == 0.0) {
       parameter.value = 0.0;
@@ -113,7 +113,7 @@ class EffectReport {
   }
 
   void report_parameters(const EffectInPlace& in_place, FoundEffect& effect) const {
-    const Model& model = after().model.model;
+    const Model& model = after().model;
     const Eigen::VectorXd theta = model.theta();
     std::vector<double> values;
     for (const int place : in_place.parameter_index) {
@@ -126,7 +126,7 @@ class EffectReport {
       }
       FittedParameter parameter{std::string(spec.key), std::string(unit_of(in_place.type->parameters, p, values)), values[p], values[p],
                                 values[p]};
-      for (Eigen::Index i = 0; i < model.free_count(); ++i) {
+      for (Eigen::Index i = 0; i < model.network_count(); ++i) {
         if (model.free[static_cast<std::size_t>(i)].place == in_place.parameter_index[p]) {
           const double sd = std::sqrt(after().covariance(i, i));
           parameter.low = std::max(model.value_of(i, theta[i] - kInterval_sd * sd), spec.range.low);
@@ -143,7 +143,7 @@ class EffectReport {
     }
   }
 
-  [[nodiscard]] const RefitResult& after() const { return selection_.after; }
+  [[nodiscard]] const Posterior& after() const { return selection_.after; }
 
   const Selection& selection_;
   const std::vector<MeasuredRun>& runs_;

@@ -1,4 +1,4 @@
-#include "attribution/uneven_bodies.h"
+#include "estimation/uneven_bodies.h"
 
 #include <algorithm>
 #include <string>

@@ -1,4 +1,4 @@
-#include "attribution/refit.h"
+#include "estimation/posterior.h"
 
 #include <gtest/gtest.h>
 
@@ -29,16 +29,15 @@ MeasuredRun hour_at(double current_A) {
   return run;
 }
 
-TEST(Refit, a_model_that_runs_away_is_a_failure_and_of_a_trial_no_explanation) {
-  ExtendedModel model;
-  model.model = two_node_model({}, 1.0);
-  RefitOptions options;
+TEST(Posterior, a_model_that_runs_away_is_a_failure_and_of_a_trial_no_explanation) {
+  const Model model = two_node_model({}, 1.0);
+  PosteriorOptions options;
   options.flux = {{0.05, 0.05}, 200.0};
   options.merged = {1};
   const std::vector<std::vector<double>> start_C{{25.0, 25.0}};
-  EXPECT_TRUE(std::isfinite(try_refit(model, {hour_at(0.5)}, start_C, options).evidence_nats));
-  EXPECT_THROW(refit(model, {hour_at(1e3)}, start_C, options), Failure);
-  const RefitResult none = try_refit(model, {hour_at(1e3)}, start_C, options);
+  EXPECT_TRUE(std::isfinite(try_posterior_of(model, {hour_at(0.5)}, start_C, options).evidence_nats));
+  EXPECT_THROW(posterior_of(model, {hour_at(1e3)}, start_C, options), Failure);
+  const Posterior none = try_posterior_of(model, {hour_at(1e3)}, start_C, options);
   EXPECT_TRUE(std::isinf(none.evidence_nats) && none.evidence_nats < 0.0);
   EXPECT_EQ(none.flux.rms_W, options.flux.rms_W);
 }

@@ -4,12 +4,12 @@
 #include <limits>
 #include <vector>
 
-#include "attribution/design.h"
+#include "estimation/design.h"
 
 namespace heatsoak {
 
-struct RefitResult {
-  ExtendedModel model;
+struct Posterior {
+  Model model;
   std::vector<std::vector<double>> start_C;  ///< start temperatures per run
   std::vector<LinearisedRun> fitted;         ///< free-running simulations of the model
   LatentFlux flux;                           ///< assumed unknown heat
@@ -18,7 +18,7 @@ struct RefitResult {
   bool converged = false;
 };
 
-struct RefitOptions {
+struct PosteriorOptions {
   LatentFlux flux;
   std::vector<Eigen::VectorXd> weights = {};  ///< per run and sample; empty: all 1
   std::vector<int> merged = {};               ///< per run, number of samples per average; empty: no averaging
@@ -32,11 +32,11 @@ struct RefitOptions {
 
 /// Fits the model. `start_C` per run as in linearise(). Throws Failure (numerics_failed) if the model cannot be simulated from its start
 /// values.
-RefitResult refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
-                  const RefitOptions& options);
+Posterior posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
+                       const PosteriorOptions& options);
 
 /// Same for a trial model: if its temperatures diverge, returns an evidence of −∞ and empty results instead of throwing.
-RefitResult try_refit(ExtendedModel model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
-                      const RefitOptions& options);
+Posterior try_posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
+                           const PosteriorOptions& options);
 
 }  // namespace heatsoak

@@ -1,4 +1,4 @@
-#include "attribution/run_deviation.h"
+#include "estimation/run_deviation.h"
 
 #include <fmt/format.h>
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "attribution/found_effects.h"
-#include "attribution/open_loop.h"
-#include "attribution/residual_tests.h"
 #include "calibration/forecast/prediction.h"
+#include "diagnosis/found_effects.h"
+#include "estimation/free_run_errors.h"
+#include "estimation/residual_tests.h"
 
 namespace heatsoak {
 
@@ -17,8 +17,9 @@ std::string_view to_string(DiagnosisVerdict verdict);
 
 /// Input of a diagnosis. It contains no hold-out run: score_holdout() scores these after every decision.
 struct DiagnosisInput {
-  ExtendedModel model;  ///< calibrated model
+  Model model;  ///< calibrated model
   std::vector<MeasuredRun> train;
+  UsualErrors usual = {};
   bool turns_within_rows = false;  ///< set by settle_turning_rows(): the motor reverses within rows of the log
 };
 

@@ -1,4 +1,4 @@
-#include "attribution/diagnosis.h"
+#include "diagnosis/diagnosis.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,15 +8,15 @@
 #include <functional>
 #include <iterator>
 
-#include "attribution/advisor.h"
-#include "attribution/coverage.h"
 #include "attribution/curve.h"
 #include "attribution/mean_heat.h"
 #include "attribution/terms.h"
-#include "attribution/unexplained_heat.h"
 #include "base/parallel.h"
 #include "base/quantity.h"
 #include "calibration/unlogged_speed.h"
+#include "diagnosis/advisor.h"
+#include "diagnosis/coverage.h"
+#include "diagnosis/unexplained_heat.h"
 #include "estimation/interval.h"
 #include "estimation/log_columns.h"
 #include "estimation/turning_rows.h"
@@ -31,7 +31,7 @@ constexpr double kOtherMounting = 0.1;
 constexpr double kWorse_ratio = 1.1;
 
 /// Returns the errors without run deviations, which the motor file does not contain.
-Errors errors_of_file(ExtendedModel model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {
+Errors errors_of_file(Model model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {
   model.deviations.clear();
   return open_loop_errors(model, runs, before_them);
 }
@@ -63,15 +63,15 @@ class DiagnosisReport {
   }
 
  private:
-  [[nodiscard]] const RefitResult& after() const { return out_.selection.after; }
+  [[nodiscard]] const Posterior& after() const { return out_.selection.after; }
 
   void report_changed_parameters() {
-    const Model& model = after().model.model;
+    const Model& model = after().model;
     const Eigen::VectorXd theta = model.theta();
     for (ChangedParameter parameter : out_.selection.changed) {
       const Eigen::Index own = parameter.coordinate;
       const double reach = kInterval_sd * std::sqrt(after().covariance(own, own));
-      parameter.before = input_.model.model.values[static_cast<std::size_t>(model.free[static_cast<std::size_t>(own)].place)];
+      parameter.before = input_.model.values[static_cast<std::size_t>(model.free[static_cast<std::size_t>(own)].place)];
       parameter.value = model.value_of(own, theta[own]);
       parameter.low = model.value_of(own, theta[own] - reach);
       parameter.high = model.value_of(own, theta[own] + reach);
@@ -87,9 +87,9 @@ class DiagnosisReport {
   }
 
   /// Returns the smoothed unknown heat of every run, fluxes × samples.
-  [[nodiscard]] std::vector<FluxEstimate> smoothed(const RefitResult& fit) const {
+  [[nodiscard]] std::vector<FluxEstimate> smoothed(const Posterior& fit) const {
     std::vector<FluxEstimate> all(fit.fitted.size());
-    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
+    const std::vector<DesignRun> designs = design(fit.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
     in_parallel(all.size(), 0, [&](std::size_t r) {
       all[r] = Whitening(fit.fitted[r], fit.flux, designs[r].noise).smoothed_flux(fit.fitted[r].residual_K);
     });
@@ -99,11 +99,11 @@ class DiagnosisReport {
   void report_flux() {
     const std::vector<FluxEstimate> before = smoothed(out_.selection.before);
     const std::vector<FluxEstimate> now = smoothed(after());
-    const std::vector<int>& nodes = input_.model.model.flux_nodes;
+    const std::vector<int>& nodes = input_.model.flux_nodes;
     std::map<std::string, double> counts;
     for (std::size_t r = 0; r < input_.train.size(); ++r) {
       for (std::size_t f = 0; f < nodes.size(); ++f) {
-        const std::string node(input_.model.model.network.node_name(nodes[f]));
+        const std::string node(input_.model.network.node_name(nodes[f]));
         const auto row = static_cast<Eigen::Index>(f);
         FluxTrace trace{input_.train[r].name, node, input_.train[r].time_s, {}, {}, {}};
         trace.before_W.assign(before[r].mean_W.row(row).begin(), before[r].mean_W.row(row).end());
@@ -122,8 +122,8 @@ class DiagnosisReport {
   }
 
   void report_balance() {
-    const ExtendedModel& model = after().model;
-    const Network& network = model.model.network;
+    const Model& model = after().model;
+    const Network& network = model.network;
     const auto nodes = static_cast<std::size_t>(network.node_count());
     const std::size_t effects = network.effects().size();
     std::vector<double> energy_J((effects + model.deviations.size()) * nodes, 0.0);  // effects first, then deviations
@@ -161,7 +161,7 @@ class DiagnosisReport {
   /// Moves the heat that a deviation causes in a run from the rows of its effects to its own row, which starts at `own`.
   void add_part(const RunDeviation& deviation, const MeasuredRun& run, std::span<const double> in_run_J, std::span<double> energy_J,
                 std::size_t own) const {
-    const Network& network = after().model.model.network;
+    const Network& network = after().model.network;
     const auto nodes = static_cast<std::size_t>(network.node_count());
     if (!run.has(deviation.condition)) {
       return;
@@ -178,10 +178,10 @@ class DiagnosisReport {
     }
   }
 
-  [[nodiscard]] std::vector<InnovationTests> tests_of(const RefitResult& fit) const {
+  [[nodiscard]] std::vector<InnovationTests> tests_of(const Posterior& fit) const {
     std::map<std::string, Eigen::VectorXd> innovations;
     std::map<std::string, std::vector<NamedInput>> inputs;
-    const std::vector<DesignRun> designs = design(fit.model.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
+    const std::vector<DesignRun> designs = design(fit.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
     for (std::size_t r = 0; r < fit.fitted.size(); ++r) {
       const LinearisedRun& path = fit.fitted[r];
       const Eigen::VectorXd standardised = Whitening(path, fit.flux, designs[r].noise).innovations(path.residual_K).standardised;
@@ -276,7 +276,8 @@ std::string settle_turning_rows(DiagnosisInput& input) {
   }
   std::vector<MeasuredRun> turning;
   std::ranges::transform(input.train, std::back_inserter(turning), turning_within_rows);
-  if (evidence_without_effects_nats({input.model, turning}) <= evidence_without_effects_nats({input.model, input.train})) {
+  if (evidence_without_effects_nats({input.model, turning, input.usual}) <=
+      evidence_without_effects_nats({input.model, input.train, input.usual})) {
     return {};
   }
   input.train = std::move(turning);
@@ -285,7 +286,7 @@ std::string settle_turning_rows(DiagnosisInput& input) {
 }
 
 Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
-  return DiagnosisReport(input, rules, select_effects({input.model, input.train}, rules)).tell();
+  return DiagnosisReport(input, rules, select_effects({input.model, input.train, input.usual}, rules)).tell();
 }
 
 HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<MeasuredRun> holdout) {
@@ -293,7 +294,7 @@ HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnos
   if (holdout.empty()) {
     return score;
   }
-  const ExtendedModel& after = diagnosis.selection.after.model;
+  const Model& after = diagnosis.selection.after.model;
   if (input.turns_within_rows) {
     std::ranges::transform(holdout, holdout.begin(), turning_within_rows);
   }

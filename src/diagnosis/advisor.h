@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "attribution/diagnosis.h"
+#include "diagnosis/diagnosis.h"
 
 namespace heatsoak {
 

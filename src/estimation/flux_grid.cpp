@@ -1,4 +1,4 @@
-#include "attribution/flux_grid.h"
+#include "estimation/flux_grid.h"
 
 #include <algorithm>
 #include <map>
