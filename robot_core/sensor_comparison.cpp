@@ -142,8 +142,7 @@ void compare_heat(const Config& config, State& state, const Validated& validated
 bool is_controlled(Mode mode) { return mode == Mode::body_velocity || mode == Mode::pose_target; }
 
 /// False while the robot should stand, and if the body is not controlled.
-[[gnu::noinline]] bool is_asked_to_move(const Config& config, const State& state, const Validated& validated) {
-  const Vector3& asked = state.velocity_reference;
+[[gnu::noinline]] bool is_asked_to_move(const Config& config, const Vector3& asked, const Validated& validated) {
   return is_controlled(validated.mode) &&
          absolute(asked.x) + absolute(asked.y) + config.contact_radius_m * absolute(asked.yaw) > kDriven_m_per_s;
 }
@@ -168,15 +167,18 @@ bool is_controlled(Mode mode) { return mode == Mode::body_velocity || mode == Mo
   standing_s = is_driven ? smaller(standing_s + since_s, 2.0F * kStanding_s) : standing_s;
 }
 
-/// Swapped wheel sensors make the control drive a standing robot, once it is pushed, instead of holding it.
-[[gnu::cold, gnu::noinline]] void compare_runaway(const Config& config, State& state, const Validated& validated, float since_s) {
+/// Swapped wheel sensors make the control drive a standing robot, once it is pushed, instead of holding it. The command decides whether the
+/// robot should stand, because the reference follows a robot that rolls out.
+[[gnu::cold, gnu::noinline]] void compare_runaway(const Config& config, State& state, const Input& input, const Validated& validated,
+                                                  float since_s) {
   ComparisonState& comparison = state.comparison;
   float rim_m_per_s = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
     rim_m_per_s += absolute(rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s));
   }
+  const Vector3& asked = validated.mode == Mode::pose_target ? state.plan_velocity : input.command.velocity;
   const bool should_stand = (is_controlled(validated.mode) || validated.mode == Mode::brake) &&
-                            !is_asked_to_move(config, state, validated) && comparison.is_checked == 0;
+                            !is_asked_to_move(config, asked, validated) && comparison.is_checked == 0;
   if (!should_stand || !(rim_m_per_s > (comparison.is_runaway != 0 ? kStands_m_per_s : kRuns_m_per_s))) {
     comparison.is_runaway = comparison.runaway_count = 0;
     return;
@@ -252,7 +254,7 @@ void compare_pairs(const Config& config, State& state, const Validated& validate
   const bool is_turning_known =
       state.yaw_fault == 0 && absolute(yaw_rate_of_wheels(config, validated) - validated.yaw_rate_rad_per_s) < kYawDisagreement_rad_per_s;
   // Pushes on a standing robot look like swapped sensors.
-  const bool is_driven = is_asked_to_move(config, state, validated);
+  const bool is_driven = is_asked_to_move(config, state.velocity_reference, validated);
   const bool is_wheelwise = validated.mode == Mode::wheel_speed || validated.mode == Mode::wheel_torque;
   const float fastest_rad_per_s = config.fastest_wheel_rad_per_s;
   float most = kLeastContradiction_share * config.derived.geared_constant_V_s_per_rad * fastest_rad_per_s * fastest_rad_per_s;
@@ -399,7 +401,7 @@ void compare_sensors(const Config& config, State& state, const Input& input, Val
     }
     if (turn == 8) {
       compare_standing(config, state, validated, since_s);
-      compare_runaway(config, state, validated, since_s);
+      compare_runaway(config, state, input, validated, since_s);
       compare_yaw_rate(config, state, validated, since_s);
     }
   }
