@@ -134,8 +134,7 @@ BodyReference control_body_velocity(const Config& config, State& state, const In
   }
   body.is_wheelwise = validated.mode == Mode::wheel_speed || validated.mode == Mode::wheel_torque;
   // While the bridges are open the reference follows the robot. Otherwise the robot would have to catch up with it afterwards.
-  body.is_open =
-      validated.mode == Mode::coast || validated.robot_fault == Reason::period_invalid || state.comparison.is_runaway != 0;
+  body.is_open = validated.mode == Mode::coast || validated.robot_fault == Reason::period_invalid;
   if (body.is_open || body.is_wheelwise) {
     state.velocity_reference = validated.velocity;
     state.acceleration_reference = {};

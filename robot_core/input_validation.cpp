@@ -333,10 +333,13 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, V
 
 void take_samples(const Config& config, State& state, const Input& input, Validated& validated) {
   const float most_rad_per_s = config.fastest_wheel_rad_per_s;
-  const float jump_rad_per_s =
-      // After a start there is no earlier sample to compare with.
-      state.steps == 0 ? 2.0F * most_rad_per_s
-                       : config.derived.jump_rad_per_s + config.largest_acceleration_rad_per_s2 * (validated.elapsed_s - config.period_s);
+  float jump_rad_per_s = config.derived.jump_rad_per_s;
+  if (state.steps == 0) {
+    jump_rad_per_s = 2.0F * most_rad_per_s;  // there is no earlier sample to compare with
+  } else if (validated.robot_fault != Reason::time_jump) {
+    // A gap explains no jump: it may be the timer's fault, and a robot that rolls needs a tenth of a second for such a change.
+    jump_rad_per_s += config.largest_acceleration_rad_per_s2 * (validated.elapsed_s - config.period_s);
+  }
   validated.are_all_sensed = true;
   bool are_faults_new = false;
 #pragma GCC unroll 4
@@ -416,8 +419,9 @@ Validated validate_input(const Config& config, State& state, const Input& input)
     }
   }
   compare_sensors(config, state, input, validated);
-  if (state.comparison.is_runaway != 0 && validated.robot_fault == Reason::none) {
-    validated.robot_fault = Reason::runaway;
+  if (state.comparison.is_runaway != 0) {
+    validated.mode = Mode::coast;
+    validated.robot_fault = validated.robot_fault == Reason::none ? Reason::runaway : validated.robot_fault;
   }
   validate_currents(config, state, input, validated);
   return validated;

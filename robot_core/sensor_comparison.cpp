@@ -222,15 +222,17 @@ void find_responses(const Config& config, State& state, const Validated& validat
   }
 }
 
-/// Mean square residual of the speed samples, as rim speeds, against one motion of the body. It is 0 for three wheels, whose speeds fit
-/// some motion with the gyro even after two samples were exchanged.
-[[gnu::cold]] float contradiction_m2_per_s2(const Config& config, const State& state, const Validated& validated) {
+/// Mean square residual of the speed samples, as rim speeds, against one motion of the body, with the samples of the wheels `a` and `b`
+/// exchanged. It is 0 for three wheels, whose speeds fit some motion with the gyro even after two samples were exchanged.
+[[gnu::cold, gnu::noinline]] float contradiction_m2_per_s2(const Config& config, const State& state, const Validated& validated, int a,
+                                                           int b) {
   const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
   float x = 0.0F;
   float y = 0.0F;
   float all = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
-    const float rim_m_per_s = rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - turning_m_per_s;
+    const int from = i == a ? b : i == b ? a : i;
+    const float rim_m_per_s = rim_speed_m_per_s(config, i, state.wheel[from].raw_speed_rad_per_s) - turning_m_per_s;
     x += config.wheel[i].rolling_x_share * rim_m_per_s;
     y += config.wheel[i].rolling_y_share * rim_m_per_s;
     all += rim_m_per_s * rim_m_per_s;
@@ -241,10 +243,27 @@ void find_responses(const Config& config, State& state, const Validated& validat
   return larger(0.0F, all - explained) / static_cast<float>(config.wheel_count);
 }
 
+/// Returns true if the evidence that does not depend on pushes also speaks for a swap of two sensors: their exchange makes four speeds fit
+/// one motion, and the exchanged speeds fit the sensed currents better, by V = R·I + K·n·ω. Without current samples the second is not
+/// known.
+[[gnu::cold, gnu::noinline]] bool is_exchange_better(const Config& config, const State& state, const Input& input,
+                                                     const Validated& validated, int i, int j) {
+  constexpr float kLeast_m2_per_s2 = kLeastResidual_m_per_s * kLeastResidual_m_per_s;
+  if (kMuchMore_ratio * (contradiction_m2_per_s2(config, state, validated, i, j) - kLeast_m2_per_s2) >
+      contradiction_m2_per_s2(config, state, validated, 0, 0)) {
+    return false;
+  }
+  const WheelState& a = state.wheel[i];
+  const WheelState& b = state.wheel[j];
+  const float apart_V =
+      (a.voltage_V - input.motor_current_A[i] / a.conductance_A_per_V) - (b.voltage_V - input.motor_current_A[j] / b.conductance_A_per_V);
+  return !(apart_V * (a.raw_speed_rad_per_s - b.raw_speed_rad_per_s) > 0.0F);
+}
+
 /// Finds swapped sensors. The difference of two wheels' currents accelerates the difference of their speeds. With swapped sensors it seems
 /// to decelerate it; the control then increases the difference until the product of both is large. Used only in body modes: wheels driven
 /// against each other follow the strongest one.
-void compare_pairs(const Config& config, State& state, const Validated& validated, float since_s) {
+void compare_pairs(const Config& config, State& state, const Input& input, const Validated& validated, float since_s) {
   ComparisonState& comparison = state.comparison;
   if (comparison.is_checked != 0) {
     return;  // wiring does not change while driving, but pushed robots slide as if it had
@@ -262,7 +281,7 @@ void compare_pairs(const Config& config, State& state, const Validated& validate
   bool is_checked = true;
   // The body couples its wheels, so a current may slow its own wheel down. Four samples then still fit one motion of the body.
   float& residual_m2_per_s2 = comparison.residual_m2_per_s2;
-  residual_m2_per_s2 += (1.0F - keep) * (contradiction_m2_per_s2(config, state, validated) - residual_m2_per_s2);
+  residual_m2_per_s2 += (1.0F - keep) * (contradiction_m2_per_s2(config, state, validated, 0, 0) - residual_m2_per_s2);
   const bool is_contradiction = config.wheel_count < 4 || residual_m2_per_s2 > kLeastResidual_m_per_s * kLeastResidual_m_per_s;
   WheelResponse response[kMostWheels];
   find_responses(config, state, validated, since_s, response);
@@ -287,7 +306,8 @@ void compare_pairs(const Config& config, State& state, const Validated& validate
         ++confirmations;
       }
       is_checked = is_checked && confirmations >= kConfirmations;
-      if (is_contradiction && against > kMuchMore_ratio * with && against > most) {
+      if (is_contradiction && against > kMuchMore_ratio * with && against > most &&
+          is_exchange_better(config, state, input, validated, i, j)) {
         most = against;
         worst[0] = i;
         worst[1] = j;
@@ -392,7 +412,7 @@ void compare_sensors(const Config& config, State& state, const Input& input, Val
   }
   const float since_s = validated.elapsed_s * static_cast<float>(kStepsPerComparison);
   if (turn == 4) {
-    compare_pairs(config, state, validated, since_s);
+    compare_pairs(config, state, input, validated, since_s);
   } else {
     const int first = turn == 0 ? 0 : 2;
     for (int i = first; i < first + 2 && i < config.wheel_count; ++i) {
