@@ -170,8 +170,8 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
   PerWheel driving_W;
   for (int i = 0; i < config.wheel_count; ++i) {
     driving_W[i] = demand[i].back_V * demand[i].current_A;
-    // After a sensor fault a wheel brakes only if all estimates of its speed agree on the direction.
-    if (validated.is_redundancy_reduced && !(absolute(demand[i].back_V) > validated.spread_V)) {
+    // A wheel brakes only if all estimates of its speed agree on the direction.
+    if (!(absolute(demand[i].back_V) > validated.spread_V)) {
       driving_W[i] = absolute(driving_W[i]);
     }
     body_W += driving_W[i];

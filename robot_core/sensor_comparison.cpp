@@ -8,7 +8,6 @@
 namespace robot_core {
 namespace {
 
-constexpr std::uint32_t kStepsPerComparison = 16;
 // A sample counts as stuck if it stays exactly constant for this time while other evidence shows a change.
 constexpr float kStuck_s = 0.05F;
 // Sliding contacts make wheels disagree for a while. A disagreement above this share of the fastest speed is not sliding.
@@ -352,17 +351,14 @@ float yaw_rate_of_wheels(const Config& config, const Validated& validated) {
   return true;
 }
 
-[[gnu::cold]] void recall_faults(const KnownFaults& known, State& state) {
-  if (recall_sensors(known.comparison, state)) {
-    state.comparison = known.comparison;
+[[gnu::cold]] void recall_faults(const ComparisonState& known, State& state) {
+  if (recall_sensors(known, state)) {
+    state.comparison = known;
     for (int i = 0; i < kMostWheels; ++i) {
-      state.wheel[i].speed_fault = known.comparison.speed_fault[i];
-      state.wheel[i].is_current_distrusted = known.comparison.current_error_s[i] > kStuck_s ? 1 : 0;
+      state.wheel[i].speed_fault = known.speed_fault[i];
+      state.wheel[i].is_current_distrusted = known.current_error_s[i] > kStuck_s ? 1 : 0;
     }
-    state.yaw_fault = known.comparison.yaw_fault;
-  }
-  if (known.battery_source_V > 0.0F && is_finite(known.battery_source_V)) {
-    state.battery_source_V = known.battery_source_V;
+    state.yaw_fault = known.yaw_fault;
   }
 }
 
