@@ -238,8 +238,8 @@ Chart motor_picture(const Study& study) {
   const Group& file = study.file;
   const Group& bench = study.bench;
   const auto over = [&](std::size_t way) { return over_limit(file, way) + over_limit(bench, way); };
-  Chart chart{.title = fmt::format("Over the limit: {} of {} motors unguarded, {} with the cap for the nominal motor, {} with guard",
-                                   over(0), 2 * kMotors, over(2), over(1)),
+  Chart chart{.title = fmt::format("Over the limit: {} of {} motors unguarded, {} with the nominal cap, {} with guard", over(0),
+                                   2 * kMotors, over(2), over(1)),
               .subtitle =
                   "hard match, seed 1; motors known from their file and from a bench test, drawn within their tolerances; "
                   "each point is one motor",
