@@ -133,10 +133,11 @@ void step_valid(const Config& config, State& state, const Input& input, bool was
 
 /// Restarts State. After a single flipped bit the known faults are kept; memory that was never started keeps nothing.
 [[gnu::cold, gnu::noinline]] void restart(const Config& config, State& state) {
-  const KnownFaults known{state.comparison, state.battery_source_V};
+  const ComparisonState known = state.comparison;
   const std::uint32_t flips = state.is_valid ^ kStarted;
   if (start(config, state, {}) && (flips & (flips - 1)) == 0) {
     recall_faults(known, state);
+    state.battery_source_V = config.battery_full_V;
     state.check_sum = state_check_sum(state);
   }
 }

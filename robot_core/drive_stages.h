@@ -12,7 +12,7 @@ namespace robot_core {
 /// Stage 1: validated signals of one wheel.
 struct ValidatedWheel {
   float speed_rad_per_s;    ///< sensed, else implied, else 0
-  float implied_rad_per_s;  ///< implied by the other wheels and the gyro, else the sensed speed; only stage 1 uses it
+  float implied_rad_per_s;  ///< implied by the other wheels and the gyro, else the sensed speed; only if is_wheel_compared()
   float current_A;          ///< sensed, else estimated from voltage and speed
   bool is_speed_known;      ///< speed sensed or implied
   bool is_speed_sensed;
@@ -128,18 +128,18 @@ inline float cross(const WheelConfig& a, const WheelConfig& b) {
   return a.rolling_x_share * b.rolling_y_share - a.rolling_y_share * b.rolling_x_share;
 }
 
+inline constexpr std::uint32_t kStepsPerComparison = 16;
+/// Returns true if compare_sensors() compares two wheels with the others in this step.
+inline bool is_wheel_compared(const State& state) { return state.steps % (kStepsPerComparison / 2) == 0; }
+
 /// Compares sensors with each other: finds stuck and swapped ones, and accepts those again that have recovered.
 void compare_sensors(const Config& config, State& state, const Input& input, Validated& validated);
 
 /// Copies the faults of wheel speeds and yaw rate into ComparisonState, where a flipped bit in the rest of State does not reach them.
 void note_faults(State& state);
 
-/// Known sensor faults and open-circuit voltage. They survive a flipped bit in the rest of State, so that faulty sensors stay rejected.
-struct KnownFaults {
-  ComparisonState comparison;
-  float battery_source_V;
-};
-void recall_faults(const KnownFaults& known, State& state);
+/// Restores the known sensor faults from a copy. They survive a flipped bit in the rest of State, so that faulty sensors stay rejected.
+void recall_faults(const ComparisonState& known, State& state);
 /// Marks the sensors as fitted that had samples before a restart, so that their absence is a fault, and continues from the last air
 /// temperature. Returns false if the copy fails its check sum.
 bool recall_sensors(const ComparisonState& known, State& state);

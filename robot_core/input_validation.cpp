@@ -98,6 +98,7 @@ void validate_battery(const Config& config, State& state, const Input& input, Va
   constexpr float kTolerance_share = 0.03F;  // share of the full battery: noise
   constexpr float kFall_share_per_s = 0.004F;
   constexpr float kRise_s = 0.05F;
+  constexpr std::uint32_t kFirstSteps = 20;
   const float shown_V = state.battery_source_V;
   const float least_V = shown_V - kSag_ratio * sag_V;
   // A faulty timer must not discharge the battery estimate.
@@ -111,10 +112,15 @@ void validate_battery(const Config& config, State& state, const Input& input, Va
   }
   validated.battery_V = sample_V;
   if (sample_V >= least_V - kTolerance_share * config.battery_full_V) {
-    const float source_V = smaller(sample_V + sag_V, config.battery_full_V);
-    const float rise_ratio = state.steps == 0 ? 1.0F : smaller(1.0F, since_s / kRise_s);
-    state.battery_source_V += rise_ratio * larger(0.0F, source_V - state.battery_source_V);
-    validated.pwm_battery_V = larger(sample_V, least_V);
+    if (state.steps < kFirstSteps) {
+      // The first samples are no evidence yet of a battery that is not full.
+      state.battery_source_V = larger(shown_V, smaller(sample_V, config.battery_full_V));
+      validated.pwm_battery_V = config.battery_full_V;
+    } else {
+      const float source_V = smaller(sample_V + sag_V, config.battery_full_V);
+      state.battery_source_V += smaller(1.0F, since_s / kRise_s) * larger(0.0F, source_V - state.battery_source_V);
+      validated.pwm_battery_V = larger(sample_V, least_V);
+    }
   } else {
     // Braking motors may charge the battery by up to the tolerance.
     validated.pwm_battery_V = smaller(shown_V, config.battery_full_V) + kTolerance_share * config.battery_full_V;
@@ -185,8 +191,7 @@ struct PlaneFit {
   static constexpr float kLeastDeterminant = 0.02F;  // two wheels whose rolling directions are 8 degrees apart
 };
 
-/// All sensors are accepted: least squares with a constant matrix. Leaving one wheel out multiplies its residual by 1/(1 − leverage)
-/// (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, equation 2.8).
+/// All sensors are accepted: least squares with a constant matrix.
 void find_from_all(const Config& config, Validated& validated) {
   const DerivedConfig& derived = config.derived;
   const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
@@ -206,12 +211,22 @@ void find_from_all(const Config& config, Validated& validated) {
   for (int i = 0; i < config.wheel_count; ++i) {
     const float residual_m_per_s =
         rim_m_per_s[i] - config.wheel[i].rolling_x_share * validated.velocity.x - config.wheel[i].rolling_y_share * validated.velocity.y;
-    validated.wheel[i].implied_rad_per_s =
-        validated.wheel[i].speed_rad_per_s - residual_m_per_s * config.wheel[i].others_factor * config.wheel[i].speed_per_rim_per_m;
     validated.wheel[i].is_speed_known = true;
     disagreement_m_per_s += absolute(residual_m_per_s);
   }
   validated.spread_V = derived.spread_V_s_per_m * disagreement_m_per_s;
+}
+
+/// Speed of each wheel implied by the others, for the comparison in this step. Leaving one wheel out multiplies its residual by
+/// 1/(1 − leverage) (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, equation 2.8).
+[[gnu::cold, gnu::noinline]] void imply_from_all(const Config& config, Validated& validated) {
+  for (int i = 0; i < config.wheel_count; ++i) {
+    const WheelConfig& wheel = config.wheel[i];
+    const float residual_m_per_s =
+        validated.rim_m_per_s[i] - wheel.rolling_x_share * validated.velocity.x - wheel.rolling_y_share * validated.velocity.y;
+    validated.wheel[i].implied_rad_per_s =
+        validated.wheel[i].speed_rad_per_s - residual_m_per_s * wheel.others_factor * wheel.speed_per_rim_per_m;
+  }
 }
 
 /// Three wheels, or a rejected sensor: at most one more may be wrong.
@@ -271,9 +286,11 @@ void find_from_all(const Config& config, Validated& validated) {
     if (found.is_speed_sensed) {
       float rim_m_per_s = validated.rim_m_per_s[i];
       disagreement_m_per_s += absolute(rim_m_per_s - all.rim_of(wheel));
-      const bool is_implied = is_known && all.leave_out(wheel, rim_m_per_s);
-      found.implied_rad_per_s = is_implied ? (rim_m_per_s + turning_m_per_s) * wheel.speed_per_rim_per_m : found.speed_rad_per_s;
       found.is_speed_known = true;
+      if (is_wheel_compared(state)) {
+        const bool is_implied = is_known && all.leave_out(wheel, rim_m_per_s);
+        found.implied_rad_per_s = is_implied ? (rim_m_per_s + turning_m_per_s) * wheel.speed_per_rim_per_m : found.speed_rad_per_s;
+      }
       continue;
     }
     found.speed_rad_per_s = (all.rim_of(wheel) + turning_m_per_s) * wheel.speed_per_rim_per_m;
@@ -288,7 +305,7 @@ void find_from_all(const Config& config, Validated& validated) {
     found.implied_rad_per_s = found.speed_rad_per_s;
   }
   validated.spread_V = config.derived.spread_V_s_per_m * disagreement_m_per_s;
-  if (!is_known) {
+  if (!is_known && is_wheel_compared(state)) {
     compare_samples(config, state, validated);
   }
 }
@@ -333,10 +350,13 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, V
 
 void take_samples(const Config& config, State& state, const Input& input, Validated& validated) {
   const float most_rad_per_s = config.fastest_wheel_rad_per_s;
-  const float jump_rad_per_s =
-      // After a start there is no earlier sample to compare with.
-      state.steps == 0 ? 2.0F * most_rad_per_s
-                       : config.derived.jump_rad_per_s + config.largest_acceleration_rad_per_s2 * (validated.elapsed_s - config.period_s);
+  float jump_rad_per_s = config.derived.jump_rad_per_s;
+  if (state.steps == 0) {
+    jump_rad_per_s = 2.0F * most_rad_per_s;  // there is no earlier sample to compare with
+  } else if (validated.robot_fault != Reason::time_jump) {
+    // A gap explains no jump: it may be the timer's fault, and a robot that rolls needs a tenth of a second for such a change.
+    jump_rad_per_s += config.largest_acceleration_rad_per_s2 * (validated.elapsed_s - config.period_s);
+  }
   validated.are_all_sensed = true;
   bool are_faults_new = false;
 #pragma GCC unroll 4
@@ -405,6 +425,9 @@ Validated validate_input(const Config& config, State& state, const Input& input)
   validate_yaw_rate(config, state, input, validated);
   if (validated.are_all_sensed) {
     find_from_all(config, validated);
+    if (is_wheel_compared(state)) {
+      imply_from_all(config, validated);
+    }
   }
   if (!validated.are_all_sensed || state.yaw_fault != 0 || config.wheel_count < kMostWheels) {
     check_redundancy(config, state, validated);
@@ -416,8 +439,9 @@ Validated validate_input(const Config& config, State& state, const Input& input)
     }
   }
   compare_sensors(config, state, input, validated);
-  if (state.comparison.is_runaway != 0 && validated.robot_fault == Reason::none) {
-    validated.robot_fault = Reason::runaway;
+  if (state.comparison.is_runaway != 0) {
+    validated.mode = Mode::coast;
+    validated.robot_fault = validated.robot_fault == Reason::none ? Reason::runaway : validated.robot_fault;
   }
   validate_currents(config, state, input, validated);
   return validated;

@@ -170,8 +170,8 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
   PerWheel driving_W;
   for (int i = 0; i < config.wheel_count; ++i) {
     driving_W[i] = demand[i].back_V * demand[i].current_A;
-    // After a sensor fault a wheel brakes only if all estimates of its speed agree on the direction.
-    if (validated.is_redundancy_reduced && !(absolute(demand[i].back_V) > validated.spread_V)) {
+    // A wheel brakes only if all estimates of its speed agree on the direction.
+    if (!(absolute(demand[i].back_V) > validated.spread_V)) {
       driving_W[i] = absolute(driving_W[i]);
     }
     body_W += driving_W[i];
@@ -302,8 +302,7 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
   WheelDemand demand[kMostWheels];
   const float most_V = smaller(config.voltage_limit_V, validated.battery_V);
   const float share = find_demands(config, state, validated, body, voltage, most_V, demand, limited);
-  const bool is_all_open = body.is_open || state.comparison.is_runaway != 0;
-  state.is_limited = !is_all_open && share < 1.0F ? 1 : 0;
+  state.is_limited = !body.is_open && share < 1.0F ? 1 : 0;
   // Back-calculation: the integrators follow the voltages after the limits.
   const float feedback_share = smaller(1.0F, validated.elapsed_s * config.derived.per_tracking_time_per_s);
   float power_W = 0.0F;
@@ -312,11 +311,11 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
     WheelState& wheel = state.wheel[i];
     LimitedWheel& end = limited.wheel[i];
     end.allowed_A = demand[i].most_A;
-    end.is_open = finish_wheel(config, state, validated, demand[i], i, most_V, end.voltage_V, end.reason) || is_all_open;
+    end.is_open = finish_wheel(config, state, validated, demand[i], i, most_V, end.voltage_V, end.reason) || body.is_open;
     wheel.is_open = end.is_open ? 1 : 0;
     if (end.is_open) {
       end.voltage_V = 0.0F;
-      end.reason = is_all_open ? Reason::none : reason_of(config.wheel[i], demand[i]);
+      end.reason = body.is_open ? Reason::none : reason_of(config.wheel[i], demand[i]);
       wheel.integral_V = 0.0F;
     } else {
       power_W += end.voltage_V * demand[i].current_A;

@@ -24,17 +24,19 @@
 // |        | Config::command_timeout_s                                   |                                                   |                                 |
 // | 110 W  | wheel speed not finite or above fastest_wheel_rad_per_s     | speed from the other wheels and the gyro,         | kSteadyAgain_s of agreement     |
 // |        |                                                             | current at most Config::limp_current_A            |                                 |
-// | 111 W  | wheel speed changes faster than the motor can accelerate    | as 110                                            | as 110                          |
+// | 111 W  | wheel speed changes by more than the motor can accelerate   | as 110                                            | as 110                          |
+// |        | within the periods since the last step, in a gap within one |                                                   |                                 |
 // | 112 W  | wheel speed constant in contradiction to other sensors      | as 110                                            | as 110                          |
 // | 113 W  | speed of one wheel follows the current of another           | as 110, both wheels                               | start()                         |
-// |        | (swapped), while the robot is commanded to move             |                                                   |                                 |
+// |        | (swapped), while the robot is commanded to move; the sensed |                                                   |                                 |
+// |        | currents and four speeds must not contradict the swap       |                                                   |                                 |
 // | 114 W  | speed unknown: too few other wheels to estimate it          | voltage at most limp_current_A times resistance;  | as 110                          |
 // |        |                                                             | bridge open if the current is not sensed          |                                 |
 // | 115 W  | no wheel speed changes for kStanding_s while more than      | every current at most Config::limp_current_A,     | a wheel speed changes           |
 // |        | limp_current_A would flow through standing motors: all      | calculated for standing motors: no runaway        |                                 |
 // |        | sensors dead, or the robot is held                          |                                                   |                                 |
-// | 116 R  | wheels turn for kRunaway_s without slowing down although    | all bridges open                                  | the wheels stand                |
-// |        | the robot should stand, before swapped sensors are ruled    |                                                   |                                 |
+// | 116 R  | wheels turn for kRunaway_s without slowing down although    | all bridges open                                  | the wheels stand, or a body     |
+// |        | the robot should stand, before swapped sensors are ruled    |                                                   | velocity is commanded           |
 // |        | out: swapped sensors, or a push                             |                                                   |                                 |
 // | 120 W  | motor current seen once, also before a restart; now not     | current from voltage, speed and guard temperature | next valid sample               |
 // |        | finite or more than the battery can drive                   |                                                   |                                 |
@@ -74,7 +76,8 @@
 //   - More faulty speed sensors than spare ones: the current may exceed its limit for some periods. If all wheel sensors show 0, the robot
 //     accelerates for kStanding_s before the limp current limits it (115).
 //   - Pushes on a moving robot can look like swapped sensors until these are ruled out: two wheels then keep the limp current until
-//     start().
+//     start(). Of robots pushed with three quarters of their grip for half of the first 10 s, fewer than 5 % with current sensors and 33 %
+//     without (tests/robot_core/swapped_sensors_test.cpp). Of 10 000 robots pushed while they should stand, none.
 //   - All wheel sensors dead with noise: they agree with each other, so the robot is not limited to the limp current.
 //   - A gyro with a wrong sign, scale or offset: the robot turns at a wrong rate.
 //   - A pose that jumps, or is wrong although its age is valid: a pose target then leads to a wrong place.

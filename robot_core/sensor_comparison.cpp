@@ -8,7 +8,6 @@
 namespace robot_core {
 namespace {
 
-constexpr std::uint32_t kStepsPerComparison = 16;
 // A sample counts as stuck if it stays exactly constant for this time while other evidence shows a change.
 constexpr float kStuck_s = 0.05F;
 // Sliding contacts make wheels disagree for a while. A disagreement above this share of the fastest speed is not sliding.
@@ -142,8 +141,7 @@ void compare_heat(const Config& config, State& state, const Validated& validated
 bool is_controlled(Mode mode) { return mode == Mode::body_velocity || mode == Mode::pose_target; }
 
 /// False while the robot should stand, and if the body is not controlled.
-[[gnu::noinline]] bool is_asked_to_move(const Config& config, const State& state, const Validated& validated) {
-  const Vector3& asked = state.velocity_reference;
+[[gnu::noinline]] bool is_asked_to_move(const Config& config, const Vector3& asked, const Validated& validated) {
   return is_controlled(validated.mode) &&
          absolute(asked.x) + absolute(asked.y) + config.contact_radius_m * absolute(asked.yaw) > kDriven_m_per_s;
 }
@@ -168,15 +166,18 @@ bool is_controlled(Mode mode) { return mode == Mode::body_velocity || mode == Mo
   standing_s = is_driven ? smaller(standing_s + since_s, 2.0F * kStanding_s) : standing_s;
 }
 
-/// Swapped wheel sensors make the control drive a standing robot, once it is pushed, instead of holding it.
-[[gnu::cold, gnu::noinline]] void compare_runaway(const Config& config, State& state, const Validated& validated, float since_s) {
+/// Swapped wheel sensors make the control drive a standing robot, once it is pushed, instead of holding it. The command decides whether the
+/// robot should stand, because the reference follows a robot that rolls out.
+[[gnu::cold, gnu::noinline]] void compare_runaway(const Config& config, State& state, const Input& input, const Validated& validated,
+                                                  float since_s) {
   ComparisonState& comparison = state.comparison;
   float rim_m_per_s = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
     rim_m_per_s += absolute(rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s));
   }
+  const Vector3& asked = validated.mode == Mode::pose_target ? state.plan_velocity : input.command.velocity;
   const bool should_stand = (is_controlled(validated.mode) || validated.mode == Mode::brake) &&
-                            !is_asked_to_move(config, state, validated) && comparison.is_checked == 0;
+                            !is_asked_to_move(config, asked, validated) && comparison.is_checked == 0;
   if (!should_stand || !(rim_m_per_s > (comparison.is_runaway != 0 ? kStands_m_per_s : kRuns_m_per_s))) {
     comparison.is_runaway = comparison.runaway_count = 0;
     return;
@@ -220,15 +221,17 @@ void find_responses(const Config& config, State& state, const Validated& validat
   }
 }
 
-/// Mean square residual of the speed samples, as rim speeds, against one motion of the body. It is 0 for three wheels, whose speeds fit
-/// some motion with the gyro even after two samples were exchanged.
-[[gnu::cold]] float contradiction_m2_per_s2(const Config& config, const State& state, const Validated& validated) {
+/// Mean square residual of the speed samples, as rim speeds, against one motion of the body, with the samples of the wheels `a` and `b`
+/// exchanged. It is 0 for three wheels, whose speeds fit some motion with the gyro even after two samples were exchanged.
+[[gnu::cold, gnu::noinline]] float contradiction_m2_per_s2(const Config& config, const State& state, const Validated& validated, int a,
+                                                           int b) {
   const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
   float x = 0.0F;
   float y = 0.0F;
   float all = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
-    const float rim_m_per_s = rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - turning_m_per_s;
+    const int from = i == a ? b : i == b ? a : i;
+    const float rim_m_per_s = rim_speed_m_per_s(config, i, state.wheel[from].raw_speed_rad_per_s) - turning_m_per_s;
     x += config.wheel[i].rolling_x_share * rim_m_per_s;
     y += config.wheel[i].rolling_y_share * rim_m_per_s;
     all += rim_m_per_s * rim_m_per_s;
@@ -239,10 +242,27 @@ void find_responses(const Config& config, State& state, const Validated& validat
   return larger(0.0F, all - explained) / static_cast<float>(config.wheel_count);
 }
 
+/// Returns true if the evidence that does not depend on pushes also speaks for a swap of two sensors: their exchange makes four speeds fit
+/// one motion, and the exchanged speeds fit the sensed currents better, by V = R·I + K·n·ω. Without current samples the second is not
+/// known.
+[[gnu::cold, gnu::noinline]] bool is_exchange_better(const Config& config, const State& state, const Input& input,
+                                                     const Validated& validated, int i, int j) {
+  constexpr float kLeast_m2_per_s2 = kLeastResidual_m_per_s * kLeastResidual_m_per_s;
+  if (kMuchMore_ratio * (contradiction_m2_per_s2(config, state, validated, i, j) - kLeast_m2_per_s2) >
+      contradiction_m2_per_s2(config, state, validated, 0, 0)) {
+    return false;
+  }
+  const WheelState& a = state.wheel[i];
+  const WheelState& b = state.wheel[j];
+  const float apart_V =
+      (a.voltage_V - input.motor_current_A[i] / a.conductance_A_per_V) - (b.voltage_V - input.motor_current_A[j] / b.conductance_A_per_V);
+  return !(apart_V * (a.raw_speed_rad_per_s - b.raw_speed_rad_per_s) > 0.0F);
+}
+
 /// Finds swapped sensors. The difference of two wheels' currents accelerates the difference of their speeds. With swapped sensors it seems
 /// to decelerate it; the control then increases the difference until the product of both is large. Used only in body modes: wheels driven
 /// against each other follow the strongest one.
-void compare_pairs(const Config& config, State& state, const Validated& validated, float since_s) {
+void compare_pairs(const Config& config, State& state, const Input& input, const Validated& validated, float since_s) {
   ComparisonState& comparison = state.comparison;
   if (comparison.is_checked != 0) {
     return;  // wiring does not change while driving, but pushed robots slide as if it had
@@ -252,7 +272,7 @@ void compare_pairs(const Config& config, State& state, const Validated& validate
   const bool is_turning_known =
       state.yaw_fault == 0 && absolute(yaw_rate_of_wheels(config, validated) - validated.yaw_rate_rad_per_s) < kYawDisagreement_rad_per_s;
   // Pushes on a standing robot look like swapped sensors.
-  const bool is_driven = is_asked_to_move(config, state, validated);
+  const bool is_driven = is_asked_to_move(config, state.velocity_reference, validated);
   const bool is_wheelwise = validated.mode == Mode::wheel_speed || validated.mode == Mode::wheel_torque;
   const float fastest_rad_per_s = config.fastest_wheel_rad_per_s;
   float most = kLeastContradiction_share * config.derived.geared_constant_V_s_per_rad * fastest_rad_per_s * fastest_rad_per_s;
@@ -260,7 +280,7 @@ void compare_pairs(const Config& config, State& state, const Validated& validate
   bool is_checked = true;
   // The body couples its wheels, so a current may slow its own wheel down. Four samples then still fit one motion of the body.
   float& residual_m2_per_s2 = comparison.residual_m2_per_s2;
-  residual_m2_per_s2 += (1.0F - keep) * (contradiction_m2_per_s2(config, state, validated) - residual_m2_per_s2);
+  residual_m2_per_s2 += (1.0F - keep) * (contradiction_m2_per_s2(config, state, validated, 0, 0) - residual_m2_per_s2);
   const bool is_contradiction = config.wheel_count < 4 || residual_m2_per_s2 > kLeastResidual_m_per_s * kLeastResidual_m_per_s;
   WheelResponse response[kMostWheels];
   find_responses(config, state, validated, since_s, response);
@@ -285,7 +305,8 @@ void compare_pairs(const Config& config, State& state, const Validated& validate
         ++confirmations;
       }
       is_checked = is_checked && confirmations >= kConfirmations;
-      if (is_contradiction && against > kMuchMore_ratio * with && against > most) {
+      if (is_contradiction && against > kMuchMore_ratio * with && against > most &&
+          is_exchange_better(config, state, input, validated, i, j)) {
         most = against;
         worst[0] = i;
         worst[1] = j;
@@ -330,17 +351,14 @@ float yaw_rate_of_wheels(const Config& config, const Validated& validated) {
   return true;
 }
 
-[[gnu::cold]] void recall_faults(const KnownFaults& known, State& state) {
-  if (recall_sensors(known.comparison, state)) {
-    state.comparison = known.comparison;
+[[gnu::cold]] void recall_faults(const ComparisonState& known, State& state) {
+  if (recall_sensors(known, state)) {
+    state.comparison = known;
     for (int i = 0; i < kMostWheels; ++i) {
-      state.wheel[i].speed_fault = known.comparison.speed_fault[i];
-      state.wheel[i].is_current_distrusted = known.comparison.current_error_s[i] > kStuck_s ? 1 : 0;
+      state.wheel[i].speed_fault = known.speed_fault[i];
+      state.wheel[i].is_current_distrusted = known.current_error_s[i] > kStuck_s ? 1 : 0;
     }
-    state.yaw_fault = known.comparison.yaw_fault;
-  }
-  if (known.battery_source_V > 0.0F && is_finite(known.battery_source_V)) {
-    state.battery_source_V = known.battery_source_V;
+    state.yaw_fault = known.yaw_fault;
   }
 }
 
@@ -390,7 +408,7 @@ void compare_sensors(const Config& config, State& state, const Input& input, Val
   }
   const float since_s = validated.elapsed_s * static_cast<float>(kStepsPerComparison);
   if (turn == 4) {
-    compare_pairs(config, state, validated, since_s);
+    compare_pairs(config, state, input, validated, since_s);
   } else {
     const int first = turn == 0 ? 0 : 2;
     for (int i = first; i < first + 2 && i < config.wheel_count; ++i) {
@@ -399,7 +417,7 @@ void compare_sensors(const Config& config, State& state, const Input& input, Val
     }
     if (turn == 8) {
       compare_standing(config, state, validated, since_s);
-      compare_runaway(config, state, validated, since_s);
+      compare_runaway(config, state, input, validated, since_s);
       compare_yaw_rate(config, state, validated, since_s);
     }
   }

@@ -1,6 +1,9 @@
 // Method: reduction to ±π/4 with π/2 in parts (Cody and Waite, Software Manual for the Elementary Functions, 1980), Taylor polynomials.
 #include "robot_core/math.h"
 
+// Optimised for size: otherwise GCC repeats both polynomials for every quarter turn.
+#pragma GCC optimize("Os")
+
 namespace robot_core {
 
 SineCosine sine_cosine(float angle_rad) {

@@ -167,6 +167,9 @@ ParsedQuantity parse_quantity(std::string_view text, std::string_view wanted_uni
   if (!converter || !std::isfinite(cv_convert_double(converter.get(), 0.0))) {
     return {0.0, fmt::format("'{}' is a unit of something else; {}", shown(unit), example_for(wanted_unit))};
   }
+  if (wanted_unit == "K" && cv_convert_double(converter.get(), 0.0) != 0.0) {
+    return {0.0, fmt::format("\"{}\" is a temperature, not a difference of temperatures; write the difference in K", shown(text))};
+  }
   if (wanted_unit.find("rad") != std::string_view::npos && !names_an_angle(unit)) {
     return {0.0, fmt::format("'{}' names no angle, so a turn could be taken for a radian; write rpm or rad/s", shown(unit))};
   }

@@ -59,7 +59,11 @@ class CheckReader {
         table_.problem(key, failure.message());
       }
       for (Diagnostic each : failure.diagnostics()) {
-        if (each.at.line == 0 && !each.key.empty()) {
+        if (each.at.line == 0 && each.key.empty()) {
+          table_.problem(key, fmt::format("{}: {}", each.at.file, each.message));  // the file cannot be read at all
+          continue;
+        }
+        if (each.at.line == 0) {
           each.at = place_of(each.at.file, each.key);
         }
         if (reported_.insert(to_string(each)).second) {

@@ -96,6 +96,22 @@ void read_names(const std::string& head, CommittedTable& committed) {
   }
 }
 
+/// Returns the options of `derate` for the sensor that a C header describes: "/* With a thermistor at the stator (largest error 2 K, lag 3
+/// s)".
+std::string sensor_options_of(const std::string& text) {
+  static const std::regex kSensor(
+      R"(/\* With (a thermistor|the resistance from voltage and current) at the (\w+) \(largest error (\S+) K(?:, lag (\S+) s)?\))");
+  std::smatch found;
+  if (!std::regex_search(text, found, kSensor)) {
+    return {};
+  }
+  if (found[1] != "a thermistor") {
+    return fmt::format("--winding-resistance --resistance-accuracy {}, --voltage-error and --current-error as then", found[3].str());
+  }
+  return fmt::format("--thermistor {} --thermistor-accuracy {}{}", found[2].str(), found[3].str(),
+                     found[4].matched ? fmt::format(" --thermistor-lag {}", found[4].str()) : "");
+}
+
 /// Reads the table's four arrays, which have a common prefix of the name, and its constants.
 void read_header(const std::string& text, CommittedTable& committed) {
   // A line continuation could hide code in a comment; `heatsoak derate` writes none.
@@ -133,6 +149,7 @@ void read_header(const std::string& text, CommittedTable& committed) {
                        .no_current_speed_rad_per_s = constant(text, "NO_CURRENT_SPEED_RAD_PER_S"),
                        .winding_per_stator_K = constant(text, "WINDING_PER_STATOR_K")};
     committed.code = text;
+    committed.sensor_options = sensor_options_of(text);
     require_sound(committed, *committed.table, line);
     return;
   }
@@ -269,7 +286,8 @@ std::string fresh_header(const Derating& fresh) {
 }  // namespace
 
 CommittedTable read_committed_table(const std::filesystem::path& file) {
-  CommittedTable committed{.file = file, .table = {}, .rows = {}, .motor_id = {}, .robot_id = {}, .version = {}, .code = {}};
+  CommittedTable committed{
+      .file = file, .table = {}, .rows = {}, .motor_id = {}, .robot_id = {}, .sensor_options = {}, .version = {}, .code = {}};
   const std::string text = read_file(file, kLargestTable_bytes);
   static const std::regex kVersion(R"re((?:heatsoak |VERSION ")(\d+\.\d+\.\d+))re");
   std::smatch version;

@@ -25,6 +25,7 @@ struct CommittedTable {
   std::vector<CommittedRow> rows;     ///< only from a CSV table: the full grid, winding varies fastest
   std::string motor_id;               ///< named at the beginning of the file; empty if the file names none
   std::string robot_id;               ///< likewise
+  std::string sensor_options;         ///< options of `derate` for the sensor of a C header; empty: the header has no sensor
   std::string version;                ///< version of the program that wrote the file, "0.1.0"; empty if not stated
   std::string code;                   ///< full text of a C header, else empty
 };

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <vector>
 
@@ -86,11 +87,25 @@ std::string doubtful_fits(std::span<const Motor> motors) {
 std::string default_spreads_text(std::span<const Motor> motors) {
   std::string text;
   for (const Motor& motor : motors) {
-    if (const std::vector<DefaultSpread> spreads = default_spreads(motor); !spreads.empty()) {
+    std::vector<DefaultSpread> stated = default_spreads(motor);
+    const auto is_fitted = [&](const DefaultSpread& each) {
+      return each.origin == Origin::measured && motor.fit &&
+             std::ranges::find(motor.fit->parameters, each.key) != motor.fit->parameters.end();
+    };
+    const auto first_fitted = std::ranges::stable_partition(stated, std::not_fn(is_fitted)).begin();
+    const std::vector<DefaultSpread> fitted(first_fitted, stated.end());
+    stated.erase(first_fitted, stated.end());
+    if (!stated.empty()) {
       text += fmt::format(
           "{}: the file gives no tolerance for these values, or one that is narrower than their origin supports; defaults by origin are "
           "assumed: {}; state the real ones\n",
-          motor.id, to_string(spreads));
+          motor.id, to_string(stated));
+    }
+    if (!fitted.empty()) {
+      text += fmt::format(
+          "{}: the calibration gives narrower intervals for these values than sensors support; wider ones are assumed: {}; the file needs "
+          "no change\n",
+          motor.id, to_string(fitted));
     }
   }
   return text;

@@ -72,7 +72,8 @@ INSTANTIATE_TEST_SUITE_P(Texts, Refused,
                                          std::pair{"0x10 A", "A"},
                                          // On a data sheet "1/min" means rpm. As a plain unit it would be smaller by 2π.
                                          std::pair{"6000 1/min", "rad/s"}, std::pair{"6000 min-1", "rad/s"}, std::pair{"100 Hz", "rad/s"},
-                                         std::pair{"100 1/s", "rad/s"}, std::pair{"5 K", "K/W"}, std::pair{"155 deg", "degC"}));
+                                         std::pair{"100 1/s", "rad/s"}, std::pair{"5 K", "K/W"}, std::pair{"155 deg", "degC"},
+                                         std::pair{"2 degC", "K"}, std::pair{"2 degF", "K"}));
 
 TEST(ParseQuantity, says_what_is_wrong_and_what_was_expected) {
   EXPECT_NE(parse_quantity("5", "A").problem.find("has no unit"), std::string::npos);
@@ -81,6 +82,7 @@ TEST(ParseQuantity, says_what_is_wrong_and_what_was_expected) {
   EXPECT_NE(parse_quantity("5 V", "A").problem.find("something else"), std::string::npos);
   EXPECT_NE(parse_quantity("inf A", "A").problem.find("finite"), std::string::npos);
   EXPECT_NE(parse_quantity("6000 1/min", "rad/s").problem.find("rpm"), std::string::npos);
+  EXPECT_NE(parse_quantity("2 degC", "K").problem.find("write the difference in K"), std::string::npos);
 }
 
 TEST(ParseQuantity, a_number_too_large_for_its_unit_is_no_value) {

@@ -321,6 +321,23 @@ TEST_F(CheckFiles, LimitsLooserThanTheMotorsOwnAreRefused) {
   EXPECT_THAT(message, HasSubstr("\"at least -0.1 A\" is looser than the motor's own limits, 0 A"));
 }
 
+TEST_F(CheckFiles, TimeAboveLongerThanTheDutyIsRefused) {
+  const auto message = [&](const std::string& limit) {
+    return message_of(kHead + "temperature = \"100 degC\"\n[check.limits]\ntime_above = \"at most " + limit + "\"\n");
+  };
+  EXPECT_THAT(message("2401 s"),
+              HasSubstr(":8:14: error: limits.time_above: \"at most 2401 s\" is looser than the duration of the duty, 2400 s"));
+  EXPECT_EQ(message("2399 s"), "nothing was wrong");
+}
+
+TEST_F(CheckFiles, FolderInPlaceOfAMotorIsReportedAtItsLine) {
+  fs::create_directory(folder_ / "motors");
+  const std::string said = message_of(
+      "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"motors/\"\n"
+      "[check.limits]\nwinding_peak_p95 = \"at most 100 degC\"\n");
+  EXPECT_THAT(said, testing::ContainsRegex("a.check.toml:5:9: error: check.0..motor: .*motors.*it is a folder"));
+}
+
 TEST_F(CheckFiles, UpdateDoesNotPassAMotorAboveItsLimit) {
   const std::string text =
       "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"maxon_ecx_flat_32l_48v\"\n"

@@ -223,6 +223,25 @@ TEST(DerateCheck, FindsATableThatNoLongerHolds) {
   EXPECT_THAT(folder.names(), ElementsAre("table.csv", "unsafe.csv"));
 }
 
+// A header with a sensor cannot be compared with one without it, and this is no unsafe table.
+TEST(DerateCheck, NamesTheOptionsOfTheSensor) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  const Words derate{"derate", "--robot", "roboteam_twente_v2024", "--motor", "maxon_ecx_flat_42m_24v", "--samples", "60"};
+  const Words sensor{"--thermistor", "stator", "--thermistor-accuracy", "1.5K", "--thermistor-lag", "3s"};
+  ASSERT_EQ(run(derate + sensor + Words{"--out", "sensed.h"}, options).exit_code, 0);
+  ASSERT_EQ(run(derate + Words{"--out", "plain.h"}, options).exit_code, 0);
+  const ProgramRun without = run(derate + Words{"--check", "sensed.h"}, options);
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_THAT(without.err, HasSubstr("--check sensed.h: the header has a temperature sensor"));
+  EXPECT_THAT(without.err, HasSubstr("--thermistor stator --thermistor-accuracy 1.5 --thermistor-lag 3"));
+  const ProgramRun with = run(derate + sensor + Words{"--check", "plain.h"}, options);
+  EXPECT_EQ(with.exit_code, 2);
+  EXPECT_THAT(with.err, HasSubstr("--check plain.h: the header has no temperature sensor"));
+  EXPECT_EQ(run(derate + sensor + Words{"--check", "sensed.h"}, options).exit_code, 0);
+}
+
 // A consumer can distinguish an upgrade of the program from a change of the numbers.
 TEST(Version, StandsInEveryAnswer) {
   const std::string version = run({"--version"}).out;

@@ -50,6 +50,14 @@ TEST(AllMotors, may_stand_beside_a_file) {
   EXPECT_EQ(count("all," + (folder.path() / "mine.toml").string()), count("all") + 1);
 }
 
+TEST(Evaluate, an_empty_name_in_a_list_of_motors_is_reported) {
+  for (const std::string motors : {",", "maxon_dcx19s_24v,", ",maxon_dcx19s_24v"}) {
+    const ProgramRun result = run({"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", motors});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("--motors " + motors + ": a name is missing before or after a comma"));
+  }
+}
+
 // Files of another kind than expected.
 
 struct Misplaced {

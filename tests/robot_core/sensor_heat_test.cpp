@@ -74,7 +74,7 @@ Heat push(const Config& config, const std::function<void(Input&)>& spoil, double
     bool is_limited = false;
     for (int i = 0; i < 4; ++i) {
       heat.hottest_C = std::max(heat.hottest_C, plant.winding_C(i));
-      is_limited = is_limited || state.wheel[i].allowed_A < 4.0F;
+      is_limited = is_limited || out.reason[i] == robot_core::Reason::guard;
     }
     heat.limited_s += is_limited ? static_cast<double>(config.period_s) : 0.0;
   }

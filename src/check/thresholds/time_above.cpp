@@ -37,6 +37,22 @@ Measured measure(const Check& check, Computations& computations) {
                       hottest.duration_s(), result.winding_peak_C.nominal)};
 }
 
+/// Returns the duration of the duty, which the time above a temperature never exceeds; nothing if the duty cannot be computed.
+std::optional<LoosestLimit> duration(const Check& check) {
+  if (!check.robot || !check.duty) {
+    return std::nullopt;
+  }
+  try {
+    double longest_s = 0.0;
+    for (const WheelDemand& each : check.duty->demand(*check.robot, check.seed)) {
+      longest_s = std::max(longest_s, each.duration_s());
+    }
+    return LoosestLimit{longest_s, "the duration of the duty"};
+  } catch (const Failure&) {
+    return std::nullopt;  // the evaluation reports it
+  }
+}
+
 }  // namespace
 
 ThresholdType time_above() {
@@ -47,6 +63,7 @@ ThresholdType time_above() {
           .example = "at most 60 s",
           .needs = {Setting::robot, Setting::duty, Setting::motor, Setting::temperature},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},
+          .loosest = duration,
           .measure = measure};
 }
 

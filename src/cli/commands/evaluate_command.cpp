@@ -50,6 +50,11 @@ std::vector<std::string> listed_motors(const Options& options) {
   }
   std::vector<std::string> names = CLI::detail::split(*options.motors, ',');
   std::ranges::for_each(names, [](std::string& name) { CLI::detail::trim(name); });
+  if (options.motors->ends_with(',') || std::ranges::any_of(names, &std::string::empty)) {
+    throw Failure(ExitCode::bad_input, fmt::format("--motors {}: a name is missing before or after a comma; expected one motor or several, "
+                                                   "such as a,b, or all",
+                                                   *options.motors));
+  }
   return names;
 }
 

@@ -237,11 +237,11 @@ Chart time_picture(const Study& study) {
 Chart motor_picture(const Study& study) {
   const Group& file = study.file;
   const Group& bench = study.bench;
-  Chart chart{.title = fmt::format("Over the limit: {} + {} of {} + {} motors unguarded, {} + {} with the nominal cap, {} + {} with guard",
-                                   over_limit(file, 0), over_limit(bench, 0), kMotors, kMotors, over_limit(file, 2), over_limit(bench, 2),
-                                   over_limit(file, 1), over_limit(bench, 1)),
+  const auto over = [&](std::size_t way) { return over_limit(file, way) + over_limit(bench, way); };
+  Chart chart{.title = fmt::format("Over the limit: {} of {} motors unguarded, {} with the nominal cap, {} with guard", over(0),
+                                   2 * kMotors, over(2), over(1)),
               .subtitle =
-                  "hard match, seed 1; motors known from their file + motors known from a bench test, drawn within their tolerances; "
+                  "hard match, seed 1; motors known from their file and from a bench test, drawn within their tolerances; "
                   "each point is one motor",
               .x_label = "distance driven in the match / m",
               .panels = {},
