@@ -4,8 +4,8 @@
 #include <optional>
 #include <string_view>
 
-#include "attribution/regressor_scan.h"
 #include "attribution/candidates.h"
+#include "attribution/regressor_scan.h"
 
 namespace heatsoak {
 

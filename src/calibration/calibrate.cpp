@@ -323,7 +323,7 @@ class Calibrating {
       Eigen::Index only = 0;
       if (fit.free_run_error_K == 0.0 && sd > kCurvatureHolds_sd && each.exponents.cwiseAbs().maxCoeff(&only) == 1.0 &&
           each.exponents.cwiseAbs().sum() == 1.0) {
-        const auto [low, high] = profile_interval(model, all_.runs, fit, static_cast<int>(only), options_.fit.threads);
+        const auto [low, high] = profile_interval(model, all_.runs, fit, static_cast<int>(only));
         // The profile keeps the flux fixed; widen it for the uncertainty of the flux by the same factor as the curvature.
         const double widened = sd / std::max(1e-9, std::sqrt(fit.hypotheses.front().covariance(only, only)));
         below = (fit.theta[only] - low) * std::max(1.0, widened);
@@ -334,6 +334,7 @@ class Calibrating {
       parameter.high = parameter.value * std::exp(above);
       // Without heat in the runs, values in watts rest on the file, however well the data determine the time constants.
       const bool has_watts = each.origin == Origin::measured || !rests_on_watts(motor, each) || is_heated(motor, all_.runs);
+      parameter.is_learned = has_watts && is_learned(sd, each);
       parameter.is_identifiable = has_watts && is_identifiable(sd, each);
       all_.parameters.push_back(std::move(parameter));
     }
@@ -348,7 +349,7 @@ class Calibrating {
 
   void refuse_where_nothing_was_learned() const {
     const bool is_file_kept = all_.is_forecast_written && all_.forecast->source == ForecastSource::file;
-    if (is_file_kept || std::ranges::any_of(all_.parameters, &CalibratedParameter::is_identifiable)) {
+    if (is_file_kept || std::ranges::any_of(all_.parameters, [](const auto& each) { return each.is_learned || each.is_identifiable; })) {
       return;
     }
     std::string why = "no parameter of this motor is identifiable from these logs";

@@ -35,6 +35,7 @@ struct CalibratedParameter {
   double value = 0.0;
   double low = 0.0;  ///< limits of the 95 % interval
   double high = 0.0;
+  bool is_learned = false;       ///< the data say something about it, see is_learned() of motor_model.h
   bool is_identifiable = false;  ///< the data, not only the prior, determine it to a factor of two or better
   bool by_profile = false;       ///< true: interval from the profile likelihood; false: from the curvature
 };

@@ -281,11 +281,15 @@ class ModelBuilder {
 
 }  // namespace
 
-bool is_identifiable(double sd_share, const CalibratedValue& parameter) {
-  // Not identifiable: an interval of a factor of two to each side, or less than 30 % reduction of the prior standard deviation.
-  constexpr double kIdentifiable_sd = 0.35;
+bool is_learned(double sd_share, const CalibratedValue& parameter) {
   constexpr double kNews_share = 0.7;
-  return sd_share < kIdentifiable_sd && (parameter.origin == Origin::measured || sd_share < kNews_share * parameter.prior_sd);
+  return sd_share < kNews_share * parameter.prior_sd;
+}
+
+bool is_identifiable(double sd_share, const CalibratedValue& parameter) {
+  // An interval of a factor of two to each side.
+  constexpr double kIdentifiable_sd = 0.35;
+  return sd_share < kIdentifiable_sd && (parameter.origin == Origin::measured || is_learned(sd_share, parameter));
 }
 
 double prior_sd_of(const ParameterValue& parameter) {

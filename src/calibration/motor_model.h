@@ -37,6 +37,8 @@ struct CalibratedValue {
   Origin origin = Origin::estimated;
 };
 
+/// Returns true if the data reduce the prior standard deviation by 30 % or more. `sd_share` is the standard deviation of the logarithm.
+bool is_learned(double sd_share, const CalibratedValue& parameter);
 /// Returns true if the data, not only the prior, determine the parameter to a factor of two or better. `sd_share` is the standard deviation
 /// of its logarithm.
 bool is_identifiable(double sd_share, const CalibratedValue& parameter);

@@ -58,9 +58,15 @@ std::vector<Text> headline_of(const Motor& motor, const Calibration& result) {
       open.push_back(each.name);
     }
   }
-  std::vector<Text> sentences{{fmt::format("{} of {} values of {} are identifiable from {} run{}{}{}.",
-                                           result.parameters.size() - open.size(), result.parameters.size(), motor.id, result.runs.size(),
-                                           result.runs.size() == 1 ? "" : "s", open.empty() ? "" : ", all but ", fmt::join(open, ", "))}};
+  const std::string runs = fmt::format("{} run{}", result.runs.size(), result.runs.size() == 1 ? "" : "s");
+  std::vector<Text> sentences;
+  if (open.size() == result.parameters.size()) {
+    sentences.push_back(
+        {fmt::format("No value of {} is identifiable from {}, but the uncertainty of some is smaller now.", motor.id, runs)});
+  } else {
+    sentences.push_back({fmt::format("{} of {} values of {} are identifiable from {}{}{}.", result.parameters.size() - open.size(),
+                                     result.parameters.size(), motor.id, runs, open.empty() ? "" : ", all but ", fmt::join(open, ", "))});
+  }
   if (!result.next_experiment.empty()) {
     sentences.push_back({fmt::format("Next experiment: {}.", result.next_experiment)});
   }
