@@ -162,10 +162,11 @@ class Fitting {
       in_parallel(candidates.size(), 0, [&, steps = steps](std::size_t i) {
         candidates[i] = try_posterior_of(std::move(candidates[i].model), rough, std::move(candidates[i].start_C), plain(steps));
       });
+      std::erase_if(candidates, [](const Posterior& each) { return !std::isfinite(each.cost_nats); });
       std::ranges::stable_sort(candidates, {}, &Posterior::cost_nats);
       candidates.resize(std::min<std::size_t>(candidates.size(), static_cast<std::size_t>(kept)));
     }
-    if (!std::isfinite(candidates.front().cost_nats)) {
+    if (candidates.empty()) {
       throw Failure(ExitCode::cannot_answer,
                     "no start of the fit leads to a model with plausible temperatures; check the units of the heat inputs");
     }
