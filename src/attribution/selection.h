@@ -15,7 +15,7 @@
 
 namespace heatsoak {
 
-/// What the model leaves unexplained in the runs that its file was fitted to.
+/// Unexplained part of the runs that the model's file was fitted to.
 struct UsualErrors {
   double error_K = 0.0;  ///< RMS error of whole runs if these decided the parameters (free_run_error_K of MotorFit); else 0
   double flux_W = 0.0;   ///< RMS of the unknown heat; 0: not known

@@ -33,7 +33,7 @@ struct CalibratedValue {
   bool is_of_file = true;     ///< false: a heat capacity; files contain time constants instead
   Eigen::VectorXd exponents;  ///< value = constant · Π parameter^exponent
   double before = 0.0;        ///< value in the file
-  double prior_sd = 0.0;      ///< of the logarithm, from spread and origin
+  double prior_sd = 0.0;      ///< prior standard deviation of the logarithm, from spread and origin
   Origin origin = Origin::estimated;
 };
 

@@ -50,7 +50,7 @@ struct TableComparison {
   /// Only for a C header: first line outside of tables and comments that differs from a fresh header, from 1; 0 if none differs. If one
   /// does, the observer in the firmware is not the observer that the table was checked with.
   int differing_line = 0;
-  std::string differing_text;        ///< that line
+  std::string differing_text;        ///< text of `differing_line`
   std::string differing_fresh_text;  ///< line of the fresh header at the same place
 };
 

@@ -18,7 +18,7 @@ namespace heatsoak {
 struct FitOptions {
   int starts = 8;             ///< Latin hypercube points in addition to the model's own values; 0: only the latter
   double start_spread = 1.1;  ///< half width of the hypercube in θ; 1.1 = ln 3
-  std::uint64_t seed = 1;     ///< of the random hypercube points
+  std::uint64_t seed = 1;     ///< seeds the random hypercube points
   int threads = 0;            ///< 0: all cores; the result does not depend on it
   bool is_robust = true;      ///< true: outliers are down-weighted or rejected
   bool with_flux = true;      ///< false: assumes no unknown heat flux (for comparison)
@@ -35,7 +35,7 @@ struct Hypothesis {
 
 struct Fit {
   Eigen::VectorXd theta;
-  Eigen::MatrixXd covariance;   ///< of θ, averaged over all hypotheses
+  Eigen::MatrixXd covariance;   ///< covariance of θ, averaged over all hypotheses
   LatentFlux flux;              ///< most probable value
   std::vector<double> drift_K;  ///< most probable drift (standard deviation) per entry of sensor_nodes; empty: no sensor drifts
   double drift_time_scale_s = 0.0;

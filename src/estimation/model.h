@@ -50,7 +50,7 @@ struct Model {
   Network network;
   std::vector<double> values;  ///< all parameters of the network, in its order
   std::vector<FreeParameter> free;
-  Prior prior;                            ///< of the free parameters of the network; full_prior() includes the other coordinates
+  Prior prior;                            ///< free parameters of the network only; full_prior() includes the other coordinates
   std::vector<int> flux_nodes;            ///< nodes with an unknown heat flux
   std::vector<double> least_flux_W = {};  ///< lower limit of the flux's RMS, for heat that exists at unknown times; empty: none
   std::vector<ConditionalTerm> conditional = {};

@@ -1,4 +1,4 @@
-// What a planner's limits do to slip, time, precision and heat: the same short drives under many of them.
+// Effect of a planner's limits on slip, time, precision and heat: the same short drives under many of them.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace heatsoak {
 
-/// What the planner may use.
+/// Limits of the planner.
 struct StudyCase {
   double acceleration_m_per_s2 = 0.0;
   double jerk_m_per_s3 = 0.0;  ///< infinite: bang-bang, the acceleration jumps
@@ -29,7 +29,7 @@ struct StudyResult {
   double tracking_rms_m = 0.0;    ///< while the plan moves
   double overshoot_mean_m = 0.0;  ///< beyond the target after the plan has ended
   double peak_current_A = 0.0;    ///< the highest of all drives
-  double copper_J = 0.0;          ///< of all motors, per drive
+  double copper_J = 0.0;          ///< all motors together, per drive
 
   [[nodiscard]] bool is_bang_bang() const { return std::isinf(limits.jerk_m_per_s3); }
 };

@@ -1,4 +1,4 @@
-// What the thresholds on peak temperatures share.
+// Shared parts of the thresholds on peak temperatures.
 #pragma once
 
 #include <fmt/format.h>
