@@ -645,7 +645,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"unknown_kind", {"list", "motor"}, "motors"}, Mistake{"no_kind", {"list"}, "motors, robots, duties, effects, formats"},
         Mistake{"empty_name_of_a_motor",
                 {"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", ",", "--samples", "0"},
-                "there is no motor ''"},
+                "a name is missing before or after a comma"},
         Mistake{"lint_of_two_nothings", {"lint", "nosuch.toml", "maxon_foo"}, "nosuch.toml"},
         Mistake{"lint_of_nothing", {"lint", "maxon_ec45_flat_70w_24"}, "did you mean 'maxon_ec45_flat_70w_24v'?"},
         Mistake{"lint_of_an_empty_folder", {"lint", (kSource / "reports").string()}, "there is no .toml file in the folder"},
