@@ -22,8 +22,8 @@ struct ChangedParameter {
   double high = 0.0;
 };
 
-/// Returns the coordinates of positive parameters whose prior standard deviation is less than half of `sheet_sd`, the standard deviation
-/// of the logarithm on a data sheet.
+/// Returns the coordinates of positive parameters whose prior standard deviation is less than half of `sheet_sd`. Both are standard
+/// deviations of the logarithm; `sheet_sd` is that of a value on a data sheet.
 std::vector<Eigen::Index> well_known_values(const Model& model, double sheet_sd);
 
 }  // namespace heatsoak

@@ -287,7 +287,7 @@ bool is_learned(double sd_share, const CalibratedValue& parameter) {
 }
 
 bool is_identifiable(double sd_share, const CalibratedValue& parameter) {
-  // An interval of a factor of two to each side.
+  // The interval then extends by a factor of two to each side.
   constexpr double kIdentifiable_sd = 0.35;
   return sd_share < kIdentifiable_sd && (parameter.origin == Origin::measured || is_learned(sd_share, parameter));
 }

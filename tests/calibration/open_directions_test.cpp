@@ -304,6 +304,17 @@ TEST(OpenDirections, WhereNothingIsLearnedTheAnswerIsThatAndTheExperiment) {
   }
 }
 
+// A value may be known better than before and still not to a factor of two: such logs are an answer, not a refusal.
+TEST(Identifiability, LearningNeedsLessThanAFactorOfTwo) {
+  CalibratedValue value;
+  value.prior_sd = 0.7;
+  value.origin = Origin::datasheet;
+  EXPECT_TRUE(is_learned(0.36, value));
+  EXPECT_FALSE(is_identifiable(0.36, value));
+  EXPECT_TRUE(is_identifiable(0.34, value));
+  EXPECT_FALSE(is_learned(0.5, value));
+}
+
 TEST(Profile, IsTheCurvatureWhereThatHoldsAndLopsidedWhereItDoesNot) {
   const CaseResult both = calibrate_case({}, short_case());
   const Calibration& sharp = both.calibration;

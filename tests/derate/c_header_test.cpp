@@ -73,19 +73,10 @@ struct Answer {
 /// Returns a derating for the ECX 32 with `lines` appended to its data sheet.
 Derating guarded_ecx_32(const std::string& lines = {}) {
   const GuardedMotor guarded(lines.empty() ? ecx_32() : ecx_32_with(lines), rules_for(ecx_32()), 1.5);
-  return {.motor_id = "guarded",
-          .robot_id = "a */ robot",
-          .data_quality = "estimated",
-          .torque_constant_Nm_per_A = guarded.motor.nominal.torque_constant_Nm_per_A,
-          .observer = guarded.observer,
-          .rules = guarded.rules,
-          .table = guarded.table,
-          .options = {},
-          .assumed = {},
-          .effects = {{"copper_loss", "copper_loss", "P = I² R", ""}},
-          .guarantee = {.samples = 400, .over = 10, .over_share = {0.01, 0.05}},
-          .uses = {},
-          .reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s};
+  Derating derating = derating_of(guarded);
+  derating.robot_id = "a */ robot";
+  derating.effects = {{"copper_loss", "copper_loss", "P = I² R", ""}};
+  return derating;
 }
 
 std::string header_text(const std::string& lines = {}) {

@@ -20,19 +20,11 @@ using testing::HasSubstr;
 
 Derating derating_of(const Motor& motor, double heat_safety_factor, double approach_s = 0.5) {
   const GuardedMotor guarded(motor, rules_for(motor, approach_s), heat_safety_factor);
-  return {.motor_id = motor.id,
-          .robot_id = "a robot",
-          .data_quality = "estimated",
-          .torque_constant_Nm_per_A = motor.nominal.torque_constant_Nm_per_A,
-          .observer = guarded.observer,
-          .rules = guarded.rules,
-          .table = guarded.table,
-          .options = {},
-          .assumed = {},
-          .effects = {},
-          .guarantee = {},
-          .uses = {},
-          .reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s};
+  Derating derating = heatsoak::derating_of(guarded);
+  derating.motor_id = motor.id;
+  derating.robot_id = "a robot";
+  derating.guarantee = {};
+  return derating;
 }
 
 std::string exported_text(const Derating& derating, std::string_view form) {
