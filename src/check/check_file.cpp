@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -74,8 +75,50 @@ class CheckReader {
     }
   }
 
-  std::optional<Motor> motor(std::string_view key, const std::string& name) {
-    return named(key, [&] { return under(read_motor(file_of(folders_.motors, "motor", from_here(name))), check_.conditions); });
+  /// Reads a file by its id or path. A path at which nothing exists is no mistake in the check file: the thresholds that need it fail.
+  template <class Read>
+  auto thing(Setting setting, const fs::path& folder, std::string_view kind, const std::string& name, const Read& read)
+      -> std::optional<decltype(read(fs::path()))> {
+    const std::string_view key = all_settings()[static_cast<std::size_t>(setting)].key;
+    const std::optional<fs::path> file = named(key, [&] { return file_of(folder, kind, from_here(name)); });
+    std::error_code error;
+    if (file && !fs::exists(*file, error)) {
+      check_.unreadable.emplace(setting, fmt::format("{}: cannot be read: No such file or directory", file->string()));
+      return std::nullopt;
+    }
+    return file ? named(key, [&] { return read(*file); }) : std::nullopt;
+  }
+
+  std::optional<Motor> motor(Setting setting, const std::string& name) {
+    return thing(setting, folders_.motors, "motor", name, [](const fs::path& file) { return read_motor(file); });
+  }
+
+  /// Motors to rank with. The motor itself or one named twice would make a rank that says nothing.
+  void read_others() {
+    std::vector<std::string> others = table_.texts("against", Need::optional);
+    const bool is_all = others == std::vector<std::string>{"all"};
+    if (is_all) {
+      others = ids_in(folders_.motors);
+    }
+    for (const std::string& name : others) {
+      std::optional<Motor> other = motor(Setting::against, name);
+      if (!other) {
+        continue;
+      }
+      const auto is_other = [&](const Motor& each) { return fs::weakly_canonical(each.file) == fs::weakly_canonical(other->file); };
+      if (check_.motor && is_other(*check_.motor)) {
+        if (!is_all) {
+          table_.problem("against", fmt::format("{} is the motor of this check; expected other motors", name));
+        }
+      } else if (std::ranges::any_of(check_.against, is_other)) {
+        table_.problem("against", fmt::format("names {} twice", name));
+      } else {
+        check_.against.push_back(std::move(*other));
+      }
+    }
+    if (is_all && check_.motor && check_.against.empty()) {
+      table_.problem("against", "the database has no other motor; expected one or more to rank with");
+    }
   }
 
   void read_things() {
@@ -85,26 +128,25 @@ class CheckReader {
       }
     }
     if (const auto name = table_.text("robot", Need::optional)) {
-      check_.robot = named("robot", [&] { return read_robot(file_of(folders_.robots, "robot", from_here(*name))); });
+      check_.robot = thing(Setting::robot, folders_.robots, "robot", *name, [](const fs::path& file) { return read_robot(file); });
     }
     if (const auto name = table_.text("duty", Need::optional)) {
-      check_.duty = named("duty", [&] { return read_duty(file_of(folders_.duties, "duty", from_here(*name))); });
+      check_.duty = thing(Setting::duty, folders_.duties, "duty", *name, [](const fs::path& file) { return read_duty(file); });
     }
+    std::optional<Motor> own;
     if (const auto name = table_.text("motor", Need::optional)) {
-      check_.motor = motor("motor", *name);
+      own = motor(Setting::motor, *name);
     } else if (check_.robot && check_.robot->drive.motor != "none" && !has("motor") && is_used(Setting::motor)) {
-      check_.motor = motor("robot", check_.robot->drive.motor);
+      own = robots_motor();
     }
-    std::vector<std::string> others = table_.texts("against", Need::optional);
-    if (others == std::vector<std::string>{"all"}) {
-      others = ids_in(folders_.motors);
+    if (own) {
+      check_.motor = named("motor", [&] { return under(*own, check_.conditions); });
     }
-    for (const std::string& name : others) {
-      std::optional<Motor> other = named("against", [&] { return read_motor(file_of(folders_.motors, "motor", from_here(name))); });
-      if (other && (!check_.motor || other->id != check_.motor->id)) {
-        check_.against.push_back(std::move(*other));
-      }
-    }
+    read_others();
+  }
+
+  std::optional<Motor> robots_motor() {
+    return named("robot", [&] { return read_motor(file_of(folders_.motors, "motor", from_here(check_.robot->drive.motor))); });
   }
 
   /// A number of things: whole, and written as text like every other number.
@@ -151,6 +193,28 @@ class CheckReader {
     }
   }
 
+  static std::optional<SensorOptions> sensor_of(Reader& table) {
+    constexpr std::array<std::string_view, 2> kNodes{"stator", "winding"};
+    const std::optional<std::string> node = table.choice("thermistor", kNodes, Need::optional);
+    const bool reads_resistance = table.flag("winding_resistance", Need::optional).value_or(false);
+    if (node && reads_resistance) {
+      table.problem("winding_resistance", "expected one sensor, not a thermistor as well");
+    }
+    if (!node && !reads_resistance) {
+      return std::nullopt;
+    }
+    SensorOptions sensor = default_sensor(node ? SensorKind::thermistor : SensorKind::winding_resistance);
+    if (node) {
+      sensor.node = *node == "winding" ? states::winding : states::stator;
+    }
+    for (const SensorParameter& each : sensor_parameters()) {
+      if (each.kind == sensor.kind) {
+        sensor.*each.value = table.quantity(each.spec, Need::optional).value_or(sensor.*each.value);
+      }
+    }
+    return sensor;
+  }
+
   void read_derate() {
     std::optional<Reader> table = table_.table("derate", Need::optional);
     if (!table) {
@@ -170,6 +234,7 @@ class CheckReader {
     if (const auto seed = whole(*table, {"seed", "", Range::between(0.0, 9007199254740992.0), "of the draws"})) {
       options.guarantee.seed = static_cast<std::uint64_t>(*seed);
     }
+    options.sensor = sensor_of(*table);
     if (options.coldest_ambient_C >= options.hottest_ambient_C) {
       table->problem("coldest", fmt::format("{:.4g} °C is not below the hottest air, {:.4g} °C", options.coldest_ambient_C,
                                             options.hottest_ambient_C));
@@ -238,7 +303,8 @@ class CheckReader {
     for (const Limit& limit : check_.limits) {
       for (const Setting setting : limit.type->needs) {
         const SettingText& text = all_settings()[static_cast<std::size_t>(setting)];
-        const bool is_there = has(text.key) || (setting == Setting::motor && check_.robot && check_.robot->drive.motor != "none");
+        const bool comes_with_robot = (check_.robot && check_.robot->drive.motor != "none") || check_.unreadable.contains(Setting::robot);
+        const bool is_there = has(text.key) || (setting == Setting::motor && comes_with_robot);
         if (!is_there && missing.insert(setting).second) {
           table_.problem("limits", fmt::format("{} needs '{}' in this check: {}", limit.type->name, text.key, text.meaning));
         }

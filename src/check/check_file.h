@@ -45,6 +45,7 @@ struct Check {
   double air_C = std::numeric_limits<double>::quiet_NaN();  ///< air temperature for logs without one; NaN: not stated
   DerateOptions derate;
   std::vector<Limit> limits;
+  std::map<Setting, std::string> unreadable;  ///< setting whose file does not exist, with the reason: its thresholds fail
 };
 
 struct CheckFile {
@@ -54,7 +55,8 @@ struct CheckFile {
 
 /// Reads the file and the robots, duties and motors that it names. Throws Failure (bad_input) with every problem of all of them: unknown
 /// keys with "did you mean", limits that are none, a setting that a limit needs and that is missing, a setting that no limit uses.
-/// Committed tables, logs and linted files are not opened here: where one is missing its threshold fails.
+/// Committed tables, logs and linted files are not opened here: where one is missing its threshold fails. The same holds for the file of a
+/// robot, duty or motor that does not exist (Check::unreadable).
 CheckFile read_check_file(const std::filesystem::path& path, const DataFolders& folders);
 
 }  // namespace heatsoak

@@ -92,7 +92,8 @@ std::string conclusion_text(std::span<const Outcome> outcomes) {
     text = fmt::format("{} of {} {} not hold", counts.exceeded, all, counts.exceeded == 1 ? "does" : "do");
   }
   if (counts.not_evaluated > 0) {
-    text += fmt::format("{}{} of {} cannot be evaluated and counts as failed", text.empty() ? "" : "; ", counts.not_evaluated, all);
+    text += fmt::format("{}{} of {} cannot be evaluated and {} as failed", text.empty() ? "" : "; ", counts.not_evaluated, all,
+                        counts.not_evaluated == 1 ? "counts" : "count");
   }
   return text;
 }

@@ -10,7 +10,6 @@
 #include "motor/default_spread.h"
 #include "simulate/core_drive.h"
 #include "simulate/guarded_core.h"
-#include "simulate/match_run.h"
 
 namespace heatsoak {
 namespace {
@@ -25,8 +24,9 @@ std::string key_of(const Motor& motor) {
 
 std::string key_of(const DerateOptions& options) {
   const GuaranteeOptions& guarantee = options.guarantee;
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}", options.hottest_ambient_C, options.coldest_ambient_C, options.period_s,
-                     options.approach_s.value_or(0.0), guarantee.confidence, guarantee.samples, guarantee.seed);
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}", options.hottest_ambient_C, options.coldest_ambient_C, options.period_s,
+                     options.approach_s.value_or(0.0), guarantee.confidence, guarantee.samples, guarantee.seed,
+                     options.sensor ? sensor_flags(*options.sensor) : "");
 }
 
 std::string key_of_load(const Check& check) {
@@ -95,12 +95,13 @@ const GuardedDrive& Computations::guarded_drive(const Check& check) {
   DerateOptions options = check.derate;
   options.hottest_ambient_C = std::max(options.hottest_ambient_C, check.duty->ambient_C.value);
   options.coldest_ambient_C = std::min(options.coldest_ambient_C, check.duty->ambient_C.value);
+  options.sensor.reset();  // the drive core has none
   return drives_.get(fmt::format("{}|{}|{}", key_of_load(check), key_of(*check.motor), key_of(options)), [&] {
     MotorGuard guard;
     guard.derating.emplace(derating(check, options));
     guard.guard.emplace(*guard.derating);
     const GuardedCore core(*check.robot, *check.motor, GuardUse::shadow, guard);
-    const Game game = play_game(match->inputs(), *check.robot, check.seed);
+    const Game& game = games_.get(key_of_load(check), [&] { return play_game(match->inputs(), *check.robot, check.seed); });
     MatchRunOptions run;
     run.ambient_C = check.duty->ambient_C.value;
     run.drive = real_drive(*check.robot, check.seed);

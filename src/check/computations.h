@@ -15,7 +15,7 @@
 #include "check/check_file.h"
 #include "derate/derating.h"
 #include "select/evaluate.h"
-#include "simulate/drive_score.h"
+#include "simulate/match_run.h"
 
 namespace heatsoak {
 
@@ -89,6 +89,7 @@ class Computations {
   Kept<std::vector<WheelDemand>> draws_;
   Kept<MotorEvaluation> evaluations_;
   Kept<Derating> deratings_;
+  Kept<Game> games_;
   Kept<GuardedDrive> drives_;
 };
 

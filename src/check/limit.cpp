@@ -77,8 +77,11 @@ std::string looseness_problem(double value, std::string_view text, const Thresho
   // A limit of 99.9 % is not exactly 0.999.
   constexpr double kRounding = 1e-9;
   const double slack = kRounding * (type.direction == Bound::at_most ? 1.0 : -1.0);
-  if (!loosest || keeps(type.direction, value, loosest->value + slack)) {
+  if (!loosest || keeps(type.direction, value, loosest->value + (loosest->always_holds ? -slack : slack))) {
     return {};
+  }
+  if (loosest->always_holds) {
+    return fmt::format("\"{}\" holds always: {} is {}; expected a tighter limit", text, loosest->what, shown(loosest->value, type));
   }
   return fmt::format("\"{}\" is looser than {}, {}; expected that or a tighter limit", text, loosest->what, shown(loosest->value, type));
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -24,9 +25,19 @@ std::string reason_of(const Failure& failure) {
   return text;
 }
 
+/// Throws Failure if a file that the threshold depends on does not exist.
+void require_readable(const Check& check, const ThresholdType& type) {
+  for (const auto& [setting, reason] : check.unreadable) {
+    if (std::ranges::find(type.needs, setting) != type.needs.end() || std::ranges::find(type.takes, setting) != type.takes.end()) {
+      throw Failure(ExitCode::bad_input, reason);
+    }
+  }
+}
+
 void evaluate_one(Outcome& outcome, Computations& computations) {
   outcome.measured.value = std::numeric_limits<double>::quiet_NaN();
   try {
+    require_readable(*outcome.check, *outcome.limit.type);
     outcome.measured = outcome.limit.type->measure(*outcome.check, computations);
     outcome.is_evaluated = std::isfinite(outcome.measured.value);
     outcome.reason = outcome.is_evaluated ? "" : "the result is not a number";

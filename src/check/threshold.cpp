@@ -22,7 +22,9 @@ std::span<const SettingText> all_settings() {
       {"logs", "measured logs, with paths relative to the check file"},
       {"map", "mapping of the logs' columns; LOG.map.toml beside a log is found automatically"},
       {"air", "air temperature of a log that has none"},
-      {"derate", "options of `derate`: ambient, coldest, approach, period, confidence, samples, seed; its own values unless given"},
+      {"derate",
+       "options of `derate`: ambient, coldest, approach, period, confidence, samples, seed; for a committed C header with a sensor also "
+       "thermistor, winding_resistance and their options with \"_\" for \"-\"; its own values unless given"},
   }};
   return kSettings;
 }

@@ -39,8 +39,9 @@ struct Measured {
 
 /// The loosest limit that a check may set, such as the motor's own winding limit.
 struct LoosestLimit {
-  double value = 0.0;  ///< in the unit of the threshold
-  std::string what;    ///< its origin: "the winding limit of the motor"
+  double value = 0.0;         ///< in the unit of the threshold
+  std::string what;           ///< its origin: "the winding limit of the motor"
+  bool always_holds = false;  ///< a limit of this value holds always, so only a tighter one is permitted
 };
 
 /// A share of 100 % holds always, so a limit must be below it.

@@ -10,13 +10,10 @@
 namespace heatsoak {
 
 struct SensorFlags {
-  std::string thermistor;  ///< node of the thermistor; empty: no thermistor
-  double thermistor_accuracy_K = 2.0;
-  double thermistor_lag_s = 0.0;
+  std::string thermistor_node;  ///< empty: no thermistor
   bool reads_resistance = false;
-  double resistance_accuracy_K = 10.0;
-  double voltage_error_V = 0.02;
-  double current_error_A = 0.01;
+  SensorOptions thermistor = default_sensor(SensorKind::thermistor);
+  SensorOptions resistance = default_sensor(SensorKind::winding_resistance);
 };
 
 /// Adds --thermistor, --winding-resistance and their parameters.

@@ -96,20 +96,21 @@ void read_names(const std::string& head, CommittedTable& committed) {
   }
 }
 
-/// Returns the options of `derate` for the sensor that a C header describes: "/* With a thermistor at the stator (largest error 2 K, lag 3
-/// s)".
-std::string sensor_options_of(const std::string& text) {
-  static const std::regex kSensor(
-      R"(/\* With (a thermistor|the resistance from voltage and current) at the (\w+) \(largest error (\S+) K(?:, lag (\S+) s)?\))");
+/// Returns the options of `derate` in the line of a C header that begins with them; empty without a sensor.
+std::string sensor_flags_of(const std::string& text) {
+  static const std::regex kSensor(R"(\n \* (--(?:thermistor|winding-resistance)\b[^\n]*))");
   std::smatch found;
-  if (!std::regex_search(text, found, kSensor)) {
-    return {};
+  return std::regex_search(text, found, kSensor) ? found[1].str() : std::string();
+}
+
+/// Splits "--name value --name value" by name.
+std::map<std::string, std::string> by_name(const std::string& flags) {
+  static const std::regex kFlag(R"((--[a-z-]+) ?([^ ]*))");
+  std::map<std::string, std::string> all;
+  for (std::sregex_iterator each(flags.begin(), flags.end(), kFlag); each != std::sregex_iterator(); ++each) {
+    all[(*each)[1]] = (*each)[2];
   }
-  if (found[1] != "a thermistor") {
-    return fmt::format("--winding-resistance --resistance-accuracy {}, --voltage-error and --current-error as then", found[3].str());
-  }
-  return fmt::format("--thermistor {} --thermistor-accuracy {}{}", found[2].str(), found[3].str(),
-                     found[4].matched ? fmt::format(" --thermistor-lag {}", found[4].str()) : "");
+  return all;
 }
 
 /// Reads the table's four arrays, which have a common prefix of the name, and its constants.
@@ -149,7 +150,7 @@ void read_header(const std::string& text, CommittedTable& committed) {
                        .no_current_speed_rad_per_s = constant(text, "NO_CURRENT_SPEED_RAD_PER_S"),
                        .winding_per_stator_K = constant(text, "WINDING_PER_STATOR_K")};
     committed.code = text;
-    committed.sensor_options = sensor_options_of(text);
+    committed.sensor_flags = sensor_flags_of(text);
     require_sound(committed, *committed.table, line);
     return;
   }
@@ -287,7 +288,7 @@ std::string fresh_header(const Derating& fresh) {
 
 CommittedTable read_committed_table(const std::filesystem::path& file) {
   CommittedTable committed{
-      .file = file, .table = {}, .rows = {}, .motor_id = {}, .robot_id = {}, .sensor_options = {}, .version = {}, .code = {}};
+      .file = file, .table = {}, .rows = {}, .motor_id = {}, .robot_id = {}, .sensor_flags = {}, .version = {}, .code = {}};
   const std::string text = read_file(file, kLargestTable_bytes);
   static const std::regex kVersion(R"re((?:heatsoak |VERSION ")(\d+\.\d+\.\d+))re");
   std::smatch version;
@@ -303,6 +304,32 @@ CommittedTable read_committed_table(const std::filesystem::path& file) {
     read_csv_table(committed);
   }
   return committed;
+}
+
+std::string sensor_difference(const CommittedTable& committed, const std::optional<SensorOptions>& expected) {
+  if (committed.code.empty()) {
+    return {};
+  }
+  if (!expected) {
+    return committed.sensor_flags.empty() ? std::string()
+                                          : fmt::format(
+                                                "the header has a temperature sensor; expected the options that it was generated "
+                                                "with: {}",
+                                                committed.sensor_flags);
+  }
+  if (committed.sensor_flags.empty()) {
+    return "the header has no temperature sensor; leave out the options of the sensor, or generate the header again with them";
+  }
+  const std::map<std::string, std::string> now = by_name(sensor_flags(*expected));
+  std::string text;
+  for (const auto& [name, value] : by_name(committed.sensor_flags)) {
+    const auto other = now.find(name);
+    const bool is_equal = other != now.end() && other->second == value;
+    text += is_equal             ? ""
+            : other == now.end() ? fmt::format(" {} {}, which is missing;", name, value)
+                                 : fmt::format(" {} {}, not {};", name, value, other->second);
+  }
+  return text.empty() ? text : fmt::format("the header was generated with{} use its options or generate the header again", text);
 }
 
 TableComparison compare(const CommittedTable& committed, const Derating& fresh) {

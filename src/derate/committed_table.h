@@ -25,7 +25,7 @@ struct CommittedTable {
   std::vector<CommittedRow> rows;     ///< only from a CSV table: the full grid, winding varies fastest
   std::string motor_id;               ///< named at the beginning of the file; empty if the file names none
   std::string robot_id;               ///< likewise
-  std::string sensor_options;         ///< options of `derate` for the sensor of a C header; empty: the header has no sensor
+  std::string sensor_flags;           ///< sensor_flags() of the sensor of a C header; empty: the header has no sensor
   std::string version;                ///< version of the program that wrote the file, "0.1.0"; empty if not stated
   std::string code;                   ///< full text of a C header, else empty
 };
@@ -33,6 +33,10 @@ struct CommittedTable {
 /// Reads a C header or a CSV table of `derate`; the content decides which. Throws Failure (bad_input), with the line if there is one, for
 /// an unreadable file, another kind of file, a truncated header, an axis that does not ascend, an impossible value or an incomplete grid.
 CommittedTable read_committed_table(const std::filesystem::path& file);
+
+/// Returns which options of the sensor differ between a C header and `expected`; empty if none does, and for a CSV table. Such a header has
+/// another observer, so its currents say nothing about a fresh header.
+std::string sensor_difference(const CommittedTable& committed, const std::optional<SensorOptions>& expected);
 
 /// Point at which two tables differ most.
 struct TablePlace {

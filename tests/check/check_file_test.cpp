@@ -255,16 +255,16 @@ TEST_F(CheckFiles, TimeAboveATemperatureFallsWithIt) {
 }
 
 TEST_F(CheckFiles, RankCountsThoseBeforeTheMotor) {
-  const auto rank = [&](const std::string& motor) {
-    return outcomes(
-               "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"" + motor +
-               "\"\nagainst = [\"maxon_ecx_flat_42m_24v\", \"nanotec_df45l024048_a2\"]\nsamples = \"24\"\n[check.limits]\nrank = \"at most "
-               "1\"\n")
+  const auto rank = [&](const std::string& motor, const std::string& others) {
+    return outcomes("[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"" + motor +
+                    "\"\nagainst = [" + others + "]\nsamples = \"24\"\n[check.limits]\nrank = \"at most 1\"\n")
         .front();
   };
-  EXPECT_EQ(rank("maxon_ecx_flat_42m_24v").measured.value, 1.0);
-  EXPECT_EQ(rank("nanotec_df45l024048_a2").measured.value, 2.0);
-  const Outcome last = rank("maxon_ecx_flat_32l_48v");
+  const std::string best = "\"maxon_ecx_flat_42m_24v\"";
+  const std::string worst = "\"maxon_ecx_flat_32l_48v\"";
+  EXPECT_EQ(rank("maxon_ecx_flat_42m_24v", "\"nanotec_df45l024048_a2\", " + worst).measured.value, 1.0);
+  EXPECT_EQ(rank("nanotec_df45l024048_a2", best + ", " + worst).measured.value, 2.0);
+  const Outcome last = rank("maxon_ecx_flat_32l_48v", best + ", \"nanotec_df45l024048_a2\"");
   EXPECT_EQ(last.measured.value, 3.0);
   EXPECT_FALSE(last.passed);
   EXPECT_THAT(last.measured.detail, HasSubstr("maxon_ecx_flat_42m_24v, nanotec_df45l024048_a2"));
@@ -326,8 +326,62 @@ TEST_F(CheckFiles, TimeAboveLongerThanTheDutyIsRefused) {
     return message_of(kHead + "temperature = \"100 degC\"\n[check.limits]\ntime_above = \"at most " + limit + "\"\n");
   };
   EXPECT_THAT(message("2401 s"),
-              HasSubstr(":8:14: error: limits.time_above: \"at most 2401 s\" is looser than the duration of the duty, 2400 s"));
+              HasSubstr(":8:14: error: limits.time_above: \"at most 2401 s\" holds always: the duration of the duty is 2400 s"));
+  EXPECT_THAT(message("2400 s"), HasSubstr("\"at most 2400 s\" holds always"));
+  EXPECT_THAT(message("40 min"), HasSubstr("\"at most 40 min\" holds always"));
   EXPECT_EQ(message("2399 s"), "nothing was wrong");
+}
+
+TEST_F(CheckFiles, RankOfAMotorAgainstItselfIsRefused) {
+  const auto message = [&](const std::string& others) {
+    return message_of(kHead + "against = [" + others + "]\n[check.limits]\nrank = \"at most 1\"\n");
+  };
+  fs::copy_file(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml", folder_ / "maxon_ecx_flat_42m_24v.toml");
+  const std::string own = "\"maxon_ecx_flat_42m_24v\"";
+  const std::string other = "\"nanotec_df45l024048_a2\"";
+  EXPECT_THAT(message(own), HasSubstr("a.check.toml:6:11: error: check[0].against: maxon_ecx_flat_42m_24v is the motor of this check"));
+  EXPECT_THAT(message(other + ", " + own), HasSubstr("is the motor of this check"));
+  EXPECT_THAT(message(other + ", " + other), HasSubstr("check[0].against: names nanotec_df45l024048_a2 twice"));
+  EXPECT_EQ(message(other), "nothing was wrong");
+  // A team's own file of a motor may be ranked with the one of the database.
+  EXPECT_EQ(message("\"./maxon_ecx_flat_42m_24v.toml\""), "nothing was wrong");
+  EXPECT_EQ(message("\"all\""), "nothing was wrong");
+}
+
+// A file that does not exist makes its own thresholds fail, like a missing log, so that the others are still evaluated and reported.
+TEST_F(CheckFiles, MissingFileFailsItsThresholdsOnly) {
+  const auto found = [&](const std::string& things, const std::string& limit) {
+    return outcomes("[[check]]\nname = \"gone\"\n" + things + "samples = \"80\"\n[check.limits]\n" + limit + "\n" +
+                    "[[check]]\nname = \"here\"\nmotor = \"maxon_ecx_flat_42m_24v\"\n[check.limits]\nlint_problems = \"at most 0\"\n");
+  };
+  const std::string robot = "robot = \"roboteam_twente_v2024\"\n";
+  const std::string duty = "duty = \"paper_intermittent\"\n";
+  const std::string peak = "winding_peak_p95 = \"at most 120 degC\"";
+  const std::vector<std::vector<Outcome>> all{
+      found(robot + duty + "motor = \"./gone.toml\"\n", peak), found("robot = \"gone.toml\"\n" + duty, peak),
+      found(robot + "duty = \"./gone.toml\"\n", peak),
+      found(robot + duty + "against = [\"nanotec_df45l024048_a2\", \"./gone.toml\"]\n", "rank = \"at most 1\"")};
+  for (const std::vector<Outcome>& each : all) {
+    ASSERT_EQ(each.size(), 2U);
+    EXPECT_FALSE(each[0].is_evaluated);
+    EXPECT_FALSE(each[0].passed);
+    EXPECT_THAT(each[0].reason, testing::EndsWith("gone.toml: cannot be read: No such file or directory"));
+    EXPECT_TRUE(each[1].passed);
+  }
+}
+
+TEST_F(CheckFiles, SensorOfACommittedHeaderIsReadFromDerate) {
+  const auto text = [](const std::string& derate) {
+    return "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\ntable = \"x.h\"\nderate = { " + derate +
+           " }\n[check.limits]\nderating_excess = \"at most 0 A\"\n";
+  };
+  const CheckFile file = read(text("thermistor = \"stator\", thermistor_accuracy = \"1.5 K\", thermistor_lag = \"3 s\""));
+  EXPECT_EQ(sensor_flags(*file.checks.front().derate.sensor), "--thermistor stator --thermistor-accuracy 1.5K --thermistor-lag 3s");
+  EXPECT_EQ(sensor_flags(*read(text("winding_resistance = true")).checks.front().derate.sensor),
+            "--winding-resistance --resistance-accuracy 10K --voltage-error 0.02V --current-error 0.01A");
+  EXPECT_THAT(message_of(text("thermistor = \"rotor\"")), HasSubstr("stator"));
+  EXPECT_THAT(message_of(text("thermistor_accuracy = \"2 K\"")), HasSubstr("thermistor_accuracy: is not a key"));
+  EXPECT_THAT(message_of(text("winding_resistance = true, thermistor = \"stator\"")), HasSubstr("expected one sensor"));
 }
 
 TEST_F(CheckFiles, FolderInPlaceOfAMotorIsReportedAtItsLine) {

@@ -110,6 +110,19 @@ TEST_F(CheckCommand, WrongFilesAreExitTwoAllAtOnceAndLeaveNothing) {
   EXPECT_THAT(folder_.names(), ElementsAre("other.toml", "robot.check.toml"));
 }
 
+TEST_F(CheckCommand, MissingMotorFileIsAFailedLimitInEveryReport) {
+  const ProgramRun done = check(
+      "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"ours.toml\"\n"
+      "[check.limits]\nwinding_peak_p95 = \"at most 100 degC\"\n",
+      {"--junit", "check.xml", "--json", "-"});
+  EXPECT_EQ(done.exit_code, 1) << done.err;
+  const json threshold = done.json().at("thresholds").at(0);
+  EXPECT_EQ(threshold.at("evaluated"), false);
+  EXPECT_EQ(threshold.at("line"), 7);
+  EXPECT_THAT(threshold.at("reason"), HasSubstr("ours.toml: cannot be read"));
+  EXPECT_THAT(content_of(folder_.path() / "check.xml"), HasSubstr("<error type=\"not_evaluated\" message=\"ours.toml: cannot be read"));
+}
+
 TEST_F(CheckCommand, UpdateRewritesTheLimitsInPlace) {
   const ProgramRun updated = check(check_with(30.0, 99.0), {"--update", "--margin", "10 %"});
   EXPECT_EQ(updated.exit_code, 0) << updated.err;
@@ -235,7 +248,22 @@ TEST(DerateCheck, NamesTheOptionsOfTheSensor) {
   const ProgramRun without = run(derate + Words{"--check", "sensed.h"}, options);
   EXPECT_EQ(without.exit_code, 2);
   EXPECT_THAT(without.err, HasSubstr("--check sensed.h: the header has a temperature sensor"));
-  EXPECT_THAT(without.err, HasSubstr("--thermistor stator --thermistor-accuracy 1.5 --thermistor-lag 3"));
+  EXPECT_THAT(without.err, HasSubstr("--thermistor stator --thermistor-accuracy 1.5K --thermistor-lag 3s"));
+  const ProgramRun other = run(derate + Words{"--thermistor", "stator", "--thermistor-accuracy", "10K", "--check", "sensed.h"}, options);
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("--check sensed.h: the header was generated with --thermistor-accuracy 1.5K, not 10K; "
+                                   "--thermistor-lag 3s, not 0s; use its options or generate the header again"));
+  const auto check = [&](const std::string& accuracy) {
+    write(folder.path() / "a.check.toml", fmt::format("[[check]]\nname = \"a\"\nrobot = \"roboteam_twente_v2024\"\nmotor = "
+                                                      "\"maxon_ecx_flat_42m_24v\"\ntable = \"sensed.h\"\nderate = {{ samples = \"60\", "
+                                                      "thermistor = \"stator\", thermistor_accuracy = \"{}\", thermistor_lag = \"3 s\" }}\n"
+                                                      "[check.limits]\nderating_excess = \"at most 0 A\"\n",
+                                                      accuracy));
+    return run({"check", "a.check.toml", "--json", "-"}, options).json().at("thresholds").at(0);
+  };
+  EXPECT_EQ(check("2 K").at("evaluated"), false);
+  EXPECT_THAT(check("2 K").at("reason"), HasSubstr("generated with --thermistor-accuracy 1.5K, not 2K"));
+  EXPECT_EQ(check("1.5 K").at("passed"), true);
   const ProgramRun with = run(derate + sensor + Words{"--check", "plain.h"}, options);
   EXPECT_EQ(with.exit_code, 2);
   EXPECT_THAT(with.err, HasSubstr("--check plain.h: the header has no temperature sensor"));

@@ -14,6 +14,10 @@ inline TableComparison compared(const Check& check, Computations& computations) 
     throw Failure(ExitCode::limit_exceeded, fmt::format("{}: the table is of another motor, {}; expected one of {}", check.table.string(),
                                                         committed.motor_id, check.motor->id));
   }
+  if (const std::string problem = sensor_difference(committed, check.derate.sensor); !problem.empty()) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{}: {}; 'derate' takes them as keys without \"--\", \"_\" for \"-\"", check.table.string(), problem));
+  }
   return compare(committed, computations.derating(check, check.derate));
 }
 

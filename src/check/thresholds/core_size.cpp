@@ -10,6 +10,7 @@ Measured measure(const Check& check, Computations& computations) {
   CoreOptions core;
   DerateOptions options = check.derate;
   options.period_s = guard_period_s(core.period_s);
+  options.sensor.reset();  // the drive core has none
   const Derating& derating = computations.derating(check, options);
   const CoreFolder folder = core_files(*check.robot, *check.motor, core, derating, "heatsoak 0.0.0");
   double size_byte = 0.0;

@@ -47,7 +47,7 @@ std::optional<LoosestLimit> duration(const Check& check) {
     for (const WheelDemand& each : check.duty->demand(*check.robot, check.seed)) {
       longest_s = std::max(longest_s, each.duration_s());
     }
-    return LoosestLimit{longest_s, "the duration of the duty"};
+    return LoosestLimit{longest_s, "the duration of the duty", true};
   } catch (const Failure&) {
     return std::nullopt;  // the evaluation reports it
   }

@@ -82,14 +82,8 @@ ExitCode run(const Options& options, Session& session) {
   // Read first, so that an invalid file is reported before the computation.
   const std::optional<CommittedTable> committed =
       options.committed.empty() ? std::nullopt : std::optional(read_committed_table(options.committed));
-  if (committed && !committed->code.empty() && committed->sensor_options.empty() != !derate_options.sensor) {
-    throw Failure(
-        ExitCode::bad_input,
-        committed->sensor_options.empty()
-            ? fmt::format("--check {}: the header has no temperature sensor; leave out the options of the sensor", options.committed)
-            : fmt::format("--check {}: the header has a temperature sensor; expected the options that it was "
-                          "written with: {}",
-                          options.committed, committed->sensor_options));
+  if (const std::string problem = committed ? sensor_difference(*committed, derate_options.sensor) : ""; !problem.empty()) {
+    throw Failure(ExitCode::bad_input, fmt::format("--check {}: {}", options.committed, problem));
   }
   Derating derating = derate(motor, *robot, derate_options, progress_bar("searching the safety factor on heat"));
   derating.provenance = provenance_of(motor, *robot, derate_options);

@@ -129,7 +129,7 @@ static inline void @_correct(@_sensed_state *state, float reading_C) {
 
 )";
 
-constexpr std::string_view kStep =
+constexpr std::string_view kSensedStep =
     R"(/* Resets to the guard without the sensor: after a restart, with an unknown input, and once the sensor is dropped. */
 static inline void @_forget_sensor(@_sensed_state *state, float allowed_A) {
   int node;
@@ -312,12 +312,14 @@ std::string comment(const SensorPlan& plan) {
       " * exceeded one. The cross-check drops the correct sensor of {}.\n"
       " * A PLAUSIBLE BUT WRONG SENSOR allows at most SENSOR_MOST_GAIN_A more than without one: the nominal motor then reaches {:.0f} "
       "degC,\n"
-      " * and {} of {} drawn motors exceed a limit. */\n",
+      " * and {} of {} drawn motors exceed a limit. Options of the sensor:\n"
+      " * {}\n"
+      " */\n",
       plan.resistance ? "the resistance from voltage and current" : "a thermistor",
       plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
       plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(),
       100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0, checked.over, checked.samples, plan.dropped,
-      plan.sensor_fault_nominal_C, plan.sensor_fault_over, checked.samples);
+      plan.sensor_fault_nominal_C, plan.sensor_fault_over, checked.samples, sensor_flags(plan.options));
 }
 
 /// The table for the lower safety factor, computed with the same rules.
@@ -371,7 +373,7 @@ Rates sensor_functions(const Source& source) {
                   fmt::format("/* dT/dt of every node while the sensor is used */\nstatic inline void {0}_sensed_rates(const {0}_input "
                               "*input, const float *state_C, float *rate_K_per_s) {{\n{1}}}\n\n",
                               source.prefix, lines.text()) +
-                  sensed_table(source, plan) + replaced(kCheck, words) + replaced(kStep, words) +
+                  sensed_table(source, plan) + replaced(kCheck, words) + replaced(kSensedStep, words) +
                   (plan.resistance ? replaced(kResistance, words) : ""),
           .calls_thermal_math = lines.calls_thermal_math()};
 }

@@ -1,9 +1,13 @@
 #include "derate/sensed/sensor.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "base/quantity.h"
 #include "motor/default_spread.h"
 
 namespace heatsoak {
@@ -19,6 +23,45 @@ double half_width_ratio(const Motor& motor, std::string_view key, double value) 
 }
 
 }  // namespace
+
+std::span<const SensorParameter> sensor_parameters() {
+  using enum SensorKind;
+  static constexpr std::array<SensorParameter, 5> kAll{{
+      {{"thermistor_accuracy", "K", Range::between(0.05, 50.0), "its largest error, mounting included; 2 K unless given"},
+       thermistor,
+       &SensorOptions::accuracy_K},
+      {{"thermistor_lag", "s", Range::between(0.0, 600.0), "its time constant; 0 s unless given"}, thermistor, &SensorOptions::lag_s},
+      {{"resistance_accuracy", "K", Range::between(0.5, 50.0),
+        "readings are used if current and speed permit this accuracy; 10 K unless given"},
+       winding_resistance,
+       &SensorOptions::accuracy_K},
+      {{"voltage_error", "V", Range::between(0.0, 10.0), "offset of the terminal voltage; 20 mV unless given"},
+       winding_resistance,
+       &SensorOptions::voltage_error_V},
+      {{"current_error", "A", Range::between(0.0, 10.0), "offset of the current; 10 mA unless given"},
+       winding_resistance,
+       &SensorOptions::current_error_A},
+  }};
+  return kAll;
+}
+
+SensorOptions default_sensor(SensorKind kind) {
+  return kind == SensorKind::thermistor ? SensorOptions{} : SensorOptions{.kind = kind, .node = states::winding, .accuracy_K = 10.0};
+}
+
+std::string sensor_flags(const SensorOptions& sensor) {
+  std::string text = sensor.kind == SensorKind::winding_resistance
+                         ? "--winding-resistance"
+                         : fmt::format("--thermistor {}", sensor.node == states::winding ? "winding" : "stator");
+  for (const SensorParameter& each : sensor_parameters()) {
+    if (each.kind == sensor.kind) {
+      std::string flag(each.spec.key);
+      std::ranges::replace(flag, '_', '-');
+      text += fmt::format(" --{} {}{}", flag, significant(sensor.*each.value, 6), each.spec.unit);
+    }
+  }
+  return text;
+}
 
 bool ResistanceReading::is_usable(double current_A, double speed_rad_per_s) const {
   return std::abs(current_A) >= least_current_A + current_per_speed_A_s_per_rad * std::abs(speed_rad_per_s);

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
+#include "base/parameter.h"
 #include "derate/current_table.h"
 #include "derate/guarantee.h"
 #include "derate/observer.h"
@@ -25,6 +28,20 @@ struct SensorOptions {
   double voltage_error_V = 0.02;  ///< winding_resistance: largest offset of the terminal voltage
   double current_error_A = 0.01;  ///< winding_resistance: largest offset of the current
 };
+
+/// Parameter of a sensor declaration, as commands and check files name it.
+struct SensorParameter {
+  ParameterSpec spec;
+  SensorKind kind = SensorKind::thermistor;
+  double SensorOptions::*value = nullptr;
+};
+std::span<const SensorParameter> sensor_parameters();
+
+/// Returns the declaration with the default values of this kind.
+SensorOptions default_sensor(SensorKind kind);
+
+/// Returns the options of `derate` that declare the sensor: "--thermistor stator --thermistor-accuracy 2K --thermistor-lag 3s".
+std::string sensor_flags(const SensorOptions& sensor);
 
 /// Conditions under which the winding's resistance gives a valid reading. Resistance is measured relative to the first reading after a
 /// rest, so that gain errors and the tolerance of R25 cancel. With R = R25·(1 + α·(T − 25 °C)) a voltage error δU causes the error
