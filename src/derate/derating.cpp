@@ -10,6 +10,7 @@
 
 #include "base/binomial_bound.h"
 #include "base/diagnostic.h"
+#include "derate/motor_verdicts.h"
 #include "derate/sensed/sensor_plan.h"
 #include "derate/smallest_factor.h"
 #include "motor/datasheet_network.h"
@@ -100,12 +101,13 @@ void require_samples(const GuaranteeOptions& options) {
   }
 }
 
-/// One safety factor on heat and the results that follow from it.
+/// One safety factor on heat and the guard that follows from it.
 struct Attempt {
   Observer observer;
   BarrierRules rules;
   CurrentTable table;
-  std::vector<UsePlayed> uses;
+  std::vector<LoadPattern> patterns;
+  std::vector<std::optional<UsePlayed>> uses;  ///< per pattern; nothing: not played yet
 };
 
 class Search {
@@ -123,47 +125,22 @@ class Search {
   [[nodiscard]] const Network& network() const { return network_; }
   [[nodiscard]] const BarrierRules& reachable() const { return reachable_; }
 
-  /// Returns nothing if the motor exceeds its limits without current at most speeds, or if the observer itself exceeds them in a use.
-  [[nodiscard]] std::optional<Attempt> attempt(double reserve) const {
-    Observer observer(network_, motor_.nominal, robot_, reserve);
-    BarrierRules rules = reachable_;
-    rules.most_speed_rad_per_s = sustainable_speed_rad_per_s(observer, reachable_);
-    if (rules.most_speed_rad_per_s < reachable_.most_speed_rad_per_s) {
-      rules.no_current_speed_rad_per_s = 0.0;
-    }
-    constexpr double kLeastShare = 0.2;
-    if (rules.most_speed_rad_per_s < kLeastShare * reachable_.most_speed_rad_per_s) {
-      return std::nullopt;
-    }
-    CurrentTable table = current_table(observer, rules, options_.table);
-    const std::vector<LoadPattern> patterns = hardest_patterns(observer, rules);
-    std::vector<UsePlayed> uses(patterns.size());
-    in_parallel(uses.size(), options_.guarantee.threads,
-                [&](std::size_t i) { uses[i] = play(observer, table, rules, motor_, robot_, patterns[i], options_.period_s); });
-    // With a temperature-dependent law a node may heat again before it reaches the temperature at which it would cool.
-    constexpr double kRounding_K = 0.5;
-    if (std::ranges::any_of(uses, [&](const UsePlayed& use) { return use.winding_peak_C > rules.limits.winding_C + kRounding_K; })) {
-      return std::nullopt;
-    }
-    return Attempt{std::move(observer), rules, std::move(table), std::move(uses)};
-  }
-
-  /// Checks motors drawn from the random streams from `first_stream` on.
-  [[nodiscard]] Guarantee checked(const Attempt& attempt, std::uint64_t first_stream) const {
-    return check(motor_, reachable_.limits, attempt.uses, options_.guarantee, first_stream);
-  }
-
   /// Returns the smallest safety factor at which the share of the search's motors that keep their limits reaches the confidence.
   double reserve() {
     constexpr double kGrowth = 1.5;
-    return smallest(1.0, kGrowth, [this](double tried) {
-      const Guarantee found = checked(attempt_or_throw(tried), 0);
-      return found.over <= (1.0 - options_.guarantee.confidence) * found.samples;
+    const GuaranteeOptions& goal = options_.guarantee;
+    MotorVerdicts motors(motor_, reachable_.limits, goal, 0);
+    return smallest(1.0, kGrowth, [&](double tried) {
+      Attempt with = attempt(tried);
+      return count_over(motors, tried, with) <= (1.0 - goal.confidence) * goal.samples;
     });
   }
 
   struct Promise {
-    Attempt attempt;
+    Observer observer;
+    BarrierRules rules;
+    CurrentTable table;
+    std::vector<UsePlayed> uses;
     Guarantee guarantee;
   };
   /// Returns the smallest safety factor, at least `from`, at which the lower bound on independently drawn motors reaches the confidence.
@@ -171,17 +148,28 @@ class Search {
   /// statistic of the factors that the motors need, and its confidence level is that of a single check (Wilks 1941).
   Promise promise(double from) {
     constexpr double kGrowth = 1.05;
-    std::optional<Promise> made;
-    static_cast<void>(smallest(from, kGrowth, [&](double tried) {
-      Attempt with = attempt_or_throw(tried);
-      const Guarantee found = checked(with, kStreamsApart);
-      const bool holds = found.least_kept_share >= options_.guarantee.confidence;
-      if (holds) {
-        made.emplace(Promise{std::move(with), found});
+    const GuaranteeOptions& goal = options_.guarantee;
+    MotorVerdicts motors(motor_, reachable_.limits, goal, kStreamsApart);
+    for (;;) {
+      std::optional<Attempt> last;
+      const double found = smallest(from, kGrowth, [&](double tried) {
+        Attempt with = attempt(tried);
+        const int over = count_over(motors, tried, with);
+        const bool holds = 1.0 - upper_bound_share(over, goal.samples, kCertainty_share) >= goal.confidence;
+        if (holds) {
+          last.emplace(std::move(with));
+        }
+        return holds;
+      });
+      std::vector<UsePlayed> uses = all_uses(*last);
+      const Guarantee guarantee = check(motor_, reachable_.limits, uses, goal, kStreamsApart);
+      if (guarantee.least_kept_share >= goal.confidence) {
+        return {std::move(last->observer), last->rules, std::move(last->table), std::move(uses), guarantee};
       }
-      return holds;
-    }));
-    return std::move(*made);
+      // The full check may find another motor over its limit, by the rounding of MotorVerdicts.
+      constexpr double kNext = 1.01;
+      from = kNext * found;
+    }
   }
 
   [[nodiscard]] Failure too_hot() const {
@@ -193,17 +181,50 @@ class Search {
   }
 
  private:
-  /// Throws too_hot() if the motor exceeds its limits without current at this safety factor.
-  Attempt attempt_or_throw(double reserve) {
-    std::optional<Attempt> tried = attempt(reserve);
+  /// Throws too_hot() if the motor exceeds its limits without current at most speeds.
+  Attempt attempt(double reserve) {
     if (progress_) {
       ++rounds_;
       progress_(rounds_, std::max(rounds_ + 1, kUsualRounds));
     }
-    if (!tried) {
+    Observer observer(network_, motor_.nominal, robot_, reserve);
+    BarrierRules rules = reachable_;
+    rules.most_speed_rad_per_s = sustainable_speed_rad_per_s(observer, reachable_);
+    if (rules.most_speed_rad_per_s < reachable_.most_speed_rad_per_s) {
+      rules.no_current_speed_rad_per_s = 0.0;
+    }
+    constexpr double kLeastShare = 0.2;
+    if (rules.most_speed_rad_per_s < kLeastShare * reachable_.most_speed_rad_per_s) {
       throw too_hot();
     }
-    return std::move(*tried);
+    CurrentTable table = current_table(observer, rules, options_.table);
+    std::vector<LoadPattern> patterns = hardest_patterns(observer, rules);
+    const std::size_t count = patterns.size();
+    return {std::move(observer), rules, std::move(table), std::move(patterns), std::vector<std::optional<UsePlayed>>(count)};
+  }
+
+  /// Plays a use unless that is done. Throws too_hot() if the observer itself exceeds its limit: with a temperature-dependent law a node
+  /// may heat again before it reaches the temperature at which it would cool.
+  const UsePlayed& use(Attempt& with, std::size_t index) const {
+    std::optional<UsePlayed>& played = with.uses[index];
+    if (!played) {
+      played = play(with.observer, with.table, with.rules, motor_, robot_, with.patterns[index], options_.period_s);
+    }
+    constexpr double kRounding_K = 0.5;
+    return played->winding_peak_C > with.rules.limits.winding_C + kRounding_K ? throw too_hot() : *played;
+  }
+
+  [[nodiscard]] std::vector<UsePlayed> all_uses(Attempt& with) const {
+    std::vector<UsePlayed> uses(with.patterns.size());
+    in_parallel(uses.size(), options_.guarantee.threads, [&](std::size_t i) { uses[i] = use(with, i); });
+    return uses;
+  }
+
+  int count_over(MotorVerdicts& motors, double reserve, Attempt& with) const {
+    if (motors.knows_nothing()) {
+      static_cast<void>(all_uses(with));  // all are needed, and several can be played at once
+    }
+    return motors.count_over(reserve, with.patterns, [&](std::size_t index) -> const UsePlayed& { return use(with, index); });
   }
 
   /// Typical number of attempts for motors of the database, including those of the check.
@@ -248,14 +269,14 @@ Derating derate(const Motor& as_written, const Robot& robot, const DerateOptions
                   .robot_id = robot.id,
                   .data_quality = std::string(data_quality(motor)),
                   .torque_constant_Nm_per_A = motor.nominal.torque_constant_Nm_per_A,
-                  .observer = std::move(promise.attempt.observer),
-                  .rules = promise.attempt.rules,
-                  .table = std::move(promise.attempt.table),
+                  .observer = std::move(promise.observer),
+                  .rules = promise.rules,
+                  .table = std::move(promise.table),
                   .options = options,
                   .assumed = motor.assumed,
                   .effects = {},
                   .guarantee = promise.guarantee,
-                  .uses = std::move(promise.attempt.uses),
+                  .uses = std::move(promise.uses),
                   .reachable_speed_rad_per_s = search.reachable().most_speed_rad_per_s,
                   .default_spreads = default_spreads(as_written),
                   .unmodelled_heat_share = motor.fit ? motor.fit->unmodelled_heat_share : std::nullopt,

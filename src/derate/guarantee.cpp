@@ -18,8 +18,9 @@ constexpr double kSettled = 4.0;  ///< slowest time constants
 constexpr double kShortest_s = 900.0;
 constexpr double kLongest_s = 4.0 * 3600.0;
 
-/// Draws kLanes motors from the tolerances, each from its own random stream.
-std::vector<Network> drawn_motors(const Motor& motor, std::uint64_t seed, std::uint64_t first_stream) {
+}  // namespace
+
+std::vector<Network> drawn_networks(const Motor& motor, std::uint64_t seed, std::uint64_t first_stream) {
   std::vector<Network> networks;
   for (int lane = 0; lane < kLanes; ++lane) {
     Random random(seed, first_stream + static_cast<std::uint64_t>(lane));
@@ -27,8 +28,6 @@ std::vector<Network> drawn_motors(const Motor& motor, std::uint64_t seed, std::u
   }
   return networks;
 }
-
-}  // namespace
 
 std::array<MotorPeak, kLanes> peaks(std::span<const Network> motors, const TemperatureLimits& limits, std::span<const UsePlayed> uses) {
   std::vector<Lanes> parameters;
@@ -150,7 +149,7 @@ Guarantee check(const Motor& motor, const TemperatureLimits& limits, std::span<c
   const auto blocks = static_cast<std::size_t>((options.samples + kLanes - 1) / kLanes);
   std::vector<MotorPeak> all(blocks * kLanes);
   in_parallel(blocks, options.threads, 0, blocks, progress, [&](std::size_t block) {
-    const auto found = peaks(drawn_motors(motor, options.seed, first_stream + block * kLanes), limits, uses);
+    const auto found = peaks(drawn_networks(motor, options.seed, first_stream + block * kLanes), limits, uses);
     std::ranges::copy(found, all.begin() + static_cast<std::ptrdiff_t>(block * kLanes));
   });
   all.resize(static_cast<std::size_t>(options.samples));

@@ -26,6 +26,8 @@ struct LoadPattern {
   double off_s = 0.0;
   double off_speed_share = 0.0;  ///< coasting between pulses
   HotCase hot_case = {};
+
+  bool operator==(const LoadPattern&) const = default;
 };
 /// Returns continuous and pulsed patterns at several speeds: all of them in the plain case, a selection in every other hot case.
 std::vector<LoadPattern> hardest_patterns(const Observer& observer, const BarrierRules& rules);
@@ -75,6 +77,9 @@ struct MotorPeak {
 };
 /// Simulates kLanes motors, whose networks have the same structure, through every use.
 std::array<MotorPeak, kLanes> peaks(std::span<const Network> motors, const TemperatureLimits& limits, std::span<const UsePlayed> uses);
+
+/// Returns kLanes motors drawn from the tolerances, each from its own random stream.
+std::vector<Network> drawn_networks(const Motor& motor, std::uint64_t seed, std::uint64_t first_stream);
 
 /// Confidence level of the one-sided bound on the share of motors that keep their limits.
 inline constexpr double kCertainty_share = 0.95;

@@ -45,6 +45,7 @@ struct HotCase {
   double age_h = 0.0;
   double acceleration_rad_per_s2 = 0.0;
 
+  bool operator==(const HotCase&) const = default;
   /// Returns all signals, with the hottest declared air, for magnitudes of current and speed.
   [[nodiscard]] Signals signals(const BarrierRules& rules, double current_A, double speed_rad_per_s) const;
 };

@@ -17,7 +17,7 @@ constexpr FmuItem kReasons[] = {{"full", "the driver's largest current"},
                                 {"input_unknown", "an input was NaN or implausible: its hottest case was used"},
                                 {"not_started", "the state was not started or damaged: taken as hot as the limit"}};
 
-std::vector<FmuVariable> variables(const Derating& derating) {
+std::vector<FmuVariable> guard_variables(const Derating& derating) {
   std::vector<FmuVariable> all{{"time_s", "s", FmuCausality::independent, FmuType::real, 0.0, "simulated time"}};
   for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
     if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
@@ -72,7 +72,7 @@ FmuModel guard_fmu(const Derating& derating, std::string_view /*exporter*/) {
   model.description = fmt::format("Thermal guard of the firmware for {} in {}", derating.motor_id, derating.robot_id);
   model.token = fmt::format("{}-guard-{}", derating.provenance.input_hash, derating.provenance.program_version);
   model.provenance = provenance_lines(derating, "");
-  model.variables = variables(derating);
+  model.variables = guard_variables(derating);
   model.items.assign(std::begin(kReasons), std::end(kReasons));
   model.step_s = derating.options.period_s;
   model.fixed_step_s = derating.options.period_s;

@@ -33,7 +33,7 @@ void require_expressible(const Derating& derating, std::string_view exporter) {
   }
 }
 
-std::vector<FmuVariable> variables(const Derating& derating) {
+std::vector<FmuVariable> motor_variables(const Derating& derating) {
   constexpr double kRoom_C = 25.0;
   std::vector<FmuVariable> all{{"time_s", "s", FmuCausality::independent, FmuType::real, 0.0, "simulated time"}};
   for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
@@ -100,7 +100,7 @@ FmuModel motor_fmu(const Derating& derating, std::string_view exporter) {
       fmt::format("Thermal network of {} in {}, nominal values: {}", derating.motor_id, derating.robot_id, own_effects_text(derating));
   model.token = fmt::format("{}-motor-{}", derating.provenance.input_hash, derating.provenance.program_version);
   model.provenance = provenance_lines(derating, "");
-  model.variables = variables(derating);
+  model.variables = motor_variables(derating);
   const std::string first = identifier(derating.observer.state_names().front());
   model.sources = fmu_tables(
       model,

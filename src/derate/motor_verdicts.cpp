@@ -1,0 +1,73 @@
+#include "derate/motor_verdicts.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+namespace heatsoak {
+
+MotorVerdicts::MotorVerdicts(const Motor& motor, const TemperatureLimits& limits, const GuaranteeOptions& options,
+                             std::uint64_t first_stream)
+    : limits_(limits), threads_(options.threads), over_up_to_(static_cast<std::size_t>(options.samples), 0.0) {
+  for (std::size_t begin = 0; begin < over_up_to_.size(); begin += kLanes) {
+    std::ranges::move(drawn_networks(motor, options.seed, first_stream + begin), std::back_inserter(motors_));
+  }
+}
+
+int MotorVerdicts::count_over(double safety_factor, std::span<const LoadPattern> patterns, const Play& play) {
+  std::vector<std::size_t> undecided;
+  for (std::size_t motor = 0; motor < over_up_to_.size(); ++motor) {
+    if (safety_factor > over_up_to_[motor]) {
+      undecided.push_back(motor);
+    }
+  }
+  std::vector<std::size_t> order(patterns.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (const LoadPattern& each : patterns) {
+    known(each);
+  }
+  // The use in which most motors exceeded a limit decides most of them, so that the others need not simulate those.
+  std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t index) { return known(patterns[index]).over; });
+  for (const std::size_t index : order) {
+    Known& of_use = known(patterns[index]);
+    if (std::ranges::any_of(undecided, [&](std::size_t motor) { return safety_factor < of_use.kept_from[motor]; })) {
+      simulate(play(index), safety_factor, of_use, undecided);
+    }
+  }
+  return static_cast<int>(std::ranges::count_if(over_up_to_, [&](double factor) { return safety_factor <= factor; }));
+}
+
+MotorVerdicts::Known& MotorVerdicts::known(const LoadPattern& pattern) {
+  const auto found = std::ranges::find(known_, pattern, &Known::pattern);
+  if (found != known_.end()) {
+    return *found;
+  }
+  known_.push_back({pattern, std::vector<double>(over_up_to_.size(), std::numeric_limits<double>::infinity()), 0});
+  return known_.back();
+}
+
+/// Removes the motors that exceed a limit from `undecided`.
+void MotorVerdicts::simulate(const UsePlayed& use, double safety_factor, Known& known, std::vector<std::size_t>& undecided) {
+  std::vector<std::size_t> motors;
+  std::ranges::copy_if(undecided, std::back_inserter(motors), [&](std::size_t motor) { return safety_factor < known.kept_from[motor]; });
+  std::vector<std::array<MotorPeak, kLanes>> found((motors.size() + kLanes - 1) / kLanes);
+  in_parallel(found.size(), threads_, [&](std::size_t block) {
+    std::vector<Network> networks;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      networks.push_back(motors_[motors[std::min(block * kLanes + lane, motors.size() - 1)]]);
+    }
+    found[block] = peaks(networks, limits_, {&use, 1});
+  });
+  for (std::size_t i = 0; i < motors.size(); ++i) {
+    const std::size_t motor = motors[i];
+    if (found[i / kLanes][i % kLanes].is_over) {
+      over_up_to_[motor] = safety_factor;
+      ++known.over;
+    } else {
+      known.kept_from[motor] = safety_factor;
+    }
+  }
+  std::erase_if(undecided, [&](std::size_t motor) { return safety_factor <= over_up_to_[motor]; });
+}
+
+}  // namespace heatsoak

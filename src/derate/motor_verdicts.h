@@ -1,0 +1,48 @@
+// Drawn motors during the search of the safety factor: counts those that exceed a limit without simulating known results again.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "derate/guarantee.h"
+
+namespace heatsoak {
+
+/// Assumes that a motor which keeps its limits at one safety factor also keeps them at every larger one, in each use. At another factor
+/// only the motors and uses whose result is unknown are simulated. Up to this, the count is that of check(), which simulates all of them;
+/// the step of the integration may differ because other motors share a block.
+class MotorVerdicts {
+ public:
+  /// Returns use `index` of the patterns, as the guard with the safety factor plays it.
+  using Play = std::function<const UsePlayed&(std::size_t index)>;
+
+  /// Draws options.samples motors from the random streams from `first_stream` on.
+  MotorVerdicts(const Motor& motor, const TemperatureLimits& limits, const GuaranteeOptions& options, std::uint64_t first_stream);
+
+  /// True before the first count.
+  [[nodiscard]] bool knows_nothing() const { return known_.empty(); }
+
+  /// Returns how many motors exceed a limit in at least one use. Calls `play` only for uses that are needed, from one thread.
+  int count_over(double safety_factor, std::span<const LoadPattern> patterns, const Play& play);
+
+ private:
+  /// Results of one load pattern.
+  struct Known {
+    LoadPattern pattern;
+    std::vector<double> kept_from;  ///< per motor: smallest safety factor at which it kept its limits; infinite: unknown
+    int over = 0;                   ///< motors that exceeded a limit in this use so far
+  };
+  Known& known(const LoadPattern& pattern);
+  void simulate(const UsePlayed& use, double safety_factor, Known& known, std::vector<std::size_t>& undecided);
+
+  TemperatureLimits limits_;
+  int threads_ = 0;
+  std::vector<Network> motors_;
+  std::vector<double> over_up_to_;  ///< per motor: largest safety factor at which it exceeded a limit; 0: unknown
+  std::vector<Known> known_;
+};
+
+}  // namespace heatsoak
