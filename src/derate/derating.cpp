@@ -103,6 +103,7 @@ void require_samples(const GuaranteeOptions& options) {
 
 /// One safety factor on heat and the guard that follows from it.
 struct Attempt {
+  double safety_factor;
   Observer observer;
   BarrierRules rules;
   CurrentTable table;
@@ -132,7 +133,11 @@ class Search {
     MotorVerdicts motors(motor_, reachable_.limits, goal, 0);
     return smallest(1.0, kGrowth, [&](double tried) {
       Attempt with = attempt(tried);
-      return count_over(motors, tried, with) <= (1.0 - goal.confidence) * goal.samples;
+      const bool holds = count_over(motors, with) <= (1.0 - goal.confidence) * goal.samples;
+      if (holds) {
+        last_.emplace(std::move(with));
+      }
+      return holds;
     });
   }
 
@@ -151,20 +156,21 @@ class Search {
     const GuaranteeOptions& goal = options_.guarantee;
     MotorVerdicts motors(motor_, reachable_.limits, goal, kStreamsApart);
     for (;;) {
-      std::optional<Attempt> last;
       const double found = smallest(from, kGrowth, [&](double tried) {
-        Attempt with = attempt(tried);
-        const int over = count_over(motors, tried, with);
+        // The search has played the uses of its result already.
+        Attempt with = last_ && last_->safety_factor == tried ? std::move(*last_) : attempt(tried);
+        const int over = count_over(motors, with);
         const bool holds = 1.0 - upper_bound_share(over, goal.samples, kCertainty_share) >= goal.confidence;
         if (holds) {
-          last.emplace(std::move(with));
+          last_.emplace(std::move(with));
         }
         return holds;
       });
-      std::vector<UsePlayed> uses = all_uses(*last);
+      Attempt last = std::move(*last_);
+      std::vector<UsePlayed> uses = all_uses(last);
       const Guarantee guarantee = check(motor_, reachable_.limits, uses, goal, kStreamsApart);
       if (guarantee.least_kept_share >= goal.confidence) {
-        return {std::move(last->observer), last->rules, std::move(last->table), std::move(uses), guarantee};
+        return {std::move(last.observer), last.rules, std::move(last.table), std::move(uses), guarantee};
       }
       // The full check may find another motor over its limit, by the rounding of MotorVerdicts.
       constexpr double kNext = 1.01;
@@ -200,7 +206,7 @@ class Search {
     CurrentTable table = current_table(observer, rules, options_.table);
     std::vector<LoadPattern> patterns = hardest_patterns(observer, rules);
     const std::size_t count = patterns.size();
-    return {std::move(observer), rules, std::move(table), std::move(patterns), std::vector<std::optional<UsePlayed>>(count)};
+    return {reserve, std::move(observer), rules, std::move(table), std::move(patterns), std::vector<std::optional<UsePlayed>>(count)};
   }
 
   /// Plays a use unless that is done. Throws too_hot() if the observer itself exceeds its limit: with a temperature-dependent law a node
@@ -220,11 +226,11 @@ class Search {
     return uses;
   }
 
-  int count_over(MotorVerdicts& motors, double reserve, Attempt& with) const {
+  int count_over(MotorVerdicts& motors, Attempt& with) const {
     if (motors.knows_nothing()) {
       static_cast<void>(all_uses(with));  // all are needed, and several can be played at once
     }
-    return motors.count_over(reserve, with.patterns, [&](std::size_t index) -> const UsePlayed& { return use(with, index); });
+    return motors.count_over(with.safety_factor, with.patterns, [&](std::size_t index) -> const UsePlayed& { return use(with, index); });
   }
 
   /// Typical number of attempts for motors of the database, including those of the check.
@@ -244,6 +250,7 @@ class Search {
   const Progress& progress_;
   Network network_;
   std::size_t rounds_ = 0;
+  std::optional<Attempt> last_;  ///< last attempt that was sufficient
 };
 
 }  // namespace
