@@ -230,6 +230,10 @@ double Plant::coldest_current_A(const robot_core::Output& output, int i) const {
   return output.is_open[i] ? 0.0 : (voltage_V - kGeared_V_s_per_rad * speed_[i]) / static_cast<double>(config_.lowest_resistance_ohm);
 }
 
+double Plant::true_current_A(const robot_core::Output& output, int i) const {
+  return coldest_current_A(output, i) * static_cast<double>(config_.lowest_resistance_ohm) / resistance_ohm(i);
+}
+
 double Plant::contact_change_rad_per_s() const {
   const double grip_N = truth_.grip_ratio * static_cast<double>(config_.mass_kg) * kGravity_m_per_s2 / config_.wheel_count;
   return grip_N * static_cast<double>(config_.wheel_radius_m) / static_cast<double>(config_.wheel_inertia_kg_m2) *

@@ -91,6 +91,8 @@ class Plant {
   double battery_V() const { return battery_V_; }
   /// Current that a PWM ratio would drive now through the coldest motor.
   double coldest_current_A(const robot_core::Output& output, int i) const;
+  /// The same through this motor, with its resistance at its temperature.
+  double true_current_A(const robot_core::Output& output, int i) const;
   double x_m() const { return pose_[0]; }
   double y_m() const { return pose_[1]; }
   double yaw_rad() const { return pose_[2]; }
