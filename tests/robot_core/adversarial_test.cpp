@@ -13,7 +13,7 @@
 //   - a wrong command with plausible values: the twin gets it too.
 // Tests 1.4e7 faulty inputs: no true current exceeds the limits. 1e7 of them are single faults and combinations of three with at most one
 // faulty speed sensor. With HEATSOAK_HOSTILE_FACTOR=30 this also holds for 5e7 inputs of these two kinds. Then swapped sensors exceed the
-// limits in 4 steps by up to 0.9 A, and two of 21 600 combinations of any kind by up to 11 A. The coldest motor exceeds them by more than
+// limits in 4 steps by up to 0.9 A, and combinations of any kind in 671 of 2e7 steps by up to 11 A. The coldest motor exceeds them by more than
 // the slip in four combinations with two faults of the battery sensor or with more faulty speed sensors than spare ones.
 #include <gtest/gtest.h>
 
