@@ -29,8 +29,9 @@ CLI::Option* add_quantity_to(CLI::App& app, const std::string& flag, Value& valu
       throw CLI::ValidationError(flag, parsed.problem);
     }
     if (!spec.range.contains(parsed.value)) {
-      throw CLI::ValidationError(flag, fmt::format("{} is out of range; expected {}", bare ? fmt::format("{} {}", text, spec.unit) : text,
-                                                   to_string(spec.range, spec.unit)));
+      throw CLI::ValidationError(
+          flag, fmt::format("{} is out of range; expected {}", bare && !spec.unit.empty() ? fmt::format("{} {}", text, spec.unit) : text,
+                            to_string(spec.range, spec.unit)));
     }
     value = parsed.value;
   };

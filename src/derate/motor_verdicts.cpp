@@ -8,16 +8,16 @@ namespace heatsoak {
 
 MotorVerdicts::MotorVerdicts(const Motor& motor, const TemperatureLimits& limits, const GuaranteeOptions& options,
                              std::uint64_t first_stream)
-    : limits_(limits), threads_(options.threads), over_up_to_(static_cast<std::size_t>(options.samples), 0.0) {
-  for (std::size_t begin = 0; begin < over_up_to_.size(); begin += kLanes) {
+    : limits_(limits), threads_(options.threads), over_up_to_ratio_(static_cast<std::size_t>(options.samples), 0.0) {
+  for (std::size_t begin = 0; begin < over_up_to_ratio_.size(); begin += kLanes) {
     std::ranges::move(drawn_networks(motor, options.seed, first_stream + begin), std::back_inserter(motors_));
   }
 }
 
 int MotorVerdicts::count_over(double safety_factor, std::span<const LoadPattern> patterns, const Play& play) {
   std::vector<std::size_t> undecided;
-  for (std::size_t motor = 0; motor < over_up_to_.size(); ++motor) {
-    if (safety_factor > over_up_to_[motor]) {
+  for (std::size_t motor = 0; motor < over_up_to_ratio_.size(); ++motor) {
+    if (safety_factor > over_up_to_ratio_[motor]) {
       undecided.push_back(motor);
     }
   }
@@ -30,11 +30,11 @@ int MotorVerdicts::count_over(double safety_factor, std::span<const LoadPattern>
   std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t index) { return known(patterns[index]).over; });
   for (const std::size_t index : order) {
     Known& of_use = known(patterns[index]);
-    if (std::ranges::any_of(undecided, [&](std::size_t motor) { return safety_factor < of_use.kept_from[motor]; })) {
+    if (std::ranges::any_of(undecided, [&](std::size_t motor) { return safety_factor < of_use.kept_from_ratio[motor]; })) {
       simulate(play(index), safety_factor, of_use, undecided);
     }
   }
-  return static_cast<int>(std::ranges::count_if(over_up_to_, [&](double factor) { return safety_factor <= factor; }));
+  return static_cast<int>(std::ranges::count_if(over_up_to_ratio_, [&](double factor) { return safety_factor <= factor; }));
 }
 
 MotorVerdicts::Known& MotorVerdicts::known(const LoadPattern& pattern) {
@@ -42,14 +42,15 @@ MotorVerdicts::Known& MotorVerdicts::known(const LoadPattern& pattern) {
   if (found != known_.end()) {
     return *found;
   }
-  known_.push_back({pattern, std::vector<double>(over_up_to_.size(), std::numeric_limits<double>::infinity()), 0});
+  known_.push_back({pattern, std::vector<double>(over_up_to_ratio_.size(), std::numeric_limits<double>::infinity()), 0});
   return known_.back();
 }
 
 /// Removes the motors that exceed a limit from `undecided`.
 void MotorVerdicts::simulate(const UsePlayed& use, double safety_factor, Known& known, std::vector<std::size_t>& undecided) {
   std::vector<std::size_t> motors;
-  std::ranges::copy_if(undecided, std::back_inserter(motors), [&](std::size_t motor) { return safety_factor < known.kept_from[motor]; });
+  std::ranges::copy_if(undecided, std::back_inserter(motors),
+                       [&](std::size_t motor) { return safety_factor < known.kept_from_ratio[motor]; });
   std::vector<std::array<MotorPeak, kLanes>> found((motors.size() + kLanes - 1) / kLanes);
   in_parallel(found.size(), threads_, [&](std::size_t block) {
     std::vector<Network> networks;
@@ -61,13 +62,13 @@ void MotorVerdicts::simulate(const UsePlayed& use, double safety_factor, Known& 
   for (std::size_t i = 0; i < motors.size(); ++i) {
     const std::size_t motor = motors[i];
     if (found[i / kLanes][i % kLanes].is_over) {
-      over_up_to_[motor] = safety_factor;
+      over_up_to_ratio_[motor] = safety_factor;
       ++known.over;
     } else {
-      known.kept_from[motor] = safety_factor;
+      known.kept_from_ratio[motor] = safety_factor;
     }
   }
-  std::erase_if(undecided, [&](std::size_t motor) { return safety_factor <= over_up_to_[motor]; });
+  std::erase_if(undecided, [&](std::size_t motor) { return safety_factor <= over_up_to_ratio_[motor]; });
 }
 
 }  // namespace heatsoak

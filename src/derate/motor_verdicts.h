@@ -32,8 +32,8 @@ class MotorVerdicts {
   /// Results of one load pattern.
   struct Known {
     LoadPattern pattern;
-    std::vector<double> kept_from;  ///< per motor: smallest safety factor at which it kept its limits; infinite: unknown
-    int over = 0;                   ///< motors that exceeded a limit in this use so far
+    std::vector<double> kept_from_ratio;  ///< per motor: smallest safety factor at which it kept its limits; infinite: unknown
+    int over = 0;                         ///< motors that exceeded a limit in this use so far
   };
   Known& known(const LoadPattern& pattern);
   void simulate(const UsePlayed& use, double safety_factor, Known& known, std::vector<std::size_t>& undecided);
@@ -41,7 +41,7 @@ class MotorVerdicts {
   TemperatureLimits limits_;
   int threads_ = 0;
   std::vector<Network> motors_;
-  std::vector<double> over_up_to_;  ///< per motor: largest safety factor at which it exceeded a limit; 0: unknown
+  std::vector<double> over_up_to_ratio_;  ///< per motor: largest safety factor at which it exceeded a limit; 0: unknown
   std::vector<Known> known_;
 };
 

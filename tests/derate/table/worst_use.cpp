@@ -294,12 +294,12 @@ std::string csv_text(std::span<const Tally> tallies) {
 
 Chart chart_of(std::span<const Tally> tallies, double limit_C) {
   Chart chart{
-      .title = "How hot windings get when the guard allows and the adversary takes",
+      .title = "Peak temperature of the winding with the guard, in each class of attack",
       .subtitle = fmt::format("ECX FLAT 32 L in roboteam_twente_v2024, limit {:.0f} °C, {:.1f} million trials, computed", limit_C,
                               1e-6 * std::accumulate(tallies.begin(), tallies.end(), 0.0,
                                                      [](double sum, const Tally& each) { return sum + static_cast<double>(each.trials); })),
       .x_label = "peak winding temperature / °C",
-      .panels = {{.title = "share of trials that get hotter", .y_label = "share / %", .levels = {{"5 %", 5.0}}, .logarithmic = true}}};
+      .panels = {{.title = "share of trials with a higher peak", .y_label = "share / %", .levels = {{"5 %", 5.0}}, .logarithmic = true}}};
   for (std::size_t i = 0; i < tallies.size(); ++i) {
     ChartCurve curve{.name = tallies[i].name, .color_index = static_cast<int>(i)};
     std::uint64_t above = tallies[i].trials;
