@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <set>
 
 #include "base/diagnostic.h"
 #include "derate/barrier.h"
 #include "derate/exporter.h"
+#include "derate/motor_verdicts.h"
 #include "guarded_motor.h"
 #include "thermal/transient.h"
 
@@ -41,6 +43,33 @@ std::vector<Interval> random_driving(const Derating& derating, unsigned seed) {
     intervals.push_back({0.01 * kPeriods, at});
   }
   return intervals;
+}
+
+// The search counts the motors over a limit from what it knows of other safety factors. The count is that of a check of all motors in all
+// uses, in whatever order the factors are tried.
+TEST(MotorVerdicts, CountIsThatOfACheckOfAllMotorsAndUses) {
+  const std::string iron =
+      "[effects.iron]\ntype = \"iron_loss_eddy\"\nloss = { value = \"2 W\", origin = \"estimated\", derivation = \"a test\" }\n"
+      "exponent = { value = \"2\", origin = \"estimated\", derivation = \"a test\" }\n";
+  for (const Motor& motor : {ecx_32(), ecx_32_with(iron)}) {
+    const BarrierRules rules = rules_for(motor);
+    const GuaranteeOptions options{.samples = 48};
+    MotorVerdicts verdicts(motor, rules.limits, options, 0);
+    std::set<int> counts;
+    for (const double safety_factor : {1.0, 2.0, 1.5, 1.3, 1.4, 1.7, 1.2}) {
+      const GuardedMotor guarded(motor, rules, safety_factor);
+      const std::vector<LoadPattern> patterns = hardest_patterns(guarded.observer, rules);
+      std::vector<UsePlayed> uses;
+      for (const LoadPattern& each : patterns) {
+        uses.push_back(play(guarded.observer, guarded.table, rules, motor, twente(), each, 0.05));
+      }
+      const int over = check(motor, rules.limits, uses, options, 0).over;
+      EXPECT_EQ(verdicts.count_over(safety_factor, patterns, [&](std::size_t i) -> const UsePlayed& { return uses[i]; }), over)
+          << safety_factor;
+      counts.insert(over);
+    }
+    EXPECT_GT(counts.size(), 3U);  // the factors differ in what they decide
+  }
 }
 
 TEST(Derate, DrawnMotorsKeepTheirLimitInDrivingThatTheSearchNeverSaw) {
