@@ -150,6 +150,7 @@ void read_header(const std::string& text, CommittedTable& committed) {
                        .no_current_speed_rad_per_s = constant(text, "NO_CURRENT_SPEED_RAD_PER_S"),
                        .winding_per_stator_K = constant(text, "WINDING_PER_STATOR_K")};
     committed.code = text;
+    committed.has_sensor = text.find("_SENSOR_ACCURACY_K ") != std::string::npos;
     committed.sensor_flags = sensor_flags_of(text);
     require_sound(committed, *committed.table, line);
     return;
@@ -287,8 +288,15 @@ std::string fresh_header(const Derating& fresh) {
 }  // namespace
 
 CommittedTable read_committed_table(const std::filesystem::path& file) {
-  CommittedTable committed{
-      .file = file, .table = {}, .rows = {}, .motor_id = {}, .robot_id = {}, .sensor_flags = {}, .version = {}, .code = {}};
+  CommittedTable committed{.file = file,
+                           .table = {},
+                           .rows = {},
+                           .motor_id = {},
+                           .robot_id = {},
+                           .has_sensor = false,
+                           .sensor_flags = {},
+                           .version = {},
+                           .code = {}};
   const std::string text = read_file(file, kLargestTable_bytes);
   static const std::regex kVersion(R"re((?:heatsoak |VERSION ")(\d+\.\d+\.\d+))re");
   std::smatch version;
@@ -310,14 +318,17 @@ std::string sensor_difference(const CommittedTable& committed, const std::option
   if (committed.code.empty()) {
     return {};
   }
-  if (!expected) {
-    return committed.sensor_flags.empty() ? std::string()
-                                          : fmt::format(
-                                                "the header has a temperature sensor; expected the options that it was generated "
-                                                "with: {}",
-                                                committed.sensor_flags);
+  if (committed.has_sensor && committed.sensor_flags.empty()) {
+    return "the header has a temperature sensor and does not state its options; generate the header again";
   }
-  if (committed.sensor_flags.empty()) {
+  if (!expected) {
+    return !committed.has_sensor ? std::string()
+                                 : fmt::format(
+                                       "the header has a temperature sensor; expected the options that it was generated "
+                                       "with: {}",
+                                       committed.sensor_flags);
+  }
+  if (!committed.has_sensor) {
     return "the header has no temperature sensor; leave out the options of the sensor, or generate the header again with them";
   }
   const std::map<std::string, std::string> now = by_name(sensor_flags(*expected));

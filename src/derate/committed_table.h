@@ -25,7 +25,8 @@ struct CommittedTable {
   std::vector<CommittedRow> rows;     ///< only from a CSV table: the full grid, winding varies fastest
   std::string motor_id;               ///< named at the beginning of the file; empty if the file names none
   std::string robot_id;               ///< likewise
-  std::string sensor_flags;           ///< sensor_flags() of the sensor of a C header; empty: the header has no sensor
+  bool has_sensor = false;            ///< a C header with a temperature sensor
+  std::string sensor_flags;           ///< sensor_flags() of that sensor; empty if the header does not state them
   std::string version;                ///< version of the program that wrote the file, "0.1.0"; empty if not stated
   std::string code;                   ///< full text of a C header, else empty
 };

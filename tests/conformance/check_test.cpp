@@ -253,6 +253,13 @@ TEST(DerateCheck, NamesTheOptionsOfTheSensor) {
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.err, HasSubstr("--check sensed.h: the header was generated with --thermistor-accuracy 1.5K, not 10K; "
                                    "--thermistor-lag 3s, not 0s; use its options or generate the header again"));
+  const std::string header = content_of(folder.path() / "sensed.h");
+  const std::size_t flags = header.find("\n * --thermistor");
+  ASSERT_NE(flags, std::string::npos);
+  write(folder.path() / "older.h", header.substr(0, flags) + header.substr(header.find('\n', flags + 1)));
+  const ProgramRun older = run(derate + sensor + Words{"--check", "older.h"}, options);
+  EXPECT_EQ(older.exit_code, 2);
+  EXPECT_THAT(older.err, HasSubstr("does not state its options; generate the header again"));
   const auto check = [&](const std::string& accuracy) {
     write(folder.path() / "a.check.toml", fmt::format("[[check]]\nname = \"a\"\nrobot = \"roboteam_twente_v2024\"\nmotor = "
                                                       "\"maxon_ecx_flat_42m_24v\"\ntable = \"sensed.h\"\nderate = {{ samples = \"60\", "
