@@ -8,6 +8,7 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cctype>
+#include <map>
 
 namespace heatsoak {
 namespace {
@@ -56,6 +57,10 @@ const CLI::App* verb_of(const CLI::App& app, std::span<const char* const> words)
   return nullptr;
 }
 
+bool takes_one_value(const CLI::Option& option) {
+  return option.get_items_expected_max() == 1 && option.get_multi_option_policy() == CLI::MultiOptionPolicy::Throw;
+}
+
 }  // namespace
 
 void check_words(const CLI::App& app, std::span<const char* const> words) {
@@ -75,6 +80,7 @@ void check_words(const CLI::App& app, std::span<const char* const> words) {
     }
   }
   std::vector<std::string> unknown;
+  std::map<std::string, int> given;
   std::string_view before = app.get_name();
   for (const std::string_view word : words) {
     const std::string name(word.substr(0, word.find('=')));
@@ -89,6 +95,8 @@ void check_words(const CLI::App& app, std::span<const char* const> words) {
     if (name.starts_with("--") && std::ranges::find(known, name) == known.end()) {
       unknown.push_back(fmt::format("there is no option {}{} (`{}{} --help` lists them)", name, did_you_mean(name, known), app.get_name(),
                                     verb ? fmt::format(" {}", verb->get_name()) : ""));
+    } else if (name.starts_with("--") && verb && takes_one_value(*verb->get_option_no_throw(name)) && ++given[name] == 2) {
+      unknown.push_back(fmt::format("{} is given more than once; expected one value: remove the others", name));
     }
   }
   if (!unknown.empty()) {

@@ -640,7 +640,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"option_before_verb", {"--db", "/tmp", "list", "motors"}, "--db"},
         Mistake{"unknown_option", kEvaluate + Words{"--sample", "5"}, "did you mean '--samples'?"},
         Mistake{"missing_value", kSteady + Words{"--json"}, "--json"},
-        Mistake{"option_twice", kSteady + Words{"--current-on", "5"}, "--current-on"},
+        Mistake{"option_twice", kSteady + Words{"--current-on", "5"}, "--current-on is given more than once; expected one value"},
         Mistake{"missing_option", {"steady", "--motor", "maxon_ec45_flat_70w_24v"}, "is required"},
         Mistake{"unknown_kind", {"list", "motor"}, "motors"}, Mistake{"no_kind", {"list"}, "motors, robots, duties, effects, formats"},
         Mistake{"empty_name_of_a_motor",
