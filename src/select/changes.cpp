@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 
 #include "select/evaluate.h"
 
@@ -77,41 +79,54 @@ Played played(const MotorEvaluation& result, const WheelDemand& wheel) {
 /// The same games for every change: seeds follow each other.
 class Games {
  public:
-  Games(const Duty& duty, const Motor& motor, std::uint64_t seed)
-      : duty_(duty), motor_(motor), seed_(seed), count_(duty.shape_data->has_unknowns() ? static_cast<std::size_t>(kChangeGames) : 1) {}
+  Games(const Duty& duty, std::uint64_t seed)
+      : duty_(duty), seed_(seed), count_(duty.shape_data->has_unknowns() ? static_cast<std::size_t>(kChangeGames) : 1) {}
 
   [[nodiscard]] std::size_t count() const { return count_; }
 
-  [[nodiscard]] Played play(const Robot& robot, std::size_t game, double pauses_ratio = 1.0) const {
-    std::vector<WheelDemand> wheels = duty_.demand(robot, seed_ + game);
-    for (WheelDemand& wheel : wheels) {
-      for (LoadBin& bin : wheel.bins) {
-        bin.duration_s *= is_pause(bin) ? pauses_ratio : 1.0;
-      }
-    }
-    return results(robot, wheels, std::span(&motor_, 1), game).front();
-  }
+  [[nodiscard]] std::vector<WheelDemand> demand(const Robot& robot, std::size_t game) const { return duty_.demand(robot, seed_ + game); }
 
-  /// Plays one game with every motor; in the order of `motors`.
-  [[nodiscard]] std::vector<Played> play_all(const Robot& robot, std::span<const Motor> motors, std::size_t game) const {
-    return results(robot, duty_.demand(robot, seed_ + game), motors, game);
+  [[nodiscard]] Played result(const Robot& robot, const Motor& motor, const std::vector<WheelDemand>& wheels) const {
+    const EvaluateOptions nominal{.samples = 0, .threads = 1, .with_current_margin = false};
+    return played(evaluate(robot, duty_, wheels, std::span(&motor, 1), nominal).front(), wheels.front());
   }
 
  private:
-  [[nodiscard]] std::vector<Played> results(const Robot& robot, const std::vector<WheelDemand>& wheels, std::span<const Motor> motors,
-                                            std::size_t game) const {
-    const std::vector<MotorEvaluation> all = evaluate(robot, duty_, wheels, motors, {.samples = 0, .seed = seed_ + game, .threads = 1});
-    std::vector<Played> in_order;
-    for (const Motor& motor : motors) {
-      in_order.push_back(played(*std::ranges::find(all, motor.id, &MotorEvaluation::motor_id), wheels.front()));
-    }
-    return in_order;
-  }
-
   const Duty& duty_;
-  const Motor& motor_;
   std::uint64_t seed_;
   std::size_t count_;
+};
+
+std::vector<WheelDemand> with_longer_pauses(std::vector<WheelDemand> wheels) {
+  for (WheelDemand& wheel : wheels) {
+    for (LoadBin& bin : wheel.bins) {
+      bin.duration_s *= is_pause(bin) ? kLongerPauses_ratio : 1.0;
+    }
+  }
+  return wheels;
+}
+
+/// Shows jobs of different length as one work. The unit is one motor in one game; playing the game takes about eleven times that.
+class ChangeWork {
+ public:
+  static constexpr std::size_t kEvaluation = 1;
+  static constexpr std::size_t kPlayedGame = 12;
+
+  ChangeWork(std::size_t total, int threads, const Progress& progress) : total_(total), threads_(threads), progress_(progress) {}
+
+  void run(std::size_t count, std::size_t units_each, const std::function<void(std::size_t)>& job) {
+    const auto show = [this, units_each](std::size_t done, std::size_t /*count*/) {
+      progress_(std::min(total_, done_ + units_each * done), total_);
+    };
+    in_parallel(count, threads_, 0, count, progress_ ? Progress(show) : Progress(), job);
+    done_ += units_each * count;
+  }
+
+ private:
+  std::size_t total_;
+  int threads_;
+  const Progress& progress_;
+  std::size_t done_ = 0;
 };
 
 ChangeEffect effect_of(ChangedQuantity quantity, double value, double factor, std::span<const Played> before,
@@ -132,29 +147,50 @@ ChangeEffect effect_of(ChangedQuantity quantity, double value, double factor, st
   return effect;
 }
 
-/// Adds the best other motor. `all` holds the games of each candidate.
-void add_other_motor(std::span<const Motor> candidates, const std::vector<std::vector<Played>>& all, std::span<const Played> before,
-                     std::vector<ChangeEffect>& effects) {
-  std::size_t best = candidates.size();
+/// The motor with the largest margin among those that pass all games. A motor's margin in the first game is the most that it can have in
+/// all of them, so only motors that may still win take part in the other games.
+struct OtherMotor {
+  const Motor* motor = nullptr;
+  std::vector<Played> games;
+};
+OtherMotor best_other_motor(const Games& games, const Robot& robot, const std::vector<std::vector<WheelDemand>>& demands,
+                            std::span<const Motor* const> candidates, ChangeWork& work) {
+  std::vector<Played> first(candidates.size());
+  work.run(first.size(), ChangeWork::kEvaluation, [&](std::size_t i) { first[i] = games.result(robot, *candidates[i], demands.front()); });
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (first[i].passes) {
+      order.push_back(i);
+    }
+  }
+  std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t i) { return first[i].margin_K; });
+  OtherMotor best;
+  std::size_t place = 0;
   double most_K = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const double margin_K = std::ranges::min(all[i], {}, &Played::margin_K).margin_K;
-    if (std::ranges::all_of(all[i], &Played::passes) && margin_K > most_K) {
-      best = i;
+  for (const std::size_t i : order) {
+    if (first[i].margin_K < most_K) {
+      break;
+    }
+    std::vector<Played> all(games.count(), first[i]);
+    work.run(games.count() - 1, ChangeWork::kEvaluation,
+             [&](std::size_t game) { all[game + 1] = games.result(robot, *candidates[i], demands[game + 1]); });
+    const double margin_K = std::ranges::min(all, {}, &Played::margin_K).margin_K;
+    // Of equal motors the first one counts, in whichever order they were played.
+    const bool is_better = margin_K > most_K || (margin_K == most_K && best.motor && i < place);
+    if (std::ranges::all_of(all, &Played::passes) && is_better) {
+      best = {candidates[i], std::move(all)};
+      place = i;
       most_K = margin_K;
     }
   }
-  if (best < candidates.size()) {
-    effects.push_back(effect_of(ChangedQuantity::motor, 0.0, 1.0, before, all[best]));
-    effects.back().other_motor = candidates[best].id;
-  }
+  return best;
 }
 
 }  // namespace
 
 std::vector<ChangeEffect> effects_of_changes(const Robot& robot, const Duty& duty, const Motor& motor, std::span<const Motor> others,
                                              std::uint64_t seed, int threads, const Progress& progress) {
-  const Games games(duty, motor, seed);
+  const Games games(duty, seed);
   const std::size_t count = games.count();
   std::vector<Variant> variants;
   Robot own = robot;
@@ -163,38 +199,52 @@ std::vector<ChangeEffect> effects_of_changes(const Robot& robot, const Duty& dut
       variants.push_back(each);
     }
   }
-  std::vector<Motor> candidates;
-  std::ranges::copy_if(others, std::back_inserter(candidates), [&](const Motor& each) { return each.id != motor.id; });
-  // The robot as it is, then groups of games: one for each variant, the gear, the pauses, and all other motors.
-  const std::size_t groups = variants.size() + 3;
-  const std::size_t total = (groups + 1) * count;
+  std::vector<const Motor*> candidates;
+  for (const Motor& each : others) {
+    if (each.id != motor.id) {
+      candidates.push_back(&each);
+    }
+  }
+  const std::size_t played_games = (variants.size() + 1) * count;
+  ChangeWork work(ChangeWork::kPlayedGame * played_games + ChangeWork::kEvaluation * (2 * count + candidates.size()), threads, progress);
+  std::vector<std::vector<WheelDemand>> demands(count);
   std::vector<Played> before(count);
-  in_parallel(count, threads, 0, total, progress, [&](std::size_t game) { before[game] = games.play(robot, game); });
-  variants.push_back(std::ranges::any_of(before, &Played::lacks_voltage) ? kLowerGear : kHigherGear);
-  std::vector<std::vector<Played>> after(groups - 1, std::vector<Played>(count));
-  std::vector<std::vector<Played>> of_motors(candidates.size(), std::vector<Played>(count));
-  in_parallel(groups * count, threads, count, total, progress, [&](std::size_t job) {
-    const std::size_t group = job / count;
+  work.run(count, ChangeWork::kPlayedGame, [&](std::size_t game) {
+    demands[game] = games.demand(robot, game);
+    before[game] = games.result(robot, motor, demands[game]);
+  });
+  std::vector<std::vector<Played>> after(variants.size(), std::vector<Played>(count));
+  work.run(variants.size() * count, ChangeWork::kPlayedGame, [&](std::size_t job) {
     const std::size_t game = job % count;
-    if (group < variants.size()) {
-      after[group][game] = games.play(changed(robot, variants[group]), game);
-    } else if (group == variants.size()) {
-      after[group][game] = games.play(robot, game, kLongerPauses_ratio);
-    } else if (!candidates.empty()) {
-      const std::vector<Played> all = games.play_all(robot, candidates, game);
-      for (std::size_t i = 0; i < all.size(); ++i) {
-        of_motors[i][game] = all[i];
-      }
+    const Robot other = changed(robot, variants[job / count]);
+    after[job / count][game] = games.result(other, motor, games.demand(other, game));
+  });
+  // Gear, pauses and motor leave the wheels' loads as they are: the games need not be played again.
+  const Variant gear = std::ranges::any_of(before, &Played::lacks_voltage) ? kLowerGear : kHigherGear;
+  const Robot geared = changed(robot, gear);
+  std::vector<Played> after_gear(count);
+  std::vector<Played> after_pauses(count);
+  work.run(2 * count, ChangeWork::kEvaluation, [&](std::size_t job) {
+    const std::size_t game = job / 2;
+    if (job % 2 == 0) {
+      after_gear[game] = games.result(geared, motor, demands[game]);
+    } else {
+      after_pauses[game] = games.result(robot, motor, with_longer_pauses(demands[game]));
     }
   });
   std::vector<ChangeEffect> effects;
   for (std::size_t i = 0; i < variants.size(); ++i) {
     effects.push_back(effect_of(variants[i].quantity, *variants[i].value(own), variants[i].factor, before, after[i]));
   }
+  effects.push_back(effect_of(gear.quantity, *gear.value(own), gear.factor, before, after_gear));
   if (before.front().pause_s > 0.0) {
-    effects.push_back(effect_of(ChangedQuantity::pauses, before.front().pause_s, kLongerPauses_ratio, before, after.back()));
+    effects.push_back(effect_of(ChangedQuantity::pauses, before.front().pause_s, kLongerPauses_ratio, before, after_pauses));
   }
-  add_other_motor(candidates, of_motors, before, effects);
+  const OtherMotor best = best_other_motor(games, robot, demands, candidates, work);
+  if (best.motor) {
+    effects.push_back(effect_of(ChangedQuantity::motor, 0.0, 1.0, before, best.games));
+    effects.back().other_motor = best.motor->id;
+  }
   std::ranges::stable_sort(effects, std::ranges::greater(),
                            [](const ChangeEffect& each) { return std::pair(each.is_deliverable, each.saved_K); });
   return effects;

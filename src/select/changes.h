@@ -30,9 +30,9 @@ struct ChangeEffect {
 inline constexpr int kChangeGames = 4;
 
 /// Returns the effects of all changes that are possible with these files, the most helpful first. All values are nominal; each game is
-/// played once for each change. A duty that fixes the wheel's load is one game, on which only gear ratio, pauses and motor act. Pauses: the
-/// time without load lasts half as long again. Motor: of `others` the motor that keeps all limits, delivers the demand in every game and
-/// has the largest margin; nothing if none does. `others` may contain `motor`, which is ignored.
+/// played once for each change of the wheels' loads. A duty that fixes the wheel's load is one game, on which only gear ratio, pauses and
+/// motor act. Pauses: the time without load lasts half as long again. Motor: of `others` the motor that keeps all limits, delivers the
+/// demand in every game and has the largest margin; nothing if none does. `others` may contain `motor`, which is ignored.
 std::vector<ChangeEffect> effects_of_changes(const Robot& robot, const Duty& duty, const Motor& motor, std::span<const Motor> others,
                                              std::uint64_t seed, int threads, const Progress& progress = {});
 

@@ -89,8 +89,9 @@ std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95
 }
 
 int most_samples(const Duty& duty) {
+  constexpr int kOneDoubling = 2;
   constexpr int kFiveDoublings = 32;
-  return first_samples(duty) * kFiveDoublings;
+  return first_samples(duty) * (duty.shape_data->has_unknowns() ? kOneDoubling : kFiveDoublings);
 }
 
 namespace {
@@ -159,11 +160,12 @@ std::vector<MotorEvaluation> evaluate_until_decided(const Robot& robot, const Du
   };
   std::vector<MotorEvaluation> results = run(motors, progress_of(progress, "playing games"), progress_of(progress, "evaluating"));
   std::optional<LaterRounds> later;
+  const bool is_drawn = duty.shape_data->has_unknowns();
   while (options.samples < most) {
     std::vector<Motor> open;
     int needed = 0;
     for (const MotorEvaluation& each : results) {
-      if (each.samples_needed) {
+      if (each.samples_needed && (!is_drawn || *each.samples_needed <= most)) {
         open.push_back(*std::ranges::find(motors, each.motor_id, &Motor::id));
         needed = std::max(needed, *each.samples_needed);
       }

@@ -258,10 +258,12 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
   if (result.stator_limit_C) {
     result.stator_margin_K = *result.stator_limit_C - transient.peak_C[stator];
   }
-  const bool is_over = result.margin_K < 0.0 || result.stator_margin_K.value_or(0.0) < 0.0;
-  if (const std::optional<double> factor = sustainable_current_factor(network, run.intervals, limits, is_over)) {
-    const double driven = deliverable_factor(sample.values, robot, duty, *work.wheel, *factor);
-    result.margin_A = driven * current_rms_A(run.intervals) - result.current_rms_A;
+  if (options.with_current_margin) {
+    const bool is_over = result.margin_K < 0.0 || result.stator_margin_K.value_or(0.0) < 0.0;
+    if (const std::optional<double> factor = sustainable_current_factor(network, run.intervals, limits, is_over)) {
+      const double driven = deliverable_factor(sample.values, robot, duty, *work.wheel, *factor);
+      result.margin_A = driven * current_rms_A(run.intervals) - result.current_rms_A;
+    }
   }
   std::size_t first_limit = 0;
   for (std::size_t i = 0; i < limits.size(); ++i) {

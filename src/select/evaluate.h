@@ -31,9 +31,10 @@ inline constexpr double kTolerableShortTime = 0.01;
 struct EvaluateOptions {
   int samples = 500;  ///< 0: nominal only
   std::uint64_t seed = 1;
-  int threads = 0;           ///< 0: all cores; the result does not depend on it
-  bool with_curves = false;  ///< keep the nominal temperatures over time
-  bool with_bands = false;   ///< keep the range of the samples over time too; asks for with_curves
+  int threads = 0;                  ///< 0: all cores; the result does not depend on it
+  bool with_curves = false;         ///< keep the nominal temperatures over time
+  bool with_bands = false;          ///< keep the range of the samples over time too; asks for with_curves
+  bool with_current_margin = true;  ///< find margin_A, which takes a quarter of the time of a nominal run
   /// Demands of the hardest wheel under draws of the duty's own unknowns, which blocks of samples take in turn; empty: all
   /// samples have the nominal demand.
   std::span<const WheelDemand> draws{};

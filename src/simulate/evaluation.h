@@ -27,7 +27,7 @@ struct EvaluationJob {
   std::vector<Motor> motors;                           ///< at least one, with different ids
   std::map<std::string, std::string> conditions = {};  ///< conditions under which the motors were read
   std::uint64_t seed = 1;                              ///< seed of the samples and of the first game
-  std::optional<int> samples = {};                     ///< nothing: first_samples(), and more until the verdicts are decided
+  std::optional<int> samples = {};                     ///< nothing: first_samples(), and up to most_samples() until the verdicts are decided
   int threads = 0;                                     ///< 0: all cores; the result does not depend on it
   bool with_bands = false;                             ///< keep the range of the samples over time
   bool suggests = false;                               ///< search for changes of the robot also if its motor passes

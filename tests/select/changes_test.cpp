@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <memory>
+#include <string>
 
+#include "select/evaluate.h"
 #include "support/shipped.h"
 #include "support/source_folder.h"
 
@@ -73,6 +77,60 @@ TEST_F(Changes, a_match_heats_less_with_less_mass_jerk_and_wheel) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(all[i].saved_K, again[i].saved_K) << "does not depend on threads";
   }
+}
+
+/// Counts how often a match is played.
+class CountedMatch final : public DutyShape {
+ public:
+  explicit CountedMatch(std::shared_ptr<const DutyShape> match) : match_(std::move(match)) {}
+  [[nodiscard]] std::vector<WheelDemand> demand(const Robot& robot, std::uint64_t seed) const override {
+    ++played;
+    return match_->demand(robot, seed);
+  }
+  [[nodiscard]] bool depends_on_robot() const override { return true; }
+  [[nodiscard]] bool has_unknowns() const override { return true; }
+  mutable std::atomic<int> played = 0;
+
+ private:
+  std::shared_ptr<const DutyShape> match_;
+};
+
+// Games take most of the time. Six changes act on the wheels' loads: acceleration, jerk, speed, yaw acceleration, mass and wheel radius.
+TEST_F(Changes, games_are_played_again_only_for_changes_of_the_loads) {
+  Duty duty = read_duty(kSource / "duty_profiles/division_b_match.toml");
+  const auto counted = std::make_shared<CountedMatch>(duty.shape_data);
+  duty.shape_data = counted;
+  const Motor other = read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
+  const std::vector<ChangeEffect> all = effects_of_changes(robot_, duty, motor_, std::span(&other, 1), 1, 0);
+  EXPECT_EQ(all.size(), 9U);
+  EXPECT_EQ(counted->played, kChangeGames * (1 + 6));
+}
+
+// Only a motor that can still have the largest margin is evaluated in all games; the result is that of all motors in all games.
+TEST_F(Changes, the_best_other_motor_is_that_of_a_full_search) {
+  const Duty duty = read_duty(kSource / "duty_profiles/division_b_match.toml");
+  std::vector<Motor> others;
+  for (const std::string_view id :
+       {"maxon_ecx_flat_42m_24v", "nanotec_df45l024048_a2", "maxon_ecx_flat_32l_48v", "maxon_ecx_flat_42m_48v"}) {
+    others.push_back(read_motor(kSource / "motor_db" / (std::string(id) + ".toml")));
+  }
+  std::string best;
+  double most_K = -1e9;
+  for (const Motor& each : others) {
+    double margin_K = 1e9;
+    bool passes = true;
+    for (int game = 0; game < kChangeGames; ++game) {
+      const std::vector<WheelDemand> wheels = duty.demand(robot_, 1 + static_cast<std::uint64_t>(game));
+      const MotorEvaluation result = evaluate(robot_, duty, wheels, std::span(&each, 1), {.samples = 0}).front();
+      margin_K = std::min(margin_K, nearest_margin_K(result));
+      passes = passes && result.verdict == Verdict::pass;
+    }
+    if (passes && margin_K > most_K) {
+      best = each.id;
+      most_K = margin_K;
+    }
+  }
+  EXPECT_EQ(of(effects_of_changes(robot_, duty, motor_, others, 1, 0), ChangedQuantity::motor).other_motor, best);
 }
 
 }  // namespace

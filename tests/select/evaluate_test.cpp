@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 
@@ -640,6 +641,54 @@ TEST(UntilDecided, takes_more_samples_only_near_a_threshold) {
   EXPECT_EQ(at_once.verdict, of("near").verdict);
   EXPECT_EQ(at_once.probability_over_limit, of("near").probability_over_limit);
   EXPECT_FALSE(at_once.samples_needed);
+}
+
+/// A load of the wheel that is drawn: a share of the draws is far above the motor's limit, all others far below.
+class DrawnLoad final : public DutyShape {
+ public:
+  explicit DrawnLoad(double heavy_share) : heavy_share_(heavy_share) {}
+  [[nodiscard]] std::vector<WheelDemand> demand(const Robot& /*robot*/, std::uint64_t /*seed*/) const override {
+    return steady_wheels(kLight_Nm, 400.0);
+  }
+  [[nodiscard]] bool has_unknowns() const override { return true; }
+  [[nodiscard]] WheelDemand draw(const Robot& /*robot*/, std::uint64_t /*seed*/, std::uint64_t draw) const override {
+    const double before = std::floor(heavy_share_ * static_cast<double>(draw));
+    const bool is_heavy = std::floor(heavy_share_ * static_cast<double>(draw + 1)) > before;
+    return steady_wheels(is_heavy ? kHeavy_Nm : kLight_Nm, 400.0).back();
+  }
+
+ private:
+  static constexpr double kLight_Nm = 0.03;
+  static constexpr double kHeavy_Nm = 0.3;
+  double heavy_share_;
+};
+
+MotorEvaluation until_decided(double heavy_share) {
+  Duty duty = constant_current(1.0);
+  duty.kind = DutyKind::torque;
+  duty.shape_data = std::make_shared<DrawnLoad>(heavy_share);
+  const Motor motor = simple_motor();
+  std::vector<WheelDemand> draws;
+  const MotorEvaluation result = evaluate_until_decided(simple_robot(), duty, duty.demand(simple_robot(), 1), std::span(&motor, 1),
+                                                        {.samples = first_samples(duty)}, most_samples(duty), draws)
+                                     .front();
+  EXPECT_EQ(draws.size(), static_cast<std::size_t>(result.games));
+  return result;
+}
+
+// A game takes a tenth of a second, so the number of games limits how long an answer takes. No heavy game among 75 decides, and 20 % do.
+// For 37.5 % the upper end of Clopper and Pearson's interval is 0.51 after 75 games and 0.49 after 150: most games pass. 4 % need
+// thousands.
+TEST(UntilDecided, plays_more_games_only_if_few_of_them_decide) {
+  EXPECT_EQ(until_decided(0.0).games, 75);
+  EXPECT_EQ(until_decided(0.2).games, 75);
+  const MotorEvaluation soon = until_decided(0.375);
+  EXPECT_EQ(soon.games, 150);
+  EXPECT_FALSE(soon.samples_needed);
+  const MotorEvaluation late = until_decided(0.04);
+  EXPECT_EQ(late.games, 75);
+  ASSERT_TRUE(late.samples_needed);
+  EXPECT_GT(*late.samples_needed, 8 * 150);
 }
 
 TEST(UntilDecided, as_many_games_are_played_as_are_asked_for) {

@@ -116,7 +116,7 @@ Command evaluate_command() {
         add_conditions(app, options->conditions);
         app.add_option("--samples", options->job.samples,
                        "draws of every declared tolerance and range, one game for every eight on a match; 0: nominal only; if not given, "
-                       "about a hundred, and more until the verdicts are decided")
+                       "as many as decide the verdicts, at most 16000, or 1200 on a match")
             ->check(whole_number(1'000'000))
             ->type_name("N");
         app.add_flag("--closed-loop", options->is_closed_loop,
