@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/counted.h"
 #include "base/diagnostic.h"
 #include "base/files.h"
 #include "cli/terminal.h"
@@ -83,9 +84,6 @@ struct Command {
   std::function<std::vector<Topic>()> topics{};  ///< for `list` and `describe`
 };
 std::vector<Command> all_commands();
-
-/// Formats a count with its noun: "1 file", "2 files".
-std::string counted(std::size_t count, std::string_view what);
 
 /// Runs the whole program and returns the exit code. Never throws.
 int run_program(int argc, const char* const* argv);

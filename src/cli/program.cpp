@@ -321,8 +321,6 @@ std::vector<Command> all_commands() {
   return all;
 }
 
-std::string counted(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
-
 int run_program(int argc, const char* const* argv) {
   // With SIGXFSZ ignored, a file beyond the user's size limit fails like a full disk, with a message.
   (void)std::signal(SIGXFSZ, SIG_IGN);

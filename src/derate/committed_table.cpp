@@ -345,6 +345,7 @@ std::string sensor_difference(const CommittedTable& committed, const std::option
 
 TableComparison compare(const CommittedTable& committed, const Derating& fresh) {
   TableComparison found;
+  found.is_other_motor = !committed.motor_id.empty() && committed.motor_id != fresh.motor_id;
   const double rounding_A = tolerance_A(committed, fresh.table);
   if (committed.table) {
     compare_tables(*committed.table, fresh.table, rounding_A, found);

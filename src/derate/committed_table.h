@@ -57,6 +57,10 @@ struct TableComparison {
   int differing_line = 0;
   std::string differing_text;        ///< text of `differing_line`
   std::string differing_fresh_text;  ///< line of the fresh header at the same place
+  bool is_other_motor = false;       ///< the file names a motor, and it is another one
+
+  /// Returns whether the committed table is safe to use.
+  [[nodiscard]] bool holds() const { return !is_other_motor && excess.difference_A == 0.0 && differing_line == 0; }
 };
 
 /// Compares a C header on the grid of all breakpoints of both tables and just beyond the ends of the axes, because both tables are

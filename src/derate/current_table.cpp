@@ -4,15 +4,17 @@
 #include <cmath>
 
 namespace heatsoak {
-namespace {
 
-/// Two neighbouring breakpoints and the position between them, 0 to 1. Values outside of the axis are clamped to its ends.
+/// Two neighbouring breakpoints and the position between them, 0 to 1. Values outside of the axis are clamped to its ends. Not in the
+/// anonymous namespace, because closures of a member template, which has external linkage, capture it.
 template <class Number>
 struct Between {
   std::size_t below = 0;
   std::size_t above = 0;
   Number share{0};
 };
+
+namespace {
 
 template <class Number>
 Between<Number> between(const std::vector<double>& axis, Number x) {

@@ -1,5 +1,7 @@
 #include "derate/header_text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -105,7 +107,7 @@ std::string line_around(std::string_view text, std::size_t place) {
   std::string_view line = text.substr(begin, std::min(text.find('\n', place), text.size()) - begin);
   line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
   constexpr std::size_t kLongest = 100;
-  return line.size() > kLongest ? std::string(line.substr(0, kLongest)) + " …" : std::string(line);
+  return line.size() > kLongest ? fmt::format("{} …", line.substr(0, kLongest)) : std::string(line);
 }
 
 }  // namespace

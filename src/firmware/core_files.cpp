@@ -239,4 +239,13 @@ CoreFolder core_files(const Robot& robot, const Motor& motor, const CoreOptions&
   return folder;
 }
 
+GeneratedCore generate_core(const Robot& robot, const Motor& motor, const CoreOptions& options, DerateOptions derate_options,
+                            std::string_view version, const Progress& progress) {
+  static_cast<void>(make_core_config(robot, motor.nominal, options));
+  derate_options.period_s = guard_period_s(options.period_s);
+  Derating derating = derate(motor, robot, derate_options, progress);
+  CoreFolder folder = core_files(robot, motor, options, derating, version);
+  return {std::move(derating), std::move(folder)};
+}
+
 }  // namespace heatsoak

@@ -47,6 +47,16 @@ double guard_period_s(double period_s);
 CoreFolder core_files(const Robot& robot, const Motor& motor, const CoreOptions& options, const Derating& derating,
                       std::string_view version);
 
+struct GeneratedCore {
+  Derating derating;
+  CoreFolder folder;
+};
+/// Derates the motor for the core's guard and generates the folder. The guard's period follows from that of the core, not from
+/// `derate_options`. Throws Failure as make_core_config() does, before the derating, which takes seconds; and as derate() and core_files()
+/// do.
+GeneratedCore generate_core(const Robot& robot, const Motor& motor, const CoreOptions& options, DerateOptions derate_options,
+                            std::string_view version, const Progress& progress = {});
+
 // The generated files that are no templates.
 std::string core_config_header(const CoreSource& source);
 std::string motor_guard_header(const CoreSource& source);

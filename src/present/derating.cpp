@@ -158,10 +158,10 @@ Document derating_document(const Derating& derating, const Motor& motor) {
 
 void add_table_check(Document& document, const Derating& derating, const TableCheck& check) {
   const TableComparison& found = check.found;
-  document.headline.push_back(
-      {fmt::format("{}: {}", check.committed.file.string(), check.holds ? "still holds" : "no longer holds; write it again with --out"),
-       check.holds ? Tone::good : Tone::bad});
-  if (check.is_other_motor) {
+  document.headline.push_back({fmt::format("{}: {}", check.committed.file.string(),
+                                           check.found.holds() ? "still holds" : "no longer holds; write it again with --out"),
+                               check.found.holds() ? Tone::good : Tone::bad});
+  if (found.is_other_motor) {
     document.add_note(Severity::warning, fmt::format("Unsafe: it is the table of another motor, {}; expected one of {}.",
                                                      check.committed.motor_id, derating.motor_id));
   }
@@ -177,14 +177,14 @@ void add_table_check(Document& document, const Derating& derating, const TableCh
   }
   if (found.lost.difference_A > 0.0) {
     document.add_note(Severity::note,
-                      fmt::format("{} it allows up to {:.3f} A less than a fresh table, {}.", check.holds ? "Safe, but" : "At other places",
-                                  found.lost.difference_A, place_text(found.lost)));
+                      fmt::format("{} it allows up to {:.3f} A less than a fresh table, {}.",
+                                  check.found.holds() ? "Safe, but" : "At other places", found.lost.difference_A, place_text(found.lost)));
   }
   if (!check.committed.robot_id.empty() && check.committed.robot_id != derating.robot_id) {
     document.add_note(Severity::note,
                       fmt::format("It was written for the robot {}, this is {}.", check.committed.robot_id, derating.robot_id));
   }
-  if (!check.holds && !check.committed.version.empty() && check.committed.version != program_version()) {
+  if (!check.found.holds() && !check.committed.version.empty() && check.committed.version != program_version()) {
     document.add_note(Severity::note, fmt::format("It was written by heatsoak {}, this is {}: an upgrade may explain the difference.",
                                                   check.committed.version, program_version()));
   }

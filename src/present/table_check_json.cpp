@@ -16,14 +16,11 @@ Json json(const TablePlace& place) {
 Json table_check_json(const TableCheck& check) {
   const CommittedTable& committed = check.committed;
   const auto text = [](const std::string& words) { return words.empty() ? Json() : Json(words); };
-  return {{"file", committed.file.string()},
-          {"motor", text(committed.motor_id)},
-          {"robot", text(committed.robot_id)},
-          {"written_by", text(committed.version)},
-          {"holds", check.holds},
-          {"excess", json(check.found.excess)},
-          {"lost", json(check.found.lost)},
-          {"differing_line", check.found.differing_line > 0 ? Json(check.found.differing_line) : Json()}};
+  return {
+      {"file", committed.file.string()},   {"motor", text(committed.motor_id)},
+      {"robot", text(committed.robot_id)}, {"written_by", text(committed.version)},
+      {"holds", check.found.holds()},      {"excess", json(check.found.excess)},
+      {"lost", json(check.found.lost)},    {"differing_line", check.found.differing_line > 0 ? Json(check.found.differing_line) : Json()}};
 }
 
 }  // namespace heatsoak::present

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,16 +10,13 @@
 #include "cli/guard_options.h"
 #include "cli/quantity_option.h"
 #include "cli/sensor_options.h"
-#include "derate/committed_table.h"
+#include "derate/derating_job.h"
 #include "derate/derating_json.h"
-#include "derate/exporter.h"
 #include "duty/named_files.h"
 #include "present/derating.h"
 
 namespace heatsoak::commands {
 namespace {
-
-using present::Json;
 
 struct Options {
   GuardOptions guard;
@@ -46,16 +41,6 @@ const ExporterType& exporter_named(const std::string& name) {
   throw Failure(ExitCode::bad_input, fmt::format("--to {}: expected one of {}{}", name, expected, did_you_mean(name, names)));
 }
 
-ExitCode compare_with(const CommittedTable& committed, const Derating& derating, present::Document& document, Json& answer) {
-  const TableComparison found = compare(committed, derating);
-  const bool is_other_motor = !committed.motor_id.empty() && committed.motor_id != derating.motor_id;
-  const bool holds = !is_other_motor && found.excess.difference_A == 0.0 && found.differing_line == 0;
-  const present::TableCheck check{committed, found, is_other_motor, holds};
-  present::add_table_check(document, derating, check);
-  answer["check"] = present::table_check_json(check);
-  return holds ? ExitCode::done : ExitCode::limit_exceeded;
-}
-
 ExitCode run(const Options& options, Session& session) {
   const ExporterType& exporter = exporter_named(options.to);
   DerateOptions derate_options = options.guard.derate;
@@ -78,25 +63,25 @@ ExitCode run(const Options& options, Session& session) {
   check_derate_options(options.guard.derate);
   NamedFiles named(session.folders());
   const std::optional<Robot> robot = named.robot(options.robot);
-  const Motor motor = guarded_motor(options.guard, named);
-  // Read first, so that an invalid file is reported before the computation.
-  const std::optional<CommittedTable> committed =
-      options.committed.empty() ? std::nullopt : std::optional(read_committed_table(options.committed));
-  if (const std::string problem = committed ? sensor_difference(*committed, derate_options.sensor) : ""; !problem.empty()) {
-    throw Failure(ExitCode::bad_input, fmt::format("--check {}: {}", options.committed, problem));
-  }
-  Derating derating = derate(motor, *robot, derate_options, progress_bar("searching the safety factor on heat"));
-  derating.provenance = provenance_of(motor, *robot, derate_options);
-  present::Document document = present::derating_document(derating, motor);
+  DeratingJob job{.robot = {}, .motor = guarded_motor(options.guard, named), .options = derate_options};
+  job.robot = *robot;
+  job.exporter = options.out.empty() ? nullptr : &exporter;
+  job.compiler = options.compiler;
+  job.committed = options.committed;
+  const DeratingAnswer answer = run_derating(job, progress_bar("searching the safety factor on heat"));
+  present::Document document = present::derating_document(answer.derating, job.motor);
   if (!options.out.empty()) {
-    session.write(options.out, options.compiler.empty() ? exporter.write(derating) : exporter.write_compiled(derating, options.compiler));
+    session.write(options.out, answer.text);
     document.add_file(options.out);
   }
-  Json answer = derating_json(derating);
-  const ExitCode code = committed ? compare_with(*committed, derating, document, answer) : ExitCode::done;
+  present::Json json = derating_json(answer.derating);
+  if (answer.check) {
+    present::add_table_check(document, answer.derating, *answer.check);
+    json["check"] = present::table_check_json(*answer.check);
+  }
   session.show(document);
-  session.answer(answer);
-  return code;
+  session.answer(json);
+  return answer.holds() ? ExitCode::done : ExitCode::limit_exceeded;
 }
 
 }  // namespace

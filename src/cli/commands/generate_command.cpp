@@ -26,21 +26,18 @@ struct Options {
   bool force = false;
 };
 
-ExitCode run(Options& options, Session& session) {
+ExitCode run(const Options& options, Session& session) {
   check_derate_options(options.guard.derate);
-  // All inputs are checked before the derating, which takes seconds.
   check_target_folder(options.out, options.force);
   NamedFiles named(session.folders());
   const std::optional<Robot> robot = named.robot(options.robot);
   const Motor motor = guarded_motor(options.guard, named);
-  static_cast<void>(make_core_config(*robot, motor.nominal, options.core));
-  options.guard.derate.period_s = guard_period_s(options.core.period_s);
-  const Derating derating = derate(motor, *robot, options.guard.derate, progress_bar("searching the safety factor on heat"));
-  const CoreFolder folder = core_files(*robot, motor, options.core, derating, fmt::format("heatsoak {}", program_version()));
-  const auto staged = std::make_shared<StagedFolder>(options.out, folder.files, options.force);
+  const GeneratedCore core = generate_core(*robot, motor, options.core, options.guard.derate, fmt::format("heatsoak {}", program_version()),
+                                           progress_bar("searching the safety factor on heat"));
+  const auto staged = std::make_shared<StagedFolder>(options.out, core.folder.files, options.force);
   session.complete_with([staged] { staged->commit(); });
-  session.show(present::core_folder_document(folder, derating, options.core, options.out));
-  session.answer(present::core_folder_json(folder, derating, motor, options.core, options.out));
+  session.show(present::core_folder_document(core.folder, core.derating, options.core, options.out));
+  session.answer(present::core_folder_json(core.folder, core.derating, motor, options.core, options.out));
   return ExitCode::done;
 }
 

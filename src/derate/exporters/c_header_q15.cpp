@@ -255,7 +255,7 @@ std::string structures(const Derating& derating, const std::string& prefix) {
                     prefix, derating.observer.state_count(), derating.observer.heat_safety_factor(), kStoredBits, [&] {
                       std::string names;
                       for (const std::string& name : derating.observer.state_names()) {
-                        names += " " + c_header::in_comment(name);
+                        names += fmt::format(" {}", c_header::in_comment(name));
                       }
                       return names;
                     }());

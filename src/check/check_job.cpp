@@ -1,0 +1,68 @@
+#include "check/check_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "base/files.h"
+#include "check/rewrite.h"
+
+namespace heatsoak {
+namespace {
+
+constexpr std::size_t kLargestCheckFile_bytes = 1'000'000;
+
+/// Reads all files and reports the problems of all of them together.
+std::vector<CheckFile> read_check_files(const std::vector<std::string>& names, const DataFolders& folders) {
+  std::vector<CheckFile> files;
+  std::string message;
+  std::vector<Diagnostic> problems;
+  for (const std::string& name : names) {
+    try {
+      // The example in the help is a file that came with the program.
+      files.push_back(read_check_file(log_named(folders, name), folders));
+    } catch (const Failure& failure) {
+      if (failure.code() != ExitCode::bad_input) {
+        throw;
+      }
+      message += failure.message();
+      problems.insert(problems.end(), failure.diagnostics().begin(), failure.diagnostics().end());
+    }
+  }
+  if (!problems.empty() || !message.empty()) {
+    throw Failure(ExitCode::bad_input, std::move(message), std::move(problems));
+  }
+  return files;
+}
+
+/// Throws if the file was found beside the program, because it is not the user's.
+void refuse_shipped(const std::filesystem::path& path, const CheckJob& job) {
+  if (std::ranges::find(job.files, path.string()) == job.files.end()) {
+    throw Failure(ExitCode::bad_input,
+                  fmt::format("{} is part of the installed program and is not rewritten; copy it first", path.string()));
+  }
+}
+
+}  // namespace
+
+bool CheckAnswer::passed() const { return std::ranges::all_of(outcomes, &Outcome::passed); }
+
+CheckAnswer run_check_job(const CheckJob& job, const DataFolders& folders, const ProgressFor& progress) {
+  CheckAnswer answer{.files = read_check_files(job.files, folders), .outcomes = {}, .rewritten = {}};
+  for (const CheckFile& file : answer.files) {
+    std::vector<Outcome> of_file = run_checks(file, job.threads, progress_of(progress, "checking"));
+    if (job.updates) {
+      refuse_shipped(file.path, job);
+      const std::string before = read_file(file.path, kLargestCheckFile_bytes);
+      if (std::string after = with_new_limits(before, of_file, job.margin_share); after != before) {
+        answer.rewritten.push_back({file.path, std::move(after)});
+      }
+    }
+    std::ranges::move(of_file, std::back_inserter(answer.outcomes));
+  }
+  return answer;
+}
+
+}  // namespace heatsoak
