@@ -16,7 +16,7 @@ namespace {
 /// Removes "--", so that a user's text cannot end the XML comment.
 std::string in_comment(std::string text) {
   for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--")) {
-    text.replace(at, 2, "- ");
+    text[at + 1] = ' ';
   }
   return text;
 }
