@@ -182,8 +182,9 @@ class Search {
     return {
         ExitCode::limit_exceeded,
         fmt::format("{}: fewer than {:.0f} % of the motors with the declared tolerances stay below {:.0f} °C in air of {:.0f} °C, however "
-                    "little current is allowed; use a lower --confidence or --ambient, or calibrate the motor",
-                    motor_.id, 100.0 * options_.guarantee.confidence, reachable_.limits.winding_C, reachable_.hottest_ambient_C)};
+                    "little current is allowed; use a lower --confidence or --ambient, or {}",
+                    motor_.id, 100.0 * options_.guarantee.confidence, reachable_.limits.winding_C, reachable_.hottest_ambient_C,
+                    motor_.fit ? "calibrate the motor with more or longer runs, which narrow its intervals" : "calibrate the motor")};
   }
 
  private:
