@@ -89,6 +89,7 @@ class Calibrating {
     warn();
     widen_by_rows();
     parameters();
+    is_learned_ = std::ranges::any_of(all_.parameters, [](const auto& each) { return each.is_learned || each.is_identifiable; });
     all_.open = open_directions(all_.motor_model, all_.fit, all_.runs, all_.parameters);
     all_.next_experiment = next_experiment(all_.open);
     forecast();
@@ -347,9 +348,10 @@ class Calibrating {
     all_.correlation = inverse_sd.asDiagonal() * covariance * inverse_sd.asDiagonal();
   }
 
+  /// The innovations fit decides: the forecast fit has wider intervals.
   void refuse_where_nothing_was_learned() const {
     const bool is_file_kept = all_.is_forecast_written && all_.forecast->source == ForecastSource::file;
-    if (is_file_kept || std::ranges::any_of(all_.parameters, [](const auto& each) { return each.is_learned || each.is_identifiable; })) {
+    if (is_file_kept || is_learned_) {
       return;
     }
     std::string why = "no parameter of this motor is identifiable from these logs";
@@ -403,6 +405,7 @@ class Calibrating {
   const CalibrationOptions& options_;
   ForecastSetup setup_;
   bool rows_turn_ = false;
+  bool is_learned_ = false;  ///< the innovations fit learned something
   Calibration all_;
 };
 

@@ -18,7 +18,7 @@
 
 namespace heatsoak {
 
-/// Fit whose parameters are written. `best`: innovations, unless the forecast predicts left-out pieces better by kLeastGain_nats.
+/// Fit whose parameters are written. `best`: innovations if it predicts left-out pieces as well as the forecast fit, otherwise that.
 enum class WrittenFit { best, forecast, innovations };
 
 struct CalibrationOptions {

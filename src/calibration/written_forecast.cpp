@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -38,12 +39,14 @@ Eigen::MatrixXd shared_coordinates(const Model& from, const Model& to) {
   return shared;
 }
 
-bool are_whole_runs(const Forecast& forecast) {
-  return std::ranges::all_of(forecast.pieces, [](const Piece& piece) { return piece.seen.empty(); });
+/// Returns the smallest covariance that is in no direction below `one` (positive definite) or `other`.
+Eigen::MatrixXd covering(const Eigen::MatrixXd& one, const Eigen::MatrixXd& other) {
+  const Eigen::LLT<Eigen::MatrixXd> root(one);
+  const Eigen::MatrixXd half = root.matrixL().solve(other);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> relative(root.matrixL().solve(half.transpose()));
+  const Eigen::MatrixXd axes = root.matrixL() * relative.eigenvectors();
+  return axes * relative.eigenvalues().cwiseMax(1.0).asDiagonal() * axes.transpose();
 }
-
-/// True if enough whole runs were left out to select a network.
-bool has_left_out_runs(const Forecast& forecast) { return forecast.pieces.size() >= kLeastPieces && are_whole_runs(forecast); }
 
 }  // namespace
 
@@ -71,8 +74,8 @@ bool writes_forecast(WrittenFit wanted, const Forecast& forecast) {
   if (wanted != WrittenFit::best) {
     return wanted == WrittenFit::forecast;
   }
-  // Quarters of one run do not show how the motor behaves under other conditions.
-  return are_whole_runs(forecast) && forecast.source != ForecastSource::file && is_better_than_innovations(forecast);
+  // Without a comparison, the fit that minimises the error of forecasts is the better guess.
+  return forecast.rivals.empty() || (forecast.source != ForecastSource::file && is_better_than_innovations(forecast));
 }
 
 Range declared_range(const Motor& motor, std::string_view key) {
@@ -103,12 +106,11 @@ std::vector<OutsideDeclaredRange> outside_declared_ranges(const Motor& motor, st
 void carry_identifiability(const Forecast& forecast, std::span<const CalibratedParameter> before,
                            std::vector<CalibratedParameter>& parameters) {
   constexpr double kWider_ratio = 2.0;
-  const bool is_supported = has_left_out_runs(forecast);
   const auto width = [](const CalibratedParameter& each) { return std::log(each.high / each.low); };
   for (CalibratedParameter& each : parameters) {
     const auto same = std::ranges::find(before, each.name, &CalibratedParameter::name);
     if (same != before.end()) {
-      const bool is_alike = !is_supported && width(each) < kWider_ratio * width(*same);
+      const bool is_alike = forecast.accepted.empty() && width(each) < kWider_ratio * width(*same);
       each.is_identifiable = same->is_identifiable && (each.is_identifiable || is_alike);
     }
   }
@@ -124,10 +126,11 @@ void write_forecast(Calibration& calibration) {
   calibration.motor_model = model.motor();
   calibration.fit.theta = forecast.fit.theta.head(inner);
   calibration.fit.covariance = forecast.fit.covariance.topLeftCorner(inner, inner);
-  if (!has_left_out_runs(forecast)) {
+  if (forecast.accepted.empty()) {
     const Eigen::MatrixXd shared = shared_coordinates(before, model.motor().model);
     const Eigen::VectorXd moved = shared * theta_before - shared.rowwise().sum().cwiseProduct(calibration.fit.theta);
-    calibration.fit.covariance += moved * moved.transpose() + shared * covariance_before * shared.transpose();
+    calibration.fit.covariance =
+        covering(calibration.fit.covariance, moved * moved.transpose() + shared * covariance_before * shared.transpose());
   }
   constexpr double kLeast_K = 1e-3;
   constexpr double kMost_K = 20.0;

@@ -1,4 +1,4 @@
-// Selects the parameters that a calibration writes: those of the innovations fit or, on request, those of the forecast fit.
+// Selects the parameters that a calibration writes: those of the innovations fit or those of the forecast fit.
 #pragma once
 
 #include <span>
@@ -14,20 +14,20 @@ namespace heatsoak {
 void score_innovations(const ForecastModel& model, FitOptions options, Calibration& calibration);
 
 /// Returns whether the forecast's parameters are written. With WrittenFit::best they must come from a fit, not from the file, and predict
-/// at least two left-out runs better than the innovations fit, by kLeastGain_nats and by 0.1 K rms in at least one signal.
+/// the left-out pieces better than the innovations fit, by kLeastGain_nats and by 0.1 K rms in at least one signal. Without two pieces to
+/// compare they are written.
 bool writes_forecast(WrittenFit wanted, const Forecast& forecast);
 
 /// Returns the fitted values outside their declared ranges. Verbs that need a sound motor may refuse such a file.
 std::vector<OutsideDeclaredRange> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> parameters);
 
-/// Marks a value as not identifiable if it was not identifiable in `before`, the innovations fit. Unless three left-out runs support the
-/// forecast, that fit alone decides, as long as the written interval is less than twice as wide as its own.
+/// Marks a value as not identifiable if it was not identifiable in `before`, the innovations fit. If the forecast has
+/// the same network, that fit alone decides, as long as the written interval is less than twice as wide as its own.
 void carry_identifiability(const Forecast& forecast, std::span<const CalibratedParameter> before,
                            std::vector<CalibratedParameter>& parameters);
 
-/// Replaces model, parameters and covariance of the innovations fit by those of the forecast fit. Unless three left-out runs support it,
-/// covariance and value of the innovations fit are added to the covariance, so that the intervals contain both fits. Needs
-/// calibration.forecast.
+/// Replaces model, parameters and covariance of the innovations fit by those of the forecast fit. If both have the same network, the
+/// intervals also contain the innovations fit and its intervals. Needs calibration.forecast.
 void write_forecast(Calibration& calibration);
 
 /// Returns what the compared fits and the chosen one mean for the answer.

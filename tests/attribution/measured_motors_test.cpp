@@ -208,7 +208,7 @@ TEST(MeasuredMotors, a_calibrated_motor_gets_the_air_of_its_propeller_from_the_o
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
   const auto [january, march, start] = propeller_bench(*folder);
-  const Motor motor = calibrated_motor(start, calibrate(start, std::vector{january}, {}, {}));
+  const Motor motor = calibrated_motor(start, calibrate(start, std::vector{january}, {}, {.fit = {}, .written = WrittenFit::innovations}));
   const auto [model, input, diagnosis, score] = diagnosed(motor, {january}, {march});
   EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::effect_found) << diagnosis.description;
   EXPECT_TRUE(effect_of(diagnosis, "speed_dependent_convection")) << diagnosis.description;
@@ -266,7 +266,7 @@ TEST(MeasuredMotors, locked_and_free_runs_of_a_frameless_motor_come_under_one_mo
   const Recording no_load = read(*folder / "no_load_staircase.csv", map);
   const Motor start = read_motor(kReports / "../calibration/ri50.toml");
   constexpr double kAmbient_C = 22.0;
-  const Motor motor = calibrated_motor(start, calibrate(start, std::vector{stall}, {}, {{}, kAmbient_C}));
+  const Motor motor = calibrated_motor(start, calibrate(start, std::vector{stall}, {}, {{}, kAmbient_C, WrittenFit::innovations}));
   const auto [model, input, diagnosis, score] =
       diagnosed(motor, {stall, part_of(no_load, 0.0, 0.6)}, {part_of(no_load, 0.6, 1.0)}, kAmbient_C);
   EXPECT_LE(score.after.at("winding_C").rmse_K, 0.4) << diagnosis.description;

@@ -136,6 +136,7 @@ CaseResult calibrate_case(const Sheet& sheet, const Case& one) {
   CalibrationOptions options;
   options.fit.threads = one.threads;
   options.fit.with_flux = one.with_flux;
+  options.written = one.written;
   const auto begin = std::chrono::steady_clock::now();
   CaseResult result{{}, calibrate(prepared.motor, prepared.logs, {}, options)};
   result.seconds_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

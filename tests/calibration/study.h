@@ -47,6 +47,7 @@ struct Case {
   std::uint64_t seed = 1;
   int threads = 1;
   bool with_flux = true;
+  WrittenFit written = WrittenFit::best;
 };
 
 /// Result for one parameter of one case.

@@ -29,7 +29,7 @@ const std::map<std::string, std::string> kInstead{
 
 /// Allowed counts: `figures` is a table of motor files and a key of answers, <figure> an element of HTML.
 const std::map<std::string, int> kMost{{"docs", 4},        {"src/cli", 1},   {"src/duty", 1},     {"src/firmware", 1}, {"src/motor", 6},
-                                       {"src/present", 9}, {"src/robot", 1}, {"src/simulate", 1}, {"tests", 10}};
+                                       {"src/present", 9}, {"src/robot", 1}, {"src/simulate", 1}, {"tests", 11}};
 
 std::regex any_of_them() {
   std::string words;

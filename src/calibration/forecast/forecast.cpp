@@ -46,10 +46,12 @@ class Search {
     out_.pieces = pieces_of(*model_, out_.fit, runs_);
     const ForecastRules rules = of_piece();
     score_ = score_pieces(*model_, runs_, out_.pieces, out_.fit.theta, &rules);
-    for (int round = 0; out_.pieces.size() >= kLeastPieces && round < kMostExtensions && could_gain() && extend(); ++round) {
+    // Quarters of one run share its load: they score, but they choose neither a network nor a fit without priors.
+    const bool are_runs = runs_.size() > 1;
+    for (int round = 0; are_runs && out_.pieces.size() >= kLeastPieces && round < kMostExtensions && could_gain() && extend(); ++round) {
     }
     if (out_.pieces.size() >= kLeastToCompare) {
-      choose();
+      compare_with_rivals(are_runs);
     }
     set_band();
     return std::move(out_);
@@ -73,21 +75,24 @@ class Search {
     best.cost_nats = std::numeric_limits<double>::infinity();
     for (const Eigen::VectorXd& start : starts) {
       ForecastFit fit = fit_forecast(*model_, runs_, {}, start, rules());
-      if (!std::isfinite(best.cost_nats) || (std::isfinite(fit.cost_nats) && cost_at_error_of(best, fit) < best.cost_nats)) {
+      const double weight = std::min(best.weight, fit.weight);
+      if (!std::isfinite(best.cost_nats) || (std::isfinite(fit.cost_nats) && cost_at_weight(fit, weight) < cost_at_weight(best, weight))) {
         best = std::move(fit);
       }
     }
     return best;
   }
 
-  /// Cost of `fit` in nats, recomputed with the error and weight of `other`.
-  static double cost_at_error_of(const ForecastFit& other, const ForecastFit& fit) {
+  /// Cost of `fit` in nats with its own error, which maximises the likelihood, and a common weight: fits with different errors compare.
+  static double cost_at_weight(const ForecastFit& fit, double weight) {
     double squares_K2 = 0.0;
+    double count = 0.0;
     for (const Eigen::VectorXd& each : fit.residual_K) {
       squares_K2 += each.array().isNaN().select(0.0, each).matrix().squaredNorm();
+      count += static_cast<double>((!each.array().isNaN()).count());
     }
-    const double scale = other.weight / (other.error_K * other.error_K) - fit.weight / (fit.error_K * fit.error_K);
-    return fit.cost_nats + 0.5 * squares_K2 * scale;
+    const double prior_nats = fit.cost_nats - 0.5 * fit.weight * squares_K2 / (fit.error_K * fit.error_K);
+    return prior_nats + weight * count * std::log(fit.error_K);
   }
 
   /// False if the score is already as good as that of a network whose error is the sensors' noise.
@@ -109,15 +114,16 @@ class Search {
     std::vector<Candidate> candidates = screened(all);
     Candidate* best = nullptr;
     std::optional<PieceScore> best_score;
+    double best_nats = 0.0;
     for (std::size_t i = 0; i < std::min(kRefitted, candidates.size()); ++i) {
       Candidate& each = candidates[i];
       each.fit = fit_forecast(*each.model, runs_, {}, each.fit.theta, rules());
       const ForecastRules rules = of_piece();
       PieceScore score = score_pieces(*each.model, runs_, out_.pieces, each.fit.theta, &rules);
       const double gain_nats = score_.score_nats - score.score_nats - kLeastGain_nats * each.extension->free_count;
-      const double best_nats = best ? score_.score_nats - best_score->score_nats - kLeastGain_nats * best->extension->free_count : 0.0;
-      if (gain_nats > best_nats) {
+      if (gain_nats > best_nats && matters(score)) {
         best = &each;
+        best_nats = gain_nats;
         best_score = std::move(score);
       }
     }
@@ -130,6 +136,16 @@ class Search {
     model_ = std::move(best->model);
     score_ = std::move(*best_score);
     return true;
+  }
+
+  /// True if the RMS error of a signal is smaller than now by more than the accuracy of ordinary sensors.
+  [[nodiscard]] bool matters(const PieceScore& score) const {
+    const auto before = rival_score(out_.source, score_, runs_).rmse_K;
+    const auto after = rival_score(out_.source, score, runs_).rmse_K;
+    return std::ranges::any_of(before, [&](const auto& each) {
+      const auto same = std::ranges::find(after, each.first, [](const auto& other) { return other.first; });
+      return same != after.end() && same->second < each.second - kMatters_K;
+    });
   }
 
   /// Makes one short fit of each extension with the error and weight of the present fit. Returns the candidates, best first.
@@ -149,8 +165,8 @@ class Search {
     return candidates;
   }
 
-  /// Selects among file, ordinary least squares and tempered fit the one that predicts the left-out pieces best.
-  void choose() {
+  /// Scores file, ordinary least squares and tempered fit on the left-out pieces. With `chooses` the best of them becomes the result.
+  void compare_with_rivals(bool chooses) {
     const ForecastRules ordinary{
         .is_tempered = false, .has_heat_factors = false, .rounds = 2, .steps = 2 * kPieceSteps, .threads = threads_};
     const ForecastFit plain = fit_forecast(*base_, runs_, {}, base_->start(), ordinary);
@@ -161,6 +177,9 @@ class Search {
     add_rival(ForecastSource::tempered, score_);
     add_rival(ForecastSource::ordinary, of_plain);
     add_rival(ForecastSource::file, of_file);
+    if (!chooses) {
+      return;
+    }
     // A fit uses more information than the file, so the file must be clearly better.
     const auto handicapped = [](const RivalScore& rival) {
       return rival.score_nats + (rival.source == ForecastSource::file ? kLeastGain_nats : 0.0);

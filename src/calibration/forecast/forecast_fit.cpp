@@ -42,7 +42,7 @@ class Fitting {
   }
 
   ForecastFit fit(const Eigen::VectorXd& theta) {
-    begin(theta, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(runs_.size())));
+    begin(theta);
     for (int round = 0; round < rules_.rounds && assemble(); ++round) {
       set_starts();
       assemble();
@@ -52,23 +52,10 @@ class Fitting {
     return result();
   }
 
-  double cost_of(const ForecastFit& fit, const Eigen::VectorXd& theta) {
-    begin(theta, fit.heat_log);
-    starts_ = fit.starts;
-    out_.error_K = fit.error_K;
-    out_.weight = fit.weight;
-    holds_theta_ = true;
-    if (!assemble()) {
-      return kInfinity;
-    }
-    descend(rules_.steps);
-    return cost();
-  }
-
  private:
-  void begin(const Eigen::VectorXd& theta, const Eigen::VectorXd& heat_log) {
+  void begin(const Eigen::VectorXd& theta) {
     theta_ = model_.within_bounds(theta);
-    heat_log_ = heat_log;
+    heat_log_.setZero(static_cast<Eigen::Index>(runs_.size()));
     starts_.clear();
     for (const MeasuredRun& run : runs_) {
       starts_.push_back(start_of(model_.network(), run));
@@ -220,7 +207,7 @@ class Fitting {
   }
 
   void move(const Eigen::VectorXd& step) {
-    theta_ = model_.within_bounds(theta_ + (holds_theta_ ? 0.0 : 1.0) * step.head(model_.count()));
+    theta_ = model_.within_bounds(theta_ + step.head(model_.count()));
     Eigen::Index first = model_.count();
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       heat_log_[static_cast<Eigen::Index>(r)] += with_heat_ ? step[first] : 0.0;
@@ -232,11 +219,6 @@ class Fitting {
   }
 
   [[nodiscard]] Eigen::VectorXd step_of(Equations now, double damping) const {
-    if (holds_theta_) {
-      now.right.head(model_.count()).setZero();
-      now.normal.topRightCorner(model_.count(), now.normal.cols() - model_.count()).setZero();
-      now.normal.bottomLeftCorner(now.normal.rows() - model_.count(), model_.count()).setZero();
-    }
     now.normal.diagonal() *= 1.0 + damping;
     return now.normal.ldlt().solve(now.right);
   }
@@ -293,7 +275,6 @@ class Fitting {
   const ForecastRules& rules_;
   std::vector<RowMask> masks_;
   bool with_heat_ = false;
-  bool holds_theta_ = false;
   std::vector<std::vector<int>> unseen_;
   Eigen::VectorXd theta_;
   Eigen::VectorXd heat_log_;
@@ -307,12 +288,6 @@ class Fitting {
 ForecastFit fit_forecast(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const RowMask> masks,
                          const Eigen::VectorXd& theta, const ForecastRules& rules) {
   return Fitting(model, runs, masks, rules).fit(theta);
-}
-
-double cost_at(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const RowMask> masks, const ForecastFit& fit,
-               const Eigen::VectorXd& theta, int threads) {
-  const ForecastRules rules{.threads = threads};
-  return Fitting(model, runs, masks, rules).cost_of(fit, theta);
 }
 
 double independent_samples(const Eigen::VectorXd& error_K) {

@@ -41,10 +41,6 @@ struct ForecastFit {
 ForecastFit fit_forecast(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const RowMask> masks,
                          const Eigen::VectorXd& theta, const ForecastRules& rules);
 
-/// Returns the cost in nats of other parameters `theta` at the error and weight of `fit`, minimised over heat factors and starts.
-double cost_at(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const RowMask> masks, const ForecastFit& fit,
-               const Eigen::VectorXd& theta, int threads);
-
 /// Returns the number of independent samples. The correlation is computed about zero, not about the mean of the errors. NaN are skipped.
 double independent_samples(const Eigen::VectorXd& error_K);
 

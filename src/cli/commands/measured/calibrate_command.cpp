@@ -92,7 +92,7 @@ Command calibrate_command() {
             CLI::Option* const forecast = app.add_flag(
                 "--forecast", options->writes_forecast,
                 "always write the model that predicts left-out runs best, even if it needs effects that no diagnosis named; default: only "
-                "with two runs or more, if it predicts left-out ones better than the innovations fit, by 5 % and by 0.1 K");
+                "if it predicts left-out runs, or quarters of one run, better than the innovations fit, by 5 % and by 0.1 K");
             app.add_flag("--innovations", options->writes_innovations,
                          "always write the fit that explains the response within seconds of a load change, for `heatsoak diagnose`")
                 ->excludes(forecast);
