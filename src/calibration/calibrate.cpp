@@ -118,7 +118,10 @@ class Calibrating {
     const ForecastModel base = setup_.model();
     all_.forecast = forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads);
     score_innovations(setup_.model(), options_.fit, all_);
-    if (writes_forecast(options_.written, *all_.forecast)) {
+    const std::vector<PredictedRun> by_innovations = fitted_runs(base, base.within_bounds(all_.fit.theta));
+    innovations_error_ = errors_over_runs(by_innovations, by_innovations);
+    const bool is_better_fit = rms_error_K(fitted_runs(all_.forecast->model(), all_.forecast->fit.theta)) < rms_error_K(by_innovations);
+    if (writes_forecast(options_.written, *all_.forecast, is_better_fit)) {
       write_forecast(all_);
       all_.effects = all_.forecast->setup.motor.effects;
       widen_by_rows();
@@ -130,16 +133,21 @@ class Calibrating {
     std::ranges::move(forecast_findings(all_), std::back_inserter(all_.findings));
   }
 
+  /// Predicts the fitted runs. Their bands are not valid.
+  [[nodiscard]] std::vector<PredictedRun> fitted_runs(const ForecastModel& model, const Eigen::VectorXd& theta) const {
+    std::vector<PredictedRun> all;
+    for (const MeasuredRun& run : all_.runs) {
+      all.push_back(predict(model, theta, Eigen::MatrixXd::Zero(model.count(), model.count()), all_.forecast->band, run));
+    }
+    return all;
+  }
+
   /// Errors of the original and of the written file over the fitted runs.
   std::vector<ErrorBeforeAfter> errors() {
     const ForecastModel base = setup_.model();
-    const ForecastModel model = all_.is_forecast_written ? all_.forecast->model() : base;
-    const Eigen::VectorXd& theta = all_.is_forecast_written ? all_.forecast->fit.theta : all_.fit.theta;
-    for (const MeasuredRun& run : all_.runs) {
-      all_.fitted_before.push_back(
-          predict(base, base.start(), Eigen::MatrixXd::Zero(base.count(), base.count()), all_.forecast->band, run));
-      all_.fitted_after.push_back(predict(model, theta, Eigen::MatrixXd::Zero(model.count(), model.count()), all_.forecast->band, run));
-    }
+    all_.fitted_before = fitted_runs(base, base.start());
+    all_.fitted_after =
+        all_.is_forecast_written ? fitted_runs(all_.forecast->model(), all_.forecast->fit.theta) : fitted_runs(base, all_.fit.theta);
     return errors_over_runs(all_.fitted_before, all_.fitted_after);
   }
 
@@ -365,12 +373,12 @@ class Calibrating {
     throw Failure(ExitCode::cannot_answer, why);
   }
 
-  /// Throws Failure (cannot_answer) if the model does not follow the runs: its parameters would mean nothing.
-  void refuse_where_nothing_is_explained() const {
+  /// Returns a line for each signal that the fitted model does not follow.
+  [[nodiscard]] std::string not_followed(std::span<const ErrorBeforeAfter> errors) const {
     constexpr double kFar_K = 20.0;
     constexpr double kFar_share = 0.4;
     std::string why;
-    for (const ErrorBeforeAfter& each : all_.fit_error) {
+    for (const ErrorBeforeAfter& each : errors) {
       const double moves_K = standard_deviation_K(all_.runs, each.signal);
       if (each.after.rmse_K > moves_K || each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
         why +=
@@ -378,7 +386,13 @@ class Calibrating {
                         significant(each.after.rmse_K, 2), each.after.rmse_K > moves_K ? "more than" : "close to", significant(moves_K, 2));
       }
     }
-    if (!why.empty()) {
+    return why;
+  }
+
+  /// Throws Failure (cannot_answer) if neither fit follows the runs: its parameters would mean nothing.
+  void refuse_where_nothing_is_explained() const {
+    const std::string why = not_followed(all_.fit_error);
+    if (!why.empty() && !not_followed(innovations_error_).empty()) {
       throw Failure(
           ExitCode::cannot_answer,
           fmt::format(
@@ -405,7 +419,8 @@ class Calibrating {
   const CalibrationOptions& options_;
   ForecastSetup setup_;
   bool rows_turn_ = false;
-  bool is_learned_ = false;  ///< the innovations fit learned something
+  std::vector<ErrorBeforeAfter> innovations_error_;  ///< of the innovations fit over the fitted runs
+  bool is_learned_ = false;                          ///< the innovations fit learned something
   Calibration all_;
 };
 

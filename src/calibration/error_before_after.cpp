@@ -44,4 +44,16 @@ std::vector<ErrorBeforeAfter> worst_errors(const std::vector<PredictedRun>& befo
   return worst;
 }
 
+double rms_error_K(std::span<const PredictedRun> runs) {
+  double squares_K2 = 0.0;
+  double count = 0.0;
+  for (const PredictedRun& run : runs) {
+    for (const PredictedSignal& each : run.signals) {
+      squares_K2 += each.rmse_K * each.rmse_K;
+      count += 1.0;
+    }
+  }
+  return std::sqrt(squares_K2 / std::max(1.0, count));
+}
+
 }  // namespace heatsoak

@@ -70,12 +70,14 @@ void score_innovations(const ForecastModel& model, FitOptions options, Calibrati
   forecast.rivals.push_back(rival_score(ForecastSource::innovations, score, calibration.runs));
 }
 
-bool writes_forecast(WrittenFit wanted, const Forecast& forecast) {
+bool writes_forecast(WrittenFit wanted, const Forecast& forecast, bool follows_fitted_runs_better) {
   if (wanted != WrittenFit::best) {
     return wanted == WrittenFit::forecast;
   }
-  // Without a comparison, the fit that minimises the error of forecasts is the better guess.
-  return forecast.rivals.empty() || (forecast.source != ForecastSource::file && is_better_than_innovations(forecast));
+  if (forecast.rivals.empty()) {
+    return follows_fitted_runs_better;
+  }
+  return forecast.source != ForecastSource::file && is_better_than_innovations(forecast);
 }
 
 Range declared_range(const Motor& motor, std::string_view key) {

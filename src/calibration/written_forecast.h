@@ -15,8 +15,8 @@ void score_innovations(const ForecastModel& model, FitOptions options, Calibrati
 
 /// Returns whether the forecast's parameters are written. With WrittenFit::best they must come from a fit, not from the file, and predict
 /// the left-out pieces better than the innovations fit, by kLeastGain_nats and by 0.1 K rms in at least one signal. Without two pieces to
-/// compare they are written.
-bool writes_forecast(WrittenFit wanted, const Forecast& forecast);
+/// compare, `follows_fitted_runs_better` decides: whether the forecast's free-run error in the fitted runs is the smaller one.
+bool writes_forecast(WrittenFit wanted, const Forecast& forecast, bool follows_fitted_runs_better);
 
 /// Returns the fitted values outside their declared ranges. Verbs that need a sound motor may refuse such a file.
 std::vector<OutsideDeclaredRange> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> parameters);

@@ -127,7 +127,7 @@ Result examine(const std::string& name, int runs, const Motor& motor, const Runs
   calibration.runs = train;
   calibration.forecast = forecast;
   score_innovations(base, options, calibration);
-  const bool is_forecast = writes_forecast(WrittenFit::best, *calibration.forecast);
+  const bool is_forecast = writes_forecast(WrittenFit::best, *calibration.forecast, true);
   result.error_K[written] = result.error_K[is_forecast ? extended : innovations];
   result.source = is_forecast ? forecast.source : ForecastSource::innovations;
   for (const AcceptedExtension& each : forecast.accepted) {
