@@ -419,7 +419,7 @@ class Calibrating {
   const CalibrationOptions& options_;
   ForecastSetup setup_;
   bool rows_turn_ = false;
-  std::vector<ErrorBeforeAfter> innovations_error_;  ///< of the innovations fit over the fitted runs
+  std::vector<ErrorBeforeAfter> innovations_error_;  ///< errors of the innovations fit in the fitted runs
   bool is_learned_ = false;                          ///< the innovations fit learned something
   Calibration all_;
 };

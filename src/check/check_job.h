@@ -11,7 +11,7 @@
 namespace heatsoak {
 
 struct CheckJob {
-  std::vector<std::string> files;  ///< as the user names them; also those that came with the program
+  std::vector<std::string> files;  ///< names given by the user; files that came with the program are found too
   bool updates = false;            ///< set the limits to the present values
   double margin_share = 0.05;      ///< room of the new limits, as in with_new_limits()
   int threads = 0;                 ///< 0: all cores; the result does not depend on it

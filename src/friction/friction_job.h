@@ -21,8 +21,8 @@ struct FrictionJob {
   DataFolders folders = {};               ///< folders of log_named()
   std::string map = {};                   ///< mapping of foreign logs; empty: the file beside each log, if there is one
   TravelDirection direction = TravelDirection::best;
-  bool use_return_legs = false;         ///< of the steady-state test
-  bool is_lifted = false;               ///< of a roll-out: the wheels were off the ground
+  bool use_return_legs = false;         ///< steady-state test: use the return legs too
+  bool is_lifted = false;               ///< roll-out test: the wheels were off the ground
   bool takes_logs_as_they_are = false;  ///< accept logs whose units, signs or wheels look wrong
   bool writes_robot_file = false;       ///< fill `robot_text`
 };

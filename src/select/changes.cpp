@@ -175,7 +175,7 @@ OtherMotor best_other_motor(const Games& games, const Robot& robot, const std::v
     work.run(games.count() - 1, ChangeWork::kEvaluation,
              [&](std::size_t game) { all[game + 1] = games.result(robot, *candidates[i], demands[game + 1]); });
     const double margin_K = std::ranges::min(all, {}, &Played::margin_K).margin_K;
-    // Of equal motors the first one counts, in whichever order they were played.
+    // If motors are equally good, the first in the list wins, whatever the order of the games.
     const bool is_better = margin_K > most_K || (margin_K == most_K && best.motor && i < place);
     if (std::ranges::all_of(all, &Played::passes) && is_better) {
       best = {candidates[i], std::move(all)};
