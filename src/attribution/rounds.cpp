@@ -20,42 +20,6 @@
 namespace heatsoak {
 namespace {
 
-/// Returns the steady temperature rise of the warmest node in K/W, as a mean over the runs. The heat enters the flux node with the smallest
-/// such rise, the outermost body.
-double steady_rise_K_per_W(const std::vector<LinearisedRun>& runs) {
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Eigen::Index x = runs.front().states;
-  const Eigen::Index q = runs.front().fluxes;
-  Eigen::MatrixXd lost = Eigen::MatrixXd::Zero(x, x);
-  Eigen::MatrixXd gained = Eigen::MatrixXd::Zero(x, q);
-  for (const LinearisedRun& run : runs) {
-    for (Eigen::Index k = 0; k + 1 < run.samples(); ++k) {
-      lost += Eigen::MatrixXd::Identity(x, x) - Eigen::Map<const RowMajor>(run.transition.data() + k * x * x, x, x);
-      gained += Eigen::Map<const RowMajor>(run.injection.data() + k * x * q, x, q);
-    }
-  }
-  return (lost.colPivHouseholderQr().solve(gained)).colwise().maxCoeff().minCoeff();
-}
-
-/// Returns the range of the readings in K, RMS over all sensors and runs.
-double travel_K(const std::vector<MeasuredRun>& runs) {
-  double sum_K2 = 0.0;
-  double count = 0.0;
-  for (const MeasuredRun& run : runs) {
-    for (const auto sensor_C : run.measured_C.colwise()) {
-      const auto usable = [](double each_C) { return !std::isnan(each_C); };
-      std::vector<double> all_C;
-      std::ranges::copy_if(sensor_C, std::back_inserter(all_C), usable);
-      if (!all_C.empty()) {
-        const auto [low, high] = std::ranges::minmax(all_C);
-        sum_K2 += (high - low) * (high - low);
-        count += 1.0;
-      }
-    }
-  }
-  return count > 0.0 ? std::sqrt(sum_K2 / count) : 0.0;
-}
-
 /// Returns the priors and families. Candidates of one type that act only in some runs, or at other nodes than the default, share the prior
 /// odds of one effect.
 std::vector<CandidateRule> rules_of(const std::vector<Candidate>& candidates, const SelectionRules& rules) {
@@ -119,7 +83,7 @@ void Rounds::begin() {
     paths.push_back(linearise(input_.model, start_C.back(), run));
     merged_.push_back(mergeable_samples(paths.back()));
   }
-  unit_W_ = rules_.material_K / std::max(1e-6, steady_rise_K_per_W(paths));
+  unit_W_ = material_heat_W(paths, rules_.material_K);
   now_ = posterior_of(input_.model, input_.runs, start_C, plain_options());
   out_.material_W = std::max({unit_W_, rules_.material_share * out_.mean_heat_W, rules_.as_usual_ratio * input_.usual.flux_W});
   grid_ = flux_grid(unit_W_, travel_K(input_.runs), input_.model.flux_nodes.size());

@@ -1,6 +1,8 @@
 // Tunable constants of the selection, with their origin. The benchmark heatsoak_attribution_ablation varies them.
 #pragma once
 
+#include "estimation/flux_grid.h"
+
 namespace heatsoak {
 
 struct SelectionRules {
@@ -15,7 +17,7 @@ struct SelectionRules {
 
   // Decisions.
   double named_probability = 0.95;   ///< smallest probability of a name: at most one in twenty is wrong
-  double material_K = 1.8;           ///< temperature rise of the outermost body from which unknown heat matters
+  double material_K = kMaterial_K;   ///< temperature rise of the outermost body from which unknown heat matters
   double material_share = 0.1;       ///< fraction of the mean modelled heat from which unknown heat matters
   double as_usual_ratio = 1.5;       ///< largest ratio of unknown heat and error to those of earlier runs of the motor
   double curve_gain_nats = 10.0;     ///< smallest gain of a curve over the best effects

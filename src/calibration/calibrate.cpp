@@ -332,7 +332,7 @@ class Calibrating {
       Eigen::Index only = 0;
       if (fit.free_run_error_K == 0.0 && sd > kCurvatureHolds_sd && each.exponents.cwiseAbs().maxCoeff(&only) == 1.0 &&
           each.exponents.cwiseAbs().sum() == 1.0) {
-        const auto [low, high] = profile_interval(model, all_.runs, fit, static_cast<int>(only), options_.fit.threads);
+        const auto [low, high] = profile_interval(model, all_.runs, fit, static_cast<int>(only));
         // The profile keeps the flux fixed; widen it for the uncertainty of the flux by the same factor as the curvature.
         const double widened = sd / std::max(1e-9, std::sqrt(fit.hypotheses.front().covariance(only, only)));
         below = (fit.theta[only] - low) * std::max(1.0, widened);

@@ -1,10 +1,10 @@
 #include "calibration/profile.h"
 
+#include <algorithm>
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 
-#include "estimation/least_squares.h"
-#include "estimation/linearised_run.h"
+#include "estimation/posterior.h"
 
 namespace heatsoak {
 namespace {
@@ -14,28 +14,21 @@ constexpr double kDrop = 1.92;
 
 }  // namespace
 
-std::pair<double, double> profile_interval(const Model& model, std::span<const MeasuredRun> runs, const Fit& fit, int parameter,
-                                           int threads) {
-  std::vector<int> wanted;
-  std::vector<LinearisedRun> linearised;
-  std::vector<Whitening> whitening;
-  const std::vector<double> values = model.values_at(fit.theta);
-  linearised.reserve(runs.size());
+std::pair<double, double> profile_interval(const Model& model, const std::vector<MeasuredRun>& runs, const Fit& fit, int parameter) {
+  std::vector<std::vector<double>> start_C;
+  std::ranges::transform(fit.starts, std::back_inserter(start_C),
+                         [](const RunStart& start) { return std::vector(start.state_C.begin(), start.state_C.end()); });
+  PosteriorOptions options{.flux = fit.flux, .holds_covariance = true, .held = parameter};
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    const Eigen::VectorXd& start_C = fit.starts[r].state_C;
-    linearised.push_back(
-        linearise(model.network, values, wanted, model.flux_nodes, {start_C.data(), static_cast<std::size_t>(start_C.size())}, runs[r]));
-    whitening.emplace_back(linearised.back(), fit.flux, noise_of(runs[r], fit, r));
+    options.noise.push_back(noise_of(runs[r], fit, r));
   }
-  LeastSquaresProblem problem{
-      .model = &model, .runs = runs, .whitening = whitening, .held = parameter, .threads = threads, .most_iterations = 8};
   const double sd = std::sqrt(fit.covariance(parameter, parameter));
   const Eigen::VectorXd direction = fit.covariance.col(parameter) / fit.covariance(parameter, parameter);
   const auto cost = [&](double moved) {
     // Start the other parameters at the values that the curvature predicts.
-    Eigen::VectorXd theta = fit.theta + moved * direction;
-    std::vector<RunStart> starts = fit.starts;
-    return minimise(problem, theta, starts).cost;
+    Model there = model;
+    there.set_theta(fit.theta + moved * direction);
+    return try_posterior_of(std::move(there), runs, start_C, options).cost_nats;
   };
   const double least = cost(0.0);
   const auto end = [&](double sign) {

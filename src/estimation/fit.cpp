@@ -10,7 +10,9 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "estimation/free_run_fit.h"
-#include "estimation/least_squares.h"
+#include "estimation/model_along_run.h"
+#include "estimation/posterior.h"
+#include "estimation/usual_heat.h"
 
 namespace heatsoak {
 namespace {
@@ -76,37 +78,6 @@ std::vector<double> travel_K(const std::vector<std::string>& nodes, std::span<co
   return high_C;
 }
 
-/// Mean over time of the heat that the model generates or dissipates, whichever is larger, in W. It is the unit of the unknown heat.
-double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const std::vector<RunStart>& starts) {
-  const Network& network = model.network;
-  const auto nodes = static_cast<std::size_t>(network.node_count());
-  std::vector<double> heat_W(network.effects().size() * nodes);
-  double made_J = 0.0;
-  double led_away_J = 0.0;
-  double duration_s = 0.0;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    std::vector<double> state_C(starts[r].state_C.begin(), starts[r].state_C.end());
-    for (std::size_t k = 0; k < runs[r].at.size(); ++k) {
-      const double step_s = runs[r].time_s[k + 1] - runs[r].time_s[k];
-      for (const Sensor& sensor : runs[r].sensors) {
-        const double sensor_C = runs[r].measured_C(static_cast<Eigen::Index>(k), runs[r].sensor_at(sensor.node));
-        double& node_C = state_C[static_cast<std::size_t>(network.find_node(sensor.node))];
-        node_C = std::isnan(sensor_C) ? node_C : true_at_rest_C(sensor.faults, sensor_C);
-      }
-      network.balance_W(runs[r].at[k], model.values, state_C, heat_W);
-      double away_W = 0.0;
-      for (std::size_t e = 0; e < network.effects().size(); ++e) {
-        away_W += heat_W[e * nodes + nodes - 1];
-      }
-      made_J += step_s * std::accumulate(heat_W.begin(), heat_W.end(), 0.0);
-      led_away_J += step_s * std::abs(away_W);
-      duration_s += step_s;
-    }
-  }
-  constexpr double kLeast_W = 1e-3;
-  return std::max({kLeast_W, made_J / duration_s, led_away_J / duration_s});
-}
-
 /// Returns the runs with samples of weight 0 replaced by NaN.
 std::vector<MeasuredRun> without(std::span<const MeasuredRun> runs, const std::vector<Eigen::VectorXd>& weights) {
   std::vector<MeasuredRun> all(runs.begin(), runs.end());
@@ -120,7 +91,7 @@ std::vector<MeasuredRun> without(std::span<const MeasuredRun> runs, const std::v
 class Fitting {
  public:
   Fitting(const Model& model, std::span<const MeasuredRun> runs, const FitOptions& options)
-      : model_(model), runs_(runs), options_(options), theta_(model.theta()), prior_(model.prior) {
+      : model_(model), runs_(runs.begin(), runs.end()), options_(options), theta_(model.theta()), prior_(model.prior) {
     fit_.sensor_nodes = nodes_of(runs);
     fit_.noise_ratio.assign(fit_.sensor_nodes.size(), 1.0);
     double longest_s = 0.0;
@@ -172,36 +143,66 @@ class Fitting {
   }
 
  private:
+  /// Largest change of a logarithm in one step, as in the first fit of a diagnosis.
+  static constexpr double kLongestStep = 0.4;
+
   /// Sets θ and the start temperatures to the best of several least-squares fits, which start from the points of a Latin hypercube and
   /// use merged rows and white noise.
   void find_start() {
     const std::vector<MeasuredRun> rough = roughly(runs_);
-    // 1 K, because an incomplete model misses by some kelvins: with the sensors' own noise every start would look impossible.
-    LeastSquaresProblem problem{.model = &model_, .runs = rough, .whitening = {}, .white_noise_K = 1.0, .threads = options_.threads};
-    struct Candidate {
-      Eigen::VectorXd theta;
-      std::vector<RunStart> starts;
-      double cost = 0.0;
-    };
-    std::vector<Candidate> candidates;
+    std::vector<Posterior> candidates;
     for (const Eigen::VectorXd& point : points(theta_)) {
-      candidates.push_back({point, starts_});
+      Posterior& each = candidates.emplace_back();
+      each.model = model_;
+      each.model.set_theta(point);
+      each.start_C = start_C();
     }
     // Three steps from every point, then up to 30 from the best two.
     for (const auto& [steps, kept] : {std::pair(3, 2), std::pair(30, 1)}) {
-      problem.most_iterations = steps;
-      for (Candidate& each : candidates) {
-        each.cost = minimise(problem, each.theta, each.starts).cost;
-      }
-      std::ranges::stable_sort(candidates, {}, &Candidate::cost);
+      in_parallel(candidates.size(), 0, [&, steps = steps](std::size_t i) {
+        candidates[i] = try_posterior_of(std::move(candidates[i].model), rough, std::move(candidates[i].start_C), plain(steps));
+      });
+      std::erase_if(candidates, [](const Posterior& each) { return !std::isfinite(each.cost_nats); });
+      std::ranges::stable_sort(candidates, {}, &Posterior::cost_nats);
       candidates.resize(std::min<std::size_t>(candidates.size(), static_cast<std::size_t>(kept)));
     }
-    if (!std::isfinite(candidates.front().cost)) {
+    if (candidates.empty()) {
       throw Failure(ExitCode::cannot_answer,
                     "no start of the fit leads to a model with plausible temperatures; check the units of the heat inputs");
     }
-    theta_ = candidates.front().theta;
-    starts_ = candidates.front().starts;
+    take(candidates.front());
+  }
+
+  /// Plain least squares: an incomplete model misses by about 1 K, and with the sensors' own noise every start would look impossible.
+  [[nodiscard]] PosteriorOptions plain(int steps) const {
+    constexpr double kIncomplete_K = 1.0;
+    return {.flux = {std::vector<double>(range_.fluxes, 0.0)},
+            .white_noise_K = kIncomplete_K,
+            .most_steps = steps,
+            .holds_covariance = true,
+            .longest_step_ratio = kLongestStep};
+  }
+
+  [[nodiscard]] std::vector<std::vector<double>> start_C() const {
+    std::vector<std::vector<double>> all;
+    std::ranges::transform(starts_, std::back_inserter(all),
+                           [](const RunStart& start) { return std::vector(start.state_C.begin(), start.state_C.end()); });
+    return all;
+  }
+
+  /// Moves θ and the start temperatures to those of a fit.
+  void take(const Posterior& found) {
+    theta_ = found.model.theta();
+    for (std::size_t r = 0; r < starts_.size(); ++r) {
+      starts_[r].state_C = Eigen::Map<const Eigen::VectorXd>(found.start_C[r].data(), std::ssize(found.start_C[r]));
+    }
+  }
+
+  [[nodiscard]] Model model_here() const {
+    Model here = model_;
+    here.set_theta(theta_);
+    here.prior = prior_;
+    return here;
   }
 
   /// Starting points in θ: `centre`, then a Latin hypercube around it within the parameters' bounds.
@@ -231,7 +232,7 @@ class Fitting {
     linearised_.resize(runs_.size());
     columns_.resize(runs_.size());
     const std::vector<double> values = model_.values_at(theta_);
-    in_parallel(runs_.size(), options_.threads, [&](std::size_t r) {
+    in_parallel(runs_.size(), 0, [&](std::size_t r) {
       const Eigen::VectorXd& start_C = starts_[r].state_C;
       linearised_[r] = linearise(model_.network, values, wanted_, model_.flux_nodes,
                                  {start_C.data(), static_cast<std::size_t>(start_C.size())}, runs_[r]);
@@ -248,7 +249,7 @@ class Fitting {
   /// Linear fit for each supposition at the present linearisation. Each pair of supposition and run is one parallel job.
   std::vector<LinearFit> fits(const std::vector<Supposition>& suppositions) const {
     std::vector<RunEvidence> all(suppositions.size() * runs_.size());
-    in_parallel(all.size(), options_.threads, [&](std::size_t job) {
+    in_parallel(all.size(), 0, [&](std::size_t job) {
       const std::size_t r = job % runs_.size();
       all[job] = run_evidence(linearised_[r], columns_[r], whitening(r, suppositions[job / runs_.size()]), start_prior(r));
     });
@@ -281,7 +282,7 @@ class Fitting {
       const bool is_certain = !range_.least_W.empty() && range_.least_W[i] > 0.0;
       is_much = is_much || (!is_certain && best_.flux.rms_W[i] > kMuch_share * range_.unit_W);
     }
-    if (best_.drift_K.empty() && is_much && options_.with_drift) {
+    if (best_.drift_K.empty() && is_much) {
       const Supposition drifting = most_probable(evidence, range_, with_drift(range_, best_));
       const std::vector<double> values = evidences({best_, drifting});
       constexpr double kClearly_nats = 10.0;
@@ -310,14 +311,14 @@ class Fitting {
         }
         ++counted;
         hopeless += size > kHopeless ? 1 : 0;
-        fit_.weights[r][row] = options_.is_robust && size > kSuspect ? kSuspect / size : 1.0;
+        fit_.weights[r][row] = size > kSuspect ? kSuspect / size : 1.0;
         if (size < kInside) {
           const std::size_t kind = place_of(fit_.sensor_nodes, runs_[r].sensors[static_cast<std::size_t>(row % run.sensors())].node);
           weight_sum[kind] += found.noise_share[row];
           square_sum[kind] += found.noise_share[row] * size * size / kInsideSquare;
         }
       }
-      if (options_.is_robust && static_cast<double>(hopeless) < kMostRejected_share * static_cast<double>(whitened.count())) {
+      if (static_cast<double>(hopeless) < kMostRejected_share * static_cast<double>(whitened.count())) {
         for (Eigen::Index row = 0; row < residual_K.size(); ++row) {
           if (std::abs(found.standardised[row]) > kHopeless) {
             fit_.weights[r][row] = 0.0;
@@ -333,32 +334,20 @@ class Fitting {
     fit_.rejected_share = counted > 0 ? static_cast<double>(rejected) / static_cast<double>(counted) : 0.0;
   }
 
-  /// Moves θ and the start temperatures to the minimum for the present whitening. Uses Ceres while steps are large, then the linear steps,
-  /// which cost nothing more.
+  /// Moves θ and the start temperatures to the posterior maximum for the present unknown heat and noise.
   void move() {
-    const LinearFit linear = fits({best_}).front();
-    const double size = linear.coefficients.cwiseQuotient(linear.covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff();
-    std::vector<Whitening> all;
+    PosteriorOptions options{.flux = best_.flux, .holds_covariance = true, .longest_step_ratio = kLongestStep};
     for (std::size_t r = 0; r < runs_.size(); ++r) {
-      all.push_back(whitening(r, best_));
+      options.noise.push_back(
+          noise_with(runs_[r], fit_.sensor_nodes, fit_.noise_ratio, best_.drift_K, best_.drift_time_scale_s, fit_.weights[r]));
     }
-    constexpr double kFar = 3.0;
-    constexpr double kFar_theta = 0.1;
-    if (size > kFar && linear.coefficients.cwiseAbs().maxCoeff() > kFar_theta) {
-      minimise({.model = &model_, .runs = runs_, .whitening = all, .threads = options_.threads, .most_iterations = 6}, theta_, starts_);
-    } else {
-      for (std::size_t r = 0; r < runs_.size(); ++r) {
-        starts_[r].state_C += start_correction_K(linearised_[r], columns_[r], linear.coefficients, all[r], start_prior(r));
-      }
-      theta_ += linear.coefficients;
-      for (Eigen::Index i = 0; i < theta_.size(); ++i) {
-        const FreeParameter& parameter = model_.free[static_cast<std::size_t>(i)];
-        theta_[i] = std::clamp(theta_[i], model_.theta_of(i, parameter.low), model_.theta_of(i, parameter.high));
-      }
-    }
+    const Eigen::VectorXd before = theta_;
+    const Posterior found = posterior_of(model_here(), runs_, start_C(), options);
+    take(found);
     linearise_all();
     constexpr double kSmall = 0.1;
-    fit_.has_converged = fit_.iterations >= 2 && size < kSmall;
+    const Eigen::ArrayXd sd = found.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    fit_.has_converged = fit_.iterations >= 2 && found.converged && ((theta_ - before).array().abs() <= kSmall * sd).all();
   }
 
   /// Replaces θ by the result of the free-run fit if that predicts whole runs clearly better, accurately, and by more than chance. If the
@@ -376,7 +365,7 @@ class Fitting {
       return;
     }
     const std::vector<MeasuredRun> counted = without(runs_, fit_.weights);
-    const std::optional<FreeRunFit> search = fit_free_runs(model_, counted, theta_, starts_, options_.threads);
+    const std::optional<FreeRunFit> search = fit_free_runs(model_here(), counted, start_C());
     const double travel_K =
         std::sqrt(std::inner_product(range_.drift_unit_K.begin(), range_.drift_unit_K.end(), range_.drift_unit_K.begin(), 0.0) /
                   static_cast<double>(range_.drift_unit_K.size()));
@@ -394,13 +383,15 @@ class Fitting {
       return;
     }
     // Guards against overfitting a single run: the parameters must predict left-out runs equally well.
-    if (const double unseen_K = left_out_rmse_K(model_, counted, found, options_.threads); !(now_K > kPlainly_ratio * unseen_K)) {
+    if (const double unseen_K = left_out_rmse_K(model_here(), counted, found); !(now_K > kPlainly_ratio * unseen_K)) {
       return;
     }
     fit_.free_run_error_K = found.rmse_K;
     fit_.log_evidence = here.log_evidence;
     theta_ = found.theta;
-    starts_ = found.starts;
+    for (std::size_t r = 0; r < starts_.size(); ++r) {
+      starts_[r].state_C = Eigen::Map<const Eigen::VectorXd>(found.start_C[r].data(), std::ssize(found.start_C[r]));
+    }
     // Either estimate may be right for a new run, so their difference adds to the prior's uncertainty.
     prior_ = {theta_, (found.covariance + 0.25 * apart * apart.transpose()).inverse()};
     linearise_all();
@@ -471,7 +462,7 @@ class Fitting {
   }
 
   const Model& model_;
-  std::span<const MeasuredRun> runs_;
+  std::vector<MeasuredRun> runs_;
   const FitOptions& options_;
   Fit fit_;
   Eigen::VectorXd theta_;
@@ -486,7 +477,12 @@ class Fitting {
 
 }  // namespace
 
-Fit fit(const Model& model, std::span<const MeasuredRun> runs, const FitOptions& options) { return Fitting(model, runs, options).run(); }
+Fit fit(const Model& model, std::span<const MeasuredRun> runs, const FitOptions& options) {
+  Fit found;
+  // Jobs inside of this one use its threads.
+  in_parallel(1, options.threads, [&](std::size_t) { found = Fitting(model, runs, options).run(); });
+  return found;
+}
 
 SensorNoise noise_of(const MeasuredRun& run, const Fit& fit, std::size_t run_index) {
   return noise_with(run, fit.sensor_nodes, fit.noise_ratio, fit.drift_K, fit.drift_time_scale_s, fit.weights[run_index]);

@@ -20,9 +20,7 @@ struct FitOptions {
   double start_spread = 1.1;  ///< half width of the hypercube in θ; 1.1 = ln 3
   std::uint64_t seed = 1;     ///< seeds the random hypercube points
   int threads = 0;            ///< 0: all cores; the result does not depend on it
-  bool is_robust = true;      ///< true: outliers are down-weighted or rejected
   bool with_flux = true;      ///< false: assumes no unknown heat flux (for comparison)
-  bool with_drift = true;     ///< false: assumes that sensors do not drift
 };
 
 /// One setting of the unknown heat flux and sensor drift, with its probability and the resulting fit.

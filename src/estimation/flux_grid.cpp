@@ -1,10 +1,52 @@
 #include "estimation/flux_grid.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
 namespace heatsoak {
+namespace {
+
+/// Returns the steady temperature rise of the warmest node in K/W, as a mean over the runs. The heat enters the flux node with the smallest
+/// such rise, the outermost body.
+double steady_rise_K_per_W(const std::vector<LinearisedRun>& runs) {
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Index x = runs.front().states;
+  const Eigen::Index q = runs.front().fluxes;
+  Eigen::MatrixXd lost = Eigen::MatrixXd::Zero(x, x);
+  Eigen::MatrixXd gained = Eigen::MatrixXd::Zero(x, q);
+  for (const LinearisedRun& run : runs) {
+    for (Eigen::Index k = 0; k + 1 < run.samples(); ++k) {
+      lost += Eigen::MatrixXd::Identity(x, x) - Eigen::Map<const Square>(run.transition.data() + k * x * x, x, x);
+      gained += Eigen::Map<const Square>(run.injection.data() + k * x * q, x, q);
+    }
+  }
+  return (lost.colPivHouseholderQr().solve(gained)).colwise().maxCoeff().minCoeff();
+}
+
+}  // namespace
+
+double material_heat_W(const std::vector<LinearisedRun>& runs, double rise_K) { return rise_K / std::max(1e-6, steady_rise_K_per_W(runs)); }
+
+double travel_K(std::span<const MeasuredRun> runs) {
+  double sum_K2 = 0.0;
+  double count = 0.0;
+  for (const MeasuredRun& run : runs) {
+    for (const auto sensor_C : run.measured_C.colwise()) {
+      const auto usable = [](double each_C) { return !std::isnan(each_C); };
+      std::vector<double> all_C;
+      std::ranges::copy_if(sensor_C, std::back_inserter(all_C), usable);
+      if (!all_C.empty()) {
+        const auto [low, high] = std::ranges::minmax(all_C);
+        sum_K2 += (high - low) * (high - low);
+        count += 1.0;
+      }
+    }
+  }
+  return count > 0.0 ? std::sqrt(sum_K2 / count) : 0.0;
+}
 
 LatentFlux FluxGrid::at(const FluxPlace& place) const {
   LatentFlux flux;

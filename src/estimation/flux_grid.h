@@ -2,8 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <limits>
+#include <span>
 #include <vector>
 
+#include "estimation/measured_run.h"
 #include "estimation/whitening.h"
 
 namespace heatsoak {
@@ -11,6 +14,9 @@ namespace heatsoak {
 /// Point of the grid, as indices. First one RMS per node with unknown heat, then the correlation time. The last two are the size of the
 /// sensor drift and its correlation time.
 using FluxPlace = std::vector<int>;
+
+/// Temperature rise of the outermost body from which unknown heat matters.
+inline constexpr double kMaterial_K = 1.8;
 
 struct FluxGrid {
   std::vector<double> rms_W;         ///< ascending
@@ -27,6 +33,11 @@ struct FluxGrid {
   /// Returns the point and its neighbours on each axis. Without drift, the axis of the drift's correlation time is left out.
   [[nodiscard]] std::vector<FluxPlace> star(const FluxPlace& place) const;
 };
+
+/// Returns the heat in W that warms the outermost body by `rise_K` in the steady state, as a mean over the runs.
+double material_heat_W(const std::vector<LinearisedRun>& runs, double rise_K = kMaterial_K);
+/// Returns the range of the readings in K, RMS over all sensors and runs.
+double travel_K(std::span<const MeasuredRun> runs);
 
 /// Returns a grid of seven RMS values (0.02 to 8 times `material_W`), four correlation times, four drift sizes (0 to 3 % of `travel_K`) and
 /// three drift correlation times. `material_W`: unknown heat that matters. `travel_K`: RMS over the sensors of the range of their readings.

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "estimation/evidence.h"
-#include "estimation/least_squares.h"
+#include "estimation/posterior.h"
 
 namespace heatsoak {
 namespace {
@@ -49,62 +49,60 @@ double samples_alike(std::span<const LinearisedRun> paths, double squares_K2) {
   return std::max(1.0, sum_K2 / squares_K2);
 }
 
-LinearisedRun path_of(const Model& model, const Eigen::VectorXd& theta, const RunStart& start, const MeasuredRun& run) {
-  std::vector<int> wanted;
-  for (const FreeParameter& parameter : model.free) {
-    wanted.push_back(parameter.place);
-  }
-  const Eigen::VectorXd& start_C = start.state_C;
-  return linearise(model.network, model.values_at(theta), wanted, {}, {start_C.data(), static_cast<std::size_t>(start_C.size())}, run);
-}
-
-bool moves_to_best(const Model& model, std::span<const MeasuredRun> runs, int threads, Eigen::VectorXd& theta,
-                   std::vector<RunStart>& starts) {
+/// Ordinary least squares, every row with an error of 1 K. Returns nothing if the search does not converge.
+std::optional<Posterior> least_squares(const Model& model, const std::vector<MeasuredRun>& runs,
+                                       const std::vector<std::vector<double>>& start_C) {
   constexpr double kUnit_K = 1.0;
-  return minimise({.model = &model, .runs = runs, .whitening = {}, .white_noise_K = kUnit_K, .threads = threads}, theta, starts)
-      .has_converged;
+  constexpr double kLongestStep = 0.4;
+  const PosteriorOptions plain{.flux = {std::vector<double>(model.flux_nodes.size(), 0.0)},
+                               .white_noise_K = kUnit_K,
+                               .most_steps = 50,
+                               .holds_covariance = true,
+                               .longest_step_ratio = kLongestStep};
+  Posterior found = try_posterior_of(model, runs, start_C, plain);
+  return found.converged ? std::optional(std::move(found)) : std::nullopt;
 }
 
 }  // namespace
 
-std::optional<FreeRunFit> fit_free_runs(const Model& model, std::span<const MeasuredRun> runs, Eigen::VectorXd theta,
-                                        std::vector<RunStart> starts, int threads) {
-  if (!moves_to_best(model, runs, threads, theta, starts)) {
+std::optional<FreeRunFit> fit_free_runs(const Model& model, const std::vector<MeasuredRun>& runs,
+                                        const std::vector<std::vector<double>>& start_C) {
+  std::optional<Posterior> least = least_squares(model, runs, start_C);
+  if (!least) {
     return std::nullopt;
   }
-  FreeRunFit found{std::move(theta), std::move(starts), {}, 0.0};
-  std::vector<LinearisedRun> paths;
+  FreeRunFit found{least->model.theta(), std::move(least->start_C), {}, free_run_rmse_K(least->fitted)};
   double count = 0.0;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    paths.push_back(path_of(model, found.theta, found.starts[r], runs[r]));
-    count += static_cast<double>((!paths.back().residual_K.array().isNaN()).count());
+  for (const LinearisedRun& path : least->fitted) {
+    count += static_cast<double>((!path.residual_K.array().isNaN()).count());
   }
-  found.rmse_K = free_run_rmse_K(paths);
-  const double noise_K = found.rmse_K * std::sqrt(samples_alike(paths, count * found.rmse_K * found.rmse_K));
+  const double noise_K = found.rmse_K * std::sqrt(samples_alike(least->fitted, count * found.rmse_K * found.rmse_K));
   std::vector<RunEvidence> evidence;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    const Whitening white(paths[r], {{}, 1.0}, {std::vector<double>(runs[r].sensors.size(), noise_K), {}});
-    const RunStart& start = found.starts[r];
-    evidence.push_back(run_evidence(paths[r], by_theta(model, found.theta, paths[r].by_parameter), white,
-                                    {start.prior_C - start.state_C, start.prior_sd_K}));
+  for (const DesignRun& one : design(model.network, least->fitted, runs, {}, {}, {})) {
+    const Whitening white(one.run, {std::vector<double>(model.flux_nodes.size(), 0.0)},
+                          {std::vector<double>(one.noise.noise_K.size(), noise_K), {}});
+    evidence.push_back(run_evidence(one.run, one.columns, white, one.start));
   }
-  found.covariance = linear_fit(evidence, model.prior.mean - found.theta, model.prior.precision).covariance;
+  const ThetaPrior prior = prior_here(least->model);
+  found.covariance = linear_fit(evidence, prior.mean, prior.precision).covariance;
   return found;
 }
 
-double left_out_rmse_K(const Model& model, std::span<const MeasuredRun> runs, const FreeRunFit& found, int threads) {
+double left_out_rmse_K(const Model& model, const std::vector<MeasuredRun>& runs, const FreeRunFit& found) {
+  Model near = model;
+  near.set_theta(found.theta);
   std::vector<LinearisedRun> paths;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const auto out = static_cast<std::ptrdiff_t>(r);
-    std::vector<MeasuredRun> others(runs.begin(), runs.end());
-    std::vector<RunStart> starts = found.starts;
+    std::vector<MeasuredRun> others = runs;
+    std::vector<std::vector<double>> start_C = found.start_C;
     others.erase(others.begin() + out);
-    starts.erase(starts.begin() + out);
-    Eigen::VectorXd theta = found.theta;
-    if (others.empty() || !moves_to_best(model, others, threads, theta, starts)) {
+    start_C.erase(start_C.begin() + out);
+    const std::optional<Posterior> fit = others.empty() ? std::nullopt : least_squares(near, others, start_C);
+    if (!fit) {
       return std::numeric_limits<double>::quiet_NaN();
     }
-    paths.push_back(path_of(model, theta, found.starts[r], runs[r]));
+    paths.push_back(linearise(fit->model, found.start_C[r], runs[r]));
   }
   return free_run_rmse_K(paths);
 }

@@ -116,19 +116,26 @@ class Fitter {
       low_[i] = now_.model.low(i);
       high_[i] = now_.model.high(i);
     }
+    if (options.held >= 0) {
+      low_[options.held] = high_[options.held] = now_.model.theta()[options.held];
+    }
   }
 
   Posterior run() {
     linearise_all(now_);
     std::vector<DesignRun> designs = design_of(now_);
     for (int step = 0; step < options_.most_steps; ++step) {
-      const RunEvidence all = all_runs(designs, now_.flux);
+      const RunEvidence all = all_runs(designs, designs, now_.flux);
       const double misfit = misfit_of(all, now_);
-      const LinearFit fit = bounded_step(all);
+      now_.cost_nats = 0.5 * misfit;
+      const LinearFit fit = bounded_step(all, options_.longest_step_ratio);
       now_.evidence_nats = fit.log_evidence;
       now_.covariance = fit.covariance;
       now_.converged = misfit - fit.misfit < kConverged_nats;
-      if (now_.converged || !take(fit, misfit, designs)) {
+      if (now_.converged) {
+        now_.cost_nats -= 0.5 * (misfit - fit.misfit);
+      }
+      if (now_.converged || !take(all, fit.coefficients, designs)) {
         break;
       }
     }
@@ -146,19 +153,22 @@ class Fitter {
 
   [[nodiscard]] std::vector<DesignRun> design_of(const Posterior& at, const std::vector<Columns>& extra = {}) const {
     std::vector<DesignRun> designs = design(at.model.network, at.fitted, runs_, options_.weights, options_.merged, extra);
-    for (DesignRun& each : designs) {
-      std::ranges::transform(each.noise.noise_K, each.noise.noise_K.begin(),
+    for (std::size_t r = 0; r < designs.size(); ++r) {
+      SensorNoise& noise = designs[r].noise;
+      noise = options_.noise.empty() ? noise : options_.noise[r];
+      std::ranges::transform(noise.noise_K, noise.noise_K.begin(),
                              [&](double own_K) { return options_.white_noise_K > 0.0 ? options_.white_noise_K : own_K; });
     }
     return designs;
   }
 
-  /// Returns the triangular factor of [columns, residual] of all runs.
-  [[nodiscard]] static RunEvidence all_runs(const std::vector<DesignRun>& designs, const LatentFlux& flux) {
+  /// Returns the triangular factor of [columns, residual] of all runs, whitened by the covariance of `whitened_by`.
+  [[nodiscard]] static RunEvidence all_runs(const std::vector<DesignRun>& designs, const std::vector<DesignRun>& whitened_by,
+                                            const LatentFlux& flux) {
     std::vector<RunEvidence> each(designs.size());
     in_parallel(designs.size(), 0, [&](std::size_t r) {
       const DesignRun& one = designs[r];
-      each[r] = run_evidence(one.run, one.columns, Whitening(one.run, flux, one.noise), one.start);
+      each[r] = run_evidence(one.run, one.columns, Whitening(whitened_by[r].run, flux, whitened_by[r].noise), one.start);
     });
     RunEvidence all{stacked(each), 0.0, 0};
     for (const RunEvidence& run : each) {
@@ -174,9 +184,10 @@ class Fitter {
     return all.triangle.rightCols<1>().squaredNorm() + prior.mean.dot(prior.precision * prior.mean);
   }
 
-  [[nodiscard]] LinearFit bounded_step(const RunEvidence& all) const {
+  /// Returns the linear fit within the bounds and at most `longest_step` from the present coordinates.
+  [[nodiscard]] LinearFit bounded_step(const RunEvidence& all, double longest_step) const {
     const Eigen::VectorXd theta = now_.model.theta();
-    const Eigen::ArrayXd longest = Eigen::ArrayXd::Constant(theta.size(), options_.longest_step_ratio);
+    const Eigen::ArrayXd longest = Eigen::ArrayXd::Constant(theta.size(), longest_step);
     return bounded_fit(all, prior_here(now_.model), (low_ - theta).array().max(-longest), (high_ - theta).array().min(longest));
   }
 
@@ -202,7 +213,7 @@ class Fitter {
     std::vector<LinearFit> fits;
     double best_nats = -std::numeric_limits<double>::infinity();
     for (const LatentFlux& flux : options_.around) {
-      fits.push_back(bounded_fit(all_runs(designs, flux), prior, low, high));
+      fits.push_back(bounded_fit(all_runs(designs, designs, flux), prior, low, high));
       best_nats = std::max(best_nats, fits.back().log_evidence);
     }
     double total_weight = 0.0;
@@ -217,7 +228,7 @@ class Fitter {
     mean /= total_weight;
     now_.covariance = (square / total_weight - mean * mean.transpose()).topLeftCorner(count, count);
     try {
-      now_ = moved(mean.head(count), start_steps_K(mean, designs), 1.0);
+      now_ = moved(mean.head(count), start_steps_K(mean, designs));
     } catch (const Failure&) {
       return;
     }
@@ -232,17 +243,17 @@ class Fitter {
     return steps_K;
   }
 
-  /// Returns the result after a fraction of the step. Throws Failure if the temperatures diverge.
-  [[nodiscard]] Posterior moved(const Eigen::VectorXd& step, const std::vector<Eigen::VectorXd>& start_step_K, double share) const {
+  /// Returns the result after a step. Throws Failure if the temperatures diverge.
+  [[nodiscard]] Posterior moved(const Eigen::VectorXd& step, const std::vector<Eigen::VectorXd>& start_step_K) const {
     Posterior next;
     next.model = now_.model;
-    next.model.set_theta((now_.model.theta() + share * step).cwiseMax(low_).cwiseMin(high_));
+    next.model.set_theta((now_.model.theta() + step).cwiseMax(low_).cwiseMin(high_));
     next.flux = now_.flux;
     next.start_C = now_.start_C;
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       next.start_C[r].resize(static_cast<std::size_t>(start_step_K[r].size()), runs_[r].at.front().ambient_C);
       for (Eigen::Index i = 0; i < start_step_K[r].size(); ++i) {
-        next.start_C[r][static_cast<std::size_t>(i)] += share * start_step_K[r][i];
+        next.start_C[r][static_cast<std::size_t>(i)] += start_step_K[r][i];
       }
     }
     linearise_all(next);
@@ -252,20 +263,31 @@ class Fitter {
     return next;
   }
 
-  /// Takes the longest of five successively halved steps that decreases the misfit. Returns false if none does.
-  bool take(const LinearFit& fit, double misfit, std::vector<DesignRun>& designs) {
-    const std::vector<Eigen::VectorXd> start_step_K = start_steps_K(fit.coefficients, designs);
-    for (double share = 1.0; share > 0.05; share *= 0.5) {
+  /// Takes `step`, or else the first of several shorter ones that decreases the cost, see PosteriorOptions::holds_covariance. Returns false
+  /// if none does.
+  bool take(const RunEvidence& all, Eigen::VectorXd step, std::vector<DesignRun>& designs) {
+    constexpr int kTries = 5;
+    constexpr double kSmallerBox_ratio = 0.25;
+    std::vector<Eigen::VectorXd> start_step_K = start_steps_K(step, designs);
+    for (int attempt = 0; attempt < kTries; ++attempt) {
       try {
-        Posterior next = moved(fit.coefficients, start_step_K, share);
+        Posterior next = moved(step, start_step_K);
         std::vector<DesignRun> next_designs = design_of(next);
-        if (misfit_of(all_runs(next_designs, now_.flux), next) < misfit + 1e-9) {
+        next.cost_nats = 0.5 * misfit_of(all_runs(next_designs, options_.holds_covariance ? designs : next_designs, now_.flux), next);
+        if (next.cost_nats < now_.cost_nats + 1e-9) {
           now_ = std::move(next);
           designs = std::move(next_designs);
           return true;
         }
       } catch (const Failure&) {
-        continue;
+        // The temperatures diverge there: the step is too long.
+      }
+      if (options_.holds_covariance) {
+        step = bounded_step(all, kSmallerBox_ratio * step.cwiseAbs().maxCoeff()).coefficients;
+        start_step_K = start_steps_K(step, designs);
+      } else {
+        step *= 0.5;
+        std::ranges::for_each(start_step_K, [](Eigen::VectorXd& each) { each *= 0.5; });
       }
     }
     return false;
@@ -292,6 +314,7 @@ Posterior try_posterior_of(Model model, const std::vector<MeasuredRun>& runs, st
     Posterior none;
     none.flux = options.flux;
     none.evidence_nats = -std::numeric_limits<double>::infinity();
+    none.cost_nats = std::numeric_limits<double>::infinity();
     return none;
   }
 }

@@ -14,6 +14,7 @@ struct Posterior {
   std::vector<LinearisedRun> fitted;         ///< free-running simulations of the model
   LatentFlux flux;                           ///< assumed unknown heat
   double evidence_nats = 0.0;
+  double cost_nats = 0.0;      ///< half of the sum of squared whitened residuals, those of the priors included
   Eigen::MatrixXd covariance;  ///< posterior covariance of the coordinates; 0 for those at a bound
   bool converged = false;
 };
@@ -22,8 +23,15 @@ struct PosteriorOptions {
   LatentFlux flux;
   std::vector<Eigen::VectorXd> weights = {};  ///< per run and sample; empty: all 1
   std::vector<int> merged = {};               ///< per run, number of samples per average; empty: no averaging
-  double white_noise_K = 0.0;                 ///< if > 0, noise of every sensor in place of its own, for an incomplete model
+  /// Per run, noise of the sensors in place of their own; its weights apply, too. Not together with averaging. Empty: their own.
+  std::vector<SensorNoise> noise = {};
+  double white_noise_K = 0.0;  ///< if > 0, noise of every sensor in place of its own, for an incomplete model
   int most_steps = 8;
+  /// The covariance of the residuals depends on the parameters. true: a step is judged by the covariance before it, as in iteratively
+  /// reweighted least squares, and a step that fails is searched for in a smaller box. false: it is judged by the covariance after it, and
+  /// a step that fails is halved.
+  bool holds_covariance = false;
+  int held = -1;                                                        ///< coordinate that keeps its start value; -1: none
   double longest_step_ratio = std::numeric_limits<double>::infinity();  ///< largest change of a coordinate in one step
   /// Other assumptions about the unknown heat. The result is averaged over them with their evidence as weights, so that the intervals
   /// include this uncertainty. Empty: `flux` alone.

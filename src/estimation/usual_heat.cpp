@@ -1,0 +1,39 @@
+#include "estimation/usual_heat.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace heatsoak {
+
+double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const std::vector<RunStart>& starts) {
+  const Network& network = model.network;
+  const auto nodes = static_cast<std::size_t>(network.node_count());
+  std::vector<double> heat_W(network.effects().size() * nodes);
+  double made_J = 0.0;
+  double led_away_J = 0.0;
+  double duration_s = 0.0;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    std::vector<double> state_C(starts[r].state_C.begin(), starts[r].state_C.end());
+    for (std::size_t k = 0; k < runs[r].at.size(); ++k) {
+      const double step_s = runs[r].time_s[k + 1] - runs[r].time_s[k];
+      for (const Sensor& sensor : runs[r].sensors) {
+        const double sensor_C = runs[r].measured_C(static_cast<Eigen::Index>(k), runs[r].sensor_at(sensor.node));
+        double& node_C = state_C[static_cast<std::size_t>(network.find_node(sensor.node))];
+        node_C = std::isnan(sensor_C) ? node_C : true_at_rest_C(sensor.faults, sensor_C);
+      }
+      network.balance_W(runs[r].at[k], model.values, state_C, heat_W);
+      double away_W = 0.0;
+      for (std::size_t e = 0; e < network.effects().size(); ++e) {
+        away_W += heat_W[e * nodes + nodes - 1];
+      }
+      made_J += step_s * std::accumulate(heat_W.begin(), heat_W.end(), 0.0);
+      led_away_J += step_s * std::abs(away_W);
+      duration_s += step_s;
+    }
+  }
+  constexpr double kLeast_W = 1e-3;
+  return std::max({kLeast_W, made_J / duration_s, led_away_J / duration_s});
+}
+
+}  // namespace heatsoak
