@@ -29,10 +29,10 @@ struct FrictionJob {
 
 /// Remarks on the logs, and the text of the robot's file with the measured friction.
 struct FrictionRun {
-  Findings findings;
+  FrictionFindings findings;
   std::vector<std::string> suspicions;
-  std::string robot_text;  ///< empty unless requested
-  Findings notes;          ///< remarks on `robot_text`
+  std::string robot_text;            ///< empty unless requested
+  std::vector<WrittenAsZero> notes;  ///< remarks on `robot_text`
 };
 
 struct SteadyFriction : FrictionRun {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/quantity.h"
 #include "base/unknown.h"
 
 namespace heatsoak {
@@ -15,7 +14,7 @@ using Column = std::vector<double>;
 
 class ColumnsOfRobot {
  public:
-  ColumnsOfRobot(const Recording& recording, const Robot& robot, const FrictionLogNeeds& needs, Findings& findings)
+  ColumnsOfRobot(const Recording& recording, const Robot& robot, const FrictionLogNeeds& needs, FrictionFindings& findings)
       : recording_(recording), robot_(robot), needs_(needs), findings_(findings) {}
 
   FrictionLog log() {
@@ -52,7 +51,7 @@ class ColumnsOfRobot {
   void missing(const std::string& key, const std::string& meaning) {
     diagnostics_.add({recording_.file.string(), 1, 1}, key, fmt::format("is missing: {}; the log or its mapping must name it", meaning));
   }
-  void note(const std::string& finding) {
+  void note(const FrictionFinding& finding) {
     if (std::ranges::find(findings_, finding) == findings_.end()) {
       findings_.push_back(finding);
     }
@@ -62,7 +61,7 @@ class ColumnsOfRobot {
     for (std::size_t wheel = 0; wheel < robot_.wheels.axis_rad.size(); ++wheel) {
       if (const Column* voltage = numbered("wheel_voltage_V", wheel)) {
         log.voltage_V[wheel] = *voltage;
-        note("voltage: as the log has it");
+        note(VoltageFrom{VoltageFrom::Source::log});
       } else if (const Column* modulation = numbered("wheel_pwm_ratio", wheel)) {
         log.voltage_V[wheel] = modulated(*modulation);
       } else if (const Column* current = numbered("wheel_current_A", wheel); current && needs_.drive) {
@@ -77,10 +76,8 @@ class ColumnsOfRobot {
 
   Column modulated(const Column& modulation) {
     const Column* battery = column("battery_V") ? column("battery_V") : column("bus_V");
-    note(battery ? "voltage: modulation × battery voltage"
-                 : fmt::format("voltage: modulation × {} V, the robot's nominal battery voltage, because the log has none; every value in "
-                               "V scales with it, beyond its interval",
-                               significant(robot_.battery.nominal_V, 3)));
+    note(battery ? VoltageFrom{VoltageFrom::Source::modulation}
+                 : VoltageFrom{VoltageFrom::Source::modulation_with_nominal_battery, robot_.battery.nominal_V});
     Column voltage_V = modulation;
     for (std::size_t row = 0; row < voltage_V.size(); ++row) {
       voltage_V[row] *= battery ? (*battery)[row] : robot_.battery.nominal_V;
@@ -104,8 +101,7 @@ class ColumnsOfRobot {
 
   Column of_current(const Column& current, const Column& wheel_speed_rad_per_s) {
     const bool sizes_only = has_sizes_only();
-    note(sizes_only ? "voltage: from currents without sign (that of the speed is used), with the motor's resistance and torque constant"
-                    : "voltage: from currents, with the motor's resistance and torque constant");
+    note(VoltageFrom{sizes_only ? VoltageFrom::Source::current_without_sign : VoltageFrom::Source::current});
     Column voltage_V(current.size());
     for (std::size_t row = 0; row < current.size(); ++row) {
       const double speed_rad_per_s = wheel_speed_rad_per_s[row];
@@ -167,13 +163,13 @@ class ColumnsOfRobot {
     const bool any = needs_.direction == TravelDirection::best;
     if (any || needs_.direction == TravelDirection::commanded) {
       if (Column found = commanded_rad(log); !found.empty()) {
-        note("direction of travel: as commanded");
+        note(DirectionFrom{DirectionFrom::Source::commanded});
         return found;
       }
     }
     if (any || needs_.direction == TravelDirection::measured) {
       if (Column found = measured_rad(log); !found.empty()) {
-        note("direction of travel: as measured");
+        note(DirectionFrom{DirectionFrom::Source::measured});
         return found;
       }
     }
@@ -181,20 +177,20 @@ class ColumnsOfRobot {
       missing(needs_.direction == TravelDirection::commanded ? "heading_rad" : "vx_m_per_s", "direction of travel");
       diagnostics_.throw_if_any();
     }
-    note("direction of travel: from the wheels' speeds");
+    note(DirectionFrom{DirectionFrom::Source::wheels});
     return {};
   }
 
   const Recording& recording_;
   const Robot& robot_;
   const FrictionLogNeeds& needs_;
-  Findings& findings_;
+  FrictionFindings& findings_;
   Diagnostics diagnostics_;
 };
 
 }  // namespace
 
-FrictionLog friction_log(const Recording& recording, const Robot& robot, const FrictionLogNeeds& needs, Findings& findings) {
+FrictionLog friction_log(const Recording& recording, const Robot& robot, const FrictionLogNeeds& needs, FrictionFindings& findings) {
   return ColumnsOfRobot(recording, robot, needs, findings).log();
 }
 

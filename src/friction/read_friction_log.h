@@ -2,9 +2,8 @@
 #pragma once
 
 #include <optional>
-#include <string>
-#include <vector>
 
+#include "friction/findings.h"
 #include "friction/friction_log.h"
 #include "recording/recording.h"
 #include "robot/friction.h"
@@ -20,9 +19,6 @@ enum class TravelDirection {
   wheels      ///< computed from the wheel speeds
 };
 
-/// Sentences about the interpretation of columns; each one occurs once, even if several logs cause it.
-using Findings = std::vector<std::string>;
-
 struct FrictionLogNeeds {
   bool voltage = true;                  ///< the voltage of every wheel is needed
   std::optional<DriveConstants> drive;  ///< motor constants to convert currents to voltages
@@ -31,7 +27,8 @@ struct FrictionLogNeeds {
 
 /// Converts speeds of motor shafts to speeds of wheels, and directions on the field to directions in the robot's frame. The voltage is
 /// wheel_voltage_V, else wheel_pwm_ratio × battery_V (or bus_V, or the robot's nominal voltage), else R·I + K_t·n·ω with
-/// I = wheel_current_A, which gets the sign of the speed if it has none. Throws Failure (bad_input) with all missing columns.
-FrictionLog friction_log(const Recording& recording, const Robot& robot, const FrictionLogNeeds& needs, Findings& findings);
+/// I = wheel_current_A, which gets the sign of the speed if it has none. Throws Failure (bad_input) with all missing columns. Adds to
+/// `findings` how it read the columns.
+FrictionLog friction_log(const Recording& recording, const Robot& robot, const FrictionLogNeeds& needs, FrictionFindings& findings);
 
 }  // namespace heatsoak

@@ -152,19 +152,16 @@ Lines wheel_table(const WheelFriction& wheel, const DriveConstants& drive, const
                                  wheel.phase_is_given ? "the wheel's rolling direction: too few headings to determine it" : "fitted")};
 }
 
-void note_what_is_cut(const FrictionFit& fit, const DriveConstants& drive, std::vector<std::string>& notes) {
+void note_what_is_cut(const FrictionFit& fit, const DriveConstants& drive, std::vector<WrittenAsZero>& notes) {
   const double drag_V = drive.drag_torque_Nm * drive.resistance_ohm / drive.torque_constant_Nm_per_A;
   const double back_emf_V_s_per_rad = drive.torque_constant_Nm_per_A * drive.gear_ratio;
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     const WheelFriction& wheel = fit.wheels[i];
     if (wheel.constant_V.value < drag_V) {
-      notes.push_back(fmt::format(
-          "0 is written for b of wheel {}: the drag of the motor alone, {:.3f} V by its data sheet, is larger than b", i + 1, drag_V));
+      notes.emplace_back(DragExceedsOffset{i + 1, drag_V});
     }
     if (!wheel.damping_is_given && wheel.damping_V_s_per_rad.value < back_emf_V_s_per_rad) {
-      notes.push_back(
-          fmt::format("0 is written for d of wheel {}: the back-EMF of the motor alone, {:.4f} V s/rad by its data sheet, is larger than d",
-                      i + 1, back_emf_V_s_per_rad));
+      notes.emplace_back(BackEmfExceedsDamping{i + 1, back_emf_V_s_per_rad});
     }
   }
 }
@@ -183,7 +180,7 @@ std::string checked(const Lines& lines, const Robot& robot) {
 }  // namespace
 
 std::string with_measured_friction(const std::string& text, const Robot& robot, const DriveConstants& drive, const FrictionFit& fit,
-                                   const std::string& source, std::vector<std::string>& notes) {
+                                   const std::string& source, std::vector<WrittenAsZero>& notes) {
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     if (!fit.wheels[i].is_learned() || std::isnan(fit.wheels[i].constant_V.value)) {
       throw Failure(ExitCode::cannot_answer,

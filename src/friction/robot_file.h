@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "friction/findings.h"
 #include "friction/friction_fit.h"
 #include "robot/friction.h"
 #include "robot/robot.h"
@@ -14,10 +15,10 @@ namespace heatsoak {
 /// friction.wheel_damping is the mean of the wheels, [friction.heading] has one table per wheel. As in all robot files, they are torques
 /// at the wheel without drag and back-EMF of the motor, so that they hold for another motor too. With the motor of the measurement,
 /// steady_voltage_V() reproduces the measured voltages. If the motor's drag or back-EMF alone exceeds the measured value, 0 is written and
-/// `notes` gets a sentence. Throws Failure: cannot_answer if a wheel was not fitted; bad_input if the file has its friction in another
+/// `notes` gets an entry. Throws Failure: cannot_answer if a wheel was not fitted; bad_input if the file has its friction in another
 /// form than tables [friction] and [friction.heading].
 std::string with_measured_friction(const std::string& text, const Robot& robot, const DriveConstants& drive, const FrictionFit& fit,
-                                   const std::string& source, std::vector<std::string>& notes);
+                                   const std::string& source, std::vector<WrittenAsZero>& notes);
 
 /// Same for the mechanical damping of a roll-out only.
 std::string with_measured_damping(const std::string& text, const Robot& robot, const std::vector<Estimate>& wheel_damping_Nm_s_per_rad,

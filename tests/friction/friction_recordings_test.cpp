@@ -19,7 +19,7 @@ std::filesystem::path data_or_skip(const std::string& folder) {
 }
 
 FrictionLog log_of(const std::filesystem::path& file, const std::string& mapping, const Robot& robot, const FrictionLogNeeds& needs,
-                   Findings& findings) {
+                   FrictionFindings& findings) {
   RecordingReport report;
   return friction_log(read_recording(file, mapping_for(file, kSource / "tests/data/mappings" / mapping), report), robot, needs, findings);
 }
@@ -43,7 +43,7 @@ PerWheel back_emf_V(const SteadyPart& part) {
   return voltage_V;
 }
 
-SteadyParts robotino_parts(const std::filesystem::path& surface, int first, int end, Findings& findings) {
+SteadyParts robotino_parts(const std::filesystem::path& surface, int first, int end, FrictionFindings& findings) {
   std::vector<FrictionLog> logs;
   for (int n = first; n < end; ++n) {
     const std::filesystem::path file = surface / fmt::format("exp{:02}.csv", n);
@@ -72,7 +72,7 @@ TEST(FrictionOfRecordings, robotino_on_two_surfaces) {
     GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
   }
   for (const char* surface : {"table_surface", "brown_surface"}) {
-    Findings findings;
+    FrictionFindings findings;
     const SteadyParts steady = robotino_parts(folder / surface, 0, 72, findings);
     EXPECT_GE(steady.legs, 65);
     FitSettings settings;
@@ -101,7 +101,7 @@ TEST(FrictionOfRecordings, robotino_on_carpet_at_three_speeds) {
   if (folder.empty()) {
     GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
   }
-  Findings findings;
+  FrictionFindings findings;
   const SteadyParts steady = robotino_parts(folder / "green_surface", 0, 216, findings);
   const Kinematics kinematics = make_kinematics(robotino());
   const FrictionFit fit = fit_friction(steady.parts, kinematics, {});
@@ -130,7 +130,7 @@ TEST(FrictionOfRecordings, a_team_wheel_motors_voltage_over_speed) {
   robot.wheels.axis_rad = {-0.5, 0.5, 2.4, -2.4};
   robot.drive.gear_ratio = 1.0;
   robot.battery.nominal_V = 24.0;
-  Findings findings;
+  FrictionFindings findings;
   std::vector<FrictionLog> logs;
   for (const char* file : {"Model1_pos.csv", "Model2_neg.csv"}) {
     logs.push_back(log_of(folder / file, "ateam_wheel_motor.map.toml", robot, {}, findings));

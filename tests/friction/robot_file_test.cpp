@@ -41,7 +41,7 @@ TEST(RobotFile, has_the_measured_voltages_again) {
   const Robot before = read_robot(kFile);
   const DriveConstants drive = drive_constants(before, motor());
   const FrictionFit fit = any_fit(before);
-  std::vector<std::string> notes;
+  std::vector<WrittenAsZero> notes;
   const std::string text = with_measured_friction(file_text(), before, drive, fit, "friction test, drive.csv", notes);
   EXPECT_TRUE(notes.empty());
   const Robot after = parse_robot(text, kFile);
@@ -62,7 +62,7 @@ TEST(RobotFile, has_the_measured_voltages_again) {
 
 TEST(RobotFile, keeps_everything_else_as_it_stands) {
   const Robot before = read_robot(kFile);
-  std::vector<std::string> notes;
+  std::vector<WrittenAsZero> notes;
   const std::string text =
       with_measured_friction(file_text(), before, drive_constants(before, motor()), any_fit(before), "drive.csv", notes);
   EXPECT_THAT(text, HasSubstr("# 1 front right, 2 front left"));
@@ -92,7 +92,7 @@ TEST(RobotFile, of_a_robot_without_friction_gets_its_tables) {
       "\"1\"\n"
       "commutation = \"block\"\n[battery]\nnominal_voltage = \"22.2 V\"\n";
   const Robot before = parse_robot(bare, "bare.toml");
-  std::vector<std::string> notes;
+  std::vector<WrittenAsZero> notes;
   const Robot after =
       parse_robot(with_measured_friction(bare, before, drive_constants(before, motor()), any_fit(before), "drive.csv", notes), "bare.toml");
   EXPECT_EQ(after.friction.heading.wheels.size(), 4U);
@@ -105,11 +105,12 @@ TEST(RobotFile, says_where_the_motor_alone_is_more_than_what_was_measured) {
   fit.wheels[2].constant_V = around(0.1, 0.05);
   fit.wheels[2].sine_V = around(0.0, 0.05);
   fit.wheels[3].damping_V_s_per_rad = around(0.03, 0.001);
-  std::vector<std::string> notes;
+  std::vector<WrittenAsZero> notes;
   const Robot after =
       parse_robot(with_measured_friction(file_text(), robot, drive_constants(robot, motor()), fit, "drive.csv", notes), kFile);
   ASSERT_EQ(notes.size(), 2U);
-  EXPECT_THAT(notes[0], HasSubstr("wheel 3: the drag of the motor alone"));
+  EXPECT_THAT(notes[0], testing::VariantWith<DragExceedsOffset>(testing::Field(&DragExceedsOffset::wheel, 3U)));
+  EXPECT_THAT(notes[1], testing::VariantWith<BackEmfExceedsDamping>(testing::Field(&BackEmfExceedsDamping::wheel, 4U)));
   EXPECT_EQ(after.friction.heading.wheels[2].constant_Nm, 0.0);
 }
 
@@ -117,7 +118,7 @@ TEST(RobotFile, is_not_written_with_a_wheel_that_was_not_learned) {
   const Robot robot = read_robot(kFile);
   FrictionFit fit = any_fit(robot);
   fit.wheels[1].problem = "it hardly turns in any steady leg";
-  std::vector<std::string> notes;
+  std::vector<WrittenAsZero> notes;
   try {
     with_measured_friction(file_text(), robot, drive_constants(robot, motor()), fit, "drive.csv", notes);
     FAIL();
@@ -131,7 +132,7 @@ TEST(RobotFile, friction_in_another_form_is_refused_by_name) {
   std::string text = file_text();
   text.replace(text.find("[friction.heading]"), 18, "[friction.'heading']");
   const Robot robot = parse_robot(text, "mine.toml");
-  std::vector<std::string> notes;
+  std::vector<WrittenAsZero> notes;
   EXPECT_THROW(with_measured_friction(text, robot, drive_constants(robot, motor()), any_fit(robot), "drive.csv", notes), Failure);
 }
 

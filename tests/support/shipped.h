@@ -3,14 +3,15 @@
 
 #include <string>
 
+#include "input/data_folders.h"
 #include "motor/motor.h"
 #include "robot/robot.h"
 #include "support/source_folder.h"
 
 namespace heatsoak {
 
-inline Robot shipped_robot(const std::string& id) { return read_robot(kSource / "robot_core/robots" / (id + ".toml")); }
-inline Motor shipped_motor(const std::string& id) { return read_motor(kSource / "motor_db" / (id + ".toml")); }
+inline Robot shipped_robot(const std::string& id) { return read_robot(file_of(kSource / "robot_core/robots", "robot", id)); }
+inline Motor shipped_motor(const std::string& id) { return read_motor(file_of(kSource / "motor_db", "motor", id)); }
 
 /// The paper's robot with the motor that failed in it.
 inline Robot twente() { return shipped_robot("roboteam_twente_v2024"); }

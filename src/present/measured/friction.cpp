@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <variant>
 
 #include "base/quantity.h"
 
@@ -108,6 +109,47 @@ std::string what_rolls(const RollOutRun& run) {
                                           : fmt::format("wheel {} lifted", run.wheel + 1);
 }
 
+std::string source_words(const VoltageFrom& from) {
+  switch (from.source) {
+    case VoltageFrom::Source::log:
+      return "voltage: as the log has it";
+    case VoltageFrom::Source::modulation:
+      return "voltage: modulation × battery voltage";
+    case VoltageFrom::Source::modulation_with_nominal_battery:
+      return fmt::format(
+          "voltage: modulation × {} V, the robot's nominal battery voltage, because the log has none; every value in V scales with it, "
+          "beyond its interval",
+          significant(from.battery_V, 3));
+    case VoltageFrom::Source::current:
+      return "voltage: from currents, with the motor's resistance and torque constant";
+    case VoltageFrom::Source::current_without_sign:
+      return "voltage: from currents without sign (that of the speed is used), with the motor's resistance and torque constant";
+  }
+  return "";
+}
+
+std::string zero_words(const DragExceedsOffset& of) {
+  return fmt::format("0 is written for b of wheel {}: the drag of the motor alone, {:.3f} V by its data sheet, is larger than b", of.wheel,
+                     of.drag_V);
+}
+
+std::string zero_words(const BackEmfExceedsDamping& of) {
+  return fmt::format("0 is written for d of wheel {}: the back-EMF of the motor alone, {:.4f} V s/rad by its data sheet, is larger than d",
+                     of.wheel, of.back_emf_V_s_per_rad);
+}
+
+std::string source_words(const DirectionFrom& from) {
+  switch (from.source) {
+    case DirectionFrom::Source::commanded:
+      return "direction of travel: as commanded";
+    case DirectionFrom::Source::measured:
+      return "direction of travel: as measured";
+    case DirectionFrom::Source::wheels:
+      return "direction of travel: from the wheels' speeds";
+  }
+  return "";
+}
+
 }  // namespace
 
 Document friction_document(const Robot& robot, const FrictionAnswer& answer) {
@@ -180,6 +222,22 @@ Document roll_out_document(const Robot& robot, const RollOutResult& result, cons
   }
   document.tables = {std::move(wheels), std::move(runs)};
   return document;
+}
+
+std::string words_of(const WrittenAsZero& finding) {
+  return std::visit([](const auto& each) { return zero_words(each); }, finding);
+}
+
+FrictionRemarks friction_remarks(const std::string& motor, bool has_motor, const FrictionRun& run, const std::vector<std::string>& of_fit) {
+  FrictionRemarks remarks{has_motor ? std::optional(motor) : std::nullopt, {}, run.suspicions};
+  if (!has_motor) {
+    remarks.findings.push_back(fmt::format("there is no file of the robot's motor '{}'; name a motor with --motor", motor));
+  }
+  for (const FrictionFinding& each : run.findings) {
+    remarks.findings.push_back(std::visit([](const auto& finding) { return source_words(finding); }, each));
+  }
+  remarks.findings.insert(remarks.findings.end(), of_fit.begin(), of_fit.end());
+  return remarks;
 }
 
 void add_findings(Document& document, std::span<const std::string> findings, std::span<const std::string> suspicions) {

@@ -6,9 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "friction/expected_voltage.h"
-#include "friction/friction_fit.h"
-#include "friction/roll_out.h"
+#include "friction/friction_job.h"
 #include "present/document.h"
 #include "present/json.h"
 #include "robot/robot.h"
@@ -43,6 +41,12 @@ Json roll_out_json(const Robot& robot, const RollOutResult& result, const DriveC
 
 /// Returns the voltage per wheel speed that mechanical damping and back-EMF need together.
 Estimate damping_with_back_emf(const DriveConstants& drive, const Estimate& mechanical_Nm_s_per_rad);
+
+/// Returns the remarks of a test. `motor` is the id of the robot's motor, which has no file if `has_motor` is false. `of_fit` follow last.
+FrictionRemarks friction_remarks(const std::string& motor, bool has_motor, const FrictionRun& run, const std::vector<std::string>& of_fit);
+
+/// Returns why 0 is written to the robot file.
+std::string words_of(const WrittenAsZero& finding);
 
 /// Adds the findings as notes and the suspicions as warnings.
 void add_findings(Document& document, std::span<const std::string> findings, std::span<const std::string> suspicions);

@@ -29,14 +29,13 @@ struct Options {
   std::string plot;
 };
 
-/// Robot, motor and logs of the test, and what is to be noted of them.
 struct Input {
   FrictionJob job;
   std::string motor_id;
-  Findings findings;  ///< remarks on the motor
 };
 
-/// Finds the motor. The robot's own motor may be missing from the data base: fits from modulation do not need it.
+/// Finds the motor. The robot's own motor may be missing from the data base: fits from modulation do not need it, and
+/// present::friction_remarks() reports it.
 void find_motor(const Options& options, const DataFolders& folders, Input& input) {
   input.motor_id = options.motor.empty() ? input.job.robot.drive.motor : options.motor;
   try {
@@ -45,15 +44,13 @@ void find_motor(const Options& options, const DataFolders& folders, Input& input
     if (!options.motor.empty()) {
       throw;
     }
-    input.findings.push_back(fmt::format("there is no file of the robot's motor '{}'; name a motor with --motor", input.motor_id));
   }
 }
 
 Input input_of(const Options& options, const Session& session) {
   const DataFolders folders = session.folders();
   Input input{.job = {.robot = robot_named(folders, options.robot), .logs = options.logs, .folders = folders, .map = options.map},
-              .motor_id = {},
-              .findings = {}};
+              .motor_id = {}};
   find_motor(options, folders, input);
   FrictionJob& job = input.job;
   job.direction = options.direction == "commanded"  ? TravelDirection::commanded
@@ -83,18 +80,12 @@ void draw(const Options& options, const Robot& robot, const SteadyFriction& foun
   document.add_file(second);
 }
 
-/// Joins the remarks on the motor, the logs and the fit.
-present::FrictionRemarks remarks_of(const Input& input, const FrictionRun& run, const std::vector<std::string>& of_fit) {
-  present::FrictionRemarks remarks{input.job.motor ? std::optional(input.motor_id) : std::nullopt, input.findings, run.suspicions};
-  remarks.findings.insert(remarks.findings.end(), run.findings.begin(), run.findings.end());
-  remarks.findings.insert(remarks.findings.end(), of_fit.begin(), of_fit.end());
-  return remarks;
-}
-
 void write_robot_file(const Options& options, const FrictionRun& run, present::Document& document, Session& session) {
   if (!options.out.empty()) {
     session.write(options.out, run.robot_text);
-    present::add_findings(document, run.notes, {});
+    for (const WrittenAsZero& each : run.notes) {
+      document.add_note(present::Severity::note, present::words_of(each));
+    }
     document.add_file(options.out);
   }
 }
@@ -102,7 +93,8 @@ void write_robot_file(const Options& options, const FrictionRun& run, present::D
 ExitCode steady_state(const Options& options, const Input& input, Session& session) {
   const Robot& robot = input.job.robot;
   const SteadyFriction found = steady_friction(input.job, progress_bar("reading"));
-  const present::FrictionRemarks remarks = remarks_of(input, found, present::lack_of_fit_words(found.fit));
+  const present::FrictionRemarks remarks =
+      present::friction_remarks(input.motor_id, input.job.motor.has_value(), found, present::lack_of_fit_words(found.fit));
   const present::FrictionAnswer answer{found.steady,          found.fit,           found.error,        found.settings.use_return_legs,
                                        found.has_expectation, found.expected_from, options.logs.size()};
   present::Document document = present::friction_document(robot, answer);
@@ -118,7 +110,7 @@ ExitCode steady_state(const Options& options, const Input& input, Session& sessi
 
 ExitCode by_roll_out(const Options& options, const Input& input, Session& session) {
   const RollOutFriction found = roll_out_friction(input.job, progress_bar("reading"));
-  const present::FrictionRemarks remarks = remarks_of(input, found, {});
+  const present::FrictionRemarks remarks = present::friction_remarks(input.motor_id, input.job.motor.has_value(), found, {});
   present::Document document = present::roll_out_document(input.job.robot, found.result, found.drive, options.logs.size());
   present::add_findings(document, remarks.findings, remarks.suspicions);
   write_robot_file(options, found, document, session);

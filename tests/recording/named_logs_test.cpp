@@ -1,0 +1,58 @@
+// Logs named by the user: parts, and equal names in different folders.
+#include "recording/named_logs.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "base/diagnostic.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+
+class NamedLogsTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* const day : {"monday", "tuesday"}) {
+      fs::create_directories(folder_ / day);
+      std::ofstream out(folder_ / day / "run.csv");
+      out << "time_s,current_A,winding_C\n";
+      for (int second = 0; second <= 100; ++second) {
+        out << second << "," << (second % 7) << "," << 25.0 + 0.1 * second + (day[0] == 'm' ? 0.0 : 1.0) << "\n";
+      }
+    }
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  [[nodiscard]] std::string log(const char* day) const { return (folder_ / day / "run.csv").string(); }
+
+ private:
+  fs::path folder_ = fs::path(testing::TempDir()) / ("named_logs_" + std::to_string(getpid()));
+};
+
+TEST_F(NamedLogsTest, EqualNamesGetTheirFoldersAndFittedOnesIgnoreTheHoldOut) {
+  const NamedLogs both = read_named_logs({log("monday"), log("tuesday")}, {}, {});
+  EXPECT_EQ(both.fitted[0].name, "monday/run");
+  EXPECT_EQ(both.fitted[1].name, "tuesday/run");
+  const NamedLogs apart = read_named_logs({log("monday")}, {log("tuesday")}, {});
+  EXPECT_EQ(apart.fitted[0].name, "run");
+  EXPECT_EQ(apart.held_out[0].name, "tuesday/run");
+}
+
+TEST_F(NamedLogsTest, PartsOfOneLogKeepItsNameAndShareTheTime) {
+  const NamedLogs parts = read_named_logs({log("monday") + "@0-60%"}, {log("monday") + "@60-100%"}, {});
+  EXPECT_EQ(parts.fitted[0].name, "run");
+  EXPECT_EQ(parts.held_out[0].name, "run");
+  EXPECT_NEAR(parts.fitted[0].time_s.back(), 60.0, 1.0);
+  EXPECT_NEAR(parts.held_out[0].time_s.front(), 60.0, 1.0);
+  EXPECT_EQ(parts.readings.size(), 2U);
+  EXPECT_TRUE(parts.fitted[0].blocking_of_whole);
+  EXPECT_THROW(read_named_logs({log("monday") + "@70-20%"}, {}, {}), Failure);
+}
+
+}  // namespace
+}  // namespace heatsoak
