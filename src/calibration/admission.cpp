@@ -109,7 +109,7 @@ double generous_heat_W(const MotorValues& nominal, const Recording& recording, s
   const auto known_or = [](double known, double otherwise) { return std::isnan(known) ? otherwise : known; };
   const double power_W = std::abs(value("power_in_W"));
   const double hot_ratio = resistance_ratio(nominal.temperature_coefficient_per_K, known_or(value("winding_C"), kSheetTemperature_C));
-  const double speed_rad_per_s = known_or(std::abs(value("speed_rad_per_s")), nominal.no_load_speed_rad_per_s);
+  const double speed_rad_per_s = known_or(std::abs(value("speed_rad_per_s")), nominal.no_load_speed_rad_per_s.value_or(kUnknown));
   const double copper_W = std::pow(value("current_A"), 2) * nominal.terminal_resistance_ohm * std::max(1.0, hot_ratio);
   const double turning_W = nominal.torque_constant_Nm_per_A * nominal.no_load_current_A * speed_rad_per_s;
   const double of_current_W = copper_W + kSpeedLoss_ratio * known_or(turning_W, 0.0);

@@ -253,14 +253,14 @@ class ModelBuilder {
     }
     model.prior.precision = exponents.transpose() * precision_of_parameters(exponents.rows()) * exponents;
     // An earlier fit has already used the mass.
-    if (const double mass_kg = motor_.nominal.mass_kg; !std::isnan(mass_kg) && !motor_.fit) {
+    if (const std::optional<double> mass_kg = motor_.nominal.mass_kg; mass_kg && !motor_.fit) {
       const double winding_J_per_K = std::exp(model.prior.mean[winding]);
       const double stator_J_per_K = std::exp(model.prior.mean[stator]);
       const double sum_J_per_K = winding_J_per_K + stator_J_per_K;
       Eigen::VectorXd share = Eigen::VectorXd::Zero(count);
       share[winding] = winding_J_per_K / sum_J_per_K;
       share[stator] = stator_J_per_K / sum_J_per_K;
-      const double off = std::log(kSpecificHeat_J_per_kg_K * mass_kg / sum_J_per_K);
+      const double off = std::log(kSpecificHeat_J_per_kg_K * *mass_kg / sum_J_per_K);
       const Eigen::MatrixXd before = model.prior.precision;
       model.prior.precision += share * share.transpose() / (kMassPrior_sd * kMassPrior_sd);
       model.prior.mean += model.prior.precision.ldlt().solve(share) * off / (kMassPrior_sd * kMassPrior_sd);

@@ -52,8 +52,7 @@ const EffectType& loss_at_unlogged_speed() {
 
 double most_loss_at_speed_W(const Motor& motor) {
   const MotorValues& values = motor.nominal;
-  const double no_load_rad_per_s = std::isnan(values.no_load_speed_rad_per_s) ? values.nominal_voltage_V / values.torque_constant_Nm_per_A
-                                                                              : values.no_load_speed_rad_per_s;
+  const double no_load_rad_per_s = values.no_load_speed_rad_per_s.value_or(values.nominal_voltage_V / values.torque_constant_Nm_per_A);
   const double most_W = drag_torque_Nm(values) * no_load_rad_per_s;
   return most_W > 0.0 ? most_W : 0.0;
 }

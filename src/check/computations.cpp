@@ -88,7 +88,7 @@ const GuardedDrive& Computations::guarded_drive(const Check& check) {
     throw Failure(ExitCode::bad_input, fmt::format("the drive core can drive only a match; {} is {}. Expected a duty of the shape match",
                                                    check.duty->id, check.duty->shape));
   }
-  if (std::isnan(check.motor->nominal.rotor_inertia_kg_m2)) {
+  if (!check.motor->nominal.rotor_inertia_kg_m2) {
     throw Failure(ExitCode::bad_input, fmt::format("{} has no rotor_inertia: without it no acceleration of a wheel can be calculated",
                                                    check.motor->file.string()));
   }

@@ -48,8 +48,8 @@ BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateO
   const double loop_ohm = values.terminal_resistance_ohm + robot.series_resistance_ohm();
   BarrierRules rules;
   rules.limits.winding_C = lowest_limit_C(motor, "winding_limit", values.winding_limit_C);
-  if (!std::isnan(values.stator_limit_C)) {
-    rules.limits.stator_C = lowest_limit_C(motor, "stator_limit", values.stator_limit_C);
+  if (values.stator_limit_C) {
+    rules.limits.stator_C = lowest_limit_C(motor, "stator_limit", *values.stator_limit_C);
   }
   if (!(rules.limits.winding_C > options.hottest_ambient_C)) {
     throw Failure(ExitCode::bad_input, fmt::format("{}: the winding limit of {:.1f} °C is not above the hottest air of {:.1f} °C, expected "

@@ -35,7 +35,7 @@ void require_all(const Robot& robot, const MotorValues& motor) {
       diagnostics.add(each.at, each.key, each.message);
     }
   }
-  if (std::isnan(motor.rotor_inertia_kg_m2)) {
+  if (!motor.rotor_inertia_kg_m2) {
     diagnostics.add({}, "figures.rotor_inertia", "of the motor is missing: without it no acceleration of a wheel can be calculated");
   }
   diagnostics.throw_if_any();

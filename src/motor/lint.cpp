@@ -30,7 +30,7 @@ LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_l
 
 bool is_complete(const MotorValues& values) {
   return std::ranges::all_of(motor_parameter_specs(), [&](const MotorParameterSpec& each) {
-    return each.need == Need::optional || std::isfinite(values.*each.value);
+    return each.need == Need::optional || value_of(values, each).has_value();
   });
 }
 

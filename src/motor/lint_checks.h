@@ -1,13 +1,14 @@
-// Interface shared by the lint checks. A check reports nothing unless the file gives all the values that it compares; absent ones are NaN
-// in MotorValues.
+// Interface shared by the lint checks. A check reports nothing unless the file gives all the values that it compares.
 #pragma once
 
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "base/unknown.h"
 #include "motor/lint.h"
 
 namespace heatsoak::lint_checks {
@@ -45,6 +46,9 @@ struct Bounds {
   /// Returns whether the value is out of bounds; false for NaN, so that absent values cause no finding.
   [[nodiscard]] bool excludes(double value) const { return value < low || value > high; }
 };
+
+/// Returns the value, or NaN if it is absent: every comparison with it is false, so that the check finds nothing.
+inline double plain(const std::optional<double>& value) { return value.value_or(kUnknown); }
 
 /// Returns error, or warning if one of the contradicting values is an estimate.
 LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_list<std::string_view> keys);

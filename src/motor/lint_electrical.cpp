@@ -76,10 +76,10 @@ std::string explanation(double factor) {
 /// Returns advice. A given no-load speed decides which of the two constants is wrong.
 std::string verdict_on_constants(const MotorValues& v) {
   const double emf_V = v.nominal_voltage_V - v.no_load_current_A * v.terminal_resistance_ohm;
-  const double no_load_rad_per_s = v.no_load_speed_rad_per_s;
-  const bool speed_fits = !kNoLoadSpeed.excludes(v.speed_constant_rad_per_s_per_V * emf_V / no_load_rad_per_s);
+  const double no_load_rad_per_s = plain(v.no_load_speed_rad_per_s);
+  const bool speed_fits = !kNoLoadSpeed.excludes(plain(v.speed_constant_rad_per_s_per_V) * emf_V / no_load_rad_per_s);
   const bool torque_fits = !kNoLoadSpeed.excludes(emf_V / v.torque_constant_Nm_per_A / no_load_rad_per_s);
-  std::string torque_verdict = explanation(v.torque_constant_Nm_per_A * v.speed_constant_rad_per_s_per_V);
+  std::string torque_verdict = explanation(v.torque_constant_Nm_per_A * plain(v.speed_constant_rad_per_s_per_V));
   if (std::isnan(no_load_rad_per_s) || speed_fits == torque_fits) {
     return torque_verdict;
   }
@@ -115,35 +115,35 @@ bool is_whole(double value) { return std::abs(value - std::round(value)) < 1e-9;
 
 void constants(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  const double product = v.torque_constant_Nm_per_A * v.speed_constant_rad_per_s_per_V;
+  const double product = v.torque_constant_Nm_per_A * plain(v.speed_constant_rad_per_s_per_V);
   if (around_one(kConstantsTolerance).excludes(product)) {
-    findings.error("torque_constant",
-                   fmt::format("torque constant {} times speed constant {} is {}, expected 1 within 1.5 %; {}",
-                               shown_torque_constant(v.torque_constant_Nm_per_A), shown_speed_constant(v.speed_constant_rad_per_s_per_V),
-                               significant(product, 3), verdict_on_constants(v)));
+    findings.error("torque_constant", fmt::format("torque constant {} times speed constant {} is {}, expected 1 within 1.5 %; {}",
+                                                  shown_torque_constant(v.torque_constant_Nm_per_A),
+                                                  shown_speed_constant(plain(v.speed_constant_rad_per_s_per_V)), significant(product, 3),
+                                                  verdict_on_constants(v)));
   }
 }
 
 void mechanical_time_constant(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  const double expected_s = gradient_rad_per_s_per_Nm(v) * v.rotor_inertia_kg_m2;
-  const double ratio = expected_s / v.mechanical_time_constant_s;
+  const double expected_s = gradient_rad_per_s_per_Nm(v) * plain(v.rotor_inertia_kg_m2);
+  const double ratio = expected_s / plain(v.mechanical_time_constant_s);
   if (around_one(kProductTolerance).excludes(ratio)) {
-    findings.error("mechanical_time_constant",
-                   fmt::format("{} is listed, but R·J/K_t² is {} with {} and {}; expected within 2 %{}",
-                               shown(v.mechanical_time_constant_s * 1e3, "ms"), shown(expected_s * 1e3, "ms"),
-                               shown(v.terminal_resistance_ohm, "ohm"), shown_inertia(v.rotor_inertia_kg_m2), resistance_hint(ratio)));
+    findings.error("mechanical_time_constant", fmt::format("{} is listed, but R·J/K_t² is {} with {} and {}; expected within 2 %{}",
+                                                           shown(plain(v.mechanical_time_constant_s) * 1e3, "ms"),
+                                                           shown(expected_s * 1e3, "ms"), shown(v.terminal_resistance_ohm, "ohm"),
+                                                           shown_inertia(plain(v.rotor_inertia_kg_m2)), resistance_hint(ratio)));
   }
 }
 
 void speed_torque_gradient(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  const double ratio = gradient_rad_per_s_per_Nm(v) / v.speed_torque_gradient_rad_per_s_per_Nm;
+  const double ratio = gradient_rad_per_s_per_Nm(v) / plain(v.speed_torque_gradient_rad_per_s_per_Nm);
   if (around_one(kProductTolerance).excludes(ratio)) {
     findings.error(
         "speed_torque_gradient",
         fmt::format("{} is listed, but R/K_t² is {} with {} and {}; expected within 2 %{}",
-                    shown_gradient(v.speed_torque_gradient_rad_per_s_per_Nm), shown_gradient(gradient_rad_per_s_per_Nm(v)),
+                    shown_gradient(plain(v.speed_torque_gradient_rad_per_s_per_Nm)), shown_gradient(gradient_rad_per_s_per_Nm(v)),
                     shown(v.terminal_resistance_ohm, "ohm"), shown_torque_constant(v.torque_constant_Nm_per_A), resistance_hint(ratio)));
   }
 }
@@ -151,21 +151,21 @@ void speed_torque_gradient(const Motor& motor, Findings& findings) {
 void stall_current(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double expected_A = v.nominal_voltage_V / v.terminal_resistance_ohm;
-  const double rounding_A = is_whole(v.stall_current_A) ? kWholeAmperes_A : 0.0;
+  const double rounding_A = is_whole(plain(v.stall_current_A)) ? kWholeAmperes_A : 0.0;
   const double allowed_A = std::max(rounding_A, kStallTolerance * expected_A);
-  if (std::abs(v.stall_current_A - expected_A) > allowed_A) {
+  if (std::abs(plain(v.stall_current_A) - expected_A) > allowed_A) {
     findings.error("stall_current",
-                   fmt::format("{} is listed, but {} through {} is {}; expected within {}{}", shown(v.stall_current_A, "A"),
+                   fmt::format("{} is listed, but {} through {} is {}; expected within {}{}", shown(plain(v.stall_current_A), "A"),
                                shown(v.nominal_voltage_V, "V"), shown(v.terminal_resistance_ohm, "ohm"), shown(expected_A, "A"),
-                               shown(allowed_A, "A"), resistance_hint(v.stall_current_A / expected_A)));
+                               shown(allowed_A, "A"), resistance_hint(plain(v.stall_current_A) / expected_A)));
   }
 }
 
 void stall_torque(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double linear_Nm = v.torque_constant_Nm_per_A * v.nominal_voltage_V / v.terminal_resistance_ohm;
-  const double ratio = v.stall_torque_Nm / linear_Nm;
-  const std::string found = fmt::format("{} is listed, K_t·U/R is {}", shown_torque(v.stall_torque_Nm), shown_torque(linear_Nm));
+  const double ratio = plain(v.stall_torque_Nm) / linear_Nm;
+  const std::string found = fmt::format("{} is listed, K_t·U/R is {}", shown_torque(plain(v.stall_torque_Nm)), shown_torque(linear_Nm));
   if (motor.stall_includes_saturation) {
     if (ratio >= 1.0 - kStallTolerance) {
       findings.error("stall_torque", found +
@@ -173,7 +173,7 @@ void stall_torque(const Motor& motor, Findings& findings) {
                                          "set it to false if the sheet's line is straight");
     }
   } else if (around_one(kStallTolerance).excludes(ratio) &&
-             std::abs(v.stall_torque_Nm / (v.torque_constant_Nm_per_A * v.stall_current_A) - 1.0) < kStallTolerance) {
+             std::abs(plain(v.stall_torque_Nm) / (v.torque_constant_Nm_per_A * plain(v.stall_current_A)) - 1.0) < kStallTolerance) {
     // Stall torque and stall current are consistent, so there is no saturation.
     findings.error("stall_torque", found + ", expected the same within 1.5 %" + resistance_hint(ratio));
   } else if (ratio < kLooksSaturated) {
@@ -187,14 +187,14 @@ void stall_torque(const Motor& motor, Findings& findings) {
 
 void no_load_speed(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  const bool has_speed_constant = !std::isnan(v.speed_constant_rad_per_s_per_V);
-  const double constant_rad_per_s_per_V = has_speed_constant ? v.speed_constant_rad_per_s_per_V : 1.0 / v.torque_constant_Nm_per_A;
+  const bool has_speed_constant = v.speed_constant_rad_per_s_per_V.has_value();
+  const double constant_rad_per_s_per_V = has_speed_constant ? plain(v.speed_constant_rad_per_s_per_V) : 1.0 / v.torque_constant_Nm_per_A;
   const double expected_rad_per_s = constant_rad_per_s_per_V * (v.nominal_voltage_V - v.no_load_current_A * v.terminal_resistance_ohm);
-  if (kNoLoadSpeed.excludes(expected_rad_per_s / v.no_load_speed_rad_per_s)) {
+  if (kNoLoadSpeed.excludes(expected_rad_per_s / plain(v.no_load_speed_rad_per_s))) {
     findings.error("no_load_speed",
                    fmt::format("{} is listed, but {} and {} less I_0·R give {}; expected 0.99 to 1.03 times the listed speed; "
                                "check the {} constant and the voltage that the speed holds for",
-                               shown_speed(v.no_load_speed_rad_per_s), shown_speed_constant(constant_rad_per_s_per_V),
+                               shown_speed(plain(v.no_load_speed_rad_per_s)), shown_speed_constant(constant_rad_per_s_per_V),
                                shown(v.nominal_voltage_V, "V"), shown_speed(expected_rad_per_s), has_speed_constant ? "speed" : "torque"));
   }
 }
@@ -203,10 +203,10 @@ void max_efficiency(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double root = std::sqrt(v.no_load_current_A * v.terminal_resistance_ohm / v.nominal_voltage_V);
   const double linear = (1.0 - root) * (1.0 - root);
-  if (kEfficiency.excludes(v.max_efficiency / linear)) {
+  if (kEfficiency.excludes(plain(v.max_efficiency) / linear)) {
     findings.error("max_efficiency", fmt::format("{} % is listed, but (1 - sqrt(I_0·R/U))² is {} %; expected 0.9 to 1.015 times that; "
                                                  "check no-load current and resistance",
-                                                 significant(100.0 * v.max_efficiency, 3), significant(100.0 * linear, 3)));
+                                                 significant(100.0 * plain(v.max_efficiency), 3), significant(100.0 * linear, 3)));
   }
 }
 

@@ -29,7 +29,7 @@ constexpr double kLeastExternalInertia = 0.03;
 /// A motor shorter than this share of its diameter counts as flat; nearly all flat motors have an external rotor.
 constexpr double kFlat = 0.7;
 
-double body_area_m2(const MotorValues& v) { return std::numbers::pi / 4.0 * v.diameter_m * v.diameter_m; }
+double body_area_m2(const MotorValues& v) { return std::numbers::pi / 4.0 * plain(v.diameter_m) * plain(v.diameter_m); }
 
 std::string shown_heat(double heat_J_per_K, double mass_kg) {
   return fmt::format("{} ({} at a mass of {})", shown(heat_J_per_K, "J/K"), shown(heat_J_per_K / mass_kg, "J/(kg K)"),
@@ -42,19 +42,19 @@ void heat_capacities(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double winding_J_per_K = v.thermal_time_constant_winding_s / v.thermal_resistance_winding_stator_K_per_W;
   const double stator_J_per_K = v.thermal_time_constant_stator_s / v.thermal_resistance_stator_ambient_K_per_W;
-  if (kWindingHeat_J_per_kg_K.excludes(winding_J_per_K / v.mass_kg)) {
+  if (kWindingHeat_J_per_kg_K.excludes(winding_J_per_K / plain(v.mass_kg))) {
     findings.error(
         "thermal_time_constant_winding",
         fmt::format("time constant over thermal resistance gives the winding {}, expected 10 to 150 J/(kg K) for copper and resin; "
                     "check time constant, R_th1 and mass",
-                    shown_heat(winding_J_per_K, v.mass_kg)));
+                    shown_heat(winding_J_per_K, plain(v.mass_kg))));
   }
-  if (kStatorHeat_J_per_kg_K.excludes(stator_J_per_K / v.mass_kg)) {
+  if (kStatorHeat_J_per_kg_K.excludes(stator_J_per_K / plain(v.mass_kg))) {
     findings.error(
         "thermal_time_constant_stator",
         fmt::format("time constant over thermal resistance gives the stator {}, expected 100 to 900 J/(kg K) for steel and aluminium; "
                     "check time constant, R_th2 and mass",
-                    shown_heat(stator_J_per_K, v.mass_kg)));
+                    shown_heat(stator_J_per_K, plain(v.mass_kg))));
   }
   if (winding_J_per_K >= stator_J_per_K) {
     findings.error("thermal_time_constant_winding",
@@ -66,19 +66,20 @@ void heat_capacities(const Motor& motor, Findings& findings) {
 
 void electrical_time_constant(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  const double time_constant_s = v.terminal_inductance_H / v.terminal_resistance_ohm;
+  const double time_constant_s = plain(v.terminal_inductance_H) / v.terminal_resistance_ohm;
   if (kElectrical_s.excludes(time_constant_s)) {
     findings.error("terminal_inductance", fmt::format("{} over {} is {}, expected 0.02 to 5 ms; check the units of both",
-                                                      shown(1e3 * v.terminal_inductance_H, "mH"), shown(v.terminal_resistance_ohm, "ohm"),
-                                                      shown(1e3 * time_constant_s, "ms")));
+                                                      shown(1e3 * plain(v.terminal_inductance_H), "mH"),
+                                                      shown(v.terminal_resistance_ohm, "ohm"), shown(1e3 * time_constant_s, "ms")));
   }
 }
 
 void density(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  const double density_kg_per_m3 = v.mass_kg / (body_area_m2(v) * v.length_m);
-  const std::string found = fmt::format("{} in a body of {} diameter and {} length are {} kg/m3", shown(1e3 * v.mass_kg, "g"),
-                                        shown(1e3 * v.diameter_m, "mm"), shown(1e3 * v.length_m, "mm"), significant(density_kg_per_m3, 3));
+  const double density_kg_per_m3 = plain(v.mass_kg) / (body_area_m2(v) * plain(v.length_m));
+  const std::string found =
+      fmt::format("{} in a body of {} diameter and {} length are {} kg/m3", shown(1e3 * plain(v.mass_kg), "g"),
+                  shown(1e3 * plain(v.diameter_m), "mm"), shown(1e3 * plain(v.length_m), "mm"), significant(density_kg_per_m3, 3));
   if (kDensity_kg_per_m3.excludes(density_kg_per_m3)) {
     findings.error("mass",
                    found + ", expected 1500 to 7500 kg/m3 (solid steel has 7850); check mass and dimensions of the body without shaft");
@@ -90,21 +91,21 @@ void density(const Motor& motor, Findings& findings) {
 
 void rotor_inertia(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  const double ring_kg_m2 = v.mass_kg * 0.25 * v.diameter_m * v.diameter_m;
-  const double ratio = v.rotor_inertia_kg_m2 / ring_kg_m2;
+  const double ring_kg_m2 = plain(v.mass_kg) * 0.25 * plain(v.diameter_m) * plain(v.diameter_m);
+  const double ratio = plain(v.rotor_inertia_kg_m2) / ring_kg_m2;
   if (ratio > kMostInertia) {
     findings.error("rotor_inertia",
                    fmt::format("{} is more than half of {}, which the whole mass of {} would have at the radius of {}; check unit and mass",
-                               shown_inertia(v.rotor_inertia_kg_m2), shown_inertia(ring_kg_m2), shown(1e3 * v.mass_kg, "g"),
-                               shown(500.0 * v.diameter_m, "mm")));
+                               shown_inertia(plain(v.rotor_inertia_kg_m2)), shown_inertia(ring_kg_m2), shown(1e3 * plain(v.mass_kg), "g"),
+                               shown(500.0 * plain(v.diameter_m), "mm")));
   }
   const bool is_external = motor.rotor == "external";
-  const bool may_be_external = is_external || (motor.rotor.empty() && v.length_m < kFlat * v.diameter_m);
+  const bool may_be_external = is_external || (motor.rotor.empty() && plain(v.length_m) < kFlat * plain(v.diameter_m));
   if (may_be_external && ratio < kLeastExternalInertia) {
     findings.add(is_external ? LintFinding::Level::error : LintFinding::Level::warning, "rotor_inertia",
                  fmt::format("{} is too little for an external rotor of a motor of {} and {} diameter, expected at least {}; {}",
-                             shown_inertia(v.rotor_inertia_kg_m2), shown(1e3 * v.mass_kg, "g"), shown(1e3 * v.diameter_m, "mm"),
-                             shown_inertia(kLeastExternalInertia * ring_kg_m2),
+                             shown_inertia(plain(v.rotor_inertia_kg_m2)), shown(1e3 * plain(v.mass_kg), "g"),
+                             shown(1e3 * plain(v.diameter_m), "mm"), shown_inertia(kLeastExternalInertia * ring_kg_m2),
                              is_external ? "check it, and whether rotor = \"external\" is right"
                                          : "check it, or set rotor = \"internal\" if this flat motor's rotor runs inside"));
   }
@@ -120,19 +121,19 @@ void limits(const Motor& motor, Findings& findings) {
     }
   };
   compare_temperature("winding_limit", kSheetAmbient_C, "the ambient temperature of nominal values", v.winding_limit_C, "winding limit");
-  compare_temperature("ambient_max", v.ambient_max_C, "highest ambient temperature", v.winding_limit_C, "winding limit");
-  compare_temperature("ambient_min", v.ambient_min_C, "lowest ambient temperature", v.ambient_max_C, "highest");
-  if (v.stator_limit_C > v.winding_limit_C) {
+  compare_temperature("ambient_max", plain(v.ambient_max_C), "highest ambient temperature", v.winding_limit_C, "winding limit");
+  compare_temperature("ambient_min", plain(v.ambient_min_C), "lowest ambient temperature", plain(v.ambient_max_C), "highest");
+  if (plain(v.stator_limit_C) > v.winding_limit_C) {
     findings.error("stator_limit", fmt::format("the stator limit {} is above the winding limit {}; are they swapped?",
-                                               shown(v.stator_limit_C, "degC"), shown(v.winding_limit_C, "degC")));
+                                               shown(plain(v.stator_limit_C), "degC"), shown(v.winding_limit_C, "degC")));
   }
-  if (v.nominal_speed_rad_per_s > v.max_speed_rad_per_s) {
+  if (plain(v.nominal_speed_rad_per_s) > plain(v.max_speed_rad_per_s)) {
     findings.error("max_speed", fmt::format("nominal speed {} is above the highest permissible speed {}; check both",
-                                            shown_speed(v.nominal_speed_rad_per_s), shown_speed(v.max_speed_rad_per_s)));
-  } else if (v.no_load_speed_rad_per_s > v.max_speed_rad_per_s) {
+                                            shown_speed(plain(v.nominal_speed_rad_per_s)), shown_speed(plain(v.max_speed_rad_per_s))));
+  } else if (plain(v.no_load_speed_rad_per_s) > plain(v.max_speed_rad_per_s)) {
     findings.note("max_speed",
                   fmt::format("no-load speed {} at nominal voltage is above the highest permissible speed {}: limit the voltage",
-                              shown_speed(v.no_load_speed_rad_per_s), shown_speed(v.max_speed_rad_per_s)));
+                              shown_speed(plain(v.no_load_speed_rad_per_s)), shown_speed(plain(v.max_speed_rad_per_s))));
   }
 }
 

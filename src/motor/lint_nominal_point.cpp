@@ -67,7 +67,8 @@ LintFinding::Level level_of_heat(const Motor& motor) {
 /// Returns the largest voltage loss of commutation per ampere, in ohm: the overlap of a six-pulse bridge, (3/π)·ω_electric·L of one phase.
 /// 0 if the file lacks inductance or pole pairs.
 double commutation_ohm(const MotorValues& v) {
-  const double overlap_ohm = 3.0 / std::numbers::pi * v.pole_pairs * v.nominal_speed_rad_per_s * 0.5 * v.terminal_inductance_H;
+  const double overlap_ohm =
+      3.0 / std::numbers::pi * plain(v.pole_pairs) * plain(v.nominal_speed_rad_per_s) * 0.5 * plain(v.terminal_inductance_H);
   return std::isnan(overlap_ohm) ? 0.0 : overlap_ohm;
 }
 
@@ -75,44 +76,45 @@ double commutation_ohm(const MotorValues& v) {
 
 void nominal_current(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  if (v.no_load_current_A >= v.nominal_current_A) {
+  if (v.no_load_current_A >= plain(v.nominal_current_A)) {
     findings.error("no_load_current", fmt::format("no-load current {} is not below the nominal current {}; check both",
-                                                  shown(v.no_load_current_A, "A"), shown(v.nominal_current_A, "A")));
+                                                  shown(v.no_load_current_A, "A"), shown(plain(v.nominal_current_A), "A")));
   }
-  const double linear_Nm = v.torque_constant_Nm_per_A * v.nominal_current_A;
-  if (kNominalTorque.excludes(v.nominal_torque_Nm / linear_Nm)) {
-    findings.error("nominal_current",
-                   fmt::format("nominal torque {} is {} times K_t·I_n = {} (with {} and {}), expected 0.85 to 1.2 times; "
-                               "check the nominal current and the convention of the torque constant",
-                               shown_torque(v.nominal_torque_Nm), significant(v.nominal_torque_Nm / linear_Nm, 3), shown_torque(linear_Nm),
-                               shown_torque_constant(v.torque_constant_Nm_per_A), shown(v.nominal_current_A, "A")));
+  const double linear_Nm = v.torque_constant_Nm_per_A * plain(v.nominal_current_A);
+  if (kNominalTorque.excludes(plain(v.nominal_torque_Nm) / linear_Nm)) {
+    findings.error(
+        "nominal_current",
+        fmt::format("nominal torque {} is {} times K_t·I_n = {} (with {} and {}), expected 0.85 to 1.2 times; "
+                    "check the nominal current and the convention of the torque constant",
+                    shown_torque(plain(v.nominal_torque_Nm)), significant(plain(v.nominal_torque_Nm) / linear_Nm, 3),
+                    shown_torque(linear_Nm), shown_torque_constant(v.torque_constant_Nm_per_A), shown(plain(v.nominal_current_A), "A")));
   }
 }
 
 void peak_point(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  if (v.peak_torque_Nm < v.nominal_torque_Nm) {
+  if (plain(v.peak_torque_Nm) < plain(v.nominal_torque_Nm)) {
     findings.error("peak_torque", fmt::format("peak torque {} is less than the nominal torque {}; check both",
-                                              shown_torque(v.peak_torque_Nm), shown_torque(v.nominal_torque_Nm)));
+                                              shown_torque(plain(v.peak_torque_Nm)), shown_torque(plain(v.nominal_torque_Nm))));
   }
-  if (v.peak_current_A < v.nominal_current_A) {
+  if (plain(v.peak_current_A) < plain(v.nominal_current_A)) {
     findings.error("peak_current", fmt::format("peak current {} is less than the nominal current {}; check both",
-                                               shown(v.peak_current_A, "A"), shown(v.nominal_current_A, "A")));
+                                               shown(plain(v.peak_current_A), "A"), shown(plain(v.nominal_current_A), "A")));
   }
-  const double linear_Nm = v.torque_constant_Nm_per_A * v.peak_current_A;
-  if (kPeakTorque.excludes(v.peak_torque_Nm / linear_Nm)) {
-    findings.error("peak_torque",
-                   fmt::format("peak torque {} is {} times K_t·I_peak = {}, expected 0.2 (saturated) to 1.2 times; "
-                               "check the peak current and the convention of the torque constant",
-                               shown_torque(v.peak_torque_Nm), significant(v.peak_torque_Nm / linear_Nm, 3), shown_torque(linear_Nm)));
+  const double linear_Nm = v.torque_constant_Nm_per_A * plain(v.peak_current_A);
+  if (kPeakTorque.excludes(plain(v.peak_torque_Nm) / linear_Nm)) {
+    findings.error("peak_torque", fmt::format("peak torque {} is {} times K_t·I_peak = {}, expected 0.2 (saturated) to 1.2 times; "
+                                              "check the peak current and the convention of the torque constant",
+                                              shown_torque(plain(v.peak_torque_Nm)), significant(plain(v.peak_torque_Nm) / linear_Nm, 3),
+                                              shown_torque(linear_Nm)));
   }
 }
 
 void power_balance(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  const double input_W = v.nominal_voltage_V * v.nominal_current_A;
-  const double shaft_W = v.nominal_torque_Nm * v.nominal_speed_rad_per_s;
-  const double current_squared_A2 = v.nominal_current_A * v.nominal_current_A;
+  const double input_W = v.nominal_voltage_V * plain(v.nominal_current_A);
+  const double shaft_W = plain(v.nominal_torque_Nm) * plain(v.nominal_speed_rad_per_s);
+  const double current_squared_A2 = plain(v.nominal_current_A) * plain(v.nominal_current_A);
   const double copper_W = current_squared_A2 * v.terminal_resistance_ohm;
   const std::string found =
       fmt::format("at the nominal point {} go in (U·I_n) and {} come out at the shaft (T_n·ω_n)", shown(input_W, "W"), shown(shaft_W, "W"));
@@ -122,7 +124,8 @@ void power_balance(const Motor& motor, Findings& findings) {
                                "check nominal current, speed, torque and resistance",
                                found, shown(copper_W, "W"), shown(shaft_W + copper_W, "W")));
   }
-  const double most_loss_W = current_squared_A2 * resistance_ohm(v, v.winding_limit_C) + drag_torque_Nm(v) * v.nominal_speed_rad_per_s;
+  const double most_loss_W =
+      current_squared_A2 * resistance_ohm(v, v.winding_limit_C) + drag_torque_Nm(v) * plain(v.nominal_speed_rad_per_s);
   const double explained = (shaft_W + most_loss_W) / input_W;
   if (explained > kPowerExplained.high) {
     findings.add(
@@ -143,24 +146,24 @@ void power_balance(const Motor& motor, Findings& findings) {
 /// a 70 W motor gives 36 W), but the type's torque at its highest speed must.
 void assigned_power(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  const double torque_Nm = std::isnan(v.nominal_torque_Nm) ? v.torque_constant_Nm_per_A * v.nominal_current_A : v.nominal_torque_Nm;
-  const double speed_rad_per_s = std::isnan(v.max_speed_rad_per_s) ? v.no_load_speed_rad_per_s : v.max_speed_rad_per_s;
-  if (v.assigned_power_W > (1.0 + kPowerTolerance) * torque_Nm * speed_rad_per_s) {
+  const double torque_Nm = v.nominal_torque_Nm.value_or(v.torque_constant_Nm_per_A * plain(v.nominal_current_A));
+  const double speed_rad_per_s = v.max_speed_rad_per_s.value_or(plain(v.no_load_speed_rad_per_s));
+  if (plain(v.assigned_power_W) > (1.0 + kPowerTolerance) * torque_Nm * speed_rad_per_s) {
     findings.error("assigned_power",
                    fmt::format("{} are assigned, but the nominal torque {} up to the highest speed {} makes {}, expected at least the "
                                "assigned power; this may be the electrical input, check it",
-                               shown(v.assigned_power_W, "W"), shown_torque(torque_Nm), shown_speed(speed_rad_per_s),
+                               shown(plain(v.assigned_power_W), "W"), shown_torque(torque_Nm), shown_speed(speed_rad_per_s),
                                shown(torque_Nm * speed_rad_per_s, "W")));
     return;
   }
-  const double input_W = v.nominal_voltage_V * v.nominal_current_A;
-  const double copper_W = v.nominal_current_A * v.nominal_current_A * v.terminal_resistance_ohm;
-  if (v.assigned_power_W + copper_W > (1.0 + kPowerTolerance) * input_W) {
+  const double input_W = v.nominal_voltage_V * plain(v.nominal_current_A);
+  const double copper_W = plain(v.nominal_current_A) * plain(v.nominal_current_A) * v.terminal_resistance_ohm;
+  if (plain(v.assigned_power_W) + copper_W > (1.0 + kPowerTolerance) * input_W) {
     findings.note("assigned_power",
                   fmt::format("{} are assigned to the type, but at {} and {} this winding takes {} and loses {} of it in the copper: "
                               "it cannot give that power at its nominal voltage; use torque and speed instead",
-                              shown(v.assigned_power_W, "W"), shown(v.nominal_voltage_V, "V"), shown(v.nominal_current_A, "A"),
-                              shown(input_W, "W"), shown(copper_W, "W")));
+                              shown(plain(v.assigned_power_W), "W"), shown(v.nominal_voltage_V, "V"),
+                              shown(plain(v.nominal_current_A), "A"), shown(input_W, "W"), shown(copper_W, "W")));
   }
 }
 
@@ -168,31 +171,32 @@ void assigned_power(const Motor& motor, Findings& findings) {
 /// The check uses the speed constant, which the no-load speed confirms, so that a wrong torque constant does not disturb it.
 void nominal_speed(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  const double constant_rad_per_s_per_V =
-      std::isnan(v.speed_constant_rad_per_s_per_V) ? 1.0 / v.torque_constant_Nm_per_A : v.speed_constant_rad_per_s_per_V;
-  const double loss_rad_per_s_per_ohm = constant_rad_per_s_per_V * constant_rad_per_s_per_V * v.nominal_torque_Nm;
-  const double fastest_rad_per_s = v.no_load_speed_rad_per_s - loss_rad_per_s_per_ohm * v.terminal_resistance_ohm;
+  const double constant_rad_per_s_per_V = v.speed_constant_rad_per_s_per_V.value_or(1.0 / v.torque_constant_Nm_per_A);
+  const double loss_rad_per_s_per_ohm = constant_rad_per_s_per_V * constant_rad_per_s_per_V * plain(v.nominal_torque_Nm);
+  const double fastest_rad_per_s = plain(v.no_load_speed_rad_per_s) - loss_rad_per_s_per_ohm * v.terminal_resistance_ohm;
   const double overlap_ohm = commutation_ohm(v);
   const double slowest_rad_per_s =
-      v.no_load_speed_rad_per_s - loss_rad_per_s_per_ohm * (resistance_ohm(v, v.winding_limit_C) + overlap_ohm);
-  if (v.nominal_speed_rad_per_s > (1.0 + kSpeedTolerance) * fastest_rad_per_s) {
-    findings.error("nominal_speed",
-                   fmt::format("{} is listed, but from {} without load {} through {} leave at most {} even with cold copper, expected "
-                               "at most 3 % more; check resistance (between terminals?), nominal torque and speed",
-                               shown_speed(v.nominal_speed_rad_per_s), shown_speed(v.no_load_speed_rad_per_s),
-                               shown_torque(v.nominal_torque_Nm), shown(v.terminal_resistance_ohm, "ohm"), shown_speed(fastest_rad_per_s)));
+      plain(v.no_load_speed_rad_per_s) - loss_rad_per_s_per_ohm * (resistance_ohm(v, v.winding_limit_C) + overlap_ohm);
+  if (plain(v.nominal_speed_rad_per_s) > (1.0 + kSpeedTolerance) * fastest_rad_per_s) {
+    findings.error(
+        "nominal_speed",
+        fmt::format("{} is listed, but from {} without load {} through {} leave at most {} even with cold copper, expected "
+                    "at most 3 % more; check resistance (between terminals?), nominal torque and speed",
+                    shown_speed(plain(v.nominal_speed_rad_per_s)), shown_speed(plain(v.no_load_speed_rad_per_s)),
+                    shown_torque(plain(v.nominal_torque_Nm)), shown(v.terminal_resistance_ohm, "ohm"), shown_speed(fastest_rad_per_s)));
   }
-  if (overlap_ohm > 0.0 && v.nominal_speed_rad_per_s < (1.0 - kSpeedTolerance) * slowest_rad_per_s) {
+  if (overlap_ohm > 0.0 && plain(v.nominal_speed_rad_per_s) < (1.0 - kSpeedTolerance) * slowest_rad_per_s) {
     const double hot_over_cold = resistance_ohm(v, v.winding_limit_C) / v.terminal_resistance_ohm;
     const double needed_ohm =
-        ((v.no_load_speed_rad_per_s - v.nominal_speed_rad_per_s) / loss_rad_per_s_per_ohm - overlap_ohm) / hot_over_cold;
+        ((plain(v.no_load_speed_rad_per_s) - plain(v.nominal_speed_rad_per_s)) / loss_rad_per_s_per_ohm - overlap_ohm) / hot_over_cold;
     findings.error(
         "nominal_speed",
         fmt::format(
             "{} is listed, but from {} without load {} through {} leave at least {} with hot copper and commutation of {}, expected "
             "at most 3 % less; {}",
-            shown_speed(v.nominal_speed_rad_per_s), shown_speed(v.no_load_speed_rad_per_s), shown_torque(v.nominal_torque_Nm),
-            shown(v.terminal_resistance_ohm, "ohm"), shown_speed(slowest_rad_per_s), shown(v.terminal_inductance_H * 1e3, "mH"),
+            shown_speed(plain(v.nominal_speed_rad_per_s)), shown_speed(plain(v.no_load_speed_rad_per_s)),
+            shown_torque(plain(v.nominal_torque_Nm)), shown(v.terminal_resistance_ohm, "ohm"), shown_speed(slowest_rad_per_s),
+            shown(plain(v.terminal_inductance_H) * 1e3, "mH"),
             kAboutTwo.excludes(needed_ohm / v.terminal_resistance_ohm)
                 ? fmt::format("it would take {}: check resistance, nominal torque and speed", shown(needed_ohm, "ohm"))
                 : fmt::format("it would take {}, about twice as much: if the resistance is that of one phase, set "
@@ -212,8 +216,8 @@ void nominal_point_heat_check(const Motor& motor, Findings& findings) {
         fmt::format(
             "iron and friction loss at {} bring the winding to its limit of {} without any current, expected a nominal point of {} at "
             "{} to be possible; check no-load current and thermal resistances",
-            shown_speed(motor.nominal.nominal_speed_rad_per_s), shown(motor.nominal.winding_limit_C, "degC"),
-            shown_torque(motor.nominal.nominal_torque_Nm), shown(kSheetAmbient_C, "degC")));
+            shown_speed(plain(motor.nominal.nominal_speed_rad_per_s)), shown(motor.nominal.winding_limit_C, "degC"),
+            shown_torque(plain(motor.nominal.nominal_torque_Nm)), shown(kSheetAmbient_C, "degC")));
     return;
   }
   const double ratio = heat->equivalent_current_A / heat->limit_current_A;
@@ -224,7 +228,7 @@ void nominal_point_heat_check(const Motor& motor, Findings& findings) {
         fmt::format(
             "the nominal torque {} and the drag take {}, {} times the {} that bring the winding to {} at 25 °C ambient, expected {}; check "
             "thermal resistances, winding limit, resistance and nominal point",
-            shown_torque(motor.nominal.nominal_torque_Nm), shown(heat->equivalent_current_A, "A"), significant(ratio, 3),
+            shown_torque(plain(motor.nominal.nominal_torque_Nm)), shown(heat->equivalent_current_A, "A"), significant(ratio, 3),
             shown(heat->limit_current_A, "A"), shown(motor.nominal.winding_limit_C, "degC"),
             is_impossible ? "0.85 to 1.1 times" : "0.94 to 1.05 times, as on known sheets"));
   }
@@ -233,18 +237,18 @@ void nominal_point_heat_check(const Motor& motor, Findings& findings) {
 /// Coarser check for sheets without nominal torque or speed: copper loss alone, at standstill.
 void copper_limit(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  if (std::isnan(v.nominal_current_A) || !is_complete(v) || nominal_point_heat(motor) || v.winding_limit_C <= kSheetAmbient_C) {
+  if (!v.nominal_current_A || !is_complete(v) || nominal_point_heat(motor) || v.winding_limit_C <= kSheetAmbient_C) {
     return;
   }
   const double limit_A = limit_current_A(motor, 0.0);
-  const double ratio = v.nominal_current_A / limit_A;
+  const double ratio = plain(v.nominal_current_A) / limit_A;
   if (kCopperLimit.excludes(ratio)) {
     findings.add(
         level_of_heat(motor), "nominal_current",
         fmt::format(
             "nominal current {} is {} times the {} that bring the winding to {} by copper loss alone at 25 °C ambient, expected 0.65 to "
             "1.05 times; check thermal resistances, winding limit and resistance",
-            shown(v.nominal_current_A, "A"), significant(ratio, 3), shown(limit_A, "A"), shown(v.winding_limit_C, "degC")));
+            shown(plain(v.nominal_current_A), "A"), significant(ratio, 3), shown(limit_A, "A"), shown(v.winding_limit_C, "degC")));
   }
 }
 
@@ -254,12 +258,12 @@ namespace heatsoak {
 
 std::optional<NominalPointHeat> nominal_point_heat(const Motor& motor) {
   const MotorValues& v = motor.nominal;
-  if (std::isnan(v.nominal_torque_Nm) || std::isnan(v.nominal_speed_rad_per_s) || !lint_checks::is_complete(v) ||
+  if (!v.nominal_torque_Nm || !v.nominal_speed_rad_per_s || !lint_checks::is_complete(v) ||
       v.winding_limit_C <= lint_checks::kSheetAmbient_C) {
     return std::nullopt;
   }
-  return NominalPointHeat{(v.nominal_torque_Nm + drag_torque_Nm(v)) / v.torque_constant_Nm_per_A,
-                          lint_checks::limit_current_A(motor, v.nominal_speed_rad_per_s)};
+  return NominalPointHeat{(*v.nominal_torque_Nm + drag_torque_Nm(v)) / v.torque_constant_Nm_per_A,
+                          lint_checks::limit_current_A(motor, *v.nominal_speed_rad_per_s)};
 }
 
 }  // namespace heatsoak

@@ -82,6 +82,13 @@ const std::array<std::pair<std::string_view, double>, 3> kTorqueConventions{
      {"per_peak_phase_ampere", 6.0 / (std::numbers::sqrt3 * std::numbers::pi)},
      {"per_rms_phase_ampere", 6.0 / (std::numbers::sqrt3 * std::numbers::pi) / std::numbers::sqrt2}}};
 
+void set_value(MotorValues& values, const MotorParameterSpec& spec, double value) {
+  std::visit([&](const auto member) { values.*member = value; }, spec.value);
+}
+
+double* place_of(double& value, double /*absent*/) { return &value; }
+double* place_of(std::optional<double>& value, double absent) { return value ? &*value : &value.emplace(absent); }
+
 template <class Conventions>
 double convention_factor(Reader& conventions, std::string_view key, const Conventions& known) {
   std::vector<std::string_view> names;
@@ -116,15 +123,15 @@ void read_file_parameters(Reader& top, Motor& motor, double resistance_factor, d
   }
   for (const MotorParameterSpec& each : kSpecs) {
     if (std::optional<ParameterValue> parameter = parameters->parameter(each.spec, each.need)) {
-      if (each.value == &MotorValues::terminal_resistance_ohm || each.value == &MotorValues::terminal_inductance_H) {
+      if (each.spec.key == "terminal_resistance" || each.spec.key == "terminal_inductance") {
         scale(*parameter, resistance_factor);
-      } else if (each.value == &MotorValues::torque_constant_Nm_per_A) {
+      } else if (each.spec.key == "torque_constant") {
         scale(*parameter, torque_factor);
       }
-      if (each.value == &MotorValues::pole_pairs && parameter->value != std::round(parameter->value)) {
+      if (each.spec.key == "pole_pairs" && parameter->value != std::round(parameter->value)) {
         parameters->problem("pole_pairs", "is not a whole number");
       }
-      motor.nominal.*each.value = parameter->value;
+      set_value(motor.nominal, each, parameter->value);
       motor.parameters.emplace(each.spec.key, std::move(*parameter));
     }
   }
@@ -186,7 +193,9 @@ std::vector<std::pair<const ParameterValue*, double*>> places(const Motor& motor
   std::vector<std::pair<const ParameterValue*, double*>> all;
   for (const MotorParameterSpec& each : kSpecs) {
     if (const auto found = motor.parameters.find(each.spec.key); found != motor.parameters.end()) {
-      all.emplace_back(&found->second, &(sample.values.*each.value));
+      const double parameter = found->second.value;
+      all.emplace_back(&found->second,
+                       std::visit([&](const auto member) { return place_of(sample.values.*member, parameter); }, each.value));
     }
   }
   for (std::size_t e = 0; e < motor.effects.size(); ++e) {
@@ -233,12 +242,17 @@ std::vector<SensorFault> faults_of(const Motor& motor, std::string_view signal) 
 void refresh_values(Motor& motor) {
   for (const MotorParameterSpec& each : kSpecs) {
     if (const auto found = motor.parameters.find(each.spec.key); found != motor.parameters.end()) {
-      motor.nominal.*each.value = found->second.value;
+      set_value(motor.nominal, each, found->second.value);
     }
   }
 }
 
 std::span<const MotorParameterSpec> motor_parameter_specs() { return kSpecs; }
+
+std::optional<double> value_of(const MotorValues& values, const MotorParameterSpec& spec) {
+  const std::optional<double> value = std::visit([&](const auto member) { return std::optional<double>(values.*member); }, spec.value);
+  return value && !std::isnan(*value) ? value : std::nullopt;
+}
 bool is_agreed(std::string_view key) { return std::ranges::find(kAgreed, key) != kAgreed.end(); }
 
 Motor read_motor(const std::filesystem::path& path) {

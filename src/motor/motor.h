@@ -2,16 +2,17 @@
 #pragma once
 
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "base/parameter.h"
 #include "base/parameter_value.h"
 #include "base/random.h"
+#include "base/unknown.h"
 #include "input/reader.h"
 #include "motor/fit_table.h"
 #include "motor/sensor_effect.h"
@@ -19,44 +20,44 @@
 
 namespace heatsoak {
 
-inline constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
-
 /// Values as numbers in this program's conventions: resistance and inductance between two terminals, torque constant per DC ampere of block
-/// commutation. NaN if the file does not give them.
+/// commutation. A file may lack the optional ones.
 struct MotorValues {
-  double nominal_voltage_V = kAbsent;
-  double no_load_speed_rad_per_s = kAbsent;
-  double no_load_current_A = kAbsent;
-  double nominal_speed_rad_per_s = kAbsent;
-  double nominal_torque_Nm = kAbsent;
-  double nominal_current_A = kAbsent;
-  double stall_torque_Nm = kAbsent;
-  double stall_current_A = kAbsent;
-  double max_efficiency = kAbsent;
-  double terminal_resistance_ohm = kAbsent;
-  double terminal_inductance_H = kAbsent;
-  double torque_constant_Nm_per_A = kAbsent;
-  double speed_constant_rad_per_s_per_V = kAbsent;
-  double speed_torque_gradient_rad_per_s_per_Nm = kAbsent;
-  double mechanical_time_constant_s = kAbsent;
-  double rotor_inertia_kg_m2 = kAbsent;
-  double pole_pairs = kAbsent;
-  double mass_kg = kAbsent;
-  double diameter_m = kAbsent;
-  double length_m = kAbsent;
-  double assigned_power_W = kAbsent;
-  double peak_current_A = kAbsent;
-  double peak_torque_Nm = kAbsent;
-  double max_speed_rad_per_s = kAbsent;
-  double ambient_min_C = kAbsent;
-  double ambient_max_C = kAbsent;
-  double winding_limit_C = kAbsent;
-  double stator_limit_C = kAbsent;
-  double temperature_coefficient_per_K = kAbsent;
-  double thermal_resistance_winding_stator_K_per_W = kAbsent;
-  double thermal_resistance_stator_ambient_K_per_W = kAbsent;
-  double thermal_time_constant_winding_s = kAbsent;
-  double thermal_time_constant_stator_s = kAbsent;
+  // Required values; kUnknown only in a motor whose file has problems, see read_motor.h.
+  double nominal_voltage_V = kUnknown;
+  double no_load_current_A = kUnknown;
+  double terminal_resistance_ohm = kUnknown;
+  double torque_constant_Nm_per_A = kUnknown;
+  double winding_limit_C = kUnknown;
+  double temperature_coefficient_per_K = kUnknown;
+  double thermal_resistance_winding_stator_K_per_W = kUnknown;
+  double thermal_resistance_stator_ambient_K_per_W = kUnknown;
+  double thermal_time_constant_winding_s = kUnknown;
+  double thermal_time_constant_stator_s = kUnknown;
+
+  std::optional<double> no_load_speed_rad_per_s = {};
+  std::optional<double> nominal_speed_rad_per_s = {};
+  std::optional<double> nominal_torque_Nm = {};
+  std::optional<double> nominal_current_A = {};
+  std::optional<double> stall_torque_Nm = {};
+  std::optional<double> stall_current_A = {};
+  std::optional<double> max_efficiency = {};
+  std::optional<double> terminal_inductance_H = {};
+  std::optional<double> speed_constant_rad_per_s_per_V = {};
+  std::optional<double> speed_torque_gradient_rad_per_s_per_Nm = {};
+  std::optional<double> mechanical_time_constant_s = {};
+  std::optional<double> rotor_inertia_kg_m2 = {};
+  std::optional<double> pole_pairs = {};
+  std::optional<double> mass_kg = {};
+  std::optional<double> diameter_m = {};
+  std::optional<double> length_m = {};
+  std::optional<double> assigned_power_W = {};
+  std::optional<double> peak_current_A = {};
+  std::optional<double> peak_torque_Nm = {};
+  std::optional<double> max_speed_rad_per_s = {};
+  std::optional<double> ambient_min_C = {};
+  std::optional<double> ambient_max_C = {};
+  std::optional<double> stator_limit_C = {};
 };
 
 /// Returns the internal drag torque of the turning motor, K_t·I_0, in N m.
@@ -65,11 +66,13 @@ double drag_torque_Nm(const MotorValues& motor);
 /// Declaration of one motor parameter: its key, unit and range in the file, and the member that stores it.
 struct MotorParameterSpec {
   ParameterSpec spec;
-  double MotorValues::*value = nullptr;
+  std::variant<double MotorValues::*, std::optional<double> MotorValues::*> value;
   Need need = Need::optional;
   bool is_thermal = false;  ///< temperatures depend on it
 };
 std::span<const MotorParameterSpec> motor_parameter_specs();
+/// Returns the value that the specification declares; nothing if the file lacks it.
+std::optional<double> value_of(const MotorValues& values, const MotorParameterSpec& spec);
 /// Returns whether the value is set by agreement, such as a limit or the nominal voltage. It is the same for all parts and needs no
 /// tolerance.
 bool is_agreed(std::string_view key);

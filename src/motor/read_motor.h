@@ -9,7 +9,7 @@
 namespace heatsoak {
 
 /// Like read_motor(path), but adds the problems to `diagnostics`, so that the caller can look for more. Values that could not be read are
-/// NaN or absent. Throws Failure (bad_input) if the file is not valid TOML.
+/// absent; required ones are kUnknown. Throws Failure (bad_input) if the file is not valid TOML.
 Motor read_motor(const std::filesystem::path& path, Diagnostics& diagnostics);
 
 }  // namespace heatsoak

@@ -46,7 +46,7 @@ bool stands(const WeightConfig& weight) {
 BodyConfig make_body(const Robot& robot, const MotorValues& motor) {
   constexpr std::array<std::string_view, 4> kTables{"body", "wheels", "friction", "traction"};
   require_parameters(robot, kTables);
-  if (std::isnan(motor.rotor_inertia_kg_m2)) {
+  if (!motor.rotor_inertia_kg_m2) {
     throw bad_input({}, "figures.rotor_inertia", "of the motor is missing: without it no acceleration of a wheel can be calculated");
   }
   BodyConfig body;
@@ -65,7 +65,7 @@ BodyConfig make_body(const Robot& robot, const MotorValues& motor) {
   body.rolling_efficiency = robot.friction.rolling_efficiency.value_or(1.0);
   body.yaw_inertia_kg_m2 = robot.body.yaw_inertia_kg_m2.value();
   body.wheel_inertia_kg_m2 =
-      robot.wheels.inertia_kg_m2.value() + robot.drive.gear_ratio * robot.drive.gear_ratio * motor.rotor_inertia_kg_m2;
+      robot.wheels.inertia_kg_m2.value() + robot.drive.gear_ratio * robot.drive.gear_ratio * *motor.rotor_inertia_kg_m2;
   return body;
 }
 

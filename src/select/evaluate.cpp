@@ -224,8 +224,8 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
   const MotorSample sample = nominal_sample(motor);
   const Network network = datasheet_network(motor, sample);
   std::vector<NodeLimit> limits{{winding, sample.values.winding_limit_C}};
-  if (std::isfinite(sample.values.stator_limit_C)) {
-    limits.push_back({stator, sample.values.stator_limit_C});
+  if (sample.values.stator_limit_C) {
+    limits.push_back({stator, *sample.values.stator_limit_C});
     result.stator_limit_C = sample.values.stator_limit_C;
   }
   NominalRun run;
@@ -313,7 +313,8 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
     const MotorValues& values = block.motor(lane).values;
     work.winding_peak_C[place] = peak_C[winding][lane];
     work.stator_peak_C[place] = peak_C[stator][lane];
-    const bool is_over = peak_C[winding][lane] > values.winding_limit_C || peak_C[stator][lane] > values.stator_limit_C;
+    const bool is_over =
+        peak_C[winding][lane] > values.winding_limit_C || (values.stator_limit_C && peak_C[stator][lane] > *values.stator_limit_C);
     work.over_limit[place] = is_over ? 1 : 0;
     const double hottest_C = std::min(peak_C[winding][lane], values.winding_limit_C);
     const Feasibility each = feasibility(values, block.robot(lane), duty.kind, demand, block.duty(lane), hottest_C);

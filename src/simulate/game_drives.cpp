@@ -10,7 +10,7 @@ namespace heatsoak {
 GameSpread GameDrives::spread(double DriveScore::*value) const {
   GameSpread made;
   if (games.empty()) {
-    return {kAbsent, kAbsent, kAbsent};
+    return {kUnknown, kUnknown, kUnknown};
   }
   made.nominal = made.low = made.high = games.front().*value;
   for (const DriveScore& each : games) {
@@ -30,7 +30,7 @@ std::vector<GameDrives> drive_games(const Robot& robot, const MatchInputs& input
   std::vector<MotorGuard> guards(motors.size());
   in_parallel(motors.size(), options.threads, games, all, progress, [&](std::size_t i) {
     drives[i].motor_id = motors[i].id;
-    if (std::isnan(motors[i].nominal.rotor_inertia_kg_m2)) {
+    if (!motors[i].nominal.rotor_inertia_kg_m2) {
       drives[i].why_none = "the motor's file has no rotor_inertia: without it no acceleration of a wheel can be calculated";
       return;
     }

@@ -40,7 +40,7 @@ MatchRun run_match(const Game& game, const Robot& robot, const Motor& motor, con
 }
 
 void require_rotor_inertia(const Motor& motor) {
-  if (std::isnan(motor.nominal.rotor_inertia_kg_m2)) {
+  if (!motor.nominal.rotor_inertia_kg_m2) {
     throw bad_input({motor.file.string()}, "figures.rotor_inertia", "is missing: without it no acceleration of a wheel can be calculated");
   }
 }

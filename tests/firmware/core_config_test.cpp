@@ -103,7 +103,7 @@ TEST(CoreConfig, NamesEveryMissingParameter) {
   robot.traction.coefficient_ratio.reset();
   robot.battery.full_V.reset();
   MotorValues motor = ecx_32().nominal;
-  motor.rotor_inertia_kg_m2 = kAbsent;
+  motor.rotor_inertia_kg_m2 = {};
   try {
     make_core_config(robot, motor, {});
     FAIL() << "no failure";

@@ -30,7 +30,7 @@ double value_of(const Network& network, std::string_view name) {
     }
   }
   ADD_FAILURE() << "no parameter " << name;
-  return kAbsent;
+  return kUnknown;
 }
 
 TEST(DatasheetNetwork, heat_capacity_is_time_constant_over_resistance) {

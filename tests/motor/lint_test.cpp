@@ -244,7 +244,7 @@ TEST(WrongValues, are_found_at_their_line) {
 
 struct Slip {
   std::string name;
-  double MotorValues::*figure;
+  std::variant<double MotorValues::*, std::optional<double> MotorValues::*> figure;
   double factor;
   std::vector<std::string> expected;
 };
@@ -253,7 +253,11 @@ class SlipOfASheet : public testing::TestWithParam<Slip> {};
 
 TEST_P(SlipOfASheet, fires_its_checks_only) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
-  motor.nominal.*GetParam().figure *= GetParam().factor;
+  if (const auto* const required = std::get_if<double MotorValues::*>(&GetParam().figure)) {
+    motor.nominal.** required *= GetParam().factor;
+  } else {
+    *(motor.nominal.*std::get<std::optional<double> MotorValues::*>(GetParam().figure)) *= GetParam().factor;
+  }
 
   EXPECT_THAT(errors(motor), testing::ElementsAreArray(GetParam().expected));
 }
@@ -295,7 +299,7 @@ TEST(Slip, half_the_resistance_is_named_one_phase) {
 
 TEST(Slip, torque_constant_confirmed_by_the_no_load_speed_blames_the_speed_constant) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
-  motor.nominal.speed_constant_rad_per_s_per_V *= 0.5;
+  *motor.nominal.speed_constant_rad_per_s_per_V *= 0.5;
 
   EXPECT_THAT(said_by("constants", motor), HasSubstr("the speed constant should be 259 rpm/V"));
 }
@@ -334,8 +338,8 @@ TEST(Slip, torque_constant_in_another_convention_is_named) {
 TEST(Lint, reports_nothing_about_absent_values) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
   for (const MotorParameterSpec& each : motor_parameter_specs()) {
-    if (each.need == Need::optional && each.value != &MotorValues::temperature_coefficient_per_K) {
-      motor.nominal.*each.value = kAbsent;
+    if (const auto* const optional = std::get_if<std::optional<double> MotorValues::*>(&each.value)) {
+      (motor.nominal.**optional).reset();
     }
   }
 

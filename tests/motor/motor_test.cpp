@@ -47,13 +47,13 @@ TEST(MotorConventions, between_terminals_and_per_dc_ampere_are_ours) {
   EXPECT_DOUBLE_EQ(motor.nominal.terminal_resistance_ohm, 0.5);
   EXPECT_DOUBLE_EQ(motor.nominal.torque_constant_Nm_per_A, 0.03);
   EXPECT_EQ(motor.nominal.temperature_coefficient_per_K, 0.0039);
-  EXPECT_TRUE(std::isnan(motor.nominal.stator_limit_C));
+  EXPECT_FALSE(motor.nominal.stator_limit_C);
 }
 
 TEST(MotorConventions, phase_values_are_two_in_series) {
   const Motor motor = motor_with("phase_to_star", "per_dc_ampere");
   EXPECT_DOUBLE_EQ(motor.nominal.terminal_resistance_ohm, 1.0);
-  EXPECT_DOUBLE_EQ(motor.nominal.terminal_inductance_H, 0.4e-3);
+  EXPECT_DOUBLE_EQ(motor.nominal.terminal_inductance_H.value(), 0.4e-3);
   const ParameterValue& figure = motor.parameters.at("terminal_resistance");
   EXPECT_DOUBLE_EQ(figure.spread->low, 0.9);
   EXPECT_DOUBLE_EQ(figure.spread->high, 1.1);

@@ -405,7 +405,7 @@ TEST(Robots, that_are_shipped_can_be_simulated_and_drawn) {
     EXPECT_GT(robot.limits.speed_m_per_s.value(), 1.0);
     EXPECT_GT(robot.limits.yaw_acceleration_rad_per_s2.value(), 1.0);
     const MotorValues motor =
-        shipped_motor(robot.drive.motor).nominal.rotor_inertia_kg_m2 > 0.0 ? shipped_motor(robot.drive.motor).nominal : lossy_motor();
+        shipped_motor(robot.drive.motor).nominal.rotor_inertia_kg_m2 ? shipped_motor(robot.drive.motor).nominal : lossy_motor();
     Random random(1, 2);
     const Robot drawn = draw_sample(robot, random);
     EXPECT_NE(drawn.body.yaw_inertia_kg_m2.value(), robot.body.yaw_inertia_kg_m2.value());

@@ -532,7 +532,7 @@ TEST(Evaluate, nearer_limit_decides_margins) {
   // This additional current brings the stator to its limit.
   const Duty more = constant_current(3.0 + *with.margin_A, 2000.0);
   const MotorEvaluation at_limit = evaluate(robot, more, more.demand(robot, 1), std::span(&motor, 1), {.samples = 0}).front();
-  EXPECT_NEAR(at_limit.stator_peak_C.nominal, motor.nominal.stator_limit_C, 0.05);
+  EXPECT_NEAR(at_limit.stator_peak_C.nominal, *motor.nominal.stator_limit_C, 0.05);
 }
 
 // Clopper and Pearson's interval for 10 of 100 is 0.0490 to 0.1762. The binomial distribution gives the percentile's ranks among 100.

@@ -216,7 +216,7 @@ TEST(GameDrives, do_not_depend_on_threads) {
   const MatchInputs& inputs = dynamic_cast<const MatchDuty&>(*duty.shape_data).inputs();
   std::vector<Motor> motors{ecx_32(), shipped_motor("nanotec_df45l024048_a2")};
   motors.push_back(ecx_32());
-  motors.back().nominal.rotor_inertia_kg_m2 = kAbsent;
+  motors.back().nominal.rotor_inertia_kg_m2 = {};
   GameDriveOptions options;
   options.games = 2;
   options.guard = GuardUse::off;

@@ -171,7 +171,7 @@ TEST(Sensing, defaults_are_plausible_and_ranges_are_kept) {
   }
   SensingConfig config;
   config.encoder_turn_count = -1.0;
-  config.gyro_noise_rad_per_s = kAbsent;
+  config.gyro_noise_rad_per_s = kUnknown;
   try {
     require_declared_ranges(config, sensing_numbers());
     FAIL();

@@ -13,9 +13,10 @@ namespace heatsoak::thresholds {
 inline constexpr Range kPlausible_C = Range::between(-60.0, 1000.0);
 
 /// Returns the motor's own limit as the loosest one; nothing without a motor or if its file gives no such limit.
-inline std::optional<LoosestLimit> own_limit(const Check& check, double MotorValues::*limit_C, const char* what) {
-  const bool is_known = check.motor && std::isfinite(check.motor->nominal.*limit_C);
-  return is_known ? std::optional<LoosestLimit>({check.motor->nominal.*limit_C, what}) : std::nullopt;
+template <class Member>
+std::optional<LoosestLimit> own_limit(const Check& check, Member MotorValues::*limit_C, const char* what) {
+  const std::optional<double> own_C = check.motor ? std::optional<double>(check.motor->nominal.*limit_C) : std::nullopt;
+  return own_C ? std::optional<LoosestLimit>({*own_C, what}) : std::nullopt;
 }
 
 /// The upper end of the 95 % interval of a peak's 95th percentile, with the air as the origin of its rise. Throws Failure where the samples

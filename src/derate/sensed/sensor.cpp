@@ -79,7 +79,7 @@ ResistanceReading resistance_reading(const Motor& motor, const SensorOptions& op
       (half_width_ratio(motor, "torque_constant", values.torque_constant_Nm_per_A) + kWeakening) * values.torque_constant_Nm_per_A;
   // At less than nominal resistance the voltage drop is smaller, so the same voltage error has a larger effect.
   const double least_ohm = resistance_ohm * (1.0 - std::min(0.5, half_width_ratio(motor, "terminal_resistance", resistance_ohm)));
-  const double inductance_H = std::isnan(values.terminal_inductance_H) ? 0.0 : values.terminal_inductance_H;
+  const double inductance_H = values.terminal_inductance_H.value_or(0.0);
   const double most_change_A = inductance_H > 0.0 ? options.voltage_error_V * period_s / inductance_H : std::numeric_limits<double>::max();
   const double K_per_share = 2.0 * hot_ratio / (alpha_per_K * options.accuracy_K);
   return {.resistance_25C_ohm = resistance_ohm,

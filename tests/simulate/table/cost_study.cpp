@@ -62,7 +62,7 @@ struct Run {
 struct Cell {
   const Level* level = nullptr;
   const Known* known = nullptr;
-  double cap_A = kAbsent;  ///< found in hindsight; absent if no cap is needed
+  double cap_A = kUnknown;  ///< found in hindsight; absent if no cap is needed
   std::array<std::vector<Run>, kMethods.size()> runs;
 };
 
@@ -87,7 +87,7 @@ std::unique_ptr<Limiter> make_limiter(Method method, const Known& known, std::si
   }
 }
 
-Run drive(const Level& level, const Known& known, Method method, std::size_t i, double cap_A = kAbsent) {
+Run drive(const Level& level, const Known& known, Method method, std::size_t i, double cap_A = kUnknown) {
   Robot robot = level.match.robot;
   if (method == Method::hindsight_cap) {
     // The firmware limits the current through the voltage and the lowest resistance, so a cold winding gets more than a warm one.

@@ -39,7 +39,7 @@ struct Way {
   const Motor* motor = nullptr;       ///< the core knows the tolerances of this motor file
   const MotorGuard* guard = nullptr;  ///< null: no guard
   bool has_sensors = false;           ///< sensors of motor current and air temperature
-  double cap_A = kAbsent;             ///< constant cap for every motor
+  double cap_A = kUnknown;            ///< constant cap for every motor
 };
 
 /// Values of one second.

@@ -54,9 +54,8 @@ Derating exact_derating(const Motor& motor, const Robot& robot) {
 
 Overload overload_of(const MotorValues& motor) {
   Overload overload;
-  overload.continuous_A = std::isnan(motor.nominal_current_A)
-                              ? motor.nominal_torque_Nm / motor.torque_constant_Nm_per_A + motor.no_load_current_A
-                              : motor.nominal_current_A;
+  overload.continuous_A = motor.nominal_current_A.value_or(motor.nominal_torque_Nm.value_or(kUnknown) / motor.torque_constant_Nm_per_A +
+                                                           motor.no_load_current_A);
   overload.peak_A = motor.nominal_voltage_V / motor.terminal_resistance_ohm;
   const double ratio = overload.peak_A / overload.continuous_A;
   overload.peak_s = motor.thermal_time_constant_winding_s * std::log(ratio * ratio / (ratio * ratio - 1.0));

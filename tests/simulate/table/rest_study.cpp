@@ -150,7 +150,7 @@ double rest_needed_s(const Judge& judge, const std::vector<Load>& load, std::siz
                      double play_s) {
   const auto is_enough = [&](Bodies start) { return judge.plays_s(load, first, air_C, start, play_s) >= play_s; };
   if (!is_enough({air_C, air_C})) {
-    return kAbsent;
+    return kUnknown;
   }
   std::size_t low = 0;
   std::size_t high = rested.size() - 1;
@@ -206,7 +206,7 @@ std::string study_rest(const HardMatch& match, const Game& game, const Motor& mo
     return static_cast<double>(each.current_A) * static_cast<double>(each.current_A);
   });
   std::vector<Judge> judges;
-  judges.emplace_back("nominal motor, winding within its limit", HostGuard(exact_derating(motor, match.robot)), kAbsent);
+  judges.emplace_back("nominal motor, winding within its limit", HostGuard(exact_derating(motor, match.robot)), kUnknown);
   for (const Knowledge& each : known) {
     judges.emplace_back(each.name, *each.guard->guard, braking_reserve_K(match.robot, motor.nominal, *each.guard->derating));
   }
