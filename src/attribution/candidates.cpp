@@ -202,7 +202,7 @@ void add_network_candidates(const Model& model, const std::vector<MeasuredRun>& 
       continue;
     }
     if (const std::vector<std::string_view> names = lacking(type.needs, runs); !names.empty()) {
-      list.not_judged.push_back(fmt::format("{}: not every log has {}", type.name, fmt::join(names, " and ")));
+      list.not_judged.push_back({std::string(type.name), {names.begin(), names.end()}});
       continue;
     }
     for (const std::vector<std::string>& nodes : placements(model.network, type)) {

@@ -34,9 +34,15 @@ struct Candidate {
   [[nodiscard]] std::string_view experiment() const;
 };
 
+/// Type of effect that these runs cannot test, because not all of them have the signals.
+struct UntestedEffect {
+  std::string effect;
+  std::vector<std::string> lacking;  ///< names of the signals
+};
+
 struct CandidateList {
   std::vector<Candidate> candidates;
-  std::vector<std::string> not_judged;  ///< effects that these runs cannot test, each with the reason: "windage: not every log has speed"
+  std::vector<UntestedEffect> not_judged;
 };
 
 /// Returns the candidates that these runs can test: all needed signals and sensors are logged, and the model does not contain the effect

@@ -1,7 +1,5 @@
 #include "attribution/selection.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -56,8 +54,7 @@ class Selector : Rounds {
       } else if (probability > rules_.named_probability) {
         named.push_back(m);
       } else {
-        refuse(best.members[m], fmt::format("its probability is {:.0f} %, but a name requires {:.0f} %", 100.0 * probability,
-                                            100.0 * rules_.named_probability));
+        refuse({id_of(best.members[m]), RefusalReason::improbable, probability, rules_.named_probability});
       }
     }
     if (rules_.scans_drivers && !is_speed_open_ && (out_.is_material() || !named.empty())) {
@@ -89,11 +86,11 @@ class Selector : Rounds {
     build(judged, best, named);
   }
 
-  void refuse(int member, const std::string& why) {
-    const std::string& id = set_rules_[static_cast<std::size_t>(member)].id;
-    std::string words = fmt::format("{}: {}", id, why);
-    if (std::ranges::find(out_.refused, words, &Refusal::words) == out_.refused.end()) {
-      out_.refused.push_back({id, std::move(words)});
+  [[nodiscard]] const std::string& id_of(int member) const { return set_rules_[static_cast<std::size_t>(member)].id; }
+
+  void refuse(Refusal refusal) {
+    if (std::ranges::find(out_.refused, refusal) == out_.refused.end()) {
+      out_.refused.push_back(std::move(refusal));
     }
   }
 
@@ -174,8 +171,9 @@ class Selector : Rounds {
     }
     for (const std::size_t m : named) {
       if (!stays(m)) {
-        refuse(best.members[m],
-               fmt::format("a curve over {} explains the runs better", out_.drivers[static_cast<std::size_t>(curve.term.driver)].name));
+        refuse({.id = id_of(best.members[m]),
+                .reason = RefusalReason::curve_is_better,
+                .signal = out_.drivers[static_cast<std::size_t>(curve.term.driver)].name});
       }
     }
     out_.is_unexplained = true;
@@ -212,28 +210,27 @@ class Selector : Rounds {
   }
 
   /// Keeps only names without which the error of whole runs grows to more than 1/`error_share` times its value.
-  void keep_what_reduces_error(const EffectSet& best, std::vector<std::size_t>& named, double error_share, const std::string& why_not) {
+  void keep_what_reduces_error(const EffectSet& best, std::vector<std::size_t>& named, double error_share, RefusalReason why_not) {
     // The name with the weakest evidence is examined first.
     std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
     for (std::size_t i = named.size(); i-- > 0;) {
       std::vector<std::size_t> others = named;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
       if (!(error_with_K(best, named) < error_share * error_with_K(best, others))) {
-        refuse(best.members[named[i]], why_not);
+        refuse({.id = id_of(best.members[named[i]]), .reason = why_not});
         named = std::move(others);
       }
     }
   }
 
   void keep_what_outweighs(const EffectSet& best, std::vector<std::size_t>& named) {
-    keep_what_reduces_error(best, named, rules_.beside_unknown_share,
-                            "material unknown heat remains, and it does not reduce the error of whole runs enough");
+    keep_what_reduces_error(best, named, rules_.beside_unknown_share, RefusalReason::unknown_heat_remains);
   }
 
   /// Evidence alone is not sufficient: a calibrated model leaves some unknown heat even in the runs it was fitted to.
   void keep_what_helps(const EffectSet& best, std::vector<std::size_t>& named) {
     keep_what_reduces_error(best, named, input_.usual.error_K > 0.0 ? rules_.plainly_better_share : rules_.better_share,
-                            "it hardly improves the prediction of whole runs");
+                            RefusalReason::hardly_improves_whole_runs);
   }
 
   /// Fits the model with the named effects and the changed parameters.

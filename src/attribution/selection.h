@@ -56,10 +56,21 @@ struct AcceptedTerm {
   std::vector<std::string> experiments;      ///< experiments that separate them, in the same order
 };
 
-/// A candidate that explains something but was rejected, with the reason.
+/// Reason to reject a candidate that explains something.
+enum class RefusalReason {
+  improbable,                 ///< its probability is too low for a name
+  curve_is_better,            ///< a curve over a signal explains the runs better
+  unknown_heat_remains,       ///< material unknown heat remains, and the error of whole runs does not fall enough
+  hardly_improves_whole_runs  ///< the prediction of whole runs hardly improves
+};
 struct Refusal {
   std::string id;
-  std::string words;
+  RefusalReason reason = RefusalReason::improbable;
+  double probability = 0.0;         ///< for `improbable`
+  double needed_probability = 0.0;  ///< for `improbable`
+  std::string signal = {};          ///< for `curve_is_better`
+
+  bool operator==(const Refusal&) const = default;
 };
 
 /// Result of the selection.
@@ -71,7 +82,7 @@ struct Selection {
   std::vector<AcceptedTerm> terms;
   std::vector<Round> rounds;
   std::vector<Regressor> drivers;  ///< signals of the scan
-  std::vector<std::string> not_judged;
+  std::vector<UntestedEffect> not_judged;
   double mean_heat_W = 0.0;              ///< mean modelled heat over all runs
   double material_W = 0.0;               ///< unknown heat below this is normal for any model
   std::map<std::string, double> left_W;  ///< by node: RMS of the smoothed unknown heat with the best set

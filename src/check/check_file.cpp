@@ -168,14 +168,9 @@ class CheckReader {
     if (const auto seed = whole(table_, {"seed", "", Range::between(0.0, kMostExact), "of draws and games"})) {
       check_.seed = static_cast<std::uint64_t>(*seed);
     }
-    if (const auto given_C =
-            table_.quantity({"temperature", "degC", Range::between(-60.0, 1000.0), "above which time is counted"}, Need::optional)) {
-      check_.temperature_C = *given_C;
-    }
-    if (const auto given_C =
-            table_.quantity({"air", "degC", Range::between(-60.0, 200.0), "of a log that has no air temperature"}, Need::optional)) {
-      check_.air_C = *given_C;
-    }
+    check_.temperature_C =
+        table_.quantity({"temperature", "degC", Range::between(-60.0, 1000.0), "above which time is counted"}, Need::optional);
+    check_.air_C = table_.quantity({"air", "degC", Range::between(-60.0, 200.0), "of a log that has no air temperature"}, Need::optional);
   }
 
   void read_artefacts() {
@@ -243,37 +238,37 @@ class CheckReader {
   }
 
   void read_limits() {
-    std::optional<Reader> limits = table_.table("limits", Need::required);
-    if (!limits) {
+    limits_ = table_.table("limits", Need::required);
+    if (!limits_) {
       return;
     }
     std::vector<std::string> known;
     for (const ThresholdType& type : all_thresholds()) {
       known.emplace_back(type.name);
     }
-    if (limits->keys().empty()) {
+    if (limits_->keys().empty()) {
       table_.problem("limits", fmt::format("is empty; expected one or more of {}", fmt::join(known, ", ")));
     }
-    for (const std::string& key : limits->keys()) {
+    for (const std::string& key : limits_->keys()) {
       const ThresholdType* type = find_threshold(key);
       if (!type) {
-        limits->pass_over(key);
-        limits->problem(
+        limits_->pass_over(key);
+        limits_->problem(
             key, key == "forecast_error"
                      ? "this program was built without support for measured logs; `./bootstrap build` adds it"
                      : fmt::format("there is no such threshold{} (`heatsoak list thresholds` shows them)", did_you_mean(key, known)));
         continue;
       }
-      const std::optional<std::string> text = limits->text(key, Need::required);
+      const std::optional<std::string> text = limits_->text(key, Need::required);
       if (!text) {
         continue;
       }
       ParsedLimit parsed = parse_limit(*text, *type);
       if (!parsed.problem.empty()) {
-        limits->problem(key, parsed.problem);
+        limits_->problem(key, parsed.problem);
         continue;
       }
-      check_.limits.push_back({type, parsed.value, std::move(parsed.unit), *text, limits->at(key)});
+      check_.limits.push_back({type, parsed.value, std::move(parsed.unit), *text, limits_->at(key)});
     }
   }
 
@@ -293,7 +288,7 @@ class CheckReader {
   void compare_with_loosest() {
     for (const Limit& limit : check_.limits) {
       if (std::string problem = looseness_problem(limit.value, limit.text, *limit.type, check_); !problem.empty()) {
-        table_.add({limit.at, fmt::format("limits.{}", limit.type->name), std::move(problem)});
+        limits_->problem(limit.type->name, std::move(problem));
       }
     }
   }
@@ -322,6 +317,7 @@ class CheckReader {
   }
 
   Reader table_;
+  std::optional<Reader> limits_;
   fs::path folder_;
   const DataFolders& folders_;
   std::set<std::string>& reported_;
@@ -344,12 +340,13 @@ CheckFile read_check_file(const fs::path& path, const DataFolders& folders) {
   }
   std::set<std::string> names;
   std::set<std::string> reported;
-  for (Reader& each : tables) {
-    const Location at = each.at("name");
-    file.checks.push_back(CheckReader(std::move(each), path.parent_path(), folders, reported).read());
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    const Location at = tables[i].at("name");
+    file.checks.push_back(CheckReader(std::move(tables[i]), path.parent_path(), folders, reported).read());
     const std::string& name = file.checks.back().name;
     if (!name.empty() && !names.insert(name).second) {
-      diagnostics.add(at, "check.name", fmt::format("\"{}\" is the name of another check, too; give each its own", name));
+      diagnostics.add(at, fmt::format("check[{}].name", i),
+                      fmt::format("\"{}\" is the name of another check, too; give each its own", name));
     }
   }
   top.finish();

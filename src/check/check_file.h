@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -37,12 +36,12 @@ struct Check {
   std::map<std::string, std::string> conditions;
   int samples = 500;
   std::uint64_t seed = 1;
-  double temperature_C = std::numeric_limits<double>::quiet_NaN();
+  std::optional<double> temperature_C = {};  ///< set if a limit needs it
   std::filesystem::path table;
   std::vector<std::filesystem::path> files;
   std::vector<std::filesystem::path> logs;
   std::filesystem::path mapping;
-  double air_C = std::numeric_limits<double>::quiet_NaN();  ///< air temperature for logs without one; NaN: not stated
+  std::optional<double> air_C = {};  ///< air temperature for logs without one
   DerateOptions derate;
   std::vector<Limit> limits;
   std::map<Setting, std::string> unreadable;  ///< setting whose file does not exist, with the reason: its thresholds fail

@@ -1,8 +1,5 @@
 #include "diagnosis/advisor.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -10,7 +7,6 @@
 #include <limits>
 
 #include "base/diagnostic.h"
-#include "base/quantity.h"
 
 namespace heatsoak {
 namespace {
@@ -109,7 +105,7 @@ MeasuredRun planned(const Primitive& primitive, const Levels& levels, const Meas
 
 /// An experiment that stays below the measured temperatures, with the model's path along it.
 struct Plan {
-  std::string what;
+  const Primitive* primitive = nullptr;
   MeasuredRun run;
   LinearisedRun path;
 };
@@ -124,19 +120,13 @@ double hottest_C(const Model& model, const MeasuredRun& run, LinearisedRun& path
   return path.state_C.maxCoeff();
 }
 
-std::string description_of(const Primitive& primitive, const MeasuredRun& run) {
+/// Sets the description and the largest current and speed of a planned experiment.
+void describe(const Primitive& primitive, const MeasuredRun& run, Experiment& experiment) {
   const double most_A = std::ranges::max(run.at, {}, &OperatingPoint<double>::current_rms_A).current_rms_A;
   const double fastest_rad_per_s = std::ranges::max(run.at, {}, &OperatingPoint<double>::speed_mean_rad_per_s).speed_mean_rad_per_s;
-  std::vector<std::string> levels;
-  if (most_A > 0.0) {
-    levels.push_back(significant(most_A, 2) + " A");
-  }
-  if (fastest_rad_per_s > 0.0) {
-    levels.push_back(significant(fastest_rad_per_s, 2) + " rad/s");
-  }
-  return levels.empty()
-             ? std::string(primitive.what)
-             : fmt::format("{}; with at most {} the motor gets no hotter than in these runs", primitive.what, fmt::join(levels, " and "));
+  experiment.what = primitive.what;
+  experiment.most_A = most_A > 0.0 ? std::optional(most_A) : std::nullopt;
+  experiment.most_rad_per_s = fastest_rad_per_s > 0.0 ? std::optional(fastest_rad_per_s) : std::nullopt;
 }
 
 /// Returns the menu. Reduces the current of each experiment until it stays below the temperatures of the runs. A logged peak of 0.1 s must
@@ -149,10 +139,9 @@ std::vector<Plan> plans(const Selection& selection, const std::vector<MeasuredRu
   for (const Primitive& primitive : menu()) {
     Levels levels = most;
     for (int i = 0; i < kTries; ++i, levels.current_A *= kStep_ratio, levels.input_power_W *= kStep_ratio * kStep_ratio) {
-      Plan plan{{}, planned(primitive, levels, runs.front()), {}};
+      Plan plan{&primitive, planned(primitive, levels, runs.front()), {}};
       if (hottest_C(selection.after.model, plan.run, plan.path) <= levels.measured_C &&
           hottest_C(selection.before.model, plan.run, plan.path) <= levels.measured_C) {
-        plan.what = description_of(primitive, plan.run);
         all.push_back(std::move(plan));
         break;
       }
@@ -213,7 +202,8 @@ std::vector<Experiment> next_experiments(const Selection& selection, const std::
   const std::vector<Plan> menu_here = has_rivals ? plans(selection, runs) : std::vector<Plan>();
   for (const AcceptedTerm& term : selection.terms) {
     for (std::size_t rival = 0; term.candidate && rival < term.confusable_with.size(); ++rival) {
-      Experiment best{fmt::format("{} or {}", term.candidate->id, term.confusable_with[rival]), term.experiments[rival], 0.0};
+      Experiment best{term.candidate->id, term.confusable_with[rival], term.experiments[rival]};
+      const Experiment of_catalogue = best;
       const JudgedCandidate* const other = judged(selection, term.confusable_with[rival]);
       // The base model has no node for an effect at a body that another effect added.
       if (!other || !has_nodes_of(selection.before.model.network, *term.candidate) ||
@@ -227,13 +217,12 @@ std::vector<Experiment> next_experiments(const Selection& selection, const std::
         const double nats = separation_nats(selection.before, selection.after.flux, pair, own ? own->size_share : 1.0, plan);
         if (nats > best.expected_nats) {
           best.expected_nats = nats;
-          best.what = plan.what;
+          describe(*plan.primitive, plan.run, best);
         }
       }
       // If ten minutes do not separate the effects, use the catalogue's experiment, which needs another set-up.
       if (best.expected_nats < 1.0) {
-        best.what = term.experiments[rival];
-        best.expected_nats = 0.0;
+        best = of_catalogue;
       }
       experiments.push_back(std::move(best));
     }

@@ -1,12 +1,8 @@
 #include "diagnosis/coverage.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "base/quantity.h"
 
 namespace heatsoak {
 namespace {
@@ -20,15 +16,14 @@ constexpr double kMuch_share = 0.25;
 
 struct Watched {
   Signal signal;
-  std::string_view name;
   std::string_view unit;
   double OperatingPoint<double>::*value;
 };
 constexpr std::array kWatched{
-    Watched{Signal::current, "the current", "A", &OperatingPoint<double>::current_rms_A},
-    Watched{Signal::speed, "the speed", "rad/s", &OperatingPoint<double>::speed_mean_rad_per_s},
-    Watched{Signal::input_power, "the input power", "W", &OperatingPoint<double>::input_power_W},
-    Watched{Signal::vehicle_speed, "the vehicle's speed", "m/s", &OperatingPoint<double>::vehicle_speed_m_per_s},
+    Watched{Signal::current, "A", &OperatingPoint<double>::current_rms_A},
+    Watched{Signal::speed, "rad/s", &OperatingPoint<double>::speed_mean_rad_per_s},
+    Watched{Signal::input_power, "W", &OperatingPoint<double>::input_power_W},
+    Watched{Signal::vehicle_speed, "m/s", &OperatingPoint<double>::vehicle_speed_m_per_s},
 };
 
 /// Returns the values with their durations in s, sorted by value.
@@ -65,8 +60,8 @@ double quantile(const std::vector<std::pair<double, double>>& values, double sha
 
 }  // namespace
 
-std::vector<std::string> beyond_fitted(const std::vector<MeasuredRun>& fitted, const std::vector<MeasuredRun>& unseen) {
-  std::vector<std::string> sentences;
+std::vector<BeyondTraining> beyond_fitted(const std::vector<MeasuredRun>& fitted, const std::vector<MeasuredRun>& unseen) {
+  std::vector<BeyondTraining> beyond;
   for (const Watched& watched : kWatched) {
     const auto known = held(fitted, watched);
     const auto wanted = held(unseen, watched);
@@ -81,13 +76,10 @@ std::vector<std::string> beyond_fitted(const std::vector<MeasuredRun>& fitted, c
       outside_s += value < low - reach || value > high + reach ? duration_s : 0.0;
     }
     if (const double share = outside_s / time_s(wanted); share > kMuch_share) {
-      sentences.push_back(fmt::format(
-          "The forecast is an extrapolation for {:.0f} % of the time of the hold-out runs, because {} is outside the range of the "
-          "training runs ({} to {} {}).",
-          100.0 * share, watched.name, significant(low, 2), significant(high, 2), watched.unit));
+      beyond.push_back({watched.signal, std::string(watched.unit), low, high, share});
     }
   }
-  return sentences;
+  return beyond;
 }
 
 }  // namespace heatsoak

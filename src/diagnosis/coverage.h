@@ -1,15 +1,15 @@
 // Detects predictions outside the range of the data that the model was fitted to.
 #pragma once
 
-#include <string>
 #include <vector>
 
+#include "diagnosis/findings.h"
 #include "estimation/measured_run.h"
 
 namespace heatsoak {
 
-/// Returns one warning per signal that is outside the range of `fitted` for more than a quarter of the time of `unseen`. The range is from
+/// Returns the signals that are outside the range of `fitted` for more than a quarter of the time of `unseen`. The range is from
 /// the 2nd to the 98th percentile, extended by 10 %.
-std::vector<std::string> beyond_fitted(const std::vector<MeasuredRun>& fitted, const std::vector<MeasuredRun>& unseen);
+std::vector<BeyondTraining> beyond_fitted(const std::vector<MeasuredRun>& fitted, const std::vector<MeasuredRun>& unseen);
 
 }  // namespace heatsoak

@@ -1,7 +1,6 @@
 #include "diagnosis/diagnosis.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -57,8 +56,6 @@ class DiagnosisReport {
     out_.unexplained = unexplained_heat(out_, input_.train);
     out_.verdict = verdict();
     out_.experiments = next_experiments(out_.selection, input_.train);
-    out_.words = describe(out_, {});
-    out_.description = fmt::format("{}", fmt::join(out_.words, " "));
     return std::move(out_);
   }
 
@@ -270,19 +267,18 @@ std::string_view to_string(DiagnosisVerdict verdict) {
   return "?";
 }
 
-std::string settle_turning_rows(DiagnosisInput& input) {
+void settle_turning_rows(DiagnosisInput& input) {
   if (std::ranges::none_of(input.train, may_turn_within_rows)) {
-    return {};
+    return;
   }
   std::vector<MeasuredRun> turning;
   std::ranges::transform(input.train, std::back_inserter(turning), turning_within_rows);
   if (evidence_without_effects_nats({input.model, turning, input.usual}) <=
       evidence_without_effects_nats({input.model, input.train, input.usual})) {
-    return {};
+    return;
   }
   input.train = std::move(turning);
   input.turns_within_rows = true;
-  return std::string(kTurningRowsReason);
 }
 
 Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calibration/forecast/prediction.h"
+#include "diagnosis/findings.h"
 #include "diagnosis/found_effects.h"
 #include "estimation/free_run_errors.h"
 #include "estimation/residual_tests.h"
@@ -58,8 +60,12 @@ struct BalanceRow {
 };
 
 struct Experiment {
-  std::string rivals;  ///< effects to separate: "iron_loss_eddy or windage"
+  std::string effect;  ///< accepted effect
+  std::string rival;   ///< effect to separate it from
   std::string what;
+  /// Largest current and speed at which the motor gets no hotter than in the runs; empty: not part of the experiment.
+  std::optional<double> most_A = {};
+  std::optional<double> most_rad_per_s = {};
   double expected_nats = 0.0;  ///< expected gain in evidence between them; 0: not computed
 };
 
@@ -77,9 +83,6 @@ struct Diagnosis {
   std::map<std::string, double> flux_rms_before_W, flux_rms_after_W;  ///< RMS of the unknown heat by node
   std::vector<BalanceRow> balance;
   std::vector<Experiment> experiments;
-  std::vector<std::string> notes;
-  std::vector<std::string> words;  ///< one sentence or more each: verdict, findings, errors, next experiment; see describe()
-  std::string description;         ///< `words` as one paragraph
   Selection selection;
 };
 
@@ -89,15 +92,15 @@ struct HoldoutScore {
   Errors before, refitted, after;                     ///< same models as in Diagnosis
   Errors file;                                        ///< errors of the written motor file alone
   std::vector<PredictedRun> runs_before, runs_after;  ///< predictions of the original and the extended motor file; set by score_files()
-  std::vector<std::string> beyond_training;  ///< warnings that a signal of the hold-out runs exceeds the range of the training runs
+  std::vector<BeyondTraining> beyond_training;
 };
 
 /// True if the error is larger than the other by more than 10 % and by more than kMatters_K.
 bool is_plainly_worse(double error_K, double than_K);
 
-/// Decides by evidence whether the motor reverses within rows of the log. If so, replaces the training runs by turning_within_rows(), sets
-/// the flag and returns the reason as a sentence. Otherwise returns an empty text.
-std::string settle_turning_rows(DiagnosisInput& input);
+/// Decides by evidence whether the motor reverses within rows of the log. If so, replaces the training runs by turning_within_rows() and
+/// sets the flag.
+void settle_turning_rows(DiagnosisInput& input);
 
 /// Runs the whole diagnosis on the training runs. Throws Failure (numerics_failed) if the model cannot be simulated along them.
 Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules);
@@ -105,9 +108,5 @@ Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules);
 /// Scores `holdout` (runs as read from their logs) with the models of a finished diagnosis. The diagnosis must not depend on the result.
 /// Returns an empty score if there are no hold-out runs.
 HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<MeasuredRun> holdout);
-
-/// Returns the diagnosis as a list of sentences. The errors are those of the hold-out runs if `score` has any, else those of the training
-/// runs.
-std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore& score);
 
 }  // namespace heatsoak

@@ -57,19 +57,19 @@ void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recordin
             motor.id));
   }
   for (const EffectInPlace& effect : out.model.network.effects()) {
-    std::vector<std::string_view> lacking;
+    std::vector<std::string> lacking;
     for (const Signal signal : signals_of(effect, out.model)) {
       if (std::ranges::find(out.how.needed, signal) == out.how.needed.end()) {
-        lacking.push_back(column_of(signal));
+        lacking.emplace_back(column_of(signal));
       }
     }
     if (!lacking.empty()) {
-      out.notes.push_back(fmt::format("no log has {}, which {} depends on: it is taken as 0", fmt::join(lacking, " and "), effect.name));
+      out.findings.emplace_back(ColumnsTakenAsZero{std::move(lacking), effect.name});
     }
   }
 }
 
-/// Switches conditional effects off in runs without their condition. Adds a note if that is impossible, or if no run has the condition.
+/// Switches conditional effects off in runs without their condition. Adds a finding if that is impossible, or if no run has the condition.
 void add_conditional_effects(const Motor& motor, const std::vector<Recording>& recordings, ModelOfLogs& out) {
   const auto holds = [](const Recording& recording, const std::map<std::string, std::string>& condition) {
     return std::ranges::all_of(condition, [&](const auto& part) {
@@ -81,16 +81,12 @@ void add_conditional_effects(const Motor& motor, const std::vector<Recording>& r
     if (effect.condition.empty()) {
       continue;
     }
-    const std::string condition = in_words(effect.condition);
     const auto count = std::ranges::count_if(recordings, [&](const Recording& each) { return holds(each, effect.condition); });
     const std::optional<int> size = effect.type->candidacy.size_parameter;
     if (!size && count < std::ssize(recordings)) {
-      out.notes.push_back(
-          fmt::format("{} acts in every run here, although its condition is {}: an effect of the type {} has no size that could be "
-                      "set to 0; leave out the runs without that condition",
-                      effect.name, condition, effect.type->name));
+      out.findings.emplace_back(ConditionNotApplied{effect.name, std::string(effect.type->name), effect.condition});
     } else if (count == 0) {
-      out.notes.push_back(fmt::format("{} acts in none of these runs: no log has its condition {}", effect.name, condition));
+      out.findings.emplace_back(ConditionNeverMet{effect.name, effect.condition});
     }
     if (size) {
       const auto in_place = std::ranges::find(out.model.network.effects(), effect.name, &EffectInPlace::name);
@@ -215,7 +211,7 @@ void set_parameters(Motor& motor, const ModelOfLogs& model, const Diagnosis& dia
 
 /// If the file was fitted to some of these runs, resets its fitted parameters to the uncertainty of a data sheet. The runs would count
 /// twice, and the intervals may belong to an incomplete model.
-void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vector<std::string>& notes) {
+void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vector<DiagnosisFinding>& findings) {
   const auto is_fitted = [&](const Recording& each) { return was_fitted_to(*motor.fit, each); };
   if (!motor.fit || std::ranges::none_of(recordings, is_fitted)) {
     return;
@@ -229,8 +225,13 @@ void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vec
     }
   }
   motor.fit.reset();
-  notes.emplace_back(
-      "the file's intervals are replaced by those of a data sheet: it was fitted to some of these runs, which would count twice");
+  findings.emplace_back(IntervalsOfDataSheet{});
+}
+
+void add_remarks(std::vector<std::string> sentences, std::vector<DiagnosisFinding>& findings) {
+  for (std::string& each : sentences) {
+    findings.emplace_back(Remark{std::move(each)});
+  }
 }
 
 }  // namespace
@@ -244,7 +245,7 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   for (MotorEffect& effect : everywhere.effects) {
     effect.condition.clear();
   }
-  forget_fit(everywhere, recordings, out.notes);
+  forget_fit(everywhere, recordings, out.findings);
   if (everywhere.fit) {
     out.fitted = everywhere.fit->runs;
     out.training = everywhere.fit->training;
@@ -255,10 +256,7 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   out.how = how_to_read(motor, built.heat);
   out.model.column = out.how.column;
   if (built.heat == HeatInput::current && !have(Signal::speed) && most_loss_at_speed_W(motor) > 0.0) {
-    out.notes.push_back(
-        fmt::format("not every log has a speed: the loss at speed, up to {} W, is part of the unknown heat; no effect at the stator is "
-                    "named, and no curve over another signal is added",
-                    significant(most_loss_at_speed_W(motor), 2)));
+    out.findings.emplace_back(LossInUnknownHeat{most_loss_at_speed_W(motor)});
   }
   const std::string column = std::move(out.model.column);
   out.model = std::move(built.model);
@@ -266,17 +264,17 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   out.usual.error_K = everywhere.fit ? everywhere.fit->free_run_error_K : 0.0;
   out.usual.flux_W = everywhere.fit && !everywhere.fit->latent_flux_W.empty() ? std::ranges::max(everywhere.fit->latent_flux_W) : 0.0;
   out.parameters = std::move(built.parameters);
-  out.notes.insert(out.notes.end(), built.held.begin(), built.held.end());
-  std::ranges::move(held_sensors(motor, recordings), std::back_inserter(out.notes));
+  add_remarks(std::move(built.held), out.findings);
+  add_remarks(held_sensors(motor, recordings), out.findings);
   add_conditional_effects(motor, recordings, out);
-  if (const std::string lacking = column_lacking(out.how.column, recordings); !lacking.empty()) {
-    out.notes.push_back(lacking);
+  if (std::string lacking = column_lacking(out.how.column, recordings); !lacking.empty()) {
+    out.findings.emplace_back(Remark{std::move(lacking)});
   }
   set_needed(out, motor, recordings);
   const bool has_torque = have(Signal::shaft_power);
   if (!has_torque &&
       std::ranges::all_of(recordings, [&](const Recording& each) { return has_signal(each, Signal::shaft_power, out.how.torque); })) {
-    out.notes.emplace_back("not every log has a torque: without one, current times torque constant minus the no-load drag is used");
+    out.findings.emplace_back(TorqueFromCurrent{});
   }
   return out;
 }

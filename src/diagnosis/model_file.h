@@ -6,6 +6,7 @@
 
 #include "calibration/motor_model.h"
 #include "diagnosis/diagnosis.h"
+#include "diagnosis/findings.h"
 #include "motor/motor.h"
 
 namespace heatsoak {
@@ -18,7 +19,7 @@ struct ModelOfLogs {
   MeasuredRunOptions how;                   ///< required signals and options for reading the runs, except for the ambient temperature
   std::vector<std::string> fitted;          ///< logs that the file's parameters were fitted to, as name_and_fingerprint()
   TrainingRange training;                   ///< range of the signals in those logs and in these
-  std::vector<std::string> notes;           ///< assumptions for signals that no log has
+  std::vector<DiagnosisFinding> findings;   ///< assumptions for signals that no log has
 };
 
 /// Builds the motor's network with the same free parameters as a calibration and with the file's uncertainties as priors. If not every

@@ -152,7 +152,6 @@ TEST(Examination, WithoutASensorInTheWindingTheHeatedNodeIsUnknown) {
     const Answer answer = examine(one);
     ASSERT_TRUE(leaves_unnamed(answer, *lamp)) << account(answer);
     EXPECT_THAT(answer.diagnosis.unexplained.front().or_nodes, testing::ElementsAre("winding"));
-    EXPECT_THAT(answer.diagnosis.description, testing::HasSubstr("stator (or the winding, which has no sensor)"));
   }
 }
 
@@ -195,9 +194,9 @@ TEST(Examination, AnOutdatedParameterIsReportedAndRefittedAndIsNoEffect) {
   out_K_per_W *= 1.4;
   known.prior.mean = known.theta();
   const Diagnosis found = diagnose(input, {});
-  EXPECT_EQ(found.verdict, DiagnosisVerdict::not_identifiable) << found.description;
-  EXPECT_THAT(found.effects, testing::IsEmpty()) << found.description;
-  ASSERT_EQ(found.changed.size(), 1U) << found.description;
+  EXPECT_EQ(found.verdict, DiagnosisVerdict::not_identifiable) << account(found);
+  EXPECT_THAT(found.effects, testing::IsEmpty()) << account(found);
+  ASSERT_EQ(found.changed.size(), 1U) << account(found);
   EXPECT_EQ(found.changed.front().name, known.name(coordinate));
   EXPECT_NEAR(found.changed.front().before, 1.4 * true_K_per_W, 1e-9);
   EXPECT_NEAR(found.changed.front().value, true_K_per_W, 0.05 * true_K_per_W);
@@ -205,7 +204,6 @@ TEST(Examination, AnOutdatedParameterIsReportedAndRefittedAndIsNoEffect) {
   EXPECT_GT(found.changed.front().high, true_K_per_W);
   const HoldoutScore score = score_holdout(input, found, holdout(runs));
   EXPECT_LT(rms_K(score.after), rms_K(score.before) / 3.0);
-  EXPECT_THAT(found.description, testing::HasSubstr("Does not hold here: stator_ambient.thermal_resistance"));
 }
 
 /// The conductance from winding to iron now rises by a seventh in 30 K, while the file has 1 % uncertainty for a constant resistance. The
@@ -224,13 +222,13 @@ TEST(Examination, LawIsFoundDespiteANarrowPriorOfACorrelatedParameter) {
   const Runs runs = record(one);
   input.train = question(one, runs).train;
   const Diagnosis found = diagnose(input, {});
-  ASSERT_EQ(found.effects.size(), 1U) << found.description;
-  EXPECT_EQ(found.effects.front().id, "contact_temperature_dependence") << found.description;
+  ASSERT_EQ(found.effects.size(), 1U) << account(found);
+  EXPECT_EQ(found.effects.front().id, "contact_temperature_dependence") << account(found);
   EXPECT_EQ(found.verdict, DiagnosisVerdict::effect_found);
-  ASSERT_EQ(found.changed.size(), 1U) << found.description;
+  ASSERT_EQ(found.changed.size(), 1U) << account(found);
   EXPECT_EQ(found.changed.front().name, "winding_stator.thermal_resistance");
   EXPECT_GT(found.changed.front().value, 1.02 * found.changed.front().before) << "at 25 °C it is more than at 45";
-  EXPECT_LT(rms_K(score_holdout(input, found, holdout(runs)).after), 1.1 * nothing_missing_K) << found.description;
+  EXPECT_LT(rms_K(score_holdout(input, found, holdout(runs)).after), 1.1 * nothing_missing_K) << account(found);
 }
 
 /// In one of four runs a cover reduces the heat to the air by three tenths. The resistance is then 1 / 0.7 of its former value. Unseen runs
@@ -244,14 +242,14 @@ TEST(Examination, WorseCoolingInOneRunIsReportedAndStaysThere) {
   runs.training[1] = record(one).training[1];
   const DiagnosisInput input = question(one, runs);
   const Diagnosis found = diagnose(input, {});
-  ASSERT_EQ(found.effects.size(), 1U) << found.description;
+  ASSERT_EQ(found.effects.size(), 1U) << account(found);
   const FoundEffect& effect = found.effects.front();
-  EXPECT_EQ(effect.id, "hindered_cooling") << found.description;
+  EXPECT_EQ(effect.id, "hindered_cooling") << account(found);
   EXPECT_EQ(effect.condition, (Condition{{"run", "run2"}}));
-  EXPECT_NEAR(effect.parameters.front().value, 1.0 / 0.7 - 1.0, 0.06) << found.description;
-  EXPECT_LT(rms_K(found.after_train), 0.5 * rms_K(found.before_train)) << found.description;
+  EXPECT_NEAR(effect.parameters.front().value, 1.0 / 0.7 - 1.0, 0.06) << account(found);
+  EXPECT_LT(rms_K(found.after_train), 0.5 * rms_K(found.before_train)) << account(found);
   const HoldoutScore score = score_holdout(input, found, holdout(runs));
-  EXPECT_LT(rms_K(score.after), rms_K(score.before) + 0.02) << found.description;
+  EXPECT_LT(rms_K(score.after), rms_K(score.before) + 0.02) << account(found);
 }
 
 /// A winding has come loose in one run: the contact conductance falls by a fifth, so the contact resistance is 1 / 0.8 of its former value.
@@ -266,12 +264,12 @@ TEST(Examination, LooseWindingInOneRunIsAnotherContactThere) {
   runs.training[1] = record(one).training[1];
   const DiagnosisInput input = question(one, runs);
   const Diagnosis found = diagnose(input, {});
-  ASSERT_EQ(found.effects.size(), 1U) << found.description;
-  EXPECT_EQ(found.effects.front().id, "changed_contact") << found.description;
+  ASSERT_EQ(found.effects.size(), 1U) << account(found);
+  EXPECT_EQ(found.effects.front().id, "changed_contact") << account(found);
   EXPECT_EQ(found.effects.front().condition, (Condition{{"run", "run2"}}));
-  EXPECT_NEAR(found.effects.front().parameters.front().value, 0.25, 0.05) << found.description;
+  EXPECT_NEAR(found.effects.front().parameters.front().value, 0.25, 0.05) << account(found);
   const HoldoutScore score = score_holdout(input, found, holdout(runs));
-  EXPECT_LT(rms_K(score.after), rms_K(score.before) + 0.02) << found.description;
+  EXPECT_LT(rms_K(score.after), rms_K(score.before) + 0.02) << account(found);
 }
 
 /// The effect is less than half as wide as a seventh of the stator's temperature range. Knots spread over the whole range would not resolve
@@ -293,7 +291,7 @@ TEST(Examination, ConfoundedEffectsComeWithAnExperimentThatSeparatesThem) {
   ASSERT_FALSE(answer.diagnosis.effects.front().confusable_with.empty()) << account(answer);
   ASSERT_EQ(answer.diagnosis.experiments.size(), answer.diagnosis.effects.front().confusable_with.size());
   for (const Experiment& experiment : answer.diagnosis.experiments) {
-    EXPECT_THAT(experiment.rivals, testing::HasSubstr(answer.named.front()));
+    EXPECT_EQ(experiment.effect, answer.named.front());
     EXPECT_FALSE(experiment.what.empty());
   }
   EXPECT_GT(answer.diagnosis.experiments.front().expected_nats, 1.0);
@@ -327,7 +325,8 @@ TEST(Examination, ExperimentsStayAsCoolAsTheRuns) {
   input.train.front().at[100].current_rms_A = 200.0;
   const std::vector<Experiment> experiments = next_experiments(diagnosis.selection, input.train);
   ASSERT_FALSE(experiments.empty());
-  EXPECT_THAT(experiments.front().what, testing::HasSubstr("no hotter than in these runs"));
+  ASSERT_TRUE(experiments.front().most_A);
+  EXPECT_LT(*experiments.front().most_A, 200.0);
   EXPECT_GT(experiments.front().expected_nats, 1.0);
 }
 
@@ -350,8 +349,8 @@ TEST(Examination, WindingsForAnotherVoltageGetTheSameNames) {
       }
     }
     const Diagnosis diagnosis = diagnose(input, {});
-    ASSERT_EQ(diagnosis.effects.size(), 1U) << name << ": " << diagnosis.description;
-    EXPECT_TRUE(names({diagnosis.effects.front().id}, subject(name))) << diagnosis.description;
+    ASSERT_EQ(diagnosis.effects.size(), 1U) << name << ": " << account(diagnosis);
+    EXPECT_TRUE(names({diagnosis.effects.front().id}, subject(name))) << account(diagnosis);
   }
 }
 

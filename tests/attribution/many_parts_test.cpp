@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "examination.h"
+#include "scoring.h"
 
 namespace heatsoak::truth {
 namespace {
@@ -68,7 +69,7 @@ TEST(ManyParts, AreNoMissingEffect) {
     input.model = found.model;
     input.usual = found.usual;
     const Diagnosis diagnosis = diagnose(input, {});
-    EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::nothing_missing) << seed << diagnosis.description;
+    EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::nothing_missing) << seed << account(diagnosis);
     EXPECT_THAT(diagnosis.effects, testing::IsEmpty()) << seed;
   }
 }
@@ -82,7 +83,7 @@ TEST(ManyParts, HideNothingThatWholeRunsTell) {
     input.model = found.model;
     input.usual = found.usual;
     const Diagnosis diagnosis = diagnose(input, {});
-    EXPECT_NE(diagnosis.verdict, DiagnosisVerdict::nothing_missing) << seed << diagnosis.description;
+    EXPECT_NE(diagnosis.verdict, DiagnosisVerdict::nothing_missing) << seed << account(diagnosis);
   }
 }
 

@@ -102,4 +102,18 @@ std::string account(const Answer& answer) {
          fmt::format(" | left {:.2f} W of {:.2f} W", fmt::join(std::views::values(selection.left_W), ", "), selection.material_W);
 }
 
+std::string account(const Diagnosis& diagnosis) {
+  std::string text(to_string(diagnosis.verdict));
+  for (const FoundEffect& effect : diagnosis.effects) {
+    text += fmt::format(" [{}@{} {:.1f} nats, {:.2f} W]", effect.id, effect.node, effect.gain_nats, effect.mean_W);
+  }
+  for (const ChangedParameter& parameter : diagnosis.changed) {
+    text += fmt::format(" | {}: {:.3g} -> {:.3g}", parameter.name, parameter.before, parameter.value);
+  }
+  for (const Unexplained& heat : diagnosis.unexplained) {
+    text += fmt::format(" | unexplained {}~{} {:.2f} W", heat.node, fmt::join(heat.drivers, "/"), heat.rms_W);
+  }
+  return text;
+}
+
 }  // namespace heatsoak::truth

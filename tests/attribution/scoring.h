@@ -33,5 +33,7 @@ bool mentions(const Answer& answer, const Subject& subject);
 bool is_silent(const Answer& answer);
 /// Summarises an answer for failure messages: "[iron_loss_eddy 41 nats or windage] …" and the best entries of the ladder and the scan.
 std::string account(const Answer& answer);
+/// Summarises verdict, effects, contradicted parameters and unexplained heat for failure messages.
+std::string account(const Diagnosis& diagnosis);
 
 }  // namespace heatsoak::truth

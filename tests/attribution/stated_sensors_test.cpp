@@ -9,9 +9,10 @@
 #include <fstream>
 
 #include "attribution/terms.h"
-#include "diagnosis/model_file.h"
+#include "diagnosis/diagnosis_job.h"
 #include "examination.h"
 #include "motor/write_motor.h"
+#include "scoring.h"
 
 namespace heatsoak::truth {
 namespace {
@@ -35,7 +36,7 @@ TEST(StatedSensors, AreNotMissing) {
   const Runs runs = record(one);
   DiagnosisInput input = question(one, runs);
   const Diagnosis found = diagnose(input, {});
-  ASSERT_EQ(found.effects.size(), 1U) << found.description;
+  ASSERT_EQ(found.effects.size(), 1U) << account(found);
   EXPECT_EQ(found.effects.front().id, "sensor_lag_stator");
   std::vector<MeasuredRun> unseen = holdout(runs);
   const HoldoutScore found_score = score_holdout(input, found, unseen);
@@ -43,8 +44,8 @@ TEST(StatedSensors, AreNotMissing) {
     state(*some, {{find_sensor_effect("sensor_lag_stator"), kLag_s}});
   }
   const Diagnosis stated = diagnose(input, {});
-  EXPECT_EQ(stated.verdict, DiagnosisVerdict::nothing_missing) << stated.description;
-  EXPECT_THAT(stated.effects, testing::IsEmpty()) << stated.description;
+  EXPECT_EQ(stated.verdict, DiagnosisVerdict::nothing_missing) << account(stated);
+  EXPECT_THAT(stated.effects, testing::IsEmpty()) << account(stated);
   const HoldoutScore score = score_holdout(input, stated, unseen);
   for (const auto& [signal, error] : found_score.after) {
     EXPECT_NEAR(score.after.at(signal).rmse_K, error.rmse_K, 0.05) << signal;
@@ -58,9 +59,9 @@ TEST(StatedSensors, LeaveRoomForWhatTheyDoNotTell) {
   state(input.train, {{find_sensor_effect("sensor_offset_stator"), 3.0}});
   const Diagnosis found = diagnose(input, {});
   const auto effect = [&](std::string_view id) { return std::ranges::find(found.effects, id, &FoundEffect::id); };
-  ASSERT_NE(effect("sensor_lag_stator"), found.effects.end()) << found.description;
+  ASSERT_NE(effect("sensor_lag_stator"), found.effects.end()) << account(found);
   EXPECT_NEAR(effect("sensor_lag_stator")->parameters.front().value, kLag_s, 2.0);
-  ASSERT_NE(effect("sensor_offset_stator"), found.effects.end()) << found.description;
+  ASSERT_NE(effect("sensor_offset_stator"), found.effects.end()) << account(found);
   EXPECT_NEAR(effect("sensor_offset_stator")->parameters.front().value, -3.0, 1.0);
 }
 
@@ -110,25 +111,6 @@ Motor sheet_of(const MotorMake& make, const std::filesystem::path& file) {
   return read_motor(file);
 }
 
-struct Diagnosed {
-  ModelOfLogs model;
-  Diagnosis diagnosis;
-};
-
-Diagnosed diagnosed(const Motor& motor, const std::vector<Recording>& logs) {
-  Diagnosed out{model_of_logs(motor, logs), {}};
-  DiagnosisInput input;
-  input.model = out.model.model;
-  input.usual = out.model.usual;
-  for (const Recording& log : logs) {
-    for (MeasuredRun& run : measured_runs(log, out.model.how).runs) {
-      input.train.push_back(std::move(run));
-    }
-  }
-  out.diagnosis = diagnose(input, {});
-  return out;
-}
-
 TEST(StatedSensors, AreWrittenWhereTheyWereFoundAndThenNothingIsMissing) {
   const Case one = with_late_stator();
   const Runs runs = record(one);
@@ -138,13 +120,14 @@ TEST(StatedSensors, AreWrittenWhereTheyWereFoundAndThenNothingIsMissing) {
   }
   const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("stated_sensors_{}.toml", getpid());
   const Motor motor = sheet_of(runs.make, file);
-  const Diagnosed first = diagnosed(motor, logs);
-  ASSERT_EQ(first.diagnosis.verdict, DiagnosisVerdict::effect_found) << first.diagnosis.description;
-  Motor extended = extended_motor(motor, first.model, first.diagnosis);
-  std::ofstream(file) << to_toml(extended);
+  NamedLogs named_logs;
+  named_logs.fitted = logs;
+  const DiagnosisAnswer first = run_diagnosis({motor, named_logs});
+  ASSERT_EQ(first.diagnosis.verdict, DiagnosisVerdict::effect_found) << account(first.diagnosis);
+  std::ofstream(file) << to_toml(first.motor);
   const Motor again = read_motor(file);
   std::filesystem::remove(file);
-  ASSERT_EQ(again.sensors.size(), 1U) << first.diagnosis.description;
+  ASSERT_EQ(again.sensors.size(), 1U) << account(first.diagnosis);
   const MotorSensor& sensor = again.sensors.front();
   EXPECT_EQ(sensor.name, "sensor_lag_stator");
   EXPECT_NEAR(sensor.size.value, kLag_s, 2.0);
@@ -154,14 +137,15 @@ TEST(StatedSensors, AreWrittenWhereTheyWereFoundAndThenNothingIsMissing) {
   EXPECT_GT(sensor.size.spread->high, kLag_s);
   EXPECT_TRUE(again.notes.empty());
 
-  const Diagnosed second = diagnosed(again, logs);
-  EXPECT_EQ(second.diagnosis.verdict, DiagnosisVerdict::nothing_missing) << second.diagnosis.description;
-  EXPECT_THAT(second.model.notes, testing::Contains(testing::HasSubstr("effects.sensor_lag_stator.time_constant is held")));
+  const DiagnosisAnswer second = run_diagnosis({again, named_logs});
+  EXPECT_EQ(second.diagnosis.verdict, DiagnosisVerdict::nothing_missing) << account(second.diagnosis);
+  EXPECT_THAT(second.findings, testing::Contains(testing::VariantWith<Remark>(
+                                   testing::Field(&Remark::words, testing::HasSubstr("effects.sensor_lag_stator.time_constant is held")))));
 
   // Entries that the file already contains keep their names.
   Motor named = motor;
   named.sensors.push_back({"sensor_lag_stator", find_sensor_effect("sensor_offset_winding"), {}});
-  const Motor both = extended_motor(named, first.model, first.diagnosis);
+  const Motor both = extended_motor(named, model_of_logs(motor, logs), first.diagnosis);
   ASSERT_EQ(both.sensors.size(), 2U);
   EXPECT_EQ(both.sensors[0].type->name, "sensor_offset_winding");
   EXPECT_EQ(both.sensors[0].name, "sensor_lag_stator");

@@ -73,7 +73,7 @@ TEST_F(CheckFiles, ReportEveryProblemAtItsPlace) {
                            ":9:20: error: check[0].limits.winding_peak_p95: \"nan degC\" is not a finite number",
                            ":10:18: error: check[0].limits.winding_peak: there is no such threshold; did you mean 'winding_peak_p95'?",
                            "rank needs 'against' in this check", ":12:1: error: check[1].limits: is missing",
-                           ":13:8: error: check.name: \"a\" is the name of another", ":14:1: error: surprise: is not a key"}) {
+                           ":13:8: error: check[1].name: \"a\" is the name of another", ":14:1: error: surprise: is not a key"}) {
     EXPECT_THAT(said, HasSubstr(each));
   }
 }
@@ -175,6 +175,20 @@ TEST_F(CheckFiles, WhatCannotBeEvaluatedFailsAndTheRestIsEvaluated) {
   EXPECT_THAT(found[0].reason, HasSubstr("missing.h: cannot be read: No such file"));
   EXPECT_THAT(found[1].reason, HasSubstr("the drive core can drive only a match"));
   EXPECT_TRUE(found[2].passed);
+}
+
+TEST_F(CheckFiles, ForecastErrorNeedsTheAirOfALogWithoutIt) {
+  std::string log = "time_s,current_A,speed_rad_per_s,winding_C\n";
+  for (int second = 0; second < 300; ++second) {
+    log += fmt::format("{},{},{},{}\n", second, second % 20 < 10 ? 3.0 : 0.5, 100.0, 25.0 + 0.05 * second);
+  }
+  write_file(folder_ / "no_air.csv", log);
+  const std::string check = "[[check]]\nname = \"x\"\nmotor = \"maxon_ecx_flat_42m_24v\"\nlogs = [\"no_air.csv\"]\n";
+  const std::string limits = "[check.limits]\nforecast_error = \"at most 500 K\"\n";
+  const Outcome without = outcomes(check + limits).front();
+  EXPECT_FALSE(without.is_evaluated);
+  EXPECT_THAT(without.reason, HasSubstr("the log has no ambient temperature"));
+  EXPECT_TRUE(outcomes(check + "air = \"25 degC\"\n" + limits).front().is_evaluated);
 }
 
 TEST_F(CheckFiles, FewSamplesCannotKeepATightProbability) {
@@ -326,7 +340,7 @@ TEST_F(CheckFiles, TimeAboveLongerThanTheDutyIsRefused) {
     return message_of(kHead + "temperature = \"100 degC\"\n[check.limits]\ntime_above = \"at most " + limit + "\"\n");
   };
   EXPECT_THAT(message("2401 s"),
-              HasSubstr(":8:14: error: limits.time_above: \"at most 2401 s\" holds always: the duration of the duty is 2400 s"));
+              HasSubstr(":8:14: error: check[0].limits.time_above: \"at most 2401 s\" holds always: the duration of the duty is 2400 s"));
   EXPECT_THAT(message("2400 s"), HasSubstr("\"at most 2400 s\" holds always"));
   EXPECT_THAT(message("40 min"), HasSubstr("\"at most 40 min\" holds always"));
   EXPECT_EQ(message("2399 s"), "nothing was wrong");

@@ -25,16 +25,17 @@ Measured measure(const Check& check, Computations& computations) {
   const std::vector<WheelDemand>& wheels = computations.demand(check);
   const WheelDemand& hottest = *std::ranges::find(wheels, result.wheel, &WheelDemand::wheel);
   constexpr double kEvery_s = 1.0;
+  const double limit_C = check.temperature_C.value();
   const Trace trace = run_trace(*check.robot, *check.duty, hottest, *check.motor, kEvery_s);
   double sum_s = 0.0;
   for (std::size_t i = 1; i < trace.rows.size(); ++i) {
     const TraceRow& before = trace.rows[i - 1];
     const TraceRow& row = trace.rows[i];
-    sum_s += above_s(before.winding_C, row.winding_C, check.temperature_C, row.time_s - before.time_s);
+    sum_s += above_s(before.winding_C, row.winding_C, limit_C, row.time_s - before.time_s);
   }
   return {sum_s, 0.0,
-          fmt::format("counted above {:.0f} °C over {:.0f} s; the nominal winding reaches {:.1f} °C", check.temperature_C,
-                      hottest.duration_s(), result.winding_peak_C.nominal)};
+          fmt::format("counted above {:.0f} °C over {:.0f} s; the nominal winding reaches {:.1f} °C", limit_C, hottest.duration_s(),
+                      result.winding_peak_C.nominal)};
 }
 
 /// Returns the duration of the duty, which the time above a temperature never exceeds; nothing if the duty cannot be computed.

@@ -8,6 +8,7 @@
 
 #include "base/quantity.h"
 #include "present/measured/calibration_words.h"
+#include "present/measured/log.h"
 
 namespace heatsoak::present {
 namespace {
@@ -51,7 +52,8 @@ void add_errors(Table& table, const std::string& what, const std::vector<ErrorBe
   }
 }
 
-std::vector<Text> headline_of(const Motor& motor, const Calibration& result) {
+std::vector<Text> headline_of(const Motor& motor, const CalibrationAnswer& answer) {
+  const Calibration& result = answer.calibration;
   std::vector<std::string> open;
   for (const CalibratedParameter& each : result.parameters) {
     if (!each.is_identifiable) {
@@ -67,8 +69,8 @@ std::vector<Text> headline_of(const Motor& motor, const Calibration& result) {
     sentences.push_back({fmt::format("{} of {} values of {} are identifiable from {}{}{}.", result.parameters.size() - open.size(),
                                      result.parameters.size(), motor.id, runs, open.empty() ? "" : ", all but ", fmt::join(open, ", "))});
   }
-  if (!result.next_experiment.empty()) {
-    sentences.push_back({fmt::format("Next experiment: {}.", result.next_experiment)});
+  if (const std::string next = next_steps_words(answer); !next.empty()) {
+    sentences.push_back({fmt::format("Next experiment: {}.", next)});
   }
   return sentences;
 }
@@ -96,8 +98,9 @@ std::string heat_words(const Calibration& result) {
 
 }  // namespace
 
-Document calibration_document(const Motor& motor, const Calibration& result, const LogRemarks& remarks) {
-  Document document{.headline = headline_of(motor, result)};
+Document calibration_document(const Motor& motor, const CalibrationAnswer& answer, std::span<const LogReading> readings) {
+  const Calibration& result = answer.calibration;
+  Document document{.headline = headline_of(motor, answer)};
   document.paragraphs.push_back(heat_words(result));
   document.tables.push_back(parameter_table(result));
   Table errors{.title = "Error of the free-running model in K",
@@ -113,7 +116,7 @@ Document calibration_document(const Motor& motor, const Calibration& result, con
   add_errors(errors, result.holdout_after.size() > 1 ? "worst hold-out" : "hold-out", result.holdout_error);
   document.tables.push_back(std::move(errors));
   // A wrong unit makes all other warnings meaningless, so it comes first.
-  for (const std::string& note : remarks.of_screening) {
+  for (const std::string& note : answer.admission.notes) {
     document.add_note(Severity::warning, note);
   }
   for (const GrownError& each : result.worse) {
@@ -126,18 +129,18 @@ Document calibration_document(const Motor& motor, const Calibration& result, con
     document.add_note(severity_of(each), words_of(each));
   }
   // Rejected samples rank below notes that limit the answer.
-  for (const std::string& note : remarks.of_reading) {
+  for (const std::string& note : reading_words(readings)) {
     document.add_note(Severity::background, note);
   }
   return document;
 }
 
-std::vector<std::string> all_notes(const Calibration& result, const LogRemarks& remarks) {
-  std::vector<std::string> all = remarks.of_reading;
-  all.insert(all.end(), remarks.of_screening.begin(), remarks.of_screening.end());
-  const std::vector<std::string> findings = words_of(result.findings);
-  all.insert(all.end(), findings.begin(), findings.end());
-  return all;
+std::string next_steps_words(const CalibrationAnswer& answer) {
+  std::vector<std::string> steps = answer.admission.next_steps;
+  if (const std::string& experiment = answer.calibration.next_experiment; !experiment.empty()) {
+    steps.push_back(experiment);
+  }
+  return fmt::format("{}", fmt::join(steps, "; then: "));
 }
 
 }  // namespace heatsoak::present

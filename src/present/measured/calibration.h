@@ -1,25 +1,21 @@
 // Document and JSON of `calibrate`.
 #pragma once
 
+#include <span>
 #include <string>
-#include <vector>
 
-#include "calibration/calibrate.h"
+#include "calibration/calibration_job.h"
 #include "present/document.h"
 #include "present/json.h"
 
 namespace heatsoak::present {
 
-/// Remarks on the logs, from before the fit.
-struct LogRemarks {
-  std::vector<std::string> of_reading;    ///< rejected samples
-  std::vector<std::string> of_screening;  ///< properties that look wrong but may be right
-};
-Document calibration_document(const Motor& motor, const Calibration& result, const LogRemarks& remarks);
+/// `readings` are the reports of the logs.
+Document calibration_document(const Motor& motor, const CalibrationAnswer& answer, std::span<const LogReading> readings);
 /// `out` is the name of the model's file.
-Json calibration_json(const Motor& motor, const Calibration& result, const LogRemarks& remarks, const std::string& out);
+Json calibration_json(const Motor& motor, const CalibrationAnswer& answer, std::span<const LogReading> readings, const std::string& out);
 
-/// Returns all remarks and findings as sentences, for the JSON.
-std::vector<std::string> all_notes(const Calibration& result, const LogRemarks& remarks);
+/// Returns the next steps in the order of the work; empty if nothing is open. Steps that the logs require come before the experiment.
+std::string next_steps_words(const CalibrationAnswer& answer);
 
 }  // namespace heatsoak::present

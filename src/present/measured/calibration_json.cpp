@@ -6,6 +6,7 @@
 
 #include "present/measured/calibration.h"
 #include "present/measured/calibration_words.h"
+#include "present/measured/log.h"
 #include "present/measured/prediction.h"
 
 namespace heatsoak::present {
@@ -49,9 +50,19 @@ Json forecast_json(const Calibration& calibration) {
             {"width_ratio", number(forecast.band.width_ratio)}}}};
 }
 
+/// Returns all remarks and findings as sentences.
+std::vector<std::string> calibration_notes(const CalibrationAnswer& answer, std::span<const LogReading> readings) {
+  std::vector<std::string> all = reading_words(readings);
+  all.insert(all.end(), answer.admission.notes.begin(), answer.admission.notes.end());
+  const std::vector<std::string> findings = words_of(answer.calibration.findings);
+  all.insert(all.end(), findings.begin(), findings.end());
+  return all;
+}
+
 }  // namespace
 
-Json calibration_json(const Motor& motor, const Calibration& result, const LogRemarks& remarks, const std::string& out) {
+Json calibration_json(const Motor& motor, const CalibrationAnswer& answer, std::span<const LogReading> readings, const std::string& out) {
+  const Calibration& result = answer.calibration;
   Json parameters = Json::array();
   for (const CalibratedParameter& each : result.parameters) {
     parameters.push_back({{"name", each.name},
@@ -91,9 +102,9 @@ Json calibration_json(const Motor& motor, const Calibration& result, const LogRe
             {"time_scale_s", number(result.fit.flux.time_scale_s)}}},
           {"rejected_share", number(result.fit.rejected_share)},
           {"not_identifiable", open},
-          {"next_experiment", result.next_experiment},
+          {"next_experiment", next_steps_words(answer)},
           {"worse_than_before", words_of(result.worse)},
-          {"notes", all_notes(result, remarks)},
+          {"notes", calibration_notes(answer, readings)},
           {"model", out}};
 }
 

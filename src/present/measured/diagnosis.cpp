@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "present/measured/diagnosis_words.h"
+
 namespace heatsoak::present {
 namespace {
 
@@ -29,14 +31,12 @@ std::string headline_of(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-Document diagnosis_document(const Diagnosis& diagnosis, std::span<const std::string> warnings, std::span<const std::string> of_logs) {
-  Document document{.headline = {{headline_of(diagnosis)}}, .paragraphs = diagnosis.words};
-  for (const std::string& each : warnings) {
-    document.add_note(Severity::warning, each);
-  }
-  for (const std::string& note : diagnosis.notes) {
-    const bool is_of_logs = std::ranges::find(of_logs, note) != of_logs.end();
-    document.add_note(is_of_logs ? Severity::background : Severity::note, note);
+Document diagnosis_document(const DiagnosisAnswer& answer, std::span<const LogReading> readings) {
+  Document document{.headline = {{headline_of(answer.diagnosis)}}, .paragraphs = diagnosis_words(answer.diagnosis, answer.score)};
+  std::vector<DiagnosisNote> notes = diagnosis_notes(answer, readings);
+  std::ranges::stable_partition(notes, [](const DiagnosisNote& each) { return each.severity == Severity::warning; });
+  for (const DiagnosisNote& each : notes) {
+    document.add_note(each.severity, each.words);
   }
   return document;
 }

@@ -1,26 +1,29 @@
 // Output of `diagnose`: JSON, pictures, and a single page that contains everything.
 #pragma once
 
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "diagnosis/diagnosis.h"
+#include "diagnosis/diagnosis_job.h"
 #include "present/json.h"
 #include "report/chart.h"
 
 namespace heatsoak::present {
 
 /// Returns the answer in the schema heatsoak.diagnosis/1.
-Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score);
+Json diagnosis_json(const DiagnosisAnswer& answer, std::span<const LogReading> readings);
 
 struct DiagnosisPicture {
   std::string name;  ///< stem of the file name
   Chart chart;
 };
 /// Returns pictures of the residuals in K before and after, the unknown heat in W before and after, and the curves found.
-std::vector<DiagnosisPicture> diagnosis_pictures(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score);
+std::vector<DiagnosisPicture> diagnosis_pictures(const DiagnosisAnswer& answer);
 
 /// Returns one self-contained HTML page; `svg` holds pairs of picture name and content.
-std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score,
+std::string diagnosis_page(const DiagnosisAnswer& answer, std::span<const LogReading> readings,
                            const std::vector<std::pair<std::string, std::string>>& svg);
 
 }  // namespace heatsoak::present

@@ -1,8 +1,12 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "present/measured/diagnosis_answer.h"
+#include "present/measured/diagnosis_words.h"
 #include "present/measured/prediction.h"
 
 namespace heatsoak::present {
@@ -97,9 +101,17 @@ Json unexplained_json(const Unexplained& heat) {
   return json;
 }
 
-Json words_of(const std::vector<Refusal>& refused) {
+Json untested_json(const std::vector<UntestedEffect>& untested) {
   Json words = Json::array();
-  for (const Refusal& each : refused) {
+  for (const UntestedEffect& each : untested) {
+    words.push_back(fmt::format("{}: {}", each.effect, untested_words(each)));
+  }
+  return words;
+}
+
+Json notes_json(const DiagnosisAnswer& answer, std::span<const LogReading> readings) {
+  Json words = Json::array();
+  for (const DiagnosisNote& each : diagnosis_notes(answer, readings)) {
     words.push_back(each.words);
   }
   return words;
@@ -131,7 +143,9 @@ Json ladder_json(const Selection& selection) {
 
 }  // namespace
 
-Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score) {
+Json diagnosis_json(const DiagnosisAnswer& answer, std::span<const LogReading> readings) {
+  const Diagnosis& diagnosis = answer.diagnosis;
+  const HoldoutScore& score = answer.score;
   Json json{{"schema", "heatsoak.diagnosis/1"}, {"verdict", to_string(diagnosis.verdict)}, {"effects", Json::array()}};
   for (const FoundEffect& effect : diagnosis.effects) {
     json["effects"].push_back(effect_json(effect));
@@ -141,7 +155,7 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input, con
   json["refitted"] = {{"train", errors_json(diagnosis.refitted_train)}, {"holdout", errors_json(score.refitted)}};
   json["model_file"] = {{"train", errors_json(diagnosis.file_train)}, {"holdout", errors_json(score.file)}};
   json["residual_tests"] = {{"before", tests_json(diagnosis.tests_before)}, {"after", tests_json(diagnosis.tests_after)}};
-  json["description"] = diagnosis.description;
+  json["description"] = fmt::format("{}", fmt::join(diagnosis_words(diagnosis, score), " "));
   json["figures_contradicted"] = Json::array();
   for (const ChangedParameter& parameter : diagnosis.changed) {
     json["figures_contradicted"].push_back({{"name", parameter.name},
@@ -159,15 +173,15 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input, con
     }
   }
   json["runs"] = {{"train", Json::array()}, {"holdout", Json::object()}};
-  for (const MeasuredRun& run : input.train) {
+  for (const MeasuredRun& run : answer.input.train) {
     json["runs"]["train"].push_back(
         {{"name", run.name}, {"error", errors_json(open_loop_errors(diagnosis.selection.after.model, {run}, {}))}});
   }
   json["runs"]["holdout"] = {{"before", runs_json(score.runs_before)}, {"after", runs_json(score.runs_after)}};
   json["ladder"] = ladder_json(diagnosis.selection);
-  json["refused"] = words_of(diagnosis.selection.refused);
+  json["refused"] = refusal_words(diagnosis.selection);
   json["would_not_show"] = diagnosis.selection.unseen;
-  json["not_judged"] = diagnosis.selection.not_judged;
+  json["not_judged"] = untested_json(diagnosis.selection.not_judged);
   json["unknown_heat_rms_W"] = {{"before", diagnosis.flux_rms_before_W}, {"after", diagnosis.flux_rms_after_W}};
   json["power_balance_W"] = Json::object();
   for (const BalanceRow& row : diagnosis.balance) {
@@ -175,9 +189,10 @@ Json diagnosis_json(const Diagnosis& diagnosis, const DiagnosisInput& input, con
   }
   json["next_experiments"] = Json::array();
   for (const Experiment& each : diagnosis.experiments) {
-    json["next_experiments"].push_back({{"tells", each.rivals}, {"what", each.what}, {"expected_nats", rounded(each.expected_nats, 1)}});
+    json["next_experiments"].push_back(
+        {{"tells", rivals_of(each)}, {"what", experiment_words(each)}, {"expected_nats", rounded(each.expected_nats, 1)}});
   }
-  json["notes"] = diagnosis.notes;
+  json["notes"] = notes_json(answer, readings);
   return json;
 }
 

@@ -11,6 +11,7 @@
 #include "base/quantity.h"
 #include "base/xml_text.h"
 #include "present/measured/diagnosis_answer.h"
+#include "present/measured/diagnosis_words.h"
 
 namespace heatsoak::present {
 namespace {
@@ -196,12 +197,11 @@ std::vector<std::string> names_of(const std::vector<MeasuredRun>& runs, const st
   return names;
 }
 
-/// Groups "windage: no log has speed" and the like by reason, one remark per reason.
-std::vector<std::string> by_reason(const std::vector<std::string>& not_judged) {
+/// Groups the effects by the signals that they lack, one remark per group.
+std::vector<std::string> by_reason(const std::vector<UntestedEffect>& untested) {
   std::map<std::string, std::vector<std::string>> effects;
-  for (const std::string& each : not_judged) {
-    const std::size_t colon = each.find(": ");
-    effects[each.substr(colon + 2)].push_back(each.substr(0, colon));
+  for (const UntestedEffect& each : untested) {
+    effects[untested_words(each)].push_back(each.effect);
   }
   std::vector<std::string> remarks;
   for (const auto& [reason, names] : effects) {
@@ -234,12 +234,13 @@ constexpr std::string_view kStyle =
 
 }  // namespace
 
-std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score,
+std::string diagnosis_page(const DiagnosisAnswer& answer, std::span<const LogReading> readings,
                            const std::vector<std::pair<std::string, std::string>>& svg) {
+  const auto& [input, diagnosis, score, motor, admission, findings] = answer;
   std::string text = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Diagnosis</title><style>{}</style></head><body>\n", kStyle);
   text += fmt::format("<h1>Diagnosis: {}</h1>\n<div class=\"words\">\n", heading_of(diagnosis.verdict));
-  for (const std::string& each : diagnosis.words) {
+  for (const std::string& each : diagnosis_words(diagnosis, score)) {
     text += fmt::format("<p>{}</p>\n", xml_text(each));
   }
   text += "</div>\n";
@@ -270,17 +271,20 @@ std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisInput& inp
   if (!diagnosis.experiments.empty()) {
     text += "<h2>Next experiment</h2><ul>";
     for (const Experiment& each : diagnosis.experiments) {
-      text += fmt::format("<li>To separate {}: {}{}</li>", xml_text(each.rivals), xml_text(each.what),
+      text += fmt::format("<li>To separate {}: {}{}</li>", xml_text(rivals_of(each)), xml_text(experiment_words(each)),
                           each.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats)", each.expected_nats) : "");
     }
     text += "</ul>\n";
   }
-  std::vector<std::string> remarks = diagnosis.notes;
+  std::vector<std::string> remarks;
+  for (DiagnosisNote& each : diagnosis_notes(answer, readings)) {
+    remarks.push_back(std::move(each.words));
+  }
   if (!diagnosis.selection.unseen.empty()) {
     remarks.push_back(
         fmt::format("at their usual size these would not show in these runs: {}", fmt::join(diagnosis.selection.unseen, ", ")));
   }
-  std::ranges::transform(diagnosis.selection.refused, std::back_inserter(remarks), &Refusal::words);
+  std::ranges::move(refusal_words(diagnosis.selection), std::back_inserter(remarks));
   std::ranges::move(by_reason(diagnosis.selection.not_judged), std::back_inserter(remarks));
   text += "<h2>Effects not tested, and assumptions</h2><ul>";
   for (const std::string& remark : remarks) {

@@ -114,8 +114,9 @@ DiagnosisPicture unknown_heat(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-std::vector<DiagnosisPicture> diagnosis_pictures(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score) {
-  std::vector<DiagnosisPicture> pictures{residuals(diagnosis, input, score), unknown_heat(diagnosis)};
+std::vector<DiagnosisPicture> diagnosis_pictures(const DiagnosisAnswer& answer) {
+  const Diagnosis& diagnosis = answer.diagnosis;
+  std::vector<DiagnosisPicture> pictures{residuals(diagnosis, answer.input, answer.score), unknown_heat(diagnosis)};
   for (const Unexplained& heat : diagnosis.unexplained) {
     if (heat.knots.size() < 2) {
       continue;

@@ -118,6 +118,24 @@ std::vector<std::string> left_out_sentences(const RecordingReport& report) {
   return sentences;
 }
 
+std::vector<std::string> reading_words(std::span<const LogReading> readings) {
+  std::vector<std::string> all;
+  const auto add = [&all](std::string words) {
+    if (std::ranges::find(all, words) == all.end()) {
+      all.push_back(std::move(words));
+    }
+  };
+  for (const auto& [log, report] : readings) {
+    for (const std::string& note : report.notes) {
+      add(fmt::format("{}: {}", log, note));
+    }
+    for (const std::string& sentence : left_out_sentences(report)) {
+      add(fmt::format("{}: left out: {}", log, sentence));
+    }
+  }
+  return all;
+}
+
 void add_log(Document& document, const Recording& recording, const RecordingReport& report, const DataQuality& quality) {
   // A thermal log without wheel channels gets no remark about wheels, and a drive log none about heat.
   const auto has = [&](auto is_of) { return std::ranges::any_of(recording.channels, is_of); };

@@ -1,10 +1,12 @@
 // Document of `log inspect`.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "present/document.h"
+#include "recording/named_logs.h"
 #include "recording/quality.h"
 #include "recording/recording.h"
 #include "recording/recording_report.h"
@@ -16,5 +18,8 @@ void add_log(Document& document, const Recording& recording, const RecordingRepo
 
 /// Returns the rejected samples, one sentence per channel and reason: "798 samples of winding_C: saturated; line 12-14, 20".
 std::vector<std::string> left_out_sentences(const RecordingReport& report);
+
+/// Returns what the reader did with the logs, one sentence each. Parts of one log give the same sentences; they are listed once.
+std::vector<std::string> reading_words(std::span<const LogReading> readings);
 
 }  // namespace heatsoak::present

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
+#include <variant>
 
 #include "base/quantity.h"
+#include "present/measured/log.h"
 
 namespace heatsoak::present {
 namespace {
@@ -25,20 +26,28 @@ std::string say(const Extrapolation& of) {
                      significant(of.value, 3), of.unit, significant(of.low, 3), significant(of.high, 3), of.unit);
 }
 
-}  // namespace
-
-std::string words_of(const OutsideTraining& finding) {
-  return std::visit([](const auto& each) { return say(each); }, finding);
+std::string say(const FittedRun& of) {
+  return fmt::format("the error of {} is not a forecast error, because the model was fitted to this run", of.recording);
 }
 
-std::string fitted_run_words(std::string_view run) {
-  return fmt::format("the error of {} is not a forecast error, because the model was fitted to this run", run);
+std::string say(const OutsideTraining& of) {
+  return std::visit([](const auto& each) { return say(each); }, of);
+}
+
+}  // namespace
+
+std::vector<std::string> warning_words(const PredictionAnswer& answer) {
+  std::vector<std::string> all;
+  for (const PredictionWarning& warning : answer.warnings) {
+    all.push_back(std::visit([](const auto& each) { return say(each); }, warning));
+  }
+  return all;
 }
 
 std::string signal_words(const PredictedSignal& signal) { return signal.signal.substr(0, signal.signal.rfind('_')); }
 
-Document prediction_document(const Motor& motor, const Prediction& prediction, std::span<const std::string> warnings,
-                             std::span<const std::string> of_logs) {
+Document prediction_document(const Motor& motor, const PredictionAnswer& answer, std::span<const LogReading> readings) {
+  const Prediction& prediction = answer.prediction;
   Document document;
   const PredictedSignal* worst = nullptr;
   const PredictedRun* worst_run = nullptr;
@@ -71,12 +80,16 @@ Document prediction_document(const Motor& motor, const Prediction& prediction, s
   document.paragraphs.emplace_back(
       "Each run is predicted from its first temperatures and its measured inputs. A correct 90 % band contains 90 % of the samples.");
   document.tables.push_back(std::move(table));
-  for (const std::string& each : warnings) {
+  for (const std::string& each : warning_words(answer)) {
     document.add_note(Severity::warning, each);
   }
-  for (const std::string& each : prediction.notes) {
-    const bool is_of_logs = std::ranges::find(of_logs, each) != of_logs.end();
-    document.add_note(is_of_logs ? Severity::background : Severity::note, each);
+  for (const std::string& each : reading_words(readings)) {
+    document.add_note(Severity::background, each);
+  }
+  for (const std::vector<std::string>& notes : {answer.admission.notes, prediction.notes}) {
+    for (const std::string& each : notes) {
+      document.add_note(Severity::note, each);
+    }
   }
   return document;
 }

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/forecast/prediction.h"
-#include "calibration/training_range.h"
+#include "calibration/prediction_job.h"
 #include "present/document.h"
 #include "present/json.h"
 
@@ -15,18 +14,13 @@ namespace heatsoak::present {
 /// Returns the name of a predicted signal without its unit.
 std::string signal_words(const PredictedSignal& signal);
 
-/// Warns that a forecast leaves the range of the fitted runs.
-std::string words_of(const OutsideTraining& finding);
-
-/// Warns that the model was fitted to this run.
-std::string fitted_run_words(std::string_view run);
-
-/// `warnings` report where the model does not hold. The notes listed in `of_logs` (rejected samples) are printed last.
-Document prediction_document(const Motor& motor, const Prediction& prediction, std::span<const std::string> warnings,
-                             std::span<const std::string> of_logs);
+/// Warnings about the model's validity come first, and the reader's remarks of `readings` last.
+Document prediction_document(const Motor& motor, const PredictionAnswer& answer, std::span<const LogReading> readings);
 
 /// Returns the answer in the schema heatsoak.prediction/1.
-Json prediction_json(const Motor& motor, const Prediction& prediction);
+Json prediction_json(const Motor& motor, const PredictionAnswer& answer, std::span<const LogReading> readings);
+/// Returns the warnings as sentences, in the order of the logs.
+std::vector<std::string> warning_words(const PredictionAnswer& answer);
 /// Returns one JSON object per run, with the keys of heatsoak.prediction/1.
 Json runs_json(const std::vector<PredictedRun>& runs);
 

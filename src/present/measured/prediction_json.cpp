@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "present/measured/log.h"
 #include "present/measured/prediction.h"
 
 namespace heatsoak::present {
@@ -18,8 +19,12 @@ Json runs_json(const std::vector<PredictedRun>& runs) {
   return all;
 }
 
-Json prediction_json(const Motor& motor, const Prediction& prediction) {
-  return {{"schema", "heatsoak.prediction/1"}, {"motor", motor.id}, {"runs", runs_json(prediction.runs)}, {"notes", prediction.notes}};
+Json prediction_json(const Motor& motor, const PredictionAnswer& answer, std::span<const LogReading> readings) {
+  std::vector<std::string> notes = warning_words(answer);
+  for (const std::vector<std::string>& more : {reading_words(readings), answer.admission.notes, answer.prediction.notes}) {
+    notes.insert(notes.end(), more.begin(), more.end());
+  }
+  return {{"schema", "heatsoak.prediction/1"}, {"motor", motor.id}, {"runs", runs_json(answer.prediction.runs)}, {"notes", notes}};
 }
 
 }  // namespace heatsoak::present

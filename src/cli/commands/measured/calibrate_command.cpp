@@ -1,19 +1,13 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <CLI/App.hpp>
-#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "calibration/admission.h"
-#include "calibration/calibrate.h"
+#include "calibration/calibration_job.h"
 #include "cli/command.h"
 #include "cli/measured/logs_option.h"
 #include "cli/quantity_option.h"
 #include "cli/terminal.h"
 #include "duty/named_files.h"
-#include "motor/motor.h"
 #include "motor/write_motor.h"
 #include "present/measured/calibration.h"
 #include "present/measured/calibration_chart.h"
@@ -27,47 +21,28 @@ struct Options {
   std::vector<std::string> holdout;
   std::string out;
   std::string plot;
-  LogOptions how;
+  LogChoice how;
   FitOptions fit;
   bool writes_forecast = false;
   bool writes_innovations = false;
 };
 
-/// Adds the steps that the logs require, which come before the experiment that the fit suggests.
-void report_next_steps(std::vector<std::string> steps, std::string& next_experiment) {
-  if (!next_experiment.empty()) {
-    steps.push_back(next_experiment);
-  }
-  next_experiment = fmt::format("{}", fmt::join(steps, "; then: "));
-}
-
 ExitCode run(const Options& options, Session& session) {
-  const Motor motor = motor_named(session.folders(), options.motor);
-  present::LogRemarks remarks;
-  std::vector<Recording> logs = read_logs(session.folders(), options.logs, options.how, remarks.of_reading);
-  std::vector<Recording> holdout = read_logs(session.folders(), options.holdout, options.how, remarks.of_reading);
-  make_names_distinct(logs, holdout);
-  if (!options.how.takes_logs_as_they_are) {
-    refuse_runs_of_the_file(motor, logs, holdout);
-  }
-  Admission admission = admit(motor, logs, holdout, options.how.takes_logs_as_they_are, options.how.ambient_C);
-  remarks.of_screening = std::move(admission.notes);
-  const WrittenFit written = options.writes_forecast      ? WrittenFit::forecast
-                             : options.writes_innovations ? WrittenFit::innovations
-                                                          : WrittenFit::best;
+  CalibrationJob job{motor_named(session.folders(), options.motor),
+                     read_named_logs(options.logs, options.holdout, choice_of(options.how, session)), options.fit};
+  job.written = options.writes_forecast ? WrittenFit::forecast : options.writes_innovations ? WrittenFit::innovations : WrittenFit::best;
   std::shared_ptr<void> line = elapsed_line("calibrating");
-  Calibration result = calibrate(motor, logs, holdout, {options.fit, options.how.ambient_C, written});
+  const CalibrationAnswer answer = run_calibration(job);
   line.reset();
-  report_next_steps(admission.next_steps, result.next_experiment);
-  session.write(options.out, to_toml(calibrated_motor(motor, result)));
+  session.write(options.out, to_toml(answer.motor));
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_picture(present::calibration_chart(motor, result), options.plot));
+    session.write(options.plot, draw_picture(present::calibration_chart(job.motor, answer.calibration), options.plot));
   }
-  present::Document document = present::calibration_document(motor, result, remarks);
+  present::Document document = present::calibration_document(job.motor, answer, job.logs.readings);
   document.add_file(options.out);
   document.add_file(options.plot);
   session.show(document);
-  session.answer(present::calibration_json(motor, result, remarks, options.out));
+  session.answer(present::calibration_json(job.motor, answer, job.logs.readings, options.out));
   return ExitCode::done;
 }
 

@@ -1,22 +1,15 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/App.hpp>
-#include <algorithm>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "base/quantity.h"
-#include "calibration/admission.h"
 #include "cli/command.h"
 #include "cli/measured/effect_topics.h"
 #include "cli/measured/logs_option.h"
 #include "cli/terminal.h"
-#include "diagnosis/model_file.h"
+#include "diagnosis/diagnosis_job.h"
 #include "duty/named_files.h"
-#include "estimation/log_columns.h"
-#include "estimation/open_loop.h"
 #include "motor/write_motor.h"
 #include "present/measured/diagnosis.h"
 #include "present/measured/diagnosis_answer.h"
@@ -29,106 +22,38 @@ struct Options {
   std::vector<std::string> train;
   std::vector<std::string> holdout;
   std::string out;
-  LogOptions logs;
+  LogChoice logs;
 };
 
-std::vector<MeasuredRun> runs_of(const std::vector<Recording>& recordings, const MeasuredRunOptions& options,
-                                 std::vector<std::string>& notes) {
-  std::vector<MeasuredRun> all;
-  for (const Recording& recording : recordings) {
-    MeasuredRuns runs = measured_runs(recording, options);
-    notes.insert(notes.end(), runs.notes.begin(), runs.notes.end());
-    std::ranges::move(runs.runs, std::back_inserter(all));
-  }
-  return all;
-}
-
-/// Throws if not even the extended model follows the runs: effects found in them would be meaningless.
-void refuse_where_nothing_follows(const Diagnosis& diagnosis, const DiagnosisInput& input) {
-  constexpr double kFar_K = 20.0;
-  for (const auto& [signal, error] : diagnosis.after_train) {
-    const double moves_K = standard_deviation_K(input.train, signal);
-    if (error.rmse_K > std::max(kFar_K, moves_K)) {
-      throw Failure(ExitCode::cannot_answer,
-                    fmt::format("no effect makes the model follow these logs: {} has an error of {} K rms, more than its variation "
-                                "(standard deviation {} K)\n  check for another motor, a wrong unit (degrees Fahrenheit, minutes, "
-                                "milliamperes) or a misplaced sensor; `heatsoak log inspect` shows each channel",
-                                signal, significant(error.rmse_K, 2), significant(moves_K, 2)));
-    }
-  }
-}
-
-void hand_out(const Options& options, const Motor& extended, const Diagnosis& diagnosis, const DiagnosisInput& input,
-              const HoldoutScore& score, Session& session) {
+void write_folder(const Options& options, const DiagnosisAnswer& answer, const std::vector<LogReading>& readings, Session& session) {
   const std::filesystem::path folder(options.out);
   session.make_folder(folder);
   std::vector<std::pair<std::string, std::string>> svg;
-  for (const present::DiagnosisPicture& picture : present::diagnosis_pictures(diagnosis, input, score)) {
+  for (const present::DiagnosisPicture& picture : present::diagnosis_pictures(answer)) {
     svg.emplace_back(picture.name, draw_svg(picture.chart));
     session.write(folder / (picture.name + ".svg"), svg.back().second);
   }
-  session.write(folder / (extended.id + ".toml"), to_toml(extended));
-  session.write(folder / "diagnosis.json", present::diagnosis_json(diagnosis, input, score).dump(2) + "\n");
-  session.write(folder / "diagnosis.html", present::diagnosis_page(diagnosis, input, score, svg));
+  session.write(folder / (answer.motor.id + ".toml"), to_toml(answer.motor));
+  session.write(folder / "diagnosis.json", present::diagnosis_json(answer, readings).dump(2) + "\n");
+  session.write(folder / "diagnosis.html", present::diagnosis_page(answer, readings, svg));
 }
 
 ExitCode run(const Options& options, Session& session) {
-  const Motor motor = motor_named(session.folders(), options.model);
-  std::vector<std::string> notes;
-  std::vector<std::string> warnings;
-  std::vector<Recording> train = read_logs(session.folders(), options.train, options.logs, notes);
-  std::vector<Recording> holdout = read_logs(session.folders(), options.holdout, options.logs, notes);
-  if (motor.fit && !motor.fit->extensions.empty()) {
-    warnings.push_back(
-        fmt::format("an effect that {} imitates may stay unfound, because the file has {} for better forecasts only; calibrate "
-                    "with --innovations for a diagnosis",
-                    fmt::join(motor.fit->extensions, " and "), motor.fit->extensions.size() == 1 ? "it" : "them"));
-  }
-  const std::vector<std::string> of_logs = notes;
-  notes.insert(notes.end(), warnings.begin(), warnings.end());
-  make_names_distinct(train, holdout);
-  std::ranges::move(admit(motor, train, holdout, options.logs.takes_logs_as_they_are, options.logs.ambient_C).notes,
-                    std::back_inserter(notes));
-  ModelOfLogs model = model_of_logs(motor, train);
-  notes.insert(notes.end(), model.notes.begin(), model.notes.end());
-  MeasuredRunOptions how = model.how;
-  how.ambient_C = options.logs.ambient_C;
-  DiagnosisInput input;
-  input.model = model.model;
-  input.usual = model.usual;
-  input.train = runs_of(train, how, notes);
-  if (std::string note = settle_turning_rows(input); !note.empty()) {
-    notes.push_back(std::move(note));
-  }
-  if (const std::vector<std::string> rare = keep_common_columns(input.train, input.model.column); !rare.empty()) {
-    notes.push_back(
-        fmt::format("not every log has {}: heat that depends on {} is not searched for; to search for it, leave out the other logs",
-                    fmt::join(rare, ", "), rare.size() == 1 ? "it" : "them"));
-  }
+  const DiagnosisJob job{motor_named(session.folders(), options.model),
+                         read_named_logs(options.train, options.holdout, choice_of(options.logs, session))};
   std::shared_ptr<void> line = elapsed_line("searching for missing effects");
-  Diagnosis diagnosis = heatsoak::diagnose(input, {});
+  const DiagnosisAnswer answer = run_diagnosis(job);
   line.reset();
-  set_column(input.train, diagnosis.selection.after.model.column);
-  refuse_where_nothing_follows(diagnosis, input);
-  const Motor extended = extended_motor(motor, model, diagnosis);
-  HoldoutScore score = score_holdout(input, diagnosis, runs_of(holdout, how, notes));
-  score_files(motor, extended, holdout, {options.logs.ambient_C, input.turns_within_rows}, score);
-  diagnosis.words = describe(diagnosis, score);
-  diagnosis.description = fmt::format("{}", fmt::join(diagnosis.words, " "));
-  if (std::string lacking = column_lacking(diagnosis.selection.after.model.column, holdout);
-      !lacking.empty() && std::ranges::find(notes, lacking) == notes.end()) {
-    notes.push_back(std::move(lacking));
-  }
-  diagnosis.notes = notes;
-  present::Document document = present::diagnosis_document(diagnosis, warnings, of_logs);
+  const std::vector<LogReading>& readings = job.logs.readings;
+  present::Document document = present::diagnosis_document(answer, readings);
   if (!options.out.empty()) {
-    hand_out(options, extended, diagnosis, input, score, session);
+    write_folder(options, answer, readings, session);
     document.add_file(options.out + "/diagnosis.html");
-    document.add_file(fmt::format("{}/{}.toml", options.out, motor.id));
+    document.add_file(fmt::format("{}/{}.toml", options.out, answer.motor.id));
   }
   session.show(document);
-  session.answer(present::diagnosis_json(diagnosis, input, score));
-  return diagnosis.verdict == DiagnosisVerdict::not_identifiable ? ExitCode::cannot_answer : ExitCode::done;
+  session.answer(present::diagnosis_json(answer, readings));
+  return answer.diagnosis.verdict == DiagnosisVerdict::not_identifiable ? ExitCode::cannot_answer : ExitCode::done;
 }
 
 }  // namespace

@@ -1,10 +1,8 @@
 #include <CLI/App.hpp>
-#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "calibration/admission.h"
-#include "calibration/training_range.h"
+#include "calibration/prediction_job.h"
 #include "cli/command.h"
 #include "cli/measured/logs_option.h"
 #include "cli/quantity_option.h"
@@ -19,38 +17,20 @@ struct Options {
   std::string model;
   std::vector<std::string> logs;
   std::string plot;
-  LogOptions how;
+  LogChoice how;
 };
 
 ExitCode run(const Options& options, Session& session) {
-  const Motor motor = motor_named(session.folders(), options.model);
-  std::vector<std::string> notes;
-  std::vector<Recording> logs = read_logs(session.folders(), options.logs, options.how, notes);
-  const std::vector<std::string> of_logs = notes;
-  std::vector<Recording> none;
-  make_names_distinct(logs, none);
-  std::ranges::move(admit(motor, none, logs, options.how.takes_logs_as_they_are, options.how.ambient_C).notes, std::back_inserter(notes));
-  std::vector<std::string> warnings;
-  for (const Recording& log : logs) {
-    if (motor.fit) {
-      for (const OutsideTraining& each : outside(motor.fit->training, log)) {
-        warnings.push_back(present::words_of(each));
-      }
-    }
-    if (motor.fit && was_fitted_to(*motor.fit, log)) {
-      warnings.push_back(present::fitted_run_words(log.name));
-    }
-  }
-  Prediction prediction = predict(motor, logs, {.ambient_C = options.how.ambient_C});
-  prediction.notes.insert(prediction.notes.begin(), notes.begin(), notes.end());
+  const PredictionJob job{motor_named(session.folders(), options.model),
+                          read_named_logs({}, options.logs, choice_of(options.how, session))};
+  const PredictionAnswer answer = run_prediction(job);
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_picture(present::prediction_chart(motor, prediction), options.plot));
+    session.write(options.plot, draw_picture(present::prediction_chart(job.motor, answer.prediction), options.plot));
   }
-  present::Document document = present::prediction_document(motor, prediction, warnings, of_logs);
+  present::Document document = present::prediction_document(job.motor, answer, job.logs.readings);
   document.add_file(options.plot);
   session.show(document);
-  prediction.notes.insert(prediction.notes.begin(), warnings.begin(), warnings.end());
-  session.answer(present::prediction_json(motor, prediction));
+  session.answer(present::prediction_json(job.motor, answer, job.logs.readings));
   return ExitCode::done;
 }
 

@@ -1,17 +1,22 @@
-// The diagnosis in words: verdict, effects with their uncertainty, errors before and after, and the next experiment.
+#include "present/measured/diagnosis_words.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <span>
+#include <type_traits>
+#include <variant>
 
 #include "base/quantity.h"
 #include "calibration/unlogged_speed.h"
-#include "diagnosis/diagnosis.h"
+#include "present/measured/calibration_words.h"
+#include "present/measured/log.h"
 
-namespace heatsoak {
+namespace heatsoak::present {
 namespace {
 
 /// Reports the errors before and after, and with only the model's own parameters refitted, whose part is not due to an effect.
@@ -215,9 +220,91 @@ std::string file_alone_in_words(const Diagnosis& diagnosis, const HoldoutScore& 
       fmt::join(names, " and "), is_held_out ? "the hold-out runs" : "the training runs", fmt::join(errors, ", "));
 }
 
+std::string beyond_in_words(const BeyondTraining& beyond) {
+  const std::string_view name = beyond.signal == Signal::current       ? "current"
+                                : beyond.signal == Signal::speed       ? "speed"
+                                : beyond.signal == Signal::input_power ? "input power"
+                                                                       : "vehicle's speed";
+  return fmt::format(
+      "The forecast is an extrapolation for {:.0f} % of the time of the hold-out runs, because the {} is outside the range of the "
+      "training runs ({} to {} {}).",
+      100.0 * beyond.time_share, name, significant(beyond.low, 2), significant(beyond.high, 2), beyond.unit);
+}
+
+std::string reason_in_words(const Refusal& refused) {
+  switch (refused.reason) {
+    case RefusalReason::improbable:
+      return fmt::format("its probability is {:.0f} %, but a name requires {:.0f} %", 100.0 * refused.probability,
+                         100.0 * refused.needed_probability);
+    case RefusalReason::curve_is_better:
+      return fmt::format("a curve over {} explains the runs better", refused.signal);
+    case RefusalReason::unknown_heat_remains:
+      return "material unknown heat remains, and it does not reduce the error of whole runs enough";
+    case RefusalReason::hardly_improves_whole_runs:
+      return "it hardly improves the prediction of whole runs";
+  }
+  return "";
+}
+
+std::string_view it_or_them(std::size_t count) { return count == 1 ? "it" : "them"; }
+
+std::string say(const ExtensionsMayImitate& of) {
+  return fmt::format(
+      "an effect that {} imitates may stay unfound, because the file has {} for better forecasts only; calibrate with --innovations for a "
+      "diagnosis",
+      fmt::join(of.effects, " and "), it_or_them(of.effects.size()));
+}
+
+std::string say(const ColumnsTakenAsZero& of) {
+  return fmt::format("no log has {}, which {} depends on: it is taken as 0", fmt::join(of.columns, " and "), of.effect);
+}
+
+std::string say(const ConditionNotApplied& of) {
+  return fmt::format(
+      "{} acts in every run here, although its condition is {}: an effect of the type {} has no size that could be set to 0; leave out the "
+      "runs without that condition",
+      of.effect, in_words(of.condition), of.type);
+}
+
+std::string say(const ConditionNeverMet& of) {
+  return fmt::format("{} acts in none of these runs: no log has its condition {}", of.effect, in_words(of.condition));
+}
+
+std::string say(const IntervalsOfDataSheet& /*of*/) {
+  return "the file's intervals are replaced by those of a data sheet: it was fitted to some of these runs, which would count twice";
+}
+
+std::string say(const LossInUnknownHeat& of) {
+  return fmt::format(
+      "not every log has a speed: the loss at speed, up to {} W, is part of the unknown heat; no effect at the stator is named, and no "
+      "curve over another signal is added",
+      significant(of.most_W, 2));
+}
+
+std::string say(const TorqueFromCurrent& /*of*/) {
+  return "not every log has a torque: without one, current times torque constant minus the no-load drag is used";
+}
+
+std::string say(const ColumnsNotSearched& of) {
+  return fmt::format("not every log has {}: heat that depends on {} is not searched for; to search for it, leave out the other logs",
+                     fmt::join(of.columns, ", "), it_or_them(of.columns.size()));
+}
+
+std::string diagnosis_finding_words(const DiagnosisFinding& finding) {
+  return std::visit(
+      [](const auto& each) {
+        if constexpr (std::is_constructible_v<CalibrationFinding, decltype(each)>) {
+          return words_of(CalibrationFinding(each));
+        } else {
+          return say(each);
+        }
+      },
+      finding);
+}
+
 }  // namespace
 
-std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore& score) {
+std::vector<std::string> diagnosis_words(const Diagnosis& diagnosis, const HoldoutScore& score) {
   std::vector<std::string> all{verdict_in_words(diagnosis)};
   for (const FoundEffect& effect : diagnosis.effects) {
     // Effects outside the catalogue are described below, with their signals.
@@ -247,16 +334,67 @@ std::vector<std::string> describe(const Diagnosis& diagnosis, const HoldoutScore
   if (const std::string alone = file_alone_in_words(diagnosis, score); !alone.empty()) {
     all.push_back(alone);
   }
-  all.insert(all.end(), score.beyond_training.begin(), score.beyond_training.end());
-  for (const Refusal& refused : diagnosis.selection.refused) {
-    all.push_back(fmt::format("Not named: {}.", refused.words));
+  std::ranges::transform(score.beyond_training, std::back_inserter(all), beyond_in_words);
+  for (const std::string& refused : refusal_words(diagnosis.selection)) {
+    all.push_back(fmt::format("Not named: {}.", refused));
   }
   if (!diagnosis.experiments.empty()) {
     const Experiment& next = diagnosis.experiments.front();
-    all.push_back(fmt::format("Next experiment, to decide whether it is {}: {}", next.rivals, next.what) +
+    all.push_back(fmt::format("Next experiment, to decide whether it is {}: {}", rivals_of(next), experiment_words(next)) +
                   (next.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats).", next.expected_nats) : std::string(".")));
   }
   return all;
 }
 
-}  // namespace heatsoak
+std::vector<std::string> refusal_words(const Selection& selection) {
+  std::vector<std::string> all;
+  for (const Refusal& each : selection.refused) {
+    std::string words = fmt::format("{}: {}", each.id, reason_in_words(each));
+    if (std::ranges::find(all, words) == all.end()) {
+      all.push_back(std::move(words));
+    }
+  }
+  return all;
+}
+
+std::string untested_words(const UntestedEffect& untested) {
+  return fmt::format("not every log has {}", fmt::join(untested.lacking, " and "));
+}
+
+std::string rivals_of(const Experiment& experiment) { return fmt::format("{} or {}", experiment.effect, experiment.rival); }
+
+std::string experiment_words(const Experiment& experiment) {
+  std::vector<std::string> levels;
+  if (experiment.most_A) {
+    levels.push_back(significant(*experiment.most_A, 2) + " A");
+  }
+  if (experiment.most_rad_per_s) {
+    levels.push_back(significant(*experiment.most_rad_per_s, 2) + " rad/s");
+  }
+  return levels.empty()
+             ? experiment.what
+             : fmt::format("{}; with at most {} the motor gets no hotter than in these runs", experiment.what, fmt::join(levels, " and "));
+}
+
+std::vector<DiagnosisNote> diagnosis_notes(const DiagnosisAnswer& answer, std::span<const LogReading> readings) {
+  std::vector<DiagnosisNote> notes;
+  for (std::string& each : reading_words(readings)) {
+    notes.push_back({Severity::background, std::move(each)});
+  }
+  const auto is_warning = [](const DiagnosisFinding& finding) { return std::holds_alternative<ExtensionsMayImitate>(finding); };
+  const auto add_findings = [&](bool warnings) {
+    for (const DiagnosisFinding& each : answer.findings) {
+      if (is_warning(each) == warnings) {
+        notes.push_back({warnings ? Severity::warning : Severity::note, diagnosis_finding_words(each)});
+      }
+    }
+  };
+  add_findings(true);
+  for (const std::string& each : answer.admission.notes) {
+    notes.push_back({Severity::note, each});
+  }
+  add_findings(false);
+  return notes;
+}
+
+}  // namespace heatsoak::present

@@ -1,0 +1,26 @@
+// The answer of `calibrate`: checks the logs, fits the motor's parameters to them, and makes the calibrated motor.
+#pragma once
+
+#include "calibration/admission.h"
+#include "calibration/calibrate.h"
+#include "recording/named_logs.h"
+
+namespace heatsoak {
+
+struct CalibrationJob {
+  Motor motor;     ///< start of the fit and prior knowledge
+  NamedLogs logs;  ///< their choice states whether logs that look wrong are accepted
+  FitOptions fit;
+  WrittenFit written = WrittenFit::best;
+};
+
+struct CalibrationAnswer {
+  Calibration calibration;
+  Motor motor;  ///< the calibrated motor
+  Admission admission;
+};
+
+/// Throws Failure as admit(), refuse_runs_of_the_file() and calibrate() do.
+CalibrationAnswer run_calibration(const CalibrationJob& job);
+
+}  // namespace heatsoak

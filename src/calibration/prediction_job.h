@@ -1,0 +1,35 @@
+// The answer of `predict`: checks the logs, predicts their temperatures, and finds where the model is not valid for them.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "calibration/admission.h"
+#include "calibration/forecast/prediction.h"
+#include "calibration/training_range.h"
+#include "recording/named_logs.h"
+
+namespace heatsoak {
+
+struct PredictionJob {
+  Motor motor;
+  NamedLogs logs;  ///< `held_out` is predicted; no log is fitted
+};
+
+/// The model was fitted to this recording, so its error is not a forecast error.
+struct FittedRun {
+  std::string recording;
+};
+using PredictionWarning = std::variant<OutsideTraining, FittedRun>;
+
+struct PredictionAnswer {
+  Prediction prediction;
+  Admission admission;
+  std::vector<PredictionWarning> warnings;
+};
+
+/// Throws Failure as admit() and predict() do.
+PredictionAnswer run_prediction(const PredictionJob& job);
+
+}  // namespace heatsoak

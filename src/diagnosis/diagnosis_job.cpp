@@ -1,0 +1,93 @@
+#include "diagnosis/diagnosis_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "base/diagnostic.h"
+#include "base/quantity.h"
+#include "estimation/log_columns.h"
+#include "estimation/open_loop.h"
+
+namespace heatsoak {
+namespace {
+
+std::vector<MeasuredRun> runs_of(const std::vector<Recording>& recordings, const MeasuredRunOptions& options,
+                                 std::vector<DiagnosisFinding>& findings) {
+  std::vector<MeasuredRun> all;
+  for (const Recording& recording : recordings) {
+    MeasuredRuns runs = measured_runs(recording, options);
+    for (std::string& note : runs.notes) {
+      findings.emplace_back(Remark{std::move(note)});
+    }
+    std::ranges::move(runs.runs, std::back_inserter(all));
+  }
+  return all;
+}
+
+/// Throws if not even the extended model follows the runs: effects found in them would be meaningless.
+void refuse_where_nothing_follows(const Diagnosis& diagnosis, const DiagnosisInput& input) {
+  constexpr double kFar_K = 20.0;
+  for (const auto& [signal, error] : diagnosis.after_train) {
+    const double moves_K = standard_deviation_K(input.train, signal);
+    if (error.rmse_K > std::max(kFar_K, moves_K)) {
+      throw Failure(ExitCode::cannot_answer,
+                    fmt::format("no effect makes the model follow these logs: {} has an error of {} K rms, more than its variation "
+                                "(standard deviation {} K)\n  check for another motor, a wrong unit (degrees Fahrenheit, minutes, "
+                                "milliamperes) or a misplaced sensor; `heatsoak log inspect` shows each channel",
+                                signal, significant(error.rmse_K, 2), significant(moves_K, 2)));
+    }
+  }
+}
+
+/// Adds the remark that hold-out logs lack the column of a curve, unless the training logs already gave it.
+void add_lacking_column(const std::string& column, const std::vector<Recording>& holdout, std::vector<DiagnosisFinding>& findings) {
+  const std::string lacking = column_lacking(column, holdout);
+  const bool is_known = std::ranges::any_of(findings, [&](const DiagnosisFinding& each) {
+    const auto* const remark = std::get_if<Remark>(&each);
+    return remark != nullptr && remark->words == lacking;
+  });
+  if (!lacking.empty() && !is_known) {
+    findings.emplace_back(Remark{lacking});
+  }
+}
+
+}  // namespace
+
+DiagnosisAnswer run_diagnosis(const DiagnosisJob& job) {
+  const auto& [fitted, held_out, readings, choice] = job.logs;
+  DiagnosisAnswer answer;
+  std::vector<DiagnosisFinding>& findings = answer.findings;
+  if (job.motor.fit && !job.motor.fit->extensions.empty()) {
+    findings.emplace_back(ExtensionsMayImitate{job.motor.fit->extensions});
+  }
+  answer.admission = admit(job.motor, fitted, held_out, choice.takes_logs_as_they_are, choice.ambient_C);
+  ModelOfLogs model = model_of_logs(job.motor, fitted);
+  std::ranges::move(model.findings, std::back_inserter(findings));
+  MeasuredRunOptions how = model.how;
+  how.ambient_C = choice.ambient_C;
+  DiagnosisInput& input = answer.input;
+  input.model = model.model;
+  input.usual = model.usual;
+  input.train = runs_of(fitted, how, findings);
+  settle_turning_rows(input);
+  if (input.turns_within_rows) {
+    findings.emplace_back(RowsTurn{});
+  }
+  if (std::vector<std::string> rare = keep_common_columns(input.train, input.model.column); !rare.empty()) {
+    findings.emplace_back(ColumnsNotSearched{std::move(rare)});
+  }
+  answer.diagnosis = diagnose(input, {});
+  const std::string& column = answer.diagnosis.selection.after.model.column;
+  set_column(input.train, column);
+  refuse_where_nothing_follows(answer.diagnosis, input);
+  answer.motor = extended_motor(job.motor, model, answer.diagnosis);
+  answer.score = score_holdout(input, answer.diagnosis, runs_of(held_out, how, findings));
+  score_files(job.motor, answer.motor, held_out, {choice.ambient_C, input.turns_within_rows}, answer.score);
+  add_lacking_column(column, held_out, findings);
+  return answer;
+}
+
+}  // namespace heatsoak

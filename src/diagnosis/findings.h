@@ -1,0 +1,58 @@
+// Findings of a diagnosis about its own limits and assumptions, as data. src/present puts them into words.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "calibration/findings.h"
+#include "estimation/run_deviation.h"
+
+namespace heatsoak {
+
+/// The motor file has these effects for better forecasts only. An effect that they imitate may stay unfound.
+struct ExtensionsMayImitate {
+  std::vector<std::string> effects;
+};
+/// No log has these columns, which an effect of the file depends on. They are taken as 0.
+struct ColumnsTakenAsZero {
+  std::vector<std::string> columns;
+  std::string effect;
+};
+/// A conditional effect acts in every run, because its type has no size that could be set to 0.
+struct ConditionNotApplied {
+  std::string effect;
+  std::string type;
+  Condition condition;
+};
+/// No log has the condition of an effect.
+struct ConditionNeverMet {
+  std::string effect;
+  Condition condition;
+};
+/// The file was fitted to some of these runs. Its intervals are replaced by those of a data sheet.
+struct IntervalsOfDataSheet {};
+/// Logs have a current but no speed. The loss at speed, up to `most_W`, is part of the unknown heat.
+struct LossInUnknownHeat {
+  double most_W = 0.0;
+};
+/// Not every log has a torque; without one, it is computed from the current.
+struct TorqueFromCurrent {};
+/// Not every log has these columns. Heat that depends on them is not searched for.
+struct ColumnsNotSearched {
+  std::vector<std::string> columns;
+};
+
+using DiagnosisFinding = std::variant<ExtensionsMayImitate, ColumnsTakenAsZero, ConditionNotApplied, ConditionNeverMet,
+                                      IntervalsOfDataSheet, LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched, RowsTurn, Remark>;
+
+/// Signal that is outside the range of the training runs for more than a quarter of the time of the hold-out runs.
+struct BeyondTraining {
+  Signal signal = Signal::current;
+  std::string unit;
+  double low = 0.0;  ///< range of the training runs
+  double high = 0.0;
+  double time_share = 0.0;  ///< share of the time outside
+};
+
+}  // namespace heatsoak

@@ -1,0 +1,107 @@
+#include "recording/named_logs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "base/diagnostic.h"
+#include "recording/mapping.h"
+#include "recording/quality.h"
+#include "recording/read_recording.h"
+
+namespace heatsoak {
+namespace {
+
+struct LogPart {
+  std::string file;
+  double from_share = 0.0;
+  double to_share = 1.0;
+};
+
+/// Parses "run4.csv@0-60%": the first 60 % of the time of run4.csv.
+LogPart log_part(const std::string& text) {
+  const std::size_t at = text.rfind('@');
+  if (at == std::string::npos || text.find_first_not_of("0123456789.-% ", at + 1) != std::string::npos) {
+    return {text};
+  }
+  const std::size_t dash = text.find('-', at);
+  LogPart part{text.substr(0, at)};
+  const auto number = [&](std::size_t begin, std::size_t end, double& share) {
+    const auto result = std::from_chars(text.data() + begin, text.data() + end, share);
+    share /= 100.0;
+    return result.ec == std::errc() && result.ptr == text.data() + end;
+  };
+  const bool is_sound = text.ends_with('%') && dash != std::string::npos && number(at + 1, dash, part.from_share) &&
+                        number(dash + 1, text.size() - 1, part.to_share) && part.from_share >= 0.0 && part.from_share < part.to_share &&
+                        part.to_share <= 1.0;
+  if (!is_sound) {
+    throw Failure(ExitCode::bad_input, fmt::format("'{}': expected LOG@FROM-TO%, such as run4.csv@0-60%", text));
+  }
+  return part;
+}
+
+std::vector<Recording> read_each(const std::vector<std::string>& texts, const LogChoice& choice, std::vector<LogReading>& readings) {
+  std::vector<Recording> all;
+  for (const std::string& text : texts) {
+    const LogPart part = log_part(text);
+    RecordingReport report;
+    const std::filesystem::path file = log_named(choice.folders, part.file);
+    Recording recording = read_recording(file, mapping_for(file, choice.map), report);
+    if (part.from_share == 0.0 && part.to_share == 1.0) {
+      all.push_back(std::move(recording));
+    } else {
+      all.push_back(part_of(recording, part.from_share, part.to_share));
+      all.back().blocking_of_whole = assess(recording, report, choice.ambient_C).blocking;
+    }
+    readings.push_back({all.back().name, std::move(report)});
+  }
+  return all;
+}
+
+/// Names of recordings, each with its files.
+using FilesOfName = std::map<std::string, std::set<std::filesystem::path>>;
+
+void add_files(const std::vector<Recording>& recordings, FilesOfName& files) {
+  for (const Recording& each : recordings) {
+    files[each.name].insert(std::filesystem::weakly_canonical(each.file));
+  }
+}
+
+/// Recordings that share their name with another file are named by the shortest path suffix that is unique.
+void make_names_distinct(std::vector<Recording>& recordings, const FilesOfName& files) {
+  for (Recording& each : recordings) {
+    const std::set<std::filesystem::path>& of_name = files.at(each.name);
+    const std::filesystem::path own = std::filesystem::weakly_canonical(each.file);
+    std::string name = each.name;
+    auto same = static_cast<std::ptrdiff_t>(of_name.size());
+    for (std::filesystem::path folder = own.parent_path(); same > 1 && !folder.filename().empty(); folder = folder.parent_path()) {
+      name = folder.filename().string() + "/" + name;
+      same = std::ranges::count_if(
+          of_name, [&](const std::filesystem::path& other) { return (other.parent_path() / other.stem()).string().ends_with("/" + name); });
+    }
+    each.name = std::move(name);
+  }
+}
+
+}  // namespace
+
+NamedLogs read_named_logs(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice) {
+  NamedLogs logs;
+  logs.choice = choice;
+  logs.fitted = read_each(fitted, choice, logs.readings);
+  logs.held_out = read_each(held_out, choice, logs.readings);
+  FilesOfName files;
+  add_files(logs.fitted, files);
+  const FilesOfName of_fitted = files;
+  add_files(logs.held_out, files);
+  make_names_distinct(logs.held_out, files);
+  make_names_distinct(logs.fitted, of_fitted);
+  return logs;
+}
+
+}  // namespace heatsoak

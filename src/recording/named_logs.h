@@ -1,0 +1,38 @@
+// Reads the measured logs that a user names: LOG, or LOG@0-60% for a part of its time.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "input/data_folders.h"
+#include "recording/recording.h"
+#include "recording/recording_report.h"
+
+namespace heatsoak {
+
+struct LogChoice {
+  DataFolders folders = {};              ///< folders of log_named()
+  std::string map = {};                  ///< mapping of all logs; empty: the file beside each log, if there is one
+  std::optional<double> ambient_C = {};  ///< for logs without an ambient temperature
+  bool takes_logs_as_they_are = false;   ///< accept logs whose units or sensors look wrong
+};
+
+/// Omitted samples and other remarks of one log; parts of one log have one entry each.
+struct LogReading {
+  std::string log;  ///< stem of the file
+  RecordingReport report;
+};
+
+struct NamedLogs {
+  std::vector<Recording> fitted;
+  std::vector<Recording> held_out;
+  std::vector<LogReading> readings;  ///< of `fitted`, then of `held_out`
+  LogChoice choice;                  ///< choice that they were read with
+};
+
+/// Reads the logs. Recordings whose files have the same name in different folders get the folder as a prefix ("monday/run"); names of
+/// fitted logs do not depend on the hold-out logs. Throws Failure (bad_input).
+NamedLogs read_named_logs(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice);
+
+}  // namespace heatsoak
