@@ -320,7 +320,7 @@ class Selector : Rounds {
       return false;
     }
     std::vector<MeasuredRun> runs = input_.runs;
-    set_column(runs, curved->column);
+    set_columns(runs, curved->columns);
     const auto sum_K2 = [&](const Model& model, const LatentFlux& flux) {
       const std::vector<double> errors_K2 = left_out_errors_K2(model, runs, flux);
       return std::accumulate(errors_K2.begin(), errors_K2.end(), 0.0);

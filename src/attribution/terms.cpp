@@ -85,11 +85,19 @@ Eigen::VectorXd passive(const ScanResult& curve) {
 
 std::optional<Model> with_table(const Model& model, const ScanResult& curve, const Regressor& driver, std::string_view name) {
   const EffectType& type = *find_effect("tabulated");
-  const std::optional<double> choice = choice_value(type.parameters[0], driver.choice);
   const std::optional<double> form = choice_value(type.parameters[1], form_of(curve.term.multiplier));
-  const bool is_column = driver.choice == kColumnChoice;
-  // An operating point holds only one log column.
-  if (!choice || !form || (is_column && !model.column.empty() && model.column != driver.name)) {
+  Model out = model;
+  std::string_view driver_choice = driver.choice;
+  if (driver.choice == kColumnChoice) {
+    const auto place = static_cast<std::size_t>(std::ranges::find(out.columns, driver.name) - out.columns.begin());
+    if (place == kMostColumns) {
+      return std::nullopt;
+    }
+    out.columns.resize(std::max(out.columns.size(), place + 1), driver.name);
+    driver_choice = kColumnChoices[place];
+  }
+  const std::optional<double> choice = choice_value(type.parameters[0], driver_choice);
+  if (!choice || !form) {
     return std::nullopt;
   }
   const Eigen::VectorXd values = passive(curve);
@@ -99,8 +107,6 @@ std::optional<Model> with_table(const Model& model, const ScanResult& curve, con
   const std::string reference = driver.reference.empty() ? ambient : driver.reference;
   std::vector<double> parameters{*choice, *form, curve.knots.front(), curve.knots.back()};
   parameters.insert(parameters.end(), values.begin(), values.end());
-  Model out = model;
-  out.column = is_column ? driver.name : model.column;
   const EffectInPlace effect = add(out, named(name, as_word(fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name))), type,
                                    {curve.term.node, cold, watched, reference}, parameters);
   const double gap = (curve.knots.back() - curve.knots.front()) / static_cast<double>(values.size() - 1);

@@ -68,7 +68,7 @@ class Calibrating {
     add_remarks(all_.motor_model.held);
     add_remarks(held_sensors(motor, recordings_));
     MeasuredRunOptions how = how_to_read(motor, setup_.heat);
-    if (std::string lacking = column_lacking(how.column, recordings_); !lacking.empty()) {
+    if (std::string lacking = columns_lacking(how.columns, recordings_); !lacking.empty()) {
       add_remarks({std::move(lacking)});
     }
     how.needed = all_.motor_model.needed;

@@ -322,7 +322,10 @@ MeasuredRunOptions how_to_read(const Motor& motor, HeatInput heat) {
     how.faults.push_back({sensor.type, sensor.size.value});
   }
   for (const MotorEffect& effect : motor.effects) {
-    how.column = effect.column.empty() ? how.column : effect.column;
+    if (!effect.column.empty()) {
+      how.columns.resize(std::max(how.columns.size(), effect.column_place() + 1));
+      how.columns[effect.column_place()] = effect.column;
+    }
   }
   return how;
 }

@@ -39,7 +39,7 @@ class DiagnosisReport {
  public:
   DiagnosisReport(const DiagnosisInput& input, const SelectionRules& rules, Selection selection) : rules_(rules), input_(input) {
     out_.selection = std::move(selection);
-    set_column(input_.train, out_.selection.after.model.column);
+    set_columns(input_.train, out_.selection.after.model.columns);
   }
 
   Diagnosis tell() {
@@ -294,7 +294,7 @@ HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnos
   if (input.turns_within_rows) {
     std::ranges::transform(holdout, holdout.begin(), turning_within_rows);
   }
-  set_column(holdout, after.column);
+  set_columns(holdout, after.columns);
   score.before = open_loop_errors(input.model, holdout, diagnosis.runs);
   score.refitted = open_loop_errors(diagnosis.selection.own.model, holdout, diagnosis.runs);
   score.after = open_loop_errors(after, holdout, diagnosis.runs);

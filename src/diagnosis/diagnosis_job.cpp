@@ -42,9 +42,10 @@ void refuse_where_nothing_follows(const Diagnosis& diagnosis, const DiagnosisInp
   }
 }
 
-/// Adds the remark that hold-out logs lack the column of a curve, unless the training logs already gave it.
-void add_lacking_column(const std::string& column, const std::vector<Recording>& holdout, std::vector<DiagnosisFinding>& findings) {
-  const std::string lacking = column_lacking(column, holdout);
+/// Adds the remark that hold-out logs lack columns of curves, unless the training logs already gave it.
+void add_lacking_columns(std::span<const std::string> columns, const std::vector<Recording>& holdout,
+                         std::vector<DiagnosisFinding>& findings) {
+  const std::string lacking = columns_lacking(columns, holdout);
   const bool is_known = std::ranges::any_of(findings, [&](const DiagnosisFinding& each) {
     const auto* const remark = std::get_if<Remark>(&each);
     return remark != nullptr && remark->words == lacking;
@@ -76,17 +77,17 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job) {
   if (input.turns_within_rows) {
     findings.emplace_back(RowsTurn{});
   }
-  if (std::vector<std::string> rare = keep_common_columns(input.train, input.model.column); !rare.empty()) {
+  if (std::vector<std::string> rare = keep_common_columns(input.train, input.model.columns); !rare.empty()) {
     findings.emplace_back(ColumnsNotSearched{std::move(rare)});
   }
   answer.diagnosis = diagnose(input, {});
-  const std::string& column = answer.diagnosis.selection.after.model.column;
-  set_column(input.train, column);
+  const std::vector<std::string>& columns = answer.diagnosis.selection.after.model.columns;
+  set_columns(input.train, columns);
   refuse_where_nothing_follows(answer.diagnosis, input);
   answer.motor = extended_motor(job.motor, model, answer.diagnosis);
   answer.score = score_holdout(input, answer.diagnosis, runs_of(held_out, how, findings));
   score_files(job.motor, answer.motor, held_out, {choice.ambient_C, input.turns_within_rows}, answer.score);
-  add_lacking_column(column, held_out, findings);
+  add_lacking_columns(columns, held_out, findings);
   return answer;
 }
 

@@ -145,7 +145,8 @@ MotorEffect motor_effect(const FoundEffect& found, const Posterior& fit) {
     if (!spec.choices.empty()) {
       ParameterValue chosen;
       chosen.value = value;
-      chosen.printed = spec.choices[static_cast<std::size_t>(value)].name;
+      const std::string_view name = spec.choices[static_cast<std::size_t>(value)].name;
+      chosen.printed = is_column_choice(name) ? kColumnChoice : name;
       effect.parameters.push_back(chosen);
       effect.column = chosen.printed == kColumnChoice ? found.drivers.front() : effect.column;
       continue;
@@ -254,20 +255,18 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   std::ranges::transform(recordings, std::back_inserter(out.fitted), name_and_fingerprint);
   MotorModel built = motor_model(everywhere, heat_input_of(everywhere, recordings, false), have(Signal::speed));
   out.how = how_to_read(motor, built.heat);
-  out.model.column = out.how.column;
   if (built.heat == HeatInput::current && !have(Signal::speed) && most_loss_at_speed_W(motor) > 0.0) {
     out.findings.emplace_back(LossInUnknownHeat{most_loss_at_speed_W(motor)});
   }
-  const std::string column = std::move(out.model.column);
   out.model = std::move(built.model);
-  out.model.column = column;
+  out.model.columns = out.how.columns;
   out.usual.error_K = everywhere.fit ? everywhere.fit->free_run_error_K : 0.0;
   out.usual.flux_W = everywhere.fit && !everywhere.fit->latent_flux_W.empty() ? std::ranges::max(everywhere.fit->latent_flux_W) : 0.0;
   out.parameters = std::move(built.parameters);
   add_remarks(std::move(built.held), out.findings);
   add_remarks(held_sensors(motor, recordings), out.findings);
   add_conditional_effects(motor, recordings, out);
-  if (std::string lacking = column_lacking(out.how.column, recordings); !lacking.empty()) {
+  if (std::string lacking = columns_lacking(out.how.columns, recordings); !lacking.empty()) {
     out.findings.emplace_back(Remark{std::move(lacking)});
   }
   set_needed(out, motor, recordings);

@@ -1,6 +1,7 @@
 #include "estimation/log_columns.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -48,11 +49,17 @@ Eigen::VectorXd without_gaps(Eigen::VectorXd values) {
 
 }  // namespace
 
-std::string column_lacking(const std::string& column, std::span<const Recording> recordings) {
-  const auto has_it = [&](const Recording& each) { return each.time_s.size() > 1 && columns_along(each, each.time_s).contains(column); };
-  return column.empty() || std::ranges::all_of(recordings, has_it)
-             ? std::string()
-             : fmt::format("the hottest value of the curve is used in logs without a column {}, which not every log has", column);
+std::string columns_lacking(std::span<const std::string> columns, std::span<const Recording> recordings) {
+  std::vector<std::string> lacking;
+  for (const std::string& column : columns) {
+    const auto has_it = [&](const Recording& each) { return each.time_s.size() > 1 && columns_along(each, each.time_s).contains(column); };
+    if (!column.empty() && !std::ranges::all_of(recordings, has_it)) {
+      lacking.push_back(column);
+    }
+  }
+  return lacking.empty() ? std::string()
+                         : fmt::format("the hottest value of the curve is used in logs without a column {}, which not every log has",
+                                       fmt::join(lacking, ", "));
 }
 
 std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording, const std::vector<double>& time_s) {
@@ -75,7 +82,7 @@ std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording,
   return columns;
 }
 
-std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::string_view of_model) {
+std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::span<const std::string> of_model) {
   std::map<std::string, std::size_t> counts;
   for (const MeasuredRun& run : runs) {
     for (const auto& [key, values] : run.columns) {
@@ -84,7 +91,7 @@ std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std
   }
   std::vector<std::string> left_out;
   for (const auto& [key, count] : counts) {
-    if (count < runs.size() && key != of_model) {
+    if (count < runs.size() && std::ranges::find(of_model, key) == of_model.end()) {
       left_out.push_back(key);
     }
   }
@@ -94,27 +101,26 @@ std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std
   return left_out;
 }
 
-void set_column(MeasuredRun& run, const std::string& key) {
-  if (key.empty()) {
-    return;
-  }
-  const auto found = run.columns.find(key);
-  const Eigen::VectorXd values = found == run.columns.end() ? Eigen::VectorXd() : without_gaps(found->second);
-  const bool is_known = values.size() > 0 && !std::isnan(values[0]);
-  const auto set = [&](OperatingPoint<double>& at, Eigen::Index k) {
-    at.column = is_known ? values[k] : 0.0;
-    at.column_share = is_known ? 1.0 : 0.0;
-  };
-  for (std::size_t k = 0; k < run.at.size(); ++k) {
-    set(run.at[k], static_cast<Eigen::Index>(k));
-  }
-  for (UnknownInputs& unknown : run.unknown_inputs) {
-    set(unknown.other, unknown.interval);
+void set_columns(MeasuredRun& run, std::span<const std::string> keys) {
+  for (std::size_t place = 0; place < keys.size(); ++place) {
+    const auto found = run.columns.find(keys[place]);
+    const Eigen::VectorXd values = found == run.columns.end() ? Eigen::VectorXd() : without_gaps(found->second);
+    const bool is_known = values.size() > 0 && !std::isnan(values[0]);
+    const auto set = [&](OperatingPoint<double>& at, Eigen::Index k) {
+      at.*kColumns<double>[place] = is_known ? values[k] : 0.0;
+      at.*kColumnShares<double>[place] = is_known ? 1.0 : 0.0;
+    };
+    for (std::size_t k = 0; k < run.at.size(); ++k) {
+      set(run.at[k], static_cast<Eigen::Index>(k));
+    }
+    for (UnknownInputs& unknown : run.unknown_inputs) {
+      set(unknown.other, unknown.interval);
+    }
   }
 }
 
-void set_column(std::vector<MeasuredRun>& runs, const std::string& key) {
-  std::ranges::for_each(runs, [&](MeasuredRun& run) { set_column(run, key); });
+void set_columns(std::vector<MeasuredRun>& runs, std::span<const std::string> keys) {
+  std::ranges::for_each(runs, [&](MeasuredRun& run) { set_columns(run, keys); });
 }
 
 }  // namespace heatsoak

@@ -17,16 +17,17 @@ namespace heatsoak {
 /// Includes a current that has both signs, because the network's laws use only its magnitude.
 std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording, const std::vector<double>& time_s);
 
-/// Returns a sentence for the user if the model has a curve over `column` and not all logs have that column; else an empty string.
-std::string column_lacking(const std::string& column, std::span<const Recording> recordings);
+/// Returns a sentence for the user about those of `columns`, over which the model has curves, that not all logs have; empty if all have
+/// them.
+std::string columns_lacking(std::span<const std::string> columns, std::span<const Recording> recordings);
 
 /// Removes the columns that not all runs have, except `of_model`, over which the model already has a curve. Their effect would be
 /// confounded with other differences between the runs. Returns the names of the removed columns.
-std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::string_view of_model);
+std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::span<const std::string> of_model);
 
-/// Copies one of a run's columns into its operating points. Gaps take the nearest known value. If the run has no such column, the points
-/// mark it as unknown (column_share 0). An empty key changes nothing.
-void set_column(MeasuredRun& run, const std::string& key);
-void set_column(std::vector<MeasuredRun>& runs, const std::string& key);
+/// Copies columns of a run, at most kMostColumns, into its operating points in this order. Gaps take the nearest known value. The points
+/// mark columns that the run lacks as unknown (share 0).
+void set_columns(MeasuredRun& run, std::span<const std::string> keys);
+void set_columns(std::vector<MeasuredRun>& runs, std::span<const std::string> keys);
 
 }  // namespace heatsoak

@@ -250,7 +250,7 @@ class Builder {
     if (kept.size() >= kLeastSamples) {
       run.name = all_.runs.empty() ? recording_.name : fmt::format("{}#{}", recording_.name, all_.runs.size() + 1);
       run.columns = columns_along(recording_, run.time_s);
-      set_column(run, options_.column);
+      set_columns(run, options_.columns);
       all_.runs.push_back(std::move(run));
       used_rows_ += last - first + 1;
     }

@@ -63,11 +63,11 @@ struct MeasuredRunOptions {
   double longest_step_s = 2.0;
   /// Heat inputs that the model needs. The run is split if one of them is unknown for longer than both 10 s and three usual steps.
   std::vector<Signal> needed;
-  double least_current_A = 0.0;          ///< smallest current that can turn the motor: a log that never exceeds it is one at standstill
-  ShaftTorque torque = {};               ///< used if the recording has no torque but current and speed
-  std::vector<SensorFault> faults = {};  ///< stated faults of the sensors
-  std::string column = {};               ///< key of the log column that is copied into the operating points
-  std::optional<double> ambient_C = {};  ///< used if the recording has neither coolant nor ambient temperature; empty: it must have one
+  double least_current_A = 0.0;           ///< smallest current that can turn the motor: a log that never exceeds it is one at standstill
+  ShaftTorque torque = {};                ///< used if the recording has no torque but current and speed
+  std::vector<SensorFault> faults = {};   ///< stated faults of the sensors
+  std::vector<std::string> columns = {};  ///< keys of the log columns that are copied into the operating points, see set_columns()
+  std::optional<double> ambient_C = {};   ///< used if the recording has neither coolant nor ambient temperature; empty: it must have one
 };
 
 struct MeasuredRuns {

@@ -56,7 +56,7 @@ struct Model {
   std::vector<ConditionalTerm> conditional = {};
   std::vector<SensorTerm> sensors = {};
   std::vector<RunDeviation> deviations = {};
-  std::string column = {};  ///< name of the log column that a curve uses, see set_column(); empty: none
+  std::vector<std::string> columns = {};  ///< names of the log columns that curves use, see set_columns()
 
   /// Number of free parameters of the network.
   [[nodiscard]] Eigen::Index network_count() const { return static_cast<Eigen::Index>(free.size()); }

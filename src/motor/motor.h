@@ -90,6 +90,8 @@ struct MotorEffect {
 
   /// Returns the values of the parameters in the type's declared order.
   [[nodiscard]] std::vector<double> values() const;
+  /// Index of its column among those of the motor, see kColumns; 0 without a column.
+  [[nodiscard]] std::size_t column_place() const;
 };
 
 /// A sensor fault that the file states. It changes the reading, not the temperature.

@@ -111,7 +111,23 @@ void read_parameters(Reader& reader, const EffectType& type, MotorEffect& effect
 }
 
 bool goes_with_column(const MotorEffect& effect) {
-  return std::ranges::any_of(effect.parameters, [](const ParameterValue& each) { return each.printed == kColumnChoice; });
+  return std::ranges::any_of(effect.parameters, [](const ParameterValue& each) { return is_column_choice(each.printed); });
+}
+
+/// Gives the effect the place of its column among the motor's columns. Returns false if there is no free one.
+bool take_place(MotorEffect& effect, std::vector<std::string>& columns) {
+  const auto place = static_cast<std::size_t>(std::ranges::find(columns, effect.column) - columns.begin());
+  if (place == kMostColumns) {
+    return false;
+  }
+  if (place == columns.size()) {
+    columns.push_back(effect.column);
+  }
+  const auto chosen = std::ranges::find_if(effect.parameters, [](const ParameterValue& each) { return is_column_choice(each.printed); });
+  const ParameterSpec& spec = effect.type->parameters[static_cast<std::size_t>(chosen - effect.parameters.begin())];
+  chosen->printed = kColumnChoice;
+  chosen->value = static_cast<double>(std::ranges::find(spec.choices, kColumnChoices[place], &Choice::name) - spec.choices.begin());
+  return true;
 }
 
 /// Orders the effects so that every node is added before it is used; otherwise the order of the file is kept.
@@ -135,6 +151,17 @@ std::vector<MotorEffect> in_order(std::vector<MotorEffect> waiting, Reader& tabl
 }
 
 }  // namespace
+
+std::size_t MotorEffect::column_place() const {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const std::span<const Choice> choices = type->parameters[i].choices;
+    const auto chosen = static_cast<std::size_t>(parameters[i].value);
+    if (!choices.empty() && is_column_choice(choices[chosen].name)) {
+      return static_cast<std::size_t>(std::ranges::find(kColumnChoices, choices[chosen].name) - kColumnChoices.begin());
+    }
+  }
+  return 0;
+}
 
 std::vector<double> MotorEffect::values() const {
   std::vector<double> all;
@@ -167,6 +194,7 @@ void read_effects(Reader& top, Motor& motor) {
                    fmt::format("is node number {}; expected at most {}, ambient among them", known.size(), Network::kMostNodes));
   }
   std::vector<MotorEffect> effects;
+  std::vector<std::string> columns;
   bool sound = true;
   for (Entry& entry : entries) {
     MotorEffect effect{entry.name, entry.type, {}, {}, {}};
@@ -186,11 +214,9 @@ void read_effects(Reader& top, Motor& motor) {
         entry.reader.problem("column",
                              fmt::format("'{}' is a temperature; expected driver = \"temperature\" and watched = the node", effect.column));
       }
-      const auto other =
-          std::ranges::find_if(effects, [&](const MotorEffect& e) { return !e.column.empty() && e.column != effect.column; });
-      if (other != effects.end()) {
-        entry.reader.problem("column", fmt::format("is '{}', but {} uses '{}'; expected the same column in all effects of a motor",
-                                                   effect.column, other->name, other->column));
+      if (!take_place(effect, columns)) {
+        entry.reader.problem("column", fmt::format("is column number {} of this motor; expected at most {}: {}", columns.size() + 1,
+                                                   kMostColumns, fmt::join(columns, ", ")));
       }
     }
     entry.reader.finish();

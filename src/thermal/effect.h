@@ -1,6 +1,8 @@
 // Effects: an effect is one physical law with its parameters. This header has the description, law.h the law.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -39,8 +41,12 @@ struct WorkedExample {
   std::vector<double> expected_heat_W;  ///< one per role, positive into the node
 };
 
-/// Name of the choice "a column of the log"; the motor file names the column.
-inline constexpr std::string_view kColumnChoice = "column";
+/// Choices "a column of the log". The motor file writes the first of them and names the column; the reader assigns a place to each column
+/// and takes the choice with the same index.
+inline constexpr std::array<std::string_view, kMostColumns> kColumnChoices{"column", "column_2", "column_3"};
+inline constexpr std::string_view kColumnChoice = kColumnChoices.front();
+/// Returns whether a choice is a column of the log.
+constexpr bool is_column_choice(std::string_view choice) { return std::ranges::find(kColumnChoices, choice) != kColumnChoices.end(); }
 
 struct EffectType {
   std::string_view name;  ///< name in motor files; set by find_effect()

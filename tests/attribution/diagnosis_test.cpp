@@ -53,7 +53,7 @@ TEST(Examination, CurveOverAColumnOfTheLogIsPartOfTheModel) {
   const Diagnosis& found_diagnosis = answer.diagnosis;
   ASSERT_EQ(found_diagnosis.effects.size(), 1U) << account(answer);
   EXPECT_EQ(found_diagnosis.effects.front().drivers, std::vector<std::string>{"current_A"}) << account(answer);
-  EXPECT_EQ(found_diagnosis.selection.after.model.column, "current_A");
+  EXPECT_THAT(found_diagnosis.selection.after.model.columns, testing::ElementsAre("current_A"));
   ASSERT_FALSE(found_diagnosis.unexplained.empty());
   EXPECT_TRUE(found_diagnosis.unexplained.front().is_in_model);
   EXPECT_LT(rms_K(answer.score.after), 0.3 * rms_K(answer.score.refitted)) << account(answer);

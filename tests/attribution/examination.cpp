@@ -141,7 +141,7 @@ double rms_error_K(const Model& model, const std::vector<TrueRun>& runs) {
   double count = 0.0;
   for (const TrueRun& run : runs) {
     MeasuredRun as_run = measured(run);
-    set_column(as_run, model.column);
+    set_columns(as_run, model.columns);
     std::vector<double> start_C(static_cast<std::size_t>(model.network.state_count()), as_run.at.front().ambient_C);
     start_C[0] = run.winding_C.front();
     start_C[1] = run.stator_C.front();

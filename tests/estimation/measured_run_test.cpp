@@ -343,26 +343,29 @@ TEST(MeasuredRun, merging_keeps_heat_and_uncertainty) {
   EXPECT_EQ(thin.unknown_inputs.size(), 1U);
 }
 
-TEST(MeasuredRun, brings_one_column_of_the_log_into_the_operating_points) {
+TEST(MeasuredRun, brings_columns_of_the_log_into_the_operating_points) {
   Recording log = recording_of(rows_of_a_step());
   log.channels.push_back({*quantity_named("thrust_N"), {}});
   for (int k = 0; k < 20; ++k) {
     log.channels.back().values.push_back(k < 15 ? k : std::nan(""));
     log.channels.front().values[static_cast<std::size_t>(k)] *= k < 5 ? -1.0 : 1.0;
   }
-  MeasuredRunOptions options{.longest_step_s = 2.0, .needed = {Signal::current}, .column = "thrust_N", .ambient_C = 25.0};
+  MeasuredRunOptions options{.longest_step_s = 2.0, .needed = {Signal::current}, .columns = {"thrust_N"}, .ambient_C = 25.0};
   MeasuredRun run = measured_runs(log, options).runs.at(0);
   ASSERT_EQ(run.columns.size(), 2U) << "a current of both signs is one";
   for (std::size_t k = 0; k < run.at.size(); ++k) {
     const double begin_s = run.time_s[k], end_s = std::min(run.time_s[k + 1], 15.0);
-    EXPECT_EQ(run.at[k].column_share, 1.0) << begin_s;
-    EXPECT_EQ(run.at[k].column, begin_s < 15.0 ? 0.5 * (begin_s + end_s - 1.0) : run.at[k - 1].column) << begin_s;
+    EXPECT_EQ(run.at[k].column_1_share, 1.0) << begin_s;
+    EXPECT_EQ(run.at[k].column_1, begin_s < 15.0 ? 0.5 * (begin_s + end_s - 1.0) : run.at[k - 1].column_1) << begin_s;
   }
-  EXPECT_GT(thinned(run, 1000).at.at(0).column, 5.0);
-  set_column(run, "current_A");
-  EXPECT_EQ(run.at.front().column, -2.0);
-  set_column(run, "nobody_logs_this");
-  EXPECT_EQ(run.at.front().column_share, 0.0);
+  EXPECT_GT(thinned(run, 1000).at.at(0).column_1, 5.0);
+  const OperatingPoint<double> before = run.at.front();
+  set_columns(run, std::vector<std::string>{"current_A", "nobody_logs_this", "thrust_N"});
+  const OperatingPoint<double>& first = run.at.front();
+  EXPECT_EQ(first.column_1, -2.0);
+  EXPECT_EQ(first.column_2_share, 0.0);
+  EXPECT_EQ(first.column_3, before.column_1);
+  EXPECT_EQ(first.column_3_share, 1.0);
 }
 
 TEST(MeasuredRun, a_gap_of_a_column_is_filled_from_its_nearer_side) {
@@ -370,9 +373,9 @@ TEST(MeasuredRun, a_gap_of_a_column_is_filled_from_its_nearer_side) {
   run.at.resize(6);
   const double unknown = std::nan("");
   run.columns["fan_ratio"] = Eigen::Map<const Eigen::VectorXd>(std::array{unknown, 1.0, unknown, unknown, 3.0, unknown}.data(), 6);
-  set_column(run, "fan_ratio");
+  set_columns(run, std::vector<std::string>{"fan_ratio"});
   std::vector<double> column;
-  std::ranges::transform(run.at, std::back_inserter(column), &OperatingPoint<double>::column);
+  std::ranges::transform(run.at, std::back_inserter(column), &OperatingPoint<double>::column_1);
   EXPECT_THAT(column, testing::ElementsAre(1.0, 1.0, 1.0, 3.0, 3.0, 3.0));
 }
 
@@ -385,8 +388,8 @@ TEST(MeasuredRun, a_column_that_one_run_lacks_is_used_for_none) {
   }
   runs[1].columns.erase("thrust_N");
   runs[2].columns["steps_ratio"].setConstant(std::nan(""));
-  EXPECT_THAT(keep_common_columns(runs, "thrust_N"), testing::ElementsAre("steps_ratio"));
-  EXPECT_THAT(keep_common_columns(runs, ""), testing::ElementsAre("thrust_N"));
+  EXPECT_THAT(keep_common_columns(runs, std::vector<std::string>{"thrust_N"}), testing::ElementsAre("steps_ratio"));
+  EXPECT_THAT(keep_common_columns(runs, {}), testing::ElementsAre("thrust_N"));
   EXPECT_EQ(runs[0].columns.size(), 1U);
   EXPECT_EQ(runs[2].columns.count("fan_ratio"), 1U);
 }

@@ -1,11 +1,14 @@
 #include "motor/motor.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <numbers>
 
 #include "motor/datasheet_network.h"
@@ -175,8 +178,17 @@ TEST(MotorEffects, a_curve_over_a_column_of_a_log_names_it) {
   EXPECT_EQ(motor.effects[1].column, "fan_ratio");
   EXPECT_NE(to_toml(motor).find("column = \"fan_ratio\"\n"), std::string::npos);
   EXPECT_THROW(with(curve_over_column("a", "")), Failure) << "which column";
-  EXPECT_THROW(with(curve_over_column("a", "column = \"fan_ratio\"\n") + curve_over_column("b", "column = \"thrust_N\"\n")), Failure)
-      << "an operating point has room for one";
+}
+
+TEST(MotorEffects, curves_over_several_columns_have_a_place_each) {
+  const auto over = [](const std::string& name) { return curve_over_column(name, fmt::format("column = \"{}_ratio\"\n", name)); };
+  const Motor motor = motor_with("between_terminals", "per_dc_ampere", over("c") + over("a") + over("b"));
+  std::vector<std::size_t> places;
+  std::ranges::transform(motor.effects, std::back_inserter(places), &MotorEffect::column_place);
+  std::ranges::sort(places);
+  EXPECT_THAT(places, testing::ElementsAre(0U, 1U, 2U));
+  EXPECT_EQ(to_toml(motor).find("column_2"), std::string::npos) << "the file names columns, not places";
+  EXPECT_THROW(motor_with("between_terminals", "per_dc_ampere", over("c") + over("a") + over("b") + over("d")), Failure);
 }
 
 const std::string kSensors = R"([effects.sensor_lag_stator]

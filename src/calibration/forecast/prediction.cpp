@@ -135,7 +135,7 @@ std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<con
 
 Prediction predict(const Motor& motor, std::span<const Recording> recordings, const PredictionOptions& options) {
   Prediction all;
-  if (std::string lacking = column_lacking(how_to_read(motor, HeatInput::current).column, recordings); !lacking.empty()) {
+  if (std::string lacking = columns_lacking(how_to_read(motor, HeatInput::current).columns, recordings); !lacking.empty()) {
     all.notes.push_back(std::move(lacking));
   }
   for (const Recording& recording : recordings) {

@@ -26,7 +26,14 @@ constexpr std::array<std::size_t, kSignalDrivers> kRows = [] {
 }();
 
 /// Input signals that are no single quantity; they follow the others.
-enum Regressor { current_speed_squared = kSignalDrivers, temperature, temperature_difference, neighbour_difference, column, driver_count };
+enum Regressor {
+  current_speed_squared = kSignalDrivers,
+  temperature,
+  temperature_difference,
+  neighbour_difference,
+  column,
+  driver_count = column + kMostColumns
+};
 constexpr std::array<Choice, driver_count> kDrivers = [] {
   std::array<Choice, driver_count> choices{};
   for (std::size_t i = 0; i < kSignalDrivers; ++i) {
@@ -37,7 +44,11 @@ constexpr std::array<Choice, driver_count> kDrivers = [] {
   choices[temperature] = {"temperature", "degC", "of the node 'watched'"};
   choices[temperature_difference] = {"temperature_difference", "K", "of the node 'watched' above 'reference'"};
   choices[neighbour_difference] = {"neighbour_difference", "K", "of the next motor above the node 'watched'"};
-  choices[column] = {kColumnChoice, "", "column of a log, named by 'column'; if it is not known, the hottest value of the curve is used"};
+  for (std::size_t place = 0; place < kMostColumns; ++place) {
+    choices[column + place] = {kColumnChoices[place], "",
+                               place == 0 ? "column of a log, named by 'column'; if it is not known, the hottest value of the curve is used"
+                                          : "another column of a log; a motor file writes 'column'"};
+  }
   return choices;
 }();
 constexpr int speed = 0;
@@ -64,9 +75,10 @@ S value_of_driver(const Situation<S>& x) {
       return x.temperature_C(watched) - x.temperature_C(reference);
     case neighbour_difference:
       return x.at.neighbour_share * (x.at.neighbour_C - x.temperature_C(watched));
-    case column:
-      return x.at.column;
     default:
+      if (chosen_driver >= column) {
+        return x.at.*kColumns<S>[static_cast<std::size_t>(chosen_driver - column)];
+      }
       return x.at.*kQuantities<S>[kRows[static_cast<std::size_t>(chosen_driver)]].value;
   }
 }
@@ -94,8 +106,9 @@ struct Tabulated {
     for (int knot = 1; knot < kKnots; ++knot) {
       curve += x.parameter(first_value + knot) * positive_part(1.0 - magnitude(within - static_cast<double>(knot)));
     }
-    if (chosen(x.parameter(driver)) == column) {
-      curve = x.at.column_share * curve + (1.0 - x.at.column_share) * hottest(x);
+    if (const int place = chosen(x.parameter(driver)) - column; place >= 0) {
+      const S share = x.at.*kColumnShares<S>[static_cast<std::size_t>(place)];
+      curve = share * curve + (1.0 - share) * hottest(x);
     }
     switch (chosen(x.parameter(form))) {
       case heat_into:

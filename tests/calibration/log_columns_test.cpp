@@ -1,0 +1,68 @@
+// Two curves over two columns of a log. The steady temperatures follow from Ohm's law of heat: rise = (sum of the heats) · resistance.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "calibration/forecast/prediction.h"
+#include "motor/motor.h"
+#include "motor/write_motor.h"
+#include "study.h"
+
+namespace heatsoak::study {
+namespace {
+
+/// Returns a curve of heat into the stator: 0 W where the column is 0, `most_W` where it is 1.
+std::string curve_of(const std::string& column, double most_W) {
+  std::string text = "\n[effects." + column + "_heat]\ntype = \"tabulated\"\ndriver = \"column\"\nform = \"heat\"\ncolumn = \"" + column +
+                     "\"\nhot = \"stator\"\n";
+  const auto number = [&](const std::string& key, double value, const std::string& unit) {
+    text += key + " = { value = \"" + std::to_string(value) + unit + R"(", origin = "measured", source = "test" })" + "\n";
+  };
+  number("first_knot", 0.0, "");
+  number("last_knot", 1.0, "");
+  for (int knot = 0; knot < 7; ++knot) {
+    number("value_" + std::to_string(knot + 1), most_W * knot / 6.0, " W");
+  }
+  return text;
+}
+
+Recording steady_log(double stator_C, double ambient_C, double fan_ratio, double pump_ratio) {
+  Recording log;
+  log.name = "steady";
+  log.file = "steady.csv";
+  log.run_begins = {0};
+  const std::vector<std::pair<std::string, double>> cells{{"winding_C", stator_C}, {"stator_C", stator_C},   {"ambient_C", ambient_C},
+                                                          {"current_A", 0.0},      {"fan_ratio", fan_ratio}, {"pump_ratio", pump_ratio}};
+  for (int row = 0; row < 3600; ++row) {
+    log.time_s.push_back(row);
+    log.line.push_back(row + 2);
+  }
+  for (const auto& [key, value] : cells) {
+    log.channels.push_back({quantity_named(key).value(), std::vector<double>(log.time_s.size(), value)});
+  }
+  return log;
+}
+
+TEST(LogColumns, two_curves_read_their_own_columns) {
+  const Folder folder;
+  const Motor plain = Sheet{}.motor(folder);
+  const std::filesystem::path file = folder.path() / "two_curves.toml";
+  std::ofstream(file) << to_toml(plain) << curve_of("pump_ratio", 3.0) << curve_of("fan_ratio", 6.0);
+  const Motor motor = read_motor(file);
+  constexpr double kAmbient_C = 20.0;
+  const double rise_K = motor.nominal.thermal_resistance_stator_ambient_K_per_W * (6.0 * 0.5 + 3.0 / 3.0);
+  const auto error_K = [&](double fan_ratio, double pump_ratio) {
+    const std::vector<Recording> logs{steady_log(kAmbient_C + rise_K, kAmbient_C, fan_ratio, pump_ratio)};
+    const Prediction found = predict(motor, logs, {});
+    double most_K = 0.0;
+    for (const PredictedSignal& signal : found.runs.at(0).signals) {
+      most_K = std::max(most_K, signal.max_abs_K);
+    }
+    return most_K;
+  };
+  EXPECT_LT(error_K(0.5, 1.0 / 3.0), 0.01);
+  EXPECT_GT(error_K(1.0 / 3.0, 0.5), 0.05 * rise_K) << "exchanged columns give 3.5 W instead of 4 W";
+}
+
+}  // namespace
+}  // namespace heatsoak::study
