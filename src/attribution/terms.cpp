@@ -90,7 +90,7 @@ std::optional<Model> with_table(const Model& model, const ScanResult& curve, con
   std::string_view driver_choice = driver.choice;
   if (driver.choice == kColumnChoice) {
     const auto place = static_cast<std::size_t>(std::ranges::find(out.columns, driver.name) - out.columns.begin());
-    if (place == kMostColumns) {
+    if (place == kLogColumns) {
       return std::nullopt;
     }
     out.columns.resize(std::max(out.columns.size(), place + 1), driver.name);

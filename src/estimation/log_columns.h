@@ -25,7 +25,7 @@ std::string columns_lacking(std::span<const std::string> columns, std::span<cons
 /// confounded with other differences between the runs. Returns the names of the removed columns.
 std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::span<const std::string> of_model);
 
-/// Copies columns of a run, at most kMostColumns, into its operating points in this order. Gaps take the nearest known value. The points
+/// Copies columns of a run, at most kLogColumns, into its operating points in this order. Gaps take the nearest known value. The points
 /// mark columns that the run lacks as unknown (share 0).
 void set_columns(MeasuredRun& run, std::span<const std::string> keys);
 void set_columns(std::vector<MeasuredRun>& runs, std::span<const std::string> keys);

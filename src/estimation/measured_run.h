@@ -62,7 +62,7 @@ struct MeasuredRunOptions {
   /// Longest interval that rows are merged to; the merged inputs conserve heat. Rows are kept if their mean spacing is at least half of it.
   double longest_step_s = 2.0;
   /// Heat inputs that the model needs. The run is split if one of them is unknown for longer than both 10 s and three usual steps.
-  std::vector<Signal> needed;
+  std::vector<Signal> needed = {};
   double least_current_A = 0.0;           ///< smallest current that can turn the motor: a log that never exceeds it is one at standstill
   ShaftTorque torque = {};                ///< used if the recording has no torque but current and speed
   std::vector<SensorFault> faults = {};   ///< stated faults of the sensors

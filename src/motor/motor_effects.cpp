@@ -117,7 +117,7 @@ bool goes_with_column(const MotorEffect& effect) {
 /// Gives the effect the place of its column among the motor's columns. Returns false if there is no free one.
 bool take_place(MotorEffect& effect, std::vector<std::string>& columns) {
   const auto place = static_cast<std::size_t>(std::ranges::find(columns, effect.column) - columns.begin());
-  if (place == kMostColumns) {
+  if (place == kLogColumns) {
     return false;
   }
   if (place == columns.size()) {
@@ -216,7 +216,7 @@ void read_effects(Reader& top, Motor& motor) {
       }
       if (!take_place(effect, columns)) {
         entry.reader.problem("column", fmt::format("is column number {} of this motor; expected at most {}: {}", columns.size() + 1,
-                                                   kMostColumns, fmt::join(columns, ", ")));
+                                                   kLogColumns, fmt::join(columns, ", ")));
       }
     }
     entry.reader.finish();

@@ -43,7 +43,7 @@ struct WorkedExample {
 
 /// Choices "a column of the log". The motor file writes the first of them and names the column; the reader assigns a place to each column
 /// and takes the choice with the same index.
-inline constexpr std::array<std::string_view, kMostColumns> kColumnChoices{"column", "column_2", "column_3"};
+inline constexpr std::array<std::string_view, kLogColumns> kColumnChoices{"column", "column_2", "column_3"};
 inline constexpr std::string_view kColumnChoice = kColumnChoices.front();
 /// Returns whether a choice is a column of the log.
 constexpr bool is_column_choice(std::string_view choice) { return std::ranges::find(kColumnChoices, choice) != kColumnChoices.end(); }

@@ -37,12 +37,12 @@ struct OperatingPoint {
   S velocity_rad_per_s = S(0.0);       ///< signed mean of ω, motor shaft; a log of |ω| does not provide the sign
   S acceleration_rad_per_s2 = S(0.0);  ///< mean of |dω/dt|, motor shaft
   // Columns of a log, in their own units: abscissas of tabulated curves over none of the signals above.
-  S column_1 = S(0.0);
-  S column_2 = S(0.0);
-  S column_3 = S(0.0);
-  S column_1_share = S(0.0);  ///< 1 if `column_1` is known, else 0
-  S column_2_share = S(0.0);
-  S column_3_share = S(0.0);
+  S first_column = S(0.0);
+  S second_column = S(0.0);
+  S third_column = S(0.0);
+  S first_column_share = S(0.0);  ///< 1 if `first_column` is known, else 0
+  S second_column_share = S(0.0);
+  S third_column_share = S(0.0);
   S copper_loss_W = S(0.0);  ///< copper loss of the network, which sets it before it evaluates the other laws
 };
 
@@ -99,12 +99,12 @@ inline constexpr std::array kQuantities{
     OperatingQuantity<S>{&P::resistive_headroom_V, "resistive_headroom", "V", std::numeric_limits<double>::infinity(), AveragingRule::limit},
     OperatingQuantity<S>{&P::series_resistance_ohm, "series_resistance", "ohm"},
     OperatingQuantity<S>{&P::unlogged_speed_share, "unlogged_speed_share", ""},
-    OperatingQuantity<S>{&P::column_1, "column_1", ""},
-    OperatingQuantity<S>{&P::column_2, "column_2", ""},
-    OperatingQuantity<S>{&P::column_3, "column_3", ""},
-    OperatingQuantity<S>{&P::column_1_share, "column_1_share", ""},
-    OperatingQuantity<S>{&P::column_2_share, "column_2_share", ""},
-    OperatingQuantity<S>{&P::column_3_share, "column_3_share", ""},
+    OperatingQuantity<S>{&P::first_column, "first_column", ""},
+    OperatingQuantity<S>{&P::second_column, "second_column", ""},
+    OperatingQuantity<S>{&P::third_column, "third_column", ""},
+    OperatingQuantity<S>{&P::first_column_share, "first_column_share", ""},
+    OperatingQuantity<S>{&P::second_column_share, "second_column_share", ""},
+    OperatingQuantity<S>{&P::third_column_share, "third_column_share", ""},
     OperatingQuantity<S>{&P::copper_loss_W, "copper_loss", "W", 10.0},
 };
 // clang-format on
@@ -114,11 +114,11 @@ static_assert(sizeof(OperatingPoint<double>) == kQuantityCount * sizeof(double),
 
 /// Members for the columns of a log, and the members that state whether each is known.
 template <class S, class P = OperatingPoint<S>>
-inline constexpr std::array kColumns{&P::column_1, &P::column_2, &P::column_3};
+inline constexpr std::array kColumns{&P::first_column, &P::second_column, &P::third_column};
 template <class S, class P = OperatingPoint<S>>
-inline constexpr std::array kColumnShares{&P::column_1_share, &P::column_2_share, &P::column_3_share};
+inline constexpr std::array kColumnShares{&P::first_column_share, &P::second_column_share, &P::third_column_share};
 /// Largest number of log columns that the curves of one motor can use.
-inline constexpr std::size_t kMostColumns = kColumns<double>.size();
+inline constexpr std::size_t kLogColumns = kColumns<double>.size();
 
 /// Returns the index of a quantity in the table; kQuantityCount if there is none of that name.
 constexpr std::size_t quantity_row(std::string_view name) {

@@ -355,17 +355,17 @@ TEST(MeasuredRun, brings_columns_of_the_log_into_the_operating_points) {
   ASSERT_EQ(run.columns.size(), 2U) << "a current of both signs is one";
   for (std::size_t k = 0; k < run.at.size(); ++k) {
     const double begin_s = run.time_s[k], end_s = std::min(run.time_s[k + 1], 15.0);
-    EXPECT_EQ(run.at[k].column_1_share, 1.0) << begin_s;
-    EXPECT_EQ(run.at[k].column_1, begin_s < 15.0 ? 0.5 * (begin_s + end_s - 1.0) : run.at[k - 1].column_1) << begin_s;
+    EXPECT_EQ(run.at[k].first_column_share, 1.0) << begin_s;
+    EXPECT_EQ(run.at[k].first_column, begin_s < 15.0 ? 0.5 * (begin_s + end_s - 1.0) : run.at[k - 1].first_column) << begin_s;
   }
-  EXPECT_GT(thinned(run, 1000).at.at(0).column_1, 5.0);
+  EXPECT_GT(thinned(run, 1000).at.at(0).first_column, 5.0);
   const OperatingPoint<double> before = run.at.front();
   set_columns(run, std::vector<std::string>{"current_A", "nobody_logs_this", "thrust_N"});
   const OperatingPoint<double>& first = run.at.front();
-  EXPECT_EQ(first.column_1, -2.0);
-  EXPECT_EQ(first.column_2_share, 0.0);
-  EXPECT_EQ(first.column_3, before.column_1);
-  EXPECT_EQ(first.column_3_share, 1.0);
+  EXPECT_EQ(first.first_column, -2.0);
+  EXPECT_EQ(first.second_column_share, 0.0);
+  EXPECT_EQ(first.third_column, before.first_column);
+  EXPECT_EQ(first.third_column_share, 1.0);
 }
 
 TEST(MeasuredRun, a_gap_of_a_column_is_filled_from_its_nearer_side) {
@@ -375,7 +375,7 @@ TEST(MeasuredRun, a_gap_of_a_column_is_filled_from_its_nearer_side) {
   run.columns["fan_ratio"] = Eigen::Map<const Eigen::VectorXd>(std::array{unknown, 1.0, unknown, unknown, 3.0, unknown}.data(), 6);
   set_columns(run, std::vector<std::string>{"fan_ratio"});
   std::vector<double> column;
-  std::ranges::transform(run.at, std::back_inserter(column), &OperatingPoint<double>::column_1);
+  std::ranges::transform(run.at, std::back_inserter(column), &OperatingPoint<double>::first_column);
   EXPECT_THAT(column, testing::ElementsAre(1.0, 1.0, 1.0, 3.0, 3.0, 3.0));
 }
 

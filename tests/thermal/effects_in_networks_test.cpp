@@ -230,8 +230,8 @@ TEST_F(Tabulated, looks_at_the_signal_that_was_chosen) {
   at.age_h = 3.5;
   at.neighbour_C = 46.5;
   at.neighbour_share = 1.0;
-  at.column_1 = 7.5, at.column_2 = 8.5, at.column_3 = 9.5;
-  at.column_1_share = at.column_2_share = at.column_3_share = 1.0;
+  at.first_column = 7.5, at.second_column = 8.5, at.third_column = 9.5;
+  at.first_column_share = at.second_column_share = at.third_column_share = 1.0;
   // A line from −10 to 50 returns the regressor itself: value = regressor + 10.
   const std::vector<double> temperature_C{60.0, 40.0, 43.0, 42.0};
   const std::vector<std::pair<std::string_view, double>> expected{{"speed", 2.0},
@@ -267,8 +267,8 @@ TEST_F(Tabulated, is_at_its_hottest_where_a_column_is_not_known) {
   EXPECT_NEAR(heat(parameters("column", "heat", 0.0, 6.0), at)[0], 8.0, 1e-12);
   EXPECT_NEAR(heat(parameters("column", "per_copper_loss", 0.0, 6.0), at)[0], 8.0 * 7.0, 1e-12);
   EXPECT_EQ(heat(parameters("column", "per_difference", 0.0, 6.0), at)[0], 0.0);
-  at.column_1 = 2.0;
-  at.column_1_share = 1.0;
+  at.first_column = 2.0;
+  at.first_column_share = 1.0;
   EXPECT_NEAR(heat(parameters("column", "per_difference", 0.0, 6.0), at)[0], -2.0 * 20.0, 1e-12);
 }
 

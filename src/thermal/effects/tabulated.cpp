@@ -32,7 +32,7 @@ enum Regressor {
   temperature_difference,
   neighbour_difference,
   column,
-  driver_count = column + kMostColumns
+  driver_count = column + kLogColumns
 };
 constexpr std::array<Choice, driver_count> kDrivers = [] {
   std::array<Choice, driver_count> choices{};
@@ -44,7 +44,7 @@ constexpr std::array<Choice, driver_count> kDrivers = [] {
   choices[temperature] = {"temperature", "degC", "of the node 'watched'"};
   choices[temperature_difference] = {"temperature_difference", "K", "of the node 'watched' above 'reference'"};
   choices[neighbour_difference] = {"neighbour_difference", "K", "of the next motor above the node 'watched'"};
-  for (std::size_t place = 0; place < kMostColumns; ++place) {
+  for (std::size_t place = 0; place < kLogColumns; ++place) {
     choices[column + place] = {kColumnChoices[place], "",
                                place == 0 ? "column of a log, named by 'column'; if it is not known, the hottest value of the curve is used"
                                           : "another column of a log; a motor file writes 'column'"};
@@ -106,8 +106,8 @@ struct Tabulated {
     for (int knot = 1; knot < kKnots; ++knot) {
       curve += x.parameter(first_value + knot) * positive_part(1.0 - magnitude(within - static_cast<double>(knot)));
     }
-    if (const int place = chosen(x.parameter(driver)) - column; place >= 0) {
-      const S share = x.at.*kColumnShares<S>[static_cast<std::size_t>(place)];
+    if (const int own = chosen(x.parameter(driver)) - column; own >= 0) {
+      const S share = x.at.*kColumnShares<S>[static_cast<std::size_t>(own)];
       curve = share * curve + (1.0 - share) * hottest(x);
     }
     switch (chosen(x.parameter(form))) {
