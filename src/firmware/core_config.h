@@ -38,14 +38,16 @@ CoreOptions with_tolerance(CoreOptions options, const Motor& motor);
 robot_core::Config make_core_config(const Robot& robot, const MotorValues& motor, const CoreOptions& options);
 
 /// With the guard; `guard` must be of that derating and outlive the Config. The lowest resistance follows from the motor's tolerance and
-/// the derating's coldest air. Throws Failure (bad_input) as above, and where the guard period is not a whole number of control periods.
+/// the derating's coldest air. Throws Failure (bad_input) as above, where the guard period is not a whole number of control periods, and
+/// where one full stop heats the winding so much that the guard would never let the robot drive.
 robot_core::Config make_core_config(const Robot& robot, const Motor& motor, const CoreOptions& options, const Derating& derating,
                                     const HostGuard& guard);
 
 /// Heating of the winding by one full stop from the speed limit with the braking limit, in K: Σ over the stop of the observer's dT_w/dt,
 /// where every body and the air are at the winding's limit. So it is adiabatic, ∫I²·R(T_limit) dt·(safety factor on heat)/C_w, plus what
 /// effects of the motor's file add. I is that of the wheel and direction of travel with the largest force, with friction, drag and gear
-/// losses counted as none, because they would help to brake: (r·F_i + J·dω_i/dt)/(K_t·n), at most the current limit.
+/// losses counted as none, because they would help to brake: (r·F_i + J·dω_i/dt)/(K_t·n), at most the current limit. If that limit is
+/// smaller, the stop takes longer in proportion.
 /// Needs the tables that make_core_config() needs.
 double braking_reserve_K(const Robot& robot, const MotorValues& motor, const Derating& derating);
 
