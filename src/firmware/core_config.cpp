@@ -144,21 +144,6 @@ robot_core::Config finished(robot_core::Config config) {
   return config;
 }
 
-/// Throws if the reserve for one full stop leaves a rested motor in the hottest air no current to drive: such a core would be useless.
-void require_current(const Robot& robot, const Motor& motor, const Derating& derating, const HostGuard& guard, double reserve_K) {
-  const double hottest_C = derating.rules.hottest_ambient_C;
-  const double limit_C = derating.rules.limits.winding_C;
-  if (robot_core::allowed_current_A(guard.model(), 0.0F, single(hottest_C), single(hottest_C + reserve_K)) > 0.0F) {
-    return;
-  }
-  throw Failure(ExitCode::bad_input,
-                fmt::format("{} in {}: one full stop from {:.3g} m/s at {:.3g} m/s2 heats the winding by {:.0f} K; expected less than the "
-                            "{:.0f} K between air of {:.0f} degC and the limit of {:.0f} degC, or the thermal guard could never let the "
-                            "robot drive; lower limits.speed or limits.braking in the robot file, or choose a stronger motor or a gear",
-                            motor.id, robot.id, robot.limits.speed_m_per_s.value(), robot.limits.braking_m_per_s2.value(), reserve_K,
-                            limit_C - hottest_C, hottest_C, limit_C));
-}
-
 /// Largest current over the directions of travel and the wheels, and the motor's speed at the beginning of the stop.
 struct Stop {
   double current_A = 0.0;
@@ -230,9 +215,22 @@ robot_core::Config make_core_config(const Robot& robot, const Motor& motor, cons
   config.guard = &guard.model();
   config.limp_current_A = single(std::min(limp_current_A(derating), double{config.current_limit_A}));
   config.braking_reserve_K = single(braking_reserve_K(robot, motor.nominal, derating));
-  robot_core::Config made = finished(config);
-  require_current(robot, motor, derating, guard, double{made.braking_reserve_K});
-  return made;
+  return finished(config);
+}
+
+void require_driving_current(const Robot& robot, const Motor& motor, const Derating& derating, const robot_core::Config& config) {
+  const double reserve_K = config.braking_reserve_K;
+  const double hottest_C = derating.rules.hottest_ambient_C;
+  const double limit_C = derating.rules.limits.winding_C;
+  if (robot_core::allowed_current_A(*config.guard, 0.0F, single(hottest_C), single(hottest_C + reserve_K)) > 0.0F) {
+    return;
+  }
+  throw Failure(ExitCode::bad_input,
+                fmt::format("{} in {}: one full stop from {:.3g} m/s at {:.3g} m/s2 heats the winding by {:.0f} K; expected less than the "
+                            "{:.0f} K between air of {:.0f} degC and the limit of {:.0f} degC, or the thermal guard could never let the "
+                            "robot drive; lower limits.speed or limits.braking in the robot file, or choose a stronger motor or a gear",
+                            motor.id, robot.id, robot.limits.speed_m_per_s.value(), robot.limits.braking_m_per_s2.value(), reserve_K,
+                            limit_C - hottest_C, hottest_C, limit_C));
 }
 
 double braking_reserve_K(const Robot& robot, const MotorValues& motor, const Derating& derating) {

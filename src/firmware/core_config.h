@@ -38,10 +38,13 @@ CoreOptions with_tolerance(CoreOptions options, const Motor& motor);
 robot_core::Config make_core_config(const Robot& robot, const MotorValues& motor, const CoreOptions& options);
 
 /// With the guard; `guard` must be of that derating and outlive the Config. The lowest resistance follows from the motor's tolerance and
-/// the derating's coldest air. Throws Failure (bad_input) as above, where the guard period is not a whole number of control periods, and
-/// where one full stop heats the winding so much that the guard would never let the robot drive.
+/// the derating's coldest air. Throws Failure (bad_input) as above, and where the guard period is not a whole number of control periods.
 robot_core::Config make_core_config(const Robot& robot, const Motor& motor, const CoreOptions& options, const Derating& derating,
                                     const HostGuard& guard);
+
+/// Throws Failure (bad_input) if the reserve for one full stop leaves a rested motor in the hottest air no current to drive: such a core
+/// would be useless. `config` comes from make_core_config() with a guard of this derating.
+void require_driving_current(const Robot& robot, const Motor& motor, const Derating& derating, const robot_core::Config& config);
 
 /// Heating of the winding by one full stop from the speed limit with the braking limit, in K: Σ over the stop of the observer's dT_w/dt,
 /// where every body and the air are at the winding's limit. So it is adiabatic, ∫I²·R(T_limit) dt·(safety factor on heat)/C_w, plus what

@@ -231,6 +231,7 @@ CoreFolder core_files(const Robot& robot, const Motor& motor, const CoreOptions&
                     .version = std::string(version),
                     .options_text = options_text(motor, options, derating),
                     .hash = {}};
+  require_driving_current(robot, motor, derating, source.config);
   source.hash =
       input_hash(read_file(robot.file, kLargestFile_bytes) + '\n' + read_file(motor.file, kLargestFile_bytes) + '\n' + source.options_text);
   CoreFolder folder{.files = {},

@@ -51,6 +51,9 @@ GuardedCore::GuardedCore(const Robot& robot, const Motor& motor, GuardUse use, c
   }
   guard_.emplace(*guard.guard);
   config_ = named_config(robot, motor, motor, options, *guard.derating, *guard_);
+  if (use == GuardUse::on) {
+    require_driving_current(robot, motor, *guard.derating, config_);
+  }
   config_.shadow_mode = use == GuardUse::shadow;
   robot_core::complete(config_);
 }

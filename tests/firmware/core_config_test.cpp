@@ -226,8 +226,9 @@ TEST(GuardedCoreConfig, RefusesARobotThatOneStopOverheats) {
   Robot robot = twente();
   robot.mass_kg = 40.0;
   EXPECT_GT(braking_reserve_K(robot, ecx_32().nominal, derating()), 155.0 - 40.0);
+  EXPECT_NO_THROW(require_driving_current(twente(), ecx_32(), derating(), make_core_config(twente(), ecx_32(), {}, derating(), guard)));
   try {
-    make_core_config(robot, ecx_32(), {}, derating(), guard);
+    require_driving_current(robot, ecx_32(), derating(), make_core_config(robot, ecx_32(), {}, derating(), guard));
     ADD_FAILURE() << "no failure";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), ExitCode::bad_input);
