@@ -20,7 +20,7 @@ enum class Block : unsigned char {
 
 enum class BlockRate : unsigned char {
   every_period,             ///< Config::period_s
-  every_second_period,      ///< every second period while a body velocity is commanded, else every period
+  every_second_period,      ///< every second period while a body velocity or braking is commanded, else every period
   every_guard_period,       ///< GuardModel::period_s, once per wheel
   every_period_of_command,  ///< Config::period_s while the command has the mode that uses the block
 };

@@ -9,21 +9,24 @@ constexpr float kGravity_m_per_s2 = 9.80665F;
 bool is_positive(float x) { return is_finite(x) && x > 0.0F; }
 bool is_not_negative(float x) { return is_finite(x) && x >= 0.0F; }
 
-template <auto holds, unsigned count>
-bool all(const float (&values)[count]) {
+/// Returns true if a condition holds for these members. Their offsets are constants, which take less room than code that reads them.
+template <auto holds, typename Object, unsigned count>
+bool all(const Object& object, float Object::*const (&members)[count]) {
   bool all_hold = true;
-  for (const float value : values) {
-    all_hold = all_hold && holds(value);
+  for (const auto member : members) {
+    all_hold = all_hold && holds(object.*member);
   }
   return all_hold;
 }
 
 [[gnu::cold]] bool is_possible(const WheelConfig& wheel) {
-  const float values[] = {wheel.rolling_x_share,   wheel.rolling_y_share, wheel.inverse_x_factor,   wheel.inverse_y_factor,
-                          wheel.inverse_yaw_per_m, wheel.sine_V,          wheel.phase_cosine_ratio, wheel.phase_sine_ratio};
-  const float positive[] = {wheel.slip_factor, wheel.damping_V_s_per_rad};
-  const float not_negative[] = {wheel.level_load_share, wheel.sign_V};
-  return all<is_finite<float>>(values) && all<is_positive>(positive) && all<is_not_negative>(not_negative);
+  using W = WheelConfig;
+  static constexpr float W::*kFinite[] = {&W::rolling_x_share,    &W::rolling_y_share,   &W::inverse_x_factor,
+                                          &W::inverse_y_factor,   &W::inverse_yaw_per_m, &W::sine_V,
+                                          &W::phase_cosine_ratio, &W::phase_sine_ratio,  &W::others_factor};
+  static constexpr float W::*kPositive[] = {&W::slip_factor, &W::damping_V_s_per_rad};
+  static constexpr float W::*kNotNegative[] = {&W::level_load_share, &W::sign_V};
+  return all<is_finite<float>>(wheel, kFinite) && all<is_positive>(wheel, kPositive) && all<is_not_negative>(wheel, kNotNegative);
 }
 
 /// Returns true if a guard period is a whole number of control periods and the guard has a table.
@@ -43,40 +46,42 @@ bool all(const float (&values)[count]) {
   if (config.wheel_count != 3 && config.wheel_count != 4) {
     return false;
   }
-  const float positive[] = {config.period_s,
-                            config.wheel_radius_m,
-                            config.contact_radius_m,
-                            config.mass_kg,
-                            config.yaw_inertia_kg_m2,
-                            config.wheel_inertia_kg_m2,
-                            config.torque_constant_Nm_per_A,
-                            config.resistance_ohm,
-                            config.lowest_resistance_ohm,
-                            config.gear_ratio,
-                            config.gear_efficiency,
-                            config.fastest_wheel_rad_per_s,
-                            config.largest_acceleration_rad_per_s2,
-                            config.battery_full_V,
-                            config.battery_lowest_V,
-                            config.voltage_limit_V,
-                            config.current_limit_A,
-                            config.tracking_time_s,
-                            config.speed_limit_m_per_s,
-                            config.yaw_rate_limit_rad_per_s,
-                            config.acceleration_limit_m_per_s2,
-                            config.yaw_acceleration_limit_rad_per_s2,
-                            config.command_timeout_s};
-  const float not_negative[] = {
-      config.resistance_rise_per_K,    config.battery_resistance_ohm, config.rotation_friction_V, config.friction_smoothing_m_per_s,
-      config.body_gain_per_s,          config.yaw_gain_per_s,         config.yaw_integral_per_s2, config.wheel_gain_V_s_per_rad,
-      config.wheel_integral_V_per_rad, config.jerk_limit_m_per_s3,    config.traction_ratio,      config.braking_reserve_K,
-      config.limp_current_A,           config.warning_time_s};
-  bool possible = all<is_positive>(positive) && all<is_not_negative>(not_negative) && config.battery_lowest_V <= config.battery_full_V;
+  static constexpr float Config::*kPositive[] = {&Config::period_s,
+                                                 &Config::wheel_radius_m,
+                                                 &Config::contact_radius_m,
+                                                 &Config::mass_kg,
+                                                 &Config::yaw_inertia_kg_m2,
+                                                 &Config::wheel_inertia_kg_m2,
+                                                 &Config::torque_constant_Nm_per_A,
+                                                 &Config::resistance_ohm,
+                                                 &Config::lowest_resistance_ohm,
+                                                 &Config::gear_ratio,
+                                                 &Config::gear_efficiency,
+                                                 &Config::fastest_wheel_rad_per_s,
+                                                 &Config::largest_acceleration_rad_per_s2,
+                                                 &Config::battery_full_V,
+                                                 &Config::battery_lowest_V,
+                                                 &Config::voltage_limit_V,
+                                                 &Config::current_limit_A,
+                                                 &Config::tracking_time_s,
+                                                 &Config::speed_limit_m_per_s,
+                                                 &Config::yaw_rate_limit_rad_per_s,
+                                                 &Config::acceleration_limit_m_per_s2,
+                                                 &Config::yaw_acceleration_limit_rad_per_s2,
+                                                 &Config::command_timeout_s};
+  static constexpr float Config::*kNotNegative[] = {
+      &Config::resistance_rise_per_K,    &Config::battery_resistance_ohm, &Config::rotation_friction_V, &Config::friction_smoothing_m_per_s,
+      &Config::body_gain_per_s,          &Config::yaw_gain_per_s,         &Config::yaw_integral_per_s2, &Config::wheel_gain_V_s_per_rad,
+      &Config::wheel_integral_V_per_rad, &Config::jerk_limit_m_per_s3,    &Config::traction_ratio,      &Config::braking_reserve_K,
+      &Config::limp_current_A,           &Config::warning_time_s};
+  bool possible =
+      all<is_positive>(config, kPositive) && all<is_not_negative>(config, kNotNegative) && config.battery_lowest_V <= config.battery_full_V;
   const DerivedConfig& derived = config.derived;
-  const float plane[] = {derived.plane_xx_factor, derived.plane_xy_factor, derived.plane_yy_factor, derived.geared_constant_V_s_per_rad};
-  possible = possible && all<is_finite<float>>(plane) && is_positive(derived.geared_constant_V_s_per_rad);
+  static constexpr float DerivedConfig::*kPlane[] = {&DerivedConfig::plane_xx_factor, &DerivedConfig::plane_xy_factor,
+                                                     &DerivedConfig::plane_yy_factor};
+  possible = possible && all<is_finite<float>>(derived, kPlane) && is_positive(derived.geared_constant_V_s_per_rad);
   for (int i = 0; i < config.wheel_count; ++i) {
-    possible = possible && is_possible(config.wheel[i]) && is_finite(config.wheel[i].others_factor);
+    possible = possible && is_possible(config.wheel[i]);
   }
   return possible && (config.guard == nullptr || is_possible(*config.guard, config.period_s));
 }

@@ -9,11 +9,14 @@ constexpr std::uint32_t kStarted = 0x4452564EU;
 // Makes a state of zeros invalid.
 constexpr std::uint64_t kSeed = 0x9E3779B97F4A7C15U;
 
-/// Check sum of the State, from the member after the sum up to the comparisons.
-[[gnu::noinline]] std::uint64_t state_check_sum(const State& state) {
+}  // namespace
+
+[[gnu::noinline]] std::uint64_t check_sum_of(const State& state) {
   static_assert(__builtin_offsetof(State, comparison) % sizeof(std::uint64_t) == 0);
-  return kSeed + sum_of_words<1, __builtin_offsetof(State, comparison) / sizeof(std::uint64_t)>(&state);
+  return check_sum_of_words<1, __builtin_offsetof(State, comparison) / sizeof(std::uint64_t)>(&state, kSeed);
 }
+
+namespace {
 
 /// Spreads the guard steps of the wheels over the guard period.
 void spread_guards(const Config& config, State& state) {
@@ -60,12 +63,12 @@ void spread_guards(const Config& config, State& state) {
   state = {};
   const bool is_valid = is_possible(config) && config.check_sum == config_check_sum(config);
   if (!is_valid) {
-    state.check_sum = state_check_sum(state);
+    state.check_sum = check_sum_of(state);
     return false;
   }
   reset(config, state, start_up.is_rested ? start_up.body_C : kNoSample);
   state.is_valid = kStarted;
-  state.check_sum = state_check_sum(state);
+  state.check_sum = check_sum_of(state);
   return true;
 }
 
@@ -75,8 +78,13 @@ namespace {
 BodyReference find_references(const Config& config, State& state, const Input& input, const Validated& validated, WheelReferences& wheels,
                               WheelVoltages& voltage) {
   const BodyReference body = control_body_velocity(config, state, input, validated);
-  find_wheel_speeds(config, input, body, wheels);
-  feed_forward(config, input, validated, body, wheels, voltage);
+  if (body.is_open && !body.is_wheelwise) {
+    wheels = {};  // no motion is commanded
+    voltage = {};
+  } else {
+    find_wheel_speeds(config, input, body, wheels);
+    feed_forward(config, input, validated, body, wheels, voltage);
+  }
   HeldReference& held = state.held;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -117,7 +125,8 @@ void step_valid(const Config& config, State& state, const Input& input, bool was
   run_guards(config, state, input, validated);
   WheelReferences wheels;
   WheelVoltages voltage;
-  const bool is_body_velocity = validated.mode == Mode::body_velocity && validated.robot_fault == Reason::none;
+  const bool is_body_velocity =
+      (validated.mode == Mode::body_velocity || validated.mode == Mode::brake) && validated.robot_fault == Reason::none;
   if (is_body_velocity && state.held.is_fresh != 0) {
     static constexpr BodyReference kBodyVelocity;
     hold_references(config, state, validated, wheels, voltage);
@@ -128,7 +137,7 @@ void step_valid(const Config& config, State& state, const Input& input, bool was
     control_wheels(config, state, validated, body, wheels, voltage, out);
   }
   ++state.steps;
-  state.check_sum = state_check_sum(state);
+  state.check_sum = check_sum_of(state);
 }
 
 /// Restarts State. After a single flipped bit the known faults are kept; memory that was never started keeps nothing.
@@ -138,14 +147,14 @@ void step_valid(const Config& config, State& state, const Input& input, bool was
   if (start(config, state, {}) && (flips & (flips - 1)) == 0) {
     recall_faults(known, state);
     state.battery_source_V = config.battery_full_V;
-    state.check_sum = state_check_sum(state);
+    state.check_sum = check_sum_of(state);
   }
 }
 
 }  // namespace
 
 void step(const Config& config, State& state, const Input& input, Output& out) {
-  const bool is_corrupted = state.check_sum != state_check_sum(state);
+  const bool is_corrupted = state.check_sum != check_sum_of(state);
   if (is_corrupted) {
     restart(config, state);
   }

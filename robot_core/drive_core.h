@@ -233,8 +233,9 @@ struct alignas(8) ComparisonState {
   float standing_s = 0.0F;  ///< time without a change of any speed sample while blocked motors would draw more than the limp current
 };
 
-/// State of the core between two steps. Only start() and step() write it; a copy can be logged. The check sum covers the members up to
-/// `comparison`. Comparison and guards have their own check sums, verified at each use.
+/// State of the core between two steps. Only start() and step() write it; a copy can be logged. Every step verifies the check sum, which
+/// covers the members up to `comparison`. The check sums of the comparisons and of the guards are verified before each update: in 3 of
+/// kStepsPerComparison steps, and once per guard period.
 struct alignas(8) State {
   std::uint64_t check_sum = 0;
   std::uint32_t is_valid = 0;  ///< a constant after start() with a valid Config, else 0

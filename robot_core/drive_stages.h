@@ -135,6 +135,9 @@ inline bool is_wheel_compared(const State& state) { return state.steps % (kSteps
 /// Compares sensors with each other: finds stuck and swapped ones, and accepts those again that have recovered.
 void compare_sensors(const Config& config, State& state, const Input& input, Validated& validated);
 
+/// Check sum of the State from the member after the sum up to the comparisons.
+std::uint64_t check_sum_of(const State& state);
+
 /// Copies the faults of wheel speeds and yaw rate into ComparisonState, where a flipped bit in the rest of State does not reach them.
 void note_faults(State& state);
 

@@ -12,10 +12,13 @@ namespace {
 float friction_V(const Config& config, const WheelConfig& wheel, const Vector3& velocity, float per_speed_s_per_m, float rotation_share,
                  float wheel_rad_per_s) {
   const float smoothing = config.friction_smoothing_m_per_s;
+  const float rotation_V = config.rotation_friction_V * smooth_sign(wheel_rad_per_s * config.wheel_radius_m, smoothing);
+  if (rotation_share >= 1.0F) {
+    return rotation_V;
+  }
   const float along_m_per_s = velocity.y * wheel.phase_cosine_ratio + velocity.x * wheel.phase_sine_ratio;
   const float sine = along_m_per_s * per_speed_s_per_m;
   const float translation_V = wheel.sine_V * sine + wheel.sign_V * smooth_sign(along_m_per_s, smoothing);
-  const float rotation_V = config.rotation_friction_V * smooth_sign(wheel_rad_per_s * config.wheel_radius_m, smoothing);
   return translation_V + rotation_share * (rotation_V - translation_V);
 }
 

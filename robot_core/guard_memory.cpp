@@ -93,15 +93,13 @@ Restored restore_guard(const GuardModel& model, GuardState& state, const GuardSt
   for (int node = 0; node < model.node_count; ++node) {
     state.state_C[node] = larger(is_known ? now_C[node] : peak_C[node], least_C);
   }
-  state.gap_s = saved.gap_s;
+  set_gap(state, gap_s(saved));
   seal(state);
   return is_known ? Restored::cooled : Restored::time_unknown;
 }
 
 bool restore(const Config& config, State& state, const State& saved, float elapsed_s, float board_C) {
-  // The check sum of State is a sum of words, so adding the change keeps a valid sum valid and a wrong one wrong.
-  constexpr unsigned kEnd = __builtin_offsetof(State, comparison) / sizeof(std::uint64_t);
-  const std::uint64_t before = sum_of_words<1, kEnd>(&state);
+  const bool was_valid = state.check_sum == check_sum_of(state);
   if (recall_sensors(saved.comparison, state)) {
     note_faults(state);
   }
@@ -120,7 +118,9 @@ bool restore(const Config& config, State& state, const State& saved, float elaps
     }
     wheel.allowed_A = wheel.allowed_braking_A = allowed_current_A(*config.guard, 0.0F, body_C, guard.state_C[0] + config.braking_reserve_K);
   }
-  state.check_sum += sum_of_words<1, kEnd>(&state) - before;
+  if (was_valid) {  // else the next step reports the damage
+    state.check_sum = check_sum_of(state);
+  }
   return are_all;
 }
 

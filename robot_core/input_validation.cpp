@@ -19,13 +19,9 @@ void validate_time(const Config& config, State& state, const Input& input, Valid
   validated.guard_periods = 1;
   const float elapsed_s = input.elapsed_s;
   constexpr float kShortest_share = 0.5F;
-  // This form of the comparison also rejects NaN.
-  if (!(elapsed_s >= kShortest_share * config.period_s) || !is_finite(elapsed_s)) {
-    validated.robot_fault = Reason::period_invalid;
-  } else if (elapsed_s > kLongestGap_periods * config.period_s) {
-    validated.robot_fault = Reason::time_jump;
-    validated.elapsed_s = elapsed_s;
-  } else {
+  const float longest_s = kLongestGap_periods * config.period_s;
+  // Comparisons with NaN are false.
+  if (elapsed_s >= kShortest_share * config.period_s && elapsed_s <= longest_s) {
     // Rounded up, so that no integration covers too short a time. A tenth of a period is jitter of the timer.
     constexpr float kRoundUp_share = 0.9F;
     const float periods = elapsed_s / config.period_s;
@@ -38,6 +34,11 @@ void validate_time(const Config& config, State& state, const Input& input, Valid
       state.late_periods -= 1.0F;
       ++validated.guard_periods;
     }
+  } else if (elapsed_s > longest_s && is_finite(elapsed_s)) {
+    validated.robot_fault = Reason::time_jump;
+    validated.elapsed_s = elapsed_s;
+  } else {
+    validated.robot_fault = Reason::period_invalid;
   }
 }
 
@@ -45,7 +46,7 @@ void validate_time(const Config& config, State& state, const Input& input, Valid
 constexpr float kMostCommand = 1e6F;
 
 /// Sum of magnitudes; NaN if a component is NaN.
-float sum(const Vector3& v) { return absolute(v.x) + absolute(v.y) + absolute(v.yaw); }
+[[gnu::always_inline]] inline float sum(const Vector3& v) { return absolute(v.x) + absolute(v.y) + absolute(v.yaw); }
 
 bool has_finite_values(const Config& config, const Command& command) {
   float all = 0.0F;
@@ -331,12 +332,16 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, V
   validated.yaw_rate_rad_per_s = state.yaw_rate_rad_per_s;
 }
 
-/// Handles a sample that is implausible (NaN, out of range, a jump), unchanged, or from a sensor with a fault.
-[[gnu::cold]] void take_doubtful_sample(const Config& config, WheelState& wheel, float sample, float jump_rad_per_s,
-                                        ValidatedWheel& validated) {
-  const float change_rad_per_s = sample - wheel.raw_speed_rad_per_s;
+[[gnu::always_inline]] inline void count_same(WheelState& wheel, float change_rad_per_s) {
   const int same = change_rad_per_s == 0.0F ? wheel.same_steps + 1 : 0;
   wheel.same_steps = static_cast<std::uint16_t>(same < kMostSameSteps ? same : kMostSameSteps);
+}
+
+/// Handles a sample that is implausible (NaN, out of range, a jump) or from a sensor with a fault.
+[[gnu::cold, gnu::noinline]] void take_doubtful_sample(const Config& config, WheelState& wheel, float sample, float jump_rad_per_s,
+                                                       ValidatedWheel& validated) {
+  const float change_rad_per_s = sample - wheel.raw_speed_rad_per_s;
+  count_same(wheel, change_rad_per_s);
   const bool is_possible = absolute(sample) <= config.fastest_wheel_rad_per_s;  // false for NaN
   wheel.raw_speed_rad_per_s = is_possible ? sample : 0.0F;
   if (!is_possible || absolute(change_rad_per_s) > jump_rad_per_s) {
@@ -365,13 +370,13 @@ void take_samples(const Config& config, State& state, const Input& input, Valida
     const float sample = input.wheel_speed_rad_per_s[i];
     const float change_rad_per_s = sample - wheel.raw_speed_rad_per_s;
     const bool is_plain = absolute(sample) <= most_rad_per_s && absolute(change_rad_per_s) <= jump_rad_per_s;
-    if (!is_plain || change_rad_per_s == 0.0F || wheel.speed_fault != 0) {
+    if (!is_plain || wheel.speed_fault != 0) {
       take_doubtful_sample(config, wheel, sample, jump_rad_per_s, validated.wheel[i]);
       are_faults_new = are_faults_new || wheel.speed_fault != state.comparison.speed_fault[i];
       validated.are_all_sensed = validated.are_all_sensed && validated.wheel[i].is_speed_sensed;
       continue;
     }
-    wheel.same_steps = 0;
+    count_same(wheel, change_rad_per_s);
     wheel.raw_speed_rad_per_s = sample;
     validated.wheel[i].is_speed_sensed = true;
     validated.wheel[i].speed_rad_per_s = sample;
@@ -390,26 +395,33 @@ float estimated_current_A(const Config& config, const WheelState& wheel, float s
   return (wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * speed_rad_per_s) * wheel.conductance_A_per_V;
 }
 
+/// Handles a missing sample, or one of a sensor that contradicts voltage and speed.
+[[gnu::noinline]] void estimate_current(const Config& config, WheelState& wheel, float sample_A, bool is_sample,
+                                        ValidatedWheel& validated) {
+  wheel.current_fault = is_sample                ? code(Reason::current_implausible)
+                        : wheel.has_current != 0 ? code(Reason::current_missing)
+                                                 : code(Reason::none);
+  wheel.has_current |= is_sample ? 1 : 0;
+  const float estimate_A = estimated_current_A(config, wheel, validated.speed_rad_per_s);
+  validated.is_current_sensed = false;
+  validated.current_A = is_sample && absolute(sample_A) > absolute(estimate_A) ? sample_A : estimate_A;
+}
+
 void validate_currents(const Config& config, State& state, const Input& input, Validated& validated) {
+  const float most_A = config.derived.most_sensed_A;
+#pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     const float sample_A = input.motor_current_A[i];
-    const bool is_sample = absolute(sample_A) <= config.derived.most_sensed_A;  // false for NaN
-    wheel.current_fault = 0;
-    if (is_sample) {
-      wheel.has_current = 1;
-      if (wheel.is_current_distrusted == 0) {
-        validated.wheel[i].is_current_sensed = true;
-        validated.wheel[i].current_A = sample_A;
-        continue;
-      }
-      wheel.current_fault = code(Reason::current_implausible);
-    } else if (wheel.has_current != 0) {
-      wheel.current_fault = code(Reason::current_missing);
+    const bool is_sample = absolute(sample_A) <= most_A;  // false for NaN
+    if (!is_sample || wheel.is_current_distrusted != 0) {
+      estimate_current(config, wheel, sample_A, is_sample, validated.wheel[i]);
+      continue;
     }
-    const float estimate_A = estimated_current_A(config, wheel, validated.wheel[i].speed_rad_per_s);
-    validated.wheel[i].is_current_sensed = false;
-    validated.wheel[i].current_A = is_sample && absolute(sample_A) > absolute(estimate_A) ? sample_A : estimate_A;
+    wheel.has_current = 1;
+    wheel.current_fault = 0;
+    validated.wheel[i].is_current_sensed = true;
+    validated.wheel[i].current_A = sample_A;
   }
 }
 

@@ -134,13 +134,13 @@ bool hold_window(const Config& config, const State& state, const Validated& vali
 
 /// Keeps the limit by the sensed current. The new current is the sensed one plus the change of voltage over resistance, at any speed. Noise
 /// within the slack is ignored if the speed estimates agree, because they keep the limit already.
-void hold_sensed_current(const Config& config, const Validated& all, int i, const WheelState& wheel, float most_A, float& voltage_V) {
+void hold_sensed_current(const Config& config, const Validated& validated, int i, const WheelState& wheel, float most_A, float& voltage_V) {
   if (wheel.is_open != 0) {
     return;
   }
-  const float slack_V = all.is_redundancy_reduced ? 0.0F : larger(0.0F, config.derived.sensed_slack_V - all.spread_V);
+  const float slack_V = validated.is_redundancy_reduced ? 0.0F : larger(0.0F, config.derived.sensed_slack_V - validated.spread_V);
   const float room_V = config.lowest_resistance_ohm * most_A + slack_V;
-  const float back_V = wheel.voltage_V - config.lowest_resistance_ohm * all.wheel[i].current_A;
+  const float back_V = wheel.voltage_V - config.lowest_resistance_ohm * validated.wheel[i].current_A;
   voltage_V = clamped(voltage_V, back_V - room_V, back_V + room_V);
 }
 
@@ -215,7 +215,7 @@ float find_demands(const Config& config, State& state, const Validated& validate
     limited.wheel[i].reason = Reason::none;
     limit_demand(config, state.wheel[i], validated, body, i, each);
     // The limit for braking is at least as high.
-    is_hot = is_hot || !(state.wheel[i].allowed_A >= each.most_A);
+    is_hot |= !(state.wheel[i].allowed_A >= each.most_A);
     if (sensed.is_speed_known) {
       least = share_of_wheel(config, i, most_V, each, limited.wheel[i].reason, least);
     }
@@ -237,20 +237,26 @@ float find_demands(const Config& config, State& state, const Validated& validate
   return factor;
 }
 
-/// Strongest reason of a wheel: faults before limits.
-Reason strongest(const WheelState& wheel, Reason limit) {
-  if ((wheel.speed_fault | wheel.current_fault | wheel.guard_fault) == 0) {
-    return limit;
-  }
+/// Strongest fault of a wheel.
+[[gnu::cold, gnu::noinline]] Reason fault_of(const WheelState& wheel) {
   const std::uint8_t later = wheel.current_fault != 0 ? wheel.current_fault : wheel.guard_fault;
   return static_cast<Reason>(wheel.speed_fault != 0 ? wheel.speed_fault : later);
 }
 
-/// Limits a wheel that has a current sensor or no speed. Returns false if its bridge has to open.
+/// Strongest reason of a wheel: faults before limits.
+Reason strongest(const WheelState& wheel, Reason limit) {
+  return (wheel.speed_fault | wheel.current_fault | wheel.guard_fault) == 0 ? limit : fault_of(wheel);
+}
+
+/// Limits a wheel whose voltage may exceed the current limit. Returns false if its bridge has to open.
 [[gnu::noinline]] bool hold_wheel(const Config& config, State& state, const Validated& validated, const WheelDemand& demand, int i,
                                   float most_V, float& voltage_V, Reason& reason) {
   WheelState& wheel = state.wheel[i];
   const ValidatedWheel& sensed = validated.wheel[i];
+  if (sensed.is_speed_known && !sensed.is_current_sensed) {
+    wheel.current_bound_A = demand.most_A;
+    return move_into_window(config, state, validated, demand, i, most_V, voltage_V, reason);
+  }
   bool is_held = sensed.is_speed_known ? hold_window(config, state, validated, demand, i, most_V, voltage_V, reason)
                                        : limp_blindly(config, validated, demand, i, most_V, voltage_V);
   if (sensed.is_current_sensed) {
@@ -269,7 +275,7 @@ Reason strongest(const WheelState& wheel, Reason limit) {
 }
 
 /// Returns true if the sensed current and the current that it predicts for a voltage keep the limit.
-[[gnu::noinline]] bool is_within_by_current(const Config& config, WheelState& wheel, float sensed_A, float most_A, float voltage_V) {
+bool is_within_by_current(const Config& config, WheelState& wheel, float sensed_A, float most_A, float voltage_V) {
   const float next_A = sensed_A + (voltage_V - wheel.voltage_V) * config.derived.per_lowest_resistance_A_per_V;
   const bool is_within = wheel.is_open == 0 && absolute(sensed_A) <= most_A && absolute(next_A) <= most_A;
   wheel.current_bound_A = is_within ? larger(most_A, kBoundDecay * wheel.current_bound_A) : wheel.current_bound_A;
@@ -282,14 +288,15 @@ bool finish_wheel(const Config& config, State& state, const Validated& validated
   voltage_V = demand.back_V + config.lowest_resistance_ohm * demand.current_A;
   const ValidatedWheel& sensed = validated.wheel[i];
   WheelState& wheel = state.wheel[i];
-  if (sensed.is_speed_known && !sensed.is_current_sensed) {
-    wheel.current_bound_A = demand.most_A;
-    return !hold_window(config, state, validated, demand, i, most_V, voltage_V, reason);
-  }
   // The common case of hold_wheel(): speeds and sensed current agree that the voltage keeps the limit.
-  if (sensed.is_speed_known && is_within(config, validated, demand, voltage_V) &&
-      is_within_by_current(config, wheel, sensed.current_A, demand.most_A, voltage_V)) {
-    return false;
+  if (sensed.is_speed_known && is_within(config, validated, demand, voltage_V)) {
+    if (!sensed.is_current_sensed) {
+      wheel.current_bound_A = demand.most_A;
+      return false;
+    }
+    if (is_within_by_current(config, wheel, sensed.current_A, demand.most_A, voltage_V)) {
+      return false;
+    }
   }
   return !hold_wheel(config, state, validated, demand, i, most_V, voltage_V, reason);
 }

@@ -56,19 +56,36 @@ inline std::uint32_t word_of(const void* object, unsigned i) {
   return word;
 }
 
-/// Sum of the 8-byte words `first` to `last` - 1 of an object with 8-byte alignment. Every flip of a single bit changes it.
+/// Running check sum, the halves of a 64-bit number.
+struct CheckSum {
+  std::uint32_t low;
+  std::uint32_t high;
+
+  /// Multiplies by an odd number, adds a word and exchanges the halves, so the weight of a bit depends on the position of its word.
+  constexpr CheckSum with(std::uint64_t word) const {
+    constexpr std::uint32_t kMultiplier = 0x85EBCA6BU;
+    // In this form each word takes two instructions of a Cortex-M7.
+    const std::uint64_t sum = word + std::uint64_t{low} * kMultiplier;
+    return {static_cast<std::uint32_t>(sum >> 32U) + kMultiplier * high, static_cast<std::uint32_t>(sum)};
+  }
+  constexpr std::uint64_t value() const { return std::uint64_t{high} << 32U | low; }
+};
+
+/// Check sum of an object with 8-byte alignment from the 8-byte word `first` to `last` - 1. Every flipped bit changes it, and of all pairs
+/// of flipped bits more than 99.99 %. Even and odd words have a sum each, so that a host calculates both at the same time.
 template <unsigned first, unsigned last>
-std::uint64_t sum_of_words(const void* object) {
+std::uint64_t check_sum_of_words(const void* object, std::uint64_t seed) {
   const auto* const at = static_cast<const unsigned char*>(object);
-  std::uint64_t sum = 0;
+  CheckSum sum[2] = {{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U)}, {0U, 0U}};
   // Fully unrolled, because the drive core spends a good part of its time here.
 #pragma GCC unroll 128
   for (unsigned i = first; i < last; ++i) {
     std::uint64_t word = 0;
     __builtin_memcpy(&word, __builtin_assume_aligned(at + i * sizeof(word), sizeof(word)), sizeof(word));
-    sum += word;
+    sum[i % 2] = sum[i % 2].with(word);
   }
-  return sum;
+  // The last round separates the last words from the stored sum.
+  return sum[0].with(sum[1].value()).with(0U).value();
 }
 
 struct SineCosine {

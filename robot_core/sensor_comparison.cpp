@@ -46,8 +46,8 @@ constexpr std::uint64_t kSeed = 0x434F4D5041524521U;
 
 constexpr std::uint8_t code(Reason reason) { return static_cast<std::uint8_t>(reason); }
 
-std::uint64_t check_sum_of(const ComparisonState& comparison) {
-  return kSeed + sum_of_words<1, sizeof(ComparisonState) / sizeof(std::uint64_t)>(&comparison);
+[[gnu::noinline]] std::uint64_t check_sum_of(const ComparisonState& comparison) {
+  return check_sum_of_words<1, sizeof(ComparisonState) / sizeof(std::uint64_t)>(&comparison, kSeed);
 }
 
 void copy_faults(State& state) {

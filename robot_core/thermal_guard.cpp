@@ -1,5 +1,8 @@
 #include "robot_core/thermal_guard.h"
 
+// For size: each guard runs once in its own period.
+#pragma GCC optimize("Os")
+
 namespace robot_core {
 namespace {
 
@@ -17,22 +20,35 @@ bool is_temperature(const GuardModel& model, float x_C) { return is_between(mode
 
 // One copy of the unrolled sum.
 [[gnu::noinline]] std::uint64_t check_sum_of(const GuardState& state) {
-  return kStarted + sum_of_words<1, sizeof(GuardState) / sizeof(std::uint64_t)>(&state);
+  constexpr unsigned kWords = __builtin_offsetof(GuardState, gap_bits) / sizeof(std::uint64_t);
+  static_assert(__builtin_offsetof(GuardState, gap_bits) % sizeof(std::uint64_t) == 0);
+  return check_sum_of_words<1, kWords>(&state, kStarted);
 }
 
-/// Replaces implausible signals by a candidate value. Returns one bit per replaced signal.
-unsigned replace_implausible(const GuardModel& model, float* signal) {
-  unsigned unknown = 0;
+/// Signals that were implausible, one bit each.
+struct Replaced {
+  unsigned all = 0;
+  unsigned open = 0;  ///< those with several candidates; a single candidate is the signal's value already
+};
+
+/// Copies the signals and replaces implausible ones by a candidate value.
+Replaced replace_implausible(const GuardModel& model, const float* given, float* signal) {
+  Replaced replaced;
   for (int i = 0; i < kGuardSignals; ++i) {
     const PlausibleRange& plausible_range = model.plausible_range[i];
+    signal[i] = given[i];
+    if (!plausible_range.is_used) {
+      continue;
+    }
     // The sensor of a neighbour that is much colder than the air is faulty.
     const float least = i == guard_neighbour_C ? signal[guard_ambient_C] - 5.0F : plausible_range.least;
-    if (plausible_range.is_used && !is_between(least, signal[i], plausible_range.most)) {
+    if (!is_between(least, signal[i], plausible_range.most)) {
       signal[i] = plausible_range.possible[0];
-      unknown |= 1U << static_cast<unsigned>(i);
+      replaced.all |= 1U << static_cast<unsigned>(i);
+      replaced.open |= plausible_range.possible_count > 1 ? 1U << static_cast<unsigned>(i) : 0U;
     }
   }
-  return unknown;
+  return replaced;
 }
 
 /// Raises the rate of each node to its worst case over the candidates; the signal keeps the value that heats the winding most.
@@ -55,12 +71,9 @@ unsigned replace_implausible(const GuardModel& model, float* signal) {
   signal[which] = hottest;
 }
 
-/// Uses two passes if several signals have candidates, because a signal's hottest value may depend on another signal. A single candidate
-/// is the signal's value already.
-[[gnu::cold]] void find_hottest_rates(const GuardModel& model, unsigned unknown, float* signal, const float* state_C, float* rate_K_per_s) {
-  for (int i = 0; i < kGuardSignals; ++i) {
-    unknown &= model.plausible_range[i].possible_count > 1 ? ~0U : ~(1U << static_cast<unsigned>(i));
-  }
+/// Uses two passes if several signals have candidates, because a signal's hottest value may depend on another signal.
+[[gnu::cold, gnu::noinline]] void find_hottest_rates(const GuardModel& model, unsigned unknown, float* signal, const float* state_C,
+                                                     float* rate_K_per_s) {
   const int passes = (unknown & (unknown - 1)) != 0 ? 2 : 1;
   for (int pass = 0; pass < passes; ++pass) {
     for (int i = 0; i < kGuardSignals; ++i) {
@@ -85,25 +98,21 @@ unsigned replace_implausible(const GuardModel& model, float* signal) {
 
 void seal(GuardState& state) { state.check_sum = check_sum_of(state); }
 
-namespace {
-
-/// Changes a member in the upper half of an 8-byte word. The check sum is a sum of words, so adding the change keeps a valid sum valid and
-/// a wrong one wrong.
-void change(GuardState& state, float& member, float value) {
-  const auto bits = [](float x) { return std::uint64_t{__builtin_bit_cast(std::uint32_t, x)} << 32U; };
-  state.check_sum += bits(value) - bits(member);
-  member = value;
+float gap_s(const GuardState& state) {
+  return state.gap_complement == ~state.gap_bits ? __builtin_bit_cast(float, state.gap_bits) : std::numeric_limits<float>::infinity();
 }
 
-}  // namespace
+void set_gap(GuardState& state, float gap_s) {
+  state.gap_bits = __builtin_bit_cast(std::uint32_t, gap_s);
+  state.gap_complement = ~state.gap_bits;
+}
 
-[[gnu::cold]] void add_gap(GuardState& state, float gap_s) {
-  static_assert(__builtin_offsetof(GuardState, gap_s) % sizeof(std::uint64_t) == sizeof(float));
-  change(state, state.gap_s, gap_s <= kLongestGap_s ? state.gap_s + gap_s : std::numeric_limits<float>::infinity());
+[[gnu::cold]] void add_gap(GuardState& state, float added_s) {
+  set_gap(state, added_s <= kLongestGap_s ? gap_s(state) + added_s : std::numeric_limits<float>::infinity());
 }
 
 bool is_started(const GuardModel& model, const GuardState& state) {
-  bool started = state.check_sum == check_sum_of(state);
+  bool started = state.check_sum == check_sum_of(state) && state.gap_complement == ~state.gap_bits;
   for (int node = 0; node < model.node_count; ++node) {
     started = started && is_temperature(model, state.state_C[node]) && is_between(-1.0F, state.carry_K[node], 1.0F);
   }
@@ -150,7 +159,6 @@ float hottest_body_C(const GuardModel& model, const GuardState& state) {
 }  // namespace
 
 [[gnu::cold]] void estimate_time_to_limit(const GuardModel& model, GuardState& state, float braking_reserve_K) {
-  static_assert(__builtin_offsetof(GuardState, time_to_limit_s) % sizeof(std::uint64_t) == sizeof(float));
   const heatsoak_row row = row_at(model.table, absolute(state.speed_rad_per_s), hottest_body_C(model, state));
   const float limiting_C = limiting_temperature_C(model.table, row, square_root(state.load_squared_A2)) - braking_reserve_K;
   const float room_K = limiting_C - state.state_C[0];
@@ -159,7 +167,12 @@ float hottest_body_C(const GuardModel& model, const GuardState& state) {
   if (room_K >= 0.0F && state.heating_K_per_s > kLeastHeating_K_per_s) {
     time_s = smaller(room_K / state.heating_K_per_s, kLongTime_s);
   }
-  change(state, state.time_to_limit_s, time_s);
+  // A valid check sum stays valid and a wrong one wrong.
+  const bool was_valid = state.check_sum == check_sum_of(state);
+  state.time_to_limit_s = time_s;
+  if (was_valid) {
+    seal(state);
+  }
 }
 
 [[gnu::cold]] float allowed_current_A(const GuardModel& model, float speed_rad_per_s, float stator_C, float winding_C) {
@@ -170,7 +183,7 @@ float hottest_body_C(const GuardModel& model, const GuardState& state) {
 namespace {
 
 /// The current during a gap is unknown: assume the largest one at standstill for the whole gap, up to the temperature limit.
-[[gnu::cold, gnu::noinline]] void heat_for_gap(const GuardModel& model, GuardState& state) {
+[[gnu::cold, gnu::noinline]] void heat_for_gap(const GuardModel& model, GuardState& state, float gap_s) {
   float signal[kGuardSignals] = {};
   signal[guard_current_A] = model.most_current_A;
   signal[guard_ambient_C] = model.hottest_ambient_C;
@@ -178,10 +191,10 @@ namespace {
   float rate_K_per_s[kMostGuardNodes];
   model.rates(model.context, signal, state.state_C, rate_K_per_s);
   for (int node = 0; node < model.node_count; ++node) {
-    const float heated_C = state.state_C[node] + state.gap_s * larger(0.0F, rate_K_per_s[node]);
+    const float heated_C = state.state_C[node] + gap_s * larger(0.0F, rate_K_per_s[node]);
     state.state_C[node] = larger(state.state_C[node], smaller(heated_C, model.winding_limit_C));
   }
-  state.gap_s = 0.0F;
+  set_gap(state, 0.0F);
 }
 
 }  // namespace
@@ -189,21 +202,19 @@ namespace {
 GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K) {
   GuardOutput out;
   out.allowed_A = out.allowed_braking_A = 0.0F;
-  out.was_started = is_started(model, state) && is_finite(state.gap_s);
+  const float unknown_s = gap_s(state);
+  out.was_started = is_started(model, state) && is_finite(unknown_s);
   if (!out.was_started) {
     start_guard(model, state, model.winding_limit_C);
-  } else if (state.gap_s != 0.0F) {
-    heat_for_gap(model, state);
+  } else if (unknown_s != 0.0F) {
+    heat_for_gap(model, state, unknown_s);
   }
   float validated[kGuardSignals];
-  for (int i = 0; i < kGuardSignals; ++i) {
-    validated[i] = signal[i];
-  }
-  const unsigned unknown = replace_implausible(model, validated);
+  const Replaced replaced = replace_implausible(model, signal, validated);
   float rate_K_per_s[kMostGuardNodes];
   model.rates(model.context, validated, state.state_C, rate_K_per_s);
-  if (unknown != 0) {
-    find_hottest_rates(model, unknown, validated, state.state_C, rate_K_per_s);
+  if (replaced.open != 0) {
+    find_hottest_rates(model, replaced.open, validated, state.state_C, rate_K_per_s);
   }
   for (int node = 0; node < model.node_count; ++node) {
     const float change_K = model.period_s * rate_K_per_s[node] - state.carry_K[node];
@@ -213,13 +224,13 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
   }
   out.winding_C = state.state_C[0];
   out.hottest_body_C = hottest_body_C(model, state);
-  out.is_unknown_input = unknown != 0;
+  out.is_unknown_input = replaced.all != 0;
   const float smoothing = model.period_s / kSmoothing_s;
   state.heating_K_per_s += smoothing * (rate_K_per_s[0] - state.heating_K_per_s);
   state.load_squared_A2 += smoothing * (validated[guard_current_A] * validated[guard_current_A] - state.load_squared_A2);
   state.speed_rad_per_s = validated[guard_speed_rad_per_s];
   ++state.steps;
-  if ((unknown & (1U << static_cast<unsigned>(guard_speed_rad_per_s))) == 0) {
+  if ((replaced.all & (1U << static_cast<unsigned>(guard_speed_rad_per_s))) == 0) {
     const heatsoak_row row = row_at(model.table, absolute(validated[guard_speed_rad_per_s]), out.hottest_body_C);
     const float braking_A2 = square_at_A2(model.table, row, out.winding_C);
     const float driving_A2 = smaller(braking_A2, square_at_A2(model.table, row, out.winding_C + braking_reserve_K));

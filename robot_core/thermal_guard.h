@@ -61,7 +61,10 @@ struct alignas(8) GuardState {
   float load_squared_A2 = 0.0F;  ///< squared current, smoothed
   float time_to_limit_s = 0.0F;  ///< estimated time until the allowed current falls below the present load; kLongTime_s: never
   std::uint32_t steps = 0;
-  float gap_s = 0.0F;  ///< time with unknown current that the temperatures do not include yet
+  std::uint32_t unused_word = 0;
+  // The check sum ends here. A gap changes between the guard's steps, and its complement costs less time than a new check sum.
+  std::uint32_t gap_bits = 0;  ///< time with unknown current that the temperatures do not include yet, a float in s
+  std::uint32_t gap_complement = ~0U;
 };
 
 inline constexpr float kLongTime_s = 3600.0F;
@@ -79,15 +82,19 @@ struct GuardOutput {
 /// Starts the guard with all nodes at `body_C`. An implausible temperature counts as the winding's limit.
 void start_guard(const GuardModel& model, GuardState& state, float body_C);
 
-/// Returns true if the state was started, has a valid check sum and holds plausible temperatures.
+/// Returns true if the state was started, has a valid check sum and no flipped bit in its gap, and holds plausible temperatures.
 bool is_started(const GuardModel& model, const GuardState& state);
 
 /// Updates the check sum after a change of the temperatures from outside.
 void seal(GuardState& state);
 
-/// Adds to GuardState::gap_s, which the next step of the guard counts: with the largest current at standstill in the hottest air. After a
+/// Time with unknown current that the temperatures do not include yet; infinite if a bit of it has flipped.
+float gap_s(const GuardState& state);
+void set_gap(GuardState& state, float gap_s);
+
+/// Adds to gap_s(), which the next step of the guard counts: with the largest current at standstill in the hottest air. After a
 /// gap of more than 1 s it starts at its temperature limit.
-void add_gap(GuardState& state, float gap_s);
+void add_gap(GuardState& state, float added_s);
 
 /// Runs one guard period. `signal` has kGuardSignals values; its current flowed since the last call. `braking_reserve_K` is kept free below
 /// the limit for braking: the driving current is read from the table for a winding that much hotter.

@@ -169,7 +169,10 @@ std::vector<Stop> stops(const Robot& robot, const DriveConstants& drive, const B
     for (int i = 0; i < body.kinematics.wheel_count; ++i) {
       const double torque_Nm = force_N[i] * body.kinematics.wheel_radius_m + body.wheel_inertia_kg_m2 * per_s2[i];
       const double current_A = std::abs(torque_Nm) / (drive.torque_constant_Nm_per_A * drive.gear_ratio);
-      all.push_back({std::min(current_A, most_A), std::abs(per_s2[i]) * v_m_per_s / a_m_per_s2 * drive.gear_ratio, v_m_per_s / a_m_per_s2});
+      // With less current than the braking limit needs, the stop takes longer.
+      const double longer_ratio = std::max(1.0, current_A / most_A);
+      all.push_back({std::min(current_A, most_A), std::abs(per_s2[i]) * v_m_per_s / a_m_per_s2 * drive.gear_ratio,
+                     longer_ratio * v_m_per_s / a_m_per_s2});
     }
   }
   return all;
@@ -213,6 +216,21 @@ robot_core::Config make_core_config(const Robot& robot, const Motor& motor, cons
   config.limp_current_A = single(std::min(limp_current_A(derating), double{config.current_limit_A}));
   config.braking_reserve_K = single(braking_reserve_K(robot, motor.nominal, derating));
   return finished(config);
+}
+
+void require_driving_current(const Robot& robot, const Motor& motor, const Derating& derating, const robot_core::Config& config) {
+  const double reserve_K = config.braking_reserve_K;
+  const double hottest_C = derating.rules.hottest_ambient_C;
+  const double limit_C = derating.rules.limits.winding_C;
+  if (robot_core::allowed_current_A(*config.guard, 0.0F, single(hottest_C), single(hottest_C + reserve_K)) > 0.0F) {
+    return;
+  }
+  throw Failure(ExitCode::bad_input,
+                fmt::format("{} in {}: one full stop from {:.3g} m/s at {:.3g} m/s2 heats the winding by {:.0f} K; expected less than the "
+                            "{:.0f} K between air of {:.0f} degC and the limit of {:.0f} degC, or the thermal guard could never let the "
+                            "robot drive; lower limits.speed or limits.braking in the robot file, or choose a stronger motor or a gear",
+                            motor.id, robot.id, robot.limits.speed_m_per_s.value(), robot.limits.braking_m_per_s2.value(), reserve_K,
+                            limit_C - hottest_C, hottest_C, limit_C));
 }
 
 double braking_reserve_K(const Robot& robot, const MotorValues& motor, const Derating& derating) {

@@ -203,6 +203,22 @@ std::string in_one_line(std::string text) {
   return text;
 }
 
+namespace {
+
+/// A large reserve is paid for with driving current.
+void add_stop_note(const Derating& derating, CoreFolder& folder) {
+  constexpr double kLarge_share = 0.25;
+  const double room_K = derating.rules.limits.winding_C - derating.rules.hottest_ambient_C;
+  if (folder.braking_reserve_K > kLarge_share * room_K) {
+    folder.notes.push_back(
+        fmt::format("the robot drives with less current than the motor could carry, because one full stop heats the winding by {:.0f} K of "
+                    "the {:.0f} K between air of {:.0f} °C and its limit; a lower limits.speed or limits.braking in the robot file helps",
+                    folder.braking_reserve_K, room_K, derating.rules.hottest_ambient_C));
+  }
+}
+
+}  // namespace
+
 CoreFolder core_files(const Robot& robot, const Motor& motor, const CoreOptions& options, const Derating& derating,
                       std::string_view version) {
   const HostGuard guard(derating);
@@ -215,6 +231,7 @@ CoreFolder core_files(const Robot& robot, const Motor& motor, const CoreOptions&
                     .version = std::string(version),
                     .options_text = options_text(motor, options, derating),
                     .hash = {}};
+  require_driving_current(robot, motor, derating, source.config);
   source.hash =
       input_hash(read_file(robot.file, kLargestFile_bytes) + '\n' + read_file(motor.file, kLargestFile_bytes) + '\n' + source.options_text);
   CoreFolder folder{.files = {},
@@ -223,6 +240,7 @@ CoreFolder core_files(const Robot& robot, const Motor& motor, const CoreOptions&
                     .limp_current_A = source.config.limp_current_A,
                     .braking_reserve_K = source.config.braking_reserve_K,
                     .notes = notes_on(robot, motor, derating)};
+  add_stop_note(derating, folder);
   folder.files.push_back({"core_config.h", core_config_header(source)});
   folder.files.push_back({"motor_guard.h", motor_guard_header(source)});
   folder.files.push_back({"motor_guard.cpp", motor_guard_source(source)});
@@ -235,7 +253,13 @@ CoreFolder core_files(const Robot& robot, const Motor& motor, const CoreOptions&
       folder.files.push_back({std::string(each.path), std::string(each.text)});
     }
   }
+  folder.files.push_back({kGeneratedFiles, {}});
   std::ranges::sort(folder.files, {}, &CoreFile::path);
+  std::string paths;
+  for (const CoreFile& file : folder.files) {
+    paths += file.path + '\n';
+  }
+  std::ranges::find(folder.files, kGeneratedFiles, &CoreFile::path)->content = paths;
   return folder;
 }
 

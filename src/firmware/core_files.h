@@ -17,6 +17,9 @@ struct CoreFile {
   std::string content;
 };
 
+/// File of the folder that lists the paths of all generated files, one per line.
+inline constexpr const char* kGeneratedFiles = "generated_files.txt";
+
 struct CoreFolder {
   std::vector<CoreFile> files;         ///< sorted by path
   std::string hash;                    ///< kInputHash over the texts of both files and the options

@@ -4,7 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
+#include <set>
+#include <string>
 
 #include "base/diagnostic.h"
 
@@ -26,13 +29,29 @@ fs::path real_path(const fs::path& folder) {
   return path.has_filename() ? path : path.parent_path();
 }
 
-/// What a user may have added; robot_core/ is generated as a whole, so that no file of an older version stays in it.
+/// Paths of the files that an earlier run generated into the folder; empty without a list of them.
+std::set<std::string> generated_before(const fs::path& folder) {
+  std::set<std::string> paths;
+  std::ifstream list(folder / kGeneratedFiles);
+  for (std::string line; std::getline(list, line);) {
+    paths.insert(line);
+  }
+  return paths;
+}
+
+/// Copies the files that a user added. Generated files of an older version stay behind.
 void copy_others(const fs::path& from, const fs::path& to) {
+  const std::set<std::string> generated = generated_before(from);
   std::error_code problem;
-  for (const fs::directory_entry& entry : fs::directory_iterator(from, problem)) {
-    if (entry.path().filename() != "robot_core" && !problem) {
-      fs::copy(entry.path(), to / entry.path().filename(),
-               fs::copy_options::recursive | fs::copy_options::copy_symlinks | fs::copy_options::skip_existing, problem);
+  for (fs::recursive_directory_iterator at(from, problem), end; at != end && !problem; at.increment(problem)) {
+    const fs::path path = at->path().lexically_relative(from);
+    if (fs::is_directory(at->symlink_status())) {
+      fs::create_directories(to / path, problem);
+    } else if (!generated.contains(path.generic_string())) {
+      fs::copy(at->path(), to / path, fs::copy_options::copy_symlinks | fs::copy_options::skip_existing, problem);
+    }
+    if (problem) {
+      break;
     }
   }
   if (problem) {
@@ -48,6 +67,10 @@ void check_target_folder(const fs::path& folder, bool may_replace) {
   const fs::file_status status = fs::status(path, problem);
   if (fs::exists(status) && !fs::is_directory(status)) {
     throw Failure(ExitCode::bad_input, fmt::format("--out {} is a file; expected a folder, which may be new", folder.string()));
+  }
+  if (const fs::path parent = path.parent_path();
+      !fs::exists(status) && fs::exists(parent, problem) && !fs::is_directory(parent, problem)) {
+    throw Failure(ExitCode::bad_input, fmt::format("--out {}: {} is a file; expected a folder", folder.string(), parent.string()));
   }
   if (!fs::exists(status) && !fs::is_directory(path.parent_path(), problem)) {
     throw Failure(ExitCode::bad_input,
@@ -103,11 +126,13 @@ void StagedFolder::write(std::span<const CoreFile> files) const {
     const fs::path path = stage_ / file.path;
     std::error_code problem;
     fs::create_directories(path.parent_path(), problem);
+    errno = 0;
     std::ofstream stream(path, std::ios::binary);
     stream << file.content;
     stream.close();
     if (!stream) {
-      throw unwritable(folder_ / file.path, problem ? problem : std::make_error_code(std::errc::io_error));
+      const std::error_code reason(errno != 0 ? errno : EIO, std::generic_category());
+      throw unwritable(folder_ / file.path, problem ? problem : reason);
     }
   }
 }

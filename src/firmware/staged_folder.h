@@ -17,7 +17,8 @@ void check_target_folder(const std::filesystem::path& folder, bool may_replace);
 /// Files under a temporary name beside their folder; commit() gives them its name, and without it nothing is left.
 class StagedFolder {
  public:
-  /// Writes the files. Of a folder that may be replaced, what is none of them is kept. Throws Failure (bad_input).
+  /// Writes the files. In a folder that may be replaced, files are kept that neither this run nor an earlier one generated
+  /// (kGeneratedFiles). Throws Failure (bad_input).
   StagedFolder(const std::filesystem::path& folder, std::span<const CoreFile> files, bool may_replace);
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;

@@ -20,6 +20,7 @@ constexpr double kBodyShare = 0.25;
 constexpr double kYawShare = 0.5;
 constexpr double kTrackingShare = 0.2;
 constexpr double kLeastTracking_periods = 5.0;
+constexpr double kLeastGain_ratio = 0.5;  ///< k_p/(K_t·n)
 
 double ultimate_gain() { return 2.0 * std::tan(std::numbers::pi / 8.0); }
 
@@ -55,11 +56,14 @@ WheelLoopGains wheel_loop_gains(const WheelLoopPlant& plant, double period_s) {
   const double in_air_s = plant.wheel_inertia_kg_m2 * plant.volt_per_Nm / back_emf;
   const double wheel_share = ultimate_gain() / kWheelMargin;
   WheelLoopGains gains;
-  gains.longest_period_s = std::min(wheel_share * in_air_s, kDamping * kDelayShare / kDelay_periods * loaded_s);
+  gains.longest_period_s = std::min(wheel_share * in_air_s / kLeastGain_ratio,
+                                    2.0 * kDamping * kDelayShare / (kDelay_periods * (1.0 + kLeastGain_ratio)) * loaded_s);
   if (period_s > gains.longest_period_s) {
     throw Failure(
         ExitCode::bad_input,
-        fmt::format("a control period of {:.3g} ms is too long for the wheel-speed loop of this robot: expected at most {:.3g} ms",
+        fmt::format("a control period of {:.3g} ms is too long for the wheel-speed loop of this robot: expected at most {:.3g} ms; "
+                    "`generate core --period` accepts a shorter one, the simulation has 1 ms; a motor with more inertia at the wheel "
+                    "allows a longer one",
                     1e3 * period_s, 1e3 * gains.longest_period_s));
   }
   const double by_delay = 2.0 * kDamping * kDelayShare / (kDelay_periods * period_s) * loaded_s - 1.0;

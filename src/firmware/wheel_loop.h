@@ -43,8 +43,8 @@ struct WheelLoopGains {
 /// a quarter of the wheel loop's rate 2·ζ·ω_0, or what κ_u/2 leaves, if that is less. The yaw loop closes over the gyro, which feels no
 /// wheel in the air: its gain is half of the wheel loop's rate, its integral a quarter of the gain's square, the double pole of that gain.
 /// Back-calculation: a fifth of k_p/k_i, five periods at least.
-/// Throws Failure (bad_input) where the period is so long that k_p would be less than K_t·n: then the back-EMF alone holds the speed
-/// better than the loop adds.
+/// A light wheel allows less gain than its back-EMF K_t·n has already. The margins hold, and the integrator still removes the error.
+/// Throws Failure (bad_input) where the period is so long that k_p would be less than half of K_t·n: then the loop adds too little.
 WheelLoopGains wheel_loop_gains(const WheelLoopPlant& plant, double period_s);
 
 }  // namespace heatsoak

@@ -18,6 +18,11 @@ double limited_s(const DriveScore& score, robot_core::Reason limit) {
   return score.limited_s.at(static_cast<std::size_t>(std::ranges::find(kLimits, limit) - kLimits.begin()));
 }
 
+/// Returns a value per metre driven.
+std::string per_metre(double value, const DriveScore& score) {
+  return score.distance_m > 0.0 ? fmt::format("{:.1f}", value / score.distance_m) : "not moved";
+}
+
 struct ScoreRow {
   std::string_view name;
   std::string_view unit;
@@ -26,8 +31,8 @@ struct ScoreRow {
 
 constexpr ScoreRow kScores[] = {
     {"driven", "m", [](const DriveScore& s) { return fmt::format("{:.0f}", s.distance_m); }},
-    {"slip of a mean wheel", "mm per m", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.slip_m / s.distance_m); }},
-    {"  of it sliding", "", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.sliding_m / s.distance_m); }},
+    {"slip of a mean wheel", "mm per m", [](const DriveScore& s) { return per_metre(1e3 * s.slip_m, s); }},
+    {"  of it sliding", "", [](const DriveScore& s) { return per_metre(1e3 * s.sliding_m, s); }},
     {"time in which a wheel slides", "s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.sliding_s); }},
     {"time in which a wheel is lifted", "s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.lifted_s); }},
     {"tracking error", "mm rms", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.tracking_rms_m); }},
@@ -49,7 +54,7 @@ constexpr ScoreRow kScores[] = {
     {"radio packets lost", "%", [](const DriveScore& s) { return fmt::format("{:.1f}", 100.0 * s.lost_packets_share); }},
     {"battery empty", "s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.battery_empty_s); }},
     {"copper heat, all motors", "kJ", [](const DriveScore& s) { return fmt::format("{:.2f}", 1e-3 * s.energy.copper_J); }},
-    {"  per metre", "J", [](const DriveScore& s) { return fmt::format("{:.1f}", s.energy.copper_J / s.distance_m); }},
+    {"  per metre", "J", [](const DriveScore& s) { return per_metre(s.energy.copper_J, s); }},
     {"  of it in duels", "%", [](const DriveScore& s) { return fmt::format("{:.0f}", 100.0 * s.duel_copper_share); }},
     {"winding peak", "°C", [](const DriveScore& s) { return fmt::format("{:.1f}", s.winding_peak_C); }},
     {"stator peak", "°C", [](const DriveScore& s) { return fmt::format("{:.1f}", s.stator_peak_C); }},

@@ -20,6 +20,26 @@ GameSpread GameDrives::spread(double DriveScore::*value) const {
   return made;
 }
 
+namespace {
+
+/// Returns why the drive core cannot drive this motor, or an empty text. A robot file without a needed table is an error for all motors.
+std::string why_not_driven(const Robot& robot, const Motor& motor, GuardUse use, const MotorGuard& guard) {
+  if (!motor.nominal.rotor_inertia_kg_m2) {
+    return "the motor's file has no rotor_inertia: without it no acceleration of a wheel can be calculated";
+  }
+  try {
+    const GuardedCore core(robot, motor, use, guard);
+  } catch (const Failure& failure) {
+    if (failure.code() != ExitCode::bad_input || !failure.diagnostics().empty()) {
+      throw;
+    }
+    return failure.message();
+  }
+  return {};
+}
+
+}  // namespace
+
 std::vector<GameDrives> drive_games(const Robot& robot, const MatchInputs& inputs, std::span<const Motor> motors,
                                     const GameDriveOptions& options, const Progress& progress) {
   const auto games = static_cast<std::size_t>(options.games);
@@ -30,16 +50,14 @@ std::vector<GameDrives> drive_games(const Robot& robot, const MatchInputs& input
   std::vector<MotorGuard> guards(motors.size());
   in_parallel(motors.size(), options.threads, games, all, progress, [&](std::size_t i) {
     drives[i].motor_id = motors[i].id;
-    if (!motors[i].nominal.rotor_inertia_kg_m2) {
-      drives[i].why_none = "the motor's file has no rotor_inertia: without it no acceleration of a wheel can be calculated";
-      return;
-    }
-    drives[i].games.resize(games);
-    if (options.guard != GuardUse::off) {
+    drives[i].why_none = why_not_driven(robot, motors[i], GuardUse::off, {});
+    if (drives[i].why_none.empty() && options.guard != GuardUse::off) {
       guards[i] = make_guard(motors[i], robot, options.ambient_C, options.threads);
       drives[i].is_guarded = guards[i].guard.has_value();
       drives[i].why_no_guard = guards[i].why_none;
+      drives[i].why_none = why_not_driven(robot, motors[i], options.guard, guards[i]);
     }
+    drives[i].games.resize(drives[i].why_none.empty() ? games : 0);
   });
   in_parallel(motors.size() * games, options.threads, games + motors.size(), all, progress, [&](std::size_t job) {
     const std::size_t motor = job / games;

@@ -1,5 +1,7 @@
 #include "simulate/guarded_core.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/diagnostic.h"
@@ -24,14 +26,34 @@ MotorGuard make_guard(const Motor& motor, const Robot& robot, double ambient_C, 
   return made;
 }
 
+namespace {
+
+/// Calls make_core_config() and names the motor in its message.
+template <class... Arguments>
+robot_core::Config named_config(const Robot& robot, const Motor& motor, const Arguments&... rest) {
+  try {
+    return make_core_config(robot, rest...);
+  } catch (const Failure& failure) {
+    if (!failure.diagnostics().empty()) {
+      throw;
+    }
+    throw Failure(failure.code(), fmt::format("{} in {}: {}", motor.id, robot.id, failure.message()));
+  }
+}
+
+}  // namespace
+
 GuardedCore::GuardedCore(const Robot& robot, const Motor& motor, GuardUse use, const MotorGuard& guard) {
   const CoreOptions options = with_tolerance({}, motor);
   if (use == GuardUse::off || !guard.guard) {
-    config_ = make_core_config(robot, motor.nominal, options);
+    config_ = named_config(robot, motor, motor.nominal, options);
     return;
   }
   guard_.emplace(*guard.guard);
-  config_ = make_core_config(robot, motor, options, *guard.derating, *guard_);
+  config_ = named_config(robot, motor, motor, options, *guard.derating, *guard_);
+  if (use == GuardUse::on) {
+    require_driving_current(robot, motor, *guard.derating, config_);
+  }
   config_.shadow_mode = use == GuardUse::shadow;
   robot_core::complete(config_);
 }

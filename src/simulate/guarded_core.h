@@ -32,7 +32,7 @@ MotorGuard make_guard(const Motor& motor, const Robot& robot, double ambient_C, 
 /// Owns what its config() points to, so that cores of one motor can run in several threads, each with its own. Neither copied nor moved.
 class GuardedCore {
  public:
-  /// Without a guard in `guard` the use is off. Throws as make_core_config() does.
+  /// Without a guard in `guard` the use is off. Throws as make_core_config() does, and with the guard on as require_driving_current() does.
   GuardedCore(const Robot& robot, const Motor& motor, GuardUse use, const MotorGuard& guard);
   GuardedCore(const GuardedCore&) = delete;
   GuardedCore& operator=(const GuardedCore&) = delete;

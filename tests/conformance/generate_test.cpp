@@ -344,13 +344,17 @@ TEST(GenerateCore, KeepsWhatAUserAdded) {
   fs::create_directories(core / "firmware");
   fs::create_directories(core / "robot_core");
   write(core / "firmware/board.c", "of my board");
+  write(core / "robot_core/mine.h", "of my project");
   write(core / "robot_core/gone.cpp", "of an older version");
   write(core / "core_config.h", "of an older version");
+  write(core / "generated_files.txt", "core_config.h\nrobot_core/gone.cpp\n");
   EXPECT_EQ(run(generate(kEcx, core)).exit_code, 2);
   ASSERT_EQ(run(generate(kEcx, core) + Words{"--force"}).exit_code, 0);
   EXPECT_EQ(content_of(core / "firmware/board.c"), "of my board");
+  EXPECT_EQ(content_of(core / "robot_core/mine.h"), "of my project");
   EXPECT_FALSE(fs::exists(core / "robot_core/gone.cpp"));
   EXPECT_THAT(content_of(core / "core_config.h"), HasSubstr("kCoreConfig"));
+  EXPECT_THAT(content_of(core / "generated_files.txt"), AllOf(HasSubstr("robot_core/limits.cpp\n"), Not(HasSubstr("gone"))));
   EXPECT_THAT(folder.names(), testing::ElementsAre("core"));
 }
 
@@ -369,13 +373,14 @@ TEST(GenerateCore, SaysWhatIsWrongAndLeavesNothing) {
       {with_motor + Words{"--out", "x", "--period", "1s"}, 2, "--period"},
       {with_motor + Words{"--out", "taken"}, 2, "--force"},
       {with_motor + Words{"--out", "file"}, 2, "is a file"},
-      {with_motor + Words{"--out", "file/x"}, 2, "file"},
+      {with_motor + Words{"--out", "file/x"}, 2, "file is a file; expected a folder"},
       {with_motor + Words{"--out", "missing/x"}, 2, "make it first"},
       {with_motor + Words{"--out", "/proc/heatsoak_core"}, 2, "cannot be written"},
       {with_motor + Words{"--out", "x", "--coldest", "50degC"}, 2, "is not above the coldest air"},
       {with_motor + Words{"--out", "x", "--json", "missing/y.json"}, 2, "missing"},
       {with_motor + Words{"--out", "x", "--samples", "3"}, 2, "--samples"},
       {{"--motor", "maxon_dcx19s_24v", "--out", "x", "--ambient", "110degC"}, 2, "is not above the hottest air"},
+      {{"--motor", "maxon_dcx19s_24v", "--out", "x"}, 2, "one full stop from"},
   };
   for (const WrongLine& each : wrong) {
     const TemporaryFolder folder;

@@ -220,6 +220,33 @@ TEST(GuardedCoreConfig, BrakingReserveIsTheHeatOfOneStop) {
   EXPECT_NEAR(braking_reserve_K(twente(), ecx_32().nominal, derating()), expected_K, 0.01 * expected_K);
 }
 
+// A robot whose full stop overheats the motor would get a core that never drives.
+TEST(GuardedCoreConfig, RefusesARobotThatOneStopOverheats) {
+  const HostGuard guard(derating());
+  Robot robot = twente();
+  robot.mass_kg = 40.0;
+  EXPECT_GT(braking_reserve_K(robot, ecx_32().nominal, derating()), 155.0 - 40.0);
+  EXPECT_NO_THROW(require_driving_current(twente(), ecx_32(), derating(), make_core_config(twente(), ecx_32(), {}, derating(), guard)));
+  try {
+    require_driving_current(robot, ecx_32(), derating(), make_core_config(robot, ecx_32(), {}, derating(), guard));
+    ADD_FAILURE() << "no failure";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    EXPECT_THAT(failure.message(), HasSubstr("maxon_ecx_flat_32l_48v"));
+    EXPECT_THAT(failure.message(), HasSubstr("one full stop from 2 m/s"));
+    EXPECT_THAT(failure.message(), HasSubstr("limits.braking"));
+  }
+}
+
+// A stop with the largest current takes longer than one with the braking limit: heat is proportional to the duration.
+TEST(GuardedCoreConfig, BrakingReserveGrowsWithTheMassAtTheCurrentLimit) {
+  Robot robot = twente();
+  robot.mass_kg = 100.0;
+  const double lighter_K = braking_reserve_K(robot, ecx_32().nominal, derating());
+  robot.mass_kg = 200.0;
+  EXPECT_NEAR(braking_reserve_K(robot, ecx_32().nominal, derating()) / lighter_K, 2.0, 0.05);
+}
+
 TEST(LimpCurrent, IsTheLeastOfTheHeldUses) {
   Derating made = derating();
   made.uses = {{.use = {.speed_share = 0.3}, .intervals = {}, .time_s = {1.0, 2.0}, .current_A = {9.0, 4.0}},

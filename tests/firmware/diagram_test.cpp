@@ -244,6 +244,20 @@ TEST(BlockDiagram, UnitsAreThoseOfTheNames) {
   }
 }
 
+// The other tests look for these names, so another name of the same object would hide a reader.
+TEST(BlockDiagram, EachCarrierHasOneName) {
+  for (const auto& [block, text] : code().blocks) {
+    for (const Carrier& carrier : kCarriers) {
+      const std::vector<std::string> typed = all_matches(text, fmt::format(R"(\b{}\s*[&*]+\s*(\w+)\b)", carrier.name));
+      const std::vector<std::string> assigned = all_matches(text, fmt::format(R"([&*]\s*(\w+)\s*=\s*&?{}\s*;)", carrier.variable));
+      Names names(typed.begin(), typed.end());
+      names.insert(assigned.begin(), assigned.end());
+      names.erase(carrier.variable);
+      EXPECT_THAT(names, testing::IsEmpty()) << carrier.name << " in " << text_of(block).number;
+    }
+  }
+}
+
 // Checks both directions: the table must contain all signals between stages with their readers, and no others.
 TEST(BlockDiagram, SignalsBetweenStagesAreThoseOfTheCode) {
   std::size_t rows = 0;
@@ -342,7 +356,10 @@ TEST(BlockDiagram, OutputsAreThoseOfTheCode) {
   EXPECT_EQ(drawn, Names(members.begin(), members.end()));
 }
 
-/// Returns State members with a unique name, so that an occurrence in the code is unambiguous.
+/// Prefixes of State members in the table, and the names that the code uses for these objects.
+const std::map<std::string, std::string> kObjects{{"", R"(\bstate)"}, {"comparison.", R"(\bcomparison)"}};
+
+/// Returns State members with a unique name, so that an occurrence in the code is unambiguous, and all members of kObjects.
 std::vector<std::string> unique_state_members() {
   std::map<std::string, int> times;
   for (const auto& [name, members] : code().structs) {
@@ -354,7 +371,7 @@ std::vector<std::string> unique_state_members() {
   for (const auto& [name, prefix] : std::map<std::string, std::string>{
            {"State", ""}, {"WheelState", "wheel."}, {"ComparisonState", "comparison."}, {"GuardState", "guard."}}) {
     for (const std::string& member : code().structs.at(name)) {
-      if (times[member] == 1) {
+      if (times[member] == 1 || kObjects.contains(prefix)) {
         unique.push_back(prefix + member);
       }
     }
@@ -384,13 +401,14 @@ TEST(BlockDiagram, WhatBlocksKeepForEachOtherIsInTheTable) {
   for (const std::string& name : unique_state_members()) {
     const bool is_struct = std::ranges::any_of(
         robot_core::kSignals, [&](const SignalText& each) { return std::string_view(each.name).starts_with(name + "."); });
-    if (is_struct) {
-      continue;  // drawn by its members
+    if (is_struct || name == "steps") {
+      continue;  // drawn by its members; step() itself counts the steps
     }
     Names used;
     Names drawn;
+    const auto object = kObjects.find(name.substr(0, name.rfind('.') + 1));
     for (const auto& [block, text] : code().blocks) {
-      if (has(text, fmt::format(R"(\.{}\b)", member_of(name)))) {
+      if (has(text, fmt::format(R"({}\.{}\b)", object == kObjects.end() ? "" : object->second, member_of(name)))) {
         used.insert(text_of(block).number);
       }
     }

@@ -15,6 +15,7 @@ namespace {
 using robot_core::Config;
 using robot_core::Input;
 using robot_core::Mode;
+using robot_core::Output;
 using robot_core::State;
 
 constexpr double kDuration_s = 120.0;
@@ -120,6 +121,37 @@ TEST(SensorHeat, AirSensorThatBecomesColdHidesNoHeat) {
   std::printf("air 40 C, shown as 1 C: %.1f C, truthful %.1f C\n", lied.hottest_C, truthful.hottest_C);
   EXPECT_LT(lied.hottest_C, truthful.hottest_C + 3.0);
   EXPECT_LT(lied.hottest_C, kWindingLimit_C);
+}
+
+// A motor whose resistance is below its tolerance draws more than the motor equation says. Only the current sensor shows it.
+TEST(CurrentSensor, HoldsTheLimitOfAMotorWithTooLowAResistance) {
+  const Config config = make_config(4);
+  Truth truth;
+  truth.winding_ohm = 0.8;
+  Plant plant(config, truth);
+  Random random(5);
+  State state;
+  ASSERT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
+  double most_excess_A = -1e9;
+  double most_A = 0.0;
+  for (int k = 0; k < 4000; ++k) {
+    Input input = plant.sense(random, 0.3F, true);
+    input.command.mode = Mode::wheel_torque;
+    for (float& torque_Nm : input.command.wheel_torque_Nm) {
+      torque_Nm = k / 150 % 2 == 0 ? 2.0F : -2.0F;
+    }
+    const Output out = robot_core::step(config, state, input);
+    for (int i = 0; i < 4; ++i) {
+      const double current_A = std::abs(plant.true_current_A(out, i));
+      most_A = std::max(most_A, current_A);
+      // The first samples are the first evidence.
+      most_excess_A = k < 20 ? most_excess_A : std::max(most_excess_A, current_A - static_cast<double>(out.allowed_current_A[i]));
+    }
+    plant.move(out);
+  }
+  // A change of voltage within the period still acts on the lower resistance.
+  EXPECT_LT(most_excess_A, 0.03 * static_cast<double>(config.current_limit_A));
+  EXPECT_GT(most_A, 0.95 * static_cast<double>(config.current_limit_A));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "robot_core/drive_stages.h"
 #include "robot_core/math.h"
 
 namespace heatsoak::test_robot {
@@ -346,10 +347,6 @@ void Plant::set_velocity(double x_m_per_s, double y_m_per_s, double yaw_rad_per_
   }
 }
 
-void seal(robot_core::State& state) {
-  // Same formula as state_check_sum() of the core; if they differ, the next step reports state_corrupted.
-  constexpr std::uint64_t kSeed = 0x9E3779B97F4A7C15U;
-  state.check_sum = kSeed + robot_core::sum_of_words<1, __builtin_offsetof(robot_core::State, comparison) / sizeof(std::uint64_t)>(&state);
-}
+void seal(robot_core::State& state) { state.check_sum = robot_core::check_sum_of(state); }
 
 }  // namespace heatsoak::test_robot

@@ -211,6 +211,37 @@ TEST(GuardedCore, a_motor_that_cannot_be_guarded_says_why) {
   EXPECT_EQ(core.config().guard, nullptr);
 }
 
+Motor with_light_rotor() {
+  Motor motor = shipped_motor("maxon_eci40_100w_48v_488607");
+  motor.nominal.rotor_inertia_kg_m2 *= 1e-3;
+  motor.nominal.terminal_resistance_ohm *= 0.1;
+  return motor;
+}
+
+TEST(GuardedCore, error_names_the_motor) {
+  try {
+    GuardedCore(twente(), with_light_rotor(), GuardUse::off, {});
+    ADD_FAILURE() << "no failure";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    EXPECT_NE(failure.message().find("maxon_eci40_100w_48v_488607"), std::string::npos) << failure.message();
+    EXPECT_NE(failure.message().find("--period"), std::string::npos) << failure.message();
+  }
+}
+
+TEST(GameDrives, motor_that_cannot_be_driven_says_why_and_the_others_are_driven) {
+  Duty duty = read_duty(kSource / "duty_profiles" / "division_a_match.toml");
+  const auto& match = dynamic_cast<const MatchDuty&>(*duty.shape_data);
+  const std::vector<Motor> motors{with_light_rotor(), ecx_32()};
+  const GameDriveOptions options{.games = 1, .guard = GuardUse::off};
+  const std::vector<GameDrives> drives = drive_games(twente(), match.inputs(), motors, options);
+  ASSERT_EQ(drives.size(), 2U);
+  EXPECT_TRUE(drives[0].games.empty());
+  EXPECT_NE(drives[0].why_none.find("too long for the wheel-speed loop"), std::string::npos) << drives[0].why_none;
+  ASSERT_EQ(drives[1].games.size(), 1U);
+  EXPECT_GT(drives[1].games[0].distance_m, 100.0);
+}
+
 TEST(GameDrives, do_not_depend_on_threads) {
   const Duty duty = read_duty(kSource / "duty_profiles/division_b_match.toml");
   const MatchInputs& inputs = dynamic_cast<const MatchDuty&>(*duty.shape_data).inputs();

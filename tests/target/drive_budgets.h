@@ -9,7 +9,7 @@ namespace heatsoak::target {
 /// About a seventieth of the computing time of a controller at 216 MHz and 1 kHz.
 inline constexpr double kMeanInstructions = 3000.0;
 /// The same with current sensors, changing commands, and faults in a third of the time.
-inline constexpr double kMeanInstructionsWithFaults = 3350.0;
+inline constexpr double kMeanInstructionsWithFaults = 3250.0;
 /// Of every step, with or without faults.
 inline constexpr std::uint32_t kMostInstructions = 6000;
 /// Code and constants, with the motor's law and tables.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 #include <string>
 #include <vector>
@@ -86,10 +87,15 @@ TEST(DriveCoreOnTarget, MinuteOfPlayAgreesBitForBit) {
   const CallGraph::Depth depth = depth_of_step(kStepOfImage, false);
   EXPECT_LE(target.summary.most_stack_bytes, depth.bytes) << testing::PrintToString(depth.path);
   EXPECT_LE(target.mean_instructions(), kMeanInstructionsWithFaults);
+  const auto faults = target.instructions.begin() + static_cast<std::ptrdiff_t>(target.instructions.size() / 3 * 2);
+  const double before_faults =
+      std::accumulate(target.instructions.begin(), faults, 0.0) / static_cast<double>(faults - target.instructions.begin());
+  EXPECT_LE(before_faults, kMeanInstructions);
   const auto most = std::ranges::max_element(target.instructions);
   EXPECT_LE(*most, kMostInstructions) << "in step " << most - target.instructions.begin();
   RecordProperty("memory_bytes", std::to_string(target.summary.memory_bytes));
   RecordProperty("mean_instructions", std::to_string(target.mean_instructions()));
+  RecordProperty("mean_instructions_before_faults", std::to_string(before_faults));
   RecordProperty("most_instructions", std::to_string(target.most_instructions()));
   RecordProperty("stack_bytes", std::to_string(target.summary.most_stack_bytes));
 }

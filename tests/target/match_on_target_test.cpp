@@ -1,11 +1,12 @@
-// A minute of a recorded match on the target: results bit for bit against the closed loop on the host; instructions, memory, stack and code
-// against their budgets. See match/record_match.cpp.
+// A minute of a recorded match on the target, without and with current sensors: results bit for bit against the closed loop on the host;
+// instructions, memory and stack against their budgets. See match/record_match.cpp.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,38 +23,48 @@ using robot_core::Input;
 
 const std::string kMatch = HEATSOAK_MATCH "/";
 
-std::vector<Input> recorded_inputs() {
-  const std::string bytes = content_of(kMatch + "match_input.bin");
+std::vector<Input> recorded_inputs(const std::string& name) {
+  const std::string bytes = content_of(kMatch + name + "_input.bin");
   std::vector<Input> inputs(bytes.size() / sizeof(Input));
   std::memcpy(inputs.data(), bytes.data(), inputs.size() * sizeof(Input));
   return inputs;
 }
 
-const Replay& replayed() {
-  static const Replay replay_of_match =
-      replay(HEATSOAK_MATCH_IMAGE, content_of(kMatch + "match_input.bin"), content_of(kMatch + "match_start.bin"));
-  return replay_of_match;
+const Replay& replayed(const std::string& name) {
+  static std::map<std::string, Replay> replays;
+  if (!replays.contains(name)) {
+    replays[name] = replay(HEATSOAK_MATCH_IMAGE, content_of(kMatch + name + "_input.bin"), content_of(kMatch + name + "_start.bin"));
+  }
+  return replays[name];
 }
 
-TEST(MatchOnTarget, RecordIsAMinuteOfPlayWithADuel) {
+/// The parameter is the name of the record: "match" or "sensed".
+class MatchOnTarget : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Records, MatchOnTarget, testing::Values("match", "sensed"), [](const auto& each) { return each.param; });
+
+TEST_P(MatchOnTarget, RecordIsAMinuteOfPlayWithADuel) {
   SKIP_WITHOUT_COMPILER();
-  const std::vector<Input> inputs = recorded_inputs();
+  const std::vector<Input> inputs = recorded_inputs(GetParam());
   ASSERT_EQ(inputs.size(), 60000U);
+  const bool is_sensed = std::string(GetParam()) == "sensed";
   int moving = 0;
   int pushing = 0;
+  long currents = 0;
   for (const Input& input : inputs) {
     const robot_core::Command& command = input.command;
     moving += command.mode == robot_core::Mode::body_velocity && std::hypot(command.velocity.x, command.velocity.y) > 0.5F ? 1 : 0;
     pushing += std::hypot(command.push.x, command.push.y) > 1.0F ? 1 : 0;
+    currents += std::ranges::count_if(input.motor_current_A, [](float current_A) { return std::isfinite(current_A); });
   }
   EXPECT_GT(moving, 20000);
   EXPECT_GT(pushing, 1000);
+  EXPECT_EQ(currents, is_sensed ? 4L * 60000L : 0L);
 }
 
-TEST(MatchOnTarget, OutputsAndStateAgreeBitForBit) {
+TEST_P(MatchOnTarget, OutputsAndStateAgreeBitForBit) {
   SKIP_WITHOUT_EMULATOR();
-  const Replay& target = replayed();
-  const std::string expected = content_of(kMatch + "match_output.bin");
+  const Replay& target = replayed(GetParam());
+  const std::string expected = content_of(kMatch + GetParam() + "_output.bin");
   ASSERT_EQ(target.summary.record_size, sizeof(Input));
   ASSERT_EQ(target.summary.result_size, sizeof(DriveResult));
   ASSERT_EQ(target.output.size(), expected.size());
@@ -71,9 +82,9 @@ TEST(MatchOnTarget, OutputsAndStateAgreeBitForBit) {
   EXPECT_GT(digests.size(), expected.size() / sizeof(DriveResult) / 2);
 }
 
-TEST(MatchOnTarget, InstructionsStayWithinTheBudget) {
+TEST_P(MatchOnTarget, InstructionsStayWithinTheBudget) {
   SKIP_WITHOUT_EMULATOR();
-  const Replay& target = replayed();
+  const Replay& target = replayed(GetParam());
   ASSERT_EQ(target.summary.known_loop_instructions, kLoopInstructions);
   ASSERT_EQ(target.instructions.size(), 60000U);
   EXPECT_LE(target.mean_instructions(), kMeanInstructions);
@@ -83,12 +94,12 @@ TEST(MatchOnTarget, InstructionsStayWithinTheBudget) {
   RecordProperty("most_instructions", std::to_string(*most));
 }
 
-TEST(MatchOnTarget, MemoryStaysWithinTheBudget) {
+TEST_P(MatchOnTarget, MemoryStaysWithinTheBudget) {
   SKIP_WITHOUT_EMULATOR();
-  EXPECT_LE(replayed().summary.memory_bytes, kMostMemory_bytes);
-  EXPECT_LE(replayed().summary.most_stack_bytes, kMostStack_bytes);
-  RecordProperty("memory_bytes", std::to_string(replayed().summary.memory_bytes));
-  RecordProperty("stack_bytes", std::to_string(replayed().summary.most_stack_bytes));
+  EXPECT_LE(replayed(GetParam()).summary.memory_bytes, kMostMemory_bytes);
+  EXPECT_LE(replayed(GetParam()).summary.most_stack_bytes, kMostStack_bytes);
+  RecordProperty("memory_bytes", std::to_string(replayed(GetParam()).summary.memory_bytes));
+  RecordProperty("stack_bytes", std::to_string(replayed(GetParam()).summary.most_stack_bytes));
 }
 
 }  // namespace

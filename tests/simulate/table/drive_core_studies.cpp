@@ -70,9 +70,19 @@ constexpr Study kStudies[] = {
     {"low_speed", study_low_speed}, {"planners", study_planners_in_match}, {"guard", study_guard}, {"costs", study_costs}};
 
 int run(const std::vector<std::string>& words) {
+  const bool is_known =
+      words.size() < 2 || std::ranges::any_of(kStudies, [&](const Study& study) { return words.size() == 2 && words[1] == study.name; });
+  if (!is_known || (!words.empty() && words.front().starts_with("-"))) {
+    const bool is_help = words == std::vector<std::string>{"--help"} || words == std::vector<std::string>{"-h"};
+    fmt::print(is_help ? stdout : stderr, "usage: heatsoak_drive_core_studies [FOLDER [low_speed|planners|guard|costs]]\n");
+    return is_help ? 0 : 2;
+  }
   const Report report{words.empty() ? kSource / "reports" / "drive_core" : std::filesystem::path(words.front())};
+  if (!std::filesystem::is_directory(report.folder)) {
+    fmt::print(stderr, "{} is no folder; make it first\n", report.folder.string());
+    return 2;
+  }
   const Subject subject{twente(), ecx_32()};
-  bool has_run = false;
   for (const Study& study : kStudies) {
     if (words.size() > 1 && words[1] != study.name) {
       continue;
@@ -81,11 +91,6 @@ int run(const std::vector<std::string>& words) {
     study.run(subject, report);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     fmt::print("{}: {:.0f} s\n", study.name, took.count());
-    has_run = true;
-  }
-  if (!has_run) {
-    fmt::print(stderr, "usage: heatsoak_drive_core_studies [FOLDER [low_speed|planners|guard|costs]]\n");
-    return 2;
   }
   return 0;
 }

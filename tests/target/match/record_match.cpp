@@ -1,8 +1,9 @@
-// Records a minute of a match for the drive core on the target. record_match FOLDER writes into that folder:
+// Records a minute of a match for the drive core on the target, twice: with the sensors of the robot ("match"), which has no current
+// sensors, and with current sensors in addition ("sensed"). record_match FOLDER writes into that folder:
 //   core_config.h, motor_guard.h, motor_guard.cpp   same text as `heatsoak generate core` writes
-//   match_start.bin   MatchStart: Config's check sum and State at the beginning of the minute
-//   match_input.bin   inputs of every step: real sensing and radio in the closed loop with the plant
-//   match_output.bin  DriveResult of every step, by the host's drive core with the guard of host_guard.h
+//   match_start.bin, sensed_start.bin    MatchStart: Config's check sum and State at the beginning of the minute
+//   match_input.bin, sensed_input.bin    inputs of every step: real sensing and radio in the closed loop with the plant
+//   match_output.bin, sensed_output.bin  DriveResult of every step, by the host's drive core with the guard of host_guard.h
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -63,20 +64,13 @@ double segment_start_s(const Game& game) {
   throw Failure(ExitCode::bug, "the match has no minute of play with a duel");
 }
 
-void record(const std::filesystem::path& folder) {
-  const Robot robot = twente();
-  const Motor motor = ecx_32();
-  const MotorGuard guard = make_guard(motor, robot, kAmbient_C, 1);
-  const GuardedCore core(robot, motor, GuardUse::on, guard);
-  write_sources(folder, robot, motor, *guard.derating);
-  const Duty duty = read_duty(kSource / "duty_profiles/division_a_match.toml");
-  Game game = play_game(dynamic_cast<const MatchDuty&>(*duty.shape_data).inputs(), robot, kSeed);
-  const double start_s = segment_start_s(game);
-  game.duration_s = start_s + kSegment_s;
-  std::erase_if(game.script, [&](const ScheduledCommand& each) { return each.time_s >= game.duration_s; });
+/// Plays the game and writes its last minute, from `start_s` on.
+void record_minute(const std::filesystem::path& folder, const std::string& name, const GuardedCore& core, const Game& game,
+                   const Robot& robot, const Motor& motor, bool has_motor_current, double start_s) {
   MatchRunOptions options;
   options.ambient_C = kAmbient_C;
   options.drive = real_drive(robot, kSeed);
+  options.drive.sensing.has_motor_current = has_motor_current;
   MatchStart start{};
   std::vector<robot_core::Input> inputs;
   std::vector<DriveResult> results;
@@ -89,9 +83,24 @@ void record(const std::filesystem::path& folder) {
       start = {moment.drive->config().check_sum, 0, moment.drive->state()};
     }
   });
-  write_bytes(folder / "match_start.bin", &start, sizeof(start));
-  write_all(folder / "match_input.bin", inputs);
-  write_all(folder / "match_output.bin", results);
+  write_bytes(folder / (name + "_start.bin"), &start, sizeof(start));
+  write_all(folder / (name + "_input.bin"), inputs);
+  write_all(folder / (name + "_output.bin"), results);
+}
+
+void record(const std::filesystem::path& folder) {
+  const Robot robot = twente();
+  const Motor motor = ecx_32();
+  const MotorGuard guard = make_guard(motor, robot, kAmbient_C, 1);
+  const GuardedCore core(robot, motor, GuardUse::on, guard);
+  write_sources(folder, robot, motor, *guard.derating);
+  const Duty duty = read_duty(kSource / "duty_profiles/division_a_match.toml");
+  Game game = play_game(dynamic_cast<const MatchDuty&>(*duty.shape_data).inputs(), robot, kSeed);
+  const double start_s = segment_start_s(game);
+  game.duration_s = start_s + kSegment_s;
+  std::erase_if(game.script, [&](const ScheduledCommand& each) { return each.time_s >= game.duration_s; });
+  record_minute(folder, "match", core, game, robot, motor, false, start_s);
+  record_minute(folder, "sensed", core, game, robot, motor, true, start_s);
 }
 
 }  // namespace
