@@ -169,10 +169,7 @@ std::vector<Stop> stops(const Robot& robot, const DriveConstants& drive, const B
     for (int i = 0; i < body.kinematics.wheel_count; ++i) {
       const double torque_Nm = force_N[i] * body.kinematics.wheel_radius_m + body.wheel_inertia_kg_m2 * per_s2[i];
       const double current_A = std::abs(torque_Nm) / (drive.torque_constant_Nm_per_A * drive.gear_ratio);
-      // With less current than the braking limit needs, the stop takes longer.
-      const double longer_ratio = std::max(1.0, current_A / most_A);
-      all.push_back({std::min(current_A, most_A), std::abs(per_s2[i]) * v_m_per_s / a_m_per_s2 * drive.gear_ratio,
-                     longer_ratio * v_m_per_s / a_m_per_s2});
+      all.push_back({std::min(current_A, most_A), std::abs(per_s2[i]) * v_m_per_s / a_m_per_s2 * drive.gear_ratio, v_m_per_s / a_m_per_s2});
     }
   }
   return all;

@@ -49,8 +49,7 @@ void require_driving_current(const Robot& robot, const Motor& motor, const Derat
 /// Heating of the winding by one full stop from the speed limit with the braking limit, in K: Σ over the stop of the observer's dT_w/dt,
 /// where every body and the air are at the winding's limit. So it is adiabatic, ∫I²·R(T_limit) dt·(safety factor on heat)/C_w, plus what
 /// effects of the motor's file add. I is that of the wheel and direction of travel with the largest force, with friction, drag and gear
-/// losses counted as none, because they would help to brake: (r·F_i + J·dω_i/dt)/(K_t·n), at most the current limit. If that limit is
-/// smaller, the stop takes longer in proportion.
+/// losses counted as none, because they would help to brake: (r·F_i + J·dω_i/dt)/(K_t·n), at most the current limit.
 /// Needs the tables that make_core_config() needs.
 double braking_reserve_K(const Robot& robot, const MotorValues& motor, const Derating& derating);
 

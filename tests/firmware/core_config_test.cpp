@@ -238,15 +238,6 @@ TEST(GuardedCoreConfig, RefusesARobotThatOneStopOverheats) {
   }
 }
 
-// A stop with the largest current takes longer than one with the braking limit: heat is proportional to the duration.
-TEST(GuardedCoreConfig, BrakingReserveGrowsWithTheMassAtTheCurrentLimit) {
-  Robot robot = twente();
-  robot.mass_kg = 100.0;
-  const double lighter_K = braking_reserve_K(robot, ecx_32().nominal, derating());
-  robot.mass_kg = 200.0;
-  EXPECT_NEAR(braking_reserve_K(robot, ecx_32().nominal, derating()) / lighter_K, 2.0, 0.05);
-}
-
 TEST(LimpCurrent, IsTheLeastOfTheHeldUses) {
   Derating made = derating();
   made.uses = {{.use = {.speed_share = 0.3}, .intervals = {}, .time_s = {1.0, 2.0}, .current_A = {9.0, 4.0}},
