@@ -63,13 +63,13 @@ TEST(WheelLoop, OscillatesAtTheUltimateGainOfItsDerivation) {
   plant.back_emf_V_s_per_rad = 0.03;
   plant.volt_per_Nm = 30.0;
   constexpr double kInertia_kg_m2 = 1.0;
-  constexpr double kPeriod_s = 0.001;
+  constexpr double kOwnPeriod_s = 0.001;
   const double ultimate = 2.0 * std::tan(std::numbers::pi / 8.0);
   const auto pole_at = [&](double ratio) {
     WheelLoopGains gains;
-    gains.wheel_gain_V_s_per_rad = ratio * ultimate * kInertia_kg_m2 * plant.volt_per_Nm / kPeriod_s;
+    gains.wheel_gain_V_s_per_rad = ratio * ultimate * kInertia_kg_m2 * plant.volt_per_Nm / kOwnPeriod_s;
     return Eigen::Vector3cd(
-        Eigen::EigenSolver<Eigen::Matrix3d>(Loop(plant, gains, kPeriod_s, kInertia_kg_m2, 1.0).proportional()).eigenvalues());
+        Eigen::EigenSolver<Eigen::Matrix3d>(Loop(plant, gains, kOwnPeriod_s, kInertia_kg_m2, 1.0).proportional()).eigenvalues());
   };
   EXPECT_NEAR(pole_at(1.0).cwiseAbs().maxCoeff(), 1.0, 1e-5);
   EXPECT_LT(pole_at(0.99).cwiseAbs().maxCoeff(), 1.0);

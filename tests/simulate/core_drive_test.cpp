@@ -213,7 +213,7 @@ TEST(GuardedCore, a_motor_that_cannot_be_guarded_says_why) {
 
 Motor with_light_rotor() {
   Motor motor = shipped_motor("maxon_eci40_100w_48v_488607");
-  motor.nominal.rotor_inertia_kg_m2 *= 1e-3;
+  *motor.nominal.rotor_inertia_kg_m2 *= 1e-3;
   motor.nominal.terminal_resistance_ohm *= 0.1;
   return motor;
 }
