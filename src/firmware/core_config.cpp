@@ -219,7 +219,8 @@ void require_driving_current(const Robot& robot, const Motor& motor, const Derat
   const double reserve_K = config.braking_reserve_K;
   const double hottest_C = derating.rules.hottest_ambient_C;
   const double limit_C = derating.rules.limits.winding_C;
-  if (robot_core::allowed_current_A(*config.guard, 0.0F, single(hottest_C), single(hottest_C + reserve_K)) > 0.0F) {
+  const float allowed_A = robot_core::allowed_current_A(*config.guard, 0.0F, single(hottest_C), single(hottest_C + reserve_K));
+  if (reserve_K < limit_C - hottest_C && allowed_A > 0.0F) {
     return;
   }
   throw Failure(ExitCode::bad_input,

@@ -53,7 +53,8 @@ DrivenMatch drive_once(const MatchJob& job, const Robot& robot, const Game& game
 
 Verdict verdict_of(const std::vector<DrivenMatch>& runs, const MotorValues& limits) {
   const auto is_too_hot = [&](const DrivenMatch& each) {
-    return each.run.score.winding_peak_C > limits.winding_limit_C || each.run.score.stator_peak_C > limits.stator_limit_C;
+    return each.run.score.winding_peak_C > limits.winding_limit_C ||
+           (limits.stator_limit_C && each.run.score.stator_peak_C > *limits.stator_limit_C);
   };
   if (std::ranges::any_of(runs, is_too_hot)) {
     return Verdict::fail;

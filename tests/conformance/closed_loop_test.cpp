@@ -26,6 +26,7 @@ TEST(SimulateGuard, shadow_says_what_it_would_limit_and_changes_no_temperature) 
   EXPECT_EQ(with.at("guard").at("use"), "shadow");
   EXPECT_TRUE(with.at("guard").at("why_none").is_null());
   EXPECT_EQ(with.at("sensing"), "real");
+  EXPECT_EQ(with.at("verdict"), "pass") << "a motor without a stator limit cannot exceed it";
   const ProgramRun off = run(motor + Words{"--guard", "off"});
   const json without = off.json();
   EXPECT_THAT(off.err, HasSubstr("thermal guard: off"));
