@@ -71,8 +71,8 @@ struct CheckSum {
   constexpr std::uint64_t value() const { return std::uint64_t{high} << 32U | low; }
 };
 
-/// Check sum of an object with 8-byte alignment from the 8-byte word `first` to `last` - 1. Every flipped bit changes it, and of all pairs
-/// of flipped bits more than 99.99 %. Even and odd words have a sum each, so that a host calculates both at the same time.
+/// Check sum of an object with 8-byte alignment from the 8-byte word `first` to `last` - 1. Every single flipped bit changes it, and so do
+/// more than 99.99 % of the pairs of flipped bits. Even and odd words have separate sums, which a host calculates at the same time.
 template <unsigned first, unsigned last>
 std::uint64_t check_sum_of_words(const void* object, std::uint64_t seed) {
   const auto* const at = static_cast<const unsigned char*>(object);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "estimation/flux_grid.h"
+#include "estimation/posterior.h"
 
 namespace heatsoak {
 
@@ -36,8 +37,8 @@ struct SelectionRules {
   double least_seen_share = 0.5;   ///< smallest fraction of visible effects for the result "nothing missing"
 
   // First fit: plain least squares without unknown heat.
-  double start_error_K = 1.0;       ///< standard deviation of the error of an incomplete model
-  double longest_step_ratio = 0.4;  ///< largest change of a coordinate in one Gauss-Newton step
+  double start_error_K = kIncompleteModel_K;       ///< standard deviation of the error of an incomplete model
+  double longest_step_ratio = kLongestStep_share;  ///< largest change of a coordinate in one Gauss-Newton step
 
   // Limits of the computation, not meant to influence the result.
   int most_effects = 3;  ///< largest number of effects in a set

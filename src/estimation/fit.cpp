@@ -143,9 +143,6 @@ class Fitting {
   }
 
  private:
-  /// Largest change of a logarithm in one step, as in the first fit of a diagnosis.
-  static constexpr double kLongestStep = 0.4;
-
   /// Sets θ and the start temperatures to the best of several least-squares fits, which start from the points of a Latin hypercube and
   /// use merged rows and white noise.
   void find_start() {
@@ -160,7 +157,8 @@ class Fitting {
     // Three steps from every point, then up to 30 from the best two.
     for (const auto& [steps, kept] : {std::pair(3, 2), std::pair(30, 1)}) {
       in_parallel(candidates.size(), 0, [&, steps = steps](std::size_t i) {
-        candidates[i] = try_posterior_of(std::move(candidates[i].model), rough, std::move(candidates[i].start_C), plain(steps));
+        candidates[i] =
+            try_posterior_of(std::move(candidates[i].model), rough, std::move(candidates[i].start_C), least_squares_options(model_, steps));
       });
       std::erase_if(candidates, [](const Posterior& each) { return !std::isfinite(each.cost_nats); });
       std::ranges::stable_sort(candidates, {}, &Posterior::cost_nats);
@@ -171,16 +169,6 @@ class Fitting {
                     "no start of the fit leads to a model with plausible temperatures; check the units of the heat inputs");
     }
     take(candidates.front());
-  }
-
-  /// Plain least squares: an incomplete model misses by about 1 K, and with the sensors' own noise every start would look impossible.
-  [[nodiscard]] PosteriorOptions plain(int steps) const {
-    constexpr double kIncomplete_K = 1.0;
-    return {.flux = {std::vector<double>(range_.fluxes, 0.0)},
-            .white_noise_K = kIncomplete_K,
-            .most_steps = steps,
-            .holds_covariance = true,
-            .longest_step_ratio = kLongestStep};
   }
 
   [[nodiscard]] std::vector<std::vector<double>> start_C() const {
@@ -336,7 +324,7 @@ class Fitting {
 
   /// Moves θ and the start temperatures to the posterior maximum for the present unknown heat and noise.
   void move() {
-    PosteriorOptions options{.flux = best_.flux, .holds_covariance = true, .longest_step_ratio = kLongestStep};
+    PosteriorOptions options{.flux = best_.flux, .holds_covariance = true, .longest_step_ratio = kLongestStep_share};
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       options.noise.push_back(
           noise_with(runs_[r], fit_.sensor_nodes, fit_.noise_ratio, best_.drift_K, best_.drift_time_scale_s, fit_.weights[r]));

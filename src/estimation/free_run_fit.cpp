@@ -49,17 +49,11 @@ double samples_alike(std::span<const LinearisedRun> paths, double squares_K2) {
   return std::max(1.0, sum_K2 / squares_K2);
 }
 
-/// Ordinary least squares, every row with an error of 1 K. Returns nothing if the search does not converge.
+/// Ordinary least squares, every row with the same error. Returns nothing if the search does not converge.
 std::optional<Posterior> least_squares(const Model& model, const std::vector<MeasuredRun>& runs,
                                        const std::vector<std::vector<double>>& start_C) {
-  constexpr double kUnit_K = 1.0;
-  constexpr double kLongestStep = 0.4;
-  const PosteriorOptions plain{.flux = {std::vector<double>(model.flux_nodes.size(), 0.0)},
-                               .white_noise_K = kUnit_K,
-                               .most_steps = 50,
-                               .holds_covariance = true,
-                               .longest_step_ratio = kLongestStep};
-  Posterior found = try_posterior_of(model, runs, start_C, plain);
+  constexpr int kMostSteps = 50;
+  Posterior found = try_posterior_of(model, runs, start_C, least_squares_options(model, kMostSteps));
   return found.converged ? std::optional(std::move(found)) : std::nullopt;
 }
 

@@ -301,6 +301,14 @@ class Fitter {
 
 }  // namespace
 
+PosteriorOptions least_squares_options(const Model& model, int most_steps) {
+  return {.flux = {std::vector<double>(model.flux_nodes.size(), 0.0)},
+          .white_noise_K = kIncompleteModel_K,
+          .most_steps = most_steps,
+          .holds_covariance = true,
+          .longest_step_ratio = kLongestStep_share};
+}
+
 Posterior posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                        const PosteriorOptions& options) {
   return Fitter(std::move(model), runs, std::move(start_C), options).run();

@@ -38,6 +38,13 @@ struct PosteriorOptions {
   std::vector<LatentFlux> around = {};
 };
 
+/// Standard deviation of the error of an incomplete model. With the noise of the sensors alone every start would look impossible.
+inline constexpr double kIncompleteModel_K = 1.0;
+/// Largest change of a logarithm in one step: a factor of 1.5.
+inline constexpr double kLongestStep_share = 0.4;
+/// Returns the options for ordinary least squares of free runs of `model`, without unknown heat.
+PosteriorOptions least_squares_options(const Model& model, int most_steps);
+
 /// Fits the model. `start_C` per run as in linearise(). Throws Failure (numerics_failed) if the model cannot be simulated from its start
 /// values.
 Posterior posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,

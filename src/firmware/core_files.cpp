@@ -205,7 +205,7 @@ std::string in_one_line(std::string text) {
 
 namespace {
 
-/// A large reserve is paid for with driving current.
+/// Adds a note if the reserve for a full stop takes much of the driving current.
 void add_stop_note(const Derating& derating, CoreFolder& folder) {
   constexpr double kLarge_share = 0.25;
   const double room_K = derating.rules.limits.winding_C - derating.rules.hottest_ambient_C;
