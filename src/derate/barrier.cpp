@@ -47,7 +47,7 @@ Barrier::Barrier(const Observer& observer, const BarrierRules& rules)
     : rules_(rules),
       cases_(hot_cases(observer, rules)),
       rates_(observer.formula(), observer.rate_steps()),
-      signals_(firmware::kSignalCount + observer.state_count()),
+      signals_(observed::kSignalCount + observer.state_count()),
       rate_(observer.state_count()) {}
 
 double Barrier::square_A2(double speed_rad_per_s, double stator_C, double winding_C) {
@@ -85,8 +85,8 @@ double Barrier::stator_margin(const HotCase& each, const Place& at, double curre
 
 void Barrier::find_rates(const Signals& signals, double stator_C, double winding_C) {
   std::ranges::copy(signals, signals_.begin());
-  std::fill(signals_.begin() + firmware::kSignalCount, signals_.end(), stator_C);
-  signals_[firmware::kSignalCount + states::winding] = winding_C;
+  std::fill(signals_.begin() + observed::kSignalCount, signals_.end(), stator_C);
+  signals_[observed::kSignalCount + states::winding] = winding_C;
   rates_.run(signals_, rate_);
 }
 

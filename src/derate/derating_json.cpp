@@ -148,9 +148,9 @@ nlohmann::ordered_json derating_json(const Derating& derating) {
     effects.push_back({{"id", effect.name}, {"type", effect.type}});
   }
   Json signals = Json::array();
-  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
-    if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
-      signals.push_back({{"name", firmware::signals()[i].name}, {"meaning", firmware::signals()[i].meaning}});
+  for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<observed::Signal>(i))) {
+      signals.push_back({{"name", observed::signals()[i].name}, {"meaning", observed::signals()[i].meaning}});
     }
   }
   return {{"schema", "heatsoak.derating/1"},

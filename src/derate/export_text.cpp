@@ -124,12 +124,12 @@ void require_brushless(std::string_view controller, const Derating& derating) {
 }
 
 void require_three_signals(std::string_view controller, const Derating& derating) {
-  for (std::size_t i = firmware::vehicle_speed; i < firmware::kSignalCount; ++i) {
-    if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
+  for (std::size_t i = observed::vehicle_speed; i < observed::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<observed::Signal>(i))) {
       throw Failure(ExitCode::bad_input,
                     fmt::format("{} cannot express the effects {}: one of them depends on {}, which the controller does "
                                 "not know; use --to c_header",
-                                controller, own_effects_text(derating), firmware::signals()[i].name));
+                                controller, own_effects_text(derating), observed::signals()[i].name));
     }
   }
 }

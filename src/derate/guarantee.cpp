@@ -133,7 +133,7 @@ UsePlayed play(const Observer& observer, const CurrentTable& table, const Barrie
     const float allowed_A =
         is_on ? table.allowed_A(static_cast<float>(speed_rad_per_s), run.hottest_body_C(), run.state_C()[states::winding]) : 0.0F;
     intervals.take(time_s, allowed_A, speed_rad_per_s, period_s);
-    std::array<float, firmware::kSignalCount> signals{};
+    std::array<float, observed::kSignalCount> signals{};
     std::ranges::transform(use.hot_case.signals(rules, allowed_A, speed_rad_per_s), signals.begin(),
                            [](double value) { return static_cast<float>(value); });
     run.step(signals);

@@ -25,13 +25,13 @@ class Rates {
  public:
   explicit Rates(const Observer& observer)
       : run_(observer.formula(), observer.rate_steps()),
-        inputs_(firmware::kSignalCount + observer.state_count()),
+        inputs_(observed::kSignalCount + observer.state_count()),
         rate_(observer.state_count()) {}
 
   std::span<const double> at(const Signals& signals, double winding_C, double body_C) {
     std::ranges::copy(signals, inputs_.begin());
-    std::fill(inputs_.begin() + firmware::kSignalCount, inputs_.end(), body_C);
-    inputs_[firmware::kSignalCount + states::winding] = winding_C;
+    std::fill(inputs_.begin() + observed::kSignalCount, inputs_.end(), body_C);
+    inputs_[observed::kSignalCount + states::winding] = winding_C;
     run_.run(inputs_, rate_);
     return rate_;
   }
@@ -87,16 +87,16 @@ std::vector<double> by_ratio(double first, double last, int count) {
 }
 
 struct Scan {
-  firmware::Signal signal;
+  observed::Signal signal;
   double HotCase::*value;
   std::vector<double> values;
 };
 
 std::vector<Scan> scans(const BarrierRules& rules) {
-  return {{firmware::vehicle_speed, &HotCase::vehicle_speed_m_per_s, evenly(0.0, rules.most_vehicle_speed_m_per_s, 101)},
-          {firmware::neighbour, &HotCase::neighbour_C, evenly(rules.hottest_ambient_C, rules.limits.winding_C, 33)},
-          {firmware::age, &HotCase::age_h, by_ratio(1e-2, 1e5, 141)},
-          {firmware::acceleration, &HotCase::acceleration_rad_per_s2, by_ratio(1.0, 1e6, 241)}};
+  return {{observed::vehicle_speed, &HotCase::vehicle_speed_m_per_s, evenly(0.0, rules.most_vehicle_speed_m_per_s, 101)},
+          {observed::neighbour, &HotCase::neighbour_C, evenly(rules.hottest_ambient_C, rules.limits.winding_C, 33)},
+          {observed::age, &HotCase::age_h, by_ratio(1e-2, 1e5, 141)},
+          {observed::acceleration, &HotCase::acceleration_rad_per_s2, by_ratio(1.0, 1e6, 241)}};
 }
 
 struct Hottest {
@@ -105,7 +105,7 @@ struct Hottest {
 };
 
 /// Returns the values of a signal that heat the winding most and the bodies most, at part load with all other signals as in the plain case.
-Hottest hottest(const Observer& observer, const BarrierRules& rules, firmware::Signal signal, std::span<const double> values) {
+Hottest hottest(const Observer& observer, const BarrierRules& rules, observed::Signal signal, std::span<const double> values) {
   Rates rates(observer);
   Signals signals = plain_case(rules).signals(rules, 0.3 * rules.most_current_A, 0.5 * rules.most_speed_rad_per_s);
   Hottest found;
@@ -144,7 +144,7 @@ std::vector<HotCase> surroundings(const Observer& observer, const BarrierRules& 
 }
 
 /// Adds the two values that heat winding and bodies most, searched on a fine grid between the first and the last value.
-std::vector<double> with_hottest(std::vector<double> values, const Observer& observer, const BarrierRules& rules, firmware::Signal signal) {
+std::vector<double> with_hottest(std::vector<double> values, const Observer& observer, const BarrierRules& rules, observed::Signal signal) {
   constexpr int kFine = 2001;
   const Hottest found = hottest(observer, rules, signal, evenly(values.front(), values.back(), kFine));
   values.insert(values.end(), {found.for_winding, found.for_bodies});
@@ -159,12 +159,12 @@ std::vector<std::vector<float>> random_inputs(const Observer& observer, const Ba
   constexpr double kMargin_K = 50.0;
   const double hottest_C = rules.limits.winding_C + kMargin_K;
   const double coldest_C = -kMargin_K;
-  std::vector<std::pair<double, double>> ranges(firmware::kSignalCount + observer.state_count(), {coldest_C, hottest_C});
-  ranges[firmware::current] = {-rules.most_current_A, rules.most_current_A};
-  ranges[firmware::speed] = {-rules.most_speed_rad_per_s, rules.most_speed_rad_per_s};
-  ranges[firmware::vehicle_speed] = {0.0, rules.most_vehicle_speed_m_per_s};
+  std::vector<std::pair<double, double>> ranges(observed::kSignalCount + observer.state_count(), {coldest_C, hottest_C});
+  ranges[observed::current] = {-rules.most_current_A, rules.most_current_A};
+  ranges[observed::speed] = {-rules.most_speed_rad_per_s, rules.most_speed_rad_per_s};
+  ranges[observed::vehicle_speed] = {0.0, rules.most_vehicle_speed_m_per_s};
   for (const Scan& scan : scans(rules)) {
-    ranges[scan.signal] = scan.signal == firmware::neighbour ? ranges[scan.signal] : std::pair(scan.values.front(), scan.values.back());
+    ranges[scan.signal] = scan.signal == observed::neighbour ? ranges[scan.signal] : std::pair(scan.values.front(), scan.values.back());
   }
   Random random(1, 0);
   std::vector<std::vector<float>> places(kPlaces);
@@ -180,7 +180,7 @@ std::vector<std::vector<float>> random_inputs(const Observer& observer, const Ba
 /// Removes each value for which another value heats every node at least as much, at random inputs and temperatures. The guard then finds
 /// the same highest rates in a shorter search: losses that grow with the speed leave one of its values.
 std::vector<double> without_dominated(std::vector<double> values, const Observer& observer, const BarrierRules& rules,
-                                      firmware::Signal signal) {
+                                      observed::Signal signal) {
   FormulaRun<float> run(observer.formula(), observer.rate_steps());
   std::vector<std::vector<float>> rates(values.size());
   for (std::vector<float>& inputs : random_inputs(observer, rules)) {
@@ -213,18 +213,18 @@ Signals HotCase::signals(const BarrierRules& rules, double current_A, double spe
           acceleration_rad_per_s2};
 }
 
-std::vector<double> values_if_unknown(const Observer& observer, const BarrierRules& rules, firmware::Signal signal) {
+std::vector<double> values_if_unknown(const Observer& observer, const BarrierRules& rules, observed::Signal signal) {
   constexpr int kFew = 17;
   constexpr int kMany = 33;
   switch (signal) {
-    case firmware::current:
+    case observed::current:
       return without_dominated(with_hottest(evenly(-rules.most_current_A, rules.most_current_A, kMany), observer, rules, signal), observer,
                                rules, signal);
-    case firmware::speed:
+    case observed::speed:
       return without_dominated(
           with_hottest(evenly(-rules.most_speed_rad_per_s, rules.most_speed_rad_per_s, kMany), observer, rules, signal), observer, rules,
           signal);
-    case firmware::ambient:
+    case observed::ambient:
       return {rules.hottest_ambient_C};
     default:
       break;

@@ -34,7 +34,7 @@ struct BarrierRules {
 /// Returns `count` ≥ 2 equidistant values from `low` to `high`, both included.
 std::vector<double> evenly(double low, double high, int count);
 
-using Signals = std::array<double, firmware::kSignalCount>;
+using Signals = std::array<double, observed::kSignalCount>;
 
 /// One combination of the signs of current and speed and of the signals that are not axes of the table.
 struct HotCase {
@@ -57,7 +57,7 @@ std::vector<HotCase> hot_cases(const Observer& observer, const BarrierRules& rul
 /// Returns candidate values of an unknown signal, ascending: samples of its range, including the values that heat winding and bodies most,
 /// without those for which another one heats every node at least as much. Current and speed range over both directions up to the maxima of
 /// the rules; the air is always the hottest declared.
-std::vector<double> values_if_unknown(const Observer& observer, const BarrierRules& rules, firmware::Signal signal);
+std::vector<double> values_if_unknown(const Observer& observer, const BarrierRules& rules, observed::Signal signal);
 
 /// Returns the highest speed in rad/s up to which, in every hot case, all nodes stop heating without current at some temperature of the
 /// bodies within the limits. Beyond it the motor overheats even without current. At most rules.most_speed; 0 if the condition fails at

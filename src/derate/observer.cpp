@@ -9,7 +9,7 @@
 
 namespace heatsoak {
 
-namespace firmware {
+namespace observed {
 
 std::span<const SignalSpec> signals() {
   static constexpr std::array<SignalSpec, kSignalCount> kSignals{{
@@ -27,16 +27,16 @@ std::span<const SignalSpec> signals() {
   return kSignals;
 }
 
-}  // namespace firmware
+}  // namespace observed
 
 template <class S>
-OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, std::span<const S, firmware::kSignalCount> signals) {
-  const S& current_A = signals[firmware::current];
-  const S& speed_rad_per_s = signals[firmware::speed];
+OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, std::span<const S, observed::kSignalCount> signals) {
+  const S& current_A = signals[observed::current];
+  const S& speed_rad_per_s = signals[observed::speed];
   const S shaft_power_W = motor.torque_constant_Nm_per_A * current_A * speed_rad_per_s - drag_torque_Nm(motor) * magnitude(speed_rad_per_s);
   OperatingPoint<S> at = machine_point<S>(motor, robot, current_A, speed_rad_per_s, shaft_power_W);
-  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
-    if (const std::optional<std::size_t> row = firmware::signals()[i].row) {
+  for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
+    if (const std::optional<std::size_t> row = observed::signals()[i].row) {
       at.*kQuantities<S>[*row].value = signals[i];
     }
   }
@@ -45,16 +45,16 @@ OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, 
   return at;
 }
 
-template OperatingPoint<double> operating_point<double>(const MotorValues&, const Robot&, std::span<const double, firmware::kSignalCount>);
-template OperatingPoint<Lanes> operating_point<Lanes>(const MotorValues&, const Robot&, std::span<const Lanes, firmware::kSignalCount>);
-template OperatingPoint<Traced> operating_point<Traced>(const MotorValues&, const Robot&, std::span<const Traced, firmware::kSignalCount>);
+template OperatingPoint<double> operating_point<double>(const MotorValues&, const Robot&, std::span<const double, observed::kSignalCount>);
+template OperatingPoint<Lanes> operating_point<Lanes>(const MotorValues&, const Robot&, std::span<const Lanes, observed::kSignalCount>);
+template OperatingPoint<Traced> operating_point<Traced>(const MotorValues&, const Robot&, std::span<const Traced, observed::kSignalCount>);
 
 namespace {
 
-std::array<Traced, firmware::kSignalCount> traced_signals(Formula& formula) {
-  std::array<Traced, firmware::kSignalCount> traced;
+std::array<Traced, observed::kSignalCount> traced_signals(Formula& formula) {
+  std::array<Traced, observed::kSignalCount> traced;
   for (std::size_t i = 0; i < traced.size(); ++i) {
-    traced[i] = Traced(formula, formula.input(std::string(firmware::signals()[i].name)));
+    traced[i] = Traced(formula, formula.input(std::string(observed::signals()[i].name)));
   }
   return traced;
 }
@@ -63,7 +63,7 @@ std::array<Traced, firmware::kSignalCount> traced_signals(Formula& formula) {
 
 Observer::Observer(const Network& network, const MotorValues& motor, const Robot& robot, double heat_safety_factor)
     : heat_safety_factor_(heat_safety_factor) {
-  const std::array<Traced, firmware::kSignalCount> signals = traced_signals(formula_);
+  const std::array<Traced, observed::kSignalCount> signals = traced_signals(formula_);
   const OperatingPoint<Traced> at = operating_point<Traced>(motor, robot, signals);
   at.current_rms_A.name(std::array<std::string, 1>{"heating_current_A"});
   at.speed_mean_rad_per_s.name(std::array<std::string, 1>{"speed_magnitude_rad_per_s"});
@@ -96,7 +96,7 @@ Observer::Observer(const Network& network, const MotorValues& motor, const Robot
       is_used_[static_cast<std::size_t>(step.left)] = needed[i];
     }
   }
-  is_used_[firmware::current] = is_used_[firmware::speed] = is_used_[firmware::ambient] = 1;
+  is_used_[observed::current] = is_used_[observed::speed] = is_used_[observed::ambient] = 1;
 }
 
 template <class Number>
@@ -105,13 +105,13 @@ ObserverRun<Number>::ObserverRun(const Observer& observer, Number period_s, Numb
       period_s_(period_s),
       state_C_(observer.state_count(), start_C),
       carry_K_(observer.state_count(), Number{0}),
-      inputs_(firmware::kSignalCount + observer.state_count()),
+      inputs_(observed::kSignalCount + observer.state_count()),
       rate_(observer.state_count()) {}
 
 template <class Number>
-void ObserverRun<Number>::step(std::span<const Number, firmware::kSignalCount> signals) {
+void ObserverRun<Number>::step(std::span<const Number, observed::kSignalCount> signals) {
   std::ranges::copy(signals, inputs_.begin());
-  std::ranges::copy(state_C_, inputs_.begin() + firmware::kSignalCount);
+  std::ranges::copy(state_C_, inputs_.begin() + observed::kSignalCount);
   rates_.run(inputs_, rate_);
   for (std::size_t i = 0; i < state_C_.size(); ++i) {
     const Number change_K = period_s_ * rate_[i] - carry_K_[i];

@@ -17,7 +17,7 @@
 namespace heatsoak {
 
 /// Input signals of the observer, in the order of the formula's first inputs.
-namespace firmware {
+namespace observed {
 enum Signal : int { current, speed, ambient, vehicle_speed, neighbour, age, acceleration };
 struct SignalSpec {
   std::string_view name;                ///< field name in generated code
@@ -26,12 +26,12 @@ struct SignalSpec {
 };
 std::span<const SignalSpec> signals();
 inline constexpr std::size_t kSignalCount = 7;
-}  // namespace firmware
+}  // namespace observed
 
 /// Converts the signals to the operating point of the motor's network, S is double, Lanes or Traced. The bus has the voltage of a
 /// full battery, if the robot gives one.
 template <class S>
-OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, std::span<const S, firmware::kSignalCount> signals);
+OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, std::span<const S, observed::kSignalCount> signals);
 
 /// Rates of the network's temperatures as formulas. Generated heat is multiplied by the safety factor `heat_safety_factor` ≥ 1, so that
 /// motors worse than nominal are covered; conducted heat is not. Winding and stator are the first states, as in every motor's network.
@@ -47,7 +47,7 @@ class Observer {
   [[nodiscard]] std::span<const std::string> state_names() const { return state_names_; }
   [[nodiscard]] std::size_t state_count() const { return state_names_.size(); }
   /// True if a law depends on the signal; always true for current, speed and ambient.
-  [[nodiscard]] bool uses(firmware::Signal signal) const { return is_used_[static_cast<std::size_t>(signal)] != 0; }
+  [[nodiscard]] bool uses(observed::Signal signal) const { return is_used_[static_cast<std::size_t>(signal)] != 0; }
   [[nodiscard]] double heat_safety_factor() const { return heat_safety_factor_; }
 
  private:
@@ -55,7 +55,7 @@ class Observer {
   std::vector<int> rate_steps_;
   std::vector<int> nominal_rate_steps_;
   std::vector<std::string> state_names_;
-  std::array<char, firmware::kSignalCount> is_used_{};
+  std::array<char, observed::kSignalCount> is_used_{};
   double heat_safety_factor_ = 1.0;
 };
 
@@ -66,8 +66,8 @@ class ObserverRun {
  public:
   ObserverRun(const Observer& observer, Number period_s, Number start_C);
 
-  /// Advances one period. `signals` are the means over it, in the order of firmware::Signal.
-  void step(std::span<const Number, firmware::kSignalCount> signals);
+  /// Advances one period. `signals` are the means over it, in the order of observed::Signal.
+  void step(std::span<const Number, observed::kSignalCount> signals);
   [[nodiscard]] std::span<const Number> state_C() const { return state_C_; }
   /// Temperature of the hottest node except the winding: the stator input of the table.
   [[nodiscard]] Number hottest_body_C() const;

@@ -20,6 +20,6 @@ struct PlausibleRange {
 };
 
 /// Returns the plausible range of a signal; all members have their defaults if no law of the motor depends on it.
-PlausibleRange plausible_range(const Derating& derating, firmware::Signal signal);
+PlausibleRange plausible_range(const Derating& derating, observed::Signal signal);
 
 }  // namespace heatsoak

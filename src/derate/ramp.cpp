@@ -72,9 +72,9 @@ std::set<std::string> hidden_nodes(const Observer& observer, std::size_t states)
   std::set<std::string> nodes;
   for (std::size_t i = 0; i < needed.size(); ++i) {
     const Formula::Step& step = observer.formula().steps()[i];
-    const std::size_t first_hidden = firmware::kSignalCount + static_cast<std::size_t>(states::first_own);
+    const std::size_t first_hidden = observed::kSignalCount + static_cast<std::size_t>(states::first_own);
     if (needed[i] != 0 && step.operation == Operation::input && static_cast<std::size_t>(step.left) >= first_hidden) {
-      nodes.insert(observer.state_names()[static_cast<std::size_t>(step.left) - firmware::kSignalCount]);
+      nodes.insert(observer.state_names()[static_cast<std::size_t>(step.left) - observed::kSignalCount]);
     }
   }
   return nodes;

@@ -99,8 +99,8 @@ RateLines::Text RateLines::expression(const Formula::Step& step) {
   }
   if (step.operation == Operation::input) {
     const auto input = static_cast<std::size_t>(step.left);
-    return {input < firmware::kSignalCount ? style_.signal(static_cast<firmware::Signal>(input))
-                                           : fmt::format("state_C[{}]", input - firmware::kSignalCount),
+    return {input < observed::kSignalCount ? style_.signal(static_cast<observed::Signal>(input))
+                                           : fmt::format("state_C[{}]", input - observed::kSignalCount),
             false};
   }
   const std::string left = written_.at(step.left).text;

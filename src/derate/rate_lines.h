@@ -15,7 +15,7 @@ namespace heatsoak {
 /// Syntax of the target language.
 struct LineStyle {
   std::string (*literal)(double value) = nullptr;            ///< in the precision of `number`; in parentheses where negative
-  std::string (*signal)(firmware::Signal signal) = nullptr;  ///< an input
+  std::string (*signal)(observed::Signal signal) = nullptr;  ///< an input
   std::string_view square_root;                              ///< function of one number
   std::string_view number = "float";                         ///< type of the steps
   std::string_view exponential = "heatsoak_exp";             ///< function of one number

@@ -51,7 +51,7 @@ GeneratedMatch generate(const DutyJob& job, const Duty& duty, const MatchInputs&
   return match;
 }
 
-GameDemand import_game(const DutyJob& job) {
+GameDemand imported_game(const DutyJob& job) {
   std::optional<DutyRows> rows = table_of(job, job.robot.wheels.axis_rad.size(), DutyKind::torque);
   GameObserver observer;
   if (rows) {
@@ -73,7 +73,7 @@ GameDemand import_game(const DutyJob& job) {
 DutyAnswer make_duty(const DutyJob& job) {
   DutyAnswer answer{job.robot, job.duty, job.log, {}};
   if (!job.duty) {
-    answer.content = import_game(job);
+    answer.content = imported_game(job);
   } else if (const auto match = std::dynamic_pointer_cast<const MatchDuty>(job.duty->shape_data)) {
     answer.content = generate(job, *job.duty, match->inputs());
   } else {

@@ -235,7 +235,7 @@ double braking_reserve_K(const Robot& robot, const MotorValues& motor, const Der
   require_all(robot, motor);
   const BodyConfig body = make_body_with_known_friction(robot, motor);
   FormulaRun<double> law(derating.observer.formula(), derating.observer.rate_steps());
-  std::vector<double> inputs(firmware::kSignalCount + derating.observer.state_count(), derating.rules.limits.winding_C);
+  std::vector<double> inputs(observed::kSignalCount + derating.observer.state_count(), derating.rules.limits.winding_C);
   std::vector<double> rate_K_per_s(derating.observer.state_count());
   double most_K = 0.0;
   for (const HotCase& around : hot_cases(derating.observer, derating.rules)) {
@@ -246,9 +246,9 @@ double braking_reserve_K(const Robot& robot, const MotorValues& motor, const Der
         // Midpoints: the speed falls evenly, the current stays.
         const double speed_rad_per_s = stop.speed_rad_per_s * (step + 0.5) / kSteps;
         Signals signals = around.signals(derating.rules, stop.current_A, speed_rad_per_s);
-        signals[firmware::current] = -stop.current_A;
-        signals[firmware::speed] = speed_rad_per_s;
-        signals[firmware::ambient] = derating.rules.limits.winding_C;
+        signals[observed::current] = -stop.current_A;
+        signals[observed::speed] = speed_rad_per_s;
+        signals[observed::ambient] = derating.rules.limits.winding_C;
         std::ranges::copy(signals, inputs.begin());
         law.run(inputs, rate_K_per_s);
         heating_K += std::max(0.0, rate_K_per_s[states::winding]) * stop.duration_s / kSteps;

@@ -142,17 +142,17 @@ std::vector<std::string> notes_on(const Robot& robot, const Motor& motor, const 
     notes.push_back(friction);
   }
   const Observer& observer = derating.observer;
-  if (observer.uses(firmware::vehicle_speed)) {
+  if (observer.uses(observed::vehicle_speed)) {
     notes.push_back(
         fmt::format("{} depends on the robot's speed through the air, which the core does not know: it uses the speed with the most "
                     "heating, still air if wind cools",
                     effects_with(motor, Signal::vehicle_speed)));
   }
-  if (observer.uses(firmware::neighbour)) {
+  if (observer.uses(observed::neighbour)) {
     notes.push_back(fmt::format("{} depends on the motors beside it: the core uses the hottest of the other wheels' guards",
                                 effects_with(motor, Signal::neighbour_temperature)));
   }
-  if (observer.uses(firmware::age)) {
+  if (observer.uses(observed::age)) {
     notes.push_back(fmt::format("{} depends on operating hours, which the core does not know: it uses the age with the most heating",
                                 effects_with(motor, Signal::age)));
   }

@@ -10,12 +10,12 @@
 namespace heatsoak {
 namespace {
 
-static_assert(robot_core::kGuardSignals == int{firmware::kSignalCount});
-static_assert(robot_core::guard_current_A == int{firmware::current} && robot_core::guard_speed_rad_per_s == int{firmware::speed} &&
-              robot_core::guard_ambient_C == int{firmware::ambient} &&
-              robot_core::guard_vehicle_speed_m_per_s == int{firmware::vehicle_speed} &&
-              robot_core::guard_neighbour_C == int{firmware::neighbour} && robot_core::guard_age_h == int{firmware::age} &&
-              robot_core::guard_acceleration_rad_per_s2 == int{firmware::acceleration});
+static_assert(robot_core::kGuardSignals == int{observed::kSignalCount});
+static_assert(robot_core::guard_current_A == int{observed::current} && robot_core::guard_speed_rad_per_s == int{observed::speed} &&
+              robot_core::guard_ambient_C == int{observed::ambient} &&
+              robot_core::guard_vehicle_speed_m_per_s == int{observed::vehicle_speed} &&
+              robot_core::guard_neighbour_C == int{observed::neighbour} && robot_core::guard_age_h == int{observed::age} &&
+              robot_core::guard_acceleration_rad_per_s2 == int{observed::acceleration});
 
 std::vector<float> single(const std::vector<double>& values) {
   std::vector<float> rounded(values.size());
@@ -29,7 +29,7 @@ heatsoak_axis axis(const std::vector<float>& points) { return {points.data(), st
 
 HostGuard::Law::Law(const Observer& observer)
     : run(observer.formula(), observer.rate_steps()),
-      values(firmware::kSignalCount + observer.state_count()),
+      values(observed::kSignalCount + observer.state_count()),
       rates_K_per_s(observer.state_count()) {}
 
 HostGuard::HostGuard(const Derating& derating)
@@ -59,7 +59,7 @@ HostGuard::HostGuard(const Derating& derating)
   model_.table.no_current_speed_rad_per_s = static_cast<float>(table.no_current_speed_rad_per_s);
   model_.table.winding_per_stator_K = static_cast<float>(table.winding_per_stator_K);
   for (std::size_t i = 0; i < plausible_ranges_.size(); ++i) {
-    plausible_ranges_[i] = plausible_range(derating, static_cast<firmware::Signal>(i));
+    plausible_ranges_[i] = plausible_range(derating, static_cast<observed::Signal>(i));
   }
   model_.rates = &HostGuard::rates;
   point_to_own();
@@ -105,8 +105,8 @@ void HostGuard::point_to_own() {
 void HostGuard::rates(const void* context, const float* signals, const float* state_C, float* rate_K_per_s) {
   // The context is the `mutable` law of a HostGuard, never a constant.
   Law& law = *const_cast<Law*>(static_cast<const Law*>(context));
-  std::copy_n(signals, firmware::kSignalCount, law.values.begin());
-  std::copy_n(state_C, law.rates_K_per_s.size(), law.values.begin() + firmware::kSignalCount);
+  std::copy_n(signals, observed::kSignalCount, law.values.begin());
+  std::copy_n(state_C, law.rates_K_per_s.size(), law.values.begin() + observed::kSignalCount);
   law.run.run(law.values, law.rates_K_per_s);
   std::ranges::copy(law.rates_K_per_s, rate_K_per_s);
 }

@@ -37,7 +37,7 @@ class HostGuard {
   std::vector<float> stator_C_;
   std::vector<float> winding_C_;
   std::vector<float> square_A2_;
-  std::array<PlausibleRange, firmware::kSignalCount> plausible_ranges_;
+  std::array<PlausibleRange, observed::kSignalCount> plausible_ranges_;
   mutable Law law_;
 };
 

@@ -10,7 +10,7 @@
 namespace heatsoak {
 namespace {
 
-std::string_view name_of(firmware::Signal signal) { return firmware::signals()[static_cast<std::size_t>(signal)].name; }
+std::string_view name_of(observed::Signal signal) { return observed::signals()[static_cast<std::size_t>(signal)].name; }
 
 /// Negative ones in parentheses.
 std::string operand_literal(double value) {
@@ -19,7 +19,7 @@ std::string operand_literal(double value) {
 }
 
 const LineStyle kGuardStyle{.literal = operand_literal,
-                            .signal = [](firmware::Signal signal) { return fmt::format("signal[robot_core::guard_{}]", name_of(signal)); },
+                            .signal = [](observed::Signal signal) { return fmt::format("signal[robot_core::guard_{}]", name_of(signal)); },
                             .square_root = "robot_core::square_root"};
 
 std::string array(std::string_view name, const float* values, int count) {
@@ -41,7 +41,7 @@ std::string arrays(const robot_core::GuardModel& guard) {
                      array("kSquare_A2", table.square_A2, squares) + "\n// Possible values of an unknown signal.\n";
   for (int i = 0; i < robot_core::kGuardSignals; ++i) {
     if (const robot_core::PlausibleRange& plausible_range = guard.plausible_range[i]; plausible_range.is_used) {
-      text += array(fmt::format("kPossible_{}", name_of(static_cast<firmware::Signal>(i))), plausible_range.possible,
+      text += array(fmt::format("kPossible_{}", name_of(static_cast<observed::Signal>(i))), plausible_range.possible,
                     plausible_range.possible_count);
     }
   }
@@ -66,7 +66,7 @@ std::string plausible_ranges(const robot_core::GuardModel& guard) {
   std::string text;
   for (int i = 0; i < robot_core::kGuardSignals; ++i) {
     const robot_core::PlausibleRange& plausible_range = guard.plausible_range[i];
-    const std::string_view name = name_of(static_cast<firmware::Signal>(i));
+    const std::string_view name = name_of(static_cast<observed::Signal>(i));
     text += plausible_range.is_used ? fmt::format("            {{true, {}, {}, kPossible_{}, {}}},  // {}: accepted range\n",
                                                   float_literal(plausible_range.least), float_literal(plausible_range.most), name,
                                                   plausible_range.possible_count, name)

@@ -55,9 +55,9 @@ void add_table_notes(Document& document, const Derating& derating) {
                     derating.rules.most_speed_rad_per_s, derating.reachable_speed_rad_per_s, derating.table.no_current_speed_rad_per_s));
   }
   std::vector<std::string_view> asked;
-  for (std::size_t i = firmware::vehicle_speed; i < firmware::kSignalCount; ++i) {
-    if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
-      asked.push_back(firmware::signals()[i].name);
+  for (std::size_t i = observed::vehicle_speed; i < observed::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<observed::Signal>(i))) {
+      asked.push_back(observed::signals()[i].name);
     }
   }
   if (!asked.empty()) {

@@ -9,7 +9,7 @@
 namespace heatsoak::present {
 namespace {
 
-const SettingText& words_of(Setting setting) { return all_settings()[static_cast<std::size_t>(setting)]; }
+const SettingText& setting_text(Setting setting) { return all_settings()[static_cast<std::size_t>(setting)]; }
 
 void add_settings(Document& document, std::string title, const std::vector<Setting>& settings) {
   if (settings.empty()) {
@@ -17,7 +17,7 @@ void add_settings(Document& document, std::string title, const std::vector<Setti
   }
   Table table = labelled_table(std::move(title));
   for (const Setting setting : settings) {
-    add_labelled(table, words_of(setting).key, words_of(setting).meaning);
+    add_labelled(table, setting_text(setting).key, setting_text(setting).meaning);
   }
   document.tables.push_back(std::move(table));
 }
@@ -25,7 +25,7 @@ void add_settings(Document& document, std::string title, const std::vector<Setti
 std::string example_of(const ThresholdType& type) {
   std::string text = "[[check]]\nname = \"what this check is for\"\n";
   for (const Setting setting : type.needs) {
-    const std::string_view key = words_of(setting).key;
+    const std::string_view key = setting_text(setting).key;
     text += setting == Setting::temperature                           ? fmt::format("{} = \"100 degC\"\n", key)
             : setting == Setting::against || setting == Setting::logs ? fmt::format("{} = [\"…\", \"…\"]\n", key)
                                                                       : fmt::format("{} = \"…\"\n", key);

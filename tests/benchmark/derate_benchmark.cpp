@@ -36,7 +36,7 @@ void observer_step(benchmark::State& state) {
   const Network network = datasheet_network(motor, nominal_sample(motor));
   const Observer observer(network, motor.nominal, twente(), 1.5);
   ObserverRun<float> run(observer, 0.01F, 40.0F);
-  std::array<float, firmware::kSignalCount> signals{2.0F, 100.0F, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F};
+  std::array<float, observed::kSignalCount> signals{2.0F, 100.0F, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F};
   for (auto _ : state) {
     run.step(signals);
     benchmark::DoNotOptimize(run.state_C().data());

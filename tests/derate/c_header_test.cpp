@@ -169,7 +169,7 @@ TEST_P(CHeader, has_the_bits_of_the_observer_and_the_table) {
     const float speed_rad_per_s = 900.0F * (uniform(engine) - 0.5F);
     const float ambient_C = 20.0F + 10.0F * uniform(engine);
     lines << fmt::format("in {:.9g} {:.9g} {:.9g}\n", current_A, speed_rad_per_s, ambient_C);
-    const std::array<float, firmware::kSignalCount> signals{current_A, speed_rad_per_s, ambient_C, 0.0F, 0.0F, 0.0F, 0.0F};
+    const std::array<float, observed::kSignalCount> signals{current_A, speed_rad_per_s, ambient_C, 0.0F, 0.0F, 0.0F, 0.0F};
     run.step(signals);
     nominal.step(signals);
     expected.push_back({derating.table.allowed_A(std::abs(speed_rad_per_s), run.hottest_body_C(), run.state_C()[0]), run.state_C()[0],
@@ -268,7 +268,7 @@ knee_width = { value = "0.1", origin = "estimated", derivation = "a test" }
   for (int i = 0; i < 2000; ++i) {
     const float current_A = 4.0F + 3.0F * static_cast<float>(std::sin(0.01 * i));
     lines += fmt::format("in {:.9g} 100 25\n", current_A);
-    run.step(std::array<float, firmware::kSignalCount>{current_A, 100.0F, 25.0F, 0.0F, 0.0F, 0.0F, 0.0F});
+    run.step(std::array<float, observed::kSignalCount>{current_A, 100.0F, 25.0F, 0.0F, 0.0F, 0.0F, 0.0F});
     expected_C.push_back(run.state_C()[0]);
   }
   const std::vector<Answer> answers = ask(lines);

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-Derating derating_of(const Motor& motor, double heat_safety_factor, double approach_s = 0.5) {
+Derating derating_with(const Motor& motor, double heat_safety_factor, double approach_s = 0.5) {
   const GuardedMotor guarded(motor, rules_for(motor, approach_s), heat_safety_factor);
   Derating derating = heatsoak::derating_of(guarded);
   derating.motor_id = motor.id;
@@ -33,7 +33,7 @@ std::string exported_text(const Derating& derating, std::string_view form) {
 
 class Committed : public testing::TestWithParam<const char*> {
  protected:
-  static void SetUpTestSuite() { fresh_ = new Derating(derating_of(ecx_32(), 1.5)); }
+  static void SetUpTestSuite() { fresh_ = new Derating(derating_with(ecx_32(), 1.5)); }
   static void TearDownTestSuite() { delete fresh_; }
   ~Committed() override { fs::remove(file_); }
 
@@ -69,7 +69,7 @@ TEST_P(Committed, NamesItsMotorAndRobot) {
 }
 
 TEST_P(Committed, OfABolderReserveIsUnsafe) {
-  const TableComparison found = compare(read(exported_text(derating_of(ecx_32(), 1.2), GetParam())), *fresh_);
+  const TableComparison found = compare(read(exported_text(derating_with(ecx_32(), 1.2), GetParam())), *fresh_);
   EXPECT_GT(found.excess.difference_A, 0.5);
   EXPECT_EQ(found.lost.difference_A, 0.0);
   EXPECT_NEAR(found.excess.committed_A - found.excess.fresh_A, found.excess.difference_A, 1e-12);
@@ -78,7 +78,7 @@ TEST_P(Committed, OfABolderReserveIsUnsafe) {
 }
 
 TEST_P(Committed, OfAMoreCarefulReserveGivesCurrentAway) {
-  const TableComparison found = compare(read(exported_text(derating_of(ecx_32(), 2.0), GetParam())), *fresh_);
+  const TableComparison found = compare(read(exported_text(derating_with(ecx_32(), 2.0), GetParam())), *fresh_);
   EXPECT_EQ(found.excess.difference_A, 0.0);
   EXPECT_GT(found.lost.difference_A, 0.5);
 }

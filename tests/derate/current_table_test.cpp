@@ -30,7 +30,7 @@ Peaks drive(const GuardedMotor& guarded, unsigned seed, float period_s) {
     const RandomLoad::Wish wish = driver.after(static_cast<double>(period_s));
     const auto speed_rad_per_s = static_cast<float>(wish.speed_share * guarded.rules.most_speed_rad_per_s);
     const float allowed_A = guarded.table.allowed_A(speed_rad_per_s, run.hottest_body_C(), run.state_C()[winding]);
-    const std::array<float, firmware::kSignalCount> signals{
+    const std::array<float, observed::kSignalCount> signals{
         static_cast<float>(wish.current_share) * allowed_A, speed_rad_per_s, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F};
     run.step(signals);
     peaks.winding_C = std::max(peaks.winding_C, run.state_C()[winding]);
@@ -64,7 +64,7 @@ TEST(CurrentTable, StatorWithALimitKeepsItAndUsesIt) {
     float peak_C = 0.0F;
     for (int i = 0; i < 360'000; ++i) {
       const float allowed_A = guarded.table.allowed_A(0.0F, run.hottest_body_C(), run.state_C()[winding]);
-      run.step(std::array<float, firmware::kSignalCount>{allowed_A, 0.0F, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
+      run.step(std::array<float, observed::kSignalCount>{allowed_A, 0.0F, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
       peak_C = std::max(peak_C, run.state_C()[stator]);
     }
     EXPECT_LE(peak_C, limit_C + 1e-2);
@@ -84,7 +84,7 @@ TEST(CurrentTable, LastingCurrentHoldsTheWindingAtItsLimit) {
     float allowed_A = 0.0F;
     for (int i = 0; i < 360'000; ++i) {
       allowed_A = guarded.table.allowed_A(speed_rad_per_s, run.hottest_body_C(), run.state_C()[winding]);
-      run.step(std::array<float, firmware::kSignalCount>{allowed_A, speed_rad_per_s, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
+      run.step(std::array<float, observed::kSignalCount>{allowed_A, speed_rad_per_s, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
     }
     OperatingPoint<double> at;
     at.current_rms_A = allowed_A;
@@ -145,7 +145,7 @@ TEST(Observer, FollowsTheReferenceInSinglePrecision) {
     at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = speed_rad_per_s;
     intervals.push_back({20.0, at});
     for (int i = 0; i < 20'000; ++i) {
-      run.step(std::array<float, firmware::kSignalCount>{current_A, speed_rad_per_s, 25.0F, 0.0F, 25.0F, 0.0F, 0.0F});
+      run.step(std::array<float, observed::kSignalCount>{current_A, speed_rad_per_s, 25.0F, 0.0F, 25.0F, 0.0F, 0.0F});
     }
     const TransientResult reference = run_transient(network, network.values(), intervals, {});
     for (std::size_t node = 0; node < 2; ++node) {
@@ -161,7 +161,7 @@ TEST(Observer, ReserveMultipliesHeatAndNothingElse) {
   const auto rate = [&](double reserve, double current_A, double winding_C) {
     const Observer observer(network, motor.nominal, twente(), reserve);
     FormulaRun<double> run(observer.formula(), observer.rate_steps());
-    const std::array<double, firmware::kSignalCount + 2> inputs{current_A, 0.0, 25.0, 0.0, 25.0, 0.0, 0.0, winding_C, 25.0};
+    const std::array<double, observed::kSignalCount + 2> inputs{current_A, 0.0, 25.0, 0.0, 25.0, 0.0, 0.0, winding_C, 25.0};
     std::array<double, 2> rates{};
     run.run(inputs, rates);
     return rates[winding];

@@ -33,7 +33,7 @@ std::vector<Interval> random_driving(const Derating& derating, unsigned seed) {
       speed_rad_per_s = wish.speed_share * derating.rules.most_speed_rad_per_s;
       const float current_A = static_cast<float>(wish.current_share) *
                               derating.table.allowed_A(static_cast<float>(speed_rad_per_s), run.hottest_body_C(), run.state_C()[0]);
-      run.step(std::array<float, firmware::kSignalCount>{current_A, static_cast<float>(speed_rad_per_s), 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
+      run.step(std::array<float, observed::kSignalCount>{current_A, static_cast<float>(speed_rad_per_s), 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
       current2_A2 += static_cast<double>(current_A) * static_cast<double>(current_A) / kPeriods;
     }
     OperatingPoint<double> at;
@@ -145,7 +145,7 @@ exponent = { value = "2", origin = "estimated", derivation = "a test" }
     float allowed_A = 0.0F;
     for (int i = 0; i < 200'000; ++i) {
       allowed_A = guarded.table.allowed_A(300.0F, run.hottest_body_C(), run.state_C()[0]);
-      run.step(std::array<float, firmware::kSignalCount>{allowed_A, 300.0F, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
+      run.step(std::array<float, observed::kSignalCount>{allowed_A, 300.0F, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
     }
     return allowed_A;
   };
@@ -161,10 +161,10 @@ exponent = { value = "0.5", origin = "estimated", derivation = "a test" }
 )");
   const Network network = datasheet_network(blown, nominal_sample(blown));
   const Observer observer(network, blown.nominal, twente(), 1.0);
-  EXPECT_TRUE(observer.uses(firmware::vehicle_speed));
-  EXPECT_FALSE(observer.uses(firmware::age));
+  EXPECT_TRUE(observer.uses(observed::vehicle_speed));
+  EXPECT_FALSE(observer.uses(observed::age));
   const Network bare = datasheet_network(plain, nominal_sample(plain));
-  EXPECT_FALSE(Observer(bare, plain.nominal, twente(), 1.0).uses(firmware::vehicle_speed));
+  EXPECT_FALSE(Observer(bare, plain.nominal, twente(), 1.0).uses(observed::vehicle_speed));
   // The table must not rely on cooling by air flow that nobody guarantees.
   const GuardedMotor with_wind(blown, rules_for(blown), 1.0);
   const GuardedMotor without(plain, rules_for(plain), 1.0);

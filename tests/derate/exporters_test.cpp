@@ -115,7 +115,7 @@ TEST(JsonExporter, TableAndObserverAreThoseOfTheDerating) {
   constexpr double kCurrent_A = 3.0;
   constexpr double kSpeed_rad_per_s = 200.0;
   ObserverRun<double> run(ecx_derating().observer, 1.0, kWinding_C);
-  run.step(std::array<double, firmware::kSignalCount>{kCurrent_A, kSpeed_rad_per_s, 40.0, 0.0, 40.0, 0.0, 0.0});
+  run.step(std::array<double, observed::kSignalCount>{kCurrent_A, kSpeed_rad_per_s, 40.0, 0.0, 40.0, 0.0, 0.0});
   const double copper_W = value("terminal_resistance_25C_ohm") * (1.0 + value("temperature_coefficient_per_K") * (kWinding_C - 25.0)) *
                           std::pow(value("heating_current_ratio_k") * kCurrent_A, 2.0);
   EXPECT_NEAR(run.state_C()[0], kWinding_C + ratio * copper_W / value("heat_capacity_winding_J_per_K"), 1e-6);
@@ -279,7 +279,7 @@ TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
     const auto now_A = static_cast<float>(kDcPerIq_ratio) * static_cast<float>(current_A);
     const float more_A = std::abs(now_A) < std::abs(last_A) ? last_A : now_A;
     last_A = now_A;
-    observer.step(std::array<float, firmware::kSignalCount>{more_A, static_cast<float>(speed_rad_per_s), 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
+    observer.step(std::array<float, observed::kSignalCount>{more_A, static_cast<float>(speed_rad_per_s), 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
     ASSERT_NEAR(override_C, observer.state_C()[0], 0.01) << i;
     hottest = std::max(hottest, static_cast<double>(override_C));
   }
@@ -386,7 +386,7 @@ TEST(MujocoExporter, HeldCurrentAtStandstillReachesTheObserversTemperature) {
   for (int i = 0; i < 200'000; ++i) {
     const double hot_ohm = std::stod(motor.at("resistance")) * (1.0 + coefficient_per_K * (rise_K + ambient_C - reference_C));
     rise_K += 0.01 * (hot_ohm * kHeld_A * kHeld_A - rise_K / resistance_K_per_W) / capacity_J_per_K;
-    observer.step(std::array<double, firmware::kSignalCount>{kHeld_A, 0.0, 40.0, 0.0, 40.0, 0.0, 0.0});
+    observer.step(std::array<double, observed::kSignalCount>{kHeld_A, 0.0, 40.0, 0.0, 40.0, 0.0, 0.0});
     ASSERT_GE(rise_K + 40.0, observer.state_C()[0] - 1e-6) << "while it warms up it is never colder";
   }
   EXPECT_NEAR(rise_K + 40.0, observer.state_C()[0], 0.05);

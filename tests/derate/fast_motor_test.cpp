@@ -108,7 +108,7 @@ TEST(FastMotor, KeepsItsLimitInTheNetworkWhereverItIsPushed) {
     for (int i = 0; i < kPeriods; ++i) {
       const float allowed_A = table.allowed_A(speed_rad_per_s, run.hottest_body_C(), run.state_C()[winding]);
       squares_A2 += static_cast<double>(allowed_A) * allowed_A / kPeriods;
-      run.step(std::array<float, firmware::kSignalCount>{allowed_A, speed_rad_per_s, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
+      run.step(std::array<float, observed::kSignalCount>{allowed_A, speed_rad_per_s, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
       most_C = std::max(most_C, run.state_C()[winding]);
     }
     const Signals signals{std::sqrt(squares_A2), speed_rad_per_s, 40.0, 0.0, 40.0, 0.0, 0.0};

@@ -59,7 +59,7 @@ std::vector<double> reference_C(double heat_s, double rest_s) {
   std::vector<Interval> intervals;
   for (const auto& [duration_s, current_A] : {std::pair(heat_s, kOverload_A), std::pair(rest_s, 0.0)}) {
     if (duration_s > 0.0) {
-      const std::array<double, firmware::kSignalCount> signals{current_A, 200.0, kAmbient_C, 0.0, kAmbient_C, 0.0, 0.0};
+      const std::array<double, observed::kSignalCount> signals{current_A, 200.0, kAmbient_C, 0.0, kAmbient_C, 0.0, 0.0};
       intervals.push_back({duration_s, operating_point<double>(ecx_32().nominal, twente(), signals)});
     }
   }

@@ -93,7 +93,7 @@ double difference_K(FmuUnit& unit, const Motor& motor, const std::vector<Moment>
     }
     EXPECT_EQ(unit.step(now_s, moment.duration_s), 0);
     now_s += moment.duration_s;
-    const std::array<double, firmware::kSignalCount> signals{
+    const std::array<double, observed::kSignalCount> signals{
         moment.current_A, moment.speed_rad_per_s, kAir_C, moment.vehicle_speed_m_per_s, kAir_C, 0.0, 0.0};
     TransientOptions options;
     options.start_C = state_C;
@@ -214,7 +214,7 @@ TEST_P(Fmu, GuardIsTheOneOfTheFirmware) {
     give(unit, {0.0, current_A, speed_rad_per_s, 0.0}, 40.0);
     EXPECT_EQ(unit.step(now_s, 0.02), 0);
     now_s += 0.02;
-    const std::array<float, firmware::kSignalCount> input_signals{
+    const std::array<float, observed::kSignalCount> input_signals{
         static_cast<float>(current_A), static_cast<float>(speed_rad_per_s), 40.0F, 0.0F, 40.0F, 0.0F, 0.0F};
     observer.step(input_signals);
     observer.step(input_signals);

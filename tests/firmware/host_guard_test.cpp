@@ -25,7 +25,7 @@
 namespace heatsoak {
 namespace {
 
-using Record = std::array<float, firmware::kSignalCount>;
+using Record = std::array<float, observed::kSignalCount>;
 
 Derating derating_of(const Motor& motor) { return derating_of(GuardedMotor(motor, rules_for(ecx_32()), 1.5)); }
 
@@ -95,7 +95,7 @@ class Play {
   Record next(float allowed_A) {
     if (left_-- <= 0) {
       left_ = static_cast<int>(200.0 * uniform());
-      broken_ = uniform() < 0.25 ? static_cast<int>(uniform() * firmware::kSignalCount) : -1;
+      broken_ = uniform() < 0.25 ? static_cast<int>(uniform() * observed::kSignalCount) : -1;
       share_ = uniform() < 0.6 ? 1.0 : uniform();
       sign_ = uniform() < 0.3 ? -1.0 : 1.0;
       signals_ = {0.0F,
@@ -107,8 +107,8 @@ class Play {
                   static_cast<float>(9000.0 * uniform())};
     }
     Record record = signals_;
-    record[firmware::current] = static_cast<float>(sign_ * share_ * (0.9 + 0.2 * uniform()) * std::max(allowed_A, 0.2F));
-    record[firmware::speed] *= static_cast<float>(0.95 + 0.1 * uniform());
+    record[observed::current] = static_cast<float>(sign_ * share_ * (0.9 + 0.2 * uniform()) * std::max(allowed_A, 0.2F));
+    record[observed::speed] *= static_cast<float>(0.95 + 0.1 * uniform());
     if (broken_ >= 0) {
       static constexpr std::array<float, 7> kBroken{std::numeric_limits<float>::quiet_NaN(),
                                                     std::numeric_limits<float>::infinity(),
@@ -143,9 +143,9 @@ struct Row {
 /// Returns a program that reads records in single precision and answers each with the bits of Row.
 std::string program(const Derating& derating) {
   std::string fields;
-  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
-    if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
-      fields += fmt::format("    in.{} = record[{}];\n", firmware::signals()[i].name, i);
+  for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<observed::Signal>(i))) {
+      fields += fmt::format("    in.{} = record[{}];\n", observed::signals()[i].name, i);
     }
   }
   return fmt::format(R"(#include "guard.h"
@@ -169,7 +169,7 @@ int main(void) {{
   return 0;
 }}
 )",
-                     firmware::kSignalCount, fields, derating.observer.state_count());
+                     observed::kSignalCount, fields, derating.observer.state_count());
 }
 
 /// Returns the answers of the compiled header.
@@ -259,8 +259,8 @@ TEST_F(HostGuardBits, EqualThoseOfTheHeaderOfADataSheetMotor) { expect_same_bits
 
 TEST_F(HostGuardBits, EqualThoseOfTheHeaderOfAMotorWithManyLaws) {
   const Derating derating = derating_of(ecx_32_with(kManyLaws));
-  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
-    EXPECT_TRUE(derating.observer.uses(static_cast<firmware::Signal>(i))) << firmware::signals()[i].name;
+  for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
+    EXPECT_TRUE(derating.observer.uses(static_cast<observed::Signal>(i))) << observed::signals()[i].name;
   }
   const auto makes = [&](Operation operation) {
     return std::ranges::any_of(derating.observer.formula().steps(), [&](const Formula::Step& step) { return step.operation == operation; });

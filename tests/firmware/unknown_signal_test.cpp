@@ -44,7 +44,7 @@ std::vector<float> random_place(const Observer& observer, const BarrierRules& ru
 }
 
 /// Returns the highest rate of each node over the values.
-std::vector<float> hottest(FormulaRun<float>& run, std::vector<float> place, firmware::Signal signal, const std::vector<double>& values,
+std::vector<float> hottest(FormulaRun<float>& run, std::vector<float> place, observed::Signal signal, const std::vector<double>& values,
                            std::size_t nodes) {
   std::vector<float> most(nodes, -std::numeric_limits<float>::infinity());
   std::vector<float> rate(nodes);
@@ -59,15 +59,15 @@ std::vector<float> hottest(FormulaRun<float>& run, std::vector<float> place, fir
 void expect_as_hot(const Observer& observer, const BarrierRules& rules, const std::string& text) {
   FormulaRun<float> run(observer.formula(), observer.rate_steps());
   Uniform uniform(5);
-  for (const firmware::Signal signal : {firmware::current, firmware::speed}) {
-    const double most = signal == firmware::current ? rules.most_current_A : rules.most_speed_rad_per_s;
+  for (const observed::Signal signal : {observed::current, observed::speed}) {
+    const double most = signal == observed::current ? rules.most_current_A : rules.most_speed_rad_per_s;
     const std::vector<double> few = values_if_unknown(observer, rules, signal);
     for (int i = 0; i < 4000; ++i) {
       const std::vector<float> place = random_place(observer, rules, uniform);
       const std::vector<float> found = hottest(run, place, signal, few, observer.state_count());
       const std::vector<float> searched = hottest(run, place, signal, evenly(-most, most, kSearched), observer.state_count());
       for (std::size_t node = 0; node < found.size(); ++node) {
-        ASSERT_GE(found[node], searched[node]) << text << ", " << firmware::signals()[signal].name << ", node " << node;
+        ASSERT_GE(found[node], searched[node]) << text << ", " << observed::signals()[signal].name << ", node " << node;
       }
     }
   }
@@ -94,7 +94,7 @@ TEST(UnknownSignal, HeatsAsMuchIfTheHottestSpeedDependsOnTheTemperature) {
                                   "exponent = { value = \"0.5\", origin = \"estimated\", derivation = \"a test\" }\n");
   const Network network = datasheet_network(motor, nominal_sample(motor));
   const Observer observer(network, motor.nominal, twente(), 1.5);
-  EXPECT_GT(values_if_unknown(observer, rules_for(motor), firmware::speed).size(), 2U);
+  EXPECT_GT(values_if_unknown(observer, rules_for(motor), observed::speed).size(), 2U);
   expect_as_hot(observer, rules_for(motor), "hump");
 }
 

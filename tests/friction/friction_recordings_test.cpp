@@ -18,8 +18,8 @@ std::filesystem::path data_or_skip(const std::string& folder) {
   return found.value_or("");
 }
 
-FrictionLog log_of(const std::filesystem::path& file, const std::string& mapping, const Robot& robot, const FrictionLogNeeds& needs,
-                   FrictionFindings& findings) {
+FrictionLog log_in_file(const std::filesystem::path& file, const std::string& mapping, const Robot& robot, const FrictionLogNeeds& needs,
+                        FrictionFindings& findings) {
   RecordingReport report;
   return friction_log(read_recording(file, mapping_for(file, kSource / "tests/data/mappings" / mapping), report), robot, needs, findings);
 }
@@ -47,7 +47,7 @@ SteadyParts robotino_parts(const std::filesystem::path& surface, int first, int 
   std::vector<FrictionLog> logs;
   for (int n = first; n < end; ++n) {
     const std::filesystem::path file = surface / fmt::format("exp{:02}.csv", n);
-    logs.push_back(log_of(file, "robotino_omni.map.toml", robotino(), {.voltage = true, .drive = robotino_drive()}, findings));
+    logs.push_back(log_in_file(file, "robotino_omni.map.toml", robotino(), {.voltage = true, .drive = robotino_drive()}, findings));
   }
   return find_steady_parts(logs, make_kinematics(robotino()));
 }
@@ -133,7 +133,7 @@ TEST(FrictionOfRecordings, a_team_wheel_motors_voltage_over_speed) {
   FrictionFindings findings;
   std::vector<FrictionLog> logs;
   for (const char* file : {"Model1_pos.csv", "Model2_neg.csv"}) {
-    logs.push_back(log_of(folder / file, "ateam_wheel_motor.map.toml", robot, {}, findings));
+    logs.push_back(log_in_file(folder / file, "ateam_wheel_motor.map.toml", robot, {}, findings));
   }
   const SteadyParts steady = find_steady_parts(logs, make_kinematics(robot));
   const FrictionFit fit = fit_friction(steady.parts, make_kinematics(robot), {});

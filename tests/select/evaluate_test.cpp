@@ -29,7 +29,7 @@ constexpr double kAlpha_per_K = 0.0039;
 constexpr double kInner_K_per_W = 4.0;
 constexpr double kOuter_K_per_W = 2.0;
 
-void give(Motor& motor, std::string_view key, double MotorValues::*value, const ParameterValue& figure) {
+void set_figure(Motor& motor, std::string_view key, double MotorValues::*value, const ParameterValue& figure) {
   motor.parameters[key] = figure;
   motor.nominal.*value = figure.value;
 }
@@ -341,7 +341,7 @@ ParameterValue resistance_within_10_percent() {
 // Independent reference: the standard library's normal distribution, truncated at the tolerance by rejection, with the closed form.
 TEST(Samples, spread_of_the_resistance_alone_is_that_of_an_independent_monte_carlo) {
   Motor motor = simple_motor();
-  give(motor, "terminal_resistance", &MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
+  set_figure(motor, "terminal_resistance", &MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
   const MotorEvaluation result = evaluate_one(motor, simple_robot(), constant_current(7.0), {.samples = 4000, .seed = 11});
   std::mt19937_64 engine(12);
   std::normal_distribution<double> share(0.0, 0.05);
@@ -367,12 +367,12 @@ TEST(Samples, spread_of_the_resistance_alone_is_that_of_an_independent_monte_car
 
 TEST(Samples, median_of_symmetric_spreads_is_near_the_nominal_peak) {
   Motor motor = simple_motor();
-  give(motor, "terminal_resistance", &MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
+  set_figure(motor, "terminal_resistance", &MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
   ParameterValue inner;
   inner.value = kInner_K_per_W;
   inner.origin = Origin::measured;
   inner.spread = Spread{Spread::Kind::tolerance, 0.9 * kInner_K_per_W, 1.1 * kInner_K_per_W, true};
-  give(motor, "thermal_resistance_winding_stator", &MotorValues::thermal_resistance_winding_stator_K_per_W, inner);
+  set_figure(motor, "thermal_resistance_winding_stator", &MotorValues::thermal_resistance_winding_stator_K_per_W, inner);
   const MotorEvaluation result = evaluate_one(motor, simple_robot(), constant_current(5.0), {.samples = 2000, .seed = 5});
   EXPECT_NEAR(result.winding_peak_C.p50, result.winding_peak_C.nominal, 0.01 * (result.winding_peak_C.nominal - 25.0));
   EXPECT_LT(result.winding_peak_C.p05, result.winding_peak_C.nominal - 3.0);
@@ -385,7 +385,7 @@ TEST(Samples, a_limit_that_may_be_lower_makes_a_pass_marginal) {
   ParameterValue limit;
   limit.value = 155.0;
   limit.spread = Spread{Spread::Kind::range, 105.0, 165.0, false};
-  give(motor, "winding_limit", &MotorValues::winding_limit_C, limit);
+  set_figure(motor, "winding_limit", &MotorValues::winding_limit_C, limit);
   const double current_A = std::sqrt(105.0 / (1.0 + 0.0039 * 105.0) / 3.0);  // has its steady state at 130 °C
   const MotorEvaluation result = evaluate_one(motor, simple_robot(), constant_current(current_A), {.samples = 2000, .seed = 3});
   EXPECT_EQ(result.verdict, Verdict::marginal);
@@ -612,7 +612,7 @@ Motor limited_between(double low_C, double high_C) {
   ParameterValue limit;
   limit.value = 155.0;
   limit.spread = Spread{Spread::Kind::range, low_C, high_C, false};
-  give(motor, "winding_limit", &MotorValues::winding_limit_C, limit);
+  set_figure(motor, "winding_limit", &MotorValues::winding_limit_C, limit);
   return motor;
 }
 

@@ -54,7 +54,7 @@ const LineStyle& line_style() {
   static const LineStyle style{
       .literal = literal,
       .signal =
-          [](firmware::Signal signal) { return fmt::format("input->{}", firmware::signals()[static_cast<std::size_t>(signal)].name); },
+          [](observed::Signal signal) { return fmt::format("input->{}", observed::signals()[static_cast<std::size_t>(signal)].name); },
       .square_root = "heatsoak_square_root"};
   return style;
 }

@@ -224,10 +224,10 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, f
 /// Assigns worst-case values to signals that are unknown without power: a neighbour at its limit, and the largest age.
 std::string unwatched_signals(const Source& source, std::string_view input) {
   std::string text;
-  for (const firmware::Signal signal : source.signals) {
-    if (signal == firmware::neighbour) {
+  for (const observed::Signal signal : source.signals) {
+    if (signal == observed::neighbour) {
       text += fmt::format("  {}.{} = {}_WINDING_LIMIT_C;\n", input, name_of(signal), source.capital);
-    } else if (signal == firmware::age) {
+    } else if (signal == observed::age) {
       text += fmt::format("  {}.{} = {};\n", input, name_of(signal),
                           literal(std::ranges::max(plausible_range(source.derating, signal).values)));
     }

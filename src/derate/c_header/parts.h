@@ -14,12 +14,12 @@ struct Source {
   const Derating& derating;
   std::string prefix;                     ///< prefix of functions, types and tables
   std::string capital;                    ///< prefix of constants
-  std::vector<firmware::Signal> signals;  ///< fields of the input, in the order of firmware::Signal
+  std::vector<observed::Signal> signals;  ///< fields of the input, in the order of observed::Signal
 };
 
-std::string_view name_of(firmware::Signal signal);
+std::string_view name_of(observed::Signal signal);
 /// Returns the signals that a law of the motor depends on; always current, speed and air.
-std::vector<firmware::Signal> used_signals(const Observer& observer);
+std::vector<observed::Signal> used_signals(const Observer& observer);
 
 /// Head comment: purpose of the file, assumptions, and usage.
 std::string head_comment(const Source& source);

@@ -108,20 +108,20 @@ constexpr std::string_view kBodies = R"(  for (node = 2; node < @NODES@; ++node)
 )";
 
 /// Returns the signals with several candidate values; a signal with a single one needs no sweep.
-std::vector<firmware::Signal> swept_signals(const Source& source) {
-  std::vector<firmware::Signal> swept = source.signals;
-  std::erase_if(swept, [&](firmware::Signal signal) { return plausible_range(source.derating, signal).values.size() < 2; });
+std::vector<observed::Signal> swept_signals(const Source& source) {
+  std::vector<observed::Signal> swept = source.signals;
+  std::erase_if(swept, [&](observed::Signal signal) { return plausible_range(source.derating, signal).values.size() < 2; });
   return swept;
 }
 
-unsigned bit(firmware::Signal signal) { return 1U << static_cast<unsigned>(signal); }
+unsigned bit(observed::Signal signal) { return 1U << static_cast<unsigned>(signal); }
 
 /// Generates the checks that replace implausible readings. Each gets a value before the sweeps, because a NaN would spoil every rate.
 std::string plausible_ranges(const Source& source) {
   std::string text;
-  for (const firmware::Signal signal : source.signals) {
+  for (const observed::Signal signal : source.signals) {
     const PlausibleRange validated = plausible_range(source.derating, signal);
-    const bool moves = signal == firmware::neighbour;
+    const bool moves = signal == observed::neighbour;
     const std::string least = moves ? fmt::format("in.ambient_C - {}", literal(kNeighbourBelowAir_K)) : literal(validated.low);
     text += fmt::format("  if (!{0}_is_between({1}, in.{2}, {3})) {{\n    in.{2} = {4};\n    unknown |= {5}u;\n  }}\n", source.prefix,
                         least, name_of(signal), literal(validated.high), literal(validated.values.front()), bit(signal));
@@ -130,10 +130,10 @@ std::string plausible_ranges(const Source& source) {
 }
 
 /// Generates the sweeps over candidate values. Several signals need two passes, because the hottest value of one may depend on another.
-std::string sweeps(const Source& source, const std::vector<firmware::Signal>& swept) {
+std::string sweeps(const Source& source, const std::vector<observed::Signal>& swept) {
   const std::string indent = swept.size() > 1 ? "    " : "  ";
   std::string text = swept.size() > 1 ? "  for (pass = 0; pass < 2; ++pass) {\n" : "";
-  for (const firmware::Signal signal : swept) {
+  for (const observed::Signal signal : swept) {
     text += fmt::format(
         "{4}if ((unknown & {0}u) != 0u) {{\n{4}  {1}_sweep(&in, &in.{2}, {1}_possible_{2}, {3}, state->state_C, rate_K_per_s);\n{4}}}\n",
         bit(signal), source.prefix, name_of(signal), plausible_range(source.derating, signal).values.size(), indent);
@@ -145,7 +145,7 @@ std::string sweeps(const Source& source, const std::vector<firmware::Signal>& sw
 
 std::string candidates(const Source& source) {
   std::string text;
-  for (const firmware::Signal signal : swept_signals(source)) {
+  for (const observed::Signal signal : swept_signals(source)) {
     const std::vector<float> values = plausible_range(source.derating, signal).values;
     text += array(fmt::format("{}_possible_{}", source.prefix, name_of(signal)), {values.begin(), values.end()});
   }
@@ -153,13 +153,13 @@ std::string candidates(const Source& source) {
 }
 
 std::string step_functions(const Source& source) {
-  const std::vector<firmware::Signal> swept = swept_signals(source);
+  const std::vector<observed::Signal> swept = swept_signals(source);
   const std::size_t nodes = source.derating.observer.state_count();
   const Words words{{"@UNKNOWN@", plausible_ranges(source)},
                     {"@SWEEPS@", sweeps(source, swept)},
                     {"@BODIES@", nodes > 2 ? std::string(kBodies) : ""},
                     {"@PASS@", swept.size() > 1 ? "  int pass;\n" : ""},
-                    {"@SPEED_BIT@", std::to_string(bit(firmware::speed))},
+                    {"@SPEED_BIT@", std::to_string(bit(observed::speed))},
                     {"@CAP@", source.capital},
                     {"@NODES@", std::to_string(nodes)},
                     {"@", source.prefix}};

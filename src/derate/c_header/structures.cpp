@@ -5,13 +5,13 @@
 
 namespace heatsoak::c_header {
 
-std::string_view name_of(firmware::Signal signal) { return firmware::signals()[static_cast<std::size_t>(signal)].name; }
+std::string_view name_of(observed::Signal signal) { return observed::signals()[static_cast<std::size_t>(signal)].name; }
 
-std::vector<firmware::Signal> used_signals(const Observer& observer) {
-  std::vector<firmware::Signal> used;
-  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
-    if (observer.uses(static_cast<firmware::Signal>(i))) {
-      used.push_back(static_cast<firmware::Signal>(i));
+std::vector<observed::Signal> used_signals(const Observer& observer) {
+  std::vector<observed::Signal> used;
+  for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
+    if (observer.uses(static_cast<observed::Signal>(i))) {
+      used.push_back(static_cast<observed::Signal>(i));
     }
   }
   return used;
@@ -20,8 +20,8 @@ std::vector<firmware::Signal> used_signals(const Observer& observer) {
 std::string structures(const Source& source) {
   const Observer& observer = source.derating.observer;
   std::string text = "typedef struct {\n";
-  for (const firmware::Signal signal : source.signals) {
-    text += fmt::format("  float {}; /* {} */\n", name_of(signal), firmware::signals()[static_cast<std::size_t>(signal)].meaning);
+  for (const observed::Signal signal : source.signals) {
+    text += fmt::format("  float {}; /* {} */\n", name_of(signal), observed::signals()[static_cast<std::size_t>(signal)].meaning);
   }
   text +=
       fmt::format("}} {}_input;\n\ntypedef struct {{\n  uint32_t started;\n  float state_C[{}]; /*", source.prefix, observer.state_count());

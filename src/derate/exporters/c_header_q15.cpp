@@ -26,14 +26,14 @@ constexpr int kStoredBits = 32;             ///< fraction bits of a stored tempe
 constexpr std::int32_t kReadHotter_mC = 3;  ///< added to temperatures before the table lookup; larger than all rounding errors
 
 struct InputField {
-  firmware::Signal signal;
+  observed::Signal signal;
   std::string_view name;
   std::string_view meaning;
 };
 constexpr InputField kInputs[] = {
-    {firmware::current, "current_mA", "equivalent DC current, rms over the period, with the sign of the speed when the motor drives"},
-    {firmware::speed, "speed_mrad_per_s", "speed of the motor's shaft, signed"},
-    {firmware::ambient, "ambient_mC", "air around the motor in 0.001 degC; the hottest declared air if it is not measured"}};
+    {observed::current, "current_mA", "equivalent DC current, rms over the period, with the sign of the speed when the motor drives"},
+    {observed::speed, "speed_mrad_per_s", "speed of the motor's shaft, signed"},
+    {observed::ambient, "ambient_mC", "air around the motor in 0.001 degC; the hottest declared air if it is not measured"}};
 
 std::int64_t thousandths_outward(double value) {
   return static_cast<std::int64_t>(value < 0.0 ? std::floor(1000.0 * value) : std::ceil(1000.0 * value));
@@ -64,9 +64,9 @@ double temperature_excess_K(const Derating& derating, const IntegerLines& lines)
   const Observer& observer = derating.observer;
   FormulaRun<double> run(observer.formula(), observer.rate_steps());
   const std::size_t nodes = observer.state_count();
-  std::vector<double> inputs(firmware::kSignalCount + nodes, derating.rules.hottest_ambient_C);
-  inputs[firmware::current] = limp_current_A(derating);
-  inputs[firmware::speed] = 0.0;
+  std::vector<double> inputs(observed::kSignalCount + nodes, derating.rules.hottest_ambient_C);
+  inputs[observed::current] = limp_current_A(derating);
+  inputs[observed::speed] = 0.0;
   std::vector<double> rate(nodes);
   std::vector<std::vector<double>> state_C(2, std::vector<double>(nodes, derating.rules.hottest_ambient_C));
   constexpr double kDuration_s = 4.0 * 3600.0;
@@ -74,7 +74,7 @@ double temperature_excess_K(const Derating& derating, const IntegerLines& lines)
   double most_K = 0.0;
   for (double time_s = 0.0; time_s < kDuration_s; time_s += step_s) {
     for (std::size_t form = 0; form < 2; ++form) {
-      std::ranges::copy(state_C[form], inputs.begin() + firmware::kSignalCount);
+      std::ranges::copy(state_C[form], inputs.begin() + observed::kSignalCount);
       run.run(inputs, rate);
       for (std::size_t node = 0; node < nodes; ++node) {
         const FixedPoint& fixed = lines.rate_K_per_s[node];
@@ -294,8 +294,8 @@ std::string plausible_ranges(const Derating& derating) {
   std::string text;
   for (const InputField& field : kInputs) {
     const PlausibleRange validated = plausible_range(derating, field.signal);
-    const std::string_view flag = field.signal == firmware::current ? "is_current_unknown"
-                                  : field.signal == firmware::speed ? "is_speed_unknown"
+    const std::string_view flag = field.signal == observed::current ? "is_current_unknown"
+                                  : field.signal == observed::speed ? "is_speed_unknown"
                                                                     : "is_ambient_unknown";
     text +=
         fmt::format("  if ((in.{0} < {1}) || (in.{0} > {2})) {{\n    in.{0} = {3};\n    {4} = true;\n  }}\n", field.name,
@@ -305,7 +305,7 @@ std::string plausible_ranges(const Derating& derating) {
   return text;
 }
 
-std::vector<std::int64_t> candidates(const Derating& derating, firmware::Signal signal) {
+std::vector<std::int64_t> candidates(const Derating& derating, observed::Signal signal) {
   std::vector<std::int64_t> values;
   for (const float value : plausible_range(derating, signal).values) {
     values.push_back(thousandths_outward(value));
@@ -320,8 +320,8 @@ std::string write(const Derating& derating) {
   const std::string capital = c_header::in_capitals(prefix);
   const IntegerLines lines = integer_form::integer_lines(derating, prefix);
   const QuantisedTable table(derating.table);
-  const std::vector<std::int64_t> currents = candidates(derating, firmware::current);
-  const std::vector<std::int64_t> speeds = candidates(derating, firmware::speed);
+  const std::vector<std::int64_t> currents = candidates(derating, observed::current);
+  const std::vector<std::int64_t> speeds = candidates(derating, observed::speed);
   const std::size_t nodes = derating.observer.state_count();
   const c_header::Words words{{"@BELIEFS@", plausible_ranges(derating)},
                               {"@BODIES@", nodes > 2 ? std::string(kBodies) : ""},

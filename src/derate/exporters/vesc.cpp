@@ -31,10 +31,10 @@ std::string operand(const Formula& formula, int place) {
     return fmt::format("t{}", place);
   }
   const auto input = static_cast<std::size_t>(step.left);
-  return input < firmware::kSignalCount ? std::string("hs-") + (input == firmware::current ? "current-A"
-                                                                : input == firmware::speed ? "speed-rad-per-s"
+  return input < observed::kSignalCount ? std::string("hs-") + (input == observed::current ? "current-A"
+                                                                : input == observed::speed ? "speed-rad-per-s"
                                                                                            : "ambient-C")
-                                        : fmt::format("hs-state{}-C", input - firmware::kSignalCount);
+                                        : fmt::format("hs-state{}-C", input - observed::kSignalCount);
 }
 
 std::string expression(const Formula& formula, const Formula::Step& step) {

@@ -19,14 +19,14 @@ constexpr FmuItem kReasons[] = {{"full", "the driver's largest current"},
 
 std::vector<FmuVariable> guard_variables(const Derating& derating) {
   std::vector<FmuVariable> all{{"time_s", "s", FmuCausality::independent, FmuType::real, 0.0, "simulated time"}};
-  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
-    if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
-      const std::string name(firmware::signals()[i].name);
+  for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<observed::Signal>(i))) {
+      const std::string name(observed::signals()[i].name);
       // An unconnected input has the worst-case value for which the guard is designed.
-      const double start = i == firmware::ambient     ? derating.rules.hottest_ambient_C
-                           : i == firmware::neighbour ? derating.rules.limits.winding_C
+      const double start = i == observed::ambient     ? derating.rules.hottest_ambient_C
+                           : i == observed::neighbour ? derating.rules.limits.winding_C
                                                       : 0.0;
-      all.push_back({name, fmu_unit(name), FmuCausality::input, FmuType::real, start, std::string(firmware::signals()[i].meaning)});
+      all.push_back({name, fmu_unit(name), FmuCausality::input, FmuType::real, start, std::string(observed::signals()[i].meaning)});
     }
   }
   all.push_back({"start_C", "degC", FmuCausality::parameter, FmuType::real, derating.rules.hottest_ambient_C,
@@ -55,9 +55,9 @@ std::string bindings(const Derating& derating) {
       "typedef struct {{\n  guard_state guard;\n  double calls;\n  double start_s;\n}} model_part;\n\n"
       "static inline void guard_read(const double *value, guard_input *input) {{\n",
       prefix, fmu_number(derating.options.period_s), c_header::in_capitals(prefix));
-  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
-    if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
-      text += fmt::format("  input->{0} = (float)value[at_{0}];\n", firmware::signals()[i].name);
+  for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<observed::Signal>(i))) {
+      text += fmt::format("  input->{0} = (float)value[at_{0}];\n", observed::signals()[i].name);
     }
   }
   return text + "}\n";

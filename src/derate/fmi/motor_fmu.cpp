@@ -13,7 +13,7 @@ namespace {
 const LineStyle kStyle{
     .literal = fmu_number,
     .signal =
-        [](firmware::Signal signal) { return fmt::format("value[at_{}]", firmware::signals()[static_cast<std::size_t>(signal)].name); },
+        [](observed::Signal signal) { return fmt::format("value[at_{}]", observed::signals()[static_cast<std::size_t>(signal)].name); },
     .square_root = "sqrt",
     .number = "double",
     .exponential = "exp",
@@ -36,15 +36,15 @@ void require_expressible(const Derating& derating, std::string_view exporter) {
 std::vector<FmuVariable> motor_variables(const Derating& derating) {
   constexpr double kRoom_C = 25.0;
   std::vector<FmuVariable> all{{"time_s", "s", FmuCausality::independent, FmuType::real, 0.0, "simulated time"}};
-  for (std::size_t i = 0; i < firmware::kSignalCount; ++i) {
-    if (derating.observer.uses(static_cast<firmware::Signal>(i))) {
-      const firmware::SignalSpec& signal = firmware::signals()[i];
+  for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<observed::Signal>(i))) {
+      const observed::SignalSpec& signal = observed::signals()[i];
       const std::string name(signal.name);
       all.push_back(
           {name, fmu_unit(name), FmuCausality::input, FmuType::real, fmu_unit(name) == "degC" ? kRoom_C : 0.0,
-           i == firmware::current
+           i == observed::current
                ? "equivalent DC current (torque per torque constant), rms over the step, with the sign of the speed when the motor drives"
-           : i == firmware::ambient ? "air around the motor"
+           : i == observed::ambient ? "air around the motor"
                                     : std::string(signal.meaning)});
     }
   }

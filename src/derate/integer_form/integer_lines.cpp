@@ -90,12 +90,12 @@ class Writer {
   }
 
   void add_input(int place, std::size_t input) {
-    if (input >= firmware::kSignalCount) {
+    if (input >= observed::kSignalCount) {
       const double coldest_C = derating_.options.coldest_ambient_C - 1.0;
       return set(place, {.low = coldest_C, .high = kHottest_C, .bits = kStateBits, .absolute = unit(kStateBits)},
-                 fmt::format("state_C[{}]", input - firmware::kSignalCount));
+                 fmt::format("state_C[{}]", input - observed::kSignalCount));
     }
-    const auto signal = static_cast<firmware::Signal>(input);
+    const auto signal = static_cast<observed::Signal>(input);
     const PlausibleRange validated = plausible_range(derating_, signal);
     FixedPoint made{.low = validated.low, .high = validated.high, .bits = bits_for(validated.low, validated.high), .absolute = 0.0};
     // The factor 2^bits/1000 has 30 bits and its own shift.
@@ -107,8 +107,8 @@ class Writer {
                     static_cast<std::int64_t>(std::llround(std::ldexp(per_thousandth, shift))), power_of_two(shift)));
   }
 
-  [[nodiscard]] static std::string_view integer_name(firmware::Signal signal) {
-    return signal == firmware::current ? "current_mA" : signal == firmware::speed ? "speed_mrad_per_s" : "ambient_mC";
+  [[nodiscard]] static std::string_view integer_name(observed::Signal signal) {
+    return signal == observed::current ? "current_mA" : signal == observed::speed ? "speed_mrad_per_s" : "ambient_mC";
   }
 
   [[nodiscard]] static std::string power_of_two(int exponent) { return fmt::format("INT64_C({})", std::int64_t{1} << exponent); }

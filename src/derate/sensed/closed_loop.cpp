@@ -9,18 +9,18 @@
 namespace heatsoak {
 namespace {
 
-using LaneSignals = std::array<Lanes, firmware::kSignalCount>;
+using LaneSignals = std::array<Lanes, observed::kSignalCount>;
 using LaneFlags = std::array<bool, kLanes>;
 
 /// Rates of an observer for kLanes motors at once.
 class LaneObserver {
  public:
   LaneObserver(const Observer& observer, std::span<const int> rate_steps)
-      : rates_(observer.formula(), rate_steps), inputs_(firmware::kSignalCount + observer.state_count()), rate_(observer.state_count()) {}
+      : rates_(observer.formula(), rate_steps), inputs_(observed::kSignalCount + observer.state_count()), rate_(observer.state_count()) {}
 
   const std::vector<Lanes>& rates_K_per_s(const LaneSignals& signals, const std::vector<Lanes>& state_C) {
     std::ranges::copy(signals, inputs_.begin());
-    std::ranges::copy(state_C, inputs_.begin() + firmware::kSignalCount);
+    std::ranges::copy(state_C, inputs_.begin() + observed::kSignalCount);
     rates_.run(inputs_, rate_);
     return rate_;
   }
@@ -185,7 +185,7 @@ LaneSignals lane_signals(const HotCase& hot_case, const BarrierRules& rules, con
   for (std::size_t i = 0; i < signals.size(); ++i) {
     signals[i] = Lanes::Constant(others[i]);
   }
-  signals[firmware::current] = hot_case.current_sign * current_A;
+  signals[observed::current] = hot_case.current_sign * current_A;
   return signals;
 }
 

@@ -61,7 +61,7 @@ UsePlayed play_sensor_fault(const SensorPlan& plan, const Derating& model_only, 
       flowing_A = std::min({rules.most_current_A, cold_A, counted_A + gain_A});
     }
     intervals.take(time_s, flowing_A, speed_rad_per_s, period_s);
-    std::array<float, firmware::kSignalCount> signals{};
+    std::array<float, observed::kSignalCount> signals{};
     std::ranges::transform(use.hot_case.signals(rules, std::min(counted_A, flowing_A), speed_rad_per_s), signals.begin(),
                            [](double value) { return static_cast<float>(value); });
     capped.step(signals);

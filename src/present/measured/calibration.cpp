@@ -20,7 +20,7 @@ std::string with_digits(double value, double half) {
   return significant(value, std::clamp(digits, 1, 6));
 }
 
-Table parameter_table(const Calibration& result) {
+Table fitted_parameters(const Calibration& result) {
   Table table{.columns = {{"value", "", 0, Alignment::left},
                           {"file", "", 2},
                           {"fit", "", 0},
@@ -102,7 +102,7 @@ Document calibration_document(const Motor& motor, const CalibrationAnswer& answe
   const Calibration& result = answer.calibration;
   Document document{.headline = headline_of(motor, answer)};
   document.paragraphs.push_back(heat_words(result));
-  document.tables.push_back(parameter_table(result));
+  document.tables.push_back(fitted_parameters(result));
   Table errors{.title = "Error of the free-running model in K",
                .columns = {{"runs", "", 0, Alignment::left},
                            {"signal", "", 0, Alignment::left},

@@ -57,7 +57,7 @@ std::string named(const FoundEffect& effect) {
   return effect.is_from_catalogue ? effect.id : fmt::format("{} over {}", effect.id, fmt::join(effect.drivers, " times "));
 }
 
-std::string effect_table(const Diagnosis& diagnosis) {
+std::string added_effects(const Diagnosis& diagnosis) {
   std::string text = "<table>" + row({"effect", "node", "acts", "parameter", "value", "95 % interval", "heat: mean / peak", "evidence",
                                       "visibility", "confounded here"},
                                      "th");
@@ -251,7 +251,7 @@ std::string diagnosis_page(const DiagnosisAnswer& answer, std::span<const LogRea
   text +=
       "<h2>Error before and after</h2><p>The model runs freely from the first measured temperatures.</p>" + error_table(diagnosis, score);
   if (!diagnosis.effects.empty()) {
-    text += "<h2>Effects added</h2>" + effect_table(diagnosis);
+    text += "<h2>Effects added</h2>" + added_effects(diagnosis);
   }
   for (const auto& [name, picture] : svg) {
     const std::size_t begin = picture.find("<svg");

@@ -136,7 +136,7 @@ UsePlayed play(const Script& script, const Observer& observer, const CurrentTabl
         end_interval();
       }
       held.take(current_A, segment.speed_rad_per_s, period_s);
-      std::array<float, firmware::kSignalCount> guard_inputs{};
+      std::array<float, observed::kSignalCount> guard_inputs{};
       std::ranges::transform(signals(current_A), guard_inputs.begin(), [](double value) { return static_cast<float>(value); });
       run.step(guard_inputs);
       result.winding_peak_C = std::max<double>(result.winding_peak_C, run.state_C()[states::winding]);
