@@ -1,6 +1,6 @@
 # add_layer(name USES … HIDES … ROOMS folder … REGISTERS folder:Type … OPTION option): one static library from src/<name> and its
 # rooms (subfolders). A registered folder is a registry: every file x.cpp in it, or in a room of it, defines `Type x()` in the
-# namespace heatsoak::<folder>. A table of these functions is generated as <name>/<folder>_registry.h. If the option is off, the
+# namespace heatsoak::<name>::<folder>. A table of these functions is generated as <name>/<folder>_registry.h. If the option is off, the
 # layer is not built. Dependents then omit it, and rooms written as folder@layer.
 set_property(GLOBAL PROPERTY heatsoak_layers "")
 set_property(GLOBAL PROPERTY heatsoak_left_out "")
@@ -86,7 +86,7 @@ function(generate_registry layer folder type)
 #pragma once
 #include <array>
 #include <string_view>
-namespace heatsoak::@folder@ {
+namespace heatsoak::@layer@::@folder@ {
 @functions@
 struct Entry {
   std::string_view name;
@@ -94,7 +94,7 @@ struct Entry {
 };
 inline constexpr std::array<Entry, @count@> registry{{
 @rows@}};
-}  // namespace heatsoak::@folder@
+}  // namespace heatsoak::@layer@::@folder@
 ")
 endfunction()
 

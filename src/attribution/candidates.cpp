@@ -10,31 +10,31 @@
 #include "estimation/spans.h"
 #include "thermal/linearised.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 namespace {
 
 /// Heat capacity of the motors for which the catalogue gives typical sizes (about 50 W).
 constexpr double kUsualCapacity_J_per_K = 120.0;
 
 /// Returns the names of the signals that at least one run lacks.
-std::vector<std::string_view> lacking(const std::vector<Signal>& needs, const std::vector<MeasuredRun>& runs) {
+std::vector<std::string_view> lacking(const std::vector<thermal::Signal>& needs, const std::vector<estimation::MeasuredRun>& runs) {
   std::vector<std::string_view> names;
-  for (const Signal signal : needs) {
-    if (std::ranges::any_of(runs, [&](const MeasuredRun& run) { return !run.has(signal); })) {
-      names.push_back(words_of(signal));
+  for (const thermal::Signal signal : needs) {
+    if (std::ranges::any_of(runs, [&](const estimation::MeasuredRun& run) { return !run.has(signal); })) {
+      names.push_back(estimation::words_of(signal));
     }
   }
   return names;
 }
 
-bool is_in(const Model& model, const Candidate& candidate) {
-  const Network& network = model.network;
-  return std::ranges::any_of(network.effects(), [&](const EffectInPlace& effect) {
+bool is_in(const estimation::Model& model, const Candidate& candidate) {
+  const thermal::Network& network = model.network;
+  return std::ranges::any_of(network.effects(), [&](const thermal::EffectInPlace& effect) {
     if (effect.type->name != candidate.type->name) {
       return false;
     }
-    const auto term = std::ranges::find(model.conditional, effect.name, &ConditionalTerm::effect_name);
-    if ((term == model.conditional.end() ? Condition{} : term->condition) != candidate.condition) {
+    const auto term = std::ranges::find(model.conditional, effect.name, &estimation::ConditionalTerm::effect_name);
+    if ((term == model.conditional.end() ? estimation::Condition{} : term->condition) != candidate.condition) {
       return false;
     }
     for (std::size_t role = 0; role < candidate.nodes.size(); ++role) {
@@ -47,9 +47,9 @@ bool is_in(const Model& model, const Candidate& candidate) {
 }
 
 /// Returns the default nodes of the roles, with an unused name for a node that the effect adds. Empty if a node is missing.
-std::vector<std::string> usual_nodes(const Network& network, const EffectType& type) {
+std::vector<std::string> usual_nodes(const thermal::Network& network, const thermal::EffectType& type) {
   std::vector<std::string> nodes;
-  for (const NodeRole& role : type.nodes) {
+  for (const thermal::NodeRole& role : type.nodes) {
     std::string node(role.default_node);
     if (role.own_capacity) {
       for (int number = 2; network.find_node(node) >= 0; ++number) {
@@ -65,7 +65,7 @@ std::vector<std::string> usual_nodes(const Network& network, const EffectType& t
 
 /// Returns all node assignments to try. A one-node effect is tried at every node with a heat capacity. In a network of two nodes it is
 /// tried at its default node, unless its candidacy allows any. Other effects use their default nodes.
-std::vector<std::vector<std::string>> placements(const Network& network, const EffectType& type) {
+std::vector<std::vector<std::string>> placements(const thermal::Network& network, const thermal::EffectType& type) {
   std::vector<std::vector<std::string>> all;
   if (std::vector<std::string> usual = usual_nodes(network, type); !usual.empty()) {
     all.push_back(std::move(usual));
@@ -86,9 +86,9 @@ struct MotorSize {
   double current_ratio = 1.0;  ///< for A; differs with the winding's voltage
 };
 
-std::vector<double> scaled(const EffectType& type, std::vector<double> parameters, const MotorSize& size) {
+std::vector<double> scaled(const thermal::EffectType& type, std::vector<double> parameters, const MotorSize& size) {
   for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const std::string_view unit = unit_of(type.parameters, p, parameters);
+    const std::string_view unit = base::unit_of(type.parameters, p, parameters);
     if (!type.parameters[p].choices.empty()) {
       continue;
     }
@@ -104,13 +104,14 @@ std::vector<double> scaled(const EffectType& type, std::vector<double> parameter
 }
 
 /// Returns the ratio of the 98th percentile of the current to 8 A; 1 if it is within a factor of 2.5, or without current.
-double current_ratio_of(const std::vector<MeasuredRun>& runs) {
+double current_ratio_of(const std::vector<estimation::MeasuredRun>& runs) {
   constexpr double kUsual_A = 8.0;
   constexpr double kOrder_ratio = 2.5;
   constexpr double kTop_share = 0.98;
   std::vector<double> current_A;
-  for (const MeasuredRun& run : runs) {
-    std::ranges::transform(run.at, std::back_inserter(current_A), [](const OperatingPoint<double>& at) { return at.current_rms_A; });
+  for (const estimation::MeasuredRun& run : runs) {
+    std::ranges::transform(run.at, std::back_inserter(current_A),
+                           [](const thermal::OperatingPoint<double>& at) { return at.current_rms_A; });
   }
   std::erase_if(current_A, [](double each_A) { return !(each_A > 0.0); });
   if (current_A.empty()) {
@@ -122,7 +123,7 @@ double current_ratio_of(const std::vector<MeasuredRun>& runs) {
   return ratio < 1.0 / kOrder_ratio || ratio > kOrder_ratio ? ratio : 1.0;
 }
 
-MotorSize size_of(const Model& model, const std::vector<MeasuredRun>& runs) {
+MotorSize size_of(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
   double capacity_J_per_K = 0.0;
   for (int node = 0; node < model.network.state_count(); ++node) {
     capacity_J_per_K += model.values[static_cast<std::size_t>(model.network.capacity_index(node))];
@@ -131,15 +132,15 @@ MotorSize size_of(const Model& model, const std::vector<MeasuredRun>& runs) {
 }
 
 /// Returns all conditions that divide the runs in two, without duplicates. A stated condition has priority over the name of a single run.
-std::vector<Condition> conditions_of(const std::vector<MeasuredRun>& runs) {
-  std::vector<Condition> conditions;
+std::vector<estimation::Condition> conditions_of(const std::vector<estimation::MeasuredRun>& runs) {
+  std::vector<estimation::Condition> conditions;
   std::vector<std::vector<bool>> known;
   for (const bool named : {false, true}) {
-    for (const MeasuredRun& each : runs) {
+    for (const estimation::MeasuredRun& each : runs) {
       for (const auto& [key, value] : each.conditions) {
-        const Condition condition{{key, value}};
+        const estimation::Condition condition{{key, value}};
         std::vector<bool> has;
-        for (const MeasuredRun& run : runs) {
+        for (const estimation::MeasuredRun& run : runs) {
           has.push_back(run.has(condition));
         }
         const bool parts = std::ranges::find(has, false) != has.end();
@@ -154,18 +155,19 @@ std::vector<Condition> conditions_of(const std::vector<MeasuredRun>& runs) {
 }
 
 /// Adds candidates that act only in some runs and appear in no signal: airflow, constant heat, and run deviations.
-void add_conditional_candidates(const Model& model, const std::vector<MeasuredRun>& runs, const MotorSize& size, CandidateList& list) {
-  const Network& network = model.network;
-  for (const Condition& condition : conditions_of(runs)) {
+void add_conditional_candidates(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs, const MotorSize& size,
+                                CandidateList& list) {
+  const thermal::Network& network = model.network;
+  for (const estimation::Condition& condition : conditions_of(runs)) {
     for (const std::string_view name : {"airflow", "constant_heat"}) {
-      const EffectType& type = *find_effect(name);
+      const thermal::EffectType& type = *thermal::find_effect(name);
       for (const std::string_view node : {"stator", "winding"}) {
         if (network.find_node(node) < 0) {
           continue;
         }
         Candidate candidate;
         candidate.type = &type;
-        candidate.id = fmt::format("{}@{} in {}", name, node, in_words(condition));
+        candidate.id = fmt::format("{}@{} in {}", name, node, estimation::in_words(condition));
         candidate.nodes.emplace_back(node);
         candidate.condition = condition;
         for (std::size_t role = 1; role < type.nodes.size(); ++role) {
@@ -177,17 +179,25 @@ void add_conditional_candidates(const Model& model, const std::vector<MeasuredRu
         }
       }
     }
-    for (const RunDeviationType& type : all_run_deviations()) {
-      const bool is_there = std::ranges::any_of(model.deviations, [&](const RunDeviation& each) { return each.is_same(&type, condition); });
+    for (const estimation::RunDeviationType& type : estimation::all_run_deviations()) {
+      const bool is_there =
+          std::ranges::any_of(model.deviations, [&](const estimation::RunDeviation& each) { return each.is_same(&type, condition); });
       if (!is_there && !type.places_in(network).empty()) {
-        list.candidates.push_back(
-            {nullptr, nullptr, &type, fmt::format("{} in {}", type.name, in_words(condition)), {}, {type.usual}, 0, 1.0, condition});
+        list.candidates.push_back({nullptr,
+                                   nullptr,
+                                   &type,
+                                   fmt::format("{} in {}", type.name, estimation::in_words(condition)),
+                                   {},
+                                   {type.usual},
+                                   0,
+                                   1.0,
+                                   condition});
       }
     }
   }
 }
 
-std::string id_of(const EffectType& type, const std::vector<std::string>& nodes) {
+std::string id_of(const thermal::EffectType& type, const std::vector<std::string>& nodes) {
   for (std::size_t role = 0; role < nodes.size(); ++role) {
     if (!type.nodes[role].own_capacity && nodes[role] != type.nodes[role].default_node) {
       return fmt::format("{}@{}", type.name, nodes[role]);
@@ -196,8 +206,9 @@ std::string id_of(const EffectType& type, const std::vector<std::string>& nodes)
   return std::string(type.name);
 }
 
-void add_network_candidates(const Model& model, const std::vector<MeasuredRun>& runs, const MotorSize& size, CandidateList& list) {
-  for (const EffectType& type : all_effects()) {
+void add_network_candidates(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs, const MotorSize& size,
+                            CandidateList& list) {
+  for (const thermal::EffectType& type : thermal::all_effects()) {
     if (!type.candidacy.size_parameter) {
       continue;
     }
@@ -217,19 +228,19 @@ void add_network_candidates(const Model& model, const std::vector<MeasuredRun>& 
   }
 }
 
-bool is_measured(const std::vector<MeasuredRun>& runs, std::string_view signal) {
-  return std::ranges::all_of(runs, [&](const MeasuredRun& run) {
-    return std::ranges::any_of(run.sensors, [&](const Sensor& sensor) { return sensor.signal == signal; });
+bool is_measured(const std::vector<estimation::MeasuredRun>& runs, std::string_view signal) {
+  return std::ranges::all_of(runs, [&](const estimation::MeasuredRun& run) {
+    return std::ranges::any_of(run.sensors, [&](const estimation::Sensor& sensor) { return sensor.signal == signal; });
   });
 }
 
-Eigen::Index sensor_of(const MeasuredRun& run, std::string_view signal) {
-  return std::ranges::find(run.sensors, signal, &Sensor::signal) - run.sensors.begin();
+Eigen::Index sensor_of(const estimation::MeasuredRun& run, std::string_view signal) {
+  return std::ranges::find(run.sensors, signal, &estimation::Sensor::signal) - run.sensors.begin();
 }
 
 /// Network with all candidates added at size 0. It behaves like the original network, but provides their derivatives.
 struct Extended {
-  Network network;
+  thermal::Network network;
   std::vector<int> wanted;           ///< parameter indices of the sizes; the capacity of an added node follows its size
   std::vector<double> slope;         ///< weight of each parameter in its candidate's column
   std::vector<std::size_t> own;      ///< candidate of each parameter
@@ -284,15 +295,15 @@ void set_step(const Eigen::MatrixXd& slope_per_s, double step_s, Eigen::MatrixXd
 
 /// Adds the columns of the extended network, linearised once per interval at its midpoint along the fitted path. `first_body`: index of the
 /// first column for the start temperature of a body.
-void add_network_columns(Extended& extended, std::span<const double> parameters, const LinearisedRun& fitted, const MeasuredRun& run,
-                         Eigen::Index first_body, Columns& columns) {
+void add_network_columns(Extended& extended, std::span<const double> parameters, const estimation::LinearisedRun& fitted,
+                         const estimation::MeasuredRun& run, Eigen::Index first_body, estimation::Columns& columns) {
   const Eigen::Index own = fitted.states;
   const auto states = static_cast<Eigen::Index>(extended.state_C.size());
   const auto wanted = static_cast<Eigen::Index>(extended.wanted.size());
   std::vector<double> values = extended.network.values();
   std::ranges::copy(parameters, values.begin());
   const auto bodies = static_cast<Eigen::Index>(extended.bodies.size());
-  Linearised slope;
+  thermal::Linearised slope;
   // Sensitivities to the candidates and to the start temperatures of added bodies; the last column is the state's step.
   Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(states, wanted + bodies + 1), moved = rate, next = rate;
   for (Eigen::Index body = 0; body < bodies; ++body) {
@@ -336,14 +347,14 @@ void add_network_columns(Extended& extended, std::span<const double> parameters,
 }
 
 /// Converts sensitivities of the nodes to those of the readings, with the stated sensor errors of the run.
-void show(const MeasuredRun& run, Columns& columns) {
+void show(const estimation::MeasuredRun& run, estimation::Columns& columns) {
   const auto sensors = static_cast<Eigen::Index>(run.sensors.size());
   for (Eigen::Index sensor = 0; sensor < sensors; ++sensor) {
     const auto rows = Eigen::seq(sensor, columns.rows() - 1, sensors);
-    const std::vector<SensorFault>& faults = run.sensors[static_cast<std::size_t>(sensor)].faults;
+    const std::vector<motor::SensorFault>& faults = run.sensors[static_cast<std::size_t>(sensor)].faults;
     for (Eigen::Index column = 0; column < (faults.empty() ? 0 : columns.cols()); ++column) {
       Eigen::VectorXd change = columns(rows, column);
-      apply(faults, run.time_s, true, as_span(change));
+      motor::apply(faults, run.time_s, true, estimation::as_span(change));
       columns(rows, column) = change;
     }
   }
@@ -357,7 +368,7 @@ bool Candidate::is_rare() const {
 
 int Candidate::size_parameter() const { return type ? type->candidacy.size_parameter.value() : 0; }
 
-const ParameterSpec& Candidate::size_spec() const {
+const base::ParameterSpec& Candidate::size_spec() const {
   if (deviation_type) {
     return deviation_type->size;
   }
@@ -378,13 +389,13 @@ std::string_view Candidate::experiment() const {
   return type ? type->candidacy.experiment : sensor_type->experiment;
 }
 
-CandidateList candidates_for(const Model& model, const std::vector<MeasuredRun>& runs) {
+CandidateList candidates_for(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
   CandidateList list;
   const MotorSize size = size_of(model, runs);
   add_network_candidates(model, runs, size, list);
   add_conditional_candidates(model, runs, size, list);
-  for (const SensorEffectType& type : all_sensor_effects()) {
-    const bool is_there = std::ranges::find(model.sensors, &type, &SensorTerm::type) != model.sensors.end();
+  for (const motor::SensorEffectType& type : motor::all_sensor_effects()) {
+    const bool is_there = std::ranges::find(model.sensors, &type, &estimation::SensorTerm::type) != model.sensors.end();
     if (!is_there && is_measured(runs, type.signal)) {
       list.candidates.push_back({nullptr, &type, nullptr, std::string(type.name), {}, {type.typical_size}, 0, 1.0, {}});
     }
@@ -395,16 +406,16 @@ CandidateList candidates_for(const Model& model, const std::vector<MeasuredRun>&
 std::vector<int> candidates_with_body(const std::vector<Candidate>& candidates) {
   std::vector<int> found;
   for (int j = 0; j < static_cast<int>(candidates.size()); ++j) {
-    const EffectType* const type = candidates[static_cast<std::size_t>(j)].type;
-    if (type && std::ranges::any_of(type->nodes, [](const NodeRole& role) { return role.own_capacity.has_value(); })) {
+    const thermal::EffectType* const type = candidates[static_cast<std::size_t>(j)].type;
+    if (type && std::ranges::any_of(type->nodes, [](const thermal::NodeRole& role) { return role.own_capacity.has_value(); })) {
       found.push_back(j);
     }
   }
   return found;
 }
 
-Columns candidate_columns(const std::vector<Candidate>& candidates, const Model& model, const LinearisedRun& fitted,
-                          const MeasuredRun& run) {
+estimation::Columns candidate_columns(const std::vector<Candidate>& candidates, const estimation::Model& model,
+                                      const estimation::LinearisedRun& fitted, const estimation::MeasuredRun& run) {
   const std::vector<double> parameters = model.values_in(run);
   Extended extended{model.network, {}, {}, {}, {}, {}};
   const Eigen::VectorXd start_C = fitted.state_C.col(0);
@@ -424,7 +435,8 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Model&
     }
   }
   const auto count = static_cast<Eigen::Index>(candidates.size());
-  Columns columns = Columns::Zero(fitted.residual_K.size(), count + static_cast<Eigen::Index>(extended.bodies.size()));
+  estimation::Columns columns =
+      estimation::Columns::Zero(fitted.residual_K.size(), count + static_cast<Eigen::Index>(extended.bodies.size()));
   add_network_columns(extended, parameters, fitted, run, count, columns);
   show(run, columns);
   for (std::size_t j = 0; j < candidates.size(); ++j) {
@@ -434,10 +446,11 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Model&
     }
     const Eigen::Index sensor = sensor_of(run, candidate.sensor_type->signal);
     Eigen::VectorXd true_C = fitted.state_C.row(fitted.sensor_node[static_cast<std::size_t>(sensor)]);
-    apply(run.sensors[static_cast<std::size_t>(sensor)].faults, run.time_s, false, as_span(true_C));
+    motor::apply(run.sensors[static_cast<std::size_t>(sensor)].faults, run.time_s, false, estimation::as_span(true_C));
     // A lag is strongly nonlinear in its size, so use a finite difference instead of the derivative at 0.
     Eigen::VectorXd sensor_C = true_C;
-    candidate.sensor_type->law.apply(run.time_s, candidate.column_at_share * candidate.typical_size(), false, as_span(sensor_C));
+    candidate.sensor_type->law.apply(run.time_s, candidate.column_at_share * candidate.typical_size(), false,
+                                     estimation::as_span(sensor_C));
     for (Eigen::Index k = 0; k < sensor_C.size(); ++k) {
       columns(k * fitted.sensors() + sensor, static_cast<Eigen::Index>(j)) = (sensor_C[k] - true_C[k]) / candidate.column_at_share;
     }
@@ -445,4 +458,4 @@ Columns candidate_columns(const std::vector<Candidate>& candidates, const Model&
   return columns;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

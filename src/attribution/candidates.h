@@ -9,27 +9,27 @@
 #include "estimation/run_deviation.h"
 #include "motor/sensor_effect.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 
 /// One candidate effect: a variant of a network effect at given nodes, a sensor error, or a run deviation. Exactly one of the three types
 /// is set.
 struct Candidate {
-  const EffectType* type = nullptr;
-  const SensorEffectType* sensor_type = nullptr;
-  const RunDeviationType* deviation_type = nullptr;
+  const thermal::EffectType* type = nullptr;
+  const motor::SensorEffectType* sensor_type = nullptr;
+  const estimation::RunDeviationType* deviation_type = nullptr;
   std::string id;                  ///< name of the type, followed by "@node" if it is not at its default node
   std::vector<std::string> nodes;  ///< one node per role of the type
   std::vector<double> parameters;  ///< values at the typical size, in declared order
   int variant = 0;
-  double column_at_share = 1.0;  ///< sensor errors only: size of the linearisation point, in typical sizes
-  Condition condition;           ///< the candidate acts only in runs with this condition; empty: in all runs
+  double column_at_share = 1.0;     ///< sensor errors only: size of the linearisation point, in typical sizes
+  estimation::Condition condition;  ///< the candidate acts only in runs with this condition; empty: in all runs
 
   /// True for a deviation marked as rare, and for a one-node effect at another node than its default, without a condition.
   [[nodiscard]] bool is_rare() const;
   /// Index of the parameter that the effect is proportional to.
   [[nodiscard]] int size_parameter() const;
   [[nodiscard]] double typical_size() const { return parameters[static_cast<std::size_t>(size_parameter())]; }
-  [[nodiscard]] const ParameterSpec& size_spec() const;
+  [[nodiscard]] const base::ParameterSpec& size_spec() const;
   [[nodiscard]] std::string_view family() const;
   [[nodiscard]] std::string_view experiment() const;
 };
@@ -48,14 +48,14 @@ struct CandidateList {
 /// Returns the candidates that these runs can test: all needed signals and sensors are logged, and the model does not contain the effect
 /// yet. Includes candidates limited to runs with one condition, for every condition that divides the runs; each run alone is such a
 /// condition.
-CandidateList candidates_for(const Model& model, const std::vector<MeasuredRun>& runs);
+CandidateList candidates_for(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs);
 
 /// Returns the indices of the candidates that add a body (node with a heat capacity) of their own, ascending.
 std::vector<int> candidates_with_body(const std::vector<Candidate>& candidates);
 
 /// Returns the columns of one run (n·s rows), in K, at the model's present parameters. First one column per candidate, per typical size.
 /// Then one per candidate with a body, per kelvin of the body's start temperature above ambient, at the typical size.
-Columns candidate_columns(const std::vector<Candidate>& candidates, const Model& model, const LinearisedRun& fitted,
-                          const MeasuredRun& run);
+estimation::Columns candidate_columns(const std::vector<Candidate>& candidates, const estimation::Model& model,
+                                      const estimation::LinearisedRun& fitted, const estimation::MeasuredRun& run);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

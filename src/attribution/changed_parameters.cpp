@@ -1,8 +1,8 @@
 #include "attribution/changed_parameters.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 
-std::vector<Eigen::Index> well_known_values(const Model& model, double sheet_sd) {
+std::vector<Eigen::Index> well_known_values(const estimation::Model& model, double sheet_sd) {
   std::vector<Eigen::Index> known;
   const Eigen::MatrixXd precision = model.full_prior().precision;
   for (Eigen::Index i = 0; i < model.network_count(); ++i) {
@@ -14,4 +14,4 @@ std::vector<Eigen::Index> well_known_values(const Model& model, double sheet_sd)
   return known;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

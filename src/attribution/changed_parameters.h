@@ -7,7 +7,7 @@
 
 #include "estimation/model_along_run.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 
 /// A free parameter whose narrow prior from the file is widened to the uncertainty of a data sheet.
 struct ChangedParameter {
@@ -24,6 +24,6 @@ struct ChangedParameter {
 
 /// Returns the coordinates of positive parameters whose prior standard deviation is less than half of `sheet_sd`. Both are standard
 /// deviations of the logarithm; `sheet_sd` is that of a value on a data sheet.
-std::vector<Eigen::Index> well_known_values(const Model& model, double sheet_sd);
+std::vector<Eigen::Index> well_known_values(const estimation::Model& model, double sheet_sd);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

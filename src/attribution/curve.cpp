@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 std::vector<double> knots_from(const Regressor::Range& range) {
   std::vector<double> knots(kKnots);
   for (int i = 0; i < kKnots; ++i) {
@@ -48,4 +48,4 @@ Eigen::MatrixXd curve_precision(Eigen::Index knots, const SelectionRules& rules)
   return precision;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

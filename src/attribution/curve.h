@@ -7,7 +7,7 @@
 #include "attribution/regressors.h"
 #include "attribution/rules.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 
 inline constexpr int kKnots = 7;
 /// Returns kKnots equally spaced knots from the low to the high end of the range.
@@ -32,4 +32,4 @@ double value_at(const std::vector<double>& knots, const Eigen::VectorXd& curve, 
 /// Returns the prior precision of a curve at its knots, in units of its typical size: level · I + step · DᵀD, with D the first differences.
 Eigen::MatrixXd curve_precision(Eigen::Index knots, const SelectionRules& rules);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

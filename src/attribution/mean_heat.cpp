@@ -4,15 +4,15 @@
 #include <cmath>
 #include <numeric>
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 
-double mean_heat_W(const Model& model, const std::vector<MeasuredRun>& runs) {
+double mean_heat_W(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
   const auto nodes = static_cast<std::size_t>(model.network.node_count());
   std::vector<double> heat_W(model.network.effects().size() * nodes);
   double energy_J = 0.0;
   double time_s = 0.0;
-  for (const MeasuredRun& run : runs) {
-    const std::vector<double> state_C = measured_start_C(model.network, run);
+  for (const estimation::MeasuredRun& run : runs) {
+    const std::vector<double> state_C = estimation::measured_start_C(model.network, run);
     const std::vector<double> values = model.values_in(run);
     for (std::size_t k = 0; k < run.at.size(); ++k) {
       const double duration_s = run.time_s[k + 1] - run.time_s[k];
@@ -28,8 +28,9 @@ double mean_heat_W(const Model& model, const std::vector<MeasuredRun>& runs) {
   return time_s > 0.0 ? energy_J / time_s : 0.0;
 }
 
-void heat_along(const Posterior& fit, const MeasuredRun& run, const LinearisedRun& path, const HeatVisit& visit) {
-  const Network& network = fit.model.network;
+void heat_along(const estimation::Posterior& fit, const estimation::MeasuredRun& run, const estimation::LinearisedRun& path,
+                const HeatVisit& visit) {
+  const thermal::Network& network = fit.model.network;
   const std::vector<double> values = fit.model.values_in(run);
   std::vector<double> heat_W(network.effects().size() * static_cast<std::size_t>(network.node_count()));
   for (std::size_t k = 0; k < run.at.size(); ++k) {
@@ -39,13 +40,13 @@ void heat_along(const Posterior& fit, const MeasuredRun& run, const LinearisedRu
   }
 }
 
-HeatOfEffect heat_of(const Posterior& fit, const std::vector<MeasuredRun>& runs, const std::function<bool(const EffectInPlace&)>& counts,
-                     const Condition& condition) {
-  const Network& network = fit.model.network;
+HeatOfEffect heat_of(const estimation::Posterior& fit, const std::vector<estimation::MeasuredRun>& runs,
+                     const std::function<bool(const thermal::EffectInPlace&)>& counts, const estimation::Condition& condition) {
+  const thermal::Network& network = fit.model.network;
   const auto nodes = static_cast<std::size_t>(network.node_count());
   std::vector<std::size_t> places;
   for (std::size_t effect = 0; effect < network.effects().size(); ++effect) {
-    if (const EffectInPlace& in_place = network.effects()[effect]; counts(in_place)) {
+    if (const thermal::EffectInPlace& in_place = network.effects()[effect]; counts(in_place)) {
       places.push_back(effect * nodes + static_cast<std::size_t>(in_place.node_index.front()));
     }
   }
@@ -53,7 +54,7 @@ HeatOfEffect heat_of(const Posterior& fit, const std::vector<MeasuredRun>& runs,
   HeatOfEffect out;
   double time_s = 0.0;
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    const MeasuredRun& run = runs[r];
+    const estimation::MeasuredRun& run = runs[r];
     if (!run.has(condition)) {
       continue;
     }
@@ -76,4 +77,4 @@ HeatOfEffect heat_of(const Posterior& fit, const std::vector<MeasuredRun>& runs,
   return out;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

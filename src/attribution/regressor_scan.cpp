@@ -11,7 +11,7 @@
 #include "attribution/set_search.h"
 #include "base/parallel.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 namespace {
 
 /// Hat functions of a signal, padded to the number of columns that are whitened at once.
@@ -21,7 +21,7 @@ constexpr double kUsual_share = 0.3;
 
 /// Returns the response of the sensors to `heat_W` (intervals × hats), constant over each interval. The heat enters the node with index
 /// `flux` and leaves the node with index `other`; -1: none.
-HatColumns response(const LinearisedRun& run, const HatColumns& heat_W, int flux, int other) {
+HatColumns response(const estimation::LinearisedRun& run, const HatColumns& heat_W, int flux, int other) {
   HatColumns shown = HatColumns::Zero(run.residual_K.size(), heat_W.cols());
   HatColumns state = HatColumns::Zero(run.states, heat_W.cols());
   HatColumns next = state;
@@ -59,7 +59,7 @@ bool is_taken_out(Multiplier multiplier) { return multiplier == Multiplier::exce
 struct Scored {
   double nats = -std::numeric_limits<double>::infinity();  ///< ln P, including the priors of the members
   std::size_t subset = 0;
-  FluxPlace place;
+  estimation::FluxPlace place;
 };
 
 /// A curve: term, signal and knots.
@@ -74,9 +74,9 @@ struct Family {
 
 /// Data of one run that all curves use, under one assumed unknown heat.
 struct SharedRun {
-  Whitening whitening;
-  Columns columns;           ///< whitened: start temperatures, θ, members, residual
-  Eigen::MatrixXd products;  ///< whitened columns times themselves, with the prior of the start temperatures
+  estimation::Whitening whitening;
+  estimation::Columns columns;  ///< whitened: start temperatures, θ, members, residual
+  Eigen::MatrixXd products;     ///< whitened columns times themselves, with the prior of the start temperatures
 };
 
 class Scanner {
@@ -96,9 +96,9 @@ class Scanner {
     constexpr std::size_t kZoomed = 4;
     std::vector<Family> families = all_families();
     const double without_nats = best_without_nats();
-    for (const FluxPlace& place : beginnings()) {
+    for (const estimation::FluxPlace& place : beginnings()) {
       const std::vector<SharedRun>& shared = shared_at(place);
-      in_parallel(families.size(), 0, [&](std::size_t i) { take_better(families[i], score(families[i], shared, place)); });
+      base::in_parallel(families.size(), 0, [&](std::size_t i) { take_better(families[i], score(families[i], shared, place)); });
     }
     const auto keep_best = [&families](std::size_t count) {
       std::ranges::stable_sort(families, std::greater(), [](const Family& each) { return each.scored.nats; });
@@ -151,15 +151,15 @@ class Scanner {
         }
       }
     }
-    in_parallel(families.size(), 0, [&](std::size_t i) { set_responses(families[i]); });
+    base::in_parallel(families.size(), 0, [&](std::size_t i) { set_responses(families[i]); });
     return families;
   }
 
   /// Returns the given grid points, and points with far less unknown heat: a correct curve leaves little of it.
-  [[nodiscard]] std::vector<FluxPlace> beginnings() const {
+  [[nodiscard]] std::vector<estimation::FluxPlace> beginnings() const {
     constexpr int kLess = 2;
-    std::vector<FluxPlace> all = input_.places;
-    for (FluxPlace place : input_.places) {
+    std::vector<estimation::FluxPlace> all = input_.places;
+    for (estimation::FluxPlace place : input_.places) {
       for (std::size_t axis = 0; axis + 1 < place.size(); ++axis) {
         place[axis] = std::max(0, place[axis] - kLess);
       }
@@ -179,7 +179,7 @@ class Scanner {
 
   /// Moves to the most probable unknown heat for the curve.
   void climb(Family& family) {
-    (void)most_probable(input_.grid, family.scored.place, [&](const FluxPlace& place) {
+    (void)estimation::most_probable(input_.grid, family.scored.place, [&](const estimation::FluxPlace& place) {
       Scored scored = score(family, shared_at(place), place);
       const double nats = scored.nats;
       take_better(family, std::move(scored));
@@ -202,7 +202,7 @@ class Scanner {
         other.scored = {};
       }
       const std::vector<SharedRun>& shared = shared_at(family.scored.place);
-      in_parallel(narrower.size(), 0, [&](std::size_t i) {
+      base::in_parallel(narrower.size(), 0, [&](std::size_t i) {
         set_responses(narrower[i]);
         take_better(narrower[i], score(narrower[i], shared, family.scored.place));
       });
@@ -218,14 +218,14 @@ class Scanner {
   /// Returns ln P of the best subset without a curve, at its own unknown heat.
   double best_without_nats() {
     double best_nats = -std::numeric_limits<double>::infinity();
-    for (const FluxPlace& start : input_.places) {
-      (void)most_probable(input_.grid, start, [&](const FluxPlace& place) {
+    for (const estimation::FluxPlace& start : input_.places) {
+      (void)estimation::most_probable(input_.grid, start, [&](const estimation::FluxPlace& place) {
         const std::vector<SharedRun>& shared = shared_at(place);
-        Products sum;
+        estimation::Products sum;
         for (std::size_t r = 0; r < shared.size(); ++r) {
           add_run(shared[r].products, (*input_.designs)[r], shared[r].whitening, sum);
         }
-        const Reduced all = reduced(sum, prior_);
+        const estimation::Reduced all = estimation::reduced(sum, prior_);
         double own_nats = -std::numeric_limits<double>::infinity();
         for (std::size_t subset = 0; subset < subsets_; ++subset) {
           own_nats = std::max(own_nats, all.base_nats + gain_of(all, subset, false) + prior_of(subset));
@@ -248,7 +248,7 @@ class Scanner {
   /// Returns the heat of every hat along a run at the family's typical size.
   [[nodiscard]] HatColumns heats_W(const Family& family, std::size_t r) const {
     const double sign = is_taken_out(family.term.multiplier) ? -1.0 : 1.0;
-    const DesignRun& design = (*input_.designs)[r];
+    const estimation::DesignRun& design = (*input_.designs)[r];
     const Regressor& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
     HatColumns heat_W = HatColumns::Zero(design.run.samples() - 1, kKnots + 1);
     for (Eigen::Index k = 0; k < family.multiplier[r].size(); ++k) {
@@ -267,20 +267,20 @@ class Scanner {
     return heat_W;
   }
 
-  const std::vector<SharedRun>& shared_at(const FluxPlace& place) {
+  const std::vector<SharedRun>& shared_at(const estimation::FluxPlace& place) {
     const auto found = shared_.find(place);
     return found != shared_.end() ? found->second : shared_[place] = made_at(input_.grid.at(place));
   }
 
-  [[nodiscard]] std::vector<SharedRun> made_at(const LatentFlux& flux) const {
+  [[nodiscard]] std::vector<SharedRun> made_at(const estimation::LatentFlux& flux) const {
     std::vector<SharedRun> shared;
-    for (const DesignRun& design : *input_.designs) {
-      shared.push_back({Whitening(design.run, flux, design.noise), {}, {}});
+    for (const estimation::DesignRun& design : *input_.designs) {
+      shared.push_back({estimation::Whitening(design.run, flux, design.noise), {}, {}});
       const Eigen::Index starts = design.run.states;
       const Eigen::Index own = input_.prior.mean.size();
       const Eigen::Index t = prior_.mean.size();
       const auto members = static_cast<Eigen::Index>(input_.members.columns.size());
-      Columns& columns = shared.back().columns;
+      estimation::Columns& columns = shared.back().columns;
       columns.resize(design.columns.rows(), starts + t + members + 1);
       columns.leftCols(starts) = design.run.by_start;
       columns.middleCols(starts, own) = design.columns.leftCols(own);
@@ -301,7 +301,8 @@ class Scanner {
   }
 
   /// Eliminates the start temperatures of a run and adds its products and its determinant to `sum`.
-  static void add_run(const Eigen::MatrixXd& square, const DesignRun& design, const Whitening& whitening, Products& sum) {
+  static void add_run(const Eigen::MatrixXd& square, const estimation::DesignRun& design, const estimation::Whitening& whitening,
+                      estimation::Products& sum) {
     const Eigen::Index starts = design.run.states;
     const Eigen::Index rest = square.cols() - starts;
     const Eigen::LLT<Eigen::MatrixXd> start(square.topLeftCorner(starts, starts));
@@ -324,7 +325,7 @@ class Scanner {
 
   /// Returns the ln evidence of a subset of the members, with or without the curve, minus that of no member. Writes the sizes (curve last)
   /// and their posterior precision if the pointers are set.
-  [[nodiscard]] double gain_of(const Reduced& all, std::size_t subset, bool with_curve, Eigen::VectorXd* sizes = nullptr,
+  [[nodiscard]] double gain_of(const estimation::Reduced& all, std::size_t subset, bool with_curve, Eigen::VectorXd* sizes = nullptr,
                                Eigen::MatrixXd* precision_of = nullptr) const {
     std::vector<Eigen::Index> places = members_of(subset);
     const auto members = static_cast<Eigen::Index>(places.size());
@@ -352,8 +353,8 @@ class Scanner {
   }
 
   /// Returns the normal equations of [members, hats] with θ eliminated.
-  [[nodiscard]] Reduced reduced_with(const Family& family, const std::vector<SharedRun>& shared) const {
-    Products sum;
+  [[nodiscard]] estimation::Reduced reduced_with(const Family& family, const std::vector<SharedRun>& shared) const {
+    estimation::Products sum;
     for (std::size_t r = 0; r < shared.size(); ++r) {
       HatColumns shown = family.shown[r];
       shared[r].whitening.apply(shown);
@@ -372,11 +373,11 @@ class Scanner {
       square(before + kKnots, before + kKnots) = shared[r].products(before, before);
       add_run(square, (*input_.designs)[r], shared[r].whitening, sum);
     }
-    return reduced(sum, prior_);
+    return estimation::reduced(sum, prior_);
   }
 
-  [[nodiscard]] Scored score(const Family& family, const std::vector<SharedRun>& shared, const FluxPlace& place) const {
-    const Reduced all = reduced_with(family, shared);
+  [[nodiscard]] Scored score(const Family& family, const std::vector<SharedRun>& shared, const estimation::FluxPlace& place) const {
+    const estimation::Reduced all = reduced_with(family, shared);
     const double second_nats = second_signal(family.term.multiplier).empty() ? 0.0 : rules_.second_signal_nats;
     Scored best;
     for (std::size_t subset = 0; subset < subsets_; ++subset) {
@@ -403,7 +404,7 @@ class Scanner {
     out.usual = family.usual;
     out.knots = family.knots;
     out.gain_nats = family.scored.nats - without_nats;
-    const Reduced at = reduced_with(family, shared_at(family.scored.place));
+    const estimation::Reduced at = reduced_with(family, shared_at(family.scored.place));
     Eigen::VectorXd sizes;
     Eigen::MatrixXd precision;
     (void)gain_of(at, subset, true, &sizes, &precision);
@@ -451,8 +452,8 @@ class Scanner {
   const SelectionRules& rules_;
   Eigen::MatrixXd precision_;
   std::size_t subsets_;
-  ThetaPrior prior_;  ///< prior of θ and the companions
-  std::map<FluxPlace, std::vector<SharedRun>> shared_;
+  estimation::ThetaPrior prior_;  ///< prior of θ and the companions
+  std::map<estimation::FluxPlace, std::vector<SharedRun>> shared_;
 };
 
 }  // namespace
@@ -461,4 +462,4 @@ std::vector<ScanResult> scan_drivers(const ScanInput& input, const SelectionRule
   return input.drivers->empty() ? std::vector<ScanResult>() : Scanner(input, rules).run(most);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

@@ -11,7 +11,7 @@
 #include "estimation/design.h"
 #include "estimation/flux_grid.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 
 /// One curve, with the subset and the unknown heat that make it most probable.
 struct ScanResult {
@@ -41,19 +41,19 @@ struct ScanMembers {
 
 /// Input of the scan. The pointers must be set and outlive the scan.
 struct ScanInput {
-  const Model* model = nullptr;
-  const std::vector<MeasuredRun>* runs = nullptr;
-  const std::vector<LinearisedRun>* fitted = nullptr;
+  const estimation::Model* model = nullptr;
+  const std::vector<estimation::MeasuredRun>* runs = nullptr;
+  const std::vector<estimation::LinearisedRun>* fitted = nullptr;
   const std::vector<Regressor>* drivers = nullptr;
-  const std::vector<DesignRun>* designs = nullptr;
-  ThetaPrior prior;
+  const std::vector<estimation::DesignRun>* designs = nullptr;
+  estimation::ThetaPrior prior;
   ScanMembers members;
-  FluxGrid grid;
-  std::vector<FluxPlace> places;  ///< start points of the search: most probable with the best set, and without any effect
-  double mean_heat_W = 1.0;       ///< mean modelled heat, which scales the prior of the curves
+  estimation::FluxGrid grid;
+  std::vector<estimation::FluxPlace> places;  ///< start points of the search: most probable with the best set, and without any effect
+  double mean_heat_W = 1.0;                   ///< mean modelled heat, which scales the prior of the curves
 };
 
 /// Returns the best curves, at most `most`, best first; empty if there are no signals. The gain may be negative.
 std::vector<ScanResult> scan_drivers(const ScanInput& input, const SelectionRules& rules, std::size_t most);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

@@ -8,7 +8,7 @@
 
 #include "base/unknown.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 namespace {
 
 /// Signals with a larger correlation are copies; the earlier one is kept.
@@ -26,7 +26,8 @@ Regressor driver_of(std::string name, std::string unit, DriverKind kind) {
 
 class Collector {
  public:
-  Collector(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs)
+  Collector(const estimation::Model& model, const std::vector<estimation::LinearisedRun>& fitted,
+            const std::vector<estimation::MeasuredRun>& runs)
       : model_(model), fitted_(fitted), runs_(runs) {}
 
   template <class Value>
@@ -41,9 +42,9 @@ class Collector {
   }
 
   template <class Value>
-  void add_where(std::initializer_list<Signal> signals, std::string name, std::string unit, const Value& value) {
-    for (const Signal signal : signals) {
-      if (!std::ranges::all_of(runs_, [&](const MeasuredRun& run) { return run.has(signal); })) {
+  void add_where(std::initializer_list<thermal::Signal> signals, std::string name, std::string unit, const Value& value) {
+    for (const thermal::Signal signal : signals) {
+      if (!std::ranges::all_of(runs_, [&](const estimation::MeasuredRun& run) { return run.has(signal); })) {
         return;
       }
     }
@@ -117,32 +118,33 @@ class Collector {
     return count > 0.0 && spread > 0.0 ? (ab - sum_a * sum_b / count) / std::sqrt(spread) : 0.0;
   }
 
-  const Model& model_;
-  const std::vector<LinearisedRun>& fitted_;
-  const std::vector<MeasuredRun>& runs_;
+  const estimation::Model& model_;
+  const std::vector<estimation::LinearisedRun>& fitted_;
+  const std::vector<estimation::MeasuredRun>& runs_;
   std::vector<Regressor> kept_;
 };
 
 void add_operating_points(Collector& all) {
-  using Point = OperatingPoint<double>;
-  for (const OperatingQuantity<double>& each : kQuantities<double>) {
+  using Point = thermal::OperatingPoint<double>;
+  for (const thermal::OperatingQuantity<double>& each : thermal::kQuantities<double>) {
     if (each.is_driver) {
       all.add_where({each.signal.value()}, std::string(each.name), std::string(each.unit), [&](const Point& at) { return at.*each.value; });
     }
     // The later of two signals that are nearly copies is left out.
-    if (each.signal == Signal::input_power) {
-      all.add_where({Signal::current, Signal::speed}, "current_speed_squared", "A rad2/s2",
+    if (each.signal == thermal::Signal::input_power) {
+      all.add_where({thermal::Signal::current, thermal::Signal::speed}, "current_speed_squared", "A rad2/s2",
                     [](const Point& at) { return at.current_rms_A * at.speed_rms_rad_per_s * at.speed_rms_rad_per_s; });
     }
   }
 }
 
-void add_temperatures(Collector& all, const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs) {
+void add_temperatures(Collector& all, const estimation::Model& model, const std::vector<estimation::LinearisedRun>& fitted,
+                      const std::vector<estimation::MeasuredRun>& runs) {
   const auto ambient_C = [&](std::size_t r, Eigen::Index k) { return runs[r].at[static_cast<std::size_t>(k)].ambient_C; };
-  const std::string ambient(Network::kAmbient);
+  const std::string ambient(thermal::Network::kAmbient);
   for (int node = 0; node < model.network.state_count(); ++node) {
     const std::string name(model.network.node_name(node));
-    const bool is_seen = std::ranges::any_of(runs, [&](const MeasuredRun& run) { return run.sensor_at(name) >= 0; });
+    const bool is_seen = std::ranges::any_of(runs, [&](const estimation::MeasuredRun& run) { return run.sensor_at(name) >= 0; });
     if (!is_seen && name != "winding" && name != "stator") {
       continue;  // a body without a sensor is no signal
     }
@@ -165,7 +167,7 @@ void add_temperatures(Collector& all, const Model& model, const std::vector<Line
     between.reference = model.network.node_name(1);
     all.add(between, [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(0, k) - fitted[r].state_C(1, k); });
   }
-  if (std::ranges::all_of(runs, [](const MeasuredRun& run) { return run.has(Signal::neighbour_temperature); })) {
+  if (std::ranges::all_of(runs, [](const estimation::MeasuredRun& run) { return run.has(thermal::Signal::neighbour_temperature); })) {
     Regressor neighbour = driver_of("neighbour_above_stator", "K", DriverKind::node_temperature);
     const int stator = std::max(0, model.network.find_node("stator"));
     neighbour.choice = "neighbour_difference";
@@ -184,28 +186,29 @@ void add_temperatures(Collector& all, const Model& model, const std::vector<Line
 
 }  // namespace
 
-std::vector<Regressor> drivers_of(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs) {
+std::vector<Regressor> drivers_of(const estimation::Model& model, const std::vector<estimation::LinearisedRun>& fitted,
+                                  const std::vector<estimation::MeasuredRun>& runs) {
   Collector all(model, fitted, runs);
   add_operating_points(all);
   add_temperatures(all, model, fitted, runs);
   all.add(driver_of(std::string(kTimeDriver), "s", DriverKind::log_only),
           [&](std::size_t r, Eigen::Index k) { return runs[r].time_s[static_cast<std::size_t>(k)] - runs[r].time_s.front(); });
   std::set<std::string> names;
-  for (const MeasuredRun& run : runs) {
+  for (const estimation::MeasuredRun& run : runs) {
     for (const auto& [name, values] : run.columns) {
       names.insert(name);
     }
   }
   for (const std::string& name : names) {
-    const std::optional<Quantity> quantity = quantity_named(name);
+    const std::optional<recording::Quantity> quantity = recording::quantity_named(name);
     Regressor driver = driver_of(name, quantity ? quantity->unit : "", DriverKind::log_only);
-    driver.choice = kColumnChoice;
+    driver.choice = thermal::kColumnChoice;
     all.add(std::move(driver), [&](std::size_t r, Eigen::Index k) {
       const auto found = runs[r].columns.find(name);
-      return found == runs[r].columns.end() ? kUnknown : found->second[k];
+      return found == runs[r].columns.end() ? base::kUnknown : found->second[k];
     });
   }
   return all.take();
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

@@ -8,7 +8,7 @@
 #include "estimation/linearised_run.h"
 #include "estimation/model.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 
 /// Origin of a signal: every operating point, a temperature, or only the log.
 enum class DriverKind { operating_point, node_temperature, log_only };
@@ -35,6 +35,7 @@ struct Regressor {
 inline constexpr std::string_view kTimeDriver = "time";
 
 /// Returns the signals that vary within at least one run and are not copies of each other.
-std::vector<Regressor> drivers_of(const Model& model, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs);
+std::vector<Regressor> drivers_of(const estimation::Model& model, const std::vector<estimation::LinearisedRun>& fitted,
+                                  const std::vector<estimation::MeasuredRun>& runs);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

@@ -17,7 +17,7 @@
 #include "estimation/free_run_errors.h"
 #include "estimation/model_screening.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 namespace {
 
 /// Returns the priors and families. Candidates of one type that act only in some runs, or at other nodes than the default, share the prior
@@ -53,7 +53,7 @@ std::vector<CandidateRule> rules_of(const std::vector<Candidate>& candidates, co
 }  // namespace
 
 Rounds::Rounds(const SelectionInput& input, const SelectionRules& rules)
-    : input_(input), rules_(rules), is_speed_open_(std::ranges::any_of(input.runs, turns_unseen)) {}
+    : input_(input), rules_(rules), is_speed_open_(std::ranges::any_of(input.runs, calibration::turns_unseen)) {}
 
 Judged Rounds::run_rounds() {
   begin();
@@ -77,24 +77,24 @@ Judged Rounds::run_rounds() {
 void Rounds::begin() {
   out_.mean_heat_W = mean_heat_W(input_.model, input_.runs);
   std::vector<std::vector<double>> start_C;
-  std::vector<LinearisedRun> paths;
-  for (const MeasuredRun& run : input_.runs) {
-    start_C.push_back(measured_start_C(input_.model.network, run));
-    paths.push_back(linearise(input_.model, start_C.back(), run));
-    merged_.push_back(mergeable_samples(paths.back()));
+  std::vector<estimation::LinearisedRun> paths;
+  for (const estimation::MeasuredRun& run : input_.runs) {
+    start_C.push_back(estimation::measured_start_C(input_.model.network, run));
+    paths.push_back(estimation::linearise(input_.model, start_C.back(), run));
+    merged_.push_back(estimation::mergeable_samples(paths.back()));
   }
-  unit_W_ = material_heat_W(paths, rules_.material_K);
-  now_ = posterior_of(input_.model, input_.runs, start_C, plain_options());
+  unit_W_ = estimation::material_heat_W(paths, rules_.material_K);
+  now_ = estimation::posterior_of(input_.model, input_.runs, start_C, plain_options());
   out_.material_W = std::max({unit_W_, rules_.material_share * out_.mean_heat_W, rules_.as_usual_ratio * input_.usual.flux_W});
-  grid_ = flux_grid(unit_W_, travel_K(input_.runs), input_.model.flux_nodes.size());
-  out_.weights = weights_by_model(now_.fitted, input_.runs, unit_W_);
+  grid_ = estimation::flux_grid(unit_W_, estimation::travel_K(input_.runs), input_.model.flux_nodes.size());
+  out_.weights = estimation::weights_by_model(now_.fitted, input_.runs, unit_W_);
   list_ = candidates_for(input_.model, input_.runs);
   if (is_speed_open_) {
     // Heat at the stator may be the loss at the speed that was not logged.
     std::erase_if(list_.candidates, [](const Candidate& each) { return each.type && each.nodes.front() == "stator"; });
   }
   out_.not_judged = list_.not_judged;
-  parameters_ = well_known_values(input_.model, kSheet_sd);
+  parameters_ = well_known_values(input_.model, calibration::kSheet_sd);
   set_rules_ = rules_of(candidates(), rules_);
   for (const Eigen::Index parameter : parameters_) {
     const std::string name = "parameter " + input_.model.name(parameter);
@@ -114,30 +114,31 @@ void Rounds::begin() {
 
 Judged Rounds::judge() {
   Judged judged;
-  const Model base = base_here();
-  std::vector<Columns> extra(input_.runs.size());
+  const estimation::Model base = base_here();
+  std::vector<estimation::Columns> extra(input_.runs.size());
   judged.fitted.resize(input_.runs.size());
-  in_parallel(input_.runs.size(), 0, [&](std::size_t r) {
-    const MeasuredRun& run = input_.runs[r];
-    judged.fitted[r] = linearise_along(base, now_.fitted[r].state_C.topRows(base.network.state_count()), run);
+  base::in_parallel(input_.runs.size(), 0, [&](std::size_t r) {
+    const estimation::MeasuredRun& run = input_.runs[r];
+    judged.fitted[r] = estimation::linearise_along(base, now_.fitted[r].state_C.topRows(base.network.state_count()), run);
     const auto own = static_cast<Eigen::Index>(set_rules_.size());
     const auto bodies = static_cast<Eigen::Index>(bodies_.size());
     const auto runs = static_cast<Eigen::Index>(input_.runs.size());
     extra[r].setZero(judged.fitted[r].residual_K.size(), own + bodies * runs);
-    const Columns columns = candidate_columns(candidates(), base, judged.fitted[r], run);
+    const estimation::Columns columns = candidate_columns(candidates(), base, judged.fitted[r], run);
     const auto count = static_cast<Eigen::Index>(candidates().size());
     extra[r].leftCols(count) = columns.leftCols(count);
     for (Eigen::Index body = 0; body < bodies; ++body) {
       extra[r].col(own + body * runs + static_cast<Eigen::Index>(r)) = columns.col(count + body);
     }
     for (std::size_t i = 0; i < parameters_.size(); ++i) {
-      extra[r].col(static_cast<Eigen::Index>(candidates().size() + i)) = kSheet_sd * judged.fitted[r].by_parameter.col(parameters_[i]);
+      extra[r].col(static_cast<Eigen::Index>(candidates().size() + i)) =
+          calibration::kSheet_sd * judged.fitted[r].by_parameter.col(parameters_[i]);
     }
   });
-  judged.designs = design(base.network, judged.fitted, input_.runs, out_.weights, merged_, extra);
-  const ThetaPrior prior = prior_here(base);
+  judged.designs = estimation::design(base.network, judged.fitted, input_.runs, out_.weights, merged_, extra);
+  const estimation::ThetaPrior prior = estimation::prior_here(base);
   judged.empty_place = best_place(judged.designs, prior, {}, place_);
-  std::map<FluxPlace, Reduced> points;
+  std::map<estimation::FluxPlace, estimation::Reduced> points;
   add_points(judged.designs, prior, grid_.star(judged.empty_place), points);
   add_points(judged.designs, prior, grid_.all_over(), points);
   if (!best_.empty()) {
@@ -146,7 +147,7 @@ Judged Rounds::judge() {
   // The most probable unknown heat with the best set differs from that without effects.
   constexpr int kMostMoves = 3;
   for (int move = 0; move < kMostMoves; ++move) {
-    std::vector<Reduced> all;
+    std::vector<estimation::Reduced> all;
     judged.places.clear();
     for (const auto& [place, reduced] : points) {
       judged.places.push_back(place);
@@ -165,10 +166,10 @@ Judged Rounds::judge() {
   constexpr std::size_t kMostFits = 6;
   search_->reconsider(
       [&](const std::vector<int>& members, const SetSearch::AtBest& at) {
-        PosteriorOptions options = final_options(judged.places[at.point]);
+        estimation::PosteriorOptions options = final_options(judged.places[at.point]);
         options.around.clear();
-        const Model model = with_members(members, at, ShapesAre::free);
-        return try_posterior_of(model, input_.runs, starts_of(model), options).evidence_nats;
+        const estimation::Model model = with_members(members, at, ShapesAre::free);
+        return estimation::try_posterior_of(model, input_.runs, starts_of(model), options).evidence_nats;
       },
       kMostFits);
   if (search_->sets().front().members != judged.best) {
@@ -182,21 +183,23 @@ Judged Rounds::judge() {
   return judged;
 }
 
-void Rounds::add_points(const std::vector<DesignRun>& designs, const ThetaPrior& prior, const std::vector<FluxPlace>& places,
-                        std::map<FluxPlace, Reduced>& points) const {
-  std::vector<std::pair<const FluxPlace, Reduced>*> wanted;
-  for (const FluxPlace& place : places) {
+void Rounds::add_points(const std::vector<estimation::DesignRun>& designs, const estimation::ThetaPrior& prior,
+                        const std::vector<estimation::FluxPlace>& places,
+                        std::map<estimation::FluxPlace, estimation::Reduced>& points) const {
+  std::vector<std::pair<const estimation::FluxPlace, estimation::Reduced>*> wanted;
+  for (const estimation::FluxPlace& place : places) {
     const auto [entry, is_new] = points.try_emplace(place);
     if (is_new) {
       wanted.push_back(&*entry);
     }
   }
-  in_parallel(wanted.size(), 0,
-              [&](std::size_t i) { wanted[i]->second = reduced(products_of(designs, grid_.at(wanted[i]->first), {}), prior); });
+  base::in_parallel(wanted.size(), 0, [&](std::size_t i) {
+    wanted[i]->second = estimation::reduced(estimation::products_of(designs, grid_.at(wanted[i]->first), {}), prior);
+  });
 }
 
-FluxPlace Rounds::best_place(const std::vector<DesignRun>& designs, const ThetaPrior& prior, const std::vector<int>& members,
-                             const FluxPlace& start) const {
+estimation::FluxPlace Rounds::best_place(const std::vector<estimation::DesignRun>& designs, const estimation::ThetaPrior& prior,
+                                         const std::vector<int>& members, const estimation::FluxPlace& start) const {
   SetColumns set = columns_of(members, set_rules_, rules_.size_sd);
   std::vector<Eigen::Index> columns;
   for (Eigen::Index i = 0; i < free_count(); ++i) {
@@ -206,14 +209,14 @@ FluxPlace Rounds::best_place(const std::vector<DesignRun>& designs, const ThetaP
     columns.push_back(free_count() + column);
     column = static_cast<Eigen::Index>(columns.size()) - 1 - free_count();
   }
-  return most_probable(grid_, start, [&](const FluxPlace& place) {
-    const Reduced own = reduced(products_of(designs, grid_.at(place), columns), prior);
+  return estimation::most_probable(grid_, start, [&](const estimation::FluxPlace& place) {
+    const estimation::Reduced own = estimation::reduced(estimation::products_of(designs, grid_.at(place), columns), prior);
     return own.base_nats + set_gain_nats(own, set);
   });
 }
 
-Model Rounds::with_members(const std::vector<int>& members, const SetSearch::AtBest& at, ShapesAre shapes) const {
-  Model model = base_here();
+estimation::Model Rounds::with_members(const std::vector<int>& members, const SetSearch::AtBest& at, ShapesAre shapes) const {
+  estimation::Model model = base_here();
   Eigen::VectorXd theta = model.theta() + at.theta;
   for (Eigen::Index i = 0; i < theta.size(); ++i) {
     theta[i] = std::clamp(theta[i], model.low(i), model.high(i));
@@ -222,10 +225,10 @@ Model Rounds::with_members(const std::vector<int>& members, const SetSearch::AtB
   for (std::size_t m = 0; m < members.size(); ++m) {
     if (is_parameter(members[m])) {
       const Eigen::Index parameter = parameter_of(members[m]);
-      model.prior.widen(parameter, kSheet_sd);
+      model.prior.widen(parameter, calibration::kSheet_sd);
       Eigen::VectorXd moved = model.theta();
-      moved[parameter] =
-          std::clamp(moved[parameter] + kSheet_sd * at.sizes[static_cast<Eigen::Index>(m)], model.low(parameter), model.high(parameter));
+      moved[parameter] = std::clamp(moved[parameter] + calibration::kSheet_sd * at.sizes[static_cast<Eigen::Index>(m)],
+                                    model.low(parameter), model.high(parameter));
       model.set_theta(moved);
     }
   }
@@ -239,11 +242,12 @@ Model Rounds::with_members(const std::vector<int>& members, const SetSearch::AtB
 }
 
 void Rounds::follow(const Judged& judged) {
-  PosteriorOptions options;
+  estimation::PosteriorOptions options;
   options.flux = grid_.at(judged.best_place);
   options.weights = out_.weights;
   options.merged = merged_;
-  Posterior next = try_posterior_of(with_members(judged.best, judged.at_best, ShapesAre::free), input_.runs, now_.start_C, options);
+  estimation::Posterior next =
+      estimation::try_posterior_of(with_members(judged.best, judged.at_best, ShapesAre::free), input_.runs, now_.start_C, options);
   if (!std::isfinite(next.evidence_nats)) {
     return;
   }
@@ -260,7 +264,7 @@ void Rounds::follow(const Judged& judged) {
       candidate.column_at_share = away_from_zero(now_.model.theta()[size_coordinate(now_.model, candidate, {})]);
     }
   }
-  out_.weights = weights_by_model(now_.fitted, input_.runs, unit_W_);
+  out_.weights = estimation::weights_by_model(now_.fitted, input_.runs, unit_W_);
 }
 
 double Rounds::away_from_zero(double share) {
@@ -268,13 +272,13 @@ double Rounds::away_from_zero(double share) {
   return std::abs(share) < kLeast_share ? std::copysign(kLeast_share, share) : share;
 }
 
-void Rounds::take_shapes(const EffectInPlace& fitted, Candidate& candidate) const {
+void Rounds::take_shapes(const thermal::EffectInPlace& fitted, Candidate& candidate) const {
   const auto value_of = [&](std::size_t p) { return now_.model.values[static_cast<std::size_t>(fitted.parameter_index[p])]; };
   const auto size = static_cast<std::size_t>(candidate.size_parameter());
   const double share = away_from_zero(value_of(size) / candidate.typical_size());
   for (std::size_t p = 0; p < candidate.parameters.size(); ++p) {
     const bool is_capacity =
-        std::ranges::any_of(candidate.type->nodes, [&](const NodeRole& role) { return role.own_capacity == static_cast<int>(p); });
+        std::ranges::any_of(candidate.type->nodes, [&](const thermal::NodeRole& role) { return role.own_capacity == static_cast<int>(p); });
     if (p != size && candidate.type->parameters[p].choices.empty()) {
       candidate.parameters[p] = is_capacity ? value_of(p) / share : value_of(p);
     }
@@ -324,19 +328,19 @@ void Rounds::note_sight() {
   out_.seen_share = 1.0 - static_cast<double>(out_.unseen.size()) / all;
 }
 
-PosteriorOptions Rounds::final_options(const FluxPlace& place) const {
-  PosteriorOptions options;
+estimation::PosteriorOptions Rounds::final_options(const estimation::FluxPlace& place) const {
+  estimation::PosteriorOptions options;
   options.flux = grid_.at(place);
   options.weights = out_.weights;
   options.merged = merged_;
-  for (const FluxPlace& each : grid_.star(place)) {
+  for (const estimation::FluxPlace& each : grid_.star(place)) {
     options.around.push_back(grid_.at(each));
   }
   return options;
 }
 
-PosteriorOptions Rounds::plain_options() const {
-  PosteriorOptions plain;
+estimation::PosteriorOptions Rounds::plain_options() const {
+  estimation::PosteriorOptions plain;
   plain.white_noise_K = rules_.start_error_K;
   plain.longest_step_ratio = rules_.longest_step_ratio;
   plain.most_steps = 20;
@@ -346,26 +350,28 @@ PosteriorOptions Rounds::plain_options() const {
   return plain;
 }
 
-double Rounds::error_of_ends_K(const Posterior& start, PosteriorOptions options) const {
+double Rounds::error_of_ends_K(const estimation::Posterior& start, estimation::PosteriorOptions options) const {
   constexpr double kSeen_share = 2.0 / 3.0;
-  const auto seen = [](const MeasuredRun& run) { return static_cast<Eigen::Index>(kSeen_share * static_cast<double>(run.samples())); };
+  const auto seen = [](const estimation::MeasuredRun& run) {
+    return static_cast<Eigen::Index>(kSeen_share * static_cast<double>(run.samples()));
+  };
   for (std::size_t r = 0; r < input_.runs.size(); ++r) {
-    const MeasuredRun& run = input_.runs[r];
+    const estimation::MeasuredRun& run = input_.runs[r];
     const auto sensors = static_cast<Eigen::Index>(run.sensors.size());
     if (options.weights[r].size() == 0) {
       options.weights[r].setOnes(run.samples() * sensors);
     }
     options.weights[r].tail((run.samples() - seen(run)) * sensors).setZero();
   }
-  const Posterior fit = try_posterior_of(start.model, input_.runs, start.start_C, options);
+  const estimation::Posterior fit = estimation::try_posterior_of(start.model, input_.runs, start.start_C, options);
   if (!std::isfinite(fit.evidence_nats)) {
     return std::numeric_limits<double>::infinity();
   }
   double sum_K2 = 0.0;
   double count = 0.0;
   for (std::size_t r = 0; r < input_.runs.size(); ++r) {
-    const MeasuredRun& run = input_.runs[r];
-    const Eigen::MatrixXd error_K = open_loop_C(fit.model, run, {}) - run.measured_C;
+    const estimation::MeasuredRun& run = input_.runs[r];
+    const Eigen::MatrixXd error_K = estimation::open_loop_C(fit.model, run, {}) - run.measured_C;
     for (const double each_K : error_K.bottomRows(run.samples() - seen(run)).reshaped()) {
       if (!std::isnan(each_K)) {
         sum_K2 += each_K * each_K;
@@ -376,15 +382,15 @@ double Rounds::error_of_ends_K(const Posterior& start, PosteriorOptions options)
   return std::sqrt(sum_K2 / std::max(1.0, count));
 }
 
-Posterior Rounds::to_predict(Posterior fit) const {
+estimation::Posterior Rounds::to_predict(estimation::Posterior fit) const {
   if (fit.flux.drift_K <= 0.0 || !std::isfinite(fit.evidence_nats)) {
     return fit;
   }
-  Posterior plain = try_posterior_of(fit.model, input_.runs, fit.start_C, plain_options());
+  estimation::Posterior plain = estimation::try_posterior_of(fit.model, input_.runs, fit.start_C, plain_options());
   if (!std::isfinite(plain.evidence_nats)) {
     return fit;
   }
-  PosteriorOptions whitened;
+  estimation::PosteriorOptions whitened;
   whitened.flux = fit.flux;
   whitened.weights = out_.weights;
   whitened.merged = merged_;
@@ -400,19 +406,19 @@ Posterior Rounds::to_predict(Posterior fit) const {
 }
 
 void Rounds::own_parameters(const Judged& judged) {
-  const Model start = base_here();
-  out_.before = posterior_of(start, input_.runs, starts_of(start), final_options(judged.empty_place));
+  const estimation::Model start = base_here();
+  out_.before = estimation::posterior_of(start, input_.runs, starts_of(start), final_options(judged.empty_place));
   out_.own = out_.before;
   std::vector<int> doubted;
   std::ranges::copy_if(judged.best, std::back_inserter(doubted), [&](int member) { return is_parameter(member); });
   if (!doubted.empty()) {
-    const Model with_changes = with_members(doubted, search_->at_best(doubted), ShapesAre::held);
-    out_.own = posterior_of(with_changes, input_.runs, starts_of(with_changes), final_options(judged.best_place));
+    const estimation::Model with_changes = with_members(doubted, search_->at_best(doubted), ShapesAre::held);
+    out_.own = estimation::posterior_of(with_changes, input_.runs, starts_of(with_changes), final_options(judged.best_place));
   }
   out_.own = to_predict(std::move(out_.own));
 }
 
-std::vector<std::vector<double>> Rounds::starts_of(const Model& model) const {
+std::vector<std::vector<double>> Rounds::starts_of(const estimation::Model& model) const {
   std::vector<std::vector<double>> start_C = now_.start_C;
   for (std::vector<double>& each : start_C) {
     each.resize(std::min(each.size(), static_cast<std::size_t>(model.network.state_count())));
@@ -420,12 +426,13 @@ std::vector<std::vector<double>> Rounds::starts_of(const Model& model) const {
   return start_C;
 }
 
-std::map<std::string, double> Rounds::left_by(const Posterior& fit) const {
+std::map<std::string, double> Rounds::left_by(const estimation::Posterior& fit) const {
   std::vector<Eigen::VectorXd> squares(input_.runs.size());
-  const std::vector<DesignRun> designs = design(fit.model.network, fit.fitted, input_.runs, out_.weights, merged_, {});
-  in_parallel(designs.size(), 0, [&](std::size_t r) {
-    const DesignRun& one = designs[r];
-    squares[r] = Whitening(one.run, fit.flux, one.noise).smoothed_flux(one.run.residual_K).mean_W.rowwise().squaredNorm();
+  const std::vector<estimation::DesignRun> designs =
+      estimation::design(fit.model.network, fit.fitted, input_.runs, out_.weights, merged_, {});
+  base::in_parallel(designs.size(), 0, [&](std::size_t r) {
+    const estimation::DesignRun& one = designs[r];
+    squares[r] = estimation::Whitening(one.run, fit.flux, one.noise).smoothed_flux(one.run.residual_K).mean_W.rowwise().squaredNorm();
   });
   std::map<std::string, double> left;
   for (std::size_t f = 0; f < input_.model.flux_nodes.size(); ++f) {
@@ -440,4 +447,4 @@ std::map<std::string, double> Rounds::left_by(const Posterior& fit) const {
   return left;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

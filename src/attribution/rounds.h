@@ -11,17 +11,17 @@
 #include "attribution/terms.h"
 #include "estimation/flux_grid.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 
 /// One round: the linearised equations, and the best set found with them.
 struct Judged {
-  std::vector<LinearisedRun> fitted;
-  std::vector<DesignRun> designs;
-  std::vector<FluxPlace> places;
+  std::vector<estimation::LinearisedRun> fitted;
+  std::vector<estimation::DesignRun> designs;
+  std::vector<estimation::FluxPlace> places;
   std::vector<int> best;  ///< members of the best set
   SetSearch::AtBest at_best;
-  FluxPlace empty_place;  ///< most probable unknown heat without any effect
-  FluxPlace best_place;
+  estimation::FluxPlace empty_place;  ///< most probable unknown heat without any effect
+  estimation::FluxPlace best_place;
 };
 
 /// Repeats rounds until the best set repeats. Results are in the protected members and in `out_`.
@@ -37,53 +37,53 @@ class Rounds {
   [[nodiscard]] Eigen::Index free_count() const { return input_.model.free_count(); }
   void begin();
   /// Returns the base model with the parameter values of the last fit.
-  [[nodiscard]] Model base_here() const { return with_values_of(input_.model, now_.model); }
+  [[nodiscard]] estimation::Model base_here() const { return with_values_of(input_.model, now_.model); }
   /// Runs one round along the path of the last fit.
   Judged judge();
   /// Adds the normal equations at those grid points that `points` does not contain yet.
-  void add_points(const std::vector<DesignRun>& designs, const ThetaPrior& prior, const std::vector<FluxPlace>& places,
-                  std::map<FluxPlace, Reduced>& points) const;
+  void add_points(const std::vector<estimation::DesignRun>& designs, const estimation::ThetaPrior& prior,
+                  const std::vector<estimation::FluxPlace>& places, std::map<estimation::FluxPlace, estimation::Reduced>& points) const;
   /// Returns the most probable unknown heat for a set of effects.
-  [[nodiscard]] FluxPlace best_place(const std::vector<DesignRun>& designs, const ThetaPrior& prior, const std::vector<int>& members,
-                                     const FluxPlace& start) const;
+  [[nodiscard]] estimation::FluxPlace best_place(const std::vector<estimation::DesignRun>& designs, const estimation::ThetaPrior& prior,
+                                                 const std::vector<int>& members, const estimation::FluxPlace& start) const;
   /// Returns the model with a set of effects, at the sizes and θ of the linear solution.
-  [[nodiscard]] Model with_members(const std::vector<int>& members, const SetSearch::AtBest& at, ShapesAre shapes) const;
+  [[nodiscard]] estimation::Model with_members(const std::vector<int>& members, const SetSearch::AtBest& at, ShapesAre shapes) const;
   /// Refits the best set and linearises along its free run. The columns of its members get their fitted shapes and sizes.
   void follow(const Judged& judged);
   /// Returns the size, or ±0.1 if it is closer to 0, where columns would vanish.
   static double away_from_zero(double share);
   /// Copies the fitted exponents, thresholds and time constants to the candidate. Its size stays the typical one.
-  void take_shapes(const EffectInPlace& fitted, Candidate& candidate) const;
+  void take_shapes(const thermal::EffectInPlace& fitted, Candidate& candidate) const;
   /// Records the round: candidates with their single gains, the best set, and the probability of the empty set.
   void note();
   /// Records the effects whose expected gain at typical size is below `seen_nats`.
   void note_sight();
-  [[nodiscard]] PosteriorOptions final_options(const FluxPlace& place) const;
+  [[nodiscard]] estimation::PosteriorOptions final_options(const estimation::FluxPlace& place) const;
   /// Sensor drift means that the network lacks bodies, and whitened residuals may then not give the most predictive parameters. Refits to
   /// the free runs if that predicts the ends of the runs better; the change is added to the covariance.
-  [[nodiscard]] Posterior to_predict(Posterior fit) const;
+  [[nodiscard]] estimation::Posterior to_predict(estimation::Posterior fit) const;
   /// Fits the first two thirds of all runs and returns the RMS error in K of the predicted last thirds; ∞ if the fit fails.
-  [[nodiscard]] double error_of_ends_K(const Posterior& start, PosteriorOptions options) const;
+  [[nodiscard]] double error_of_ends_K(const estimation::Posterior& start, estimation::PosteriorOptions options) const;
   /// Returns options for plain least squares of the free runs, without unknown heat.
-  [[nodiscard]] PosteriorOptions plain_options() const;
+  [[nodiscard]] estimation::PosteriorOptions plain_options() const;
   /// Fits the model without effects: once with the file's priors (`before`), once with wider priors for the contradicted parameters
   /// (`own`).
   void own_parameters(const Judged& judged);
   /// Returns the start temperatures of the last fit. Nodes that it does not contain start at ambient temperature.
-  [[nodiscard]] std::vector<std::vector<double>> starts_of(const Model& model) const;
+  [[nodiscard]] std::vector<std::vector<double>> starts_of(const estimation::Model& model) const;
   /// Returns the RMS of the smoothed unknown heat in W of a fit, by node.
-  [[nodiscard]] std::map<std::string, double> left_by(const Posterior& fit) const;
+  [[nodiscard]] std::map<std::string, double> left_by(const estimation::Posterior& fit) const;
 
   const SelectionInput& input_;
   const SelectionRules& rules_;
   bool is_speed_open_;  ///< speed was not logged: heat at the stator may be the loss at speed
   Selection out_;
-  Posterior now_;  ///< fit along which the equations are linearised
+  estimation::Posterior now_;  ///< fit along which the equations are linearised
   std::vector<int> merged_;
   /// Unknown heat in W that warms the outermost node by `material_K`; scale of the grid.
   double unit_W_ = 0.0;
-  FluxGrid grid_;
-  FluxPlace place_, best_place_;
+  estimation::FluxGrid grid_;
+  estimation::FluxPlace place_, best_place_;
   CandidateList list_;
   std::vector<Eigen::Index> parameters_;
   std::vector<CandidateRule> set_rules_;
@@ -92,4 +92,4 @@ class Rounds {
   std::optional<SetSearch> search_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

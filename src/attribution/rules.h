@@ -4,7 +4,7 @@
 #include "estimation/flux_grid.h"
 #include "estimation/posterior.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 
 struct SelectionRules {
   // Priors.
@@ -17,13 +17,13 @@ struct SelectionRules {
   double curve_step_precision_ratio = 2.0;   ///< prior precision of the steps between knots: standard deviation 0.7 typical sizes
 
   // Decisions.
-  double named_probability = 0.95;   ///< smallest probability of a name: at most one in twenty is wrong
-  double material_K = kMaterial_K;   ///< temperature rise of the outermost body from which unknown heat matters
-  double material_share = 0.1;       ///< fraction of the mean modelled heat from which unknown heat matters
-  double as_usual_ratio = 1.5;       ///< largest ratio of unknown heat and error to those of earlier runs of the motor
-  double curve_gain_nats = 10.0;     ///< smallest gain of a curve over the best effects
-  double narrow_nats = 5.0;          ///< smallest gain from halving the range of the knots
-  double second_signal_nats = 10.0;  ///< penalty of a curve over one signal multiplied by a second one
+  double named_probability = 0.95;              ///< smallest probability of a name: at most one in twenty is wrong
+  double material_K = estimation::kMaterial_K;  ///< temperature rise of the outermost body from which unknown heat matters
+  double material_share = 0.1;                  ///< fraction of the mean modelled heat from which unknown heat matters
+  double as_usual_ratio = 1.5;                  ///< largest ratio of unknown heat and error to those of earlier runs of the motor
+  double curve_gain_nats = 10.0;                ///< smallest gain of a curve over the best effects
+  double narrow_nats = 5.0;                     ///< smallest gain from halving the range of the knots
+  double second_signal_nats = 10.0;             ///< penalty of a curve over one signal multiplied by a second one
   /// A name beside material unknown heat must reduce the error of whole runs below this fraction.
   double beside_unknown_share = 0.5;
   /// A name in a calibrated model must reduce the error of whole runs below this fraction.
@@ -37,8 +37,8 @@ struct SelectionRules {
   double least_seen_share = 0.5;   ///< smallest fraction of visible effects for the result "nothing missing"
 
   // First fit: plain least squares without unknown heat.
-  double start_error_K = kIncompleteModel_K;       ///< standard deviation of the error of an incomplete model
-  double longest_step_ratio = kLongestStep_share;  ///< largest change of a coordinate in one Gauss-Newton step
+  double start_error_K = estimation::kIncompleteModel_K;       ///< standard deviation of the error of an incomplete model
+  double longest_step_ratio = estimation::kLongestStep_share;  ///< largest change of a coordinate in one Gauss-Newton step
 
   // Limits of the computation, not meant to influence the result.
   int most_effects = 3;  ///< largest number of effects in a set
@@ -52,4 +52,4 @@ struct SelectionRules {
   bool scans_drivers = true;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 
-int flux_of(const Model& model, std::string_view node) {
+int flux_of(const estimation::Model& model, std::string_view node) {
   const int place = model.network.find_node(node);
   const auto found = std::ranges::find(model.flux_nodes, place);
   return found == model.flux_nodes.end() ? -1 : static_cast<int>(found - model.flux_nodes.begin());
 }
 
-std::vector<ScanTerm> terms_of_one_signal(const Model& model, const std::vector<MeasuredRun>& runs) {
+std::vector<ScanTerm> terms_of_one_signal(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
   std::vector<ScanTerm> terms;
   for (const int node : model.flux_nodes) {
     const std::string name(model.network.node_name(node));
@@ -21,7 +21,8 @@ std::vector<ScanTerm> terms_of_one_signal(const Model& model, const std::vector<
     }
   }
   const auto is_seen = [&](std::string_view node) {
-    return flux_of(model, node) >= 0 && std::ranges::any_of(runs, [&](const MeasuredRun& run) { return run.sensor_at(node) >= 0; });
+    return flux_of(model, node) >= 0 &&
+           std::ranges::any_of(runs, [&](const estimation::MeasuredRun& run) { return run.sensor_at(node) >= 0; });
   };
   if (is_seen("winding") && is_seen("stator")) {
     terms.push_back({"winding", "stator", Multiplier::difference, 0});
@@ -29,13 +30,14 @@ std::vector<ScanTerm> terms_of_one_signal(const Model& model, const std::vector<
   return terms;
 }
 
-std::vector<ScanTerm> terms_of_two_signals(const Model& model, const std::vector<MeasuredRun>& runs) {
+std::vector<ScanTerm> terms_of_two_signals(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
   std::vector<ScanTerm> terms;
   if (flux_of(model, "stator") < 0) {
     return terms;
   }
-  for (const auto& [signal, multiplier] : {std::pair(Signal::current, Multiplier::current), std::pair(Signal::speed, Multiplier::speed)}) {
-    if (std::ranges::all_of(runs, [signal = signal](const MeasuredRun& run) { return run.has(signal); })) {
+  for (const auto& [signal, multiplier] :
+       {std::pair(thermal::Signal::current, Multiplier::current), std::pair(thermal::Signal::speed, Multiplier::speed)}) {
+    if (std::ranges::all_of(runs, [signal = signal](const estimation::MeasuredRun& run) { return run.has(signal); })) {
       terms.push_back({"stator", "", multiplier, 0});
     }
   }
@@ -82,7 +84,8 @@ std::string_view second_signal(Multiplier multiplier) {
   return is_second ? to_string(multiplier) : std::string_view();
 }
 
-Eigen::VectorXd multiplier_along(const ScanTerm& term, const Model& model, const LinearisedRun& fitted, const MeasuredRun& run) {
+Eigen::VectorXd multiplier_along(const ScanTerm& term, const estimation::Model& model, const estimation::LinearisedRun& fitted,
+                                 const estimation::MeasuredRun& run) {
   const int node = model.network.find_node(term.node);
   Eigen::VectorXd along = Eigen::VectorXd::Ones(run.samples() - 1);
   if (term.multiplier == Multiplier::copper) {
@@ -100,7 +103,7 @@ Eigen::VectorXd multiplier_along(const ScanTerm& term, const Model& model, const
   }
   if (!second_signal(term.multiplier).empty()) {
     for (Eigen::Index k = 0; k < along.size(); ++k) {
-      const OperatingPoint<double>& at = run.at[static_cast<std::size_t>(k)];
+      const thermal::OperatingPoint<double>& at = run.at[static_cast<std::size_t>(k)];
       along[k] = term.multiplier == Multiplier::current ? at.current_rms_A : at.speed_mean_rad_per_s;
     }
     return along;
@@ -113,4 +116,4 @@ Eigen::VectorXd multiplier_along(const ScanTerm& term, const Model& model, const
   return along;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

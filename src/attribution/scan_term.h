@@ -9,7 +9,7 @@
 #include "estimation/linearised_run.h"
 #include "estimation/model.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 
 /// Factor that multiplies the curve g.
 enum class Multiplier {
@@ -35,13 +35,14 @@ struct ScanTerm {
 
 /// Returns the families with one signal. A flow between two nodes is included only if both have a sensor: the temperature of a node without
 /// one is too free.
-std::vector<ScanTerm> terms_of_one_signal(const Model& model, const std::vector<MeasuredRun>& runs);
+std::vector<ScanTerm> terms_of_one_signal(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs);
 /// Returns the families at the stator whose heat depends on a second signal, current or speed.
-std::vector<ScanTerm> terms_of_two_signals(const Model& model, const std::vector<MeasuredRun>& runs);
+std::vector<ScanTerm> terms_of_two_signals(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs);
 /// Returns the index of the node among those with unknown heat; -1 if it is not one of them.
-int flux_of(const Model& model, std::string_view node);
+int flux_of(const estimation::Model& model, std::string_view node);
 
 /// Returns the multiplier per interval of a run, from the fitted temperatures at the start of each interval.
-Eigen::VectorXd multiplier_along(const ScanTerm& term, const Model& model, const LinearisedRun& fitted, const MeasuredRun& run);
+Eigen::VectorXd multiplier_along(const ScanTerm& term, const estimation::Model& model, const estimation::LinearisedRun& fitted,
+                                 const estimation::MeasuredRun& run);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

@@ -14,7 +14,7 @@
 #include "estimation/log_columns.h"
 #include "estimation/smoothed_path.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 namespace {
 
 /// Explanations whose ln probability differs by less than this cannot be distinguished.
@@ -27,10 +27,11 @@ class Selector : Rounds {
 
   double evidence_without_effects_nats() {
     begin();
-    const std::vector<DesignRun> designs = design(now_.model.network, now_.fitted, input_.runs, out_.weights, merged_, {});
-    PosteriorOptions options = final_options(best_place(designs, prior_here(now_.model), {}, place_));
+    const std::vector<estimation::DesignRun> designs =
+        estimation::design(now_.model.network, now_.fitted, input_.runs, out_.weights, merged_, {});
+    estimation::PosteriorOptions options = final_options(best_place(designs, estimation::prior_here(now_.model), {}, place_));
     options.around.clear();
-    return posterior_of(now_.model, input_.runs, now_.start_C, options).evidence_nats;
+    return estimation::posterior_of(now_.model, input_.runs, now_.start_C, options).evidence_nats;
   }
 
   Selection run() {
@@ -41,10 +42,10 @@ class Selector : Rounds {
  private:
   void decide(const Judged& judged) {
     const EffectSet& best = search_->sets().front();
-    PosteriorOptions options = final_options(judged.best_place);
+    estimation::PosteriorOptions options = final_options(judged.best_place);
     options.around.clear();
-    const Model with_best = with_members(best.members, judged.at_best, ShapesAre::held);
-    const Posterior full = try_posterior_of(with_best, input_.runs, starts_of(with_best), options);
+    const estimation::Model with_best = with_members(best.members, judged.at_best, ShapesAre::held);
+    const estimation::Posterior full = estimation::try_posterior_of(with_best, input_.runs, starts_of(with_best), options);
     out_.left_W = left_by(std::isfinite(full.evidence_nats) ? full : out_.before);
     std::vector<std::size_t> named;
     for (std::size_t m = 0; m < best.members.size(); ++m) {
@@ -96,8 +97,8 @@ class Selector : Rounds {
 
   void add_changed(const EffectSet& best, std::size_t place) {
     const Eigen::Index coordinate = parameter_of(best.members[place]);
-    const FreeParameter& free = input_.model.free[static_cast<std::size_t>(coordinate)];
-    const NetworkParameter& parameter = input_.model.network.parameters()[static_cast<std::size_t>(free.place)];
+    const estimation::FreeParameter& free = input_.model.free[static_cast<std::size_t>(coordinate)];
+    const thermal::NetworkParameter& parameter = input_.model.network.parameters()[static_cast<std::size_t>(free.place)];
     ChangedParameter changed;
     changed.coordinate = coordinate;
     changed.name = parameter.name;
@@ -108,13 +109,14 @@ class Selector : Rounds {
 
   void scan(const Judged& judged, const EffectSet& best) {
     constexpr std::size_t kMostReported = 8;
-    const Model base = base_here();
+    const estimation::Model base = base_here();
     // With much missing heat, curves depend on smoothed measured temperatures. Multipliers stay those of the model: measurement noise in
     // them would correlate with the residual.
-    std::vector<LinearisedRun> path = judged.fitted;
+    std::vector<estimation::LinearisedRun> path = judged.fitted;
     for (std::size_t r = 0; out_.is_material() && r < path.size(); ++r) {
-      const std::vector<DesignRun> own = design(now_.model.network, {now_.fitted[r]}, {input_.runs[r]}, {out_.weights[r]}, {}, {});
-      path[r].state_C = smoothed_path_C(now_.fitted[r], grid_.at(judged.best_place), own.front().noise).topRows(path[r].states);
+      const std::vector<estimation::DesignRun> own =
+          estimation::design(now_.model.network, {now_.fitted[r]}, {input_.runs[r]}, {out_.weights[r]}, {}, {});
+      path[r].state_C = estimation::smoothed_path_C(now_.fitted[r], grid_.at(judged.best_place), own.front().noise).topRows(path[r].states);
     }
     out_.drivers = drivers_of(base, path, input_.runs);
     ScanInput input{&base,
@@ -122,7 +124,7 @@ class Selector : Rounds {
                     &judged.fitted,
                     &out_.drivers,
                     &judged.designs,
-                    prior_here(base),
+                    estimation::prior_here(base),
                     {},
                     grid_,
                     {judged.best_place, judged.empty_place},
@@ -180,7 +182,9 @@ class Selector : Rounds {
     return true;
   }
 
-  [[nodiscard]] double free_run_error_K(const Model& model) const { return rms_K(open_loop_errors(model, input_.runs, {})); }
+  [[nodiscard]] double free_run_error_K(const estimation::Model& model) const {
+    return estimation::rms_K(estimation::open_loop_errors(model, input_.runs, {}));
+  }
 
   /// Returns the RMS error in K of whole training runs with some members of the best set; ∞ if the fit fails.
   [[nodiscard]] double error_with_K(const EffectSet& best, const std::vector<std::size_t>& members) const {
@@ -188,10 +192,10 @@ class Selector : Rounds {
     std::ranges::transform(members, std::back_inserter(kept), [&](std::size_t m) { return best.members[m]; });
     std::ranges::sort(kept);
     const SetSearch::AtBest at = search_->at_best(kept);
-    const Model model = with_members(kept, at, ShapesAre::held);
-    PosteriorOptions options = final_options(best_place_);
+    const estimation::Model model = with_members(kept, at, ShapesAre::held);
+    estimation::PosteriorOptions options = final_options(best_place_);
     options.around.clear();
-    const Posterior fit = to_predict(try_posterior_of(model, input_.runs, starts_of(model), options));
+    const estimation::Posterior fit = to_predict(estimation::try_posterior_of(model, input_.runs, starts_of(model), options));
     return std::isfinite(fit.evidence_nats) ? free_run_error_K(fit.model) : std::numeric_limits<double>::infinity();
   }
 
@@ -202,10 +206,10 @@ class Selector : Rounds {
   }
 
   void keep_as_it_is(const Judged& judged) {
-    PosteriorOptions as_it_is = final_options(judged.empty_place);
+    estimation::PosteriorOptions as_it_is = final_options(judged.empty_place);
     as_it_is.most_steps = 0;
     as_it_is.around.clear();
-    out_.after = out_.own = posterior_of(input_.model, input_.runs, starts_of(input_.model), as_it_is);
+    out_.after = out_.own = estimation::posterior_of(input_.model, input_.runs, starts_of(input_.model), as_it_is);
     out_.after.covariance = input_.model.full_prior().precision.inverse();
   }
 
@@ -247,8 +251,8 @@ class Selector : Rounds {
       }
     }
     const SetSearch::AtBest at = search_->at_best(kept);
-    const Model model = with_members(kept, at, ShapesAre::free);
-    Posterior fit = try_posterior_of(model, input_.runs, starts_of(model), final_options(judged.best_place));
+    const estimation::Model model = with_members(kept, at, ShapesAre::free);
+    estimation::Posterior fit = estimation::try_posterior_of(model, input_.runs, starts_of(model), final_options(judged.best_place));
     if (!std::isfinite(fit.evidence_nats)) {
       out_.is_unexplained = true;
       return;
@@ -289,13 +293,13 @@ class Selector : Rounds {
   }
 
   /// Returns the mean square error in K² of each training run, predicted from a fit to all other runs.
-  [[nodiscard]] std::vector<double> left_out_errors_K2(const Model& model, const std::vector<MeasuredRun>& runs,
-                                                       const LatentFlux& flux) const {
+  [[nodiscard]] std::vector<double> left_out_errors_K2(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs,
+                                                       const estimation::LatentFlux& flux) const {
     std::vector<double> errors_K2;
     for (std::size_t left_out = 0; left_out < runs.size(); ++left_out) {
-      std::vector<MeasuredRun> others;
+      std::vector<estimation::MeasuredRun> others;
       std::vector<std::vector<double>> start_C;
-      PosteriorOptions own;
+      estimation::PosteriorOptions own;
       own.flux = flux;
       for (std::size_t r = 0; r < runs.size(); ++r) {
         if (r != left_out) {
@@ -305,9 +309,10 @@ class Selector : Rounds {
           own.merged.push_back(merged_[r]);
         }
       }
-      const Posterior fit = try_posterior_of(model, others, start_C, own);
-      errors_K2.push_back(std::isfinite(fit.evidence_nats) ? std::pow(rms_K(open_loop_errors(fit.model, {runs[left_out]}, others)), 2)
-                                                           : std::numeric_limits<double>::infinity());
+      const estimation::Posterior fit = estimation::try_posterior_of(model, others, start_C, own);
+      errors_K2.push_back(std::isfinite(fit.evidence_nats)
+                              ? std::pow(estimation::rms_K(estimation::open_loop_errors(fit.model, {runs[left_out]}, others)), 2)
+                              : std::numeric_limits<double>::infinity());
     }
     return errors_K2;
   }
@@ -315,20 +320,20 @@ class Selector : Rounds {
   /// Adds the curve to the model if that improves the prediction of left-out training runs. Returns true if it did.
   bool adopt_curve(const Judged& judged, const ScanResult& curve) {
     const Regressor& driver = out_.drivers[static_cast<std::size_t>(curve.term.driver)];
-    const std::optional<Model> curved = with_curve(out_.after.model, curve, driver);
+    const std::optional<estimation::Model> curved = with_curve(out_.after.model, curve, driver);
     if (!curved || input_.runs.size() < 2 || driver.name == kTimeDriver) {
       return false;
     }
-    std::vector<MeasuredRun> runs = input_.runs;
-    set_columns(runs, curved->columns);
-    const auto sum_K2 = [&](const Model& model, const LatentFlux& flux) {
+    std::vector<estimation::MeasuredRun> runs = input_.runs;
+    estimation::set_columns(runs, curved->columns);
+    const auto sum_K2 = [&](const estimation::Model& model, const estimation::LatentFlux& flux) {
       const std::vector<double> errors_K2 = left_out_errors_K2(model, runs, flux);
       return std::accumulate(errors_K2.begin(), errors_K2.end(), 0.0);
     };
     if (!(sum_K2(*curved, final_options(judged.best_place).flux) < sum_K2(out_.after.model, out_.after.flux))) {
       return false;
     }
-    Posterior fit = try_posterior_of(*curved, runs, out_.after.start_C, final_options(judged.best_place));
+    estimation::Posterior fit = estimation::try_posterior_of(*curved, runs, out_.after.start_C, final_options(judged.best_place));
     if (!std::isfinite(fit.evidence_nats)) {
       return false;
     }
@@ -366,4 +371,4 @@ double evidence_without_effects_nats(const SelectionInput& input) {
 
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules) { return Selector(input, rules).run(); }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

@@ -13,7 +13,7 @@
 #include "attribution/rules.h"
 #include "estimation/posterior.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 
 /// Unexplained part of the runs that the model's file was fitted to.
 struct UsualErrors {
@@ -22,8 +22,8 @@ struct UsualErrors {
 };
 
 struct SelectionInput {
-  Model model;
-  std::vector<MeasuredRun> runs;  ///< at least one
+  estimation::Model model;
+  std::vector<estimation::MeasuredRun> runs;  ///< at least one
   UsualErrors usual = {};
 };
 
@@ -75,9 +75,9 @@ struct Refusal {
 
 /// Result of the selection.
 struct Selection {
-  Posterior before;  ///< fit of the model's own parameters, without effects
-  Posterior after;
-  Posterior own;  ///< same as `before`, with wider priors for contradicted parameters
+  estimation::Posterior before;  ///< fit of the model's own parameters, without effects
+  estimation::Posterior after;
+  estimation::Posterior own;  ///< same as `before`, with wider priors for contradicted parameters
   std::vector<ChangedParameter> changed;
   std::vector<AcceptedTerm> terms;
   std::vector<Round> rounds;
@@ -108,4 +108,4 @@ Selection select_effects(const SelectionInput& input, const SelectionRules& rule
 /// Returns the ln evidence of the model without effects, with fitted parameters and the most probable unknown heat.
 double evidence_without_effects_nats(const SelectionInput& input);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <set>
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 namespace {
 
 constexpr double kNone_nats = -std::numeric_limits<double>::infinity();
@@ -78,11 +78,11 @@ SetColumns columns_of(const std::vector<int>& members, const std::vector<Candida
   return set;
 }
 
-double set_gain_nats(const Reduced& point, const SetColumns& set, Eigen::VectorXd* sizes) {
+double set_gain_nats(const estimation::Reduced& point, const SetColumns& set, Eigen::VectorXd* sizes) {
   return set_gain_nats(point.products(set.columns, set.columns), point.right(set.columns), set.precision.asDiagonal(), set.has_sign, sizes);
 }
 
-SetSearch::SetSearch(std::vector<Reduced> points, std::vector<CandidateRule> candidates, const SelectionRules& rules)
+SetSearch::SetSearch(std::vector<estimation::Reduced> points, std::vector<CandidateRule> candidates, const SelectionRules& rules)
     : points_(std::move(points)), candidates_(std::move(candidates)), rules_(rules) {
   search();
 }
@@ -90,7 +90,7 @@ SetSearch::SetSearch(std::vector<Reduced> points, std::vector<CandidateRule> can
 double SetSearch::log_evidence(const std::vector<int>& members) const {
   const SetColumns set = columns_of(members, candidates_, rules_.size_sd);
   std::vector<double> nats;
-  for (const Reduced& point : points_) {
+  for (const estimation::Reduced& point : points_) {
     nats.push_back(point.base_nats + set_gain_nats(point, set));
   }
   return log_sum_nats(nats) - std::log(static_cast<double>(points_.size()));
@@ -295,7 +295,7 @@ SetSearch::AtBest SetSearch::at_best(const std::vector<int>& members) const {
   AtBest best;
   double best_nats = kNone_nats;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Reduced& point = points_[i];
+    const estimation::Reduced& point = points_[i];
     Eigen::VectorXd sizes(static_cast<Eigen::Index>(set.columns.size()));
     const double nats = point.base_nats + set_gain_nats(point, set, &sizes);
     if (nats > best_nats) {
@@ -308,10 +308,10 @@ SetSearch::AtBest SetSearch::at_best(const std::vector<int>& members) const {
 }
 
 double SetSearch::visibility_ratio(int candidate) const {
-  const Reduced& point = points_[at_best({}).point];
+  const estimation::Reduced& point = points_[at_best({}).point];
   return point.whole[candidate] > 0.0 ? std::max(0.0, point.products(candidate, candidate) / point.whole[candidate]) : 0.0;
 }
 
 double SetSearch::typical_gain_nats(int candidate) const { return 0.5 * points_[at_best({}).point].products(candidate, candidate); }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

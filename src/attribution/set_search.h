@@ -11,7 +11,7 @@
 #include "attribution/rules.h"
 #include "estimation/design.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 
 /// Prior of a candidate, and its relation to the others.
 struct CandidateRule {
@@ -39,7 +39,7 @@ class SetSearch {
     Eigen::VectorXd sizes;       ///< sizes of the members, in typical sizes
     Eigen::VectorXd theta;       ///< step of θ
   };
-  SetSearch(std::vector<Reduced> points, std::vector<CandidateRule> candidates, const SelectionRules& rules);
+  SetSearch(std::vector<estimation::Reduced> points, std::vector<CandidateRule> candidates, const SelectionRules& rules);
 
   /// Replaces the linear evidence by that of nonlinear fits, best set first, because linear evidence along another set's path can be too
   /// high. Stops at the first set that loses less than 5 nats, or after `most` fits. Sets without a fit change by as much as the best
@@ -75,7 +75,7 @@ class SetSearch {
   /// Returns 1 for the most certain member of its family, 2 for the next, and so on.
   [[nodiscard]] int rank_in_family(const EffectSet& set, std::size_t place) const;
 
-  std::vector<Reduced> points_;
+  std::vector<estimation::Reduced> points_;
   std::vector<CandidateRule> candidates_;
   const SelectionRules& rules_;
   std::vector<EffectSet> sets_;
@@ -94,8 +94,8 @@ SetColumns columns_of(const std::vector<int>& members, const std::vector<Candida
 double set_gain_nats(const Eigen::MatrixXd& products, const Eigen::VectorXd& right, const Eigen::MatrixXd& precision,
                      const std::vector<bool>& has_sign, Eigen::VectorXd* sizes = nullptr);
 /// Same for a set at one point.
-double set_gain_nats(const Reduced& point, const SetColumns& set, Eigen::VectorXd* sizes = nullptr);
+double set_gain_nats(const estimation::Reduced& point, const SetColumns& set, Eigen::VectorXd* sizes = nullptr);
 /// Returns ln Σ exp(x) of a non-empty list.
 double log_sum_nats(const std::vector<double>& all_nats);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

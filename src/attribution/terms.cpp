@@ -8,7 +8,7 @@
 #include "attribution/curve.h"
 #include "attribution/rules.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 namespace {
 
 /// Prior standard deviation of a size, in typical sizes.
@@ -29,9 +29,11 @@ std::string as_word(std::string text) {
   return text;
 }
 
-std::string unused_name(const Network& network, const std::string& wanted) {
+std::string unused_name(const thermal::Network& network, const std::string& wanted) {
   std::string name = wanted;
-  const auto is_used = [&] { return std::ranges::any_of(network.effects(), [&](const EffectInPlace& e) { return e.name == name; }); };
+  const auto is_used = [&] {
+    return std::ranges::any_of(network.effects(), [&](const thermal::EffectInPlace& e) { return e.name == name; });
+  };
   for (int number = 2; is_used(); ++number) {
     name = fmt::format("{}_{}", wanted, number);
   }
@@ -39,8 +41,8 @@ std::string unused_name(const Network& network, const std::string& wanted) {
 }
 
 /// Adds the effect. The present values of the model's parameters are kept.
-const EffectInPlace& add(Model& model, const std::string& name, const EffectType& type, const std::vector<std::string>& nodes,
-                         const std::vector<double>& parameters) {
+const thermal::EffectInPlace& add(estimation::Model& model, const std::string& name, const thermal::EffectType& type,
+                                  const std::vector<std::string>& nodes, const std::vector<double>& parameters) {
   model.network.add_effect(unused_name(model.network, name), type, nodes, parameters);
   const std::vector<double> all = model.network.values();
   model.values.insert(model.values.end(), all.begin() + static_cast<std::ptrdiff_t>(model.values.size()), all.end());
@@ -48,13 +50,13 @@ const EffectInPlace& add(Model& model, const std::string& name, const EffectType
 }
 
 /// Frees a parameter with a prior mean of 0.
-void set_free_around_zero(Model& model, int place, double scale, const Range& range, double spread) {
+void set_free_around_zero(estimation::Model& model, int place, double scale, const base::Range& range, double spread) {
   model.set_free({.place = place, .by_log = false, .scale = scale, .low = range.low, .high = range.high}, spread);
   model.prior.mean[model.network_count() - 1] = 0.0;
 }
 
-std::optional<double> choice_value(const ParameterSpec& spec, std::string_view name) {
-  const auto found = std::ranges::find(spec.choices, name, &Choice::name);
+std::optional<double> choice_value(const base::ParameterSpec& spec, std::string_view name) {
+  const auto found = std::ranges::find(spec.choices, name, &base::Choice::name);
   return found == spec.choices.end() ? std::nullopt : std::optional(static_cast<double>(found - spec.choices.begin()));
 }
 
@@ -83,32 +85,33 @@ Eigen::VectorXd passive(const ScanResult& curve) {
   return (curve.curve.array() - shift).cwiseMax(0.0);
 }
 
-std::optional<Model> with_table(const Model& model, const ScanResult& curve, const Regressor& driver, std::string_view name) {
-  const EffectType& type = *find_effect("tabulated");
+std::optional<estimation::Model> with_table(const estimation::Model& model, const ScanResult& curve, const Regressor& driver,
+                                            std::string_view name) {
+  const thermal::EffectType& type = *thermal::find_effect("tabulated");
   const std::optional<double> form = choice_value(type.parameters[1], form_of(curve.term.multiplier));
-  Model out = model;
+  estimation::Model out = model;
   std::string_view driver_choice = driver.choice;
-  if (driver.choice == kColumnChoice) {
+  if (driver.choice == thermal::kColumnChoice) {
     const auto place = static_cast<std::size_t>(std::ranges::find(out.columns, driver.name) - out.columns.begin());
-    if (place == kLogColumns) {
+    if (place == thermal::kLogColumns) {
       return std::nullopt;
     }
     out.columns.resize(std::max(out.columns.size(), place + 1), driver.name);
-    driver_choice = kColumnChoices[place];
+    driver_choice = thermal::kColumnChoices[place];
   }
   const std::optional<double> choice = choice_value(type.parameters[0], driver_choice);
   if (!choice || !form) {
     return std::nullopt;
   }
   const Eigen::VectorXd values = passive(curve);
-  const std::string ambient(Network::kAmbient);
+  const std::string ambient(thermal::Network::kAmbient);
   const std::string cold = curve.term.other.empty() ? ambient : curve.term.other;
   const std::string watched = driver.watched.empty() ? curve.term.node : driver.watched;
   const std::string reference = driver.reference.empty() ? ambient : driver.reference;
   std::vector<double> parameters{*choice, *form, curve.knots.front(), curve.knots.back()};
   parameters.insert(parameters.end(), values.begin(), values.end());
-  const EffectInPlace effect = add(out, named(name, as_word(fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name))), type,
-                                   {curve.term.node, cold, watched, reference}, parameters);
+  const thermal::EffectInPlace effect = add(out, named(name, as_word(fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name))),
+                                            type, {curve.term.node, cold, watched, reference}, parameters);
   const double gap = (curve.knots.back() - curve.knots.front()) / static_cast<double>(values.size() - 1);
   for (const std::size_t end : {2U, 3U}) {
     // The scan used measured temperatures with noise and sensor errors, so the knots may be off.
@@ -119,7 +122,7 @@ std::optional<Model> with_table(const Model& model, const ScanResult& curve, con
     }
   }
   for (Eigen::Index knot = 0; knot < values.size(); ++knot) {
-    set_free_around_zero(out, effect.parameter_index[static_cast<std::size_t>(4 + knot)], curve.usual, Range::non_negative(), 1.0);
+    set_free_around_zero(out, effect.parameter_index[static_cast<std::size_t>(4 + knot)], curve.usual, base::Range::non_negative(), 1.0);
   }
   out.prior.precision.bottomRightCorner(values.size(), values.size()) = curve_precision(values.size(), {});
   return out;
@@ -127,36 +130,37 @@ std::optional<Model> with_table(const Model& model, const ScanResult& curve, con
 
 }  // namespace
 
-Model with_candidate(const Model& model, const Candidate& candidate, double size_share, std::string_view name, ShapesAre shapes) {
-  Model out = model;
+estimation::Model with_candidate(const estimation::Model& model, const Candidate& candidate, double size_share, std::string_view name,
+                                 ShapesAre shapes) {
+  estimation::Model out = model;
   if (candidate.sensor_type) {
-    const Range& faults = candidate.sensor_type->size.range;
+    const base::Range& faults = candidate.sensor_type->size.range;
     out.sensors.push_back({candidate.sensor_type, std::clamp(size_share * candidate.typical_size(), faults.low, faults.high),
                            kSizeSpread_share * candidate.typical_size()});
     return out;
   }
   if (candidate.deviation_type) {
-    const Range& deviations = candidate.deviation_type->size.range;
+    const base::Range& deviations = candidate.deviation_type->size.range;
     out.deviations.push_back({candidate.deviation_type, candidate.condition,
                               std::clamp(size_share * candidate.typical_size(), deviations.low, deviations.high),
                               kSizeSpread_share * candidate.typical_size()});
     return out;
   }
   std::vector<double> parameters = candidate.parameters;
-  const Range& range = candidate.size_spec().range;
+  const base::Range& range = candidate.size_spec().range;
   double& size = parameters[static_cast<std::size_t>(candidate.size_parameter())];
   size = std::clamp(size_share * size, range.low, range.high);
   bool brings_body = false;
-  for (const NodeRole& role : candidate.type->nodes) {
+  for (const thermal::NodeRole& role : candidate.type->nodes) {
     brings_body = brings_body || role.own_capacity.has_value();
     if (role.own_capacity) {
       parameters[static_cast<std::size_t>(*role.own_capacity)] *= std::max(0.05, size_share);
     }
   }
-  const EffectInPlace effect =
+  const thermal::EffectInPlace effect =
       add(out, std::string(name.empty() ? candidate.type->name : name), *candidate.type, candidate.nodes, parameters);
   for (std::size_t p = 0; shapes == ShapesAre::free && p < parameters.size(); ++p) {
-    const ParameterSpec& spec = candidate.type->parameters[p];
+    const base::ParameterSpec& spec = candidate.type->parameters[p];
     if (static_cast<int>(p) != candidate.size_parameter() && spec.choices.empty() && parameters[p] > 0.0 && spec.range.low >= 0.0) {
       // Exponents, thresholds and capacities have a prior around the typical value.
       out.set_free({.place = effect.parameter_index[p],
@@ -176,42 +180,44 @@ Model with_candidate(const Model& model, const Candidate& candidate, double size
   return out;
 }
 
-Eigen::Index size_coordinate(const Model& model, const Candidate& candidate, std::string_view effect_name) {
+Eigen::Index size_coordinate(const estimation::Model& model, const Candidate& candidate, std::string_view effect_name) {
   if (candidate.sensor_type) {
-    return model.network_count() + (std::ranges::find(model.sensors, candidate.sensor_type, &SensorTerm::type) - model.sensors.begin());
+    return model.network_count() +
+           (std::ranges::find(model.sensors, candidate.sensor_type, &estimation::SensorTerm::type) - model.sensors.begin());
   }
   if (candidate.deviation_type) {
-    const auto is_own = [&](const RunDeviation& each) { return each.is_same(candidate.deviation_type, candidate.condition); };
+    const auto is_own = [&](const estimation::RunDeviation& each) { return each.is_same(candidate.deviation_type, candidate.condition); };
     return model.first_deviation() + (std::ranges::find_if(model.deviations, is_own) - model.deviations.begin());
   }
-  const auto effect = std::ranges::find(model.network.effects(), effect_name, &EffectInPlace::name);
+  const auto effect = std::ranges::find(model.network.effects(), effect_name, &thermal::EffectInPlace::name);
   const int place = effect->parameter_index[static_cast<std::size_t>(candidate.size_parameter())];
-  return std::ranges::find(model.free, place, &FreeParameter::place) - model.free.begin();
+  return std::ranges::find(model.free, place, &estimation::FreeParameter::place) - model.free.begin();
 }
 
-std::optional<Model> with_curve(const Model& model, const ScanResult& curve, const Regressor& driver, std::string_view name) {
+std::optional<estimation::Model> with_curve(const estimation::Model& model, const ScanResult& curve, const Regressor& driver,
+                                            std::string_view name) {
   return driver.choice.empty() ? std::nullopt : with_table(model, curve, driver, name);
 }
 
-Model with_values_of(Model model, const Model& other) {
-  const std::span<const NetworkParameter> names = model.network.parameters();
-  const std::span<const NetworkParameter> others = other.network.parameters();
+estimation::Model with_values_of(estimation::Model model, const estimation::Model& other) {
+  const std::span<const thermal::NetworkParameter> names = model.network.parameters();
+  const std::span<const thermal::NetworkParameter> others = other.network.parameters();
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto found = std::ranges::find(others, names[i].name, &NetworkParameter::name);
+    const auto found = std::ranges::find(others, names[i].name, &thermal::NetworkParameter::name);
     if (found != others.end()) {
       model.values[i] = other.values[static_cast<std::size_t>(found - others.begin())];
     }
   }
-  for (SensorTerm& term : model.sensors) {
-    const auto found = std::ranges::find(other.sensors, term.type, &SensorTerm::type);
+  for (estimation::SensorTerm& term : model.sensors) {
+    const auto found = std::ranges::find(other.sensors, term.type, &estimation::SensorTerm::type);
     term.value = found != other.sensors.end() ? found->value : term.value;
   }
-  for (RunDeviation& each : model.deviations) {
-    const auto found =
-        std::ranges::find_if(other.deviations, [&](const RunDeviation& of_other) { return of_other.is_same(each.type, each.condition); });
+  for (estimation::RunDeviation& each : model.deviations) {
+    const auto found = std::ranges::find_if(
+        other.deviations, [&](const estimation::RunDeviation& of_other) { return of_other.is_same(each.type, each.condition); });
     each.deviation_share = found != other.deviations.end() ? found->deviation_share : each.deviation_share;
   }
   return model;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

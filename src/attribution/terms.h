@@ -7,25 +7,26 @@
 #include "attribution/candidates.h"
 #include "attribution/regressor_scan.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 
 /// State of the exponents, thresholds and capacities of an added effect: fitted or fixed.
 enum class ShapesAre { free, held };
 
 /// Returns the model with the candidate added and its size free, starting at `size_share` typical sizes, clamped to the allowed range. If
 /// `name` is empty or used, an unused name is chosen.
-Model with_candidate(const Model& model, const Candidate& candidate, double size_share, std::string_view name = {},
-                     ShapesAre shapes = ShapesAre::free);
+estimation::Model with_candidate(const estimation::Model& model, const Candidate& candidate, double size_share, std::string_view name = {},
+                                 ShapesAre shapes = ShapesAre::free);
 
 /// Returns the coordinate of the candidate's size. The model must contain it as an effect of that name, a sensor error or a run deviation.
-Eigen::Index size_coordinate(const Model& model, const Candidate& candidate, std::string_view effect_name);
+Eigen::Index size_coordinate(const estimation::Model& model, const Candidate& candidate, std::string_view effect_name);
 
 /// Returns the model with the curve added as an effect `tabulated` with free values. Negative values are set to 0; the minimum of a
 /// conductance is subtracted first. Returns nothing if an effect cannot depend on this signal, or if the model already uses another log
 /// column.
-std::optional<Model> with_curve(const Model& model, const ScanResult& curve, const Regressor& driver, std::string_view name = {});
+std::optional<estimation::Model> with_curve(const estimation::Model& model, const ScanResult& curve, const Regressor& driver,
+                                            std::string_view name = {});
 
 /// Returns `model` with the values of parameters, sensor errors and deviations that `other` also contains.
-Model with_values_of(Model model, const Model& other);
+estimation::Model with_values_of(estimation::Model model, const estimation::Model& other);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

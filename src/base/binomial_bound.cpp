@@ -3,7 +3,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 double upper_bound_share(double over_count, double draws_count, double confidence) {
   if (over_count >= draws_count) {
@@ -48,4 +48,4 @@ long fewest_draws(double limit_share, double confidence) {
   return static_cast<long>(std::ceil(std::log(1.0 - confidence) / std::log1p(-limit_share) * (1.0 - kRounding)));
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 /// Returns the one-sided upper confidence bound of a probability, 0 to 1, exact (Clopper and Pearson 1934). `over_count` of `draws_count`
 /// draws were over the limit; it need not be an integer. A higher probability would give so few draws over the limit
@@ -27,4 +27,4 @@ std::optional<long> draws_needed(double over_share, double limit_share, double c
 /// the smallest n with (1 − limit_share)ⁿ ≤ 1 − confidence.
 long fewest_draws(double limit_share, double confidence);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -1,7 +1,7 @@
 // Temperature dependence of the resistance of copper. No other file computes it.
 #pragma once
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 /// Reference temperature of resistance, torque constant and α on data sheets.
 inline constexpr double kSheetTemperature_C = 25.0;
@@ -13,4 +13,4 @@ S resistance_ratio(const S& coefficient_per_K, const S& temperature_C) {
   return 1.0 + coefficient_per_K * (temperature_C - kSheetTemperature_C);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 std::string counted(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 /// Formats a count with its noun: "1 file", "2 files".
 std::string counted(std::size_t count, std::string_view what);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -4,7 +4,7 @@
 #include <csignal>
 #include <utility>
 
-namespace heatsoak {
+namespace heatsoak::base {
 namespace {
 
 constexpr std::array kDelayed{SIGINT, SIGTERM, SIGHUP};
@@ -43,4 +43,4 @@ DelayedSignals::~DelayedSignals() {
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

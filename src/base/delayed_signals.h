@@ -3,7 +3,7 @@
 
 #include <memory>
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 /// Delays SIGINT, SIGTERM and SIGHUP during its lifetime, so that temporary files are removed first. The last one received is raised at the
 /// end. Programs that are started meanwhile still receive them.
@@ -19,4 +19,4 @@ class DelayedSignals {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

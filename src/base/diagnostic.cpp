@@ -9,7 +9,7 @@
 #include <optional>
 #include <tuple>
 
-namespace heatsoak {
+namespace heatsoak::base {
 namespace {
 
 std::string with_list(const std::string& message, const std::vector<Diagnostic>& diagnostics) {
@@ -117,4 +117,4 @@ std::string did_you_mean(std::string_view written, std::span<const std::string> 
   return best ? fmt::format("; did you mean '{}'?", candidates[*best]) : std::string();
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 /// Exit codes of the process.
 enum class ExitCode {
@@ -70,4 +70,4 @@ class Diagnostics {
 /// Returns `; did you mean 'x'?` with the candidate closest to `written`, or an empty string if none is close.
 std::string did_you_mean(std::string_view written, std::span<const std::string> candidates);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

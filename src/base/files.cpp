@@ -18,7 +18,7 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::base {
 namespace {
 
 [[noreturn]] void cannot_read(const std::filesystem::path& path, const std::string& reason) {
@@ -251,4 +251,4 @@ void write_file(const std::filesystem::path& path, std::string_view content) {
   write_files({&file, 1});
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 /// Returns all bytes of a regular file. Throws Failure (bad_input) if it cannot be read or is larger than `largest_bytes`.
 std::string read_file(const std::filesystem::path& path, std::size_t largest_bytes);
@@ -52,4 +52,4 @@ void write_files(std::span<const OutputFile> files, std::span<const std::unique_
 /// Writes one file in the same way.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

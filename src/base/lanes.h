@@ -1,8 +1,8 @@
 // Number of parameter samples that are evaluated together (SIMD); thermal/lanes.h has their type.
 #pragma once
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 inline constexpr int kLanes = 8;
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

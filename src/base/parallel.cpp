@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <mutex>
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 void in_parallel(std::size_t count, int threads, std::size_t done, std::size_t total, const Progress& progress,
                  const std::function<void(std::size_t)>& job) {
@@ -30,4 +30,4 @@ void in_parallel(std::size_t count, int threads, std::size_t done, std::size_t t
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

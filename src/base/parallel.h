@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 /// Called when `done` of `total` units of work are finished.
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
@@ -24,4 +24,4 @@ inline void in_parallel(std::size_t count, int threads, const std::function<void
   in_parallel(count, threads, 0, count, {}, job);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -6,7 +6,7 @@
 
 #include "base/quantity.h"
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 std::string to_string(const Range& range, std::string_view unit) {
   const auto with_unit = [unit](double value) {
@@ -35,4 +35,4 @@ std::string_view unit_of(std::span<const ParameterSpec> specs, std::size_t place
   return specs[at].choices[static_cast<std::size_t>(values[at])].unit;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

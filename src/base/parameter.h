@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 /// Interval in the parameter's unit; each end is open or closed, and may be infinite.
 struct Range {
@@ -51,4 +51,4 @@ struct ParameterSpec {
 /// Returns the unit of parameter `place`. `values` holds the values of the parameters declared before it.
 std::string_view unit_of(std::span<const ParameterSpec> specs, std::size_t place, std::span<const double> values);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace heatsoak {
+namespace heatsoak::base {
 namespace {
 
 constexpr std::array<std::pair<Origin, std::string_view>, 5> kOrigins{{{Origin::measured, "measured"},
@@ -56,4 +56,4 @@ double ParameterValue::quantile(double uniform) const {
   return value + towards_bound * (bound - value);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -8,7 +8,7 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 /// Origin of a value, from the most to the least reliable.
 enum class Origin { measured, datasheet, third_party, derived, estimated };
@@ -49,4 +49,4 @@ struct ParameterValue {
   [[nodiscard]] double quantile(double uniform) const;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

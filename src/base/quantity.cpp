@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace heatsoak {
+namespace heatsoak::base {
 namespace {
 
 struct FreeUnit {
@@ -222,4 +222,4 @@ std::string significant(double value, int digits) {
   return text;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

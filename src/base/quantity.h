@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 /// The value in the wanted unit, or a description of the error.
 struct ParsedQuantity {
@@ -31,4 +31,4 @@ std::string unit_for_display(std::string_view unit);
 /// Rounds to `digits` significant digits. Decimal notation without trailing zeros: "3.8", "0.0041", "162"; "1e+20" if very large or small.
 std::string significant(double value, int digits);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

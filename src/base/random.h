@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 /// A random stream that is determined by (seed, stream). Each sample uses its own stream.
 class Random {
@@ -26,4 +26,4 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -3,8 +3,8 @@
 
 #include <limits>
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -1,7 +1,7 @@
 #include "base/version.h"
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 std::string_view program_version() { return HEATSOAK_VERSION; }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -3,9 +3,9 @@
 
 #include <string_view>
 
-namespace heatsoak {
+namespace heatsoak::base {
 
 /// "0.1.0"; set by the project() line of CMakeLists.txt.
 std::string_view program_version();
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

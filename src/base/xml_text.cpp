@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace heatsoak {
+namespace heatsoak::base {
 namespace {
 
 /// Length in bytes of the UTF-8 character at the beginning of `text`; 0 if it is invalid or XML 1.0 does not allow it (section 2.2).
@@ -50,4 +50,4 @@ std::string xml_text(std::string_view text) { return escaped(text, "\n"); }
 
 std::string xml_attribute(std::string_view text) { return escaped(text, "&#10;"); }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -14,7 +14,7 @@
 #include "recording/quality.h"
 #include "recording/spread.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 /// Ratio to the value that the nominal voltage can produce. A larger current or speed is probably in another unit.
@@ -22,14 +22,15 @@ constexpr double kMost_ratio = 3.0;
 
 /// Throws Failure (bad_input) if two logs share rows. A run that counts twice makes the confidence intervals too narrow; a fitted run
 /// cannot serve as hold-out run.
-void refuse_repeated(std::span<const Recording> fitted, std::span<const Recording> held_out) {
-  std::vector<std::pair<std::string, const Recording*>> seen;
-  std::vector<Diagnostic> repeated;
+void refuse_repeated(std::span<const recording::Recording> fitted, std::span<const recording::Recording> held_out) {
+  std::vector<std::pair<std::string, const recording::Recording*>> seen;
+  std::vector<base::Diagnostic> repeated;
   for (const auto& recordings : {fitted, held_out}) {
-    for (const Recording& recording : recordings) {
-      std::string fingerprint = fingerprint_of(recording);
+    for (const recording::Recording& recording : recordings) {
+      std::string fingerprint = recording::fingerprint_of(recording);
       const auto found = std::ranges::find_if(seen, [&](const auto& other) {
-        return share_rows(other.first, fingerprint) || is_cut_from(recording, *other.second) || is_cut_from(*other.second, recording);
+        return recording::share_rows(other.first, fingerprint) || recording::is_cut_from(recording, *other.second) ||
+               recording::is_cut_from(*other.second, recording);
       });
       if (found != seen.end()) {
         repeated.push_back({{recording.file.string()}, {}, fmt::format("holds the same rows as {}", found->second->file.string())});
@@ -38,7 +39,7 @@ void refuse_repeated(std::span<const Recording> fitted, std::span<const Recordin
     }
   }
   if (!repeated.empty()) {
-    throw Failure(ExitCode::bad_input, "rows of a log are given twice", std::move(repeated));
+    throw base::Failure(base::ExitCode::bad_input, "rows of a log are given twice", std::move(repeated));
   }
 }
 
@@ -48,13 +49,13 @@ struct Reached {
   int line = 0;          ///< line of that row in the file
 };
 
-Reached reached(const Recording& recording, std::string_view key) {
+Reached reached(const recording::Recording& recording, std::string_view key) {
   Reached found;
-  const Channel* const channel = recording.find(key);
+  const recording::Channel* const channel = recording.find(key);
   if (channel == nullptr) {
     return found;
   }
-  found.usual = top_of_sizes(channel->values);
+  found.usual = recording::top_of_sizes(channel->values);
   for (std::size_t row = 0; row < recording.rows(); ++row) {
     if (std::abs(channel->values[row]) > found.largest) {
       found.largest = std::abs(channel->values[row]);
@@ -71,13 +72,13 @@ void single_rows_beyond(const char* key, const char* unit, const char* other_uni
     wrong.push_back(
         fmt::format("{} reaches {} {} in line {}; at three times the nominal voltage this motor reaches {} {}, and less than 2 % of the "
                     "rows exceed that: exclude outliers with valid = \"…\" in a mapping, or is it in {}?",
-                    key, significant(reached.largest, 3), unit, reached.line, significant(most, 3), unit, other_unit));
+                    key, base::significant(reached.largest, 3), unit, reached.line, base::significant(most, 3), unit, other_unit));
   }
 }
 
 /// Reports currents and speeds that this motor cannot reach at three times its nominal voltage.
-void beyond_the_motor(const Motor& motor, const Recording& recording, std::vector<std::string>& wrong) {
-  const MotorValues& nominal = motor.nominal;
+void beyond_the_motor(const motor::Motor& motor, const recording::Recording& recording, std::vector<std::string>& wrong) {
+  const motor::MotorValues& nominal = motor.nominal;
   const double most_A = kMost_ratio * nominal.nominal_voltage_V / nominal.terminal_resistance_ohm;
   const Reached current_A = reached(recording, "current_A");
   single_rows_beyond("current_A", "A", "milliamperes", current_A, most_A, wrong);
@@ -85,31 +86,33 @@ void beyond_the_motor(const Motor& motor, const Recording& recording, std::vecto
     wrong.push_back(
         fmt::format("current_A reaches {} A; through {} ohm at most {} A flow at three times the nominal voltage: is it in milliamperes, "
                     "or is it another motor?",
-                    significant(reached_A, 3), significant(nominal.terminal_resistance_ohm, 3), significant(most_A, 3)));
+                    base::significant(reached_A, 3), base::significant(nominal.terminal_resistance_ohm, 3), base::significant(most_A, 3)));
   }
   const double most_rad_per_s = kMost_ratio * nominal.nominal_voltage_V / nominal.torque_constant_Nm_per_A;
   const Reached speed_rad_per_s = reached(recording, "speed_rad_per_s");
   single_rows_beyond("speed_rad_per_s", "rad/s", "rpm", speed_rad_per_s, most_rad_per_s, wrong);
   if (const double reached_rad_per_s = speed_rad_per_s.usual; reached_rad_per_s > most_rad_per_s) {
-    wrong.push_back(fmt::format(
-        "speed_rad_per_s reaches {} rad/s; at three times the nominal voltage this motor turns at {} rad/s: is it in rpm "
-        "({} rad/s), or is it another motor?",
-        significant(reached_rad_per_s, 3), significant(most_rad_per_s, 3), significant(convert(reached_rad_per_s, "rpm", "rad/s"), 3)));
+    wrong.push_back(
+        fmt::format("speed_rad_per_s reaches {} rad/s; at three times the nominal voltage this motor turns at {} rad/s: is it in rpm "
+                    "({} rad/s), or is it another motor?",
+                    base::significant(reached_rad_per_s, 3), base::significant(most_rad_per_s, 3),
+                    base::significant(base::convert(reached_rad_per_s, "rpm", "rad/s"), 3)));
   }
 }
 
 /// Upper estimate of the heat of a row's interval in W: copper loss plus twice the no-load loss of the data sheet, or the input power if
 /// that is larger. NaN if neither is known.
-double generous_heat_W(const MotorValues& nominal, const Recording& recording, std::size_t row) {
+double generous_heat_W(const motor::MotorValues& nominal, const recording::Recording& recording, std::size_t row) {
   constexpr double kSpeedLoss_ratio = 2.0;
   const auto value = [&](std::string_view key) {
-    const Channel* const channel = recording.find(key);
+    const recording::Channel* const channel = recording.find(key);
     return channel != nullptr ? channel->values[row] : std::numeric_limits<double>::quiet_NaN();
   };
   const auto known_or = [](double known, double otherwise) { return std::isnan(known) ? otherwise : known; };
   const double power_W = std::abs(value("power_in_W"));
-  const double hot_ratio = resistance_ratio(nominal.temperature_coefficient_per_K, known_or(value("winding_C"), kSheetTemperature_C));
-  const double speed_rad_per_s = known_or(std::abs(value("speed_rad_per_s")), nominal.no_load_speed_rad_per_s.value_or(kUnknown));
+  const double hot_ratio =
+      base::resistance_ratio(nominal.temperature_coefficient_per_K, known_or(value("winding_C"), base::kSheetTemperature_C));
+  const double speed_rad_per_s = known_or(std::abs(value("speed_rad_per_s")), nominal.no_load_speed_rad_per_s.value_or(base::kUnknown));
   const double copper_W = std::pow(value("current_A"), 2) * nominal.terminal_resistance_ohm * std::max(1.0, hot_ratio);
   const double turning_W = nominal.torque_constant_Nm_per_A * nominal.no_load_current_A * speed_rad_per_s;
   const double of_current_W = copper_W + kSpeedLoss_ratio * known_or(turning_W, 0.0);
@@ -118,7 +121,8 @@ double generous_heat_W(const MotorValues& nominal, const Recording& recording, s
 
 /// Returns the heat that the observed temperature rises need, divided by the heat supplied: the median over rises of 10 K or more with at
 /// least a quarter of the largest mean heat. 0 if there is no such rise.
-double heat_ratio_of_rises(const Recording& recording, const Channel& channel, double capacity_J_per_K, std::span<const double> heat_W) {
+double heat_ratio_of_rises(const recording::Recording& recording, const recording::Channel& channel, double capacity_J_per_K,
+                           std::span<const double> heat_W) {
   constexpr double kRise_K = 10.0;
   constexpr double kMuchHeat_share = 0.25;
   struct Rise {
@@ -154,20 +158,20 @@ double heat_ratio_of_rises(const Recording& recording, const Channel& channel, d
       ratios.push_back(each.heat_ratio);
     }
   }
-  return ratios.empty() ? 0.0 : middle_of(ratios);
+  return ratios.empty() ? 0.0 : recording::middle_of(ratios);
 }
 
 /// Reports temperatures that rise faster than possible even if all losses heated this one body and none of the heat flowed away.
-void faster_than_the_motor(const Motor& motor, const Recording& recording, std::vector<std::string>& wrong) {
+void faster_than_the_motor(const motor::Motor& motor, const recording::Recording& recording, std::vector<std::string>& wrong) {
   constexpr double kTooFast_ratio =
       8.0;  // more than errors of the data sheet's heat capacities and another convention for the current explain
   constexpr double kHours_ratio = 300.0;
-  const MotorValues& nominal = motor.nominal;
+  const motor::MotorValues& nominal = motor.nominal;
   std::vector<double> heat_W;
   for (const auto& [key, capacity_J_per_K] :
        {std::pair("winding_C", nominal.thermal_time_constant_winding_s / nominal.thermal_resistance_winding_stator_K_per_W),
         std::pair("stator_C", nominal.thermal_time_constant_stator_s / nominal.thermal_resistance_stator_ambient_K_per_W)}) {
-    const Channel* const channel = recording.find(key);
+    const recording::Channel* const channel = recording.find(key);
     if (channel == nullptr || !(capacity_J_per_K > 0.0)) {
       continue;
     }
@@ -179,7 +183,7 @@ void faster_than_the_motor(const Motor& motor, const Recording& recording, std::
       wrong.push_back(fmt::format(
           "{} rises about {} times as fast as the losses of this motor can heat it: is the time in {}, is a heat input in another "
           "unit, or is it another motor?",
-          key, significant(ratio, 1), ratio > kHours_ratio ? "hours" : "minutes"));
+          key, base::significant(ratio, 1), ratio > kHours_ratio ? "hours" : "minutes"));
       return;
     }
   }
@@ -187,10 +191,11 @@ void faster_than_the_motor(const Motor& motor, const Recording& recording, std::
 
 /// Adds a note for each temperature that lags, unless the motor file states the lag. It is not an error: real sensors lag, and a fit can
 /// still use them.
-void late_answers(const Motor& motor, const Recording& recording, const DataQuality& quality, Admission& admission) {
-  for (const ClockOffset& offset : quality.clock_offsets) {
-    const std::string late = late_answer(offset, quality.sampling.usual_period_s);
-    const bool is_stated = std::ranges::any_of(faults_of(motor, offset.temperature), [](const SensorFault& fault) {
+void late_answers(const motor::Motor& motor, const recording::Recording& recording, const recording::DataQuality& quality,
+                  Admission& admission) {
+  for (const recording::ClockOffset& offset : quality.clock_offsets) {
+    const std::string late = recording::late_answer(offset, quality.sampling.usual_period_s);
+    const bool is_stated = std::ranges::any_of(motor::faults_of(motor, offset.temperature), [](const motor::SensorFault& fault) {
       return fault.type->law.after != nullptr && fault.size > 0.0;
     });
     if (late.empty() || is_stated) {
@@ -209,13 +214,13 @@ void late_answers(const Motor& motor, const Recording& recording, const DataQual
 
 }  // namespace
 
-Admission admit(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out, bool takes_logs_as_they_are,
-                std::optional<double> ambient_C) {
+Admission admit(const motor::Motor& motor, std::span<const recording::Recording> fitted, std::span<const recording::Recording> held_out,
+                bool takes_logs_as_they_are, std::optional<double> ambient_C) {
   refuse_repeated(fitted, held_out);
   Admission admission;
   std::vector<std::string>& notes = admission.notes;
-  std::vector<Diagnostic> wrong;
-  const auto look = [&](const Recording& recording, const DataQuality& quality) {
+  std::vector<base::Diagnostic> wrong;
+  const auto look = [&](const recording::Recording& recording, const recording::DataQuality& quality) {
     if (!recording.motor.empty() && recording.motor != motor.id && !(motor.fit && recording.motor == motor.fit->motor)) {
       notes.push_back(fmt::format("{} states that it is of the motor {}, not of {}", recording.name, recording.motor, motor.id));
     }
@@ -237,40 +242,41 @@ Admission admit(const Motor& motor, std::span<const Recording> fitted, std::span
       wrong.push_back({{recording.file.string()}, {}, each});
     }
   };
-  for (const Recording& recording : fitted) {
-    const DataQuality quality = assess(recording, {}, ambient_C);
-    require_thermal(recording, quality);
+  for (const recording::Recording& recording : fitted) {
+    const recording::DataQuality quality = recording::assess(recording, {}, ambient_C);
+    recording::require_thermal(recording, quality);
     look(recording, quality);
   }
-  for (const Recording& recording : held_out) {
-    look(recording, assess(recording, {}, ambient_C));
+  for (const recording::Recording& recording : held_out) {
+    look(recording, recording::assess(recording, {}, ambient_C));
   }
   if (!wrong.empty() && !takes_logs_as_they_are) {
-    throw Failure(ExitCode::bad_input,
-                  "units or sensors of the logs look wrong; correct them in a mapping (--map), or use --as-is if they are right",
-                  std::move(wrong));
+    throw base::Failure(base::ExitCode::bad_input,
+                        "units or sensors of the logs look wrong; correct them in a mapping (--map), or use --as-is if they are right",
+                        std::move(wrong));
   }
   return admission;
 }
 
-bool was_fitted_to(const MotorFit& fit, const Recording& recording) {
-  return std::ranges::any_of(fit.runs, [&recording](const std::string& run) { return is_of_run(recording, run); });
+bool was_fitted_to(const motor::MotorFit& fit, const recording::Recording& recording) {
+  return std::ranges::any_of(fit.runs, [&recording](const std::string& run) { return recording::is_of_run(recording, run); });
 }
 
-void refuse_runs_of_the_file(const Motor& motor, std::span<const Recording> fitted, std::span<const Recording> held_out) {
-  std::vector<Diagnostic> known;
+void refuse_runs_of_the_file(const motor::Motor& motor, std::span<const recording::Recording> fitted,
+                             std::span<const recording::Recording> held_out) {
+  std::vector<base::Diagnostic> known;
   for (const auto& recordings : {fitted, held_out}) {
-    for (const Recording& recording : recordings) {
+    for (const recording::Recording& recording : recordings) {
       if (motor.fit && was_fitted_to(*motor.fit, recording)) {
         known.push_back({{recording.file.string()}, {}, fmt::format("{} was fitted to these rows (fit.runs)", motor.id)});
       }
     }
   }
   if (!known.empty()) {
-    throw Failure(ExitCode::bad_input,
-                  "a run would count twice; start from the file as it was before that fit, or use --as-is if it is another run",
-                  std::move(known));
+    throw base::Failure(base::ExitCode::bad_input,
+                        "a run would count twice; start from the file as it was before that fit, or use --as-is if it is another run",
+                        std::move(known));
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

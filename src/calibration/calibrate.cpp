@@ -24,31 +24,31 @@
 #include "recording/fingerprint.h"
 #include "recording/quality.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 /// Largest standard deviation of a logarithm for which the curvature at the optimum describes the likelihood well.
 constexpr double kCurvatureHolds_sd = 0.1;
 
-bool has_speed(const Recording& recording) {
-  const std::vector<Signal> signals = signals_of(recording);
-  return std::ranges::find(signals, Signal::speed) != signals.end();
+bool has_speed(const recording::Recording& recording) {
+  const std::vector<thermal::Signal> signals = estimation::signals_of(recording);
+  return std::ranges::find(signals, thermal::Signal::speed) != signals.end();
 }
 
 /// Reads the runs of all recordings. If the heat follows from the current, a log with a speed column needs a speed in every row; a log
 /// without that column is accepted.
-std::vector<MeasuredRun> runs_of(std::span<const Recording> recordings, const MeasuredRunOptions& options,
-                                 std::vector<std::string>& notes) {
-  std::vector<MeasuredRun> all;
-  for (const Recording& recording : recordings) {
-    MeasuredRunOptions here = options;
-    const auto needs = [&](Signal signal) { return std::ranges::find(here.needed, signal) != here.needed.end(); };
-    if (needs(Signal::current) && has_speed(recording) && !needs(Signal::speed)) {
-      here.needed.push_back(Signal::speed);
+std::vector<estimation::MeasuredRun> runs_of(std::span<const recording::Recording> recordings,
+                                             const estimation::MeasuredRunOptions& options, std::vector<std::string>& notes) {
+  std::vector<estimation::MeasuredRun> all;
+  for (const recording::Recording& recording : recordings) {
+    estimation::MeasuredRunOptions here = options;
+    const auto needs = [&](thermal::Signal signal) { return std::ranges::find(here.needed, signal) != here.needed.end(); };
+    if (needs(thermal::Signal::current) && has_speed(recording) && !needs(thermal::Signal::speed)) {
+      here.needed.push_back(thermal::Signal::speed);
     } else if (!has_speed(recording)) {
-      std::erase(here.needed, Signal::speed);
+      std::erase(here.needed, thermal::Signal::speed);
     }
-    MeasuredRuns found = measured_runs(recording, here);
+    estimation::MeasuredRuns found = estimation::measured_runs(recording, here);
     std::ranges::move(found.runs, std::back_inserter(all));
     std::ranges::move(found.notes, std::back_inserter(notes));
   }
@@ -57,18 +57,19 @@ std::vector<MeasuredRun> runs_of(std::span<const Recording> recordings, const Me
 
 class Calibrating {
  public:
-  Calibrating(std::span<const Recording> recordings, std::span<const Recording> holdout, const CalibrationOptions& options)
+  Calibrating(std::span<const recording::Recording> recordings, std::span<const recording::Recording> holdout,
+              const CalibrationOptions& options)
       : recordings_(recordings), holdout_(holdout), options_(options) {}
 
-  Calibration run(const Motor& motor) {
+  Calibration run(const motor::Motor& motor) {
     setup_ = forecast_setup(motor, recordings_);
     all_.effects = setup_.motor.effects;
     all_.motor_model = motor_model(setup_.motor, setup_.heat, setup_.has_speed);
     const double most_loss_W = all_.motor_model.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
     add_remarks(all_.motor_model.held);
     add_remarks(held_sensors(motor, recordings_));
-    MeasuredRunOptions how = how_to_read(motor, setup_.heat);
-    if (std::string lacking = columns_lacking(how.columns, recordings_); !lacking.empty()) {
+    estimation::MeasuredRunOptions how = how_to_read(motor, setup_.heat);
+    if (std::string lacking = estimation::columns_lacking(how.columns, recordings_); !lacking.empty()) {
       add_remarks({std::move(lacking)});
     }
     how.needed = all_.motor_model.needed;
@@ -76,15 +77,15 @@ class Calibrating {
     std::vector<std::string> remarks;
     all_.runs = runs_of(recordings_, how, remarks);
     add_remarks(remarks);
-    std::ranges::transform(recordings_, std::back_inserter(all_.fitted), name_and_fingerprint);
-    all_.training = motor.fit ? motor.fit->training : TrainingRange{};
+    std::ranges::transform(recordings_, std::back_inserter(all_.fitted), recording::name_and_fingerprint);
+    all_.training = motor.fit ? motor.fit->training : motor::TrainingRange{};
     widen(all_.training, recordings_);
     if (most_loss_W > 0.0 && std::ranges::any_of(all_.runs, turns_unseen)) {
       open_loss_at_speed(all_.motor_model, motor);
       setup_.opens_loss_at_speed = true;
       all_.findings.push_back(LossAtSpeedUnknown{most_loss_W});
     }
-    all_.fit = fit(all_.motor_model.model, all_.runs, options_.fit);
+    all_.fit = estimation::fit(all_.motor_model.model, all_.runs, options_.fit);
     settle_turning_rows();
     warn();
     widen_by_rows();
@@ -136,7 +137,7 @@ class Calibrating {
   /// Predicts the fitted runs. Their bands are not valid.
   [[nodiscard]] std::vector<PredictedRun> fitted_runs(const ForecastModel& model, const Eigen::VectorXd& theta) const {
     std::vector<PredictedRun> all;
-    for (const MeasuredRun& run : all_.runs) {
+    for (const estimation::MeasuredRun& run : all_.runs) {
       all.push_back(predict(model, theta, Eigen::MatrixXd::Zero(model.count(), model.count()), all_.forecast->band, run));
     }
     return all;
@@ -152,7 +153,7 @@ class Calibrating {
   }
 
   /// Predicts the hold-out runs. The calibration does not depend on the result.
-  void score_holdout(const Motor& motor) {
+  void score_holdout(const motor::Motor& motor) {
     if (holdout_.empty()) {
       return;
     }
@@ -166,16 +167,16 @@ class Calibrating {
 
   /// If the motor may have reversed within rows, refits with interpolated speeds and keeps that fit if its evidence is larger.
   void settle_turning_rows() {
-    if (std::ranges::none_of(all_.runs, may_turn_within_rows)) {
+    if (std::ranges::none_of(all_.runs, estimation::may_turn_within_rows)) {
       return;
     }
-    std::vector<MeasuredRun> turning;
-    std::ranges::transform(all_.runs, std::back_inserter(turning), turning_within_rows);
-    Model near = all_.motor_model.model;
+    std::vector<estimation::MeasuredRun> turning;
+    std::ranges::transform(all_.runs, std::back_inserter(turning), estimation::turning_within_rows);
+    estimation::Model near = all_.motor_model.model;
     near.values = near.values_at(all_.fit.theta);
-    FitOptions options = options_.fit;
+    estimation::FitOptions options = options_.fit;
     options.starts = 0;
-    Fit other = fit(near, turning, options);
+    estimation::Fit other = estimation::fit(near, turning, options);
     if (other.log_evidence <= all_.fit.log_evidence) {
       return;
     }
@@ -186,7 +187,7 @@ class Calibrating {
   }
 
   void warn() {
-    const Fit& fit = all_.fit;
+    const estimation::Fit& fit = all_.fit;
     // Unknown heat that is certain to exist is reported elsewhere.
     double most_W = 0.0;
     const std::vector<double>& certain_W = all_.motor_model.model.least_flux_W;
@@ -195,8 +196,8 @@ class Calibrating {
     }
     constexpr double kAlmost = 0.95;
     constexpr double kMuch_share = 0.1;
-    if (most_W > kAlmost * kMostFlux_share * fit.usual_heat_W) {
-      all_.findings.push_back(UnmodelledHeat{kMostFlux_share, fit.usual_heat_W, true});
+    if (most_W > kAlmost * estimation::kMostFlux_share * fit.usual_heat_W) {
+      all_.findings.push_back(UnmodelledHeat{estimation::kMostFlux_share, fit.usual_heat_W, true});
     } else if (most_W > kMuch_share * fit.usual_heat_W) {
       all_.findings.push_back(UnmodelledHeat{most_W / fit.usual_heat_W, fit.usual_heat_W, false});
     }
@@ -218,7 +219,7 @@ class Calibrating {
   void widen_by_rows() {
     double time_s = 0.0;
     double cubes_s3 = 0.0;
-    for (const MeasuredRun& run : all_.runs) {
+    for (const estimation::MeasuredRun& run : all_.runs) {
       for (std::size_t k = 0; k + 1 < run.time_s.size(); ++k) {
         const double step_s = run.time_s[k + 1] - run.time_s[k];
         time_s += step_s;
@@ -255,18 +256,18 @@ class Calibrating {
   }
 
   /// Adds a note if V = R·I + K·ω gives another terminal resistance than the file. Needs logs with all three signals that follow this law.
-  void report_terminal_resistance(const Motor& motor) {
+  void report_terminal_resistance(const motor::Motor& motor) {
     Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
     Eigen::Vector2d with_voltage = Eigen::Vector2d::Zero();
     double squares_V2 = 0.0;
-    for (const Recording& recording : recordings_) {
-      const Channel* const voltage = recording.find("motor_V");
-      const Channel* const current = recording.find("current_A");
-      const Channel* const speed = recording.find("speed_rad_per_s");
-      const Channel* const winding = recording.find("winding_C");
+    for (const recording::Recording& recording : recordings_) {
+      const recording::Channel* const voltage = recording.find("motor_V");
+      const recording::Channel* const current = recording.find("current_A");
+      const recording::Channel* const speed = recording.find("speed_rad_per_s");
+      const recording::Channel* const winding = recording.find("winding_C");
       for (std::size_t row = 0; voltage && current && speed && row < recording.rows(); ++row) {
-        const double winding_C = winding && !std::isnan(winding->values[row]) ? winding->values[row] : kSheetTemperature_C;
-        const double hot_ratio = resistance_ratio(motor.nominal.temperature_coefficient_per_K, winding_C);
+        const double winding_C = winding && !std::isnan(winding->values[row]) ? winding->values[row] : base::kSheetTemperature_C;
+        const double hot_ratio = base::resistance_ratio(motor.nominal.temperature_coefficient_per_K, winding_C);
         const Eigen::Vector2d x(hot_ratio * current->values[row], speed->values[row]);
         const double voltage_V = voltage->values[row];
         if (std::isnan(x.sum() + voltage_V)) {
@@ -317,8 +318,8 @@ class Calibrating {
 
   void parameters() {
     const MotorModel& motor = all_.motor_model;
-    const Model& model = motor.model;
-    const Fit& fit = all_.fit;
+    const estimation::Model& model = motor.model;
+    const estimation::Fit& fit = all_.fit;
     std::vector<std::optional<std::pair<double, double>>> profiles(static_cast<std::size_t>(model.free_count()));
     Eigen::Index of_file = 0;
     for (const CalibratedValue& each : motor.parameters) {
@@ -327,8 +328,8 @@ class Calibrating {
       const double sd = std::sqrt(each.exponents.dot(fit.covariance * each.exponents));
       CalibratedParameter parameter{.name = each.name, .unit = each.unit, .is_of_file = each.is_of_file, .before = each.before};
       parameter.value = each.before * std::exp(moved);
-      double below = kInterval_sd * sd;
-      double above = kInterval_sd * sd;
+      double below = estimation::kInterval_sd * sd;
+      double above = estimation::kInterval_sd * sd;
       Eigen::Index only = 0;
       if (fit.free_run_error_K == 0.0 && sd > kCurvatureHolds_sd && each.exponents.cwiseAbs().maxCoeff(&only) == 1.0 &&
           each.exponents.cwiseAbs().sum() == 1.0) {
@@ -342,7 +343,7 @@ class Calibrating {
       parameter.low = parameter.value * std::exp(-below);
       parameter.high = parameter.value * std::exp(above);
       // Without heat in the runs, values in watts rest on the file, however well the data determine the time constants.
-      const bool has_watts = each.origin == Origin::measured || !rests_on_watts(motor, each) || is_heated(motor, all_.runs);
+      const bool has_watts = each.origin == base::Origin::measured || !rests_on_watts(motor, each) || is_heated(motor, all_.runs);
       parameter.is_learned = has_watts && is_learned(sd, each);
       parameter.is_identifiable = has_watts && is_identifiable(sd, each);
       all_.parameters.push_back(std::move(parameter));
@@ -367,10 +368,10 @@ class Calibrating {
       why += fmt::format("\n  not identifiable: {}: {}\n  cheapest experiment: {}", each.what, each.why, each.experiment);
     }
     // A current in the wrong unit, such as kiloamperes, looks like no current.
-    if (std::ranges::any_of(recordings_, [](const Recording& each) { return heat_input_of(each) != nullptr; })) {
+    if (std::ranges::any_of(recordings_, [](const recording::Recording& each) { return recording::heat_input_of(each) != nullptr; })) {
       why += "\n  also check the units of the heat inputs (kiloamperes, kilowatts); `heatsoak log inspect` shows each channel";
     }
-    throw Failure(ExitCode::cannot_answer, why);
+    throw base::Failure(base::ExitCode::cannot_answer, why);
   }
 
   /// Returns a line for each signal that the fitted model does not follow.
@@ -379,11 +380,11 @@ class Calibrating {
     constexpr double kFar_share = 0.4;
     std::string why;
     for (const ErrorBeforeAfter& each : errors) {
-      const double moves_K = standard_deviation_K(all_.runs, each.signal);
+      const double moves_K = estimation::standard_deviation_K(all_.runs, each.signal);
       if (each.after.rmse_K > moves_K || each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
-        why +=
-            fmt::format("\n  {} has an error of {} K rms, {} its variation (standard deviation {} K)", each.signal,
-                        significant(each.after.rmse_K, 2), each.after.rmse_K > moves_K ? "more than" : "close to", significant(moves_K, 2));
+        why += fmt::format("\n  {} has an error of {} K rms, {} its variation (standard deviation {} K)", each.signal,
+                           base::significant(each.after.rmse_K, 2), each.after.rmse_K > moves_K ? "more than" : "close to",
+                           base::significant(moves_K, 2));
       }
     }
     return why;
@@ -393,8 +394,8 @@ class Calibrating {
   void refuse_where_nothing_is_explained() const {
     const std::string why = not_followed(all_.fit_error);
     if (!why.empty() && !not_followed(innovations_error_).empty()) {
-      throw Failure(
-          ExitCode::cannot_answer,
+      throw base::Failure(
+          base::ExitCode::cannot_answer,
           fmt::format(
               "no parameter values make the model follow these logs{}{}\n  check for another motor, a wrong unit (degrees Fahrenheit, "
               "minutes, milliamperes), a misplaced sensor, or heat that no column contains; `heatsoak log inspect` shows each channel",
@@ -407,15 +408,15 @@ class Calibrating {
     constexpr double kFar_K = 15.0;
     constexpr double kFar_share = 0.2;
     for (const ErrorBeforeAfter& each : all_.fit_error) {
-      const double moves_K = standard_deviation_K(all_.runs, each.signal);
+      const double moves_K = estimation::standard_deviation_K(all_.runs, each.signal);
       if (each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
         all_.findings.push_back(PoorFit{each.signal, each.after.rmse_K, moves_K});
       }
     }
   }
 
-  std::span<const Recording> recordings_;
-  std::span<const Recording> holdout_;
+  std::span<const recording::Recording> recordings_;
+  std::span<const recording::Recording> holdout_;
   const CalibrationOptions& options_;
   ForecastSetup setup_;
   bool rows_turn_ = false;
@@ -424,9 +425,9 @@ class Calibrating {
   Calibration all_;
 };
 
-std::vector<std::string> names_of(std::span<const MeasuredRun> runs) {
+std::vector<std::string> names_of(std::span<const estimation::MeasuredRun> runs) {
   std::vector<std::string> names;
-  for (const MeasuredRun& run : runs) {
+  for (const estimation::MeasuredRun& run : runs) {
     const std::string name = run.name.substr(0, run.name.find('#'));
     if (std::ranges::find(names, name) == names.end()) {
       names.push_back(name);
@@ -437,16 +438,16 @@ std::vector<std::string> names_of(std::span<const MeasuredRun> runs) {
 
 }  // namespace
 
-Calibration calibrate(const Motor& motor, std::span<const Recording> recordings, std::span<const Recording> holdout,
-                      const CalibrationOptions& options) {
+Calibration calibrate(const motor::Motor& motor, std::span<const recording::Recording> recordings,
+                      std::span<const recording::Recording> holdout, const CalibrationOptions& options) {
   return Calibrating(recordings, holdout, options).run(motor);
 }
 
-Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
-  const std::string kSource(kCalibrationSource);
-  Motor result = motor;
+motor::Motor calibrated_motor(const motor::Motor& motor, const Calibration& calibration) {
+  const std::string kSource(motor::kCalibrationSource);
+  motor::Motor result = motor;
   const std::vector<std::string> extensions = add_extensions(calibration, kSource, result);
-  MotorFit& fit = result.fit.emplace();
+  motor::MotorFit& fit = result.fit.emplace();
   fit.motor = motor.id;
   fit.runs = motor.fit ? motor.fit->runs : std::vector<std::string>{};
   std::ranges::copy(calibration.fitted, std::back_inserter(fit.runs));
@@ -459,11 +460,11 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
       continue;
     }
     fit.parameters.push_back(each.name);
-    ParameterValue* const parameter = find_parameter(result, each.name);
+    base::ParameterValue* const parameter = motor::find_parameter(result, each.name);
     parameter->value = each.value;
     parameter->printed.clear();
     if (each.is_identifiable) {
-      parameter->origin = Origin::measured;
+      parameter->origin = base::Origin::measured;
       parameter->source = kSource;
       parameter->derivation = "fit to measured temperatures";
     } else {
@@ -472,10 +473,10 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
       parameter->derivation +=
           fmt::format("{}fit to measured temperatures, which do not determine it alone", parameter->derivation.empty() ? "" : "; ");
     }
-    const Range declared = declared_range(result, each.name);
-    parameter->spread = Spread{Spread::Kind::range, std::max(each.low, declared.low), std::min(each.high, declared.high), true};
+    const base::Range declared = declared_range(result, each.name);
+    parameter->spread = base::Spread{base::Spread::Kind::range, std::max(each.low, declared.low), std::min(each.high, declared.high), true};
   }
-  fit.correlation = Correlation(std::span(calibration.correlation.data(), static_cast<std::size_t>(calibration.correlation.size())));
+  fit.correlation = motor::Correlation(std::span(calibration.correlation.data(), static_cast<std::size_t>(calibration.correlation.size())));
   fit.latent_flux_W = calibration.fit.flux.rms_W;
   fit.free_run_error_K = calibration.fit.free_run_error_K;
   fit.latent_flux_time_scale_s = calibration.fit.flux.time_scale_s;
@@ -486,13 +487,14 @@ Motor calibrated_motor(const Motor& motor, const Calibration& calibration) {
   }
   for (std::size_t i = 0; i < calibration.fit.sensor_nodes.size(); ++i) {
     const std::string& node = calibration.fit.sensor_nodes[i];
-    const MeasuredRun& run = *std::ranges::find_if(calibration.runs, [&](const MeasuredRun& r) { return r.sensor_at(node) >= 0; });
+    const estimation::MeasuredRun& run =
+        *std::ranges::find_if(calibration.runs, [&](const estimation::MeasuredRun& r) { return r.sensor_at(node) >= 0; });
     const double noise_K = run.sensors[static_cast<std::size_t>(run.sensor_at(node))].noise_K * calibration.fit.noise_ratio[i];
     fit.noise_K.emplace_back(node, noise_K);
   }
   fit.band = calibration.forecast->band;
-  refresh_values(result);
+  motor::refresh_values(result);
   return result;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

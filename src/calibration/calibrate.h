@@ -16,13 +16,13 @@
 #include "motor/motor.h"
 #include "recording/recording.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 /// Fit whose parameters are written. `best`: innovations if it predicts left-out pieces as well as the forecast fit, otherwise that.
 enum class WrittenFit { best, forecast, innovations };
 
 struct CalibrationOptions {
-  FitOptions fit;
+  estimation::FitOptions fit;
   std::optional<double> ambient_C = {};  ///< ambient temperature of logs without one
   WrittenFit written = WrittenFit::best;
 };
@@ -50,19 +50,19 @@ struct OpenDirection {
 };
 
 struct Calibration {
-  Fit fit;
+  estimation::Fit fit;
   MotorModel motor_model;
-  std::vector<MeasuredRun> runs;
+  std::vector<estimation::MeasuredRun> runs;
   std::vector<std::string> fitted;  ///< name_and_fingerprint() of each recording
-  TrainingRange training;           ///< their conditions and input ranges
+  motor::TrainingRange training;    ///< their conditions and input ranges
   std::vector<CalibratedParameter> parameters;
   Eigen::MatrixXd correlation;  ///< correlation of the logarithms of the motor file's parameters, in the order of `parameters`
   std::vector<OpenDirection> open;
   std::string next_experiment;  ///< empty if nothing is open
   std::vector<ErrorBeforeAfter> fit_error;
-  std::optional<Forecast> forecast;  ///< forecast fit, its rivals and its error band
-  bool is_forecast_written = false;  ///< true: `parameters` are from the forecast fit; false: from the innovations fit
-  std::vector<MotorEffect> effects;  ///< effects of the written file
+  std::optional<Forecast> forecast;         ///< forecast fit, its rivals and its error band
+  bool is_forecast_written = false;         ///< true: `parameters` are from the forecast fit; false: from the innovations fit
+  std::vector<motor::MotorEffect> effects;  ///< effects of the written file
   std::vector<PredictedRun> fitted_before,
       fitted_after;  ///< fitted runs, predicted by the original and by the written file; bands not valid
   /// Hold-out runs, predicted by the original and by the written file. Computed last, so that they influence nothing.
@@ -74,11 +74,11 @@ struct Calibration {
 
 /// Calibrates the motor. The logs must have passed admit() (calibration/admission.h). Throws Failure: bad_input if the logs lack a needed
 /// column; cannot_answer (with the reason) if the logs determine nothing or no fit succeeds.
-Calibration calibrate(const Motor& motor, std::span<const Recording> recordings, std::span<const Recording> holdout,
-                      const CalibrationOptions& options);
+Calibration calibrate(const motor::Motor& motor, std::span<const recording::Recording> recordings,
+                      std::span<const recording::Recording> holdout, const CalibrationOptions& options);
 
 /// Returns the motor with the calibrated values and intervals. Identifiable parameters get the origin "measured"; the others keep their
 /// origin. The source "calibration" names the runs.
-Motor calibrated_motor(const Motor& motor, const Calibration& calibration);
+motor::Motor calibrated_motor(const motor::Motor& motor, const Calibration& calibration);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -5,22 +5,22 @@
 #include "calibration/calibrate.h"
 #include "recording/named_logs.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 struct CalibrationJob {
-  Motor motor;     ///< start of the fit and prior knowledge
-  NamedLogs logs;  ///< their choice states whether logs that look wrong are accepted
-  FitOptions fit;
+  motor::Motor motor;         ///< start of the fit and prior knowledge
+  recording::NamedLogs logs;  ///< their choice states whether logs that look wrong are accepted
+  estimation::FitOptions fit;
   WrittenFit written = WrittenFit::best;
 };
 
 struct CalibrationAnswer {
   Calibration calibration;
-  Motor motor;  ///< the calibrated motor
+  motor::Motor motor;  ///< the calibrated motor
   Admission admission;
 };
 
 /// Throws Failure as admit(), refuse_runs_of_the_file() and calibrate() do.
 CalibrationAnswer run_calibration(const CalibrationJob& job);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

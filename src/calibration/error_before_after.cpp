@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 std::vector<ErrorBeforeAfter> errors_over_runs(const std::vector<PredictedRun>& before, const std::vector<PredictedRun>& after) {
   std::vector<ErrorBeforeAfter> all;
-  const auto add = [&](const std::vector<PredictedRun>& runs, SignalError ErrorBeforeAfter::*when) {
+  const auto add = [&](const std::vector<PredictedRun>& runs, estimation::SignalError ErrorBeforeAfter::*when) {
     for (const PredictedRun& run : runs) {
       for (const PredictedSignal& each : run.signals) {
         auto found = std::ranges::find(all, each.signal, &ErrorBeforeAfter::signal);
         if (found == all.end()) {
           found = all.insert(all.end(), {each.signal, {each.signal}, {each.signal}});
         }
-        SignalError& error = (*found).*when;
+        estimation::SignalError& error = (*found).*when;
         const auto more = static_cast<double>(each.samples);
         const double count = static_cast<double>(error.samples) + more;
         error.rmse_K =
@@ -56,4 +56,4 @@ double rms_error_K(std::span<const PredictedRun> runs) {
   return std::sqrt(squares_K2 / std::max(1.0, count));
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

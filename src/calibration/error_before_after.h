@@ -8,12 +8,12 @@
 #include "calibration/forecast/prediction.h"
 #include "estimation/open_loop.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 struct ErrorBeforeAfter {
   std::string signal;
-  SignalError before;
-  SignalError after;
+  estimation::SignalError before;
+  estimation::SignalError after;
 };
 
 /// Returns the errors per signal, pooled over all runs. For the runs of one fit.
@@ -25,4 +25,4 @@ std::vector<ErrorBeforeAfter> worst_errors(const std::vector<PredictedRun>& befo
 /// Root of the mean square error over runs and signals, each with the same weight.
 double rms_error_K(std::span<const PredictedRun> runs);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -1,6 +1,6 @@
 #include "calibration/findings.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 std::vector<std::string> remarks_in(const std::vector<CalibrationFinding>& findings) {
   std::vector<std::string> all;
@@ -12,4 +12,4 @@ std::vector<std::string> remarks_in(const std::vector<CalibrationFinding>& findi
   return all;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -8,7 +8,7 @@
 
 #include "calibration/forecast/forecast.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 /// Logs have a current but no speed: the loss at speed is unknown, 0 to `most_W` (the loss at no-load speed).
 struct LossAtSpeedUnknown {
@@ -122,4 +122,4 @@ struct GrownError {
   bool is_extended = false;  ///< the written network has additional effects
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -11,7 +11,7 @@
 #include "base/quantity.h"
 #include "calibration/loss_at_stator.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 /// A direction is open if the data leave more than this fraction of its prior variance.
@@ -25,14 +25,14 @@ struct Look {
   double longest_s = 0.0;
 };
 
-Look look(const MotorModel& motor, std::span<const MeasuredRun> runs) {
+Look look(const MotorModel& motor, std::span<const estimation::MeasuredRun> runs) {
   Look seen;
   seen.has_heat = is_heated(motor, runs);
-  for (const MeasuredRun& run : runs) {
+  for (const estimation::MeasuredRun& run : runs) {
     seen.longest_s = std::max(seen.longest_s, run.time_s.back() - run.time_s.front());
     seen.winding_is_sensed = seen.winding_is_sensed || run.sensor_at("winding") >= 0;
     seen.stator_is_sensed = seen.stator_is_sensed || run.sensor_at("stator") >= 0;
-    for (const OperatingPoint<double>& at : run.at) {
+    for (const thermal::OperatingPoint<double>& at : run.at) {
       seen.is_ever_at_speed = seen.is_ever_at_speed || at.speed_mean_rad_per_s > 1.0;
     }
   }
@@ -49,7 +49,7 @@ struct Roles {
   int drag = -1;
 };
 
-Roles roles_of(const Model& model) {
+Roles roles_of(const estimation::Model& model) {
   const auto find = [&](std::string_view name) {
     for (Eigen::Index i = 0; i < model.free_count(); ++i) {
       if (model.name(i) == name) {
@@ -131,7 +131,7 @@ double likeness_to_scale(const Eigen::VectorXd& direction, const Roles& roles) {
   return std::abs(direction.dot(scale.normalized()));
 }
 
-std::string movement(const Model& model, const Eigen::VectorXd& direction) {
+std::string movement(const estimation::Model& model, const Eigen::VectorXd& direction) {
   std::vector<std::string> parts;
   const double largest = direction.cwiseAbs().maxCoeff();
   Eigen::Index first = 0;
@@ -176,7 +176,7 @@ bool is_of_stator(const MotorModel& motor, const CalibratedValue& parameter) {
 }
 
 /// Reason why a single parameter is not identifiable although no open direction contains it.
-Answer answer_to(const MotorModel& motor, const CalibratedValue& parameter, const Fit& fit, const Look& seen) {
+Answer answer_to(const MotorModel& motor, const CalibratedValue& parameter, const estimation::Fit& fit, const Look& seen) {
   const Roles roles = roles_of(motor.model);
   const auto holds = [&](int place) { return component(parameter.exponents, place) != 0.0; };
   if (!seen.has_heat && (holds(roles.resistance) || holds(roles.drag) || rests_on_watts(motor, parameter))) {
@@ -195,7 +195,7 @@ Answer answer_to(const MotorModel& motor, const CalibratedValue& parameter, cons
     const double stator_s = std::exp(fit.theta[roles.stator_capacity] + fit.theta[roles.stator_ambient]);
     return {fmt::format("the runs neither reach a steady state nor cool down far enough: the longest lasts {} min, the stator's time "
                         "constant is about {} min",
-                        significant(seen.longest_s / 60.0, 2), significant(stator_s / 60.0, 1)),
+                        base::significant(seen.longest_s / 60.0, 2), base::significant(stator_s / 60.0, 1)),
             "one run from cold with a constant current up to the steady state, then the cool-down", 90.0};
   }
   if ((holds(roles.winding_capacity) || holds(roles.winding_stator)) && !seen.winding_is_sensed) {
@@ -209,7 +209,7 @@ Answer answer_to(const MotorModel& motor, const CalibratedValue& parameter, cons
 }
 
 /// Adds a reason for every parameter that is neither identifiable nor explained by the open directions, the columns of `explained`.
-void name_the_rest(const MotorModel& motor, const Fit& fit, const Look& seen, std::span<const CalibratedParameter> parameters,
+void name_the_rest(const MotorModel& motor, const estimation::Fit& fit, const Look& seen, std::span<const CalibratedParameter> parameters,
                    const Eigen::MatrixXd& explained, std::vector<OpenDirection>& open) {
   const bool has_unlogged_speed = !motor.nuisances.empty();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -234,21 +234,22 @@ void name_the_rest(const MotorModel& motor, const Fit& fit, const Look& seen, st
 
 }  // namespace
 
-bool is_heated(const MotorModel& motor, std::span<const MeasuredRun> runs) {
+bool is_heated(const MotorModel& motor, std::span<const estimation::MeasuredRun> runs) {
   // The offset of a current sensor must not count as heat.
   constexpr double kNothing_K = 1.0;
   const auto value = [&](std::string_view name) {
     const auto parameters = motor.model.network.parameters();
-    return motor.model.values[static_cast<std::size_t>(std::ranges::find(parameters, name, &NetworkParameter::name) - parameters.begin())];
+    return motor.model
+        .values[static_cast<std::size_t>(std::ranges::find(parameters, name, &thermal::NetworkParameter::name) - parameters.begin())];
   };
   const double across_K_per_W = value("winding_stator.thermal_resistance") + value("stator_ambient.thermal_resistance");
   const double slowest_s = across_K_per_W * value("winding.heat_capacity");
   const double by_current_ohm = motor.heat != HeatInput::input_power ? value("copper_loss.terminal_resistance") : 0.0;
   // Upper bound of the temperature rise: the winding alone, with the whole resistance to ambient.
-  return std::ranges::any_of(runs, [&](const MeasuredRun& run) {
+  return std::ranges::any_of(runs, [&](const estimation::MeasuredRun& run) {
     double rise_K = 0.0;
     for (std::size_t k = 0; k < run.at.size() && rise_K < kNothing_K; ++k) {
-      const OperatingPoint<double>& at = run.at[k];
+      const thermal::OperatingPoint<double>& at = run.at[k];
       const double heat_W = motor.heat != HeatInput::input_power ? at.current_rms_A * at.current_rms_A * by_current_ohm : at.input_power_W;
       const double stays_share = std::exp(-(run.time_s[k + 1] - run.time_s[k]) / slowest_s);
       rise_K = stays_share * rise_K + (1.0 - stays_share) * heat_W * across_K_per_W;
@@ -264,8 +265,8 @@ bool rests_on_watts(const MotorModel& motor, const CalibratedValue& parameter) {
   return std::abs(by_scale) > 0.5;
 }
 
-std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& fit, std::span<const MeasuredRun> runs,
-                                           std::span<const CalibratedParameter> parameters) {
+std::vector<OpenDirection> open_directions(const MotorModel& motor, const estimation::Fit& fit,
+                                           std::span<const estimation::MeasuredRun> runs, std::span<const CalibratedParameter> parameters) {
   const Eigen::Index count = motor.model.free_count();
   const Eigen::MatrixXd triangle = fit.data_triangle.topLeftCorner(count, count);
   Eigen::MatrixXd data = triangle.transpose() * triangle;
@@ -286,7 +287,7 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& f
   const Eigen::MatrixXd root = prior_covariance.llt().matrixL();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(root.transpose() * data(asked, asked) * root);
   const Look seen = look(motor, runs);
-  const bool was_fitted = std::ranges::find(motor.parameters, Origin::measured, &CalibratedValue::origin) != motor.parameters.end();
+  const bool was_fitted = std::ranges::find(motor.parameters, base::Origin::measured, &CalibratedValue::origin) != motor.parameters.end();
   std::vector<OpenDirection> open;
   if (!motor.nuisances.empty()) {
     open.push_back(open_direction(std::string(kLossAtUnloggedSpeed), speed_unlogged()));
@@ -328,4 +329,4 @@ std::string next_experiment(std::span<const OpenDirection> open) {
   return best ? best->experiment : "";
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

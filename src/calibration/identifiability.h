@@ -7,20 +7,20 @@
 
 #include "calibration/calibrate.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 /// Returns true if the logged heat inputs of any run can warm the winding by at least 1 K.
-bool is_heated(const MotorModel& motor, std::span<const MeasuredRun> runs);
+bool is_heated(const MotorModel& motor, std::span<const estimation::MeasuredRun> runs);
 
 /// Returns true if the parameter scales with a common factor on all heat. True for K/W and J/K, false for time constants.
 bool rests_on_watts(const MotorModel& motor, const CalibratedValue& parameter);
 
 /// Returns the combinations of parameters that the data determine less well than the prior, and parameters that are not identifiable for
 /// another reason. `parameters` must be in the order of motor.parameters.
-std::vector<OpenDirection> open_directions(const MotorModel& motor, const Fit& fit, std::span<const MeasuredRun> runs,
-                                           std::span<const CalibratedParameter> parameters);
+std::vector<OpenDirection> open_directions(const MotorModel& motor, const estimation::Fit& fit,
+                                           std::span<const estimation::MeasuredRun> runs, std::span<const CalibratedParameter> parameters);
 
 /// Returns the cheapest experiment for the most uncertain directions; empty if nothing is open.
 std::string next_experiment(std::span<const OpenDirection> open);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

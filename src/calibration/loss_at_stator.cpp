@@ -5,7 +5,7 @@
 
 #include "thermal/law.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 enum Node { winding, stator };
@@ -13,35 +13,35 @@ enum Parameter { drag_torque };
 
 struct LossAtStator {
   template <class S>
-  static void book(const Situation<S>& x, HeatBook<S>& heat) {
+  static void book(const thermal::Situation<S>& x, thermal::HeatBook<S>& heat) {
     const S drag_W = x.parameter(drag_torque) * x.at.speed_mean_rad_per_s;
     // At most the total loss: otherwise, with less loss than in the data sheet, the winding would be cooled.
-    heat.flow(winding, stator, drag_W - positive_part(drag_W - positive_part(x.at.input_power_W - x.at.shaft_power_W)));
+    heat.flow(winding, stator, drag_W - thermal::positive_part(drag_W - thermal::positive_part(x.at.input_power_W - x.at.shaft_power_W)));
   }
 };
 
-const EffectType& loss_at_stator() {
-  static const EffectType type{
+const thermal::EffectType& loss_at_stator() {
+  static const thermal::EffectType type{
       .name = kDragAtStator.substr(0, kDragAtStator.find('.')),
       .summary = "No-load loss at the stator, subtracted from a power that is assigned to the winding.",
       .equation = "P_winding→stator = min(M_drag · |ω|, max(0, P_input − P_shaft))",
       .reference = "",
       .nodes = {{"winding", "winding"}, {"stator", "stator"}},
-      .parameters = {{"drag_torque", "N m", Range::non_negative(), "torque constant times no-load current"}},
+      .parameters = {{"drag_torque", "N m", base::Range::non_negative(), "torque constant times no-load current"}},
       .typical = "",
       .confounded_with = "",
       .example = {},
-      .laws = laws<LossAtStator>(),
-      .needs = {Signal::speed, Signal::input_power, Signal::shaft_power},
+      .laws = thermal::laws<LossAtStator>(),
+      .needs = {thermal::Signal::speed, thermal::Signal::input_power, thermal::Signal::shaft_power},
   };
   return type;
 }
 
 }  // namespace
 
-void add_loss_at_stator(Network& network, double drag_torque_Nm) {
+void add_loss_at_stator(thermal::Network& network, double drag_torque_Nm) {
   network.add_effect(std::string(loss_at_stator().name), loss_at_stator(), std::vector<std::string>{"winding", "stator"},
                      std::vector<double>{drag_torque_Nm});
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -15,59 +15,60 @@
 #include "estimation/log_rows.h"
 #include "motor/datasheet_network.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 /// Prior standard deviation of a logarithm by origin, if the file states no spread, and the factor that widens a stated spread. Data sheet
 /// values hold only for the mounting in which they were measured; estimates are less certain still.
 struct Trust {
-  Origin origin;
+  base::Origin origin;
   double unstated_sd;
   double widening;
 };
-constexpr std::array kTrust{Trust{Origin::measured, 0.1, 1.0}, Trust{Origin::datasheet, kSheet_sd, 1.5},
-                            Trust{Origin::third_party, 0.5, 1.5}, Trust{Origin::derived, 0.5, 1.5}, Trust{Origin::estimated, 0.9, 2.0}};
+constexpr std::array kTrust{Trust{base::Origin::measured, 0.1, 1.0}, Trust{base::Origin::datasheet, kSheet_sd, 1.5},
+                            Trust{base::Origin::third_party, 0.5, 1.5}, Trust{base::Origin::derived, 0.5, 1.5},
+                            Trust{base::Origin::estimated, 0.9, 2.0}};
 
 /// Mean specific heat of motor materials (copper 385, steel 460, magnets 450, aluminium 900 J/(kg K)), and the standard deviation of the
 /// logarithm of the heat capacity that follows from the mass: part of the mass is only weakly coupled to the stator.
 constexpr double kSpecificHeat_J_per_kg_K = 440.0;
 constexpr double kMassPrior_sd = 0.25;
 
-int place_of(const Network& network, std::string_view parameter) {
+int place_of(const thermal::Network& network, std::string_view parameter) {
   const auto all = network.parameters();
-  const auto found = std::ranges::find(all, parameter, &NetworkParameter::name);
+  const auto found = std::ranges::find(all, parameter, &thermal::NetworkParameter::name);
   return found == all.end() ? -1 : static_cast<int>(found - all.begin());
 }
 
 /// Share of the input power that heats the winding: 1 minus the shares of the file's input_power_loss effects, at least 0.
-double implicit_power_share(const Motor& motor) {
+double implicit_power_share(const motor::Motor& motor) {
   double share = 1.0;
-  for (const MotorEffect& effect : motor.effects) {
+  for (const motor::MotorEffect& effect : motor.effects) {
     share -= effect.type->name == std::string_view("input_power_loss") ? effect.parameters.front().value : 0.0;
   }
   return std::max(0.0, share);
 }
 
-bool all_have(std::span<const Recording> recordings, Signal signal, const ShaftTorque& torque = {}) {
-  return std::ranges::all_of(recordings, [&](const Recording& each) {
-    const std::vector<Signal> signals = signals_of(each, torque);
+bool all_have(std::span<const recording::Recording> recordings, thermal::Signal signal, const estimation::ShaftTorque& torque = {}) {
+  return std::ranges::all_of(recordings, [&](const recording::Recording& each) {
+    const std::vector<thermal::Signal> signals = estimation::signals_of(each, torque);
     return std::ranges::find(signals, signal) != signals.end();
   });
 }
 
 class ModelBuilder {
  public:
-  ModelBuilder(const Motor& motor, HeatInput heat, bool with_speed) : motor_(motor), with_speed_(with_speed) {
+  ModelBuilder(const motor::Motor& motor, HeatInput heat, bool with_speed) : motor_(motor), with_speed_(with_speed) {
     all_.heat = heat;
-    all_.model.network = datasheet_network(motor, nominal_sample(motor));
+    all_.model.network = motor::datasheet_network(motor, motor::nominal_sample(motor));
     if (heat == HeatInput::input_power) {
       // This is the only loss: the copper loss is 0 without a current, and the no-load loss is set to 0 below.
-      all_.model.network.add_effect(std::string(kImplicitPowerLoss), *find_effect("input_power_loss"), std::vector<std::string>{"winding"},
-                                    std::vector<double>{implicit_power_share(motor)});
+      all_.model.network.add_effect(std::string(kImplicitPowerLoss), *thermal::find_effect("input_power_loss"),
+                                    std::vector<std::string>{"winding"}, std::vector<double>{implicit_power_share(motor)});
       // An estimated no-load current is too uncertain for this split.
       if (with_speed && motor.nominal.no_load_current_A > 0.0 &&
-          motor.parameters.find("no_load_current")->second.origin != Origin::estimated) {
-        add_loss_at_stator(all_.model.network, drag_torque_Nm(motor.nominal));
+          motor.parameters.find("no_load_current")->second.origin != base::Origin::estimated) {
+        add_loss_at_stator(all_.model.network, motor::drag_torque_Nm(motor.nominal));
       }
     }
     all_.model.values = all_.model.network.values();
@@ -75,9 +76,9 @@ class ModelBuilder {
       all_.model.values[static_cast<std::size_t>(place_of(all_.model.network, "no_load_loss.drag_torque"))] = 0.0;
     }
     all_.model.flux_nodes = {all_.model.network.find_node("winding"), all_.model.network.find_node("stator")};
-    all_.needed = {heat == HeatInput::input_power ? Signal::input_power : Signal::current};
+    all_.needed = {heat == HeatInput::input_power ? thermal::Signal::input_power : thermal::Signal::current};
     if (heat == HeatInput::power_balance) {
-      all_.needed.insert(all_.needed.end(), {Signal::input_power, Signal::shaft_power, Signal::speed});
+      all_.needed.insert(all_.needed.end(), {thermal::Signal::input_power, thermal::Signal::shaft_power, thermal::Signal::speed});
     }
   }
 
@@ -114,12 +115,13 @@ class ModelBuilder {
   }
 
   void add_parameter(std::string_view key, const std::vector<std::pair<int, double>>& exponents) {
-    const ParameterValue& parameter = motor_.parameters.find(key)->second;
-    const auto specs = motor_parameter_specs();
-    const auto spec = std::ranges::find(specs, key, [](const MotorParameterSpec& each) { return each.spec.key; });
+    const base::ParameterValue& parameter = motor_.parameters.find(key)->second;
+    const auto specs = motor::motor_parameter_specs();
+    const auto spec = std::ranges::find(specs, key, [](const motor::MotorParameterSpec& each) { return each.spec.key; });
     add(std::string(key), std::string(spec->spec.unit), parameter, exponents);
   }
-  void add(std::string name, std::string unit, const ParameterValue& parameter, const std::vector<std::pair<int, double>>& exponents) {
+  void add(std::string name, std::string unit, const base::ParameterValue& parameter,
+           const std::vector<std::pair<int, double>>& exponents) {
     // A result of an earlier fit holds for this mounting, so it is not widened.
     const double prior_sd = is_of_fit(name) && parameter.spread ? prior_sd_of_spread(parameter) : prior_sd_of(parameter);
     CalibratedValue fitted{std::move(name), std::move(unit), true, Eigen::VectorXd::Zero(kMostFree), parameter.value,
@@ -131,9 +133,9 @@ class ModelBuilder {
   }
 
   void heat_of_current() {
-    const ParameterValue& resistance = motor_.parameters.find("terminal_resistance")->second;
+    const base::ParameterValue& resistance = motor_.parameters.find("terminal_resistance")->second;
     // A published or measured resistance sets the scale of all heat and is held; an estimate is fitted.
-    if (resistance.spread || resistance.origin == Origin::estimated) {
+    if (resistance.spread || resistance.origin == base::Origin::estimated) {
       add_parameter("terminal_resistance", {{free("copper_loss.terminal_resistance"), 1.0}});
       // A resistance does not depend on the mounting, so its spread is not widened.
       if (resistance.spread) {
@@ -147,7 +149,7 @@ class ModelBuilder {
     } else if (!with_speed_) {
       all_.held.emplace_back("no_load_current is held: its loss depends on speed, which not every log has");
     } else if (motor_.nominal.no_load_current_A > 0.0) {
-      all_.needed.push_back(Signal::speed);
+      all_.needed.push_back(thermal::Signal::speed);
       add_parameter("no_load_current", {{free("no_load_loss.drag_torque"), 1.0}});
     }
   }
@@ -161,17 +163,17 @@ class ModelBuilder {
         has_loss_at_stator ? "the part due to no_load_current is assumed to arise at the stator and the rest" : "all of it is assumed",
         has_loss_at_stator ? "beyond that " : ""));
     if (has_loss_at_stator) {
-      all_.needed.push_back(Signal::speed);
+      all_.needed.push_back(thermal::Signal::speed);
       add_parameter("no_load_current", {{free(std::string(kDragAtStator)), 1.0}});
     }
   }
 
   void effects() {
-    for (const MotorEffect& effect : motor_.effects) {
+    for (const motor::MotorEffect& effect : motor_.effects) {
       const std::vector<double> values = effect.values();
       std::vector<std::string_view> held;
       for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-        const ParameterSpec& spec = effect.type->parameters[i];
+        const base::ParameterSpec& spec = effect.type->parameters[i];
         const std::string name = fmt::format("{}.{}", effect.name, spec.key);
         // An effect whose condition does not hold is not in the network.
         if (place_of(all_.model.network, name) < 0) {
@@ -183,8 +185,8 @@ class ModelBuilder {
           }
           continue;
         }
-        add("effects." + name, std::string(unit_of(effect.type->parameters, i, values)), effect.parameters[i], {{free(name), 1.0}});
-        FreeParameter& bounded = all_.model.free.back();
+        add("effects." + name, std::string(base::unit_of(effect.type->parameters, i, values)), effect.parameters[i], {{free(name), 1.0}});
+        estimation::FreeParameter& bounded = all_.model.free.back();
         bounded.low = std::max(bounded.low, spec.range.low);
         bounded.high = std::min(bounded.high, spec.range.high);
       }
@@ -198,11 +200,11 @@ class ModelBuilder {
   void capacity(const std::string& name, int place) {
     const double before = all_.model.values[static_cast<std::size_t>(all_.model.free[static_cast<std::size_t>(place)].place)];
     all_.parameters.push_back(
-        {name, "J/K", false, Eigen::VectorXd::Zero(kMostFree), before, 0.0, motor_.fit ? Origin::measured : Origin::derived});
+        {name, "J/K", false, Eigen::VectorXd::Zero(kMostFree), before, 0.0, motor_.fit ? base::Origin::measured : base::Origin::derived});
     all_.parameters.back().exponents[place] = 1.0;
   }
 
-  static double prior_sd_of_spread(const ParameterValue& parameter) {
+  static double prior_sd_of_spread(const base::ParameterValue& parameter) {
     return 0.25 * std::log(parameter.spread->high / parameter.spread->low);
   }
 
@@ -241,7 +243,7 @@ class ModelBuilder {
 
   /// Converts the prior of the file's parameters to the parameters of the model.
   void set_prior(std::size_t file_parameters, int winding, int stator) {
-    Model& model = all_.model;
+    estimation::Model& model = all_.model;
     const Eigen::Index count = model.free_count();
     for (CalibratedValue& each : all_.parameters) {
       each.exponents.conservativeResize(count);
@@ -274,7 +276,7 @@ class ModelBuilder {
   }
 
   static constexpr Eigen::Index kMostFree = 64;
-  const Motor& motor_;
+  const motor::Motor& motor_;
   bool with_speed_;
   MotorModel all_;
 };
@@ -289,10 +291,10 @@ bool is_learned(double sd_share, const CalibratedValue& parameter) {
 bool is_identifiable(double sd_share, const CalibratedValue& parameter) {
   // The interval then extends by a factor of two to each side.
   constexpr double kIdentifiable_sd = 0.35;
-  return sd_share < kIdentifiable_sd && (parameter.origin == Origin::measured || is_learned(sd_share, parameter));
+  return sd_share < kIdentifiable_sd && (parameter.origin == base::Origin::measured || is_learned(sd_share, parameter));
 }
 
-double prior_sd_of(const ParameterValue& parameter) {
+double prior_sd_of(const base::ParameterValue& parameter) {
   const auto* const trust = std::ranges::find(kTrust, parameter.origin, &Trust::origin);
   if (!parameter.spread || !(parameter.spread->low > 0.0) || !(parameter.spread->high > parameter.spread->low)) {
     return trust->unstated_sd;
@@ -301,27 +303,27 @@ double prior_sd_of(const ParameterValue& parameter) {
   return trust->widening * 0.25 * std::log(parameter.spread->high / parameter.spread->low);
 }
 
-static ShaftTorque shaft_torque_of(const Motor& motor) {
+static estimation::ShaftTorque shaft_torque_of(const motor::Motor& motor) {
   const auto known = [](double value) { return value > 0.0 ? value : 0.0; };
-  return {known(motor.nominal.torque_constant_Nm_per_A), known(drag_torque_Nm(motor.nominal)),
+  return {known(motor.nominal.torque_constant_Nm_per_A), known(motor::drag_torque_Nm(motor.nominal)),
           known(motor.nominal.terminal_resistance_ohm)};
 }
 
-MeasuredRunOptions how_to_read(const Motor& motor, HeatInput heat) {
+estimation::MeasuredRunOptions how_to_read(const motor::Motor& motor, HeatInput heat) {
   // Limits of the step, whatever time constant the data sheet states.
   constexpr double kShortest_s = 0.05;
   constexpr double kLongest_s = 2.0;
-  MeasuredRunOptions how;
+  estimation::MeasuredRunOptions how;
   how.longest_step_s = std::clamp(motor.nominal.thermal_time_constant_winding_s / 10.0, kShortest_s, kLongest_s);
   // The input power contains the copper loss; a current from the torque would count it twice.
   if (heat != HeatInput::input_power) {
     how.torque = shaft_torque_of(motor);
   }
   how.least_current_A = least_driving_current_A(motor);
-  for (const MotorSensor& sensor : motor.sensors) {
+  for (const motor::MotorSensor& sensor : motor.sensors) {
     how.faults.push_back({sensor.type, sensor.size.value});
   }
-  for (const MotorEffect& effect : motor.effects) {
+  for (const motor::MotorEffect& effect : motor.effects) {
     if (!effect.column.empty()) {
       how.columns.resize(std::max(how.columns.size(), effect.column_place() + 1));
       how.columns[effect.column_place()] = effect.column;
@@ -330,49 +332,53 @@ MeasuredRunOptions how_to_read(const Motor& motor, HeatInput heat) {
   return how;
 }
 
-HeatInput heat_input_for(std::span<const Recording> recordings, const ShaftTorque& torque) {
-  if (all_have(recordings, Signal::current)) {
+HeatInput heat_input_for(std::span<const recording::Recording> recordings, const estimation::ShaftTorque& torque) {
+  if (all_have(recordings, thermal::Signal::current)) {
     return HeatInput::current;
   }
-  if (all_have(recordings, Signal::input_power)) {
+  if (all_have(recordings, thermal::Signal::input_power)) {
     return HeatInput::input_power;
   }
-  if (all_have(recordings, Signal::current, torque)) {
+  if (all_have(recordings, thermal::Signal::current, torque)) {
     return HeatInput::current;
   }
-  std::vector<Diagnostic> lacking;
-  for (const Recording& each : recordings) {
-    const std::vector<Signal> signals = signals_of(each);
-    if (std::ranges::find(signals, Signal::current) == signals.end()) {
+  std::vector<base::Diagnostic> lacking;
+  for (const recording::Recording& each : recordings) {
+    const std::vector<thermal::Signal> signals = estimation::signals_of(each);
+    if (std::ranges::find(signals, thermal::Signal::current) == signals.end()) {
       lacking.push_back({{each.file.string()},
                          "current_A",
                          "is missing in this log or contains no number, and not all logs have power_in_W instead, so heat cannot be "
                          "computed; add one of the two columns"});
     }
   }
-  throw Failure(ExitCode::bad_input, "the logs have no heat input", std::move(lacking));
+  throw base::Failure(base::ExitCode::bad_input, "the logs have no heat input", std::move(lacking));
 }
 
-bool has_remaining_loss(const Motor& motor) {
-  return std::ranges::any_of(motor.effects, [](const MotorEffect& each) { return each.type->name == std::string_view("remaining_loss"); });
+bool has_remaining_loss(const motor::Motor& motor) {
+  return std::ranges::any_of(motor.effects,
+                             [](const motor::MotorEffect& each) { return each.type->name == std::string_view("remaining_loss"); });
 }
 
-HeatInput heat_input_of(const Motor& motor, std::span<const Recording> recordings, bool may_add_remaining_loss) {
+HeatInput heat_input_of(const motor::Motor& motor, std::span<const recording::Recording> recordings, bool may_add_remaining_loss) {
   const bool has_no_losses = motor.effects.empty() && !motor.fit;
-  const bool is_balanced = std::ranges::all_of(std::array{Signal::current, Signal::input_power, Signal::shaft_power, Signal::speed},
-                                               [&](Signal signal) { return all_have(recordings, signal); });
+  const bool is_balanced = std::ranges::all_of(
+      std::array{thermal::Signal::current, thermal::Signal::input_power, thermal::Signal::shaft_power, thermal::Signal::speed},
+      [&](thermal::Signal signal) { return all_have(recordings, signal); });
   if (is_balanced && (has_remaining_loss(motor) || (may_add_remaining_loss && has_no_losses))) {
     return HeatInput::power_balance;
   }
   return heat_input_for(recordings, shaft_torque_of(motor));
 }
 
-std::vector<std::string> held_sensors(const Motor& motor, std::span<const Recording> recordings) {
+std::vector<std::string> held_sensors(const motor::Motor& motor, std::span<const recording::Recording> recordings) {
   std::vector<std::string> held;
-  for (const MotorSensor& sensor : motor.sensors) {
-    const SensorEffectType& type = *sensor.type;
-    const bool is_shown = std::ranges::any_of(recordings, [&](const Recording& each) { return has_values(each.find(type.signal)); });
-    const std::string size = fmt::format("{}{}{}", significant(sensor.size.value, 3), type.size.unit.empty() ? "" : " ", type.size.unit);
+  for (const motor::MotorSensor& sensor : motor.sensors) {
+    const motor::SensorEffectType& type = *sensor.type;
+    const bool is_shown =
+        std::ranges::any_of(recordings, [&](const recording::Recording& each) { return estimation::has_values(each.find(type.signal)); });
+    const std::string size =
+        fmt::format("{}{}{}", base::significant(sensor.size.value, 3), type.size.unit.empty() ? "" : " ", type.size.unit);
     held.push_back(is_shown
                        ? fmt::format("effects.{}.{} is held at {}: an error of the sensor is not a property of the motor", sensor.name,
                                      type.size.key, size)
@@ -381,6 +387,6 @@ std::vector<std::string> held_sensors(const Motor& motor, std::span<const Record
   return held;
 }
 
-MotorModel motor_model(const Motor& motor, HeatInput heat, bool with_speed) { return ModelBuilder(motor, heat, with_speed).build(); }
+MotorModel motor_model(const motor::Motor& motor, HeatInput heat, bool with_speed) { return ModelBuilder(motor, heat, with_speed).build(); }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -11,7 +11,7 @@
 #include "estimation/model.h"
 #include "motor/motor.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 /// Name of the effect with the unknown loss of a motor whose speed was not logged.
 inline constexpr std::string_view kLossAtUnloggedSpeed = "loss_at_unlogged_speed";
@@ -34,7 +34,7 @@ struct CalibratedValue {
   Eigen::VectorXd exponents;  ///< value = constant · Π parameter^exponent
   double before = 0.0;        ///< value in the file
   double prior_sd = 0.0;      ///< prior standard deviation of the logarithm, from spread and origin
-  Origin origin = Origin::estimated;
+  base::Origin origin = base::Origin::estimated;
 };
 
 /// Returns true if the data reduce the prior standard deviation by 30 % or more. `sd_share` is the standard deviation of the logarithm.
@@ -44,9 +44,9 @@ bool is_learned(double sd_share, const CalibratedValue& parameter);
 bool is_identifiable(double sd_share, const CalibratedValue& parameter);
 
 struct MotorModel {
-  Model model;
+  estimation::Model model;
   HeatInput heat = HeatInput::current;
-  std::vector<Signal> needed;
+  std::vector<thermal::Signal> needed;
   std::vector<CalibratedValue> parameters;
   std::vector<int> nuisances;     ///< indices of free parameters that are not parameters of the motor
   std::vector<std::string> held;  ///< sentences: parameters that are not fitted, and why
@@ -56,27 +56,27 @@ struct MotorModel {
 /// winding's time constant (0.05 to 2 s), because a network of two bodies does not describe faster changes of a real winding. A missing
 /// torque follows from torque constant and no-load current, except if the input power is the heat, which contains the copper loss. Sensors
 /// have the faults stated in the file.
-MeasuredRunOptions how_to_read(const Motor& motor, HeatInput heat);
+estimation::MeasuredRunOptions how_to_read(const motor::Motor& motor, HeatInput heat);
 
 /// Returns sentences about the sensor faults stated in the file, which are not fitted.
-std::vector<std::string> held_sensors(const Motor& motor, std::span<const Recording> recordings);
+std::vector<std::string> held_sensors(const motor::Motor& motor, std::span<const recording::Recording> recordings);
 
 /// Returns the heat input that all recordings have: current (copper loss), else input power, else a current computed from the torque with
 /// `torque`. Throws Failure (bad_input) if they have none of these.
-HeatInput heat_input_for(std::span<const Recording> recordings, const ShaftTorque& torque = {});
+HeatInput heat_input_for(std::span<const recording::Recording> recordings, const estimation::ShaftTorque& torque = {});
 
 /// Returns true if the motor has a remaining_loss effect, that is, takes its losses from a measured power balance.
-bool has_remaining_loss(const Motor& motor);
+bool has_remaining_loss(const motor::Motor& motor);
 
 /// Same as heat_input_for(), but prefers the power balance if all recordings have current, input power, torque and speed. The motor must
 /// then have a remaining_loss, or (with `may_add_remaining_loss`) no effects and no fit that already describe its losses.
-HeatInput heat_input_of(const Motor& motor, std::span<const Recording> recordings, bool may_add_remaining_loss);
+HeatInput heat_input_of(const motor::Motor& motor, std::span<const recording::Recording> recordings, bool may_add_remaining_loss);
 
 /// Builds the model. `with_speed`: all logs have a speed, so that the no-load loss is observable.
-MotorModel motor_model(const Motor& motor, HeatInput heat, bool with_speed);
+MotorModel motor_model(const motor::Motor& motor, HeatInput heat, bool with_speed);
 
 /// Returns the prior standard deviation of a parameter's logarithm: from its spread, widened according to its origin, or a default for the
 /// origin if it has no spread.
-double prior_sd_of(const ParameterValue& parameter);
+double prior_sd_of(const base::ParameterValue& parameter);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

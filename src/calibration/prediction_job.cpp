@@ -2,12 +2,12 @@
 
 #include <utility>
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
-std::vector<PredictionWarning> warnings_of(const MotorFit& fit, const std::vector<Recording>& recordings) {
+std::vector<PredictionWarning> warnings_of(const motor::MotorFit& fit, const std::vector<recording::Recording>& recordings) {
   std::vector<PredictionWarning> warnings;
-  for (const Recording& recording : recordings) {
+  for (const recording::Recording& recording : recordings) {
     for (OutsideTraining& each : outside(fit.training, recording)) {
       warnings.emplace_back(std::move(each));
     }
@@ -21,8 +21,8 @@ std::vector<PredictionWarning> warnings_of(const MotorFit& fit, const std::vecto
 }  // namespace
 
 PredictionAnswer run_prediction(const PredictionJob& job) {
-  const LogChoice& choice = job.logs.choice;
-  const std::vector<Recording>& recordings = job.logs.held_out;
+  const recording::LogChoice& choice = job.logs.choice;
+  const std::vector<recording::Recording>& recordings = job.logs.held_out;
   PredictionAnswer answer;
   answer.admission = admit(job.motor, {}, recordings, choice.takes_logs_as_they_are, choice.ambient_C);
   answer.prediction = predict(job.motor, recordings, {.ambient_C = choice.ambient_C});
@@ -32,4 +32,4 @@ PredictionAnswer run_prediction(const PredictionJob& job) {
   return answer;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

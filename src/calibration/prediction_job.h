@@ -10,11 +10,11 @@
 #include "calibration/training_range.h"
 #include "recording/named_logs.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 struct PredictionJob {
-  Motor motor;
-  NamedLogs logs;  ///< `held_out` is predicted; no log is fitted
+  motor::Motor motor;
+  recording::NamedLogs logs;  ///< `held_out` is predicted; no log is fitted
 };
 
 /// The model was fitted to this recording, so its error is not a forecast error.
@@ -32,4 +32,4 @@ struct PredictionAnswer {
 /// Throws Failure as admit() and predict() do.
 PredictionAnswer run_prediction(const PredictionJob& job);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -6,7 +6,7 @@
 
 #include "estimation/posterior.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 /// Half of the 95 % point of χ² with one degree of freedom.
@@ -14,25 +14,26 @@ constexpr double kDrop = 1.92;
 
 }  // namespace
 
-std::pair<double, double> profile_interval(const Model& model, const std::vector<MeasuredRun>& runs, const Fit& fit, int parameter) {
+std::pair<double, double> profile_interval(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs,
+                                           const estimation::Fit& fit, int parameter) {
   std::vector<std::vector<double>> start_C;
   std::ranges::transform(fit.starts, std::back_inserter(start_C),
-                         [](const RunStart& start) { return std::vector(start.state_C.begin(), start.state_C.end()); });
-  PosteriorOptions options{.flux = fit.flux, .holds_covariance = true, .held = parameter};
+                         [](const estimation::RunStart& start) { return std::vector(start.state_C.begin(), start.state_C.end()); });
+  estimation::PosteriorOptions options{.flux = fit.flux, .holds_covariance = true, .held = parameter};
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    options.noise.push_back(noise_of(runs[r], fit, r));
+    options.noise.push_back(estimation::noise_of(runs[r], fit, r));
   }
   const double sd = std::sqrt(fit.covariance(parameter, parameter));
   const Eigen::VectorXd direction = fit.covariance.col(parameter) / fit.covariance(parameter, parameter);
   const auto cost = [&](double moved) {
     // Start the other parameters at the values that the curvature predicts.
-    Model there = model;
+    estimation::Model there = model;
     there.set_theta(fit.theta + moved * direction);
-    return try_posterior_of(std::move(there), runs, start_C, options).cost_nats;
+    return estimation::try_posterior_of(std::move(there), runs, start_C, options).cost_nats;
   };
   const double least = cost(0.0);
   const auto end = [&](double sign) {
-    const FreeParameter& which = model.free[static_cast<std::size_t>(parameter)];
+    const estimation::FreeParameter& which = model.free[static_cast<std::size_t>(parameter)];
     const double bound = model.theta_of(parameter, sign > 0.0 ? which.high : which.low);
     const double reach = std::abs(bound - fit.theta[parameter]);
     double inner = 0.0;
@@ -53,4 +54,4 @@ std::pair<double, double> profile_interval(const Model& model, const std::vector
   return {end(-1.0), end(1.0)};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -10,7 +10,7 @@
 
 #include "recording/spread.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 /// Input whose range limits the validity of a forecast.
@@ -24,8 +24,8 @@ constexpr std::array kInputs{RangedInput{"ambient_C", "°C"}, RangedInput{"speed
 constexpr double kAmbient_K = 5.0;
 constexpr double kSize_ratio = 1.2;
 
-std::optional<InputRange> range_of(const RangedInput& input, const Recording& recording) {
-  const Channel* const channel = recording.find(input.channel);
+std::optional<motor::InputRange> range_of(const RangedInput& input, const recording::Recording& recording) {
+  const recording::Channel* const channel = recording.find(input.channel);
   if (channel == nullptr) {
     return std::nullopt;
   }
@@ -33,14 +33,14 @@ std::optional<InputRange> range_of(const RangedInput& input, const Recording& re
   if (input.is_size) {
     std::ranges::transform(values, values.begin(), [](double value) { return std::abs(value); });
   }
-  const InputRange found{percentile(values, 0.01), percentile(values, 0.99)};
+  const motor::InputRange found{recording::percentile(values, 0.01), recording::percentile(values, 0.99)};
   return std::isfinite(found.low) ? std::optional(found) : std::nullopt;
 }
 
 }  // namespace
 
-void widen(TrainingRange& range, std::span<const Recording> recordings) {
-  for (const Recording& recording : recordings) {
+void widen(motor::TrainingRange& range, std::span<const recording::Recording> recordings) {
+  for (const recording::Recording& recording : recordings) {
     for (const auto& [key, value] : recording.conditions) {
       range.conditions.insert(fmt::format("{}={}", key, value));
     }
@@ -53,7 +53,7 @@ void widen(TrainingRange& range, std::span<const Recording> recordings) {
   }
 }
 
-std::vector<OutsideTraining> outside(const TrainingRange& range, const Recording& recording) {
+std::vector<OutsideTraining> outside(const motor::TrainingRange& range, const recording::Recording& recording) {
   std::vector<OutsideTraining> all;
   for (const auto& [key, value] : recording.conditions) {
     std::vector<std::string> seen;
@@ -80,4 +80,4 @@ std::vector<OutsideTraining> outside(const TrainingRange& range, const Recording
   return all;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -9,11 +9,11 @@
 #include "motor/fit_table.h"
 #include "recording/recording.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 /// Adds the conditions, ambient temperatures, speeds and currents of the recordings to `range`. The limits are the 1st and 99th percentile,
 /// so that single outliers do not widen the range.
-void widen(TrainingRange& range, std::span<const Recording> recordings);
+void widen(motor::TrainingRange& range, std::span<const recording::Recording> recordings);
 
 /// A condition of a recording that no fitted run had.
 struct UnseenCondition {
@@ -34,6 +34,6 @@ struct Extrapolation {
 using OutsideTraining = std::variant<UnseenCondition, Extrapolation>;
 
 /// Returns what lies outside the range of the fitted runs. Empty if `range` is empty.
-std::vector<OutsideTraining> outside(const TrainingRange& range, const Recording& recording);
+std::vector<OutsideTraining> outside(const motor::TrainingRange& range, const recording::Recording& recording);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -7,7 +7,7 @@
 #include "motor/datasheet_network.h"
 #include "thermal/law.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 /// Prior mean and standard deviation of both shares of the loss at no-load speed (at all times, and additionally while current flows). The
@@ -23,53 +23,53 @@ constexpr double kStepsPerCurrent = 20.0;
 struct LossAtUnloggedSpeed {
   enum { share, share_with_current, most_W, least_current_A };
   template <class S>
-  static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S is_driven = soft_step(kStepsPerCurrent * (x.at.current_rms_A / x.parameter(least_current_A) - 1.0));
+  static void book(const thermal::Situation<S>& x, thermal::HeatBook<S>& heat) {
+    const S is_driven = thermal::soft_step(kStepsPerCurrent * (x.at.current_rms_A / x.parameter(least_current_A) - 1.0));
     heat.source(0, (x.parameter(share) + x.parameter(share_with_current) * is_driven) * x.parameter(most_W) * x.at.unlogged_speed_share);
   }
 };
 
-const EffectType& loss_at_unlogged_speed() {
-  static const EffectType type{
+const thermal::EffectType& loss_at_unlogged_speed() {
+  static const thermal::EffectType type{
       .name = kLossAtUnloggedSpeed,
       .summary = "Loss at an unlogged speed.",
       .equation = "P_stator = (k + k_driven · [I > I_least]) · P_most",
       .reference = "",
       .nodes = {{"stator", "stator"}},
-      .parameters = {{"share", "", Range::any(), "of the loss at no-load speed, throughout"},
-                     {"share_with_current", "", Range::any(), "of the loss at no-load speed, while current flows"},
-                     {"most_loss", "W", Range::positive(), "the loss at no-load speed"},
-                     {"least_current", "A", Range::positive(), "a smaller current does not turn the motor"}},
+      .parameters = {{"share", "", base::Range::any(), "of the loss at no-load speed, throughout"},
+                     {"share_with_current", "", base::Range::any(), "of the loss at no-load speed, while current flows"},
+                     {"most_loss", "W", base::Range::positive(), "the loss at no-load speed"},
+                     {"least_current", "A", base::Range::positive(), "a smaller current does not turn the motor"}},
       .typical = "",
       .confounded_with = "",
       .example = {},
-      .laws = laws<LossAtUnloggedSpeed>(),
+      .laws = thermal::laws<LossAtUnloggedSpeed>(),
   };
   return type;
 }
 
 }  // namespace
 
-double most_loss_at_speed_W(const Motor& motor) {
-  const MotorValues& values = motor.nominal;
+double most_loss_at_speed_W(const motor::Motor& motor) {
+  const motor::MotorValues& values = motor.nominal;
   const double no_load_rad_per_s = values.no_load_speed_rad_per_s.value_or(values.nominal_voltage_V / values.torque_constant_Nm_per_A);
-  const double most_W = drag_torque_Nm(values) * no_load_rad_per_s;
+  const double most_W = motor::drag_torque_Nm(values) * no_load_rad_per_s;
   return most_W > 0.0 ? most_W : 0.0;
 }
 
-double expected_loss_at_speed_W(const Motor& motor, bool is_driven) {
+double expected_loss_at_speed_W(const motor::Motor& motor, bool is_driven) {
   return (is_driven ? 2.0 : 1.0) * kMean_share * most_loss_at_speed_W(motor);
 }
 
-bool turns_unseen(const MeasuredRun& run) {
-  return std::ranges::any_of(run.at, [](const OperatingPoint<double>& at) { return at.unlogged_speed_share > 0.0; });
+bool turns_unseen(const estimation::MeasuredRun& run) {
+  return std::ranges::any_of(run.at, [](const thermal::OperatingPoint<double>& at) { return at.unlogged_speed_share > 0.0; });
 }
 
-double least_driving_current_A(const Motor& motor) { return kDrives_share * std::max(0.0, motor.nominal.no_load_current_A); }
+double least_driving_current_A(const motor::Motor& motor) { return kDrives_share * std::max(0.0, motor.nominal.no_load_current_A); }
 
-void open_loss_at_speed(MotorModel& model, const Motor& motor) {
+void open_loss_at_speed(MotorModel& model, const motor::Motor& motor) {
   const double most_W = most_loss_at_speed_W(motor);
-  Model& opened = model.model;
+  estimation::Model& opened = model.model;
   const std::size_t first = opened.values.size();
   const std::vector<double> values{kMean_share, kMean_share, most_W, least_driving_current_A(motor)};
   opened.network.add_effect(std::string(kLossAtUnloggedSpeed), loss_at_unlogged_speed(), std::vector<std::string>{"stator"}, values);
@@ -86,4 +86,4 @@ void open_loss_at_speed(MotorModel& model, const Motor& motor) {
   opened.least_flux_W = {0.0, kComesAndGoes_share * most_W};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -10,7 +10,7 @@
 #include "estimation/open_loop.h"
 #include "motor/motor.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 bool is_better_than_innovations(const Forecast& forecast) {
@@ -22,14 +22,14 @@ bool is_better_than_innovations(const Forecast& forecast) {
   const RivalScore other = rival(ForecastSource::innovations);
   const auto matters = [&](const auto& signal_and_error) {
     const auto same = std::ranges::find(best.rmse_K, signal_and_error.first, [](const auto& each) { return each.first; });
-    return same == best.rmse_K.end() || signal_and_error.second > same->second + kMatters_K;
+    return same == best.rmse_K.end() || signal_and_error.second > same->second + estimation::kMatters_K;
   };
   return other.score_nats > best.score_nats + kLeastGain_nats && std::ranges::any_of(other.rmse_K, matters);
 }
 
 /// Returns the matrix of ones and zeros that selects, for each coordinate of `to`, the one with the same name in `from`; a row of zeros if
 /// there is none.
-Eigen::MatrixXd shared_coordinates(const Model& from, const Model& to) {
+Eigen::MatrixXd shared_coordinates(const estimation::Model& from, const estimation::Model& to) {
   Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(to.free_count(), from.free_count());
   for (Eigen::Index i = 0; i < to.free_count(); ++i) {
     for (Eigen::Index j = 0; j < from.free_count(); ++j) {
@@ -50,16 +50,16 @@ Eigen::MatrixXd covering(const Eigen::MatrixXd& one, const Eigen::MatrixXd& othe
 
 }  // namespace
 
-void score_innovations(const ForecastModel& model, FitOptions options, Calibration& calibration) {
+void score_innovations(const ForecastModel& model, estimation::FitOptions options, Calibration& calibration) {
   Forecast& forecast = *calibration.forecast;
   if (forecast.rivals.empty()) {
     return;
   }
-  Model near = calibration.motor_model.model;
+  estimation::Model near = calibration.motor_model.model;
   near.values = near.values_at(calibration.fit.theta);
   options.starts = 0;
   const auto fit_without = [&](const Piece& piece) {
-    Fit others = fit(near, runs_without(calibration.runs, piece), options);
+    estimation::Fit others = estimation::fit(near, runs_without(calibration.runs, piece), options);
     ForecastFit found;
     found.theta = std::move(others.theta);
     found.covariance = std::move(others.covariance);
@@ -80,24 +80,24 @@ bool writes_forecast(WrittenFit wanted, const Forecast& forecast, bool follows_f
   return forecast.source != ForecastSource::file && is_better_than_innovations(forecast);
 }
 
-Range declared_range(const Motor& motor, std::string_view key) {
-  for (const MotorEffect& effect : motor.effects) {
-    for (const ParameterSpec& spec : effect.type->parameters) {
+base::Range declared_range(const motor::Motor& motor, std::string_view key) {
+  for (const motor::MotorEffect& effect : motor.effects) {
+    for (const base::ParameterSpec& spec : effect.type->parameters) {
       if (key == fmt::format("effects.{}.{}", effect.name, spec.key)) {
         return spec.range;
       }
     }
   }
-  const auto specs = motor_parameter_specs();
-  const auto found = std::ranges::find(specs, key, [](const MotorParameterSpec& each) { return each.spec.key; });
-  return found == specs.end() ? Range::positive() : found->spec.range;
+  const auto specs = motor::motor_parameter_specs();
+  const auto found = std::ranges::find(specs, key, [](const motor::MotorParameterSpec& each) { return each.spec.key; });
+  return found == specs.end() ? base::Range::positive() : found->spec.range;
 }
 
-std::vector<OutsideDeclaredRange> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> parameters) {
+std::vector<OutsideDeclaredRange> outside_declared_ranges(const motor::Motor& motor, std::span<const CalibratedParameter> parameters) {
   std::vector<OutsideDeclaredRange> found;
-  Motor declared = motor;
+  motor::Motor declared = motor;
   for (const CalibratedParameter& each : parameters) {
-    const ParameterValue* const parameter = each.is_of_file ? find_parameter(declared, each.name) : nullptr;
+    const base::ParameterValue* const parameter = each.is_of_file ? motor::find_parameter(declared, each.name) : nullptr;
     if (parameter && parameter->spread && (each.value < parameter->spread->low || each.value > parameter->spread->high)) {
       found.push_back({each.name, each.unit, each.value, parameter->spread->low, parameter->spread->high});
     }
@@ -122,7 +122,7 @@ void write_forecast(Calibration& calibration) {
   const Forecast& forecast = *calibration.forecast;
   const ForecastModel model = forecast.model();
   const Eigen::Index inner = model.motor().model.free_count();
-  const Model before = calibration.motor_model.model;
+  const estimation::Model before = calibration.motor_model.model;
   const Eigen::VectorXd theta_before = calibration.fit.theta;
   const Eigen::MatrixXd covariance_before = calibration.fit.covariance;
   calibration.motor_model = model.motor();
@@ -169,17 +169,17 @@ std::vector<CalibrationFinding> forecast_findings(const Calibration& calibration
   return found;
 }
 
-std::vector<std::string> add_extensions(const Calibration& calibration, const std::string& source, Motor& motor) {
+std::vector<std::string> add_extensions(const Calibration& calibration, const std::string& source, motor::Motor& motor) {
   std::vector<std::string> names;
-  for (const MotorEffect& effect : calibration.effects) {
-    if (std::ranges::find(motor.effects, effect.name, &MotorEffect::name) != motor.effects.end()) {
+  for (const motor::MotorEffect& effect : calibration.effects) {
+    if (std::ranges::find(motor.effects, effect.name, &motor::MotorEffect::name) != motor.effects.end()) {
       continue;
     }
     motor.effects.push_back(effect);
     names.push_back(effect.name);
-    for (ParameterValue& each : motor.effects.back().parameters) {
+    for (base::ParameterValue& each : motor.effects.back().parameters) {
       each.source = source;
-      each.origin = each.spread ? each.origin : Origin::derived;
+      each.origin = each.spread ? each.origin : base::Origin::derived;
     }
   }
   if (!calibration.is_forecast_written || calibration.forecast->accepted.empty()) {
@@ -190,18 +190,18 @@ std::vector<std::string> add_extensions(const Calibration& calibration, const st
   for (std::size_t i = 0; i < model.faults().size(); ++i) {
     const FreeFault& fault = model.faults()[i];
     const Eigen::Index own = model.motor().model.free_count() + static_cast<Eigen::Index>(i);
-    const double reach = kInterval_sd * std::sqrt(fit.covariance(own, own));
-    MotorSensor sensor{std::string(fault.type->name), fault.type, {}};
+    const double reach = estimation::kInterval_sd * std::sqrt(fit.covariance(own, own));
+    motor::MotorSensor sensor{std::string(fault.type->name), fault.type, {}};
     sensor.size.value = std::exp(fit.theta[own]);
-    sensor.size.origin = Origin::measured;
+    sensor.size.origin = base::Origin::measured;
     sensor.size.source = source;
     sensor.size.derivation = "fit to measured temperatures, for forecasts";
-    sensor.size.spread = Spread{Spread::Kind::range, std::max(fault.type->size.range.low, sensor.size.value * std::exp(-reach)),
-                                std::min(fault.type->size.range.high, sensor.size.value * std::exp(reach)), true};
+    sensor.size.spread = base::Spread{base::Spread::Kind::range, std::max(fault.type->size.range.low, sensor.size.value * std::exp(-reach)),
+                                      std::min(fault.type->size.range.high, sensor.size.value * std::exp(reach)), true};
     names.push_back(sensor.name);
     motor.sensors.push_back(std::move(sensor));
   }
   return names;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -8,10 +8,10 @@
 
 #include "calibration/calibrate.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 /// Adds the innovations fit to the rivals of the forecast, scored on the same left-out pieces. Does nothing without pieces.
-void score_innovations(const ForecastModel& model, FitOptions options, Calibration& calibration);
+void score_innovations(const ForecastModel& model, estimation::FitOptions options, Calibration& calibration);
 
 /// Returns whether the forecast's parameters are written. With WrittenFit::best they must come from a fit, not from the file, and predict
 /// the left-out pieces better than the innovations fit, by kLeastGain_nats and by 0.1 K rms in at least one signal. Without two pieces to
@@ -19,7 +19,7 @@ void score_innovations(const ForecastModel& model, FitOptions options, Calibrati
 bool writes_forecast(WrittenFit wanted, const Forecast& forecast, bool follows_fitted_runs_better);
 
 /// Returns the fitted values outside their declared ranges. Verbs that need a sound motor may refuse such a file.
-std::vector<OutsideDeclaredRange> outside_declared_ranges(const Motor& motor, std::span<const CalibratedParameter> parameters);
+std::vector<OutsideDeclaredRange> outside_declared_ranges(const motor::Motor& motor, std::span<const CalibratedParameter> parameters);
 
 /// Marks a value as not identifiable if it was not identifiable in `before`, the innovations fit. If the forecast has
 /// the same network, that fit alone decides, as long as the written interval is less than twice as wide as its own.
@@ -35,10 +35,10 @@ std::vector<CalibrationFinding> forecast_findings(const Calibration& calibration
 
 /// Adds the effects and sensor faults of the calibration that the motor file does not have. Returns the names of those that were added for
 /// better forecasts.
-std::vector<std::string> add_extensions(const Calibration& calibration, const std::string& source, Motor& motor);
+std::vector<std::string> add_extensions(const Calibration& calibration, const std::string& source, motor::Motor& motor);
 
 /// Returns the allowed range of a motor parameter by its key (for example "effects.fan.conductance"), in the parameter's unit. Positive
 /// numbers if the key is unknown.
-Range declared_range(const Motor& motor, std::string_view key);
+base::Range declared_range(const motor::Motor& motor, std::string_view key);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -12,7 +12,7 @@
 #include "input/reader.h"
 #include "motor/conditions.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 namespace {
 
 namespace fs = std::filesystem;
@@ -23,11 +23,11 @@ constexpr std::size_t kMostChecks = 1000;
 class CheckReader {
  public:
   /// `reported`: problems of other files that were reported before; several checks may name one file.
-  CheckReader(Reader table, fs::path folder, const DataFolders& folders, std::set<std::string>& reported)
+  CheckReader(input::Reader table, fs::path folder, const input::DataFolders& folders, std::set<std::string>& reported)
       : table_(std::move(table)), folder_(std::move(folder)), folders_(folders), reported_(reported) {}
 
   Check read() {
-    check_.name = table_.text("name", Need::required).value_or("");
+    check_.name = table_.text("name", input::Need::required).value_or("");
     check_.at = table_.at("name");
     read_limits();
     read_things();
@@ -52,22 +52,22 @@ class CheckReader {
   auto named(std::string_view key, const Read& read) -> std::optional<decltype(read())> {
     try {
       return read();
-    } catch (const Failure& failure) {
-      if (failure.code() != ExitCode::bad_input) {
+    } catch (const base::Failure& failure) {
+      if (failure.code() != base::ExitCode::bad_input) {
         throw;
       }
       if (failure.diagnostics().empty()) {
         table_.problem(key, failure.message());
       }
-      for (Diagnostic each : failure.diagnostics()) {
+      for (base::Diagnostic each : failure.diagnostics()) {
         if (each.at.line == 0 && each.key.empty()) {
           table_.problem(key, fmt::format("{}: {}", each.at.file, each.message));  // the file cannot be read at all
           continue;
         }
         if (each.at.line == 0) {
-          each.at = place_of(each.at.file, each.key);
+          each.at = input::place_of(each.at.file, each.key);
         }
-        if (reported_.insert(to_string(each)).second) {
+        if (reported_.insert(base::to_string(each)).second) {
           table_.add(each);
         }
       }
@@ -80,7 +80,7 @@ class CheckReader {
   auto thing(Setting setting, const fs::path& folder, std::string_view kind, const std::string& name, const Read& read)
       -> std::optional<decltype(read(fs::path()))> {
     const std::string_view key = all_settings()[static_cast<std::size_t>(setting)].key;
-    const std::optional<fs::path> file = named(key, [&] { return file_of(folder, kind, from_here(name)); });
+    const std::optional<fs::path> file = named(key, [&] { return input::file_of(folder, kind, from_here(name)); });
     std::error_code error;
     if (file && !fs::exists(*file, error)) {
       check_.unreadable.emplace(setting, fmt::format("{}: cannot be read: No such file or directory", file->string()));
@@ -89,23 +89,23 @@ class CheckReader {
     return file ? named(key, [&] { return read(*file); }) : std::nullopt;
   }
 
-  std::optional<Motor> motor(Setting setting, const std::string& name) {
-    return thing(setting, folders_.motors, "motor", name, [](const fs::path& file) { return read_motor(file); });
+  std::optional<motor::Motor> motor(Setting setting, const std::string& name) {
+    return thing(setting, folders_.motors, "motor", name, [](const fs::path& file) { return motor::read_motor(file); });
   }
 
   /// Motors to rank with. The motor itself or one named twice would make a rank that says nothing.
   void read_others() {
-    std::vector<std::string> others = table_.texts("against", Need::optional);
+    std::vector<std::string> others = table_.texts("against", input::Need::optional);
     const bool is_all = others == std::vector<std::string>{"all"};
     if (is_all) {
-      others = ids_in(folders_.motors);
+      others = input::ids_in(folders_.motors);
     }
     for (const std::string& name : others) {
-      std::optional<Motor> other = motor(Setting::against, name);
+      std::optional<motor::Motor> other = motor(Setting::against, name);
       if (!other) {
         continue;
       }
-      const auto is_other = [&](const Motor& each) { return fs::weakly_canonical(each.file) == fs::weakly_canonical(other->file); };
+      const auto is_other = [&](const motor::Motor& each) { return fs::weakly_canonical(each.file) == fs::weakly_canonical(other->file); };
       if (check_.motor && is_other(*check_.motor)) {
         if (!is_all) {
           table_.problem("against", fmt::format("{} is the motor of this check; expected other motors", name));
@@ -122,36 +122,37 @@ class CheckReader {
   }
 
   void read_things() {
-    if (std::optional<Reader> stated = table_.table("conditions", Need::optional)) {
+    if (std::optional<input::Reader> stated = table_.table("conditions", input::Need::optional)) {
       for (const std::string& key : stated->keys()) {
-        check_.conditions[key] = stated->text(key, Need::required).value_or("");
+        check_.conditions[key] = stated->text(key, input::Need::required).value_or("");
       }
     }
-    if (const auto name = table_.text("robot", Need::optional)) {
-      check_.robot = thing(Setting::robot, folders_.robots, "robot", *name, [](const fs::path& file) { return read_robot(file); });
+    if (const auto name = table_.text("robot", input::Need::optional)) {
+      check_.robot = thing(Setting::robot, folders_.robots, "robot", *name, [](const fs::path& file) { return robot::read_robot(file); });
     }
-    if (const auto name = table_.text("duty", Need::optional)) {
-      check_.duty = thing(Setting::duty, folders_.duties, "duty", *name, [](const fs::path& file) { return read_duty(file); });
+    if (const auto name = table_.text("duty", input::Need::optional)) {
+      check_.duty = thing(Setting::duty, folders_.duties, "duty", *name, [](const fs::path& file) { return duty::read_duty(file); });
     }
-    std::optional<Motor> own;
-    if (const auto name = table_.text("motor", Need::optional)) {
+    std::optional<motor::Motor> own;
+    if (const auto name = table_.text("motor", input::Need::optional)) {
       own = motor(Setting::motor, *name);
     } else if (check_.robot && check_.robot->drive.motor != "none" && !has("motor") && is_used(Setting::motor)) {
       own = robots_motor();
     }
     if (own) {
-      check_.motor = named("motor", [&] { return under(*own, check_.conditions); });
+      check_.motor = named("motor", [&] { return motor::under(*own, check_.conditions); });
     }
     read_others();
   }
 
-  std::optional<Motor> robots_motor() {
-    return named("robot", [&] { return read_motor(file_of(folders_.motors, "motor", from_here(check_.robot->drive.motor))); });
+  std::optional<motor::Motor> robots_motor() {
+    return named("robot",
+                 [&] { return motor::read_motor(input::file_of(folders_.motors, "motor", from_here(check_.robot->drive.motor))); });
   }
 
   /// A number of things: whole, and written as text like every other number.
-  static std::optional<double> whole(Reader& table, const ParameterSpec& spec) {
-    const std::optional<double> value = table.quantity(spec, Need::optional);
+  static std::optional<double> whole(input::Reader& table, const base::ParameterSpec& spec) {
+    const std::optional<double> value = table.quantity(spec, input::Need::optional);
     if (value && *value != std::floor(*value)) {
       table.problem(spec.key, fmt::format("{} is not a whole number", significant_text(*value)));
       return std::nullopt;
@@ -162,71 +163,75 @@ class CheckReader {
 
   void read_numbers() {
     constexpr double kMostExact = 9007199254740992.0;
-    if (const auto samples = whole(table_, {"samples", "", Range::between(1.0, 1e6), "draws of every declared tolerance"})) {
+    if (const auto samples = whole(table_, {"samples", "", base::Range::between(1.0, 1e6), "draws of every declared tolerance"})) {
       check_.samples = static_cast<int>(*samples);
     }
-    if (const auto seed = whole(table_, {"seed", "", Range::between(0.0, kMostExact), "of draws and games"})) {
+    if (const auto seed = whole(table_, {"seed", "", base::Range::between(0.0, kMostExact), "of draws and games"})) {
       check_.seed = static_cast<std::uint64_t>(*seed);
     }
     check_.temperature_C =
-        table_.quantity({"temperature", "degC", Range::between(-60.0, 1000.0), "above which time is counted"}, Need::optional);
-    check_.air_C = table_.quantity({"air", "degC", Range::between(-60.0, 200.0), "of a log that has no air temperature"}, Need::optional);
+        table_.quantity({"temperature", "degC", base::Range::between(-60.0, 1000.0), "above which time is counted"}, input::Need::optional);
+    check_.air_C =
+        table_.quantity({"air", "degC", base::Range::between(-60.0, 200.0), "of a log that has no air temperature"}, input::Need::optional);
   }
 
   void read_artefacts() {
     const auto path = [&](std::string_view key) {
-      const std::optional<std::string> name = table_.text(key, Need::optional);
+      const std::optional<std::string> name = table_.text(key, input::Need::optional);
       return name ? (folder_ / *name).lexically_normal() : fs::path();
     };
     check_.table = path("table");
     check_.mapping = path("map");
-    for (const std::string& name : table_.texts("files", Need::optional)) {
+    for (const std::string& name : table_.texts("files", input::Need::optional)) {
       check_.files.push_back((folder_ / name).lexically_normal());
     }
-    for (const std::string& name : table_.texts("logs", Need::optional)) {
+    for (const std::string& name : table_.texts("logs", input::Need::optional)) {
       check_.logs.push_back((folder_ / name).lexically_normal());
     }
   }
 
-  static std::optional<SensorOptions> sensor_of(Reader& table) {
+  static std::optional<derate::SensorOptions> sensor_of(input::Reader& table) {
     constexpr std::array<std::string_view, 2> kNodes{"stator", "winding"};
-    const std::optional<std::string> node = table.choice("thermistor", kNodes, Need::optional);
-    const bool reads_resistance = table.flag("winding_resistance", Need::optional).value_or(false);
+    const std::optional<std::string> node = table.choice("thermistor", kNodes, input::Need::optional);
+    const bool reads_resistance = table.flag("winding_resistance", input::Need::optional).value_or(false);
     if (node && reads_resistance) {
       table.problem("winding_resistance", "expected one sensor, not a thermistor as well");
     }
     if (!node && !reads_resistance) {
       return std::nullopt;
     }
-    SensorOptions sensor = default_sensor(node ? SensorKind::thermistor : SensorKind::winding_resistance);
+    derate::SensorOptions sensor = derate::default_sensor(node ? derate::SensorKind::thermistor : derate::SensorKind::winding_resistance);
     if (node) {
-      sensor.node = *node == "winding" ? states::winding : states::stator;
+      sensor.node = *node == "winding" ? motor::states::winding : motor::states::stator;
     }
-    for (const SensorParameter& each : sensor_parameters()) {
+    for (const derate::SensorParameter& each : derate::sensor_parameters()) {
       if (each.kind == sensor.kind) {
-        sensor.*each.value = table.quantity(each.spec, Need::optional).value_or(sensor.*each.value);
+        sensor.*each.value = table.quantity(each.spec, input::Need::optional).value_or(sensor.*each.value);
       }
     }
     return sensor;
   }
 
   void read_derate() {
-    std::optional<Reader> table = table_.table("derate", Need::optional);
+    std::optional<input::Reader> table = table_.table("derate", input::Need::optional);
     if (!table) {
       return;
     }
-    const auto take = [&](const ParameterSpec& spec, double& value) { value = table->quantity(spec, Need::optional).value_or(value); };
-    DerateOptions& options = check_.derate;
-    take({"ambient", "degC", Range::between(-40.0, 120.0), "hottest air at the motor"}, options.hottest_ambient_C);
-    take({"coldest", "degC", Range::between(-60.0, 120.0), "coldest air"}, options.coldest_ambient_C);
-    options.approach_s =
-        table->quantity({"approach", "s", Range::between(0.01, 100.0), "in which the winding may approach its limit"}, Need::optional);
-    take({"period", "s", Range::between(1e-3, 1.0), "between two calls of the firmware"}, options.period_s);
-    take({"confidence", "", Range::between(0.5, 0.999), "share of motors that keep their limits"}, options.guarantee.confidence);
-    if (const auto samples = whole(*table, {"samples", "", Range::between(1.0, 1e5), "motors drawn to find the safety factor on heat"})) {
+    const auto take = [&](const base::ParameterSpec& spec, double& value) {
+      value = table->quantity(spec, input::Need::optional).value_or(value);
+    };
+    derate::DerateOptions& options = check_.derate;
+    take({"ambient", "degC", base::Range::between(-40.0, 120.0), "hottest air at the motor"}, options.hottest_ambient_C);
+    take({"coldest", "degC", base::Range::between(-60.0, 120.0), "coldest air"}, options.coldest_ambient_C);
+    options.approach_s = table->quantity(
+        {"approach", "s", base::Range::between(0.01, 100.0), "in which the winding may approach its limit"}, input::Need::optional);
+    take({"period", "s", base::Range::between(1e-3, 1.0), "between two calls of the firmware"}, options.period_s);
+    take({"confidence", "", base::Range::between(0.5, 0.999), "share of motors that keep their limits"}, options.guarantee.confidence);
+    if (const auto samples =
+            whole(*table, {"samples", "", base::Range::between(1.0, 1e5), "motors drawn to find the safety factor on heat"})) {
       options.guarantee.samples = static_cast<int>(*samples);
     }
-    if (const auto seed = whole(*table, {"seed", "", Range::between(0.0, 9007199254740992.0), "of the draws"})) {
+    if (const auto seed = whole(*table, {"seed", "", base::Range::between(0.0, 9007199254740992.0), "of the draws"})) {
       options.guarantee.seed = static_cast<std::uint64_t>(*seed);
     }
     options.sensor = sensor_of(*table);
@@ -238,7 +243,7 @@ class CheckReader {
   }
 
   void read_limits() {
-    limits_ = table_.table("limits", Need::required);
+    limits_ = table_.table("limits", input::Need::required);
     if (!limits_) {
       return;
     }
@@ -256,10 +261,10 @@ class CheckReader {
         limits_->problem(
             key, key == "forecast_error"
                      ? "this program was built without support for measured logs; `./bootstrap build` adds it"
-                     : fmt::format("there is no such threshold{} (`heatsoak list thresholds` shows them)", did_you_mean(key, known)));
+                     : fmt::format("there is no such threshold{} (`heatsoak list thresholds` shows them)", base::did_you_mean(key, known)));
         continue;
       }
-      const std::optional<std::string> text = limits_->text(key, Need::required);
+      const std::optional<std::string> text = limits_->text(key, input::Need::required);
       if (!text) {
         continue;
       }
@@ -316,24 +321,25 @@ class CheckReader {
     }
   }
 
-  Reader table_;
-  std::optional<Reader> limits_;
+  input::Reader table_;
+  std::optional<input::Reader> limits_;
   fs::path folder_;
-  const DataFolders& folders_;
+  const input::DataFolders& folders_;
   std::set<std::string>& reported_;
   Check check_;
 };
 
 }  // namespace
 
-CheckFile read_check_file(const fs::path& path, const DataFolders& folders) {
-  const Value root = read_toml(path);
-  Diagnostics diagnostics;
-  Reader top(root, "", diagnostics);
+CheckFile read_check_file(const fs::path& path, const input::DataFolders& folders) {
+  const input::Value root = input::read_toml(path);
+  base::Diagnostics diagnostics;
+  input::Reader top(root, "", diagnostics);
   CheckFile file{path, {}};
-  std::vector<Reader> tables = top.tables("check");
+  std::vector<input::Reader> tables = top.tables("check");
   if (tables.size() > kMostChecks) {
-    throw bad_input({path.string(), 1, 1}, "check", fmt::format("contains {} checks; expected at most {}", tables.size(), kMostChecks));
+    throw base::bad_input({path.string(), 1, 1}, "check",
+                          fmt::format("contains {} checks; expected at most {}", tables.size(), kMostChecks));
   }
   if (tables.empty() && diagnostics.empty()) {
     diagnostics.add({path.string(), 1, 1}, "", "has no [[check]] table; `heatsoak check --help` shows an example");
@@ -341,7 +347,7 @@ CheckFile read_check_file(const fs::path& path, const DataFolders& folders) {
   std::set<std::string> names;
   std::set<std::string> reported;
   for (std::size_t i = 0; i < tables.size(); ++i) {
-    const Location at = tables[i].at("name");
+    const base::Location at = tables[i].at("name");
     file.checks.push_back(CheckReader(std::move(tables[i]), path.parent_path(), folders, reported).read());
     const std::string& name = file.checks.back().name;
     if (!name.empty() && !names.insert(name).second) {
@@ -354,4 +360,4 @@ CheckFile read_check_file(const fs::path& path, const DataFolders& folders) {
   return file;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

@@ -16,23 +16,23 @@
 #include "motor/motor.h"
 #include "robot/robot.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 
 struct Limit {
   const ThresholdType* type = nullptr;
   double value = 0.0;  ///< in the type's unit
   std::string unit;    ///< as written in the file
   std::string text;    ///< limit as written in the file: "at most 150 degC"
-  Location at;         ///< place of that text
+  base::Location at;   ///< place of that text
 };
 
 struct Check {
   std::string name;
-  Location at;
-  std::optional<Robot> robot;
-  std::optional<Duty> duty;
-  std::optional<Motor> motor;
-  std::vector<Motor> against;
+  base::Location at;
+  std::optional<robot::Robot> robot;
+  std::optional<duty::Duty> duty;
+  std::optional<motor::Motor> motor;
+  std::vector<motor::Motor> against;
   std::map<std::string, std::string> conditions;
   int samples = 500;
   std::uint64_t seed = 1;
@@ -42,7 +42,7 @@ struct Check {
   std::vector<std::filesystem::path> logs;
   std::filesystem::path mapping;
   std::optional<double> air_C = {};  ///< air temperature for logs without one
-  DerateOptions derate;
+  derate::DerateOptions derate;
   std::vector<Limit> limits;
   std::map<Setting, std::string> unreadable;  ///< setting whose file does not exist, with the reason: its thresholds fail
 };
@@ -56,6 +56,6 @@ struct CheckFile {
 /// keys with "did you mean", limits that are none, a setting that a limit needs and that is missing, a setting that no limit uses.
 /// Committed tables, logs and linted files are not opened here: where one is missing its threshold fails. The same holds for the file of a
 /// robot, duty or motor that does not exist (Check::unreadable).
-CheckFile read_check_file(const std::filesystem::path& path, const DataFolders& folders);
+CheckFile read_check_file(const std::filesystem::path& path, const input::DataFolders& folders);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

@@ -9,22 +9,22 @@
 #include "base/files.h"
 #include "check/rewrite.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 namespace {
 
 constexpr std::size_t kLargestCheckFile_bytes = 1'000'000;
 
 /// Reads all files and reports the problems of all of them together.
-std::vector<CheckFile> read_check_files(const std::vector<std::string>& names, const DataFolders& folders) {
+std::vector<CheckFile> read_check_files(const std::vector<std::string>& names, const input::DataFolders& folders) {
   std::vector<CheckFile> files;
   std::string message;
-  std::vector<Diagnostic> problems;
+  std::vector<base::Diagnostic> problems;
   for (const std::string& name : names) {
     try {
       // The example in the help is a file that came with the program.
-      files.push_back(read_check_file(log_named(folders, name), folders));
-    } catch (const Failure& failure) {
-      if (failure.code() != ExitCode::bad_input) {
+      files.push_back(read_check_file(input::log_named(folders, name), folders));
+    } catch (const base::Failure& failure) {
+      if (failure.code() != base::ExitCode::bad_input) {
         throw;
       }
       message += failure.message();
@@ -32,7 +32,7 @@ std::vector<CheckFile> read_check_files(const std::vector<std::string>& names, c
     }
   }
   if (!problems.empty() || !message.empty()) {
-    throw Failure(ExitCode::bad_input, std::move(message), std::move(problems));
+    throw base::Failure(base::ExitCode::bad_input, std::move(message), std::move(problems));
   }
   return files;
 }
@@ -40,8 +40,8 @@ std::vector<CheckFile> read_check_files(const std::vector<std::string>& names, c
 /// Throws if the file was found beside the program, because it is not the user's.
 void refuse_shipped(const std::filesystem::path& path, const CheckJob& job) {
   if (std::ranges::find(job.files, path.string()) == job.files.end()) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{} is part of the installed program and is not rewritten; copy it first", path.string()));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("{} is part of the installed program and is not rewritten; copy it first", path.string()));
   }
 }
 
@@ -49,13 +49,13 @@ void refuse_shipped(const std::filesystem::path& path, const CheckJob& job) {
 
 bool CheckAnswer::passed() const { return std::ranges::all_of(outcomes, &Outcome::passed); }
 
-CheckAnswer run_check_job(const CheckJob& job, const DataFolders& folders, const ProgressFor& progress) {
+CheckAnswer run_check_job(const CheckJob& job, const input::DataFolders& folders, const base::ProgressFor& progress) {
   CheckAnswer answer{.files = read_check_files(job.files, folders), .outcomes = {}, .rewritten = {}};
   for (const CheckFile& file : answer.files) {
-    std::vector<Outcome> of_file = run_checks(file, job.threads, progress_of(progress, "checking"));
+    std::vector<Outcome> of_file = run_checks(file, job.threads, base::progress_of(progress, "checking"));
     if (job.updates) {
       refuse_shipped(file.path, job);
-      const std::string before = read_file(file.path, kLargestCheckFile_bytes);
+      const std::string before = base::read_file(file.path, kLargestCheckFile_bytes);
       if (std::string after = with_new_limits(before, of_file, job.margin_share); after != before) {
         answer.rewritten.push_back({file.path, std::move(after)});
       }
@@ -65,4 +65,4 @@ CheckAnswer run_check_job(const CheckJob& job, const DataFolders& folders, const
   return answer;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

@@ -8,7 +8,7 @@
 #include "check/check_file.h"
 #include "check/run_checks.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 
 struct CheckJob {
   std::vector<std::string> files;  ///< names given by the user; files that came with the program are found too
@@ -31,6 +31,6 @@ struct CheckAnswer {
 };
 
 /// Throws Failure (bad_input) with the problems of all files together; or if a file that came with the program were to be rewritten.
-CheckAnswer run_check_job(const CheckJob& job, const DataFolders& folders, const ProgressFor& progress = {});
+CheckAnswer run_check_job(const CheckJob& job, const input::DataFolders& folders, const base::ProgressFor& progress = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

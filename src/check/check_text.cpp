@@ -9,7 +9,7 @@
 #include "base/xml_text.h"
 #include "check/limit.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 namespace {
 
 struct Counts {
@@ -48,16 +48,16 @@ std::string count_attributes(const Counts& counts) {
 
 std::string test_case(const Outcome& each) {
   std::string text = fmt::format(R"(    <testcase name="{}" classname="{}" file="{}" line="{}")", each.limit.type->name,
-                                 xml_attribute(each.check->name), xml_attribute(each.limit.at.file), each.limit.at.line);
+                                 base::xml_attribute(each.check->name), base::xml_attribute(each.limit.at.file), each.limit.at.line);
   const std::string facts = fmt::format("value {}, limit {}, margin {}\n{}", shown(each.measured.value, *each.limit.type), limit_text(each),
                                         margin_text(each), each.measured.detail);
   if (each.passed) {
-    return text + fmt::format(">\n      <system-out>{}</system-out>\n    </testcase>\n", xml_attribute(facts));
+    return text + fmt::format(">\n      <system-out>{}</system-out>\n    </testcase>\n", base::xml_attribute(facts));
   }
   const std::string_view element = each.is_evaluated ? "failure" : "error";
   return text + fmt::format(">\n      <{0} type=\"{1}\" message=\"{2}\">{3}:{4}: {5}</{0}>\n    </testcase>\n", element,
-                            each.is_evaluated ? "limit_exceeded" : "not_evaluated", xml_attribute(each.reason),
-                            xml_attribute(each.limit.at.file), each.limit.at.line, xml_attribute(facts));
+                            each.is_evaluated ? "limit_exceeded" : "not_evaluated", base::xml_attribute(each.reason),
+                            base::xml_attribute(each.limit.at.file), each.limit.at.line, base::xml_attribute(facts));
 }
 
 /// Escapes text for a cell of a Markdown table.
@@ -142,7 +142,7 @@ std::string junit_xml(std::span<const Outcome> outcomes, std::string_view versio
   for (const std::span<const Outcome> group : by_check(outcomes)) {
     text +=
         fmt::format("  <testsuite name=\"{}\" {}>\n    <properties>\n      <property name=\"heatsoak\" value=\"{}\"/>\n    </properties>\n",
-                    xml_attribute(group.front().check->name), count_attributes(counts_of(group)), xml_attribute(version));
+                    base::xml_attribute(group.front().check->name), count_attributes(counts_of(group)), base::xml_attribute(version));
     for (const Outcome& each : group) {
       text += test_case(each);
     }
@@ -162,7 +162,7 @@ std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view
   return text + fmt::format("\nheatsoak {}\n", version);
 }
 
-std::string annotation(const Location& at, const std::filesystem::path& workspace, std::string_view title, std::string_view message) {
+std::string annotation(const base::Location& at, const std::filesystem::path& workspace, std::string_view title, std::string_view message) {
   std::filesystem::path file = at.file;
   if (!workspace.empty()) {
     std::error_code unreachable;
@@ -183,4 +183,4 @@ std::string annotations(std::span<const Outcome> outcomes, const std::filesystem
   return text;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

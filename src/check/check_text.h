@@ -8,7 +8,7 @@
 
 #include "check/run_checks.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 
 /// Returns how many limits hold, do not hold and cannot be evaluated, without a full stop.
 std::string conclusion_text(std::span<const Outcome> outcomes);
@@ -36,6 +36,6 @@ std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view
 /// `workspace` are written relative to it, as GitHub wants them; it may be empty.
 std::string annotations(std::span<const Outcome> outcomes, const std::filesystem::path& workspace);
 /// One of them.
-std::string annotation(const Location& at, const std::filesystem::path& workspace, std::string_view title, std::string_view message);
+std::string annotation(const base::Location& at, const std::filesystem::path& workspace, std::string_view title, std::string_view message);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

@@ -11,10 +11,10 @@
 #include "simulate/core_drive.h"
 #include "simulate/guarded_core.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 namespace {
 
-std::string key_of(const Motor& motor) {
+std::string key_of(const motor::Motor& motor) {
   std::string key = motor.file.string();
   for (const auto& [name, value] : motor.assumed) {
     key += fmt::format("|{}={}", name, value);
@@ -22,11 +22,11 @@ std::string key_of(const Motor& motor) {
   return key;
 }
 
-std::string key_of(const DerateOptions& options) {
-  const GuaranteeOptions& guarantee = options.guarantee;
+std::string key_of(const derate::DerateOptions& options) {
+  const derate::GuaranteeOptions& guarantee = options.guarantee;
   return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}", options.hottest_ambient_C, options.coldest_ambient_C, options.period_s,
                      options.approach_s.value_or(0.0), guarantee.confidence, guarantee.samples, guarantee.seed,
-                     options.sensor ? sensor_flags(*options.sensor) : "");
+                     options.sensor ? derate::sensor_flags(*options.sensor) : "");
 }
 
 std::string key_of_load(const Check& check) {
@@ -36,81 +36,85 @@ std::string key_of_load(const Check& check) {
 }  // namespace
 
 int Computations::independent_draws(const Check& check) {
-  const int games = draw_count(*check.duty, check.samples);
+  const int games = select::draw_count(*check.duty, check.samples);
   return games > 0 ? games : check.samples;
 }
 
-const std::vector<WheelDemand>& Computations::demand(const Check& check) {
+const std::vector<duty::WheelDemand>& Computations::demand(const Check& check) {
   return demands_.get(key_of_load(check), [&] { return check.duty->demand(*check.robot, check.seed); });
 }
 
-const std::vector<WheelDemand>& Computations::draws(const Check& check) {
-  const int count = draw_count(*check.duty, check.samples);
+const std::vector<duty::WheelDemand>& Computations::draws(const Check& check) {
+  const int count = select::draw_count(*check.duty, check.samples);
   return draws_.get(fmt::format("{}|{}", key_of_load(check), count),
-                    [&] { return draw_demands(*check.duty, *check.robot, check.seed, count, threads_); });
+                    [&] { return select::draw_demands(*check.duty, *check.robot, check.seed, count, threads_); });
 }
 
-const MotorEvaluation& Computations::evaluation(const Check& check, const Motor& motor) {
+const select::MotorEvaluation& Computations::evaluation(const Check& check, const motor::Motor& motor) {
   return evaluations_.get(fmt::format("{}|{}|{}", key_of_load(check), key_of(motor), check.samples), [&] {
-    require_sound(motor);
-    EvaluateOptions options;
+    motor::require_sound(motor);
+    select::EvaluateOptions options;
     options.samples = check.samples;
     options.seed = check.seed;
     options.threads = threads_;
     options.draws = draws(check);
-    return evaluate(*check.robot, *check.duty, demand(check), std::span(&motor, 1), options).front();
+    return select::evaluate(*check.robot, *check.duty, demand(check), std::span(&motor, 1), options).front();
   });
 }
 
-const MotorEvaluation& Computations::feasible_evaluation(const Check& check) {
-  const MotorEvaluation& result = evaluation(check, *check.motor);
-  if (result.verdict == Verdict::infeasible) {
-    throw Failure(ExitCode::limit_exceeded, fmt::format("{} cannot deliver what the duty demands ({}): it delivers {:.0f} % of the "
-                                                        "demanded current at the worst moment, and too little for {:.0f} % of the time",
-                                                        result.motor_id, to_string(result.limiting_factor),
-                                                        100.0 * result.least_torque_share, 100.0 * result.short_time_share));
+const select::MotorEvaluation& Computations::feasible_evaluation(const Check& check) {
+  const select::MotorEvaluation& result = evaluation(check, *check.motor);
+  if (result.verdict == select::Verdict::infeasible) {
+    throw base::Failure(base::ExitCode::limit_exceeded,
+                        fmt::format("{} cannot deliver what the duty demands ({}): it delivers {:.0f} % of the "
+                                    "demanded current at the worst moment, and too little for {:.0f} % of the time",
+                                    result.motor_id, select::to_string(result.limiting_factor), 100.0 * result.least_torque_share,
+                                    100.0 * result.short_time_share));
   }
   return result;
 }
 
-const Derating& Computations::derating(const Check& check, const DerateOptions& options) {
+const derate::Derating& Computations::derating(const Check& check, const derate::DerateOptions& options) {
   return deratings_.get(fmt::format("{}|{}|{}", check.robot->file.string(), key_of(*check.motor), key_of(options)), [&] {
-    require_sound(*check.motor);
-    DerateOptions with_threads = options;
+    motor::require_sound(*check.motor);
+    derate::DerateOptions with_threads = options;
     with_threads.guarantee.threads = threads_;
-    return derate(*check.motor, *check.robot, with_threads);
+    return derate::derate(*check.motor, *check.robot, with_threads);
   });
 }
 
 const GuardedDrive& Computations::guarded_drive(const Check& check) {
-  const auto match = std::dynamic_pointer_cast<const MatchDuty>(check.duty->shape_data);
+  const auto match = std::dynamic_pointer_cast<const duty::MatchDuty>(check.duty->shape_data);
   if (!match) {
-    throw Failure(ExitCode::bad_input, fmt::format("the drive core can drive only a match; {} is {}. Expected a duty of the shape match",
-                                                   check.duty->id, check.duty->shape));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("the drive core can drive only a match; {} is {}. Expected a duty of the shape match", check.duty->id,
+                                    check.duty->shape));
   }
   if (!check.motor->nominal.rotor_inertia_kg_m2) {
-    throw Failure(ExitCode::bad_input, fmt::format("{} has no rotor_inertia: without it no acceleration of a wheel can be calculated",
-                                                   check.motor->file.string()));
+    throw base::Failure(
+        base::ExitCode::bad_input,
+        fmt::format("{} has no rotor_inertia: without it no acceleration of a wheel can be calculated", check.motor->file.string()));
   }
-  DerateOptions options = check.derate;
+  derate::DerateOptions options = check.derate;
   options.hottest_ambient_C = std::max(options.hottest_ambient_C, check.duty->ambient_C.value);
   options.coldest_ambient_C = std::min(options.coldest_ambient_C, check.duty->ambient_C.value);
   options.sensor.reset();  // the drive core has none
   return drives_.get(fmt::format("{}|{}|{}", key_of_load(check), key_of(*check.motor), key_of(options)), [&] {
-    MotorGuard guard;
+    simulate::MotorGuard guard;
     guard.derating.emplace(derating(check, options));
     guard.guard.emplace(*guard.derating);
-    const GuardedCore core(*check.robot, *check.motor, GuardUse::shadow, guard);
-    const Game& game = games_.get(key_of_load(check), [&] { return play_game(match->inputs(), *check.robot, check.seed); });
-    MatchRunOptions run;
+    const simulate::GuardedCore core(*check.robot, *check.motor, simulate::GuardUse::shadow, guard);
+    const simulate::Game& game =
+        games_.get(key_of_load(check), [&] { return simulate::play_game(match->inputs(), *check.robot, check.seed); });
+    simulate::MatchRunOptions run;
     run.ambient_C = check.duty->ambient_C.value;
-    run.drive = real_drive(*check.robot, check.seed);
-    const DriveScore score = run_match(game, *check.robot, *check.motor, core.config(), run).score;
-    if (const std::optional<DriveProblem> problem = drive_problem(score)) {
-      throw Failure(ExitCode::limit_exceeded, fmt::format("the match was not driven: {}", to_string(*problem)));
+    run.drive = simulate::real_drive(*check.robot, check.seed);
+    const simulate::DriveScore score = simulate::run_match(game, *check.robot, *check.motor, core.config(), run).score;
+    if (const std::optional<simulate::DriveProblem> problem = simulate::drive_problem(score)) {
+      throw base::Failure(base::ExitCode::limit_exceeded, fmt::format("the match was not driven: {}", simulate::to_string(*problem)));
     }
     return GuardedDrive{score, score.time_s};
   });
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

@@ -17,7 +17,7 @@
 #include "select/evaluate.h"
 #include "simulate/match_run.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 
 /// Values by key. The first who asks for a key computes it, others wait; a Failure is kept and thrown to all of them.
 template <class T>
@@ -37,12 +37,12 @@ class Kept {
     if (!place->value && !place->failure) {
       try {
         place->value.emplace(make());
-      } catch (const Failure& failure) {
+      } catch (const base::Failure& failure) {
         place->failure.emplace(failure);
       }
     }
     if (place->failure) {
-      throw Failure(*place->failure);
+      throw base::Failure(*place->failure);
     }
     return *place->value;
   }
@@ -51,7 +51,7 @@ class Kept {
   struct Place {
     std::mutex mutex;
     std::optional<T> value;
-    std::optional<Failure> failure;
+    std::optional<base::Failure> failure;
   };
   std::mutex mutex_;
   std::map<std::string, std::unique_ptr<Place>> places_;
@@ -59,7 +59,7 @@ class Kept {
 
 /// The match of a check as the drive core drives it, its thermal guard in shadow mode: it counts what it would limit and limits nothing.
 struct GuardedDrive {
-  DriveScore score;
+  simulate::DriveScore score;
   double duration_s = 0.0;
 };
 
@@ -70,27 +70,27 @@ class Computations {
   explicit Computations(int threads) : threads_(threads) {}
 
   /// `motor` alone on the check's robot and duty: `heatsoak evaluate` gives the same numbers with any other motors beside it.
-  const MotorEvaluation& evaluation(const Check& check, const Motor& motor);
+  const select::MotorEvaluation& evaluation(const Check& check, const motor::Motor& motor);
   /// Of the check's motor, where it delivers what is demanded; else throws, for the temperatures of a motor that does not are worth
   /// nothing.
-  const MotorEvaluation& feasible_evaluation(const Check& check);
+  const select::MotorEvaluation& feasible_evaluation(const Check& check);
   /// Draws that are independent of each other: games where the duty is drawn, else samples.
   [[nodiscard]] static int independent_draws(const Check& check);
   /// One demand per wheel.
-  const std::vector<WheelDemand>& demand(const Check& check);
-  const Derating& derating(const Check& check, const DerateOptions& options);
+  const std::vector<duty::WheelDemand>& demand(const Check& check);
+  const derate::Derating& derating(const Check& check, const derate::DerateOptions& options);
   const GuardedDrive& guarded_drive(const Check& check);
 
  private:
-  const std::vector<WheelDemand>& draws(const Check& check);
+  const std::vector<duty::WheelDemand>& draws(const Check& check);
 
   int threads_ = 0;
-  Kept<std::vector<WheelDemand>> demands_;
-  Kept<std::vector<WheelDemand>> draws_;
-  Kept<MotorEvaluation> evaluations_;
-  Kept<Derating> deratings_;
-  Kept<Game> games_;
+  Kept<std::vector<duty::WheelDemand>> demands_;
+  Kept<std::vector<duty::WheelDemand>> draws_;
+  Kept<select::MotorEvaluation> evaluations_;
+  Kept<derate::Derating> deratings_;
+  Kept<simulate::Game> games_;
   Kept<GuardedDrive> drives_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

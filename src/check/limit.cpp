@@ -8,7 +8,7 @@
 
 #include "base/quantity.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 namespace {
 
 std::string_view trimmed(std::string_view text) {
@@ -28,7 +28,7 @@ std::string unit_behind(std::string_view quantity) {
 }
 
 /// UDUNITS adds an offset for temperatures, so the distance of two is taken.
-double in_unit(double value, std::string_view from, std::string_view to) { return convert(value, from, to.empty() ? from : to); }
+double in_unit(double value, std::string_view from, std::string_view to) { return base::convert(value, from, to.empty() ? from : to); }
 
 /// Three significant digits of a distance.
 double step_of(double distance) { return std::pow(10.0, std::floor(std::log10(std::max(std::abs(distance), 1e-9))) - 2.0); }
@@ -58,13 +58,14 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
     return {0.0, {}, fmt::format("\"{}\" is not a limit; {}", all, expected(type))};
   }
   const std::string_view quantity = trimmed(all.substr(words.size()));
-  const ParsedQuantity parsed = parse_quantity(quantity, type.unit);
+  const base::ParsedQuantity parsed = base::parse_quantity(quantity, type.unit);
   if (!parsed.ok()) {
     return {0.0, {}, fmt::format("{} (\"{}\")", parsed.problem, type.example)};
   }
   if (!type.range.contains(parsed.value)) {
-    return {
-        0.0, {}, fmt::format("\"{}\" is out of range; expected {}, such as \"{}\"", all, to_string(type.range, type.unit), type.example)};
+    return {0.0,
+            {},
+            fmt::format("\"{}\" is out of range; expected {}, such as \"{}\"", all, base::to_string(type.range, type.unit), type.example)};
   }
   if (type.is_whole && parsed.value != std::floor(parsed.value)) {
     return {0.0, {}, fmt::format("\"{}\" is not a whole number; {}", all, expected(type))};
@@ -89,7 +90,7 @@ std::string looseness_problem(double value, std::string_view text, const Thresho
 std::string updated_limit(const Measured& measured, const ThresholdType& type, std::string_view unit, double margin_share) {
   const bool is_up = type.direction == Bound::at_most;
   const auto text_of = [&](double value) {
-    return fmt::format("{} {}{}{}", to_string(type.direction), significant(value, 6), unit.empty() ? "" : " ", unit);
+    return fmt::format("{} {}{}{}", to_string(type.direction), base::significant(value, 6), unit.empty() ? "" : " ", unit);
   };
   if (type.room == Room::none) {
     return text_of(in_unit(measured.value, type.unit, unit));
@@ -113,7 +114,7 @@ std::string shown(double value, const ThresholdType& type) {
     return "–";
   }
   if (type.unit.empty() && type.is_share) {
-    return significant(100.0 * value, 3) + " %";
+    return base::significant(100.0 * value, 3) + " %";
   }
   if (type.unit == "degC") {
     return fmt::format("{:.1f} °C", value);
@@ -121,8 +122,8 @@ std::string shown(double value, const ThresholdType& type) {
   if (type.unit == "byte") {
     return fmt::format("{:.1f} kB", 1e-3 * value);
   }
-  const std::string number = std::abs(value) < 1e-12 ? "0" : significant(value, 3);
-  return type.unit.empty() ? number : fmt::format("{} {}", number, unit_for_display(type.unit));
+  const std::string number = std::abs(value) < 1e-12 ? "0" : base::significant(value, 3);
+  return type.unit.empty() ? number : fmt::format("{} {}", number, base::unit_for_display(type.unit));
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

@@ -6,7 +6,7 @@
 
 #include "check/threshold.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 
 struct ParsedLimit {
   double value = 0.0;   ///< in the unit of the threshold
@@ -33,4 +33,4 @@ bool keeps(Bound direction, double value, double limit_value);
 /// For people: "61.2 °C", "4.1 %", "12 kB", "3". NaN gives "–".
 std::string shown(double value, const ThresholdType& type);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

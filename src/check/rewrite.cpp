@@ -7,11 +7,11 @@
 
 #include "check/limit.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 namespace {
 
 /// Byte offset of a place given in characters; npos if the text has no such place.
-std::size_t byte_at(std::string_view content, const Location& at) {
+std::size_t byte_at(std::string_view content, const base::Location& at) {
   std::size_t i = 0;
   for (int line = 1; line < at.line; ++line) {
     i = content.find('\n', i);
@@ -56,8 +56,8 @@ std::string with_new_limits(const std::string& content, std::span<Outcome> outco
                           content.compare(begin + 1, limit.text.size(), limit.text) == 0 &&
                           content.compare(begin + 1 + limit.text.size(), 1, content, begin, 1) == 0;
     if (!is_plain) {
-      throw bad_input(limit.at, std::string(limit.type->name),
-                      fmt::format("cannot be rewritten in place; write it as \"{}\" on one line without escapes", limit.text));
+      throw base::bad_input(limit.at, std::string(limit.type->name),
+                            fmt::format("cannot be rewritten in place; write it as \"{}\" on one line without escapes", limit.text));
     }
     by_place[begin + 1] = {limit.text.size(), text};
     outcome.before = limit.text;
@@ -73,4 +73,4 @@ std::string with_new_limits(const std::string& content, std::span<Outcome> outco
   return result;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

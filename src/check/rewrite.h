@@ -7,7 +7,7 @@
 
 #include "check/run_checks.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 
 /// Sets every limit whose value could be determined to that value with `margin_share` of room (updated_limit()), judges the outcomes again
 /// and returns the text of the file with the new limits. Only the limits change: comments, order, spaces and line ends stay. `content` is
@@ -15,4 +15,4 @@ namespace heatsoak {
 /// replaced in place, such as with an escape.
 std::string with_new_limits(const std::string& content, std::span<Outcome> outcomes, double margin_share);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

@@ -11,13 +11,13 @@
 #include "check/computations.h"
 #include "check/limit.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 namespace {
 
 /// Diagnostics of a committed file in one line each.
-std::string reason_of(const Failure& failure) {
+std::string reason_of(const base::Failure& failure) {
   std::string text = failure.message();
-  for (const Diagnostic& each : failure.diagnostics()) {
+  for (const base::Diagnostic& each : failure.diagnostics()) {
     const std::string place = each.at.line > 0 ? fmt::format("{}:{}:{}", each.at.file, each.at.line, each.at.column) : each.at.file;
     text += fmt::format("{}{}{}{}{}{}", text.empty() ? "" : "; ", place, place.empty() ? "" : ": ", each.key, each.key.empty() ? "" : ": ",
                         each.message);
@@ -29,7 +29,7 @@ std::string reason_of(const Failure& failure) {
 void require_readable(const Check& check, const ThresholdType& type) {
   for (const auto& [setting, reason] : check.unreadable) {
     if (std::ranges::find(type.needs, setting) != type.needs.end() || std::ranges::find(type.takes, setting) != type.takes.end()) {
-      throw Failure(ExitCode::bad_input, reason);
+      throw base::Failure(base::ExitCode::bad_input, reason);
     }
   }
 }
@@ -41,7 +41,7 @@ void evaluate_one(Outcome& outcome, Computations& computations) {
     outcome.measured = outcome.limit.type->measure(*outcome.check, computations);
     outcome.is_evaluated = std::isfinite(outcome.measured.value);
     outcome.reason = outcome.is_evaluated ? "" : "the result is not a number";
-  } catch (const Failure& failure) {
+  } catch (const base::Failure& failure) {
     outcome.reason = reason_of(failure);
   } catch (const std::bad_alloc&) {
     outcome.reason = "out of memory";
@@ -67,7 +67,7 @@ void judge(Outcome& outcome) {
                                                 type.direction == Bound::at_most ? "above" : "below", shown(outcome.limit.value, type));
 }
 
-std::vector<Outcome> run_checks(const CheckFile& file, int threads, const Progress& progress) {
+std::vector<Outcome> run_checks(const CheckFile& file, int threads, const base::Progress& progress) {
   std::vector<Outcome> outcomes;
   std::vector<std::pair<std::size_t, std::size_t>> ranges;
   for (const Check& check : file.checks) {
@@ -79,7 +79,7 @@ std::vector<Outcome> run_checks(const CheckFile& file, int threads, const Progre
   }
   Computations computations(threads);
   // Thresholds of one check mostly need the same results, so each check is one job.
-  in_parallel(ranges.size(), threads, 0, ranges.size(), progress, [&](std::size_t job) {
+  base::in_parallel(ranges.size(), threads, 0, ranges.size(), progress, [&](std::size_t job) {
     for (std::size_t i = ranges[job].first; i < ranges[job].second; ++i) {
       evaluate_one(outcomes[i], computations);
     }
@@ -87,4 +87,4 @@ std::vector<Outcome> run_checks(const CheckFile& file, int threads, const Progre
   return outcomes;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

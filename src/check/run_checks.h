@@ -7,7 +7,7 @@
 
 #include "check/check_file.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 
 struct Outcome {
   const Check* check = nullptr;
@@ -25,9 +25,9 @@ struct Outcome {
 
 /// In the order of the file. Thresholds that cannot be evaluated fail and say why; the others are evaluated all the same. The results do
 /// not depend on `threads`, 0: all cores. `progress` counts checks.
-std::vector<Outcome> run_checks(const CheckFile& file, int threads, const Progress& progress = {});
+std::vector<Outcome> run_checks(const CheckFile& file, int threads, const base::Progress& progress = {});
 
 /// Compares the value with the limit again, after the limit was changed.
 void judge(Outcome& outcome);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

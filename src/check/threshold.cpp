@@ -5,7 +5,7 @@
 
 #include "check/thresholds_registry.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 
 std::span<const SettingText> all_settings() {
   static constexpr std::array<SettingText, 14> kSettings{{
@@ -46,4 +46,4 @@ const ThresholdType* find_threshold(std::string_view name) {
   return found == all_thresholds().end() ? nullptr : &*found;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

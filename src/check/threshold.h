@@ -9,7 +9,7 @@
 
 #include "base/parameter.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 
 class Computations;
 struct Check;
@@ -53,7 +53,7 @@ struct ThresholdType {
   bool is_share = false;  ///< a pure number that people read in per cent
   bool is_whole = false;  ///< counts something: a limit with a fraction is a mistake
   Bound direction = Bound::at_most;
-  Range range = {};         ///< permitted values of the limit
+  base::Range range = {};   ///< permitted values of the limit
   Room room = Room::share;  ///< of --update
   double least_size_ratio =
       0.0;  ///< in the unit of the threshold, for --update: a value nearer to its origin gets the room of one that is this far from it
@@ -72,4 +72,4 @@ const std::vector<ThresholdType>& all_thresholds();
 /// Null where there is none of that name.
 const ThresholdType* find_threshold(std::string_view name);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::check

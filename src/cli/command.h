@@ -19,7 +19,7 @@ namespace CLI {
 class App;
 }
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 /// Options that every command has, and the destinations of its output.
 class Session {
@@ -27,7 +27,7 @@ class Session {
   void add_data_option(CLI::App& app);     ///< --db
   void add_answer_options(CLI::App& app);  ///< --explain, --quiet, --report and --json, for commands that show() documents
 
-  [[nodiscard]] DataFolders folders() const;
+  [[nodiscard]] input::DataFolders folders() const;
   // All output is kept until the command has finished: finish() writes all of it, or nothing if a file cannot be written.
 
   /// Adds text for other programs, such as a script: to stdout, or to stderr if the JSON goes to stdout. Control characters are replaced by
@@ -40,7 +40,9 @@ class Session {
   /// Adds a file of the user that this command was asked to change in place.
   void rewrite(const std::filesystem::path& path, std::string content) { rewritten_.push_back({path, std::move(content)}); }
   /// Returns a requested file whose content is written piece by piece. It lives as long as the session.
-  StreamedFile& stream(const std::filesystem::path& path) { return *streams_.emplace_back(std::make_unique<StreamedFile>(path)); }
+  base::StreamedFile& stream(const std::filesystem::path& path) {
+    return *streams_.emplace_back(std::make_unique<base::StreamedFile>(path));
+  }
   /// Adds a folder for files; it is created together with them or not at all.
   void make_folder(std::filesystem::path path) { folders_.push_back(std::move(path)); }
   /// Sets a function that runs after all files are written and before the text; for the rename that completes a folder.
@@ -49,7 +51,7 @@ class Session {
   void answer(const nlohmann::ordered_json& json);
   void finish();
   /// Reports the failure instead of all other output.
-  void answer_failure(const Failure& failure);
+  void answer_failure(const base::Failure& failure);
   void set_json_target(std::string target) { json_target_ = std::move(target); }
 
  private:
@@ -61,9 +63,9 @@ class Session {
   std::string text_;       ///< contains no control characters except colours
   std::string json_text_;  ///< for stdout
   std::vector<std::filesystem::path> folders_;
-  std::vector<OutputFile> files_;
-  std::vector<OutputFile> rewritten_;
-  std::vector<std::unique_ptr<StreamedFile>> streams_;
+  std::vector<base::OutputFile> files_;
+  std::vector<base::OutputFile> rewritten_;
+  std::vector<std::unique_ptr<base::StreamedFile>> streams_;
   std::function<void()> last_;
 };
 
@@ -80,7 +82,7 @@ struct Command {
   std::string_view summary;
   std::string_view example;  ///< a command line that can be pasted and run
   /// Declares the options on `app` and returns the function that runs after they are parsed.
-  std::function<std::function<ExitCode()>(CLI::App& app, Session& session)> declare;
+  std::function<std::function<base::ExitCode()>(CLI::App& app, Session& session)> declare;
   std::function<std::vector<Topic>()> topics{};  ///< for `list` and `describe`
 };
 std::vector<Command> all_commands();
@@ -88,4 +90,4 @@ std::vector<Command> all_commands();
 /// Runs the whole program and returns the exit code. Never throws.
 int run_program(int argc, const char* const* argv);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

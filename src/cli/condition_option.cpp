@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 CLI::Option* add_conditions(CLI::App& app, std::map<std::string, std::string>& conditions) {
   return app
@@ -24,4 +24,4 @@ CLI::Option* add_conditions(CLI::App& app, std::map<std::string, std::string>& c
       ->type_name("KEY=VALUE...");
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

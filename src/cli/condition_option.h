@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 CLI::Option* add_conditions(CLI::App& app, std::map<std::string, std::string>& conditions);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

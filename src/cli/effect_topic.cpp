@@ -8,10 +8,10 @@
 #include "present/description.h"
 #include "present/description_json.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 namespace {
 
-Topic sensor_topic(const SensorEffectType& type) {
+Topic sensor_topic(const motor::SensorEffectType& type) {
   return {std::string(type.name), std::string(type.summary), [&type] { return present::sensor_description(type); },
           [&type] { return present::sensor_json(type); }};
 }
@@ -20,7 +20,7 @@ Topic sensor_topic(const SensorEffectType& type) {
 
 std::vector<Topic> all_topics() {
   std::vector<Topic> topics;
-  std::ranges::transform(all_sensor_effects(), std::back_inserter(topics), sensor_topic);
+  std::ranges::transform(motor::all_sensor_effects(), std::back_inserter(topics), sensor_topic);
   for (const Command& command : all_commands()) {
     if (command.topics) {
       std::ranges::move(command.topics(), std::back_inserter(topics));
@@ -29,4 +29,4 @@ std::vector<Topic> all_topics() {
   return topics;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

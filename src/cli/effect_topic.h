@@ -5,9 +5,9 @@
 
 #include "cli/command.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 /// Returns all topics: sensor effects and those of the commands.
 std::vector<Topic> all_topics();
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

@@ -6,7 +6,7 @@
 #include "cli/quantity_option.h"
 #include "motor/conditions.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 void add_motor_options(CLI::App& app, GuardOptions& options) {
   app.add_option("--motor", options.motor, "id (see `heatsoak list motors`) or file")->type_name("M");
@@ -14,24 +14,24 @@ void add_motor_options(CLI::App& app, GuardOptions& options) {
   add_conditions(app, options.conditions);
 }
 
-void add_derate_options(CLI::App& app, DerateOptions& options) {
-  GuaranteeOptions& guarantee = options.guarantee;
+void add_derate_options(CLI::App& app, derate::DerateOptions& options) {
+  derate::GuaranteeOptions& guarantee = options.guarantee;
   add_quantity(app, "--ambient", options.hottest_ambient_C,
-               {"ambient", "degC", Range::between(-40.0, 120.0), "hottest air at the motor; 40degC unless given"});
-  add_quantity(
-      app, "--coldest", options.coldest_ambient_C,
-      {"coldest", "degC", Range::between(-60.0, 120.0), "coldest air; a sensor that reads less is treated as faulty; 0degC unless given"});
+               {"ambient", "degC", base::Range::between(-40.0, 120.0), "hottest air at the motor; 40degC unless given"});
+  add_quantity(app, "--coldest", options.coldest_ambient_C,
+               {"coldest", "degC", base::Range::between(-60.0, 120.0),
+                "coldest air; a sensor that reads less is treated as faulty; 0degC unless given"});
   add_quantity(
       app, "--approach", options.approach_s,
-      {"approach", "s", Range::between(0.01, 100.0),
+      {"approach", "s", base::Range::between(0.01, 100.0),
        "in which the winding may approach its limit: a shorter time allows higher peaks while it is cold, a longer one leaves more current "
        "later in a long load, because the safety factor on heat falls; a quarter of the winding's time constant unless given"});
   add_quantity(app, "--confidence", guarantee.confidence,
-               {"confidence", "", Range::between(0.5, 0.999),
+               {"confidence", "", base::Range::between(0.5, 0.999),
                 "least share of motors that keep their limits, shown with 95 % certainty; 0.95 unless given"});
   add_quantity(
       app, "--error", options.table.shortfall_ratio,
-      {"error", "", Range::between(0.002, 0.5), "largest loss of current in the table against the exact result; 1 % unless given"});
+      {"error", "", base::Range::between(0.002, 0.5), "largest loss of current in the table against the exact result; 1 % unless given"});
   app.add_option("--size", options.table.most_bytes, "largest size of the table in bytes; it takes precedence over --error")
       ->check(CLI::Range(std::size_t{64}, std::size_t{1} << 20U))
       ->capture_default_str();
@@ -45,27 +45,29 @@ void add_derate_options(CLI::App& app, DerateOptions& options) {
       ->capture_default_str();
 }
 
-Motor guarded_motor(const GuardOptions& options, NamedFiles& named) {
+motor::Motor guarded_motor(const GuardOptions& options, duty::NamedFiles& named) {
   if (options.motor.empty() && options.model.empty()) {
-    throw Failure(ExitCode::bad_input, "the motor is missing; expected --motor M or --model FILE");
+    throw base::Failure(base::ExitCode::bad_input, "the motor is missing; expected --motor M or --model FILE");
   }
   const std::optional<std::filesystem::path> file = options.motor.empty() ? std::nullopt : named.motor_file(options.motor);
-  const std::optional<Motor> motor = named.motor(options.model.empty() ? options.motor : options.model);
+  const std::optional<motor::Motor> motor = named.motor(options.model.empty() ? options.motor : options.model);
   named.throw_if_any();
   if (file && !options.model.empty() && motor->id != file->stem() && (!motor->fit || motor->fit->motor != file->stem())) {
-    throw Failure(ExitCode::bad_input, fmt::format("--model {} is not a model of {}: it {}", options.model, file->stem().string(),
-                                                   motor->fit ? fmt::format("was fitted from {}", motor->fit->motor)
-                                                              : std::string("has another name and no [fit]")));
+    throw base::Failure(
+        base::ExitCode::bad_input,
+        fmt::format("--model {} is not a model of {}: it {}", options.model, file->stem().string(),
+                    motor->fit ? fmt::format("was fitted from {}", motor->fit->motor) : std::string("has another name and no [fit]")));
   }
-  return under(*motor, options.conditions);
+  return motor::under(*motor, options.conditions);
 }
 
-void check_derate_options(const DerateOptions& options) {
+void check_derate_options(const derate::DerateOptions& options) {
   if (options.coldest_ambient_C >= options.hottest_ambient_C) {
-    throw Failure(ExitCode::bad_input, fmt::format("the hottest air (--ambient, {:.4g} °C) is not above the coldest air (--coldest, {:.4g} "
-                                                   "°C); expected --coldest COLDER or a hotter --ambient",
-                                                   options.hottest_ambient_C, options.coldest_ambient_C));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("the hottest air (--ambient, {:.4g} °C) is not above the coldest air (--coldest, {:.4g} "
+                                    "°C); expected --coldest COLDER or a hotter --ambient",
+                                    options.hottest_ambient_C, options.coldest_ambient_C));
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

@@ -9,7 +9,7 @@
 #include "base/version.h"
 #include "cli/command.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 namespace {
 
 /// Returns "a", "b" for a type name such as "G:{a,b}", the CLI11 notation of a set.
@@ -86,7 +86,7 @@ std::string roff(std::string_view text) {
 std::string man_head(std::string_view name) {
   std::string upper(name);
   std::ranges::transform(upper, upper.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return fmt::format(".TH \"{}\" 1 \"\" \"heatsoak {}\" \"User Commands\"\n.SH NAME\n", roff(upper), program_version());
+  return fmt::format(".TH \"{}\" 1 \"\" \"heatsoak {}\" \"User Commands\"\n.SH NAME\n", roff(upper), base::program_version());
 }
 
 constexpr std::string_view kExitCodes =
@@ -156,4 +156,4 @@ std::string man_page_index(const std::vector<HelpPage>& pages) {
   return text + std::string(kExitCodes);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

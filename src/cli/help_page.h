@@ -8,7 +8,7 @@ namespace CLI {
 class App;
 }
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 struct HelpOption {
   std::vector<std::string> names;  ///< "-h", "--help"; one word without dashes for a positional
@@ -36,4 +36,4 @@ std::string markdown_index(const std::vector<HelpPage>& pages);
 std::string man_page_of(const HelpPage& page);
 std::string man_page_index(const std::vector<HelpPage>& pages);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

@@ -5,7 +5,7 @@
 
 #include "present/wrap.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 std::string HelpText::beside_names(const std::string& text) const {
   constexpr std::size_t kLeast = 30;
@@ -22,4 +22,4 @@ std::string HelpText::make_subcommand(const CLI::App* verb) const {
 
 std::string HelpText::make_description(const CLI::App* app) const { return present::wrapped(app->get_description(), "", width_) + "\n"; }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <string>
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 class HelpText final : public CLI::Formatter {
  public:
@@ -22,4 +22,4 @@ class HelpText final : public CLI::Formatter {
   std::size_t width_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

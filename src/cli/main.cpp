@@ -1,3 +1,3 @@
 #include "cli/command.h"
 
-int main(int argc, char** argv) { return heatsoak::run_program(argc, argv); }
+int main(int argc, char** argv) { return heatsoak::cli::run_program(argc, argv); }

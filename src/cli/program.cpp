@@ -26,7 +26,7 @@
 #include "present/renderer.h"
 #include "present/wrap.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 namespace {
 
 constexpr std::string_view kFooter =
@@ -85,7 +85,7 @@ std::vector<std::filesystem::path> made_folders(const std::vector<std::filesyste
     std::error_code problem;
     std::filesystem::create_directories(folder, problem);
     if (problem) {
-      throw Failure(ExitCode::bad_input, fmt::format("{}: the folder cannot be made: {}", folder.string(), problem.message()));
+      throw base::Failure(base::ExitCode::bad_input, fmt::format("{}: the folder cannot be made: {}", folder.string(), problem.message()));
     }
     made.insert(made.begin(), missing.begin(), missing.end());
   }
@@ -104,11 +104,11 @@ std::string printable(std::string_view text) {
 void put(std::FILE* file, std::string_view text) { static_cast<void>(std::fwrite(text.data(), 1, text.size(), file)); }
 
 /// Adds line numbers to diagnostics that have only a file and a key.
-Failure with_places(const Failure& failure) {
-  std::vector<Diagnostic> all(failure.diagnostics().begin(), failure.diagnostics().end());
-  for (Diagnostic& each : all) {
+base::Failure with_places(const base::Failure& failure) {
+  std::vector<base::Diagnostic> all(failure.diagnostics().begin(), failure.diagnostics().end());
+  for (base::Diagnostic& each : all) {
     if (each.at.line == 0 && !each.key.empty() && each.at.file.ends_with(".toml")) {
-      each.at = place_of(each.at.file, each.key);
+      each.at = input::place_of(each.at.file, each.key);
     }
   }
   return {failure.code(), failure.message(), std::move(all)};
@@ -120,29 +120,29 @@ nlohmann::ordered_json with_version(const nlohmann::ordered_json& answer) {
   for (const auto& [key, value] : answer.items()) {
     result[key] = value;
     if (key == "schema" || key == "error") {
-      result["version"] = program_version();
+      result["version"] = base::program_version();
     }
   }
   return result;
 }
 
 /// Returns annotations for GitHub Actions at each line with a problem; empty elsewhere.
-std::string annotations_of(const Failure& failure) {
+std::string annotations_of(const base::Failure& failure) {
   const auto environment = [](const char* name) {
     const char* const value = std::getenv(name);
     return std::string(value ? value : "");
   };
   std::string text;
-  for (const Diagnostic& each : failure.diagnostics()) {
+  for (const base::Diagnostic& each : failure.diagnostics()) {
     if (each.at.line > 0 && environment("GITHUB_ACTIONS") == "true") {
-      text += annotation(each.at, environment("GITHUB_WORKSPACE"), each.key.empty() ? "heatsoak" : each.key, each.message);
+      text += check::annotation(each.at, environment("GITHUB_WORKSPACE"), each.key.empty() ? "heatsoak" : each.key, each.message);
     }
   }
   return text;
 }
 
-int fail(Session& session, const Failure& found) {
-  const Failure failure = with_places(found);
+int fail(Session& session, const base::Failure& found) {
+  const base::Failure failure = with_places(found);
   const std::string text = printable(std::string(failure.what()) + "\n" + annotations_of(failure));
   put(stderr, isatty(STDERR_FILENO) == 1 ? present::folded(text, terminal_width(STDERR_FILENO)) : text);
   session.answer_failure(failure);
@@ -159,9 +159,10 @@ void refuse_one_file_for_two(const CLI::App& verb, Session& session) {
     }
     const std::string& file = option->results().front();
     for (const auto& [other, taken] : given) {
-      if (are_one_file(file, taken)) {
+      if (base::are_one_file(file, taken)) {
         session.set_json_target({});
-        throw Failure(ExitCode::bad_input, fmt::format("{} and {} name one file, {}; give each a file of its own", other, name, file));
+        throw base::Failure(base::ExitCode::bad_input,
+                            fmt::format("{} and {} name one file, {}; give each a file of its own", other, name, file));
       }
     }
     given.emplace_back(name, file);
@@ -170,17 +171,17 @@ void refuse_one_file_for_two(const CLI::App& verb, Session& session) {
 
 int parse_and_run(int argc, const char* const* argv, Session& session) {
   CLI::App app("Does this motor survive the match? And if not, what current may it still get?", "heatsoak");
-  app.set_version_flag("--version", fmt::format("heatsoak {}", program_version()));
+  app.set_version_flag("--version", fmt::format("heatsoak {}", base::program_version()));
   app.require_subcommand(1);
   app.formatter(std::make_shared<HelpText>(terminal_width(STDOUT_FILENO)));
   const std::vector<Command> commands = all_commands();
   const bool reads_logs = std::ranges::find(commands, "log", &Command::name) != commands.end();
   app.footer(fmt::format("{}{}", kFooter, reads_logs ? "" : kWithoutMeasured));
-  ExitCode code = ExitCode::done;
+  base::ExitCode code = base::ExitCode::done;
   for (const Command& command : commands) {
     CLI::App* verb = app.add_subcommand(std::string(command.name), std::string(command.summary));
     verb->footer(fmt::format("\nExample:\n  {}\n", command.example));
-    const std::function<ExitCode()> run = command.declare(*verb, session);
+    const std::function<base::ExitCode()> run = command.declare(*verb, session);
     verb->callback([run, verb, &session, &code] {
       refuse_one_file_for_two(*verb, session);
       code = run();
@@ -196,8 +197,8 @@ int parse_and_run(int argc, const char* const* argv, Session& session) {
     if (error.get_exit_code() == 0) {
       return app.exit(error);
     }
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{}\n`{} --help` shows the options and an example", all_mistakes(error, app, words), verb_of(app)));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("{}\n`{} --help` shows the options and an example", all_mistakes(error, app, words), verb_of(app)));
   }
   session.finish();
   return static_cast<int>(code);
@@ -242,7 +243,7 @@ void Session::show(const present::Document& document) {
   }
 }
 
-DataFolders Session::folders() const { return DataFolders::find(database_); }
+input::DataFolders Session::folders() const { return input::DataFolders::find(database_); }
 
 void Session::answer(const nlohmann::ordered_json& json) {
   if (json_target_.empty()) {
@@ -257,28 +258,28 @@ void Session::answer(const nlohmann::ordered_json& json) {
 }
 
 void Session::finish() {
-  std::vector<Diagnostic> read;
+  std::vector<base::Diagnostic> read;
   const auto check = [&read](const std::filesystem::path& path) {
-    if (is_input(path)) {
+    if (base::is_input(path)) {
       read.push_back({{path.string()}, {}, "this command reads the file and would overwrite it; give the output another name"});
     }
   };
   for (const auto& each : streams_) {
     check(each->path());
   }
-  for (const OutputFile& each : files_) {
+  for (const base::OutputFile& each : files_) {
     check(each.path);
   }
   if (read.empty() && !json_target_.empty() && !may_take_json(json_target_)) {
     read.push_back({{json_target_}, {}, "is not an answer of this program, and --json would overwrite it; give the answer another name"});
   }
   if (!read.empty()) {
-    throw Failure(ExitCode::bad_input, "", std::move(read));
+    throw base::Failure(base::ExitCode::bad_input, "", std::move(read));
   }
   const std::vector<std::filesystem::path> made = made_folders(folders_);
   files_.insert(files_.end(), rewritten_.begin(), rewritten_.end());
   try {
-    write_files(files_, streams_);
+    base::write_files(files_, streams_);
     if (last_) {
       last_();
     }
@@ -293,7 +294,7 @@ void Session::finish() {
   put(stdout, json_text_);
 }
 
-void Session::answer_failure(const Failure& failure) {
+void Session::answer_failure(const base::Failure& failure) {
   text_.clear();
   json_text_.clear();
   folders_.clear();
@@ -304,7 +305,7 @@ void Session::answer_failure(const Failure& failure) {
   answer(present::failure_json(failure));
   try {
     finish();
-  } catch (const Failure& unwritable) {
+  } catch (const base::Failure& unwritable) {
     if (std::string_view(unwritable.what()) != failure.what()) {
       put(stderr, printable(unwritable.what()) + "\n");
     }
@@ -329,16 +330,16 @@ int run_program(int argc, const char* const* argv) {
     const int code = parse_and_run(argc, argv, session);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
       put(stderr, "stdout cannot be written: is the disk full?\n");
-      return static_cast<int>(ExitCode::bad_input);
+      return static_cast<int>(base::ExitCode::bad_input);
     }
     return code;
-  } catch (const Failure& failure) {
+  } catch (const base::Failure& failure) {
     return fail(session, failure);
   } catch (const std::bad_alloc&) {
-    return fail(session, Failure(ExitCode::numerics_failed, "out of memory"));
+    return fail(session, base::Failure(base::ExitCode::numerics_failed, "out of memory"));
   } catch (const std::exception& error) {
-    return fail(session, Failure(ExitCode::bug, fmt::format("this is a bug in heatsoak, please report it: {}", error.what())));
+    return fail(session, base::Failure(base::ExitCode::bug, fmt::format("this is a bug in heatsoak, please report it: {}", error.what())));
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

@@ -9,7 +9,7 @@
 
 #include "base/quantity.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 namespace {
 
 std::function<std::string(const std::string&)> ends_in(const std::string& ending, const std::string& why) {
@@ -21,17 +21,18 @@ std::function<std::string(const std::string&)> ends_in(const std::string& ending
 }
 
 template <class Value>
-CLI::Option* add_quantity_to(CLI::App& app, const std::string& flag, Value& value, const ParameterSpec& spec) {
+CLI::Option* add_quantity_to(CLI::App& app, const std::string& flag, Value& value, const base::ParameterSpec& spec) {
   const auto parse = [flag, spec, &value](const std::string& text) {
-    const std::optional<double> bare = parse_number(text);
-    const ParsedQuantity parsed = bare && std::isfinite(*bare) ? ParsedQuantity{*bare, {}} : parse_quantity(text, spec.unit);
+    const std::optional<double> bare = base::parse_number(text);
+    const base::ParsedQuantity parsed =
+        bare && std::isfinite(*bare) ? base::ParsedQuantity{*bare, {}} : base::parse_quantity(text, spec.unit);
     if (!parsed.ok()) {
       throw CLI::ValidationError(flag, parsed.problem);
     }
     if (!spec.range.contains(parsed.value)) {
       throw CLI::ValidationError(
           flag, fmt::format("{} is out of range; expected {}", bare && !spec.unit.empty() ? fmt::format("{} {}", text, spec.unit) : text,
-                            to_string(spec.range, spec.unit)));
+                            base::to_string(spec.range, spec.unit)));
     }
     value = parsed.value;
   };
@@ -40,11 +41,11 @@ CLI::Option* add_quantity_to(CLI::App& app, const std::string& flag, Value& valu
 
 }  // namespace
 
-CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value, const ParameterSpec& spec) {
+CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value, const base::ParameterSpec& spec) {
   return add_quantity_to(app, flag, value, spec);
 }
 
-CLI::Option* add_quantity(CLI::App& app, const std::string& flag, std::optional<double>& value, const ParameterSpec& spec) {
+CLI::Option* add_quantity(CLI::App& app, const std::string& flag, std::optional<double>& value, const base::ParameterSpec& spec) {
   return add_quantity_to(app, flag, value, spec);
 }
 
@@ -73,4 +74,4 @@ std::function<std::string(const std::string&)> whole_number(std::uint64_t most) 
   };
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

@@ -9,12 +9,12 @@
 
 #include "base/parameter.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 /// `value` holds the default and is set in the unit of `spec`. A wrong unit or range is a usage error.
-CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value, const ParameterSpec& spec);
+CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value, const base::ParameterSpec& spec);
 /// The same for a value whose default depends on other inputs.
-CLI::Option* add_quantity(CLI::App& app, const std::string& flag, std::optional<double>& value, const ParameterSpec& spec);
+CLI::Option* add_quantity(CLI::App& app, const std::string& flag, std::optional<double>& value, const base::ParameterSpec& spec);
 
 /// Returns a check for an integer from 0 to `most`. It replaces CLI11's parsing, which reads -1 as 2^64 − 1, clips too large numbers and
 /// reads 010 as 8.
@@ -29,4 +29,4 @@ CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& me
 /// Adds --out FILE.csv; another extension is a usage error.
 CLI::Option* add_table(CLI::App& app, std::string& file, const std::string& meaning);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

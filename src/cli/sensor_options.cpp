@@ -7,11 +7,11 @@
 #include "base/diagnostic.h"
 #include "cli/quantity_option.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 namespace {
 
-void add_parameters(CLI::App& app, SensorOptions& sensor, CLI::Option* needed) {
-  for (const SensorParameter& each : sensor_parameters()) {
+void add_parameters(CLI::App& app, derate::SensorOptions& sensor, CLI::Option* needed) {
+  for (const derate::SensorParameter& each : derate::sensor_parameters()) {
     if (each.kind == sensor.kind) {
       std::string flag = fmt::format("--{}", each.spec.key);
       std::ranges::replace(flag, '_', '-');
@@ -32,9 +32,10 @@ void add_sensor_options(CLI::App& app, SensorFlags& flags) {
                               "the guard reads the winding's temperature from its resistance: voltage and current at the terminals"));
 }
 
-std::optional<SensorOptions> sensor_options(const SensorFlags& flags) {
+std::optional<derate::SensorOptions> sensor_options(const SensorFlags& flags) {
   if (flags.reads_resistance && !flags.thermistor_node.empty()) {
-    throw Failure(ExitCode::bad_input, "--thermistor and --winding-resistance: expected one sensor; leave out the less accurate one");
+    throw base::Failure(base::ExitCode::bad_input,
+                        "--thermistor and --winding-resistance: expected one sensor; leave out the less accurate one");
   }
   if (flags.reads_resistance) {
     return flags.resistance;
@@ -42,9 +43,9 @@ std::optional<SensorOptions> sensor_options(const SensorFlags& flags) {
   if (flags.thermistor_node.empty()) {
     return std::nullopt;
   }
-  SensorOptions thermistor = flags.thermistor;
-  thermistor.node = flags.thermistor_node == "winding" ? states::winding : states::stator;
+  derate::SensorOptions thermistor = flags.thermistor;
+  thermistor.node = flags.thermistor_node == "winding" ? motor::states::winding : motor::states::stator;
   return thermistor;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

@@ -16,7 +16,7 @@
 #include <thread>
 #include <utility>
 
-namespace heatsoak {
+namespace heatsoak::cli {
 namespace {
 
 std::string_view environment(const char* name) {
@@ -139,11 +139,11 @@ std::shared_ptr<void> elapsed_line(std::string what) {
   return isatty(STDERR_FILENO) == 0 ? nullptr : std::make_shared<ElapsedLine>(std::move(what));
 }
 
-Progress progress_bar(std::string what) {
+base::Progress progress_bar(std::string what) {
   if (isatty(STDERR_FILENO) == 0) {
     return {};
   }
   return [bar = std::make_shared<Bar>(std::move(what))](std::size_t done, std::size_t total) { bar->show(done, total); };
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

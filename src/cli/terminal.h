@@ -7,7 +7,7 @@
 
 #include "base/parallel.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 /// Returns the width in characters: COLUMNS if it is an integer from 20 to 1000, else the terminal's own width, else 80.
 std::size_t terminal_width(int descriptor);
@@ -16,10 +16,10 @@ std::size_t terminal_width(int descriptor);
 bool takes_colors(int descriptor);
 
 /// Returns a progress bar with the remaining time on stderr; silent if stderr is not a terminal.
-Progress progress_bar(std::string what);
+base::Progress progress_bar(std::string what);
 
 /// Shows the elapsed time of a job without known length on stderr, from its first second until the returned object is destroyed; silent if
 /// stderr is not a terminal.
 std::shared_ptr<void> elapsed_line(std::string what);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

@@ -8,10 +8,10 @@
 #include "present/description.h"
 #include "present/description_json.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 namespace {
 
-Topic topic_of(const ThresholdType& type) {
+Topic topic_of(const check::ThresholdType& type) {
   Topic topic;
   topic.id = type.name;
   topic.summary = fmt::format("\"{}\": {}", type.example, type.meaning.substr(0, type.meaning.find_first_of(":;,(")));
@@ -24,10 +24,10 @@ Topic topic_of(const ThresholdType& type) {
 
 std::vector<Topic> threshold_topics() {
   std::vector<Topic> topics;
-  for (const ThresholdType& type : all_thresholds()) {
+  for (const check::ThresholdType& type : check::all_thresholds()) {
     topics.push_back(topic_of(type));
   }
   return topics;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

@@ -10,7 +10,7 @@
 #include <cctype>
 #include <map>
 
-namespace heatsoak {
+namespace heatsoak::cli {
 namespace {
 
 /// "-3A" is a value, and "-" is an output.
@@ -70,8 +70,8 @@ void check_words(const CLI::App& app, std::span<const char* const> words) {
     for (const CLI::App* each : app.get_subcommands({})) {
       verbs.push_back(each->get_name());
     }
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("there is no verb '{}'{} (`heatsoak --help` lists them)", words.front(), did_you_mean(words.front(), verbs)));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("there is no verb '{}'{} (`heatsoak --help` lists them)", words.front(),
+                                                               base::did_you_mean(words.front(), verbs)));
   }
   std::vector<std::string> known;
   for (const CLI::Option* option : (verb ? *verb : app).get_options()) {
@@ -93,14 +93,14 @@ void check_words(const CLI::App& app, std::span<const char* const> words) {
       break;
     }
     if (name.starts_with("--") && std::ranges::find(known, name) == known.end()) {
-      unknown.push_back(fmt::format("there is no option {}{} (`{}{} --help` lists them)", name, did_you_mean(name, known), app.get_name(),
-                                    verb ? fmt::format(" {}", verb->get_name()) : ""));
+      unknown.push_back(fmt::format("there is no option {}{} (`{}{} --help` lists them)", name, base::did_you_mean(name, known),
+                                    app.get_name(), verb ? fmt::format(" {}", verb->get_name()) : ""));
     } else if (name.starts_with("--") && verb && takes_one_value(*verb->get_option_no_throw(name)) && ++given[name] == 2) {
       unknown.push_back(fmt::format("{} is given more than once; expected one value: remove the others", name));
     }
   }
   if (!unknown.empty()) {
-    throw Failure(ExitCode::bad_input, fmt::format("{}", fmt::join(unknown, "\n")));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("{}", fmt::join(unknown, "\n")));
   }
 }
 
@@ -129,4 +129,4 @@ std::string all_mistakes(const CLI::ParseError& error, const CLI::App& app, std:
   return fmt::format("{}", fmt::join(all, "\n"));
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

@@ -7,7 +7,7 @@
 
 #include "cli/command.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 /// Throws Failure (bad_input) with "did you mean" for an unknown command or option. `words` follow the program's name.
 void check_words(const CLI::App& app, std::span<const char* const> words);
@@ -16,4 +16,4 @@ void check_words(const CLI::App& app, std::span<const char* const> words);
 /// parsing `words` with `app`.
 std::string all_mistakes(const CLI::ParseError& error, const CLI::App& app, std::span<const char* const> words);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

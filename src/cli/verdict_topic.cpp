@@ -5,10 +5,10 @@
 #include "present/description.h"
 #include "present/description_json.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 Topic verdict_topic() {
   return {"verdict", "what pass, marginal, fail, infeasible and undecided mean", present::verdict_description, present::verdict_json};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

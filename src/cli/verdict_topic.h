@@ -3,8 +3,8 @@
 
 #include "cli/command.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 Topic verdict_topic();
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

@@ -8,7 +8,7 @@
 
 #include "motor/datasheet_network.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 constexpr double kBelow_ratio = 1e-8;  ///< relative reduction that keeps the result below the root
@@ -71,22 +71,22 @@ double Barrier::current_A(double speed_rad_per_s, double stator_C, double windin
 
 double Barrier::winding_margin(const HotCase& each, const Place& at, double current_square_A2) {
   find_rates(each.signals(rules_, std::sqrt(current_square_A2), at.speed_rad_per_s), at.stator_C, at.winding_C);
-  return (rules_.limits.winding_C - at.winding_C) / rules_.approach_s - rate_[states::winding];
+  return (rules_.limits.winding_C - at.winding_C) / rules_.approach_s - rate_[motor::states::winding];
 }
 
 double Barrier::stator_margin(const HotCase& each, const Place& at, double current_square_A2) {
   const Signals signals = each.signals(rules_, std::sqrt(current_square_A2), at.speed_rad_per_s);
   find_rates(signals, at.stator_C, at.winding_C);
-  find_rates(signals, at.stator_C, at.winding_C + rules_.approach_s * rate_[states::winding]);
+  find_rates(signals, at.stator_C, at.winding_C + rules_.approach_s * rate_[motor::states::winding]);
   // After a sudden rise of the speed the winding still conducts the heat of the earlier, larger current to the stator.
   constexpr double kHandedOn_K = 0.5;
-  return (*rules_.limits.stator_C - kHandedOn_K - at.stator_C) / rules_.stator_approach_s - rate_[states::stator];
+  return (*rules_.limits.stator_C - kHandedOn_K - at.stator_C) / rules_.stator_approach_s - rate_[motor::states::stator];
 }
 
 void Barrier::find_rates(const Signals& signals, double stator_C, double winding_C) {
   std::ranges::copy(signals, signals_.begin());
   std::fill(signals_.begin() + observed::kSignalCount, signals_.end(), stator_C);
-  signals_[observed::kSignalCount + states::winding] = winding_C;
+  signals_[observed::kSignalCount + motor::states::winding] = winding_C;
   rates_.run(signals_, rate_);
 }
 
@@ -94,4 +94,4 @@ double barrier_current_A(const Observer& observer, const BarrierRules& rules, do
   return Barrier(observer, rules).current_A(speed_rad_per_s, stator_C, winding_C);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

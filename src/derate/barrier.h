@@ -6,7 +6,7 @@
 #include "derate/hot_cases.h"
 #include "derate/observer.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Keeps a reference to the rules, which must outlive it. Not thread-safe.
 class Barrier {
@@ -33,7 +33,7 @@ class Barrier {
 
   const BarrierRules& rules_;
   std::vector<HotCase> cases_;
-  FormulaRun<double> rates_;
+  thermal::FormulaRun<double> rates_;
   std::vector<double> signals_;  ///< inputs of the formula: signals, then node temperatures in °C
   std::vector<double> rate_;
 };
@@ -41,4 +41,4 @@ class Barrier {
 /// Barrier::current_A() for a single evaluation; builds the barrier each time.
 double barrier_current_A(const Observer& observer, const BarrierRules& rules, double speed_rad_per_s, double stator_C, double winding_C);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

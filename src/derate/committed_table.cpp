@@ -19,7 +19,7 @@
 #include "derate/header_text.h"
 #include "input/csv.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 constexpr std::size_t kLargestTable_bytes = 10'000'000;
@@ -32,13 +32,14 @@ void require_ascending(const CommittedTable& committed, int line, std::string_vi
                        std::size_t least_count) {
   const bool is_finite = std::ranges::all_of(axis, [](double each) { return std::isfinite(each); });
   if (axis.size() < least_count || !is_finite || std::ranges::adjacent_find(axis, std::greater_equal<>()) != axis.end()) {
-    throw bad_input({committed.file.string(), line, 1}, std::string(name),
-                    "the axis of the table does not increase; expected a file that `heatsoak derate` wrote");
+    throw base::bad_input({committed.file.string(), line, 1}, std::string(name),
+                          "the axis of the table does not increase; expected a file that `heatsoak derate` wrote");
   }
 }
 
-Failure no_current(const CommittedTable& committed, int line) {
-  return bad_input({committed.file.string(), line, 1}, "current", "the table contains a current that is not a finite number of at least 0");
+base::Failure no_current(const CommittedTable& committed, int line) {
+  return base::bad_input({committed.file.string(), line, 1}, "current",
+                         "the table contains a current that is not a finite number of at least 0");
 }
 
 /// Throws Failure (bad_input) if an axis does not ascend or a value is missing, not finite or impossible.
@@ -51,9 +52,10 @@ void require_sound(const CommittedTable& committed, const CurrentTable& table, i
   }
   if (!(table.most_current_A > 0.0) || !(table.straight_below_A > 0.0) || !(table.winding_per_stator_K >= 0.0) ||
       !(table.no_current_speed_rad_per_s > table.most_speed_rad_per_s)) {
-    throw bad_input({committed.file.string(), line, 1}, "",
-                    "MOST_CURRENT_A, STRAIGHT_BELOW_A, WINDING_PER_STATOR_K, MOST_SPEED_RAD_PER_S or NO_CURRENT_SPEED_RAD_PER_S is missing "
-                    "or out of range; expected a header that `heatsoak derate` wrote");
+    throw base::bad_input(
+        {committed.file.string(), line, 1}, "",
+        "MOST_CURRENT_A, STRAIGHT_BELOW_A, WINDING_PER_STATOR_K, MOST_SPEED_RAD_PER_S or NO_CURRENT_SPEED_RAD_PER_S is missing "
+        "or out of range; expected a header that `heatsoak derate` wrote");
   }
 }
 
@@ -81,8 +83,8 @@ void require_whole(const CommittedTable& committed, const std::string& text) {
   static const std::regex kEnd("(^|\n)#endif");
   const auto count = [&](const std::regex& each) { return std::distance(std::sregex_iterator(text.begin(), text.end(), each), {}); };
   if (count(kBegin) > count(kEnd)) {
-    throw bad_input({committed.file.string(), line_at(text, text.size()), 1}, "",
-                    "the header ends before its #endif: the file is truncated; write it again with `heatsoak derate --out`");
+    throw base::bad_input({committed.file.string(), line_at(text, text.size()), 1}, "",
+                          "the header ends before its #endif: the file is truncated; write it again with `heatsoak derate --out`");
   }
 }
 
@@ -117,8 +119,8 @@ std::map<std::string, std::string> by_name(const std::string& flags) {
 void read_header(const std::string& text, CommittedTable& committed) {
   // A line continuation could hide code in a comment; `heatsoak derate` writes none.
   if (const std::size_t splice = std::min(text.find('\\'), text.find("?\?/")); splice != std::string::npos) {
-    throw bad_input({committed.file.string(), line_at(text, splice), 1}, "",
-                    "contains a backslash or its trigraph; expected a header that `heatsoak derate` wrote, which has none");
+    throw base::bad_input({committed.file.string(), line_at(text, splice), 1}, "",
+                          "contains a backslash or its trigraph; expected a header that `heatsoak derate` wrote, which has none");
   }
   const std::vector<HeaderArray> arrays = header_arrays(text);
   const auto find = [&](const std::string& name) { return std::ranges::find(arrays, name, &HeaderArray::name); };
@@ -136,9 +138,9 @@ void read_header(const std::string& text, CommittedTable& committed) {
     }
     const int line = line_at(text, currents.begin);
     if (currents.values.size() != speeds->values.size() * stators->values.size() * windings->values.size()) {
-      throw bad_input({committed.file.string(), line, 1}, currents.name,
-                      fmt::format("contains {} currents; expected {} × {} × {}, the product of the lengths of its axes",
-                                  currents.values.size(), speeds->values.size(), stators->values.size(), windings->values.size()));
+      throw base::bad_input({committed.file.string(), line, 1}, currents.name,
+                            fmt::format("contains {} currents; expected {} × {} × {}, the product of the lengths of its axes",
+                                        currents.values.size(), speeds->values.size(), stators->values.size(), windings->values.size()));
     }
     committed.table = {.speed_rad_per_s = speeds->values,
                        .stator_C = stators->values,
@@ -156,12 +158,13 @@ void read_header(const std::string& text, CommittedTable& committed) {
     return;
   }
   if (text.find("heatsoak_integer_table") != std::string::npos) {
-    throw bad_input({committed.file.string()}, "",
-                    "is an integer header (c_header_q15), which cannot be compared; commit the table as --to csv or --to c_header as well "
-                    "and check that file");
+    throw base::bad_input(
+        {committed.file.string()}, "",
+        "is an integer header (c_header_q15), which cannot be compared; commit the table as --to csv or --to c_header as well "
+        "and check that file");
   }
-  throw bad_input({committed.file.string()}, "",
-                  "contains no derating table or is truncated; expected a C header or a CSV table that `heatsoak derate` wrote");
+  throw base::bad_input({committed.file.string()}, "",
+                        "contains no derating table or is truncated; expected a C header or a CSV table that `heatsoak derate` wrote");
 }
 
 /// Returns the distinct values of a column, ascending.
@@ -177,7 +180,7 @@ void read_csv_table(CommittedTable& committed) {
   const std::array<std::string, 4> columns{"speed_rad_per_s", "stator_C", "winding_C", "allowed_current_A"};
   std::vector<CommittedRow>& rows = committed.rows;
   std::vector<int> lines;
-  read_csv(committed.file, columns, {}, [&](const CsvRow& row) {
+  input::read_csv(committed.file, columns, {}, [&](const input::CsvRow& row) {
     rows.push_back({row.values[0], row.values[1], row.values[2], row.values[3]});
     lines.push_back(row.line);
   });
@@ -190,7 +193,7 @@ void read_csv_table(CommittedTable& committed) {
                             row.speed_rad_per_s == speeds[i / windings.size() / stators.size()] &&
                             row.stator_C == stators[i / windings.size() % stators.size()] && row.winding_C == windings[i % windings.size()];
     if (!is_of_grid) {
-      throw bad_input(
+      throw base::bad_input(
           {committed.file.string(), lines[i], 1}, "",
           "the rows do not form a full grid of speed, stator and winding in this order; expected a file that `heatsoak derate` wrote");
     }
@@ -199,7 +202,7 @@ void read_csv_table(CommittedTable& committed) {
     }
   }
   if (rows.size() != speeds.size() * stators.size() * windings.size()) {
-    throw bad_input({committed.file.string(), lines.back(), 1}, "", "rows of the grid are missing at the end of the table");
+    throw base::bad_input({committed.file.string(), lines.back(), 1}, "", "rows of the grid are missing at the end of the table");
   }
   require_ascending(committed, 1, "winding", windings, 2);
 }
@@ -297,7 +300,7 @@ CommittedTable read_committed_table(const std::filesystem::path& file) {
                            .sensor_flags = {},
                            .version = {},
                            .code = {}};
-  const std::string text = read_file(file, kLargestTable_bytes);
+  const std::string text = base::read_file(file, kLargestTable_bytes);
   static const std::regex kVersion(R"re((?:heatsoak |VERSION ")(\d+\.\d+\.\d+))re");
   std::smatch version;
   const std::string head = text.substr(0, 4000);
@@ -360,4 +363,4 @@ TableComparison compare(const CommittedTable& committed, const Derating& fresh) 
   return found;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -8,7 +8,7 @@
 
 #include "derate/derating.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// One row of a CSV table.
 struct CommittedRow {
@@ -68,4 +68,4 @@ struct TableComparison {
 /// (rounding of the file). In the other lines of a header, numbers that agree to 1 in 10⁴ count as equal.
 TableComparison compare(const CommittedTable& committed, const Derating& fresh);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Two neighbouring breakpoints and the position between them, 0 to 1. Values outside of the axis are clamped to its ends. Not in the
 /// anonymous namespace, because closures of a member template, which has external linkage, capture it.
@@ -79,4 +79,4 @@ template float CurrentTable::allowed_A<float>(float, float, float) const;
 template double CurrentTable::allowed_A<double>(double, double, double) const;
 template double CurrentTable::current_of_A<double>(double) const;
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

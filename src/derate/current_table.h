@@ -7,7 +7,7 @@
 #include "derate/hot_cases.h"
 #include "derate/observer.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Above the highest speed of the rules the allowed current falls linearly, so that a motor that is driven from outside can still brake and
 /// its current has no step. It reaches 0 at rules.no_current_speed, at least at this ratio to the highest speed.
@@ -69,4 +69,4 @@ struct TableGoal {
 /// those that turn out to be unnecessary. Lowers squares until no point of a fine grid and of an independent set exceeds the exact current.
 CurrentTable current_table(const Observer& observer, const BarrierRules& rules, const TableGoal& goal = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

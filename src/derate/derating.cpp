@@ -17,7 +17,7 @@
 #include "robot/motor_drive.h"
 #include "thermal/ensemble.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 constexpr double kLargestReserve = 16.0;
@@ -25,26 +25,28 @@ constexpr double kLargestReserve = 16.0;
 constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
 
 /// Voltage of a full battery in V; the nominal voltage if the robot's file gives none.
-double full_V(const Robot& robot) { return std::max(robot.battery.nominal_V, robot.battery.full_V.value_or(robot.battery.nominal_V)); }
+double full_V(const robot::Robot& robot) {
+  return std::max(robot.battery.nominal_V, robot.battery.full_V.value_or(robot.battery.nominal_V));
+}
 
 }  // namespace
 
 namespace {
 
 /// Returns the lower end of a limit that the file gives as a range, because its true value is unknown.
-double lowest_limit_C(const Motor& motor, std::string_view key, double nominal_C) {
+double lowest_limit_C(const motor::Motor& motor, std::string_view key, double nominal_C) {
   const auto parameter = motor.parameters.find(key);
   return parameter != motor.parameters.end() && parameter->second.spread ? std::min(nominal_C, parameter->second.spread->low) : nominal_C;
 }
 
 }  // namespace
 
-double approach_s(const Motor& motor, const DerateOptions& options) {
+double approach_s(const motor::Motor& motor, const DerateOptions& options) {
   return options.approach_s.value_or(kApproach_ratio * motor.nominal.thermal_time_constant_winding_s);
 }
 
-BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateOptions& options) {
-  const MotorValues& values = motor.nominal;
+BarrierRules barrier_rules(const motor::Motor& motor, const robot::Robot& robot, const DerateOptions& options) {
+  const motor::MotorValues& values = motor.nominal;
   const double loop_ohm = values.terminal_resistance_ohm + robot.series_resistance_ohm();
   BarrierRules rules;
   rules.limits.winding_C = lowest_limit_C(motor, "winding_limit", values.winding_limit_C);
@@ -52,9 +54,10 @@ BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateO
     rules.limits.stator_C = lowest_limit_C(motor, "stator_limit", *values.stator_limit_C);
   }
   if (!(rules.limits.winding_C > options.hottest_ambient_C)) {
-    throw Failure(ExitCode::bad_input, fmt::format("{}: the winding limit of {:.1f} °C is not above the hottest air of {:.1f} °C, expected "
-                                                   "a higher limit; check winding_limit or state cooler air with --ambient",
-                                                   motor.id, rules.limits.winding_C, options.hottest_ambient_C));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("{}: the winding limit of {:.1f} °C is not above the hottest air of {:.1f} °C, expected "
+                                    "a higher limit; check winding_limit or state cooler air with --ambient",
+                                    motor.id, rules.limits.winding_C, options.hottest_ambient_C));
   }
   rules.approach_s = approach_s(motor, options);
   // The stator must approach its limit more slowly than a winding without current gives off its stored heat.
@@ -74,30 +77,31 @@ BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateO
 
 namespace {
 
-void require_short_period(const Network& network, const BarrierRules& rules, const DerateOptions& options) {
-  std::vector<Lanes> parameters;
+void require_short_period(const thermal::Network& network, const BarrierRules& rules, const DerateOptions& options) {
+  std::vector<thermal::Lanes> parameters;
   for (const double value : network.values()) {
-    parameters.emplace_back(Lanes::Constant(value));
+    parameters.emplace_back(thermal::Lanes::Constant(value));
   }
-  OperatingPoint<Lanes> at;
-  at.ambient_C = Lanes::Constant(options.hottest_ambient_C);
-  at.current_rms_A = Lanes::Constant(rules.most_current_A);
+  thermal::OperatingPoint<thermal::Lanes> at;
+  at.ambient_C = thermal::Lanes::Constant(options.hottest_ambient_C);
+  at.current_rms_A = thermal::Lanes::Constant(rules.most_current_A);
   // The guard accepts speeds up to less than this (belief.cpp).
   const double fastest_rad_per_s = std::max(2.0 * rules.most_speed_rad_per_s, rules.no_current_speed_rad_per_s);
-  at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = Lanes::Constant(fastest_rad_per_s);
-  const double longest_s = 0.2 * longest_step_s(network, parameters, at, rules.limits.winding_C - options.hottest_ambient_C);
+  at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = thermal::Lanes::Constant(fastest_rad_per_s);
+  const double longest_s = 0.2 * thermal::longest_step_s(network, parameters, at, rules.limits.winding_C - options.hottest_ambient_C);
   if (options.period_s > longest_s || options.period_s > 0.1 * rules.approach_s) {
-    throw Failure(ExitCode::bad_input, fmt::format("a period of {:.3g} s is too long: expected --period {:.3g}s or shorter, the smaller "
-                                                   "of 1/20 of this motor's fastest time constant and 1/10 of --approach",
-                                                   options.period_s, std::min(longest_s, 0.1 * rules.approach_s)));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("a period of {:.3g} s is too long: expected --period {:.3g}s or shorter, the smaller "
+                                    "of 1/20 of this motor's fastest time constant and 1/10 of --approach",
+                                    options.period_s, std::min(longest_s, 0.1 * rules.approach_s)));
   }
 }
 
 void require_samples(const GuaranteeOptions& options) {
   if (const long least = least_samples(options); options.samples < least) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{} samples cannot show a confidence of {:.4g} with {:.0f} % certainty: expected --samples {} or more",
-                              options.samples, options.confidence, 100.0 * kCertainty_share, least));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("{} samples cannot show a confidence of {:.4g} with {:.0f} % certainty: expected --samples {} or more",
+                                    options.samples, options.confidence, 100.0 * kCertainty_share, least));
   }
 }
 
@@ -113,17 +117,17 @@ struct Attempt {
 
 class Search {
  public:
-  Search(const Motor& motor, const Robot& robot, const DerateOptions& options, const Progress& progress)
+  Search(const motor::Motor& motor, const robot::Robot& robot, const DerateOptions& options, const base::Progress& progress)
       : motor_(motor),
         robot_(robot),
         options_(options),
         reachable_(barrier_rules(motor, robot, options)),
         progress_(progress),
-        network_(datasheet_network(motor, nominal_sample(motor))) {
+        network_(motor::datasheet_network(motor, motor::nominal_sample(motor))) {
     require_short_period(network_, reachable_, options);
   }
 
-  [[nodiscard]] const Network& network() const { return network_; }
+  [[nodiscard]] const thermal::Network& network() const { return network_; }
   [[nodiscard]] const BarrierRules& reachable() const { return reachable_; }
 
   /// Returns the smallest safety factor at which the share of the search's motors that keep their limits reaches the confidence.
@@ -160,7 +164,7 @@ class Search {
         // The search has played the uses of its result already.
         Attempt with = last_ && last_->safety_factor == tried ? std::move(*last_) : attempt(tried);
         const int over = count_over(motors, with);
-        const bool holds = 1.0 - upper_bound_share(over, goal.samples, kCertainty_share) >= goal.confidence;
+        const bool holds = 1.0 - base::upper_bound_share(over, goal.samples, kCertainty_share) >= goal.confidence;
         if (holds) {
           last_.emplace(std::move(with));
         }
@@ -178,9 +182,9 @@ class Search {
     }
   }
 
-  [[nodiscard]] Failure too_hot() const {
+  [[nodiscard]] base::Failure too_hot() const {
     return {
-        ExitCode::limit_exceeded,
+        base::ExitCode::limit_exceeded,
         fmt::format("{}: fewer than {:.0f} % of the motors with the declared tolerances stay below {:.0f} °C in air of {:.0f} °C, however "
                     "little current is allowed; use a lower --confidence or --ambient, or {}",
                     motor_.id, 100.0 * options_.guarantee.confidence, reachable_.limits.winding_C, reachable_.hottest_ambient_C,
@@ -223,7 +227,7 @@ class Search {
 
   [[nodiscard]] std::vector<UsePlayed> all_uses(Attempt& with) const {
     std::vector<UsePlayed> uses(with.patterns.size());
-    in_parallel(uses.size(), options_.guarantee.threads, [&](std::size_t i) { uses[i] = use(with, i); });
+    base::in_parallel(uses.size(), options_.guarantee.threads, [&](std::size_t i) { uses[i] = use(with, i); });
     return uses;
   }
 
@@ -244,19 +248,19 @@ class Search {
     return found ? *found : throw too_hot();
   }
 
-  const Motor& motor_;
-  const Robot& robot_;
+  const motor::Motor& motor_;
+  const robot::Robot& robot_;
   const DerateOptions& options_;
   BarrierRules reachable_;
-  const Progress& progress_;
-  Network network_;
+  const base::Progress& progress_;
+  thermal::Network network_;
   std::size_t rounds_ = 0;
   std::optional<Attempt> last_;  ///< last attempt that was sufficient
 };
 
 }  // namespace
 
-long least_samples(const GuaranteeOptions& options) { return fewest_draws(1.0 - options.confidence, kCertainty_share); }
+long least_samples(const GuaranteeOptions& options) { return base::fewest_draws(1.0 - options.confidence, kCertainty_share); }
 
 double limp_current_A(const Derating& derating) {
   double least_A = std::numeric_limits<double>::infinity();
@@ -268,14 +272,14 @@ double limp_current_A(const Derating& derating) {
   return std::isinf(least_A) ? 0.0 : least_A;
 }
 
-Derating derate(const Motor& as_written, const Robot& robot, const DerateOptions& options, const Progress& progress) {
+Derating derate(const motor::Motor& as_written, const robot::Robot& robot, const DerateOptions& options, const base::Progress& progress) {
   require_samples(options.guarantee);
-  const Motor motor = with_default_spreads(as_written);
+  const motor::Motor motor = motor::with_default_spreads(as_written);
   Search search(motor, robot, options, progress);
   Search::Promise promise = search.promise(search.reserve());
   Derating result{.motor_id = motor.id,
                   .robot_id = robot.id,
-                  .data_quality = std::string(data_quality(motor)),
+                  .data_quality = std::string(motor::data_quality(motor)),
                   .torque_constant_Nm_per_A = motor.nominal.torque_constant_Nm_per_A,
                   .observer = std::move(promise.observer),
                   .rules = promise.rules,
@@ -286,14 +290,14 @@ Derating derate(const Motor& as_written, const Robot& robot, const DerateOptions
                   .guarantee = promise.guarantee,
                   .uses = std::move(promise.uses),
                   .reachable_speed_rad_per_s = search.reachable().most_speed_rad_per_s,
-                  .default_spreads = default_spreads(as_written),
+                  .default_spreads = motor::default_spreads(as_written),
                   .unmodelled_heat_share = motor.fit ? motor.fit->unmodelled_heat_share : std::nullopt,
                   .is_brushless = motor.type != "brushed",
-                  .heating_current_ratio = heating_factor(robot),
+                  .heating_current_ratio = robot::heating_factor(robot),
                   .nominal = motor.nominal,
                   .provenance = {}};
-  for (const EffectInPlace& effect : search.network().effects()) {
-    const auto own = std::ranges::find(motor.effects, effect.name, &MotorEffect::name);
+  for (const thermal::EffectInPlace& effect : search.network().effects()) {
+    const auto own = std::ranges::find(motor.effects, effect.name, &motor::MotorEffect::name);
     result.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation),
                               own == motor.effects.end() ? std::string() : own->column});
   }
@@ -303,4 +307,4 @@ Derating derate(const Motor& as_written, const Robot& robot, const DerateOptions
   return result;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

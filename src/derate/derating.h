@@ -11,7 +11,7 @@
 #include "derate/sensed/sensor.h"
 #include "motor/default_spread.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 struct DerateOptions {
   double hottest_ambient_C = 40.0;
@@ -29,13 +29,13 @@ struct DerateOptions {
 /// 1/24, 6.4 % with 1/4 and 5.3 % with 1 (tolerances of the file, hard match); with those of a bench test 0.2, 0.3 and more than 0.8 %.
 inline constexpr double kApproach_ratio = 0.25;
 /// Returns the time constant in s with which the winding of this motor approaches its limit, > 0.
-double approach_s(const Motor& motor, const DerateOptions& options);
+double approach_s(const motor::Motor& motor, const DerateOptions& options);
 
 /// Returns the rules that follow from motor, robot and options, before any safety factor on heat. A limit that the motor's file gives as a
 /// range counts at its lower end. The highest speed is 1.1·U/K_t. U is the voltage of a full battery, at most the driver's command limit.
 /// The 10 % cover external pushing and magnets weaker than nominal. The current reaches 0 at 1.1 times the highest speed, or at the highest
 /// speed without the command limit if that is more. Throws Failure (bad_input) if the winding limit is not above the hottest air.
-BarrierRules barrier_rules(const Motor& motor, const Robot& robot, const DerateOptions& options);
+BarrierRules barrier_rules(const motor::Motor& motor, const robot::Robot& robot, const DerateOptions& options);
 
 /// An effect of the observer's network.
 struct ActingEffect {
@@ -60,11 +60,11 @@ struct Derating {
   std::vector<UsePlayed> uses;
   double reachable_speed_rad_per_s = 0.0;  ///< above rules.most_speed if beyond that the motor exceeds a limit even without current
   /// Default tolerances of values for which the motor's file gives none.
-  std::vector<DefaultSpread> default_spreads = {};
+  std::vector<motor::DefaultSpread> default_spreads = {};
   std::optional<double> unmodelled_heat_share = {};  ///< MotorFit::unmodelled_heat_share: not covered by the guarantee
   bool is_brushless = true;
   double heating_current_ratio = 1.0;     ///< heating_factor() of the robot: heating current per equivalent DC current
-  MotorValues nominal = {};               ///< nominal values of the motor's file
+  motor::MotorValues nominal = {};        ///< nominal values of the motor's file
   std::optional<SensorPlan> sensor = {};  ///< set if the options declare a sensor
   Provenance provenance = {};             ///< set by the caller, because derate() reads no files
 };
@@ -84,6 +84,6 @@ long least_samples(const GuaranteeOptions& options);
 /// independently drawn motors, the lower bound of that share (kCertainty_share) reaches the confidence as well. Throws Failure: bad_input
 /// if the period is too long for the motor or the samples are too few for the confidence; limit_exceeded if no factor is sufficient,
 /// because the motor exceeds a limit without current.
-Derating derate(const Motor& motor, const Robot& robot, const DerateOptions& options, const Progress& progress = {});
+Derating derate(const motor::Motor& motor, const robot::Robot& robot, const DerateOptions& options, const base::Progress& progress = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -6,15 +6,15 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
-DeratingAnswer run_derating(const DeratingJob& job, const Progress& progress) {
+DeratingAnswer run_derating(const DeratingJob& job, const base::Progress& progress) {
   std::optional<TableCheck> check;
   if (!job.committed.empty()) {
     // Read first, so that an invalid file is reported before the computation.
     check = TableCheck{read_committed_table(job.committed), {}};
     if (const std::string problem = sensor_difference(check->committed, job.options.sensor); !problem.empty()) {
-      throw Failure(ExitCode::bad_input, fmt::format("--check {}: {}", job.committed.string(), problem));
+      throw base::Failure(base::ExitCode::bad_input, fmt::format("--check {}: {}", job.committed.string(), problem));
     }
   }
   DeratingAnswer answer{.derating = derate(job.motor, job.robot, job.options, progress), .text = {}, .check = std::move(check)};
@@ -28,4 +28,4 @@ DeratingAnswer run_derating(const DeratingJob& job, const Progress& progress) {
   return answer;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

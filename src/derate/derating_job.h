@@ -9,11 +9,11 @@
 #include "derate/derating.h"
 #include "derate/exporter.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 struct DeratingJob {
-  Robot robot;
-  Motor motor;
+  robot::Robot robot;
+  motor::Motor motor;
   DerateOptions options;
   const ExporterType* exporter = nullptr;  ///< format of the file; null: no file
   std::string compiler = {};               ///< C compiler for the exporter's binary; empty: none
@@ -37,6 +37,6 @@ struct DeratingAnswer {
 
 /// Throws Failure (bad_input) for an earlier table that cannot be read or has another sensor, before the computation; and as derate() and
 /// provenance_of() do.
-DeratingAnswer run_derating(const DeratingJob& job, const Progress& progress = {});
+DeratingAnswer run_derating(const DeratingJob& job, const base::Progress& progress = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -9,7 +9,7 @@
 #include "derate/export_text.h"
 #include "motor/datasheet_network.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -21,7 +21,7 @@ Json rounded(double value, int decimals) {
 
 bool is_datasheet_alone(const Derating& derating) {
   return derating.observer.state_count() == 2 && std::ranges::all_of(derating.effects, [](const ActingEffect& effect) {
-           return std::ranges::find(kDatasheetEffects, effect.name) != kDatasheetEffects.end();
+           return std::ranges::find(motor::kDatasheetEffects, effect.name) != motor::kDatasheetEffects.end();
          });
 }
 
@@ -30,7 +30,7 @@ Json observer_json(const Derating& derating) {
   if (!is_datasheet_alone(derating)) {
     return nullptr;
   }
-  const MotorValues& motor = derating.nominal;
+  const motor::MotorValues& motor = derating.nominal;
   return {
       {"winding_K_per_s", "(r*R25*(1+alpha*(T_winding-25))*(k*I)^2 - (T_winding-T_stator)/R_winding_stator)/C_winding"},
       {"stator_K_per_s",
@@ -51,10 +51,10 @@ Json observer_json(const Derating& derating) {
 
 Json default_spreads(const Derating& derating) {
   Json rows = Json::array();
-  for (const DefaultSpread& each : derating.default_spreads) {
+  for (const motor::DefaultSpread& each : derating.default_spreads) {
     rows.push_back({{"motor", derating.motor_id},
                     {"key", each.key},
-                    {"origin", to_string(each.origin)},
+                    {"origin", base::to_string(each.origin)},
                     {"low_ratio", rounded(each.spread.low / each.value, 4)},
                     {"high_ratio", rounded(each.spread.high / each.value, 4)}});
   }
@@ -180,4 +180,4 @@ nlohmann::ordered_json derating_json(const Derating& derating) {
           {"table", table_json(derating.table)}};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

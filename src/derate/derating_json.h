@@ -5,10 +5,10 @@
 
 #include "derate/derating.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Returns the derating in schema heatsoak.derating/1. The entry "observer" holds equations and parameters if the network is that of the
 /// data sheet without effects of the motor's own, else null.
 nlohmann::ordered_json derating_json(const Derating& derating);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -11,7 +11,7 @@
 #include "base/diagnostic.h"
 #include "motor/datasheet_network.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 std::string in_one_line(std::string text) {
@@ -65,9 +65,9 @@ std::string provenance_lines(const Derating& derating, std::string_view comment)
   for (const auto& [key, value] : derating.assumed) {
     text += fmt::format("{} Valid only if {} is {} (--condition).\n", comment, in_one_line(key), in_one_line(value));
   }
-  for (const DefaultSpread& each : derating.default_spreads) {
+  for (const motor::DefaultSpread& each : derating.default_spreads) {
     text += fmt::format("{} No tolerance in the motor's file, default by origin: {}\n", comment,
-                        in_one_line(to_string(std::span<const DefaultSpread>(&each, 1))));
+                        in_one_line(motor::to_string(std::span<const motor::DefaultSpread>(&each, 1))));
   }
   return text;
 }
@@ -91,7 +91,7 @@ std::string ramp_lines(const Derating& derating, RampSignal signal, const Curren
 std::string own_effects_text(const Derating& derating) {
   std::string text;
   for (const ActingEffect& effect : derating.effects) {
-    if (std::ranges::find(kDatasheetEffects, effect.name) == kDatasheetEffects.end()) {
+    if (std::ranges::find(motor::kDatasheetEffects, effect.name) == motor::kDatasheetEffects.end()) {
       text += fmt::format("{}{}", text.empty() ? "" : ", ",
                           effect.name == effect.type ? effect.name : fmt::format("{} ({})", effect.name, effect.type));
     }
@@ -110,26 +110,28 @@ void require_finite(const Derating& derating) {
   if (!std::ranges::all_of(numbers, is_finite) || !std::ranges::all_of(table.square_A2, is_finite) ||
       !std::ranges::all_of(table.speed_rad_per_s, is_finite) || !std::ranges::all_of(table.stator_C, is_finite) ||
       !std::ranges::all_of(table.winding_C, is_finite)) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{}: a value of the derating is not a number; check the motor's and the robot's file with `heatsoak lint`",
-                              derating.motor_id));
+    throw base::Failure(
+        base::ExitCode::bad_input,
+        fmt::format("{}: a value of the derating is not a number; check the motor's and the robot's file with `heatsoak lint`",
+                    derating.motor_id));
   }
 }
 
 void require_brushless(std::string_view controller, const Derating& derating) {
   if (!derating.is_brushless) {
-    throw Failure(ExitCode::bad_input, fmt::format("{} cannot drive {}: it is a brushed motor, expected a brushless one; use --to c_header",
-                                                   controller, derating.motor_id));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("{} cannot drive {}: it is a brushed motor, expected a brushless one; use --to c_header", controller,
+                                    derating.motor_id));
   }
 }
 
 void require_three_signals(std::string_view controller, const Derating& derating) {
   for (std::size_t i = observed::vehicle_speed; i < observed::kSignalCount; ++i) {
     if (derating.observer.uses(static_cast<observed::Signal>(i))) {
-      throw Failure(ExitCode::bad_input,
-                    fmt::format("{} cannot express the effects {}: one of them depends on {}, which the controller does "
-                                "not know; use --to c_header",
-                                controller, own_effects_text(derating), observed::signals()[i].name));
+      throw base::Failure(base::ExitCode::bad_input,
+                          fmt::format("{} cannot express the effects {}: one of them depends on {}, which the controller does "
+                                      "not know; use --to c_header",
+                                      controller, own_effects_text(derating), observed::signals()[i].name));
     }
   }
 }
@@ -138,4 +140,4 @@ double rounded_to_12_digits(double value) { return std::strtod(fmt::format("{:.1
 
 double rounded_down_A(double current_A) { return std::floor(1000.0 * current_A) / 1000.0; }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

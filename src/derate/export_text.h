@@ -7,7 +7,7 @@
 
 #include "derate/ramp.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Equivalent DC current per ampere of i_q (amplitude-invariant). For a sinusoidal back-EMF of amplitude E·ω per phase the torque constant
 /// is 3·√3/π·E per DC ampere of block commutation and 3/2·E per ampere of i_q.
@@ -51,4 +51,4 @@ double rounded_to_12_digits(double value);
 /// Returns the current rounded down to 1 mA, so that the limit stays on the safe side.
 double rounded_down_A(double current_A);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -2,7 +2,7 @@
 
 #include "derate/exporters_registry.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 const std::vector<ExporterType>& all_exporters() {
   static const std::vector<ExporterType> all = [] {
@@ -16,4 +16,4 @@ const std::vector<ExporterType>& all_exporters() {
   return all;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -7,7 +7,7 @@
 
 #include "derate/derating.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 struct ExporterType {
   std::string_view name;  ///< the file's name; set by all_exporters()
@@ -20,4 +20,4 @@ struct ExporterType {
 /// Returns all formats, sorted by name. The reference stays valid until the program ends.
 const std::vector<ExporterType>& all_exporters();
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -11,7 +11,7 @@
 #include "select/spread.h"
 #include "thermal/ensemble.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 constexpr double kSettled = 4.0;  ///< slowest time constants
@@ -20,45 +20,47 @@ constexpr double kLongest_s = 4.0 * 3600.0;
 
 }  // namespace
 
-std::vector<Network> drawn_networks(const Motor& motor, std::uint64_t seed, std::uint64_t first_stream) {
-  std::vector<Network> networks;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    Random random(seed, first_stream + static_cast<std::uint64_t>(lane));
-    networks.push_back(datasheet_network(motor, draw_sample(motor, random)));
+std::vector<thermal::Network> drawn_networks(const motor::Motor& motor, std::uint64_t seed, std::uint64_t first_stream) {
+  std::vector<thermal::Network> networks;
+  for (int lane = 0; lane < base::kLanes; ++lane) {
+    base::Random random(seed, first_stream + static_cast<std::uint64_t>(lane));
+    networks.push_back(motor::datasheet_network(motor, motor::draw_sample(motor, random)));
   }
   return networks;
 }
 
-std::array<MotorPeak, kLanes> peaks(std::span<const Network> motors, const TemperatureLimits& limits, std::span<const UsePlayed> uses) {
-  std::vector<Lanes> parameters;
-  for (int lane = 0; lane < kLanes; ++lane) {
+std::array<MotorPeak, base::kLanes> peaks(std::span<const thermal::Network> motors, const TemperatureLimits& limits,
+                                          std::span<const UsePlayed> uses) {
+  std::vector<thermal::Lanes> parameters;
+  for (int lane = 0; lane < base::kLanes; ++lane) {
     const std::vector<double> values = motors[static_cast<std::size_t>(lane)].values();
     parameters.resize(values.size());
     for (std::size_t p = 0; p < values.size(); ++p) {
       parameters[p][lane] = values[p];
     }
   }
-  const Network& network = motors.front();
-  std::array<MotorPeak, kLanes> result;
+  const thermal::Network& network = motors.front();
+  std::array<MotorPeak, base::kLanes> result;
   for (const UsePlayed& each : uses) {
-    const auto to_lanes = [](const OperatingPoint<double>& at) {
-      OperatingPoint<Lanes> lanes;
-      for_each_quantity([](Lanes& to, const double& from) { to = Lanes::Constant(from); }, lanes, at);
+    const auto to_lanes = [](const thermal::OperatingPoint<double>& at) {
+      thermal::OperatingPoint<thermal::Lanes> lanes;
+      thermal::for_each_quantity([](thermal::Lanes& to, const double& from) { to = thermal::Lanes::Constant(from); }, lanes, at);
       return lanes;
     };
     const double ambient_C = each.intervals.front().at.ambient_C;
-    const std::vector<Lanes> start_C(static_cast<std::size_t>(network.state_count()), Lanes::Constant(each.start_C.value_or(ambient_C)));
-    EnsembleRun run(network, parameters, start_C);
-    const double step_s = longest_step_s(network, parameters, to_lanes(each.intervals.front().at), limits.winding_C - ambient_C);
-    for (const Interval& interval : each.intervals) {
+    const std::vector<thermal::Lanes> start_C(static_cast<std::size_t>(network.state_count()),
+                                              thermal::Lanes::Constant(each.start_C.value_or(ambient_C)));
+    thermal::EnsembleRun run(network, parameters, start_C);
+    const double step_s = thermal::longest_step_s(network, parameters, to_lanes(each.intervals.front().at), limits.winding_C - ambient_C);
+    for (const thermal::Interval& interval : each.intervals) {
       run.over(interval.duration_s, to_lanes(interval.at), step_s);
     }
-    for (int lane = 0; lane < kLanes; ++lane) {
+    for (int lane = 0; lane < base::kLanes; ++lane) {
       MotorPeak& peak = result[static_cast<std::size_t>(lane)];
-      const double winding_C = run.peak_C()[states::winding][lane];
+      const double winding_C = run.peak_C()[motor::states::winding][lane];
       peak.winding_C = std::max(peak.winding_C, winding_C);
       peak.is_over =
-          peak.is_over || winding_C > limits.winding_C || (limits.stator_C && run.peak_C()[states::stator][lane] > *limits.stator_C);
+          peak.is_over || winding_C > limits.winding_C || (limits.stator_C && run.peak_C()[motor::states::stator][lane] > *limits.stator_C);
     }
   }
   return result;
@@ -80,7 +82,7 @@ void PlayedIntervals::end(double time_s) {
   held_ = {};
 }
 
-double use_duration_s(const MotorValues& motor) {
+double use_duration_s(const motor::MotorValues& motor) {
   return std::clamp(kSettled * motor.thermal_time_constant_stator_s, kShortest_s, kLongest_s);
 }
 
@@ -119,8 +121,8 @@ std::vector<LoadPattern> hardest_patterns(const Observer& observer, const Barrie
   return uses;
 }
 
-UsePlayed play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const Motor& motor, const Robot& robot,
-               const LoadPattern& use, double period_s) {
+UsePlayed play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const motor::Motor& motor,
+               const robot::Robot& robot, const LoadPattern& use, double period_s) {
   UsePlayed result;
   result.use = use;
   ObserverRun<float> run(observer, static_cast<float>(period_s), static_cast<float>(rules.hottest_ambient_C));
@@ -131,26 +133,26 @@ UsePlayed play(const Observer& observer, const CurrentTable& table, const Barrie
     const bool is_on = use.on_s <= 0.0 || std::fmod(time_s, use.on_s + use.off_s) < use.on_s;
     const double speed_rad_per_s = (is_on ? use.speed_share : use.off_speed_share) * rules.most_speed_rad_per_s;
     const float allowed_A =
-        is_on ? table.allowed_A(static_cast<float>(speed_rad_per_s), run.hottest_body_C(), run.state_C()[states::winding]) : 0.0F;
+        is_on ? table.allowed_A(static_cast<float>(speed_rad_per_s), run.hottest_body_C(), run.state_C()[motor::states::winding]) : 0.0F;
     intervals.take(time_s, allowed_A, speed_rad_per_s, period_s);
     std::array<float, observed::kSignalCount> signals{};
     std::ranges::transform(use.hot_case.signals(rules, allowed_A, speed_rad_per_s), signals.begin(),
                            [](double value) { return static_cast<float>(value); });
     run.step(signals);
-    result.winding_peak_C = std::max<double>(result.winding_peak_C, run.state_C()[states::winding]);
-    result.stator_peak_C = std::max<double>(result.stator_peak_C, run.state_C()[states::stator]);
+    result.winding_peak_C = std::max<double>(result.winding_peak_C, run.state_C()[motor::states::winding]);
+    result.stator_peak_C = std::max<double>(result.stator_peak_C, run.state_C()[motor::states::stator]);
   }
   intervals.end(static_cast<double>(periods) * period_s);
   return result;
 }
 
-Guarantee check(const Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses, const GuaranteeOptions& options,
-                std::uint64_t first_stream, const Progress& progress) {
-  const auto blocks = static_cast<std::size_t>((options.samples + kLanes - 1) / kLanes);
-  std::vector<MotorPeak> all(blocks * kLanes);
-  in_parallel(blocks, options.threads, 0, blocks, progress, [&](std::size_t block) {
-    const auto found = peaks(drawn_networks(motor, options.seed, first_stream + block * kLanes), limits, uses);
-    std::ranges::copy(found, all.begin() + static_cast<std::ptrdiff_t>(block * kLanes));
+Guarantee check(const motor::Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses,
+                const GuaranteeOptions& options, std::uint64_t first_stream, const base::Progress& progress) {
+  const auto blocks = static_cast<std::size_t>((options.samples + base::kLanes - 1) / base::kLanes);
+  std::vector<MotorPeak> all(blocks * base::kLanes);
+  base::in_parallel(blocks, options.threads, 0, blocks, progress, [&](std::size_t block) {
+    const auto found = peaks(drawn_networks(motor, options.seed, first_stream + block * base::kLanes), limits, uses);
+    std::ranges::copy(found, all.begin() + static_cast<std::ptrdiff_t>(block * base::kLanes));
   });
   all.resize(static_cast<std::size_t>(options.samples));
   return guarantee(all);
@@ -165,13 +167,13 @@ Guarantee guarantee(std::span<const MotorPeak> peaks) {
   }
   Guarantee result{.samples = static_cast<int>(peaks.size()),
                    .over = static_cast<int>(std::ranges::count(is_over, char{1})),
-                   .over_share = sample_intervals(winding_C, is_over).probability};
-  result.least_kept_share = 1.0 - upper_bound_share(result.over, result.samples, kCertainty_share);
+                   .over_share = select::sample_intervals(winding_C, is_over).probability};
+  result.least_kept_share = 1.0 - base::upper_bound_share(result.over, result.samples, kCertainty_share);
   std::ranges::sort(winding_C);
-  result.winding_p50_C = quantile(winding_C, 0.5);
-  result.winding_p95_C = quantile(winding_C, 0.95);
+  result.winding_p50_C = select::quantile(winding_C, 0.5);
+  result.winding_p95_C = select::quantile(winding_C, 0.95);
   result.winding_most_C = winding_C.back();
   return result;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

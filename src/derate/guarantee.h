@@ -17,7 +17,7 @@
 #include "select/evaluate.h"
 #include "thermal/transient.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// A load pattern that always draws the full allowed current, continuously or in pulses, at constant speed in one hot case.
 struct LoadPattern {
@@ -35,10 +35,10 @@ std::vector<LoadPattern> hardest_patterns(const Observer& observer, const Barrie
 /// Result of one use: the current that the firmware allows, and the temperatures of its observer.
 struct UsePlayed {
   LoadPattern use;
-  std::vector<Interval> intervals;  ///< inputs of the motor's network
-  std::vector<double> time_s;       ///< ends of the intervals
-  std::vector<double> current_A;    ///< RMS current of each interval, ≥ 0
-  double winding_peak_C = 0.0;      ///< observer's estimate
+  std::vector<thermal::Interval> intervals;  ///< inputs of the motor's network
+  std::vector<double> time_s;                ///< ends of the intervals
+  std::vector<double> current_A;             ///< RMS current of each interval, ≥ 0
+  double winding_peak_C = 0.0;               ///< observer's estimate
   double stator_peak_C = 0.0;
   std::optional<double> start_C = {};  ///< initial temperature of every node of the motor; by default the air of the first interval
 };
@@ -47,7 +47,7 @@ struct UsePlayed {
 class PlayedIntervals {
  public:
   /// Appends the intervals to `played`, which holds the use. All arguments must outlive this object.
-  PlayedIntervals(UsePlayed& played, const Motor& motor, const Robot& robot, const BarrierRules& rules)
+  PlayedIntervals(UsePlayed& played, const motor::Motor& motor, const robot::Robot& robot, const BarrierRules& rules)
       : played_(played), motor_(motor), robot_(robot), rules_(rules) {}
 
   /// Adds a period that begins at `time_s`.
@@ -57,18 +57,18 @@ class PlayedIntervals {
 
  private:
   UsePlayed& played_;
-  const Motor& motor_;
-  const Robot& robot_;
+  const motor::Motor& motor_;
+  const robot::Robot& robot_;
   const BarrierRules& rules_;
   HeldCurrent held_;
 };
 
 /// Duration of a use: four stator time constants of the nominal motor, limited to 900 s to 4 h.
-double use_duration_s(const MotorValues& motor);
+double use_duration_s(const motor::MotorValues& motor);
 
 /// Simulates one use for use_duration_s(), from a motor at the temperature of the hottest air. Single precision, as in the firmware.
-UsePlayed play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const Motor& motor, const Robot& robot,
-               const LoadPattern& use, double period_s);
+UsePlayed play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const motor::Motor& motor,
+               const robot::Robot& robot, const LoadPattern& use, double period_s);
 
 /// Peak temperature of one motor over all uses.
 struct MotorPeak {
@@ -76,10 +76,11 @@ struct MotorPeak {
   bool is_over = false;  ///< winding or stator exceeded its limit
 };
 /// Simulates kLanes motors, whose networks have the same structure, through every use.
-std::array<MotorPeak, kLanes> peaks(std::span<const Network> motors, const TemperatureLimits& limits, std::span<const UsePlayed> uses);
+std::array<MotorPeak, base::kLanes> peaks(std::span<const thermal::Network> motors, const TemperatureLimits& limits,
+                                          std::span<const UsePlayed> uses);
 
 /// Returns kLanes motors drawn from the tolerances, each from its own random stream.
-std::vector<Network> drawn_networks(const Motor& motor, std::uint64_t seed, std::uint64_t first_stream);
+std::vector<thermal::Network> drawn_networks(const motor::Motor& motor, std::uint64_t seed, std::uint64_t first_stream);
 
 /// Confidence level of the one-sided bound on the share of motors that keep their limits.
 inline constexpr double kCertainty_share = 0.95;
@@ -95,7 +96,7 @@ struct GuaranteeOptions {
 struct Guarantee {
   int samples = 0;
   int over = 0;  ///< motors that exceed a limit in at least one use
-  Interval95 over_share;
+  select::Interval95 over_share;
   /// Lower bound of the share of motors that keep every limit, one-sided with kCertainty_share, exact (Clopper and Pearson 1934).
   double least_kept_share = 0.0;
   double winding_p50_C = 0.0;  ///< percentile of the motors' peak temperatures over all uses
@@ -107,7 +108,7 @@ struct Guarantee {
 Guarantee guarantee(std::span<const MotorPeak> peaks);
 
 /// Draws motors and simulates them with the currents of the uses. Uses the random streams from `first_stream` on.
-Guarantee check(const Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses, const GuaranteeOptions& options,
-                std::uint64_t first_stream, const Progress& progress = {});
+Guarantee check(const motor::Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses,
+                const GuaranteeOptions& options, std::uint64_t first_stream, const base::Progress& progress = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -9,7 +9,7 @@
 #include <limits>
 #include <system_error>
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 constexpr std::string_view kDeclaration = "static const float ";
@@ -151,4 +151,4 @@ HeaderDifference first_difference(std::string_view header, std::string_view othe
           two == others.end() ? std::string("(the fresh header ends here)") : line_around(other, two->place)};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// An array `static const float name[count] = {…};`.
 struct HeaderArray {
@@ -27,4 +27,4 @@ struct HeaderDifference {
 /// that agree to 1 in 10⁴ are equal.
 HeaderDifference first_difference(std::string_view header, std::string_view other);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// One interval and its RMS current. It ends if the current changes by more than 2 %, if the speed changes, or after 1 s.
 struct HeldCurrent {
@@ -28,4 +28,4 @@ struct HeldCurrent {
   [[nodiscard]] double rms_A() const { return std::sqrt(heat_A2_s / duration_s); }
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

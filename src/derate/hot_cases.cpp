@@ -8,7 +8,7 @@
 #include "base/random.h"
 #include "motor/datasheet_network.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 std::vector<double> evenly(double low, double high, int count) {
   std::vector<double> values;
@@ -31,13 +31,13 @@ class Rates {
   std::span<const double> at(const Signals& signals, double winding_C, double body_C) {
     std::ranges::copy(signals, inputs_.begin());
     std::fill(inputs_.begin() + observed::kSignalCount, inputs_.end(), body_C);
-    inputs_[observed::kSignalCount + states::winding] = winding_C;
+    inputs_[observed::kSignalCount + motor::states::winding] = winding_C;
     run_.run(inputs_, rate_);
     return rate_;
   }
 
  private:
-  FormulaRun<double> run_;
+  thermal::FormulaRun<double> run_;
   std::vector<double> inputs_;
   std::vector<double> rate_;
 };
@@ -115,8 +115,8 @@ Hottest hottest(const Observer& observer, const BarrierRules& rules, observed::S
     signals[signal] = value;
     const std::span<const double> rate =
         rates.at(signals, rules.limits.winding_C - 1.0, 0.5 * (rules.limits.winding_C + rules.hottest_ambient_C));
-    if (rate[states::winding] > most_winding) {
-      most_winding = rate[states::winding];
+    if (rate[motor::states::winding] > most_winding) {
+      most_winding = rate[motor::states::winding];
       found.for_winding = value;
     }
     if (const double bodies = *std::max_element(rate.begin() + 1, rate.end()); bodies > most_bodies) {
@@ -166,7 +166,7 @@ std::vector<std::vector<float>> random_inputs(const Observer& observer, const Ba
   for (const Scan& scan : scans(rules)) {
     ranges[scan.signal] = scan.signal == observed::neighbour ? ranges[scan.signal] : std::pair(scan.values.front(), scan.values.back());
   }
-  Random random(1, 0);
+  base::Random random(1, 0);
   std::vector<std::vector<float>> places(kPlaces);
   for (std::vector<float>& place : places) {
     for (const auto& [low, high] : ranges) {
@@ -181,7 +181,7 @@ std::vector<std::vector<float>> random_inputs(const Observer& observer, const Ba
 /// the same highest rates in a shorter search: losses that grow with the speed leave one of its values.
 std::vector<double> without_dominated(std::vector<double> values, const Observer& observer, const BarrierRules& rules,
                                       observed::Signal signal) {
-  FormulaRun<float> run(observer.formula(), observer.rate_steps());
+  thermal::FormulaRun<float> run(observer.formula(), observer.rate_steps());
   std::vector<std::vector<float>> rates(values.size());
   for (std::vector<float>& inputs : random_inputs(observer, rules)) {
     std::vector<float> rate(observer.state_count());
@@ -287,4 +287,4 @@ double sustainable_speed_rad_per_s(const Observer& observer, const BarrierRules&
   return sustainable_rad_per_s;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -8,7 +8,7 @@
 
 #include "derate/observer.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 struct TemperatureLimits {
   double winding_C = 0.0;
@@ -64,4 +64,4 @@ std::vector<double> values_if_unknown(const Observer& observer, const BarrierRul
 /// rest.
 double sustainable_speed_rad_per_s(const Observer& observer, const BarrierRules& rules);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

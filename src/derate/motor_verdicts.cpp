@@ -4,12 +4,12 @@
 #include <array>
 #include <numeric>
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
-MotorVerdicts::MotorVerdicts(const Motor& motor, const TemperatureLimits& limits, const GuaranteeOptions& options,
+MotorVerdicts::MotorVerdicts(const motor::Motor& motor, const TemperatureLimits& limits, const GuaranteeOptions& options,
                              std::uint64_t first_stream)
     : limits_(limits), threads_(options.threads), over_up_to_ratio_(static_cast<std::size_t>(options.samples), 0.0) {
-  for (std::size_t begin = 0; begin < over_up_to_ratio_.size(); begin += kLanes) {
+  for (std::size_t begin = 0; begin < over_up_to_ratio_.size(); begin += base::kLanes) {
     std::ranges::move(drawn_networks(motor, options.seed, first_stream + begin), std::back_inserter(motors_));
   }
 }
@@ -51,17 +51,17 @@ void MotorVerdicts::simulate(const UsePlayed& use, double safety_factor, Known& 
   std::vector<std::size_t> motors;
   std::ranges::copy_if(undecided, std::back_inserter(motors),
                        [&](std::size_t motor) { return safety_factor < known.kept_from_ratio[motor]; });
-  std::vector<std::array<MotorPeak, kLanes>> found((motors.size() + kLanes - 1) / kLanes);
-  in_parallel(found.size(), threads_, [&](std::size_t block) {
-    std::vector<Network> networks;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      networks.push_back(motors_[motors[std::min(block * kLanes + lane, motors.size() - 1)]]);
+  std::vector<std::array<MotorPeak, base::kLanes>> found((motors.size() + base::kLanes - 1) / base::kLanes);
+  base::in_parallel(found.size(), threads_, [&](std::size_t block) {
+    std::vector<thermal::Network> networks;
+    for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
+      networks.push_back(motors_[motors[std::min(block * base::kLanes + lane, motors.size() - 1)]]);
     }
     found[block] = peaks(networks, limits_, {&use, 1});
   });
   for (std::size_t i = 0; i < motors.size(); ++i) {
     const std::size_t motor = motors[i];
-    if (found[i / kLanes][i % kLanes].is_over) {
+    if (found[i / base::kLanes][i % base::kLanes].is_over) {
       over_up_to_ratio_[motor] = safety_factor;
       ++known.over;
     } else {
@@ -71,4 +71,4 @@ void MotorVerdicts::simulate(const UsePlayed& use, double safety_factor, Known& 
   std::erase_if(undecided, [&](std::size_t motor) { return safety_factor <= over_up_to_ratio_[motor]; });
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -9,7 +9,7 @@
 
 #include "derate/guarantee.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Assumes that a motor which keeps its limits at one safety factor also keeps them at every larger one, in each use. At another factor
 /// only the motors and uses whose result is unknown are simulated. Up to this, the count is that of check(), which simulates all of them;
@@ -20,7 +20,7 @@ class MotorVerdicts {
   using Play = std::function<const UsePlayed&(std::size_t index)>;
 
   /// Draws options.samples motors from the random streams from `first_stream` on.
-  MotorVerdicts(const Motor& motor, const TemperatureLimits& limits, const GuaranteeOptions& options, std::uint64_t first_stream);
+  MotorVerdicts(const motor::Motor& motor, const TemperatureLimits& limits, const GuaranteeOptions& options, std::uint64_t first_stream);
 
   /// True before the first count.
   [[nodiscard]] bool knows_nothing() const { return known_.empty(); }
@@ -40,9 +40,9 @@ class MotorVerdicts {
 
   TemperatureLimits limits_;
   int threads_ = 0;
-  std::vector<Network> motors_;
+  std::vector<thermal::Network> motors_;
   std::vector<double> over_up_to_ratio_;  ///< per motor: largest safety factor at which it exceeded a limit; 0: unknown
   std::vector<Known> known_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -7,7 +7,7 @@
 #include "robot/machine_point.h"
 #include "thermal/lanes.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 namespace observed {
 
@@ -16,13 +16,13 @@ std::span<const SignalSpec> signals() {
       {"current_A",
        "equivalent DC current (torque per torque constant), rms over the period, with the sign of the speed when the motor drives"},
       {"speed_rad_per_s", "speed of the motor's shaft, signed"},
-      {"ambient_C", "air around the motor; the hottest declared air if it is not measured", quantity_row("ambient")},
+      {"ambient_C", "air around the motor; the hottest declared air if it is not measured", thermal::quantity_row("ambient")},
       {"vehicle_speed_m_per_s", "speed of the robot through the air, not of its wheels; 0 if it is not known",
-       quantity_row("vehicle_speed")},
+       thermal::quantity_row("vehicle_speed")},
       {"neighbour_C", "temperature of the motor next to this one; the winding's limit if it is not known",
-       quantity_row("neighbour_temperature")},
-      {"age_h", "operating hours of the motor", quantity_row("age")},
-      {"acceleration_rad_per_s2", "speed of the motor's shaft, magnitude", quantity_row("acceleration")},
+       thermal::quantity_row("neighbour_temperature")},
+      {"age_h", "operating hours of the motor", thermal::quantity_row("age")},
+      {"acceleration_rad_per_s2", "speed of the motor's shaft, magnitude", thermal::quantity_row("acceleration")},
   }};
   return kSignals;
 }
@@ -30,14 +30,16 @@ std::span<const SignalSpec> signals() {
 }  // namespace observed
 
 template <class S>
-OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, std::span<const S, observed::kSignalCount> signals) {
+thermal::OperatingPoint<S> operating_point(const motor::MotorValues& motor, const robot::Robot& robot,
+                                           std::span<const S, observed::kSignalCount> signals) {
   const S& current_A = signals[observed::current];
   const S& speed_rad_per_s = signals[observed::speed];
-  const S shaft_power_W = motor.torque_constant_Nm_per_A * current_A * speed_rad_per_s - drag_torque_Nm(motor) * magnitude(speed_rad_per_s);
-  OperatingPoint<S> at = machine_point<S>(motor, robot, current_A, speed_rad_per_s, shaft_power_W);
+  const S shaft_power_W =
+      motor.torque_constant_Nm_per_A * current_A * speed_rad_per_s - motor::drag_torque_Nm(motor) * thermal::magnitude(speed_rad_per_s);
+  thermal::OperatingPoint<S> at = robot::machine_point<S>(motor, robot, current_A, speed_rad_per_s, shaft_power_W);
   for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
     if (const std::optional<std::size_t> row = observed::signals()[i].row) {
-      at.*kQuantities<S>[*row].value = signals[i];
+      at.*thermal::kQuantities<S>[*row].value = signals[i];
     }
   }
   at.neighbour_share = 1.0;
@@ -45,45 +47,49 @@ OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, 
   return at;
 }
 
-template OperatingPoint<double> operating_point<double>(const MotorValues&, const Robot&, std::span<const double, observed::kSignalCount>);
-template OperatingPoint<Lanes> operating_point<Lanes>(const MotorValues&, const Robot&, std::span<const Lanes, observed::kSignalCount>);
-template OperatingPoint<Traced> operating_point<Traced>(const MotorValues&, const Robot&, std::span<const Traced, observed::kSignalCount>);
+template thermal::OperatingPoint<double> operating_point<double>(const motor::MotorValues&, const robot::Robot&,
+                                                                 std::span<const double, observed::kSignalCount>);
+template thermal::OperatingPoint<thermal::Lanes> operating_point<thermal::Lanes>(const motor::MotorValues&, const robot::Robot&,
+                                                                                 std::span<const thermal::Lanes, observed::kSignalCount>);
+template thermal::OperatingPoint<thermal::Traced> operating_point<thermal::Traced>(
+    const motor::MotorValues&, const robot::Robot&, std::span<const thermal::Traced, observed::kSignalCount>);
 
 namespace {
 
-std::array<Traced, observed::kSignalCount> traced_signals(Formula& formula) {
-  std::array<Traced, observed::kSignalCount> traced;
+std::array<thermal::Traced, observed::kSignalCount> traced_signals(thermal::Formula& formula) {
+  std::array<thermal::Traced, observed::kSignalCount> traced;
   for (std::size_t i = 0; i < traced.size(); ++i) {
-    traced[i] = Traced(formula, formula.input(std::string(observed::signals()[i].name)));
+    traced[i] = thermal::Traced(formula, formula.input(std::string(observed::signals()[i].name)));
   }
   return traced;
 }
 
 }  // namespace
 
-Observer::Observer(const Network& network, const MotorValues& motor, const Robot& robot, double heat_safety_factor)
+Observer::Observer(const thermal::Network& network, const motor::MotorValues& motor, const robot::Robot& robot, double heat_safety_factor)
     : heat_safety_factor_(heat_safety_factor) {
-  const std::array<Traced, observed::kSignalCount> signals = traced_signals(formula_);
-  const OperatingPoint<Traced> at = operating_point<Traced>(motor, robot, signals);
+  const std::array<thermal::Traced, observed::kSignalCount> signals = traced_signals(formula_);
+  const thermal::OperatingPoint<thermal::Traced> at = operating_point<thermal::Traced>(motor, robot, signals);
   at.current_rms_A.name(std::array<std::string, 1>{"heating_current_A"});
   at.speed_mean_rad_per_s.name(std::array<std::string, 1>{"speed_magnitude_rad_per_s"});
   at.shaft_power_W.name(std::array<std::string, 1>{"shaft_power_W"});
   at.input_power_W.name(std::array<std::string, 1>{"input_power_W"});
   at.modulation_ratio.name(std::array<std::string, 1>{"modulation_ratio"});
-  std::vector<Traced> temperature_C;
+  std::vector<thermal::Traced> temperature_C;
   for (int node = 0; node < network.state_count(); ++node) {
     state_names_.emplace_back(network.node_name(node));
     temperature_C.emplace_back(formula_, formula_.input(fmt::format("{}_C", network.node_name(node))));
   }
   temperature_C.push_back(at.ambient_C);
-  std::vector<TracedHeat> heat(temperature_C.size());
+  std::vector<thermal::TracedHeat> heat(temperature_C.size());
   network.trace(at, temperature_C, heat);
   formula_.begin_law("node_heat");
   const std::vector<double> values = network.values();
   const auto add_rates = [&](double heat_ratio, std::vector<int>& steps) {
     for (int node = 0; node < network.state_count(); ++node) {
-      const TracedHeat& here = heat[static_cast<std::size_t>(node)];
-      const Traced rate = (heat_ratio * here.made_W + here.moved_W) / values[static_cast<std::size_t>(network.capacity_index(node))];
+      const thermal::TracedHeat& here = heat[static_cast<std::size_t>(node)];
+      const thermal::Traced rate =
+          (heat_ratio * here.made_W + here.moved_W) / values[static_cast<std::size_t>(network.capacity_index(node))];
       steps.push_back(rate.step_in(formula_));
     }
   };
@@ -91,8 +97,8 @@ Observer::Observer(const Network& network, const MotorValues& motor, const Robot
   add_rates(1.0, nominal_rate_steps_);
   const std::vector<char> needed = formula_.needed_for(rate_steps_);
   for (std::size_t i = 0; i < needed.size(); ++i) {
-    const Formula::Step& step = formula_.steps()[i];
-    if (step.operation == Operation::input && static_cast<std::size_t>(step.left) < is_used_.size()) {
+    const thermal::Formula::Step& step = formula_.steps()[i];
+    if (step.operation == thermal::Operation::input && static_cast<std::size_t>(step.left) < is_used_.size()) {
       is_used_[static_cast<std::size_t>(step.left)] = needed[i];
     }
   }
@@ -129,4 +135,4 @@ Number ObserverRun<Number>::hottest_body_C() const {
 template class ObserverRun<float>;
 template class ObserverRun<double>;
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -14,7 +14,7 @@
 #include "thermal/operating_point.h"
 #include "thermal/traced.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Input signals of the observer, in the order of the formula's first inputs.
 namespace observed {
@@ -31,15 +31,16 @@ inline constexpr std::size_t kSignalCount = 7;
 /// Converts the signals to the operating point of the motor's network, S is double, Lanes or Traced. The bus has the voltage of a
 /// full battery, if the robot gives one.
 template <class S>
-OperatingPoint<S> operating_point(const MotorValues& motor, const Robot& robot, std::span<const S, observed::kSignalCount> signals);
+thermal::OperatingPoint<S> operating_point(const motor::MotorValues& motor, const robot::Robot& robot,
+                                           std::span<const S, observed::kSignalCount> signals);
 
 /// Rates of the network's temperatures as formulas. Generated heat is multiplied by the safety factor `heat_safety_factor` ≥ 1, so that
 /// motors worse than nominal are covered; conducted heat is not. Winding and stator are the first states, as in every motor's network.
 class Observer {
  public:
-  Observer(const Network& network, const MotorValues& motor, const Robot& robot, double heat_safety_factor);
+  Observer(const thermal::Network& network, const motor::MotorValues& motor, const robot::Robot& robot, double heat_safety_factor);
 
-  [[nodiscard]] const Formula& formula() const { return formula_; }
+  [[nodiscard]] const thermal::Formula& formula() const { return formula_; }
   /// Index of the formula step that computes dT/dt in K/s, one per state.
   [[nodiscard]] std::span<const int> rate_steps() const { return rate_steps_; }
   /// The same without the safety factor: estimates for display, not for protection.
@@ -51,7 +52,7 @@ class Observer {
   [[nodiscard]] double heat_safety_factor() const { return heat_safety_factor_; }
 
  private:
-  Formula formula_;
+  thermal::Formula formula_;
   std::vector<int> rate_steps_;
   std::vector<int> nominal_rate_steps_;
   std::vector<std::string> state_names_;
@@ -73,7 +74,7 @@ class ObserverRun {
   [[nodiscard]] Number hottest_body_C() const;
 
  private:
-  FormulaRun<Number> rates_;
+  thermal::FormulaRun<Number> rates_;
   Number period_s_;
   std::vector<Number> state_C_;
   std::vector<Number> carry_K_;
@@ -83,4 +84,4 @@ class ObserverRun {
 extern template class ObserverRun<float>;
 extern template class ObserverRun<double>;
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

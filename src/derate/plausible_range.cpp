@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 struct Bounds {
@@ -51,4 +51,4 @@ PlausibleRange plausible_range(const Derating& derating, observed::Signal signal
   return made;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

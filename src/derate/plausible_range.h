@@ -6,7 +6,7 @@
 
 #include "derate/derating.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// A neighbouring motor that reads this much below the air temperature has a faulty sensor. Its lower bound therefore follows the air.
 inline constexpr float kNeighbourBelowAir_K = 5.0F;
@@ -22,4 +22,4 @@ struct PlausibleRange {
 /// Returns the plausible range of a signal; all members have their defaults if no law of the motor depends on it.
 PlausibleRange plausible_range(const Derating& derating, observed::Signal signal);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -9,7 +9,7 @@
 #include "base/version.h"
 #include "derate/derating.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 std::string input_hash(std::string_view bytes) {
   boost::crc_optimal<64, 0x42F0E1EBA9EA3693U, 0xFFFFFFFFFFFFFFFFU, 0xFFFFFFFFFFFFFFFFU, true, true> sum;
@@ -17,7 +17,7 @@ std::string input_hash(std::string_view bytes) {
   return fmt::format("{:016x}", std::uint64_t{sum.checksum()});
 }
 
-Provenance provenance_of(const Motor& motor, const Robot& robot, const DerateOptions& options) {
+Provenance provenance_of(const motor::Motor& motor, const robot::Robot& robot, const DerateOptions& options) {
   constexpr std::size_t kLargestFile_bytes = 16U << 20U;
   std::string text = fmt::format(
       "--period {:.9g}s --ambient {:.9g}degC --coldest {:.9g}degC --approach {:.9g}s --error {:.9g} --size {} --confidence {:.9g} "
@@ -33,9 +33,9 @@ Provenance provenance_of(const Motor& motor, const Robot& robot, const DerateOpt
   for (const auto& [key, value] : motor.assumed) {
     text += fmt::format(" --condition {}={}", key, value);
   }
-  return {
-      .program_version = fmt::format("heatsoak {}", program_version()),
-      .input_hash = input_hash(read_file(robot.file, kLargestFile_bytes) + '\n' + read_file(motor.file, kLargestFile_bytes) + '\n' + text)};
+  return {.program_version = fmt::format("heatsoak {}", base::program_version()),
+          .input_hash = input_hash(base::read_file(robot.file, kLargestFile_bytes) + '\n' +
+                                   base::read_file(motor.file, kLargestFile_bytes) + '\n' + text)};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -7,7 +7,7 @@
 #include "motor/motor.h"
 #include "robot/robot.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 struct DerateOptions;
 
@@ -21,6 +21,6 @@ struct Provenance {
 };
 
 /// Reads the files of robot and motor again to compute their hash. Throws Failure (bad_input) if one cannot be read.
-Provenance provenance_of(const Motor& motor, const Robot& robot, const DerateOptions& options);
+Provenance provenance_of(const motor::Motor& motor, const robot::Robot& robot, const DerateOptions& options);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

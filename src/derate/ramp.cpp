@@ -10,7 +10,7 @@
 #include "base/diagnostic.h"
 #include "derate/export_text.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 /// Returns the breakpoints of an axis below `most`, and `most` itself.
@@ -71,9 +71,9 @@ std::set<std::string> hidden_nodes(const Observer& observer, std::size_t states)
   const std::vector<char> needed = observer.formula().needed_for(observer.rate_steps().first(states));
   std::set<std::string> nodes;
   for (std::size_t i = 0; i < needed.size(); ++i) {
-    const Formula::Step& step = observer.formula().steps()[i];
-    const std::size_t first_hidden = observed::kSignalCount + static_cast<std::size_t>(states::first_own);
-    if (needed[i] != 0 && step.operation == Operation::input && static_cast<std::size_t>(step.left) >= first_hidden) {
+    const thermal::Formula::Step& step = observer.formula().steps()[i];
+    const std::size_t first_hidden = observed::kSignalCount + static_cast<std::size_t>(motor::states::first_own);
+    if (needed[i] != 0 && step.operation == thermal::Operation::input && static_cast<std::size_t>(step.left) >= first_hidden) {
       nodes.insert(observer.state_names()[static_cast<std::size_t>(step.left) - observed::kSignalCount]);
     }
   }
@@ -83,8 +83,8 @@ std::set<std::string> hidden_nodes(const Observer& observer, std::size_t states)
 void require_stator_is_enough(std::string_view controller, const Derating& derating) {
   const std::set<std::string> hidden = hidden_nodes(derating.observer, derating.rules.limits.stator_C ? 2 : 1);
   if (!hidden.empty()) {
-    throw Failure(
-        ExitCode::bad_input,
+    throw base::Failure(
+        base::ExitCode::bad_input,
         fmt::format("{} cannot express {} ({}): it affects a temperature that has a limit, but the controller measures the stator only; "
                     "use --to c_header",
                     controller, fmt::join(hidden, ", "), own_effects_text(derating)));
@@ -159,24 +159,25 @@ RampLoss ramp_loss(const Derating& derating, RampSignal signal, const CurrentRam
 CurrentRamp ramp_for(std::string_view controller, const Derating& derating, RampSignal signal, double full_beyond_K) {
   require_finite(derating);
   if (derating.rules.most_speed_rad_per_s < derating.reachable_speed_rad_per_s) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{} cannot express that above {:.0f} rad/s this motor exceeds its limit without current, because its ramp "
-                              "depends on a temperature only; use --to c_header",
-                              controller, derating.rules.most_speed_rad_per_s));
+    throw base::Failure(
+        base::ExitCode::bad_input,
+        fmt::format("{} cannot express that above {:.0f} rad/s this motor exceeds its limit without current, because its ramp "
+                    "depends on a temperature only; use --to c_header",
+                    controller, derating.rules.most_speed_rad_per_s));
   }
   if (signal == RampSignal::stator) {
     require_stator_is_enough(controller, derating);
   } else if (derating.rules.limits.stator_C) {
-    throw Failure(
-        ExitCode::bad_input,
+    throw base::Failure(
+        base::ExitCode::bad_input,
         fmt::format("{} cannot express the stator limit of {:.0f} °C: its ramp depends on the winding's temperature only; use --to "
                     "c_header",
                     controller, *derating.rules.limits.stator_C));
   }
   const CurrentRamp ramp = fit_ramp(derating, signal, full_beyond_K);
   if (!(ramp.most_current_A > 0.0)) {
-    throw Failure(
-        ExitCode::bad_input,
+    throw base::Failure(
+        base::ExitCode::bad_input,
         fmt::format("{}: the table allows no current for a ramp in air of {:.0f} °C at all speeds up to {:.0f} rad/s; use a lower "
                     "--ambient or --to c_header",
                     controller, derating.options.hottest_ambient_C, derating.rules.most_speed_rad_per_s));
@@ -184,4 +185,4 @@ CurrentRamp ramp_for(std::string_view controller, const Derating& derating, Ramp
   return ramp;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -3,7 +3,7 @@
 
 #include "derate/derating.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// The temperature that a controller's ramp acts on.
 enum class RampSignal {
@@ -55,4 +55,4 @@ RampLoss ramp_loss(const Derating& derating, RampSignal signal, const CurrentRam
 /// stator); the stator has a limit (ramp over the winding); or no current is allowed in the hottest air.
 CurrentRamp ramp_for(std::string_view controller, const Derating& derating, RampSignal signal, double full_beyond_K = 0.0);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

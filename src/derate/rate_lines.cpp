@@ -6,29 +6,31 @@
 
 #include "derate/export_text.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 /// A longer expression gets a line of its own.
 constexpr std::size_t kLongestInlined = 80;
 
-bool is_arithmetic(Operation operation) {
-  return operation == Operation::add || operation == Operation::subtract || operation == Operation::multiply ||
-         operation == Operation::divide;
+bool is_arithmetic(thermal::Operation operation) {
+  return operation == thermal::Operation::add || operation == thermal::Operation::subtract || operation == thermal::Operation::multiply ||
+         operation == thermal::Operation::divide;
 }
 
 /// These use their operand twice, so it must be a name.
-bool repeats_its_operand(Operation operation) { return operation == Operation::magnitude || operation == Operation::positive_part; }
+bool repeats_its_operand(thermal::Operation operation) {
+  return operation == thermal::Operation::magnitude || operation == thermal::Operation::positive_part;
+}
 
 }  // namespace
 
 RateLines::RateLines(const Observer& observer, std::span<const int> rate_steps, const LineStyle& style)
     : observer_(observer), style_(style), uses_(observer.formula().steps().size(), 0) {
-  const Formula& formula = observer.formula();
+  const thermal::Formula& formula = observer.formula();
   const std::vector<char> needed = formula.needed_for(rate_steps);
   for (std::size_t i = 0; i < needed.size(); ++i) {
-    const Formula::Step& step = formula.steps()[i];
-    if (needed[i] == 0 || step.operation == Operation::constant || step.operation == Operation::input) {
+    const thermal::Formula::Step& step = formula.steps()[i];
+    if (needed[i] == 0 || step.operation == thermal::Operation::constant || step.operation == thermal::Operation::input) {
       continue;
     }
     const int times = repeats_its_operand(step.operation) ? 2 : 1;
@@ -38,13 +40,13 @@ RateLines::RateLines(const Observer& observer, std::span<const int> rate_steps, 
     }
   }
   for (std::size_t i = 0; i < needed.size(); ++i) {
-    const Formula::Step& step = formula.steps()[i];
+    const thermal::Formula::Step& step = formula.steps()[i];
     if (needed[i] == 0) {
       continue;
     }
     const int place = static_cast<int>(i);
     Text text = expression(step);
-    if (step.operation != Operation::constant && step.operation != Operation::input &&
+    if (step.operation != thermal::Operation::constant && step.operation != thermal::Operation::input &&
         (is_variable(place) || text.text.size() > kLongestInlined) && std::ranges::find(rate_steps, place) == rate_steps.end()) {
       const std::string name = name_for(place);
       text_ += fmt::format("  const {} {} = {};\n", style_.number, name, text.text);
@@ -58,21 +60,21 @@ RateLines::RateLines(const Observer& observer, std::span<const int> rate_steps, 
 }
 
 bool RateLines::is_variable(int place) const {
-  const Formula& formula = observer_.formula();
+  const thermal::Formula& formula = observer_.formula();
   return uses_[static_cast<std::size_t>(place)] > 1 || !formula.name_of(place).empty() ||
          repeats_its_operand(formula.steps()[static_cast<std::size_t>(place)].operation);
 }
 
 std::string RateLines::name_for(int place) {
-  const Formula& formula = observer_.formula();
-  const Formula::Step& step = formula.steps()[static_cast<std::size_t>(place)];
+  const thermal::Formula& formula = observer_.formula();
+  const thermal::Formula::Step& step = formula.steps()[static_cast<std::size_t>(place)];
   const auto temperature = [&](int of) {
-    const Formula::Step& input = formula.steps()[static_cast<std::size_t>(of)];
-    return input.operation == Operation::input ? formula.inputs()[static_cast<std::size_t>(input.left)] : std::string();
+    const thermal::Formula::Step& input = formula.steps()[static_cast<std::size_t>(of)];
+    return input.operation == thermal::Operation::input ? formula.inputs()[static_cast<std::size_t>(input.left)] : std::string();
   };
   const auto without_unit = [](const std::string& name) { return name.substr(0, name.size() - 2); };
   std::string name(formula.name_of(place));
-  if (name.empty() && step.operation == Operation::subtract && temperature(step.left).ends_with("_C") &&
+  if (name.empty() && step.operation == thermal::Operation::subtract && temperature(step.left).ends_with("_C") &&
       temperature(step.right).ends_with("_C")) {
     name = fmt::format("{}_above_{}_K", without_unit(temperature(step.left)), without_unit(temperature(step.right)));
   }
@@ -93,11 +95,11 @@ std::string RateLines::operand(int place) const {
   return text.is_joined ? fmt::format("({})", text.text) : text.text;
 }
 
-RateLines::Text RateLines::expression(const Formula::Step& step) {
-  if (step.operation == Operation::constant) {
+RateLines::Text RateLines::expression(const thermal::Formula::Step& step) {
+  if (step.operation == thermal::Operation::constant) {
     return {style_.literal(step.value), false};
   }
-  if (step.operation == Operation::input) {
+  if (step.operation == thermal::Operation::input) {
     const auto input = static_cast<std::size_t>(step.left);
     return {input < observed::kSignalCount ? style_.signal(static_cast<observed::Signal>(input))
                                            : fmt::format("state_C[{}]", input - observed::kSignalCount),
@@ -112,25 +114,25 @@ RateLines::Text RateLines::expression(const Formula::Step& step) {
         false};
   };
   if (is_arithmetic(step.operation)) {
-    const char sign = step.operation == Operation::add        ? '+'
-                      : step.operation == Operation::subtract ? '-'
-                      : step.operation == Operation::multiply ? '*'
-                                                              : '/';
+    const char sign = step.operation == thermal::Operation::add        ? '+'
+                      : step.operation == thermal::Operation::subtract ? '-'
+                      : step.operation == thermal::Operation::multiply ? '*'
+                                                                       : '/';
     return {fmt::format("{} {} {}", operand(step.left), sign, operand(step.right)), true};
   }
   switch (step.operation) {
-    case Operation::magnitude:
+    case thermal::Operation::magnitude:
       return {fmt::format("({0} < {1}) ? -{0} : {0}", left, zero), true};
-    case Operation::positive_part:
+    case thermal::Operation::positive_part:
       return {fmt::format("({0} > {1}) ? {0} : {1}", left, zero), true};
-    case Operation::square_root:
+    case thermal::Operation::square_root:
       calls_square_root_ = true;
       return {fmt::format("{}({})", style_.square_root, left), false};
-    case Operation::power:
+    case thermal::Operation::power:
       return thermal_math(style_.power);
     default:
       return thermal_math(style_.exponential);
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -10,7 +10,7 @@
 
 #include "derate/observer.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Syntax of the target language.
 struct LineStyle {
@@ -45,7 +45,7 @@ class RateLines {
 
   [[nodiscard]] bool is_variable(int place) const;
   [[nodiscard]] std::string name_for(int place);
-  Text expression(const Formula::Step& step);
+  Text expression(const thermal::Formula::Step& step);
   [[nodiscard]] std::string operand(int place) const;
 
   const Observer& observer_;
@@ -58,4 +58,4 @@ class RateLines {
   bool calls_thermal_math_ = false;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Returns the smallest factor in [from_ratio, most_ratio] that `is_enough(factor)` accepts, to 1 %; nothing if it rejects `most_ratio` as
 /// well. The result itself was accepted. `growth_ratio`, > 1, is the first step upwards. Assumes that with a factor every larger one is
@@ -31,4 +31,4 @@ std::optional<double> smallest_factor(double from_ratio, double most_ratio, doub
   return high_ratio;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -5,7 +5,7 @@
 
 #include "derate/table_places.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 /// Rounds down to five digits in single precision. Includes a margin for the rounding of the controller's interpolation.
@@ -257,4 +257,4 @@ CurrentTable current_table(const Observer& observer, const BarrierRules& rules, 
   return table;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 /// The winding's axis ends this far above the limit, because the barrier allows current to a winding that cools fast enough.
@@ -414,4 +414,4 @@ void place_squares(CurrentTable& table, Barrier& barrier, const BarrierRules& ru
   table.bound.shortfall_ratio = std::min(1.0, fit.shortfall_ratio());
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

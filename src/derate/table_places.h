@@ -4,10 +4,10 @@
 #include "derate/barrier.h"
 #include "derate/current_table.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Sets axes, squares, straight_below_A and the shortfall relative to a fine grid. Adds breakpoints one by one, each on the axis where it
 /// reduces the largest shortfall most per stored number, and removes unnecessary ones. The table never exceeds the grid's exact squares.
 void place_squares(CurrentTable& table, Barrier& barrier, const BarrierRules& rules, const TableGoal& goal);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -8,7 +8,7 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::diagnosis {
 namespace {
 
 constexpr int kSeconds = 600;
@@ -25,10 +25,10 @@ struct Levels {
   double measured_C = 0.0;
 };
 
-Levels levels_of(const std::vector<MeasuredRun>& runs) {
+Levels levels_of(const std::vector<estimation::MeasuredRun>& runs) {
   Levels most;
-  for (const MeasuredRun& run : runs) {
-    for (const OperatingPoint<double>& at : run.at) {
+  for (const estimation::MeasuredRun& run : runs) {
+    for (const thermal::OperatingPoint<double>& at : run.at) {
       most.current_A = std::max(most.current_A, at.current_rms_A);
       most.speed_rad_per_s = std::max(most.speed_rad_per_s, at.speed_mean_rad_per_s);
       most.bus_V = std::max(most.bus_V, at.bus_V);
@@ -43,10 +43,10 @@ Levels levels_of(const std::vector<MeasuredRun>& runs) {
   // A temperature rise of 10 K is harmless even if the runs stayed colder.
   constexpr double kHarmless_K = 10.0;
   most.measured_C = most.ambient_C + kHarmless_K;
-  for (const MeasuredRun& run : runs) {
+  for (const estimation::MeasuredRun& run : runs) {
     for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
       for (const double sensor_C : run.measured_C.col(static_cast<Eigen::Index>(sensor))) {
-        most.measured_C = std::fmax(most.measured_C, true_at_rest_C(run.sensors[sensor].faults, sensor_C));
+        most.measured_C = std::fmax(most.measured_C, motor::true_at_rest_C(run.sensors[sensor].faults, sensor_C));
       }
     }
   }
@@ -78,8 +78,8 @@ const std::vector<Primitive>& menu() {
   return all;
 }
 
-MeasuredRun planned(const Primitive& primitive, const Levels& levels, const MeasuredRun& like) {
-  MeasuredRun run;
+estimation::MeasuredRun planned(const Primitive& primitive, const Levels& levels, const estimation::MeasuredRun& like) {
+  estimation::MeasuredRun run;
   run.name = "planned";
   run.sensors = like.sensors;
   run.signals = like.signals;
@@ -87,7 +87,7 @@ MeasuredRun planned(const Primitive& primitive, const Levels& levels, const Meas
     run.time_s.push_back(s);
     if (s < kSeconds) {
       const auto [speed_share, current_share] = primitive.shares(s);
-      OperatingPoint<double> at;
+      thermal::OperatingPoint<double> at;
       at.current_rms_A = current_share * levels.current_A;
       at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = at.velocity_rad_per_s = speed_share * levels.speed_rad_per_s;
       at.input_power_W = current_share * current_share * levels.input_power_W;
@@ -106,24 +106,25 @@ MeasuredRun planned(const Primitive& primitive, const Levels& levels, const Meas
 /// An experiment that stays below the measured temperatures, with the model's path along it.
 struct Plan {
   const Primitive* primitive = nullptr;
-  MeasuredRun run;
-  LinearisedRun path;
+  estimation::MeasuredRun run;
+  estimation::LinearisedRun path;
 };
 
-double hottest_C(const Model& model, const MeasuredRun& run, LinearisedRun& path) {
+double hottest_C(const estimation::Model& model, const estimation::MeasuredRun& run, estimation::LinearisedRun& path) {
   const std::vector<double> start_C(static_cast<std::size_t>(model.network.state_count()), run.at.front().ambient_C);
   try {
-    path = linearise(model, start_C, run);
-  } catch (const Failure&) {
+    path = estimation::linearise(model, start_C, run);
+  } catch (const base::Failure&) {
     return std::numeric_limits<double>::infinity();
   }
   return path.state_C.maxCoeff();
 }
 
 /// Sets the description and the largest current and speed of a planned experiment.
-void describe(const Primitive& primitive, const MeasuredRun& run, Experiment& experiment) {
-  const double most_A = std::ranges::max(run.at, {}, &OperatingPoint<double>::current_rms_A).current_rms_A;
-  const double fastest_rad_per_s = std::ranges::max(run.at, {}, &OperatingPoint<double>::speed_mean_rad_per_s).speed_mean_rad_per_s;
+void describe(const Primitive& primitive, const estimation::MeasuredRun& run, Experiment& experiment) {
+  const double most_A = std::ranges::max(run.at, {}, &thermal::OperatingPoint<double>::current_rms_A).current_rms_A;
+  const double fastest_rad_per_s =
+      std::ranges::max(run.at, {}, &thermal::OperatingPoint<double>::speed_mean_rad_per_s).speed_mean_rad_per_s;
   experiment.what = primitive.what;
   experiment.most_A = most_A > 0.0 ? std::optional(most_A) : std::nullopt;
   experiment.most_rad_per_s = fastest_rad_per_s > 0.0 ? std::optional(fastest_rad_per_s) : std::nullopt;
@@ -131,7 +132,7 @@ void describe(const Primitive& primitive, const MeasuredRun& run, Experiment& ex
 
 /// Returns the menu. Reduces the current of each experiment until it stays below the temperatures of the runs. A logged peak of 0.1 s must
 /// not be held for minutes.
-std::vector<Plan> plans(const Selection& selection, const std::vector<MeasuredRun>& runs) {
+std::vector<Plan> plans(const attribution::Selection& selection, const std::vector<estimation::MeasuredRun>& runs) {
   constexpr double kStep_ratio = 0.7;
   constexpr int kTries = 12;
   const Levels most = levels_of(runs);
@@ -151,14 +152,15 @@ std::vector<Plan> plans(const Selection& selection, const std::vector<MeasuredRu
 }
 
 /// Returns ½‖column − its projection on θ and the rival‖² in whitened space, with the posterior of θ as prior.
-double separation_nats(const Posterior& fit, const LatentFlux& flux, const std::vector<Candidate>& pair, double size_share,
-                       const Plan& plan) {
-  const std::vector<MeasuredRun> runs{plan.run};
-  const std::vector<LinearisedRun> path{plan.path};
-  const std::vector<DesignRun> designs =
-      design(fit.model.network, path, runs, {}, {}, {candidate_columns(pair, fit.model, path.front(), plan.run)});
-  const Whitening whitening(path.front(), flux, designs.front().noise);
-  const Eigen::MatrixXd triangle = run_evidence(path.front(), designs.front().columns, whitening, designs.front().start).triangle;
+double separation_nats(const estimation::Posterior& fit, const estimation::LatentFlux& flux,
+                       const std::vector<attribution::Candidate>& pair, double size_share, const Plan& plan) {
+  const std::vector<estimation::MeasuredRun> runs{plan.run};
+  const std::vector<estimation::LinearisedRun> path{plan.path};
+  const std::vector<estimation::DesignRun> designs =
+      estimation::design(fit.model.network, path, runs, {}, {}, {attribution::candidate_columns(pair, fit.model, path.front(), plan.run)});
+  const estimation::Whitening whitening(path.front(), flux, designs.front().noise);
+  const Eigen::MatrixXd triangle =
+      estimation::run_evidence(path.front(), designs.front().columns, whitening, designs.front().start).triangle;
   const Eigen::Index own = fit.model.free_count();
   std::vector<Eigen::Index> absorbing;
   for (Eigen::Index i = 0; i < own; ++i) {
@@ -175,7 +177,7 @@ double separation_nats(const Posterior& fit, const LatentFlux& flux, const std::
   return 0.5 * (column - others * others.colPivHouseholderQr().solve(column)).squaredNorm();
 }
 
-bool has_nodes_of(const Network& network, const Candidate& candidate) {
+bool has_nodes_of(const thermal::Network& network, const attribution::Candidate& candidate) {
   bool has_all = true;
   for (std::size_t role = 0; role < candidate.nodes.size(); ++role) {
     has_all = has_all && (candidate.type->nodes[role].own_capacity.has_value() || network.find_node(candidate.nodes[role]) >= 0);
@@ -184,9 +186,10 @@ bool has_nodes_of(const Network& network, const Candidate& candidate) {
 }
 
 /// Returns the candidate as evaluated in the first round that contains it; null if no round does.
-const JudgedCandidate* judged(const Selection& selection, const std::string& id) {
-  for (const Round& round : selection.rounds) {
-    const auto found = std::ranges::find_if(round.ladder, [&](const JudgedCandidate& each) { return each.candidate.id == id; });
+const attribution::JudgedCandidate* judged(const attribution::Selection& selection, const std::string& id) {
+  for (const attribution::Round& round : selection.rounds) {
+    const auto found =
+        std::ranges::find_if(round.ladder, [&](const attribution::JudgedCandidate& each) { return each.candidate.id == id; });
     if (found != round.ladder.end()) {
       return &*found;
     }
@@ -196,23 +199,24 @@ const JudgedCandidate* judged(const Selection& selection, const std::string& id)
 
 }  // namespace
 
-std::vector<Experiment> next_experiments(const Selection& selection, const std::vector<MeasuredRun>& runs) {
+std::vector<Experiment> next_experiments(const attribution::Selection& selection, const std::vector<estimation::MeasuredRun>& runs) {
   std::vector<Experiment> experiments;
-  const bool has_rivals = std::ranges::any_of(selection.terms, [](const AcceptedTerm& term) { return !term.confusable_with.empty(); });
+  const bool has_rivals =
+      std::ranges::any_of(selection.terms, [](const attribution::AcceptedTerm& term) { return !term.confusable_with.empty(); });
   const std::vector<Plan> menu_here = has_rivals ? plans(selection, runs) : std::vector<Plan>();
-  for (const AcceptedTerm& term : selection.terms) {
+  for (const attribution::AcceptedTerm& term : selection.terms) {
     for (std::size_t rival = 0; term.candidate && rival < term.confusable_with.size(); ++rival) {
       Experiment best{term.candidate->id, term.confusable_with[rival], term.experiments[rival]};
       const Experiment of_catalogue = best;
-      const JudgedCandidate* const other = judged(selection, term.confusable_with[rival]);
+      const attribution::JudgedCandidate* const other = judged(selection, term.confusable_with[rival]);
       // The base model has no node for an effect at a body that another effect added.
       if (!other || !has_nodes_of(selection.before.model.network, *term.candidate) ||
           !has_nodes_of(selection.before.model.network, other->candidate)) {
         experiments.push_back(std::move(best));
         continue;
       }
-      const JudgedCandidate* const own = judged(selection, term.candidate->id);
-      const std::vector<Candidate> pair{*term.candidate, other->candidate};
+      const attribution::JudgedCandidate* const own = judged(selection, term.candidate->id);
+      const std::vector<attribution::Candidate> pair{*term.candidate, other->candidate};
       for (const Plan& plan : menu_here) {
         const double nats = separation_nats(selection.before, selection.after.flux, pair, own ? own->size_share : 1.0, plan);
         if (nats > best.expected_nats) {
@@ -231,4 +235,4 @@ std::vector<Experiment> next_experiments(const Selection& selection, const std::
   return experiments;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::diagnosis

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::diagnosis {
 namespace {
 
 /// Fraction of the time in each tail that does not count as part of the range.
@@ -15,21 +15,21 @@ constexpr double kReach_share = 0.1;
 constexpr double kMuch_share = 0.25;
 
 struct Watched {
-  Signal signal;
+  thermal::Signal signal;
   std::string_view unit;
-  double OperatingPoint<double>::*value;
+  double thermal::OperatingPoint<double>::*value;
 };
 constexpr std::array kWatched{
-    Watched{Signal::current, "A", &OperatingPoint<double>::current_rms_A},
-    Watched{Signal::speed, "rad/s", &OperatingPoint<double>::speed_mean_rad_per_s},
-    Watched{Signal::input_power, "W", &OperatingPoint<double>::input_power_W},
-    Watched{Signal::vehicle_speed, "m/s", &OperatingPoint<double>::vehicle_speed_m_per_s},
+    Watched{thermal::Signal::current, "A", &thermal::OperatingPoint<double>::current_rms_A},
+    Watched{thermal::Signal::speed, "rad/s", &thermal::OperatingPoint<double>::speed_mean_rad_per_s},
+    Watched{thermal::Signal::input_power, "W", &thermal::OperatingPoint<double>::input_power_W},
+    Watched{thermal::Signal::vehicle_speed, "m/s", &thermal::OperatingPoint<double>::vehicle_speed_m_per_s},
 };
 
 /// Returns the values with their durations in s, sorted by value.
-std::vector<std::pair<double, double>> held(const std::vector<MeasuredRun>& runs, const Watched& watched) {
+std::vector<std::pair<double, double>> held(const std::vector<estimation::MeasuredRun>& runs, const Watched& watched) {
   std::vector<std::pair<double, double>> all;
-  for (const MeasuredRun& run : runs) {
+  for (const estimation::MeasuredRun& run : runs) {
     for (std::size_t k = 0; run.has(watched.signal) && k < run.at.size(); ++k) {
       all.emplace_back(run.at[k].*watched.value, run.time_s[k + 1] - run.time_s[k]);
     }
@@ -60,7 +60,8 @@ double quantile(const std::vector<std::pair<double, double>>& values, double sha
 
 }  // namespace
 
-std::vector<BeyondTraining> beyond_fitted(const std::vector<MeasuredRun>& fitted, const std::vector<MeasuredRun>& unseen) {
+std::vector<BeyondTraining> beyond_fitted(const std::vector<estimation::MeasuredRun>& fitted,
+                                          const std::vector<estimation::MeasuredRun>& unseen) {
   std::vector<BeyondTraining> beyond;
   for (const Watched& watched : kWatched) {
     const auto known = held(fitted, watched);
@@ -82,4 +83,4 @@ std::vector<BeyondTraining> beyond_fitted(const std::vector<MeasuredRun>& fitted
   return beyond;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::diagnosis

@@ -6,10 +6,11 @@
 #include "diagnosis/findings.h"
 #include "estimation/measured_run.h"
 
-namespace heatsoak {
+namespace heatsoak::diagnosis {
 
 /// Returns the signals that are outside the range of `fitted` for more than a quarter of the time of `unseen`. The range is from
 /// the 2nd to the 98th percentile, extended by 10 %.
-std::vector<BeyondTraining> beyond_fitted(const std::vector<MeasuredRun>& fitted, const std::vector<MeasuredRun>& unseen);
+std::vector<BeyondTraining> beyond_fitted(const std::vector<estimation::MeasuredRun>& fitted,
+                                          const std::vector<estimation::MeasuredRun>& unseen);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::diagnosis

@@ -20,7 +20,7 @@
 #include "estimation/log_columns.h"
 #include "estimation/turning_rows.h"
 
-namespace heatsoak {
+namespace heatsoak::diagnosis {
 namespace {
 
 /// Change of a parameter's logarithm from which another mounting is assumed.
@@ -30,20 +30,22 @@ constexpr double kOtherMounting = 0.1;
 constexpr double kWorse_ratio = 1.1;
 
 /// Returns the errors without run deviations, which the motor file does not contain.
-Errors errors_of_file(Model model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them) {
+estimation::Errors errors_of_file(estimation::Model model, const std::vector<estimation::MeasuredRun>& runs,
+                                  const std::vector<estimation::MeasuredRun>& before_them) {
   model.deviations.clear();
-  return open_loop_errors(model, runs, before_them);
+  return estimation::open_loop_errors(model, runs, before_them);
 }
 
 class DiagnosisReport {
  public:
-  DiagnosisReport(const DiagnosisInput& input, const SelectionRules& rules, Selection selection) : rules_(rules), input_(input) {
+  DiagnosisReport(const DiagnosisInput& input, const attribution::SelectionRules& rules, attribution::Selection selection)
+      : rules_(rules), input_(input) {
     out_.selection = std::move(selection);
-    set_columns(input_.train, out_.selection.after.model.columns);
+    estimation::set_columns(input_.train, out_.selection.after.model.columns);
   }
 
   Diagnosis tell() {
-    for (const AcceptedTerm& term : out_.selection.terms) {
+    for (const attribution::AcceptedTerm& term : out_.selection.terms) {
       out_.effects.push_back(found_effect(term, out_.selection, input_.train));
     }
     report_changed_parameters();
@@ -60,14 +62,14 @@ class DiagnosisReport {
   }
 
  private:
-  [[nodiscard]] const Posterior& after() const { return out_.selection.after; }
+  [[nodiscard]] const estimation::Posterior& after() const { return out_.selection.after; }
 
   void report_changed_parameters() {
-    const Model& model = after().model;
+    const estimation::Model& model = after().model;
     const Eigen::VectorXd theta = model.theta();
-    for (ChangedParameter parameter : out_.selection.changed) {
+    for (attribution::ChangedParameter parameter : out_.selection.changed) {
       const Eigen::Index own = parameter.coordinate;
-      const double reach = kInterval_sd * std::sqrt(after().covariance(own, own));
+      const double reach = estimation::kInterval_sd * std::sqrt(after().covariance(own, own));
       parameter.before = input_.model.values[static_cast<std::size_t>(model.free[static_cast<std::size_t>(own)].place)];
       parameter.value = model.value_of(own, theta[own]);
       parameter.low = model.value_of(own, theta[own] - reach);
@@ -77,25 +79,26 @@ class DiagnosisReport {
   }
 
   void report_errors() {
-    out_.before_train = open_loop_errors(input_.model, input_.train, {});
-    out_.refitted_train = open_loop_errors(out_.selection.own.model, input_.train, {});
-    out_.after_train = open_loop_errors(after().model, input_.train, {});
+    out_.before_train = estimation::open_loop_errors(input_.model, input_.train, {});
+    out_.refitted_train = estimation::open_loop_errors(out_.selection.own.model, input_.train, {});
+    out_.after_train = estimation::open_loop_errors(after().model, input_.train, {});
     out_.file_train = errors_of_file(after().model, input_.train, {});
   }
 
   /// Returns the smoothed unknown heat of every run, fluxes × samples.
-  [[nodiscard]] std::vector<FluxEstimate> smoothed(const Posterior& fit) const {
-    std::vector<FluxEstimate> all(fit.fitted.size());
-    const std::vector<DesignRun> designs = design(fit.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
-    in_parallel(all.size(), 0, [&](std::size_t r) {
-      all[r] = Whitening(fit.fitted[r], fit.flux, designs[r].noise).smoothed_flux(fit.fitted[r].residual_K);
+  [[nodiscard]] std::vector<estimation::FluxEstimate> smoothed(const estimation::Posterior& fit) const {
+    std::vector<estimation::FluxEstimate> all(fit.fitted.size());
+    const std::vector<estimation::DesignRun> designs =
+        estimation::design(fit.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
+    base::in_parallel(all.size(), 0, [&](std::size_t r) {
+      all[r] = estimation::Whitening(fit.fitted[r], fit.flux, designs[r].noise).smoothed_flux(fit.fitted[r].residual_K);
     });
     return all;
   }
 
   void report_flux() {
-    const std::vector<FluxEstimate> before = smoothed(out_.selection.before);
-    const std::vector<FluxEstimate> now = smoothed(after());
+    const std::vector<estimation::FluxEstimate> before = smoothed(out_.selection.before);
+    const std::vector<estimation::FluxEstimate> now = smoothed(after());
     const std::vector<int>& nodes = input_.model.flux_nodes;
     std::map<std::string, double> counts;
     for (std::size_t r = 0; r < input_.train.size(); ++r) {
@@ -119,16 +122,16 @@ class DiagnosisReport {
   }
 
   void report_balance() {
-    const Model& model = after().model;
-    const Network& network = model.network;
+    const estimation::Model& model = after().model;
+    const thermal::Network& network = model.network;
     const auto nodes = static_cast<std::size_t>(network.node_count());
     const std::size_t effects = network.effects().size();
     std::vector<double> energy_J((effects + model.deviations.size()) * nodes, 0.0);  // effects first, then deviations
     double time_s = 0.0;
     for (std::size_t r = 0; r < input_.train.size(); ++r) {
-      const MeasuredRun& run = input_.train[r];
+      const estimation::MeasuredRun& run = input_.train[r];
       std::vector<double> in_run_J(effects * nodes, 0.0);
-      heat_along(after(), run, after().fitted[r], [&](std::size_t k, std::span<const double> heat_W) {
+      attribution::heat_along(after(), run, after().fitted[r], [&](std::size_t k, std::span<const double> heat_W) {
         const double duration_s = run.time_s[k + 1] - run.time_s[k];
         time_s += duration_s;
         for (std::size_t i = 0; i < in_run_J.size(); ++i) {
@@ -151,14 +154,14 @@ class DiagnosisReport {
     }
   }
 
-  static std::string name_of(const RunDeviation& deviation) {
-    return fmt::format("{} in {}", deviation.type->name, in_words(deviation.condition));
+  static std::string name_of(const estimation::RunDeviation& deviation) {
+    return fmt::format("{} in {}", deviation.type->name, estimation::in_words(deviation.condition));
   }
 
   /// Moves the heat that a deviation causes in a run from the rows of its effects to its own row, which starts at `own`.
-  void add_part(const RunDeviation& deviation, const MeasuredRun& run, std::span<const double> in_run_J, std::span<double> energy_J,
-                std::size_t own) const {
-    const Network& network = after().model.network;
+  void add_part(const estimation::RunDeviation& deviation, const estimation::MeasuredRun& run, std::span<const double> in_run_J,
+                std::span<double> energy_J, std::size_t own) const {
+    const thermal::Network& network = after().model.network;
     const auto nodes = static_cast<std::size_t>(network.node_count());
     if (!run.has(deviation.condition)) {
       return;
@@ -175,20 +178,22 @@ class DiagnosisReport {
     }
   }
 
-  [[nodiscard]] std::vector<InnovationTests> tests_of(const Posterior& fit) const {
+  [[nodiscard]] std::vector<estimation::InnovationTests> tests_of(const estimation::Posterior& fit) const {
     std::map<std::string, Eigen::VectorXd> innovations;
-    std::map<std::string, std::vector<NamedInput>> inputs;
-    const std::vector<DesignRun> designs = design(fit.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
+    std::map<std::string, std::vector<estimation::NamedInput>> inputs;
+    const std::vector<estimation::DesignRun> designs =
+        estimation::design(fit.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
     for (std::size_t r = 0; r < fit.fitted.size(); ++r) {
-      const LinearisedRun& path = fit.fitted[r];
-      const Eigen::VectorXd standardised = Whitening(path, fit.flux, designs[r].noise).innovations(path.residual_K).standardised;
+      const estimation::LinearisedRun& path = fit.fitted[r];
+      const Eigen::VectorXd standardised =
+          estimation::Whitening(path, fit.flux, designs[r].noise).innovations(path.residual_K).standardised;
       const Eigen::VectorXd& weight = out_.selection.weights[r];
       for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
         const std::string& signal = input_.train[r].sensors[static_cast<std::size_t>(sensor)].signal;
         Eigen::VectorXd& all = innovations[signal];
         const Eigen::Index begin = all.size();
-        all.conservativeResize(begin + path.samples() + kMostLag);
-        all.tail<kMostLag>().setConstant(std::nan(""));
+        all.conservativeResize(begin + path.samples() + estimation::kMostLag);
+        all.tail<estimation::kMostLag>().setConstant(std::nan(""));
         for (Eigen::Index k = 0; k < path.samples(); ++k) {
           const Eigen::Index row = k * path.sensors() + sensor;
           const bool counts = !std::isnan(path.residual_K[row]) && (weight.size() == 0 || weight[row] > 0.0);
@@ -197,33 +202,33 @@ class DiagnosisReport {
         add_inputs(input_.train[r], inputs[signal]);
       }
     }
-    std::vector<InnovationTests> tests(innovations.size());
-    in_parallel(tests.size(), 0, [&](std::size_t i) {
+    std::vector<estimation::InnovationTests> tests(innovations.size());
+    base::in_parallel(tests.size(), 0, [&](std::size_t i) {
       const auto& [signal, all] = *std::next(innovations.begin(), static_cast<std::ptrdiff_t>(i));
-      tests[i] = test_innovations(signal, all, inputs.at(signal));
+      tests[i] = estimation::test_innovations(signal, all, inputs.at(signal));
     });
     return tests;
   }
 
-  static void add_inputs(const MeasuredRun& run, std::vector<NamedInput>& inputs) {
-    const auto add = [&](std::string_view name, Signal signal, auto value) {
-      auto found = std::ranges::find(inputs, name, &NamedInput::name);
+  static void add_inputs(const estimation::MeasuredRun& run, std::vector<estimation::NamedInput>& inputs) {
+    const auto add = [&](std::string_view name, thermal::Signal signal, auto value) {
+      auto found = std::ranges::find(inputs, name, &estimation::NamedInput::name);
       if (found == inputs.end()) {
         inputs.push_back({std::string(name), {}});
         found = inputs.end() - 1;
       }
       // A run without the signal takes its rows, too: inputs and innovations are compared row by row.
       const Eigen::Index begin = found->values.size();
-      found->values.conservativeResize(begin + run.samples() + kMostLag);
-      found->values.tail<kMostLag>().setConstant(std::nan(""));
+      found->values.conservativeResize(begin + run.samples() + estimation::kMostLag);
+      found->values.tail<estimation::kMostLag>().setConstant(std::nan(""));
       for (Eigen::Index k = 0; k < run.samples(); ++k) {
         found->values[begin + k] = run.has(signal) ? value(run.at[static_cast<std::size_t>(std::min(k, run.samples() - 2))]) : std::nan("");
       }
     };
-    using Point = OperatingPoint<double>;
-    add("current", Signal::current, [](const Point& at) { return at.current_rms_A; });
-    add("speed", Signal::speed, [](const Point& at) { return at.speed_mean_rad_per_s; });
-    add("input power", Signal::input_power, [](const Point& at) { return at.input_power_W; });
+    using Point = thermal::OperatingPoint<double>;
+    add("current", thermal::Signal::current, [](const Point& at) { return at.current_rms_A; });
+    add("speed", thermal::Signal::speed, [](const Point& at) { return at.speed_mean_rad_per_s; });
+    add("input power", thermal::Signal::input_power, [](const Point& at) { return at.input_power_W; });
   }
 
   [[nodiscard]] DiagnosisVerdict verdict() const {
@@ -236,7 +241,7 @@ class DiagnosisReport {
     if (out_.selection.is_as_usual) {
       return DiagnosisVerdict::nothing_missing;
     }
-    const bool is_same_mounting = std::ranges::none_of(out_.changed, [](const ChangedParameter& parameter) {
+    const bool is_same_mounting = std::ranges::none_of(out_.changed, [](const attribution::ChangedParameter& parameter) {
       return std::abs(std::log(parameter.value / parameter.before)) > kOtherMounting;
     });
     const bool would_show = out_.selection.seen_share >= rules_.least_seen_share;
@@ -244,14 +249,16 @@ class DiagnosisReport {
                                                                                   : DiagnosisVerdict::not_identifiable;
   }
 
-  const SelectionRules& rules_;
+  const attribution::SelectionRules& rules_;
   DiagnosisInput input_;
   Diagnosis out_;
 };
 
 }  // namespace
 
-bool is_plainly_worse(double error_K, double than_K) { return error_K > than_K + kMatters_K && error_K > kWorse_ratio * than_K; }
+bool is_plainly_worse(double error_K, double than_K) {
+  return error_K > than_K + estimation::kMatters_K && error_K > kWorse_ratio * than_K;
+}
 
 std::string_view to_string(DiagnosisVerdict verdict) {
   switch (verdict) {
@@ -268,40 +275,40 @@ std::string_view to_string(DiagnosisVerdict verdict) {
 }
 
 void settle_turning_rows(DiagnosisInput& input) {
-  if (std::ranges::none_of(input.train, may_turn_within_rows)) {
+  if (std::ranges::none_of(input.train, estimation::may_turn_within_rows)) {
     return;
   }
-  std::vector<MeasuredRun> turning;
-  std::ranges::transform(input.train, std::back_inserter(turning), turning_within_rows);
-  if (evidence_without_effects_nats({input.model, turning, input.usual}) <=
-      evidence_without_effects_nats({input.model, input.train, input.usual})) {
+  std::vector<estimation::MeasuredRun> turning;
+  std::ranges::transform(input.train, std::back_inserter(turning), estimation::turning_within_rows);
+  if (attribution::evidence_without_effects_nats({input.model, turning, input.usual}) <=
+      attribution::evidence_without_effects_nats({input.model, input.train, input.usual})) {
     return;
   }
   input.train = std::move(turning);
   input.turns_within_rows = true;
 }
 
-Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules) {
-  return DiagnosisReport(input, rules, select_effects({input.model, input.train, input.usual}, rules)).tell();
+Diagnosis diagnose(const DiagnosisInput& input, const attribution::SelectionRules& rules) {
+  return DiagnosisReport(input, rules, attribution::select_effects({input.model, input.train, input.usual}, rules)).tell();
 }
 
-HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<MeasuredRun> holdout) {
+HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<estimation::MeasuredRun> holdout) {
   HoldoutScore score;
   if (holdout.empty()) {
     return score;
   }
-  const Model& after = diagnosis.selection.after.model;
+  const estimation::Model& after = diagnosis.selection.after.model;
   if (input.turns_within_rows) {
-    std::ranges::transform(holdout, holdout.begin(), turning_within_rows);
+    std::ranges::transform(holdout, holdout.begin(), estimation::turning_within_rows);
   }
-  set_columns(holdout, after.columns);
-  score.before = open_loop_errors(input.model, holdout, diagnosis.runs);
-  score.refitted = open_loop_errors(diagnosis.selection.own.model, holdout, diagnosis.runs);
-  score.after = open_loop_errors(after, holdout, diagnosis.runs);
+  estimation::set_columns(holdout, after.columns);
+  score.before = estimation::open_loop_errors(input.model, holdout, diagnosis.runs);
+  score.refitted = estimation::open_loop_errors(diagnosis.selection.own.model, holdout, diagnosis.runs);
+  score.after = estimation::open_loop_errors(after, holdout, diagnosis.runs);
   score.file = errors_of_file(after, holdout, diagnosis.runs);
   score.beyond_training = beyond_fitted(diagnosis.runs, holdout);
   score.runs = std::move(holdout);
   return score;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::diagnosis

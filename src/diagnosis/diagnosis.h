@@ -12,16 +12,16 @@
 #include "estimation/free_run_errors.h"
 #include "estimation/residual_tests.h"
 
-namespace heatsoak {
+namespace heatsoak::diagnosis {
 
 enum class DiagnosisVerdict { effect_found, nothing_missing, unexplained, not_identifiable };
 std::string_view to_string(DiagnosisVerdict verdict);
 
 /// Input of a diagnosis. It contains no hold-out run: score_holdout() scores these after every decision.
 struct DiagnosisInput {
-  Model model;  ///< calibrated model
-  std::vector<MeasuredRun> train;
-  UsualErrors usual = {};
+  estimation::Model model;  ///< calibrated model
+  std::vector<estimation::MeasuredRun> train;
+  attribution::UsualErrors usual = {};
   bool turns_within_rows = false;  ///< set by settle_turning_rows(): the motor reverses within rows of the log
 };
 
@@ -72,26 +72,27 @@ struct Experiment {
 struct Diagnosis {
   DiagnosisVerdict verdict = DiagnosisVerdict::nothing_missing;
   std::vector<FoundEffect> effects;
-  std::vector<ChangedParameter> changed;  ///< parameters of the file that the runs contradict
+  std::vector<attribution::ChangedParameter> changed;  ///< parameters of the file that the runs contradict
   std::vector<Unexplained> unexplained;
-  Errors before_train, after_train;
-  Errors refitted_train;          ///< errors with only the model's own parameters refitted to the training runs
-  Errors file_train;              ///< errors of the written motor file alone, without run deviations
-  std::vector<MeasuredRun> runs;  ///< training runs
-  std::vector<InnovationTests> tests_before, tests_after;
+  estimation::Errors before_train, after_train;
+  estimation::Errors refitted_train;          ///< errors with only the model's own parameters refitted to the training runs
+  estimation::Errors file_train;              ///< errors of the written motor file alone, without run deviations
+  std::vector<estimation::MeasuredRun> runs;  ///< training runs
+  std::vector<estimation::InnovationTests> tests_before, tests_after;
   std::vector<FluxTrace> flux;
   std::map<std::string, double> flux_rms_before_W, flux_rms_after_W;  ///< RMS of the unknown heat by node
   std::vector<BalanceRow> balance;
   std::vector<Experiment> experiments;
-  Selection selection;
+  attribution::Selection selection;
 };
 
 /// Errors of the free-running models on hold-out runs, which influenced no decision.
 struct HoldoutScore {
-  std::vector<MeasuredRun> runs;
-  Errors before, refitted, after;                     ///< same models as in Diagnosis
-  Errors file;                                        ///< errors of the written motor file alone
-  std::vector<PredictedRun> runs_before, runs_after;  ///< predictions of the original and the extended motor file; set by score_files()
+  std::vector<estimation::MeasuredRun> runs;
+  estimation::Errors before, refitted, after;  ///< same models as in Diagnosis
+  estimation::Errors file;                     ///< errors of the written motor file alone
+  std::vector<calibration::PredictedRun> runs_before,
+      runs_after;  ///< predictions of the original and the extended motor file; set by score_files()
   std::vector<BeyondTraining> beyond_training;
 };
 
@@ -103,10 +104,10 @@ bool is_plainly_worse(double error_K, double than_K);
 void settle_turning_rows(DiagnosisInput& input);
 
 /// Runs the whole diagnosis on the training runs. Throws Failure (numerics_failed) if the model cannot be simulated along them.
-Diagnosis diagnose(const DiagnosisInput& input, const SelectionRules& rules);
+Diagnosis diagnose(const DiagnosisInput& input, const attribution::SelectionRules& rules);
 
 /// Scores `holdout` (runs as read from their logs) with the models of a finished diagnosis. The diagnosis must not depend on the result.
 /// Returns an empty score if there are no hold-out runs.
-HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<MeasuredRun> holdout);
+HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<estimation::MeasuredRun> holdout);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::diagnosis

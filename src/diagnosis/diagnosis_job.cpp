@@ -11,16 +11,16 @@
 #include "estimation/log_columns.h"
 #include "estimation/open_loop.h"
 
-namespace heatsoak {
+namespace heatsoak::diagnosis {
 namespace {
 
-std::vector<MeasuredRun> runs_of(const std::vector<Recording>& recordings, const MeasuredRunOptions& options,
-                                 std::vector<DiagnosisFinding>& findings) {
-  std::vector<MeasuredRun> all;
-  for (const Recording& recording : recordings) {
-    MeasuredRuns runs = measured_runs(recording, options);
+std::vector<estimation::MeasuredRun> runs_of(const std::vector<recording::Recording>& recordings,
+                                             const estimation::MeasuredRunOptions& options, std::vector<DiagnosisFinding>& findings) {
+  std::vector<estimation::MeasuredRun> all;
+  for (const recording::Recording& recording : recordings) {
+    estimation::MeasuredRuns runs = estimation::measured_runs(recording, options);
     for (std::string& note : runs.notes) {
-      findings.emplace_back(Remark{std::move(note)});
+      findings.emplace_back(calibration::Remark{std::move(note)});
     }
     std::ranges::move(runs.runs, std::back_inserter(all));
   }
@@ -31,27 +31,27 @@ std::vector<MeasuredRun> runs_of(const std::vector<Recording>& recordings, const
 void refuse_where_nothing_follows(const Diagnosis& diagnosis, const DiagnosisInput& input) {
   constexpr double kFar_K = 20.0;
   for (const auto& [signal, error] : diagnosis.after_train) {
-    const double moves_K = standard_deviation_K(input.train, signal);
+    const double moves_K = estimation::standard_deviation_K(input.train, signal);
     if (error.rmse_K > std::max(kFar_K, moves_K)) {
-      throw Failure(ExitCode::cannot_answer,
-                    fmt::format("no effect makes the model follow these logs: {} has an error of {} K rms, more than its variation "
-                                "(standard deviation {} K)\n  check for another motor, a wrong unit (degrees Fahrenheit, minutes, "
-                                "milliamperes) or a misplaced sensor; `heatsoak log inspect` shows each channel",
-                                signal, significant(error.rmse_K, 2), significant(moves_K, 2)));
+      throw base::Failure(base::ExitCode::cannot_answer,
+                          fmt::format("no effect makes the model follow these logs: {} has an error of {} K rms, more than its variation "
+                                      "(standard deviation {} K)\n  check for another motor, a wrong unit (degrees Fahrenheit, minutes, "
+                                      "milliamperes) or a misplaced sensor; `heatsoak log inspect` shows each channel",
+                                      signal, base::significant(error.rmse_K, 2), base::significant(moves_K, 2)));
     }
   }
 }
 
 /// Adds the remark that hold-out logs lack columns of curves, unless the training logs already gave it.
-void add_lacking_columns(std::span<const std::string> columns, const std::vector<Recording>& holdout,
+void add_lacking_columns(std::span<const std::string> columns, const std::vector<recording::Recording>& holdout,
                          std::vector<DiagnosisFinding>& findings) {
-  const std::string lacking = columns_lacking(columns, holdout);
+  const std::string lacking = estimation::columns_lacking(columns, holdout);
   const bool is_known = std::ranges::any_of(findings, [&](const DiagnosisFinding& each) {
-    const auto* const remark = std::get_if<Remark>(&each);
+    const auto* const remark = std::get_if<calibration::Remark>(&each);
     return remark != nullptr && remark->words == lacking;
   });
   if (!lacking.empty() && !is_known) {
-    findings.emplace_back(Remark{lacking});
+    findings.emplace_back(calibration::Remark{lacking});
   }
 }
 
@@ -64,10 +64,10 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job) {
   if (job.motor.fit && !job.motor.fit->extensions.empty()) {
     findings.emplace_back(ExtensionsMayImitate{job.motor.fit->extensions});
   }
-  answer.admission = admit(job.motor, fitted, held_out, choice.takes_logs_as_they_are, choice.ambient_C);
+  answer.admission = calibration::admit(job.motor, fitted, held_out, choice.takes_logs_as_they_are, choice.ambient_C);
   ModelOfLogs model = model_of_logs(job.motor, fitted);
   std::ranges::move(model.findings, std::back_inserter(findings));
-  MeasuredRunOptions how = model.how;
+  estimation::MeasuredRunOptions how = model.how;
   how.ambient_C = choice.ambient_C;
   DiagnosisInput& input = answer.input;
   input.model = model.model;
@@ -75,14 +75,14 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job) {
   input.train = runs_of(fitted, how, findings);
   settle_turning_rows(input);
   if (input.turns_within_rows) {
-    findings.emplace_back(RowsTurn{});
+    findings.emplace_back(calibration::RowsTurn{});
   }
-  if (std::vector<std::string> rare = keep_common_columns(input.train, input.model.columns); !rare.empty()) {
+  if (std::vector<std::string> rare = estimation::keep_common_columns(input.train, input.model.columns); !rare.empty()) {
     findings.emplace_back(ColumnsNotSearched{std::move(rare)});
   }
   answer.diagnosis = diagnose(input, {});
   const std::vector<std::string>& columns = answer.diagnosis.selection.after.model.columns;
-  set_columns(input.train, columns);
+  estimation::set_columns(input.train, columns);
   refuse_where_nothing_follows(answer.diagnosis, input);
   answer.motor = extended_motor(job.motor, model, answer.diagnosis);
   answer.score = score_holdout(input, answer.diagnosis, runs_of(held_out, how, findings));
@@ -91,4 +91,4 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job) {
   return answer;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::diagnosis

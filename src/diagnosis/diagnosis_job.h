@@ -9,19 +9,19 @@
 #include "diagnosis/model_file.h"
 #include "recording/named_logs.h"
 
-namespace heatsoak {
+namespace heatsoak::diagnosis {
 
 struct DiagnosisJob {
-  Motor motor;
-  NamedLogs logs;  ///< their choice states whether logs that look wrong are accepted
+  motor::Motor motor;
+  recording::NamedLogs logs;  ///< their choice states whether logs that look wrong are accepted
 };
 
 struct DiagnosisAnswer {
   DiagnosisInput input;
   Diagnosis diagnosis;
   HoldoutScore score;
-  Motor motor;  ///< the extended motor
-  Admission admission;
+  motor::Motor motor;  ///< the extended motor
+  calibration::Admission admission;
   std::vector<DiagnosisFinding> findings;  ///< assumptions and limits of the answer
 };
 
@@ -29,4 +29,4 @@ struct DiagnosisAnswer {
 /// the extended model follows the training logs.
 DiagnosisAnswer run_diagnosis(const DiagnosisJob& job);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::diagnosis

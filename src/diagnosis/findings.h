@@ -8,7 +8,7 @@
 #include "calibration/findings.h"
 #include "estimation/run_deviation.h"
 
-namespace heatsoak {
+namespace heatsoak::diagnosis {
 
 /// The motor file has these effects for better forecasts only. An effect that they imitate may stay unfound.
 struct ExtensionsMayImitate {
@@ -23,12 +23,12 @@ struct ColumnsTakenAsZero {
 struct ConditionNotApplied {
   std::string effect;
   std::string type;
-  Condition condition;
+  estimation::Condition condition;
 };
 /// No log has the condition of an effect.
 struct ConditionNeverMet {
   std::string effect;
-  Condition condition;
+  estimation::Condition condition;
 };
 /// The file was fitted to some of these runs. Its intervals are replaced by those of a data sheet.
 struct IntervalsOfDataSheet {};
@@ -43,16 +43,17 @@ struct ColumnsNotSearched {
   std::vector<std::string> columns;
 };
 
-using DiagnosisFinding = std::variant<ExtensionsMayImitate, ColumnsTakenAsZero, ConditionNotApplied, ConditionNeverMet,
-                                      IntervalsOfDataSheet, LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched, RowsTurn, Remark>;
+using DiagnosisFinding =
+    std::variant<ExtensionsMayImitate, ColumnsTakenAsZero, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet, LossInUnknownHeat,
+                 TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn, calibration::Remark>;
 
 /// Signal that is outside the range of the training runs for more than a quarter of the time of the hold-out runs.
 struct BeyondTraining {
-  Signal signal = Signal::current;
+  thermal::Signal signal = thermal::Signal::current;
   std::string unit;
   double low = 0.0;  ///< range of the training runs
   double high = 0.0;
   double time_share = 0.0;  ///< share of the time outside
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::diagnosis

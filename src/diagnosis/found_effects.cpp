@@ -8,14 +8,15 @@
 #include "attribution/terms.h"
 #include "estimation/interval.h"
 
-namespace heatsoak {
+namespace heatsoak::diagnosis {
 namespace {
 
 class EffectReport {
  public:
-  EffectReport(const Selection& selection, const std::vector<MeasuredRun>& runs) : selection_(selection), runs_(runs) {}
+  EffectReport(const attribution::Selection& selection, const std::vector<estimation::MeasuredRun>& runs)
+      : selection_(selection), runs_(runs) {}
 
-  FoundEffect found(const AcceptedTerm& term) const {
+  FoundEffect found(const attribution::AcceptedTerm& term) const {
     FoundEffect effect;
     effect.name = term.effect_name;
     effect.gain_nats = term.loss_without_nats;
@@ -30,12 +31,12 @@ class EffectReport {
       report_deviation(*term.candidate, effect);
       return effect;
     }
-    const EffectInPlace& in_place = *effect_named(after().model.network, term.effect_name);
+    const thermal::EffectInPlace& in_place = *effect_named(after().model.network, term.effect_name);
     effect.id = in_place.type->name;
     effect.node = after().model.network.node_name(in_place.node_index.front());
     effect.description = in_place.type->summary;
     effect.confounded_with = in_place.type->confounded_with;
-    for (const ConditionalTerm& conditional : after().model.conditional) {
+    for (const estimation::ConditionalTerm& conditional : after().model.conditional) {
       if (conditional.effect_name == term.effect_name) {
         effect.condition = conditional.condition;
       }
@@ -43,22 +44,22 @@ class EffectReport {
     if (term.curve) {
       effect.node = term.curve->term.node;
       effect.drivers.push_back(selection_.drivers[static_cast<std::size_t>(term.curve->term.driver)].name);
-      if (const std::string_view second = second_signal(term.curve->term.multiplier); !second.empty()) {
+      if (const std::string_view second = attribution::second_signal(term.curve->term.multiplier); !second.empty()) {
         effect.drivers.emplace_back(second);
       }
       effect.is_from_catalogue = false;
     }
     report_parameters(in_place, effect);
-    const HeatOfEffect heat = heat_of(
-        after(), runs_, [&](const EffectInPlace& each) { return &each == &in_place; }, effect.condition);
+    const attribution::HeatOfEffect heat = attribution::heat_of(
+        after(), runs_, [&](const thermal::EffectInPlace& each) { return &each == &in_place; }, effect.condition);
     effect.mean_W = heat.mean_W;
     effect.peak_W = heat.peak_W;
     return effect;
   }
 
  private:
-  void report_sensor(const Candidate& candidate, FoundEffect& effect) const {
-    const SensorEffectType& type = *candidate.sensor_type;
+  void report_sensor(const attribution::Candidate& candidate, FoundEffect& effect) const {
+    const motor::SensorEffectType& type = *candidate.sensor_type;
     effect.id = type.name;
     effect.has_heat = false;
     effect.node = type.signal.substr(0, type.signal.rfind('_'));
@@ -68,19 +69,20 @@ class EffectReport {
   }
 
   /// Reports the size of a sensor error or a run deviation, its only parameter. `unit_size` is the size per unit of the coordinate.
-  void report_size(const Candidate& candidate, const ParameterSpec& spec, double unit_size, double low, FoundEffect& effect) const {
-    const Eigen::Index own = size_coordinate(after().model, candidate, {});
+  void report_size(const attribution::Candidate& candidate, const base::ParameterSpec& spec, double unit_size, double low,
+                   FoundEffect& effect) const {
+    const Eigen::Index own = attribution::size_coordinate(after().model, candidate, {});
     const double value = unit_size * after().model.theta()[own];
     const double sd = unit_size * std::sqrt(after().covariance(own, own));
-    FittedParameter size{std::string(spec.key), std::string(spec.unit), value, std::max(value - kInterval_sd * sd, low),
-                         value + kInterval_sd * sd};
+    FittedParameter size{std::string(spec.key), std::string(spec.unit), value, std::max(value - estimation::kInterval_sd * sd, low),
+                         value + estimation::kInterval_sd * sd};
     drop_interval_at_bound(own, size);
     effect.parameters.push_back(std::move(size));
     effect.p_value = p_of(value, sd);
   }
 
-  void report_deviation(const Candidate& candidate, FoundEffect& effect) const {
-    const RunDeviationType& type = *candidate.deviation_type;
+  void report_deviation(const attribution::Candidate& candidate, FoundEffect& effect) const {
+    const estimation::RunDeviationType& type = *candidate.deviation_type;
     effect.id = type.name;
     effect.node = type.node;
     effect.condition = candidate.condition;
@@ -88,9 +90,9 @@ class EffectReport {
     effect.confounded_with = type.confounded_with;
     report_size(candidate, type.size, type.usual, std::max(-1.0, type.size.range.low), effect);
     const double value = effect.parameters.front().value;
-    const Network& network = after().model.network;
-    const HeatOfEffect heat = heat_of(
-        after(), runs_, [&](const EffectInPlace& in_place) { return type.concerns(network, in_place); }, candidate.condition);
+    const thermal::Network& network = after().model.network;
+    const attribution::HeatOfEffect heat = attribution::heat_of(
+        after(), runs_, [&](const thermal::EffectInPlace& in_place) { return type.concerns(network, in_place); }, candidate.condition);
     effect.mean_W = std::abs(type.part_ratio(value)) * heat.mean_W;
     effect.peak_W = std::abs(type.part_ratio(value)) * heat.peak_W;
   }
@@ -101,7 +103,7 @@ class EffectReport {
 
   void drop_interval_at_bound(Eigen::Index coordinate, FittedParameter& parameter) const {
     constexpr double kThere = 1e-6;
-    const Model& model = after().model;
+    const estimation::Model& model = after().model;
     const double theta = model.theta()[coordinate];
     if (theta < model.low(coordinate) + kThere && model.low(coordinate) == 0.0) {
       parameter.value = 0.0;
@@ -112,25 +114,25 @@ class EffectReport {
     }
   }
 
-  void report_parameters(const EffectInPlace& in_place, FoundEffect& effect) const {
-    const Model& model = after().model;
+  void report_parameters(const thermal::EffectInPlace& in_place, FoundEffect& effect) const {
+    const estimation::Model& model = after().model;
     const Eigen::VectorXd theta = model.theta();
     std::vector<double> values;
     for (const int place : in_place.parameter_index) {
       values.push_back(model.values[static_cast<std::size_t>(place)]);
     }
     for (std::size_t p = 0; p < values.size(); ++p) {
-      const ParameterSpec& spec = in_place.type->parameters[p];
+      const base::ParameterSpec& spec = in_place.type->parameters[p];
       if (!spec.choices.empty()) {
         continue;
       }
-      FittedParameter parameter{std::string(spec.key), std::string(unit_of(in_place.type->parameters, p, values)), values[p], values[p],
-                                values[p]};
+      FittedParameter parameter{std::string(spec.key), std::string(base::unit_of(in_place.type->parameters, p, values)), values[p],
+                                values[p], values[p]};
       for (Eigen::Index i = 0; i < model.network_count(); ++i) {
         if (model.free[static_cast<std::size_t>(i)].place == in_place.parameter_index[p]) {
           const double sd = std::sqrt(after().covariance(i, i));
-          parameter.low = std::max(model.value_of(i, theta[i] - kInterval_sd * sd), spec.range.low);
-          parameter.high = std::min(model.value_of(i, theta[i] + kInterval_sd * sd), spec.range.high);
+          parameter.low = std::max(model.value_of(i, theta[i] - estimation::kInterval_sd * sd), spec.range.low);
+          parameter.high = std::min(model.value_of(i, theta[i] + estimation::kInterval_sd * sd), spec.range.high);
           // The positions of a curve's knots are no evidence for the curve, so only its values count.
           const std::optional<int> size = in_place.type->candidacy.size_parameter;
           if (size ? static_cast<std::size_t>(*size) == p : spec.range.low == 0.0) {
@@ -143,21 +145,22 @@ class EffectReport {
     }
   }
 
-  [[nodiscard]] const Posterior& after() const { return selection_.after; }
+  [[nodiscard]] const estimation::Posterior& after() const { return selection_.after; }
 
-  const Selection& selection_;
-  const std::vector<MeasuredRun>& runs_;
+  const attribution::Selection& selection_;
+  const std::vector<estimation::MeasuredRun>& runs_;
 };
 
 }  // namespace
 
-const EffectInPlace* effect_named(const Network& network, const std::string& name) {
-  const auto found = std::ranges::find(network.effects(), name, &EffectInPlace::name);
+const thermal::EffectInPlace* effect_named(const thermal::Network& network, const std::string& name) {
+  const auto found = std::ranges::find(network.effects(), name, &thermal::EffectInPlace::name);
   return found == network.effects().end() ? nullptr : &*found;
 }
 
-FoundEffect found_effect(const AcceptedTerm& term, const Selection& selection, const std::vector<MeasuredRun>& runs) {
+FoundEffect found_effect(const attribution::AcceptedTerm& term, const attribution::Selection& selection,
+                         const std::vector<estimation::MeasuredRun>& runs) {
   return EffectReport(selection, runs).found(term);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::diagnosis

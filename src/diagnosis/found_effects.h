@@ -7,7 +7,7 @@
 
 #include "attribution/selection.h"
 
-namespace heatsoak {
+namespace heatsoak::diagnosis {
 
 struct FittedParameter {
   std::string name;
@@ -39,9 +39,10 @@ struct FoundEffect {
 };
 
 /// Returns the effect of that name, or null if there is none.
-const EffectInPlace* effect_named(const Network& network, const std::string& name);
+const thermal::EffectInPlace* effect_named(const thermal::Network& network, const std::string& name);
 
 /// Describes one accepted term. `runs` must be the runs of the selection.
-FoundEffect found_effect(const AcceptedTerm& term, const Selection& selection, const std::vector<MeasuredRun>& runs);
+FoundEffect found_effect(const attribution::AcceptedTerm& term, const attribution::Selection& selection,
+                         const std::vector<estimation::MeasuredRun>& runs);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::diagnosis

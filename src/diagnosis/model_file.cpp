@@ -18,15 +18,15 @@
 #include "estimation/log_rows.h"
 #include "recording/fingerprint.h"
 
-namespace heatsoak {
+namespace heatsoak::diagnosis {
 namespace {
 
-bool has_signal(const Recording& recording, Signal signal, const ShaftTorque& torque = {}) {
-  const std::vector<Signal> signals = signals_of(recording, torque);
+bool has_signal(const recording::Recording& recording, thermal::Signal signal, const estimation::ShaftTorque& torque = {}) {
+  const std::vector<thermal::Signal> signals = estimation::signals_of(recording, torque);
   return std::ranges::find(signals, signal) != signals.end();
 }
 
-std::vector<Signal> signals_of(const EffectInPlace& effect, const Model& model) {
+std::vector<thermal::Signal> signals_of(const thermal::EffectInPlace& effect, const estimation::Model& model) {
   std::vector<double> values;
   for (const int place : effect.parameter_index) {
     values.push_back(model.values[static_cast<std::size_t>(place)]);
@@ -34,33 +34,33 @@ std::vector<Signal> signals_of(const EffectInPlace& effect, const Model& model) 
   return effect.type->needed_with(values);
 }
 
-void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recording>& recordings) {
-  std::set<Signal> wanted;
-  for (const EffectInPlace& effect : out.model.network.effects()) {
-    const std::vector<Signal> needed = signals_of(effect, out.model);
+void set_needed(ModelOfLogs& out, const motor::Motor& motor, const std::vector<recording::Recording>& recordings) {
+  std::set<thermal::Signal> wanted;
+  for (const thermal::EffectInPlace& effect : out.model.network.effects()) {
+    const std::vector<thermal::Signal> needed = signals_of(effect, out.model);
     wanted.insert(needed.begin(), needed.end());
   }
   bool has_heat = false;
-  for (const Signal signal : wanted) {
+  for (const thermal::Signal signal : wanted) {
     const bool is_anywhere =
-        std::ranges::any_of(recordings, [&](const Recording& each) { return has_signal(each, signal, out.how.torque); });
+        std::ranges::any_of(recordings, [&](const recording::Recording& each) { return has_signal(each, signal, out.how.torque); });
     if (is_anywhere) {
       out.how.needed.push_back(signal);
-      has_heat = has_heat || signal == Signal::current || signal == Signal::input_power;
+      has_heat = has_heat || signal == thermal::Signal::current || signal == thermal::Signal::input_power;
     }
   }
   if (!has_heat) {
-    throw Failure(
-        ExitCode::bad_input,
+    throw base::Failure(
+        base::ExitCode::bad_input,
         fmt::format(
             "no log has a heat input for {}; expected current_A, or power_in_W with an effect input_power_loss; add one to the logs",
             motor.id));
   }
-  for (const EffectInPlace& effect : out.model.network.effects()) {
+  for (const thermal::EffectInPlace& effect : out.model.network.effects()) {
     std::vector<std::string> lacking;
-    for (const Signal signal : signals_of(effect, out.model)) {
+    for (const thermal::Signal signal : signals_of(effect, out.model)) {
       if (std::ranges::find(out.how.needed, signal) == out.how.needed.end()) {
-        lacking.emplace_back(column_of(signal));
+        lacking.emplace_back(estimation::column_of(signal));
       }
     }
     if (!lacking.empty()) {
@@ -70,18 +70,18 @@ void set_needed(ModelOfLogs& out, const Motor& motor, const std::vector<Recordin
 }
 
 /// Switches conditional effects off in runs without their condition. Adds a finding if that is impossible, or if no run has the condition.
-void add_conditional_effects(const Motor& motor, const std::vector<Recording>& recordings, ModelOfLogs& out) {
-  const auto holds = [](const Recording& recording, const std::map<std::string, std::string>& condition) {
+void add_conditional_effects(const motor::Motor& motor, const std::vector<recording::Recording>& recordings, ModelOfLogs& out) {
+  const auto holds = [](const recording::Recording& recording, const std::map<std::string, std::string>& condition) {
     return std::ranges::all_of(condition, [&](const auto& part) {
       const auto found = recording.conditions.find(part.first);
       return found != recording.conditions.end() ? found->second == part.second : part.first == "run" && part.second == recording.name;
     });
   };
-  for (const MotorEffect& effect : motor.effects) {
+  for (const motor::MotorEffect& effect : motor.effects) {
     if (effect.condition.empty()) {
       continue;
     }
-    const auto count = std::ranges::count_if(recordings, [&](const Recording& each) { return holds(each, effect.condition); });
+    const auto count = std::ranges::count_if(recordings, [&](const recording::Recording& each) { return holds(each, effect.condition); });
     const std::optional<int> size = effect.type->candidacy.size_parameter;
     if (!size && count < std::ssize(recordings)) {
       out.findings.emplace_back(ConditionNotApplied{effect.name, std::string(effect.type->name), effect.condition});
@@ -89,7 +89,7 @@ void add_conditional_effects(const Motor& motor, const std::vector<Recording>& r
       out.findings.emplace_back(ConditionNeverMet{effect.name, effect.condition});
     }
     if (size) {
-      const auto in_place = std::ranges::find(out.model.network.effects(), effect.name, &EffectInPlace::name);
+      const auto in_place = std::ranges::find(out.model.network.effects(), effect.name, &thermal::EffectInPlace::name);
       out.model.conditional.push_back({effect.name, in_place->parameter_index[static_cast<std::size_t>(*size)], 0.0, effect.condition});
     }
   }
@@ -97,58 +97,58 @@ void add_conditional_effects(const Motor& motor, const std::vector<Recording>& r
 
 constexpr const char* kSource = "diagnosis";
 
-ParameterValue measured(double value, double low, double high, const Range& range) {
-  ParameterValue parameter;
+base::ParameterValue measured(double value, double low, double high, const base::Range& range) {
+  base::ParameterValue parameter;
   parameter.value = value;
-  parameter.origin = Origin::measured;
+  parameter.origin = base::Origin::measured;
   parameter.source = kSource;
   if (low < value && high > value && low > 0.0) {
-    parameter.spread = Spread{Spread::Kind::range, std::max(low, range.low), std::min(high, range.high), true};
+    parameter.spread = base::Spread{base::Spread::Kind::range, std::max(low, range.low), std::min(high, range.high), true};
   }
   return parameter;
 }
 
-MotorSensor motor_sensor(const SensorEffectType& type, const FittedParameter& size) {
-  MotorSensor sensor{std::string(type.name), &type, measured(size.value, size.low, size.high, type.size.range)};
+motor::MotorSensor motor_sensor(const motor::SensorEffectType& type, const FittedParameter& size) {
+  motor::MotorSensor sensor{std::string(type.name), &type, measured(size.value, size.low, size.high, type.size.range)};
   // An offset or a gain may have either sign, unlike a lag.
   if (size.low < size.value && size.value < size.high) {
     sensor.size.spread =
-        Spread{Spread::Kind::range, std::max(size.low, type.size.range.low), std::min(size.high, type.size.range.high), false};
+        base::Spread{base::Spread::Kind::range, std::max(size.low, type.size.range.low), std::min(size.high, type.size.range.high), false};
   }
   return sensor;
 }
 
 /// Adds the sensor error under an unused name.
-void add_sensor(Motor& motor, const MotorSensor& sensor) {
+void add_sensor(motor::Motor& motor, const motor::MotorSensor& sensor) {
   const auto is_used = [&](const std::string& name) {
-    return std::ranges::find(motor.effects, name, &MotorEffect::name) != motor.effects.end() ||
-           std::ranges::find(motor.sensors, name, &MotorSensor::name) != motor.sensors.end();
+    return std::ranges::find(motor.effects, name, &motor::MotorEffect::name) != motor.effects.end() ||
+           std::ranges::find(motor.sensors, name, &motor::MotorSensor::name) != motor.sensors.end();
   };
-  MotorSensor added = sensor;
+  motor::MotorSensor added = sensor;
   for (int number = 2; is_used(added.name); ++number) {
     added.name = fmt::format("{}_{}", sensor.name, number);
   }
   motor.sensors.push_back(std::move(added));
 }
 
-MotorEffect motor_effect(const FoundEffect& found, const Posterior& fit) {
-  const Network& network = fit.model.network;
-  const auto in_place = std::ranges::find(network.effects(), found.name, &EffectInPlace::name);
-  MotorEffect effect{found.name, in_place->type, {}, {}, found.condition};
+motor::MotorEffect motor_effect(const FoundEffect& found, const estimation::Posterior& fit) {
+  const thermal::Network& network = fit.model.network;
+  const auto in_place = std::ranges::find(network.effects(), found.name, &thermal::EffectInPlace::name);
+  motor::MotorEffect effect{found.name, in_place->type, {}, {}, found.condition};
   for (std::size_t role = 0; role < in_place->node_index.size(); ++role) {
     const bool is_own = in_place->type->nodes[role].own_capacity.has_value();
     effect.nodes.push_back(is_own ? found.name : std::string(network.node_name(in_place->node_index[role])));
   }
   for (std::size_t p = 0; p < in_place->parameter_index.size(); ++p) {
-    const ParameterSpec& spec = in_place->type->parameters[p];
+    const base::ParameterSpec& spec = in_place->type->parameters[p];
     const double value = fit.model.values[static_cast<std::size_t>(in_place->parameter_index[p])];
     if (!spec.choices.empty()) {
-      ParameterValue chosen;
+      base::ParameterValue chosen;
       chosen.value = value;
       const std::string_view name = spec.choices[static_cast<std::size_t>(value)].name;
-      chosen.printed = is_column_choice(name) ? kColumnChoice : name;
+      chosen.printed = thermal::is_column_choice(name) ? thermal::kColumnChoice : name;
       effect.parameters.push_back(chosen);
-      effect.column = chosen.printed == kColumnChoice ? found.drivers.front() : effect.column;
+      effect.column = chosen.printed == thermal::kColumnChoice ? found.drivers.front() : effect.column;
       continue;
     }
     const FittedParameter& fitted = *std::ranges::find(found.parameters, spec.key, &FittedParameter::name);
@@ -158,34 +158,35 @@ MotorEffect motor_effect(const FoundEffect& found, const Posterior& fit) {
 }
 
 /// Writes the fitted values, intervals and correlations of the file's parameters.
-void set_parameters(Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
-  const Posterior& fit = diagnosis.selection.after;
+void set_parameters(motor::Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
+  const estimation::Posterior& fit = diagnosis.selection.after;
   const auto free = model.model.network_count();
   const Eigen::VectorXd moved = fit.model.theta().head(free) - model.model.theta();
   const Eigen::MatrixXd covariance = fit.covariance.topLeftCorner(free, free);
-  std::vector<const CalibratedValue*> of_file;
-  for (const CalibratedValue& each : model.parameters) {
+  std::vector<const calibration::CalibratedValue*> of_file;
+  for (const calibration::CalibratedValue& each : model.parameters) {
     if (each.is_of_file) {
       of_file.push_back(&each);
     }
   }
   Eigen::MatrixXd exponents(static_cast<Eigen::Index>(of_file.size()), free);
-  MotorFit together;
+  motor::MotorFit together;
   together.motor = motor.fit ? motor.fit->motor : motor.id;
   together.runs = model.fitted;
   together.training = model.training;
   for (std::size_t i = 0; i < of_file.size(); ++i) {
-    const CalibratedValue& each = *of_file[i];
+    const calibration::CalibratedValue& each = *of_file[i];
     exponents.row(static_cast<Eigen::Index>(i)) = each.exponents.transpose();
     const double sd = std::sqrt(std::max(0.0, each.exponents.dot(covariance * each.exponents)));
-    ParameterValue& parameter = *find_parameter(motor, each.name);
+    base::ParameterValue& parameter = *motor::find_parameter(motor, each.name);
     const double value = each.before * std::exp(each.exponents.dot(moved));
     const std::string source = parameter.source;
-    const Origin origin = parameter.origin;
-    parameter = measured(value, value * std::exp(-kInterval_sd * sd), value * std::exp(kInterval_sd * sd), Range::positive());
+    const base::Origin origin = parameter.origin;
+    parameter = measured(value, value * std::exp(-estimation::kInterval_sd * sd), value * std::exp(estimation::kInterval_sd * sd),
+                         base::Range::positive());
     parameter.derivation =
         source.empty() ? "fit to measured temperatures" : fmt::format("fit to measured temperatures; before the fit: {}", source);
-    if (!is_identifiable(sd, each)) {
+    if (!calibration::is_identifiable(sd, each)) {
       parameter.origin = origin;
       parameter.source += source.empty() ? "" : fmt::format(", {}", source);
       parameter.derivation = "fit to measured temperatures, which do not determine it alone";
@@ -196,13 +197,13 @@ void set_parameters(Motor& motor, const ModelOfLogs& model, const Diagnosis& dia
   const Eigen::VectorXd sd = correlation.diagonal().cwiseSqrt().cwiseMax(1e-9);
   correlation = sd.cwiseInverse().asDiagonal() * correlation * sd.cwiseInverse().asDiagonal();
   correlation.diagonal().setOnes();
-  together.correlation = Correlation(std::span<const double>(correlation.data(), static_cast<std::size_t>(correlation.size())));
-  const LatentFlux flux = fit.flux;
+  together.correlation = motor::Correlation(std::span<const double>(correlation.data(), static_cast<std::size_t>(correlation.size())));
+  const estimation::LatentFlux flux = fit.flux;
   together.latent_flux_W = flux.rms_W;
   together.latent_flux_time_scale_s = flux.time_scale_s;
   std::map<std::string, double> noise_K;
-  for (const MeasuredRun& run : diagnosis.runs) {
-    for (const Sensor& sensor : run.sensors) {
+  for (const estimation::MeasuredRun& run : diagnosis.runs) {
+    for (const estimation::Sensor& sensor : run.sensors) {
       noise_K[sensor.node] = std::max(noise_K[sensor.node], sensor.noise_K);
     }
   }
@@ -212,17 +213,17 @@ void set_parameters(Motor& motor, const ModelOfLogs& model, const Diagnosis& dia
 
 /// If the file was fitted to some of these runs, resets its fitted parameters to the uncertainty of a data sheet. The runs would count
 /// twice, and the intervals may belong to an incomplete model.
-void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vector<DiagnosisFinding>& findings) {
-  const auto is_fitted = [&](const Recording& each) { return was_fitted_to(*motor.fit, each); };
+void forget_fit(motor::Motor& motor, const std::vector<recording::Recording>& recordings, std::vector<DiagnosisFinding>& findings) {
+  const auto is_fitted = [&](const recording::Recording& each) { return calibration::was_fitted_to(*motor.fit, each); };
   if (!motor.fit || std::ranges::none_of(recordings, is_fitted)) {
     return;
   }
   for (const std::string& name : motor.fit->parameters) {
-    ParameterValue* const parameter = find_parameter(motor, name);
+    base::ParameterValue* const parameter = motor::find_parameter(motor, name);
     // The other parameters were not identifiable in that fit and kept their own uncertainty.
-    if (parameter && parameter->origin == Origin::measured && parameter->value > 0.0) {
-      parameter->spread =
-          Spread{Spread::Kind::range, parameter->value * std::exp(-2.0 * kSheet_sd), parameter->value * std::exp(2.0 * kSheet_sd), true};
+    if (parameter && parameter->origin == base::Origin::measured && parameter->value > 0.0) {
+      parameter->spread = base::Spread{base::Spread::Kind::range, parameter->value * std::exp(-2.0 * calibration::kSheet_sd),
+                                       parameter->value * std::exp(2.0 * calibration::kSheet_sd), true};
     }
   }
   motor.fit.reset();
@@ -231,19 +232,19 @@ void forget_fit(Motor& motor, const std::vector<Recording>& recordings, std::vec
 
 void add_remarks(std::vector<std::string> sentences, std::vector<DiagnosisFinding>& findings) {
   for (std::string& each : sentences) {
-    findings.emplace_back(Remark{std::move(each)});
+    findings.emplace_back(calibration::Remark{std::move(each)});
   }
 }
 
 }  // namespace
 
-ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& recordings) {
+ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording::Recording>& recordings) {
   ModelOfLogs out;
-  const auto have = [&](Signal signal) {
-    return std::ranges::all_of(recordings, [&](const Recording& each) { return has_signal(each, signal); });
+  const auto have = [&](thermal::Signal signal) {
+    return std::ranges::all_of(recordings, [&](const recording::Recording& each) { return has_signal(each, signal); });
   };
-  Motor everywhere = motor;
-  for (MotorEffect& effect : everywhere.effects) {
+  motor::Motor everywhere = motor;
+  for (motor::MotorEffect& effect : everywhere.effects) {
     effect.condition.clear();
   }
   forget_fit(everywhere, recordings, out.findings);
@@ -251,12 +252,13 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
     out.fitted = everywhere.fit->runs;
     out.training = everywhere.fit->training;
   }
-  widen(out.training, recordings);
-  std::ranges::transform(recordings, std::back_inserter(out.fitted), name_and_fingerprint);
-  MotorModel built = motor_model(everywhere, heat_input_of(everywhere, recordings, false), have(Signal::speed));
-  out.how = how_to_read(motor, built.heat);
-  if (built.heat == HeatInput::current && !have(Signal::speed) && most_loss_at_speed_W(motor) > 0.0) {
-    out.findings.emplace_back(LossInUnknownHeat{most_loss_at_speed_W(motor)});
+  calibration::widen(out.training, recordings);
+  std::ranges::transform(recordings, std::back_inserter(out.fitted), recording::name_and_fingerprint);
+  calibration::MotorModel built =
+      calibration::motor_model(everywhere, calibration::heat_input_of(everywhere, recordings, false), have(thermal::Signal::speed));
+  out.how = calibration::how_to_read(motor, built.heat);
+  if (built.heat == calibration::HeatInput::current && !have(thermal::Signal::speed) && calibration::most_loss_at_speed_W(motor) > 0.0) {
+    out.findings.emplace_back(LossInUnknownHeat{calibration::most_loss_at_speed_W(motor)});
   }
   out.model = std::move(built.model);
   out.model.columns = out.how.columns;
@@ -264,62 +266,63 @@ ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& reco
   out.usual.flux_W = everywhere.fit && !everywhere.fit->latent_flux_W.empty() ? std::ranges::max(everywhere.fit->latent_flux_W) : 0.0;
   out.parameters = std::move(built.parameters);
   add_remarks(std::move(built.held), out.findings);
-  add_remarks(held_sensors(motor, recordings), out.findings);
+  add_remarks(calibration::held_sensors(motor, recordings), out.findings);
   add_conditional_effects(motor, recordings, out);
-  if (std::string lacking = columns_lacking(out.how.columns, recordings); !lacking.empty()) {
-    out.findings.emplace_back(Remark{std::move(lacking)});
+  if (std::string lacking = estimation::columns_lacking(out.how.columns, recordings); !lacking.empty()) {
+    out.findings.emplace_back(calibration::Remark{std::move(lacking)});
   }
   set_needed(out, motor, recordings);
-  const bool has_torque = have(Signal::shaft_power);
-  if (!has_torque &&
-      std::ranges::all_of(recordings, [&](const Recording& each) { return has_signal(each, Signal::shaft_power, out.how.torque); })) {
+  const bool has_torque = have(thermal::Signal::shaft_power);
+  if (!has_torque && std::ranges::all_of(recordings, [&](const recording::Recording& each) {
+        return has_signal(each, thermal::Signal::shaft_power, out.how.torque);
+      })) {
     out.findings.emplace_back(TorqueFromCurrent{});
   }
   return out;
 }
 
-void score_files(const Motor& before, const Motor& after, const std::vector<Recording>& holdout, const PredictionOptions& options,
-                 HoldoutScore& score) {
+void score_files(const motor::Motor& before, const motor::Motor& after, const std::vector<recording::Recording>& holdout,
+                 const calibration::PredictionOptions& options, HoldoutScore& score) {
   if (holdout.empty()) {
     return;
   }
-  score.runs_before = predict(before, holdout, options).runs;
-  score.runs_after = predict(after, holdout, options).runs;
-  for (const ErrorBeforeAfter& each : worst_errors(score.runs_before, score.runs_after)) {
+  score.runs_before = calibration::predict(before, holdout, options).runs;
+  score.runs_after = calibration::predict(after, holdout, options).runs;
+  for (const calibration::ErrorBeforeAfter& each : calibration::worst_errors(score.runs_before, score.runs_after)) {
     score.before[each.signal] = {each.before.rmse_K, each.before.max_abs_K};
     score.after[each.signal] = score.file[each.signal] = {each.after.rmse_K, each.after.max_abs_K};
   }
 }
 
-Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
-  Motor result = motor;
+motor::Motor extended_motor(const motor::Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
+  motor::Motor result = motor;
   set_parameters(result, model, diagnosis);
   std::vector<std::string> names;
-  for (const MeasuredRun& run : diagnosis.runs) {
+  for (const estimation::MeasuredRun& run : diagnosis.runs) {
     if (std::ranges::find(names, run.name) == names.end()) {
       names.push_back(run.name);
     }
   }
   result.sources[kSource] = fmt::format("fit to measured runs: {}", fmt::join(names, ", "));
-  std::vector<MotorSensor> sensors = std::move(result.sensors);
+  std::vector<motor::MotorSensor> sensors = std::move(result.sensors);
   result.sensors.clear();
   for (const FoundEffect& effect : diagnosis.effects) {
     if (!effect.name.empty()) {
       result.effects.push_back(motor_effect(effect, diagnosis.selection.after));
-    } else if (const SensorEffectType* type = find_sensor_effect(effect.id); type && !effect.parameters.empty()) {
+    } else if (const motor::SensorEffectType* type = motor::find_sensor_effect(effect.id); type && !effect.parameters.empty()) {
       sensors.push_back(motor_sensor(*type, effect.parameters.front()));
     } else if (!effect.parameters.empty()) {
       const FittedParameter& size = effect.parameters.front();
-      result.notes.push_back(fmt::format("{} at the {}{}: {} {:.3g} {}; found in measurements, not a property of the motor", effect.id,
-                                         effect.node, effect.condition.empty() ? "" : fmt::format(" in {}", in_words(effect.condition)),
-                                         size.name, size.value, size.unit));
+      result.notes.push_back(fmt::format(
+          "{} at the {}{}: {} {:.3g} {}; found in measurements, not a property of the motor", effect.id, effect.node,
+          effect.condition.empty() ? "" : fmt::format(" in {}", estimation::in_words(effect.condition)), size.name, size.value, size.unit));
     }
   }
-  for (const MotorSensor& sensor : sensors) {
+  for (const motor::MotorSensor& sensor : sensors) {
     add_sensor(result, sensor);
   }
-  refresh_values(result);
+  motor::refresh_values(result);
   return result;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::diagnosis

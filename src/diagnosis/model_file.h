@@ -9,31 +9,31 @@
 #include "diagnosis/findings.h"
 #include "motor/motor.h"
 
-namespace heatsoak {
+namespace heatsoak::diagnosis {
 
 /// A motor's model as the logs require it.
 struct ModelOfLogs {
-  Model model;
-  UsualErrors usual;
-  std::vector<CalibratedValue> parameters;  ///< parameters of the motor file, as functions of the model's coordinates
-  MeasuredRunOptions how;                   ///< required signals and options for reading the runs, except for the ambient temperature
-  std::vector<std::string> fitted;          ///< logs that the file's parameters were fitted to, as name_and_fingerprint()
-  TrainingRange training;                   ///< range of the signals in those logs and in these
-  std::vector<DiagnosisFinding> findings;   ///< assumptions for signals that no log has
+  estimation::Model model;
+  attribution::UsualErrors usual;
+  std::vector<calibration::CalibratedValue> parameters;  ///< parameters of the motor file, as functions of the model's coordinates
+  estimation::MeasuredRunOptions how;      ///< required signals and options for reading the runs, except for the ambient temperature
+  std::vector<std::string> fitted;         ///< logs that the file's parameters were fitted to, as name_and_fingerprint()
+  motor::TrainingRange training;           ///< range of the signals in those logs and in these
+  std::vector<DiagnosisFinding> findings;  ///< assumptions for signals that no log has
 };
 
 /// Builds the motor's network with the same free parameters as a calibration and with the file's uncertainties as priors. If not every
 /// recording has a current, measured input power heats the winding. Effects with a condition act in the runs that have it. Heat inputs that
 /// no recording has are 0. Throws Failure (bad_input) if the recordings have no heat input that an effect of the motor uses.
-ModelOfLogs model_of_logs(const Motor& motor, const std::vector<Recording>& recordings);
+ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording::Recording>& recordings);
 
 /// Returns the motor with the parameters, effects and sensor errors of the diagnosis; to_toml() writes it as a motor file. Run deviations
 /// are not properties of a motor and become notes.
-Motor extended_motor(const Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis);
+motor::Motor extended_motor(const motor::Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis);
 
 /// Predicts the hold-out recordings from both motor files with predict(), and replaces the errors before and after in `score`. Per signal
 /// the errors are those of the run with the largest error after the diagnosis. Does nothing without recordings.
-void score_files(const Motor& before, const Motor& after, const std::vector<Recording>& holdout, const PredictionOptions& options,
-                 HoldoutScore& score);
+void score_files(const motor::Motor& before, const motor::Motor& after, const std::vector<recording::Recording>& holdout,
+                 const calibration::PredictionOptions& options, HoldoutScore& score);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::diagnosis

@@ -9,16 +9,16 @@
 #include "attribution/terms.h"
 #include "calibration/unlogged_speed.h"
 
-namespace heatsoak {
+namespace heatsoak::diagnosis {
 namespace {
 
 class UnexplainedHeatReport {
  public:
-  UnexplainedHeatReport(const Diagnosis& diagnosis, const std::vector<MeasuredRun>& train) : told_(diagnosis), train_(train) {}
+  UnexplainedHeatReport(const Diagnosis& diagnosis, const std::vector<estimation::MeasuredRun>& train) : told_(diagnosis), train_(train) {}
 
   /// Returns the accepted curves or, without one, the node with the most unknown heat.
   std::vector<Unexplained> tell() {
-    for (const AcceptedTerm& term : told_.selection.terms) {
+    for (const attribution::AcceptedTerm& term : told_.selection.terms) {
       if (term.curve) {
         add_curve(*term.curve, term.confusable_with);
         report_as_added(term, heats_.back());
@@ -43,12 +43,13 @@ class UnexplainedHeatReport {
     return most;
   }
 
-  [[nodiscard]] const Posterior& after() const { return told_.selection.after; }
+  [[nodiscard]] const estimation::Posterior& after() const { return told_.selection.after; }
   [[nodiscard]] double time_scale_s() const { return after().flux.time_scale_s; }
 
   [[nodiscard]] bool has_sensor(const std::string& node) const {
-    return std::ranges::any_of(
-        train_, [&](const MeasuredRun& run) { return std::ranges::find(run.sensors, node, &Sensor::node) != run.sensors.end(); });
+    return std::ranges::any_of(train_, [&](const estimation::MeasuredRun& run) {
+      return std::ranges::find(run.sensors, node, &estimation::Sensor::node) != run.sensors.end();
+    });
   }
 
   /// Groups the nodes with unknown heat by the node whose sensor shows it: the node itself, or else the first one with a sensor.
@@ -88,31 +89,31 @@ class UnexplainedHeatReport {
   }
 
   /// Overwrites the curve of the scan by the fitted one of the model.
-  void report_as_added(const AcceptedTerm& term, Unexplained& heat) const {
+  void report_as_added(const attribution::AcceptedTerm& term, Unexplained& heat) const {
     const auto effect = std::ranges::find(told_.effects, term.effect_name, &FoundEffect::name);
     heat.is_in_model = true;
     heat.mean_W = heat.rms_W = effect->mean_W;
     heat.peak_W = effect->peak_W;
-    const Model& model = after().model;
-    const EffectInPlace& in_place = *effect_named(after().model.network, term.effect_name);
+    const estimation::Model& model = after().model;
+    const thermal::EffectInPlace& in_place = *effect_named(after().model.network, term.effect_name);
     const std::size_t first = in_place.parameter_index.size() - heat.curve.size();
     const auto value = [&](std::size_t parameter) { return model.values[static_cast<std::size_t>(in_place.parameter_index[parameter])]; };
-    heat.knots = knots_from({value(first - 2), value(first - 1)});
+    heat.knots = attribution::knots_from({value(first - 2), value(first - 1)});
     for (std::size_t knot = 0; knot < heat.curve.size(); ++knot) {
       heat.curve[knot] = value(first + knot);
-      const auto free = std::ranges::find(model.free, in_place.parameter_index[first + knot], &FreeParameter::place);
+      const auto free = std::ranges::find(model.free, in_place.parameter_index[first + knot], &estimation::FreeParameter::place);
       const Eigen::Index own = free - model.free.begin();
       heat.curve_sd[knot] = free == model.free.end() ? 0.0 : free->scale * std::sqrt(after().covariance(own, own));
     }
   }
 
-  void add_curve(const ScanResult& curve, const std::vector<std::string>& others) {
-    const Regressor& driver = told_.selection.drivers[static_cast<std::size_t>(curve.term.driver)];
+  void add_curve(const attribution::ScanResult& curve, const std::vector<std::string>& others) {
+    const attribution::Regressor& driver = told_.selection.drivers[static_cast<std::size_t>(curve.term.driver)];
     Unexplained heat;
     heat.node = curve.term.node;
     heat.drivers = {driver.name};
     heat.drivers.insert(heat.drivers.end(), others.begin(), others.end());
-    heat.times = second_signal(curve.term.multiplier);
+    heat.times = attribution::second_signal(curve.term.multiplier);
     heat.mean_W = curve.mean_W;
     heat.peak_W = curve.peak_W;
     heat.rms_W = curve.mean_W;
@@ -123,20 +124,20 @@ class UnexplainedHeatReport {
     for (Eigen::Index i = 0; i < curve.covariance.rows(); ++i) {
       heat.curve_sd.push_back(std::sqrt(curve.covariance(i, i)));
     }
-    heat.curve_unit = unit_of(curve.term.multiplier);
+    heat.curve_unit = attribution::unit_of(curve.term.multiplier);
     heat.driver_unit = driver.unit;
     heats_.push_back(std::move(heat));
   }
 
   const Diagnosis& told_;
-  const std::vector<MeasuredRun>& train_;
+  const std::vector<estimation::MeasuredRun>& train_;
   std::vector<Unexplained> heats_;
 };
 
 }  // namespace
 
-std::vector<Unexplained> unexplained_heat(const Diagnosis& diagnosis, const std::vector<MeasuredRun>& train) {
+std::vector<Unexplained> unexplained_heat(const Diagnosis& diagnosis, const std::vector<estimation::MeasuredRun>& train) {
   return UnexplainedHeatReport(diagnosis, train).tell();
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::diagnosis

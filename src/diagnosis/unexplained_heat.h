@@ -5,10 +5,10 @@
 
 #include "diagnosis/diagnosis.h"
 
-namespace heatsoak {
+namespace heatsoak::diagnosis {
 
 /// Returns the accepted curves. If there are none and the selection is unexplained, returns the node with the most unknown heat. Needs the
 /// selection, effects and flux of the diagnosis.
-std::vector<Unexplained> unexplained_heat(const Diagnosis& described, const std::vector<MeasuredRun>& train);
+std::vector<Unexplained> unexplained_heat(const Diagnosis& described, const std::vector<estimation::MeasuredRun>& train);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::diagnosis

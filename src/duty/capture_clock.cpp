@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 constexpr double kLatest_s = 1e11;
@@ -61,4 +61,4 @@ std::optional<CaptureClock::Reading> CaptureClock::read(int camera, double captu
   return reading;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 /// Frames carry the time of capture (exact, but its clock may be set anew) and a time of reception (late and
 /// uneven, but of one clock). Where the two part by more than kTolerance_s, and frames agree on it, the clock of
@@ -40,4 +40,4 @@ class CaptureClock {
   double last_capture_s_ = 0.0;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 double direction_of(double speed_rad_per_s) {
@@ -192,4 +192,4 @@ WheelDemand DemandGatherer::finish() {
   return std::move(demand_);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

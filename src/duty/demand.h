@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 /// Means over a segment of time at one wheel. With I = (M + M_drag·sign ω)/K_t the mean of I² is
 /// (⟨M²⟩ + 2·M_drag·⟨M·sign ω⟩ + M_drag²·⟨sign² ω⟩)/K_t², so that these means give the copper heat of every motor exactly,
@@ -133,4 +133,4 @@ class DemandGatherer {
   double stay_s_ = 0.0;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

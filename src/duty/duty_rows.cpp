@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 DutyRows::DutyRows(std::size_t wheel_count, DutyKind kind, double every_s, Put put)
     : kind_(kind), every_s_(every_s), put_(std::move(put)), means_(wheel_count) {
@@ -58,4 +58,4 @@ void DutyRows::finish() {
   put_(text + "\n");
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -8,7 +8,7 @@
 
 #include "duty/duty.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 /// A row holds until the next; its torque is the rms with the sign of the mean, so that the heat stays.
 class DutyRows {
@@ -35,4 +35,4 @@ class DutyRows {
   double time_s_ = 0.0;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -4,7 +4,7 @@
 
 #include "duty/duty.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 std::string_view to_string(FileKind kind) {
   switch (kind) {
@@ -18,7 +18,7 @@ std::string_view to_string(FileKind kind) {
   return "duty";
 }
 
-std::optional<FileKind> evident_kind(const Value& root) {
+std::optional<FileKind> evident_kind(const input::Value& root) {
   if (root.find("shape") || root.find("base") ||
       std::ranges::any_of(all_shapes(), [&](const ShapeType& shape) { return root.find(shape.name) != nullptr; })) {
     return FileKind::duty;
@@ -29,6 +29,6 @@ std::optional<FileKind> evident_kind(const Value& root) {
   return root.find("figures") || root.find("conventions") ? std::optional(FileKind::motor) : std::nullopt;
 }
 
-FileKind file_kind(const std::filesystem::path& file) { return evident_kind(read_toml(file)).value_or(FileKind::motor); }
+FileKind file_kind(const std::filesystem::path& file) { return evident_kind(input::read_toml(file)).value_or(FileKind::motor); }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

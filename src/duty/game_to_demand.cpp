@@ -9,7 +9,7 @@
 #include "duty/motion.h"
 #include "duty/recorded_game.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 constexpr double kRate_Hz = 1000.0;
@@ -40,9 +40,9 @@ std::optional<RobotName> choose(const ImportReport& survey, const std::string& p
     }
   }
   if (!player.empty() && !known.empty()) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{}: there is no robot '{}'{}; the log has {}\n{}", log.string(), player, did_you_mean(player, known),
-                              fmt::join(known, ", "), fmt::join(sentences(survey), "\n")));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("{}: there is no robot '{}'{}; the log has {}\n{}", log.string(), player,
+                                    base::did_you_mean(player, known), fmt::join(known, ", "), fmt::join(sentences(survey), "\n")));
   }
   const auto busiest = std::ranges::max_element(survey.robots, {}, &RobotSummary::effort_m2_per_s3);
   return busiest == survey.robots.end() ? std::nullopt : std::optional(busiest->robot);
@@ -56,17 +56,17 @@ struct WheelLoads {
   int jumps = 0;          ///< of the clock; left out
 };
 
-WheelLoads loads_of(const MotionTrack& motion, const Robot& robot, double bin_s, const GameObserver& observer) {
-  MotorValues no_rotor;
+WheelLoads loads_of(const MotionTrack& motion, const robot::Robot& robot, double bin_s, const GameObserver& observer) {
+  motor::MotorValues no_rotor;
   no_rotor.rotor_inertia_kg_m2 = 0.0;
-  const BodyConfig body = make_body(robot, no_rotor);
+  const robot::BodyConfig body = robot::make_body(robot, no_rotor);
   std::vector<DemandGatherer> gatherers;
   for (int wheel = 0; wheel < body.kinematics.wheel_count; ++wheel) {
     gatherers.emplace_back(fmt::format("wheel {}", wheel + 1), bin_s,
                            DemandGatherer::Grid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0});
   }
   WheelLoads loads;
-  const auto add = [&](double duration_s, const WheelDemands& wheels) {
+  const auto add = [&](double duration_s, const robot::WheelDemands& wheels) {
     for (std::size_t i = 0; i < gatherers.size(); ++i) {
       gatherers[i].add(duration_s, wheels.torque_Nm[i], wheels.speed_rad_per_s[i]);
     }
@@ -83,10 +83,10 @@ WheelLoads loads_of(const MotionTrack& motion, const Robot& robot, double bin_s,
       add(gap_s, {});
     }
     time_s = at.time_s;
-    const BodyMotion local =
-        local_motion(body, {at.x_m, at.y_m, at.yaw_rad}, {at.velocity_x_m_per_s, at.velocity_y_m_per_s, at.yaw_rate_rad_per_s},
-                     {at.acceleration_x_m_per_s2, at.acceleration_y_m_per_s2, at.yaw_acceleration_rad_per_s2});
-    const WheelDemands wheels = inverse_dynamics(body, local);
+    const robot::BodyMotion local =
+        robot::local_motion(body, {at.x_m, at.y_m, at.yaw_rad}, {at.velocity_x_m_per_s, at.velocity_y_m_per_s, at.yaw_rate_rad_per_s},
+                            {at.acceleration_x_m_per_s2, at.acceleration_y_m_per_s2, at.yaw_acceleration_rad_per_s2});
+    const robot::WheelDemands wheels = robot::inverse_dynamics(body, local);
     loads.slip_s += wheels.transmitted_share < 1.0 ? 1.0 / kRate_Hz : 0.0;
     add(1.0 / kRate_Hz, wheels);
   });
@@ -99,7 +99,7 @@ WheelLoads loads_of(const MotionTrack& motion, const Robot& robot, double bin_s,
 
 }  // namespace
 
-GameDemand demand_of_game(const std::filesystem::path& log, const std::string& player, const Robot& robot, double bin_s,
+GameDemand demand_of_game(const std::filesystem::path& log, const std::string& player, const robot::Robot& robot, double bin_s,
                           const GameObserver& observer) {
   ImportOptions survey;
   survey.most_points = 0;
@@ -139,4 +139,4 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
   return result;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

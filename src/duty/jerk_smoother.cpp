@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 constexpr double kDecibel3 = 0.8634;  // (√2 - 1)^(1/6): 1 / (1 + u^6) = 1/√2
@@ -89,4 +89,4 @@ double acceleration_noise(double value, double step_s, double bandwidth_Hz) {
   return value * std::sqrt(step_s * std::pow(corner_rad_per_s(bandwidth_Hz), 5.0) / 18.0);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 /// Position, velocity, acceleration; in the unit of the coordinate and seconds.
 struct Smoothed {
@@ -27,4 +27,4 @@ std::vector<Smoothed> smooth_samples(std::span<const Sample> samples, double ste
 /// rms of the acceleration that white noise of the rms `value` in each sample leaves behind.
 double acceleration_noise(double value, double step_s, double bandwidth_Hz);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

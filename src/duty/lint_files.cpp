@@ -11,40 +11,40 @@
 #include "robot/robot.h"
 #include "robot/robot_lint.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 /// Reads the file as the kind that its keys indicate and returns its findings.
-std::vector<LintFinding> look_into(const std::filesystem::path& file, const DataFolders& folders) {
+std::vector<motor::LintFinding> look_into(const std::filesystem::path& file, const input::DataFolders& folders) {
   switch (file_kind(file)) {
     case FileKind::duty:
       read_duty(file);
       return {};
     case FileKind::robot:
-      return lint(read_robot(file), ids_in(folders.motors));
+      return robot::lint(robot::read_robot(file), input::ids_in(folders.motors));
     case FileKind::motor:
       break;
   }
-  Diagnostics problems;
-  const Motor motor = read_motor(file, problems);
+  base::Diagnostics problems;
+  const motor::Motor motor = motor::read_motor(file, problems);
   if (problems.empty()) {
-    return lint(motor);
+    return motor::lint(motor);
   }
-  add_lint_errors(motor, problems);
+  motor::add_lint_errors(motor, problems);
   problems.throw_if_any();
   return {};
 }
 
 /// Returns the file itself, every file of a folder, or the file of an id.
-std::vector<std::string> files_named(const std::string& name, const DataFolders& folders) {
+std::vector<std::string> files_named(const std::string& name, const input::DataFolders& folders) {
   std::vector<std::string> files;
   std::error_code unreachable;  // reading the file then reports the reason
   if (std::filesystem::is_directory(name, unreachable)) {
-    for (const std::string& id : ids_in(name)) {
+    for (const std::string& id : input::ids_in(name)) {
       files.push_back((std::filesystem::path(name) / fmt::format("{}.toml", id)).string());
     }
     if (files.empty()) {
-      throw Failure(ExitCode::bad_input, fmt::format("there is no .toml file in the folder {}", name));
+      throw base::Failure(base::ExitCode::bad_input, fmt::format("there is no .toml file in the folder {}", name));
     }
     return files;
   }
@@ -53,7 +53,7 @@ std::vector<std::string> files_named(const std::string& name, const DataFolders&
   }
   std::vector<std::string> known;
   for (const std::filesystem::path& folder : {folders.motors, folders.robots, folders.duties}) {
-    for (const std::string& id : ids_in(folder)) {
+    for (const std::string& id : input::ids_in(folder)) {
       known.push_back(id);
       if (id == name) {
         files.push_back((folder / fmt::format("{}.toml", id)).string());
@@ -61,42 +61,43 @@ std::vector<std::string> files_named(const std::string& name, const DataFolders&
     }
   }
   if (files.empty()) {
-    throw Failure(ExitCode::bad_input, fmt::format("'{}' is not a file, folder, motor, robot or duty{}", name, did_you_mean(name, known)));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("'{}' is not a file, folder, motor, robot or duty{}", name, base::did_you_mean(name, known)));
   }
   return files;
 }
 
 }  // namespace
 
-std::size_t FilesLint::count(LintFinding::Level level) const {
-  return static_cast<std::size_t>(std::ranges::count(findings, level, &LintFinding::level));
+std::size_t FilesLint::count(motor::LintFinding::Level level) const {
+  return static_cast<std::size_t>(std::ranges::count(findings, level, &motor::LintFinding::level));
 }
 
-FilesLint lint_files(std::span<const std::string> names, const DataFolders& folders) {
+FilesLint lint_files(std::span<const std::string> names, const input::DataFolders& folders) {
   FilesLint result;
-  std::vector<Diagnostic> unreadable;
+  std::vector<base::Diagnostic> unreadable;
   std::string unknown;
   for (const std::string& name : names) {
     try {
       const std::vector<std::string> named = files_named(name, folders);
       result.files.insert(result.files.end(), named.begin(), named.end());
-    } catch (const Failure& failure) {
+    } catch (const base::Failure& failure) {
       unknown += fmt::format("{}{}", unknown.empty() ? "" : "\n", failure.message());
       unreadable.insert(unreadable.end(), failure.diagnostics().begin(), failure.diagnostics().end());
     }
   }
   for (const std::string& file : result.files) {
     try {
-      const std::vector<LintFinding> found = look_into(file, folders);
+      const std::vector<motor::LintFinding> found = look_into(file, folders);
       result.findings.insert(result.findings.end(), found.begin(), found.end());
-    } catch (const Failure& failure) {
+    } catch (const base::Failure& failure) {
       unreadable.insert(unreadable.end(), failure.diagnostics().begin(), failure.diagnostics().end());
     }
   }
   if (!unreadable.empty() || !unknown.empty()) {
-    throw Failure(ExitCode::bad_input, std::move(unknown), std::move(unreadable));
+    throw base::Failure(base::ExitCode::bad_input, std::move(unknown), std::move(unreadable));
   }
   return result;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

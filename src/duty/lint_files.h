@@ -8,17 +8,17 @@
 #include "input/data_folders.h"
 #include "motor/lint.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 struct FilesLint {
   std::vector<std::string> files;
-  std::vector<LintFinding> findings;  ///< in the order of the files
+  std::vector<motor::LintFinding> findings;  ///< in the order of the files
 
-  [[nodiscard]] std::size_t count(LintFinding::Level level) const;
+  [[nodiscard]] std::size_t count(motor::LintFinding::Level level) const;
 };
 
 /// Checks files, folders of them, and ids of motors, robots and duties. Throws Failure (bad_input) with every problem if a name is unknown
 /// or a file cannot be read.
-FilesLint lint_files(std::span<const std::string> names, const DataFolders& folders);
+FilesLint lint_files(std::span<const std::string> names, const input::DataFolders& folders);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -12,7 +12,7 @@
 #include "base/diagnostic.h"
 #include "base/files.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 constexpr std::size_t kChunk = std::size_t{1} << 18;
@@ -58,7 +58,7 @@ struct LogBytes::State {
     packed.resize(kChunk);
     zip_open = inflateInit2(&zip, kGzipWindow) == Z_OK;
     if (!zip_open) {
-      throw Failure(ExitCode::bug, "zlib cannot be initialized");
+      throw base::Failure(base::ExitCode::bug, "zlib cannot be initialized");
     }
   }
 
@@ -121,13 +121,13 @@ LogBytes::LogBytes(const std::filesystem::path& file) : state_(std::make_unique<
   State& s = *state_;
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) {
-    throw bad_input({file.string()}, "", "is a folder; expected a recorded game");
+    throw base::bad_input({file.string()}, "", "is a folder; expected a recorded game");
   }
   s.file.reset(std::fopen(file.c_str(), "rb"));
   if (!s.file) {
-    throw bad_input({file.string()}, "", fmt::format("cannot be read: {}", std::strerror(errno)));
+    throw base::bad_input({file.string()}, "", fmt::format("cannot be read: {}", std::strerror(errno)));
   }
-  note_input(file);
+  base::note_input(file);
   s.file_size = std::filesystem::file_size(file, error);
   if (error) {
     s.file_size = 0;
@@ -176,4 +176,4 @@ double LogBytes::share() const {
   return s.file_size == 0 ? 0.0 : std::min(1.0, static_cast<double>(s.file_read) / static_cast<double>(s.file_size));
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 class LogBytes {
  public:
@@ -37,4 +37,4 @@ class LogBytes {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

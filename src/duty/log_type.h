@@ -9,7 +9,7 @@
 
 #include "duty/recorded_game.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 /// One robot in one frame of one camera.
 struct Detection {
@@ -51,4 +51,4 @@ struct LogType {
 };
 const std::vector<LogType>& all_logs();
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -10,7 +10,7 @@
 #include "duty/match/match_duty.h"
 #include "input/toml_text.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 /// Returns the table, whose rows are put out as they are produced; nothing if the job has none.
@@ -20,7 +20,8 @@ std::optional<DutyRows> table_of(const DutyJob& job, std::size_t wheel_count, Du
 
 PrescribedLoad put_out(const DutyJob& job, const Duty& duty) {
   if (job.seed || job.planner) {
-    throw Failure(ExitCode::bad_input, fmt::format("{} is for matches; {} is {}", job.seed ? "--seed" : "--planner", duty.id, duty.shape));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("{} is for matches; {} is {}", job.seed ? "--seed" : "--planner", duty.id, duty.shape));
   }
   const std::vector<WheelDemand> wheels = duty.demand(job.robot, job.seed.value_or(1));
   std::optional<DutyRows> rows = table_of(job, wheels.size(), duty.kind);
@@ -55,12 +56,14 @@ GameDemand imported_game(const DutyJob& job) {
   std::optional<DutyRows> rows = table_of(job, job.robot.wheels.axis_rad.size(), DutyKind::torque);
   GameObserver observer;
   if (rows) {
-    observer = [&rows](double duration_s, const WheelDemands& wheels) { rows->add(duration_s, wheels.torque_Nm, wheels.speed_rad_per_s); };
+    observer = [&rows](double duration_s, const robot::WheelDemands& wheels) {
+      rows->add(duration_s, wheels.torque_Nm, wheels.speed_rad_per_s);
+    };
   }
   GameDemand game = demand_of_game(job.log, job.player, job.robot, kBin_s, observer);
   if (game.wheels.empty()) {
-    throw Failure(ExitCode::cannot_answer,
-                  fmt::format("{}: no robot is seen long enough to follow its motion\n{}", job.log, fmt::join(game.sentences, "\n")));
+    throw base::Failure(base::ExitCode::cannot_answer,
+                        fmt::format("{}: no robot is seen long enough to follow its motion\n{}", job.log, fmt::join(game.sentences, "\n")));
   }
   if (rows) {
     rows->finish();
@@ -94,7 +97,7 @@ std::string duty_file(const DutyAnswer& answer, const std::filesystem::path& csv
       "summary = {}\norigin = {}\nshape = \"recorded\"\n"
       "ambient = {{ value = \"25 degC\", origin = \"estimated\", derivation = \"not recorded\", range = [\"20 degC\", \"32 degC\"] }}\n\n"
       "[recorded]\nfile = {}\nquantity = \"{}\"\n",
-      toml_text(summary), toml_text(origin), toml_text(csv.filename().string()), is_torque ? "torque" : "current");
+      input::toml_text(summary), input::toml_text(origin), input::toml_text(csv.filename().string()), is_torque ? "torque" : "current");
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

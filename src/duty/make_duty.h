@@ -13,10 +13,10 @@
 #include "duty/match/roles.h"
 #include "robot/robot.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 struct DutyJob {
-  Robot robot;
+  robot::Robot robot;
   std::optional<Duty> duty = {};  ///< nothing: the recorded game `log`
   std::string log = {};
   std::string player = {};                 ///< name in the recorded game, "yellow 3"; empty: the busiest one
@@ -38,7 +38,7 @@ struct GeneratedMatch {
 };
 
 struct DutyAnswer {
-  Robot robot;
+  robot::Robot robot;
   std::optional<Duty> duty;  ///< nothing for a recorded game
   std::string log;           ///< file of a recorded game
   std::variant<PrescribedLoad, GeneratedMatch, GameDemand> content;
@@ -51,4 +51,4 @@ DutyAnswer make_duty(const DutyJob& job);
 /// Returns the duty file that describes the table `csv` beside it, so that `evaluate --duty FILE.toml` can read it.
 std::string duty_file(const DutyAnswer& answer, const std::filesystem::path& csv);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -8,7 +8,7 @@
 
 #include "duty/jerk_smoother.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 constexpr double kFramesPerPeriod = 6.0;  // less than six sights of one period say nothing about its acceleration
@@ -370,4 +370,4 @@ std::string to_string(const SmoothingReport& r) {
                      channel(r.turn, "turn", "rad"));
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -9,7 +9,7 @@
 
 #include "duty/recorded_game.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 /// Everything in the frame of the field; yaw counts counter-clockwise.
 struct Motion {
@@ -78,4 +78,4 @@ class MotionTrack {
 
 MotionTrack smooth(const RobotTrack& track, const SmoothingOptions& options = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

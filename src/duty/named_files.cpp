@@ -6,14 +6,14 @@
 
 #include "motor/default_spread.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 template <class Read>
 auto NamedFiles::attempt(const Read& read) -> std::optional<decltype(read())> {
   try {
     return read();
-  } catch (const Failure& failure) {
-    if (failure.code() != ExitCode::bad_input) {
+  } catch (const base::Failure& failure) {
+    if (failure.code() != base::ExitCode::bad_input) {
       throw;
     }
     problems_.push_back(failure);
@@ -21,16 +21,16 @@ auto NamedFiles::attempt(const Read& read) -> std::optional<decltype(read())> {
   }
 }
 
-std::optional<Motor> NamedFiles::motor(const std::string& name) {
-  return attempt([&] { return read_sound_motor(file(FileKind::motor, name)); });
+std::optional<motor::Motor> NamedFiles::motor(const std::string& name) {
+  return attempt([&] { return motor::read_sound_motor(file(FileKind::motor, name)); });
 }
 
-std::optional<Motor> NamedFiles::motor_as_written(const std::string& name) {
-  return attempt([&] { return read_motor(file(FileKind::motor, name)); });
+std::optional<motor::Motor> NamedFiles::motor_as_written(const std::string& name) {
+  return attempt([&] { return motor::read_motor(file(FileKind::motor, name)); });
 }
 
-std::optional<Robot> NamedFiles::robot(const std::string& name) {
-  return attempt([&] { return read_robot(file(FileKind::robot, name)); });
+std::optional<robot::Robot> NamedFiles::robot(const std::string& name) {
+  return attempt([&] { return robot::read_robot(file(FileKind::robot, name)); });
 }
 
 std::optional<Duty> NamedFiles::duty(const std::string& name) {
@@ -43,9 +43,9 @@ std::optional<std::filesystem::path> NamedFiles::motor_file(const std::string& n
 
 void NamedFiles::throw_if_any() const {
   std::string message;
-  std::vector<Diagnostic> diagnostics;
+  std::vector<base::Diagnostic> diagnostics;
   std::vector<std::string> reported;
-  for (const Failure& each : problems_) {
+  for (const base::Failure& each : problems_) {
     if (std::ranges::find(reported, each.what()) != reported.end()) {
       continue;
     }
@@ -54,7 +54,7 @@ void NamedFiles::throw_if_any() const {
     diagnostics.insert(diagnostics.end(), each.diagnostics().begin(), each.diagnostics().end());
   }
   if (!problems_.empty()) {
-    throw Failure(ExitCode::bad_input, std::move(message), std::move(diagnostics));
+    throw base::Failure(base::ExitCode::bad_input, std::move(message), std::move(diagnostics));
   }
 }
 
@@ -62,31 +62,32 @@ std::filesystem::path NamedFiles::file(FileKind kind, const std::string& name) c
   const std::filesystem::path& folder = kind == FileKind::motor   ? folders_.motors
                                         : kind == FileKind::robot ? folders_.robots
                                                                   : folders_.duties;
-  std::filesystem::path path = file_of(folder, to_string(kind), name);
+  std::filesystem::path path = input::file_of(folder, to_string(kind), name);
   if (path.string() != name) {
     return path;  // an id: the folder determines the kind
   }
-  const FileKind found = evident_kind(read_toml(path)).value_or(kind);
+  const FileKind found = evident_kind(input::read_toml(path)).value_or(kind);
   if (found != kind) {
-    throw bad_input({name}, "",
-                    fmt::format("is a {} file; expected a {} file here (`heatsoak list {}` shows those that are there)", to_string(found),
-                                to_string(kind), kind == FileKind::duty ? "duties" : fmt::format("{}s", to_string(kind))));
+    throw base::bad_input(
+        {name}, "",
+        fmt::format("is a {} file; expected a {} file here (`heatsoak list {}` shows those that are there)", to_string(found),
+                    to_string(kind), kind == FileKind::duty ? "duties" : fmt::format("{}s", to_string(kind))));
   }
   return path;
 }
 
-Motor motor_named(const DataFolders& folders, const std::string& name) {
+motor::Motor motor_named(const input::DataFolders& folders, const std::string& name) {
   NamedFiles named(folders);
-  const std::optional<Motor> motor = named.motor_as_written(name);
+  const std::optional<motor::Motor> motor = named.motor_as_written(name);
   named.throw_if_any();
   return *motor;
 }
 
-Robot robot_named(const DataFolders& folders, const std::string& name) {
+robot::Robot robot_named(const input::DataFolders& folders, const std::string& name) {
   NamedFiles named(folders);
-  const std::optional<Robot> robot = named.robot(name);
+  const std::optional<robot::Robot> robot = named.robot(name);
   named.throw_if_any();
   return *robot;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -12,25 +12,25 @@
 #include "motor/motor.h"
 #include "robot/robot.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 /// Reads files one after the other and collects the problems of all of them.
 class NamedFiles {
  public:
-  explicit NamedFiles(DataFolders folders) : folders_(std::move(folders)) {}
+  explicit NamedFiles(input::DataFolders folders) : folders_(std::move(folders)) {}
 
   /// Returns nothing if there is a problem, which throw_if_any() then reports. A motor with contradicting values is a problem too
   /// (require_sound()), because verdicts and firmware need a consistent one.
-  std::optional<Motor> motor(const std::string& name);
+  std::optional<motor::Motor> motor(const std::string& name);
   /// Returns the motor as its file states it, even with contradicting values; for commands that measure the motor.
-  std::optional<Motor> motor_as_written(const std::string& name);
-  std::optional<Robot> robot(const std::string& name);
+  std::optional<motor::Motor> motor_as_written(const std::string& name);
+  std::optional<robot::Robot> robot(const std::string& name);
   std::optional<Duty> duty(const std::string& name);
   std::optional<std::filesystem::path> motor_file(const std::string& name);
   /// Throws Failure (bad_input) with every problem.
   void throw_if_any() const;
 
-  [[nodiscard]] const DataFolders& folders() const { return folders_; }
+  [[nodiscard]] const input::DataFolders& folders() const { return folders_; }
 
  private:
   /// Returns the path of that name; throws if the file is of another kind.
@@ -38,12 +38,12 @@ class NamedFiles {
   template <class Read>
   auto attempt(const Read& read) -> std::optional<decltype(read())>;
 
-  DataFolders folders_;
-  std::vector<Failure> problems_;
+  input::DataFolders folders_;
+  std::vector<base::Failure> problems_;
 };
 
 /// Read a single file with the same checks; the motor as its file states it. Throw Failure (bad_input).
-Motor motor_named(const DataFolders& folders, const std::string& name);
-Robot robot_named(const DataFolders& folders, const std::string& name);
+motor::Motor motor_named(const input::DataFolders& folders, const std::string& name);
+robot::Robot robot_named(const input::DataFolders& folders, const std::string& name);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -12,7 +12,7 @@
 #include "duty/logs_registry.h"
 #include "duty/track_builder.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 constexpr std::size_t kHead = 4096;
@@ -40,14 +40,14 @@ std::string printable(std::string_view bytes) {
   return text;
 }
 
-Failure not_a_game(const std::filesystem::path& file, std::string_view head) {
+base::Failure not_a_game(const std::filesystem::path& file, std::string_view head) {
   for (const auto& [begins, advice] : kForeign) {
     if (head.starts_with(begins)) {
-      return bad_input({file.string()}, "", std::string(advice));
+      return base::bad_input({file.string()}, "", std::string(advice));
     }
   }
   if (head.empty()) {
-    return bad_input({file.string()}, "", "is empty; expected a recorded game");
+    return base::bad_input({file.string()}, "", "is empty; expected a recorded game");
   }
   std::string expected;
   for (const LogType& type : all_logs()) {
@@ -55,8 +55,8 @@ Failure not_a_game(const std::filesystem::path& file, std::string_view head) {
   }
   const std::array<std::string, 2> known{"SSL_LOG_FILE", "t_s,team,robo"};
   const std::string begin = printable(head.substr(0, 12));
-  const std::string meant = did_you_mean(begin, known);
-  return bad_input(
+  const std::string meant = base::did_you_mean(begin, known);
+  return base::bad_input(
       {file.string()}, "",
       fmt::format("is not a recorded game: it begins with \"{}\"{} Expected {}", begin, meant.empty() ? "." : meant, expected));
 }
@@ -70,7 +70,7 @@ const LogType& log_type(const std::filesystem::path& file, const std::string& fo
       }
       names.emplace_back(type.name);
     }
-    throw Failure(ExitCode::bad_input, fmt::format("there is no log format '{}'{}", format, did_you_mean(format, names)));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("there is no log format '{}'{}", format, base::did_you_mean(format, names)));
   }
   LogBytes bytes(file);
   const std::string_view head = bytes.peek(kHead);
@@ -80,7 +80,7 @@ const LogType& log_type(const std::filesystem::path& file, const std::string& fo
     }
   }
   if (head.empty() && !bytes.broken().empty()) {
-    throw bad_input({file.string()}, "", bytes.broken());
+    throw base::bad_input({file.string()}, "", bytes.broken());
   }
   throw not_a_game(file, head);
 }
@@ -180,4 +180,4 @@ RobotTrack only_in(const RobotTrack& track, std::span<const PhaseSpan> phases, s
   return cut;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

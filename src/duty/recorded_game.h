@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 enum class Team { yellow, blue };
 std::string_view to_string(Team team);
@@ -130,4 +130,4 @@ RecordedGame import_game(const std::filesystem::path& file, const ImportOptions&
 /// The parts of a track inside the wanted phases.
 RobotTrack only_in(const RobotTrack& track, std::span<const PhaseSpan> phases, std::span<const GamePhase> wanted);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

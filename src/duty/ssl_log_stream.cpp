@@ -6,7 +6,7 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 constexpr std::size_t kHeader = 16;  // of the file and of each record
@@ -70,13 +70,14 @@ Candidate candidate_at(std::string_view bytes, std::size_t at, bool is_all) {
 SslLogStream::SslLogStream(LogBytes& bytes, const std::filesystem::path& file, LogEvents& events) : bytes_(bytes), events_(events) {
   const std::string_view head = bytes_.peek(kHeader);
   if (head.size() < kHeader || !head.starts_with(kSslMagic)) {
-    throw bad_input({file.string()}, "",
-                    fmt::format("is not an SSL log: its first {} bytes are not \"{}\" and a version{}", kHeader, kSslMagic,
-                                bytes_.broken().empty() ? "" : fmt::format("; {}", bytes_.broken())));
+    throw base::bad_input({file.string()}, "",
+                          fmt::format("is not an SSL log: its first {} bytes are not \"{}\" and a version{}", kHeader, kSslMagic,
+                                      bytes_.broken().empty() ? "" : fmt::format("; {}", bytes_.broken())));
   }
   const auto version = static_cast<std::int32_t>(big_endian(head, kSslMagic.size(), 4));
   if (version != 1) {
-    throw bad_input({file.string()}, "", fmt::format("byte {}: SSL log of version {}; expected version 1", kSslMagic.size(), version));
+    throw base::bad_input({file.string()}, "",
+                          fmt::format("byte {}: SSL log of version {}; expected version 1", kSslMagic.size(), version));
   }
   bytes_.skip(kHeader);
   last_given_ = kHeader;
@@ -191,4 +192,4 @@ void SslLogStream::reject(std::string_view why) {
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

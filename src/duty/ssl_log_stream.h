@@ -10,7 +10,7 @@
 #include "duty/log_bytes.h"
 #include "duty/log_type.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 enum class SslMessageType : std::int32_t {
   blank = 0,
@@ -53,4 +53,4 @@ class SslLogStream {
 
 inline constexpr std::string_view kSslMagic = "SSL_LOG_FILE";
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 constexpr int kLargestRobotId = 255;
@@ -380,4 +380,4 @@ RecordedGame TrackBuilder::finish() {
   return std::move(game_);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

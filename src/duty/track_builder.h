@@ -10,7 +10,7 @@
 
 #include "duty/log_type.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 class TrackBuilder final : public LogEvents {
  public:
@@ -83,4 +83,4 @@ class TrackBuilder final : public LogEvents {
   std::size_t stored_ = 0;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

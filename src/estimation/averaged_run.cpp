@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 constexpr double kSharesOfTimeConstant = 5.0;
@@ -114,4 +114,4 @@ std::vector<Eigen::Index> Averaging::interval_of() const {
   return interval;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

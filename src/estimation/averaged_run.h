@@ -7,7 +7,7 @@
 
 #include "estimation/whitening.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// Returns how many consecutive samples may be averaged into one (at least 1). Together they span at most a fifth of the fastest node's
 /// time constant and at most 3 s.
@@ -39,4 +39,4 @@ class Averaging {
   Eigen::VectorXd weight_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

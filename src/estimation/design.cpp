@@ -6,13 +6,13 @@
 #include "estimation/averaged_run.h"
 #include "estimation/open_loop.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
-std::vector<DesignRun> design(const Network& network, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
-                              const std::vector<Eigen::VectorXd>& weights, const std::vector<int>& merged,
-                              const std::vector<Columns>& extra) {
+std::vector<DesignRun> design(const thermal::Network& network, const std::vector<LinearisedRun>& fitted,
+                              const std::vector<MeasuredRun>& runs, const std::vector<Eigen::VectorXd>& weights,
+                              const std::vector<int>& merged, const std::vector<Columns>& extra) {
   std::vector<DesignRun> all(runs.size());
-  in_parallel(runs.size(), 0, [&](std::size_t r) {
+  base::in_parallel(runs.size(), 0, [&](std::size_t r) {
     DesignRun& one = all[r];
     const Averaging averaging(fitted[r], weights.empty() ? Eigen::VectorXd() : weights[r], merged.empty() ? 1 : merged[r]);
     one.run = averaging.run();
@@ -38,7 +38,7 @@ ThetaPrior prior_here(const Model& model) {
   return {prior.precision, prior.mean - model.theta()};
 }
 
-std::vector<double> measured_start_C(const Network& network, const MeasuredRun& run) {
+std::vector<double> measured_start_C(const thermal::Network& network, const MeasuredRun& run) {
   const Eigen::VectorXd start_C = start_of(network, run).state_C;
   return {start_C.begin(), start_C.end()};
 }
@@ -98,4 +98,4 @@ Reduced reduced(const Products& products, const ThetaPrior& prior) {
   return out;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -6,7 +6,7 @@
 #include "estimation/evidence.h"
 #include "estimation/model_along_run.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// One linearised run. Columns: one per coordinate of the model (per unit of θ), then one per candidate (per typical size).
 struct DesignRun {
@@ -25,15 +25,15 @@ struct ThetaPrior {
 
 /// Builds the columns of all runs, in parallel. `weights`: per run SensorNoise::weight, or empty. `merged`: per run the number of samples
 /// per average, or empty for no averaging. `extra`: per run additional columns after those of the model's coordinates, or empty.
-std::vector<DesignRun> design(const Network& network, const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
-                              const std::vector<Eigen::VectorXd>& weights, const std::vector<int>& merged,
-                              const std::vector<Columns>& extra);
+std::vector<DesignRun> design(const thermal::Network& network, const std::vector<LinearisedRun>& fitted,
+                              const std::vector<MeasuredRun>& runs, const std::vector<Eigen::VectorXd>& weights,
+                              const std::vector<int>& merged, const std::vector<Columns>& extra);
 
 /// Returns the prior of the model's coordinates relative to their present values.
 ThetaPrior prior_here(const Model& model);
 
 /// Returns the start temperature of every state node in °C, from the first samples. A node without a sensor gets the mean of the sensors.
-std::vector<double> measured_start_C(const Network& network, const MeasuredRun& run);
+std::vector<double> measured_start_C(const thermal::Network& network, const MeasuredRun& run);
 
 /// Products of the whitened columns, summed over all runs for one assumed unknown heat. The start temperatures are eliminated.
 struct Products {
@@ -57,4 +57,4 @@ struct Reduced {
 /// Eliminates θ, the first columns of `products`. A direction of θ without data and without prior stays at its present value.
 Reduced reduced(const Products& products, const ThetaPrior& prior);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

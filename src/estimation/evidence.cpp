@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 /// Returns the square factor R of a QR decomposition. A matrix with fewer rows than columns is padded with zeros.
@@ -113,4 +113,4 @@ Columns by_theta(const Model& model, const Eigen::VectorXd& theta, const Columns
   return columns;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

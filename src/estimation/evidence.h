@@ -9,7 +9,7 @@
 #include "estimation/model.h"
 #include "estimation/whitening.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// Information of one run about the coefficients of c columns, with its start temperatures eliminated.
 struct RunEvidence {
@@ -56,4 +56,4 @@ inline constexpr double kUnknownVariance = 1e6;
 /// Converts sensitivities ∂/∂value of the free parameters (columns) to ∂/∂θ at `theta`.
 Columns by_theta(const Model& model, const Eigen::VectorXd& theta, const Columns& by_value);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -14,7 +14,7 @@
 #include "estimation/posterior.h"
 #include "estimation/usual_heat.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 /// Innovations beyond kSuspect standard deviations are down-weighted, those beyond kHopeless are rejected.
@@ -156,7 +156,7 @@ class Fitting {
     }
     // Three steps from every point, then up to 30 from the best two.
     for (const auto& [steps, kept] : {std::pair(3, 2), std::pair(30, 1)}) {
-      in_parallel(candidates.size(), 0, [&, steps = steps](std::size_t i) {
+      base::in_parallel(candidates.size(), 0, [&, steps = steps](std::size_t i) {
         candidates[i] =
             try_posterior_of(std::move(candidates[i].model), rough, std::move(candidates[i].start_C), least_squares_options(model_, steps));
       });
@@ -165,8 +165,8 @@ class Fitting {
       candidates.resize(std::min<std::size_t>(candidates.size(), static_cast<std::size_t>(kept)));
     }
     if (candidates.empty()) {
-      throw Failure(ExitCode::cannot_answer,
-                    "no start of the fit leads to a model with plausible temperatures; check the units of the heat inputs");
+      throw base::Failure(base::ExitCode::cannot_answer,
+                          "no start of the fit leads to a model with plausible temperatures; check the units of the heat inputs");
     }
     take(candidates.front());
   }
@@ -196,7 +196,7 @@ class Fitting {
   /// Starting points in θ: `centre`, then a Latin hypercube around it within the parameters' bounds.
   [[nodiscard]] std::vector<Eigen::VectorXd> points(const Eigen::VectorXd& centre) const {
     std::vector<Eigen::VectorXd> all(static_cast<std::size_t>(options_.starts) + 1, centre);
-    Random random(options_.seed, 0);
+    base::Random random(options_.seed, 0);
     for (Eigen::Index i = 0; i < centre.size(); ++i) {
       const FreeParameter& parameter = model_.free[static_cast<std::size_t>(i)];
       std::vector<int> cell(static_cast<std::size_t>(options_.starts));
@@ -220,7 +220,7 @@ class Fitting {
     linearised_.resize(runs_.size());
     columns_.resize(runs_.size());
     const std::vector<double> values = model_.values_at(theta_);
-    in_parallel(runs_.size(), 0, [&](std::size_t r) {
+    base::in_parallel(runs_.size(), 0, [&](std::size_t r) {
       const Eigen::VectorXd& start_C = starts_[r].state_C;
       linearised_[r] = linearise(model_.network, values, wanted_, model_.flux_nodes,
                                  {start_C.data(), static_cast<std::size_t>(start_C.size())}, runs_[r]);
@@ -237,7 +237,7 @@ class Fitting {
   /// Linear fit for each supposition at the present linearisation. Each pair of supposition and run is one parallel job.
   std::vector<LinearFit> fits(const std::vector<Supposition>& suppositions) const {
     std::vector<RunEvidence> all(suppositions.size() * runs_.size());
-    in_parallel(all.size(), 0, [&](std::size_t job) {
+    base::in_parallel(all.size(), 0, [&](std::size_t job) {
       const std::size_t r = job % runs_.size();
       all[job] = run_evidence(linearised_[r], columns_[r], whitening(r, suppositions[job / runs_.size()]), start_prior(r));
     });
@@ -468,7 +468,7 @@ class Fitting {
 Fit fit(const Model& model, std::span<const MeasuredRun> runs, const FitOptions& options) {
   Fit found;
   // Jobs inside of this one use its threads.
-  in_parallel(1, options.threads, [&](std::size_t) { found = Fitting(model, runs, options).run(); });
+  base::in_parallel(1, options.threads, [&](std::size_t) { found = Fitting(model, runs, options).run(); });
   return found;
 }
 
@@ -476,4 +476,4 @@ SensorNoise noise_of(const MeasuredRun& run, const Fit& fit, std::size_t run_ind
   return noise_with(run, fit.sensor_nodes, fit.noise_ratio, fit.drift_K, fit.drift_time_scale_s, fit.weights[run_index]);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

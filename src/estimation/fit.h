@@ -13,7 +13,7 @@
 #include "estimation/model.h"
 #include "estimation/open_loop.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 struct FitOptions {
   int starts = 8;             ///< Latin hypercube points in addition to the model's own values; 0: only the latter
@@ -59,4 +59,4 @@ Fit fit(const Model& model, std::span<const MeasuredRun> runs, const FitOptions&
 /// Returns the noise, drift and sample weights that the fit found for the sensors of one of its runs.
 SensorNoise noise_of(const MeasuredRun& run, const Fit& fit, std::size_t run_index);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

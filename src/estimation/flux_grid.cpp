@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 /// Returns the steady temperature rise of the warmest node in K/W, as a mean over the runs. The heat enters the flux node with the smallest
@@ -131,4 +131,4 @@ FluxPlace most_probable(const FluxGrid& grid, FluxPlace start, const std::functi
   return start;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

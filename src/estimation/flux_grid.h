@@ -9,7 +9,7 @@
 #include "estimation/measured_run.h"
 #include "estimation/whitening.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// Point of the grid, as indices. First one RMS per node with unknown heat, then the correlation time. The last two are the size of the
 /// sensor drift and its correlation time.
@@ -46,4 +46,4 @@ FluxGrid flux_grid(double material_W, double travel_K, std::size_t fluxes);
 /// Climbs from `start` to a point where no neighbour has a larger value of `nats`. Evaluates each point at most once.
 FluxPlace most_probable(const FluxGrid& grid, FluxPlace start, const std::function<double(const FluxPlace&)>& nats);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

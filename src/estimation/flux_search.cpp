@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 constexpr double kLeastShare = 1e-3;
@@ -287,4 +287,4 @@ std::vector<WeightedSupposition> suppositions_around(const Evidence& evidence, c
   return all;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

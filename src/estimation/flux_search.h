@@ -7,7 +7,7 @@
 
 #include "estimation/whitening.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// One setting of the unmodelled part: unknown heat flux at the nodes and drift of the sensors.
 struct Supposition {
@@ -49,4 +49,4 @@ struct WeightedSupposition {
 /// axes of its curvature (Rue, Martino and Chopin 2009, section 6.5).
 std::vector<WeightedSupposition> suppositions_around(const Evidence& evidence, const SuppositionRange& range, const Supposition& best);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "estimation/open_loop.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 /// Largest gap between two runs of one recording at which the second continues the first.
@@ -18,8 +18,8 @@ std::string recording_of(const MeasuredRun& run) {
 }
 
 /// Returns the stated errors of a sensor, followed by those of the model.
-std::vector<SensorFault> all_faults(const Model& model, const Sensor& sensor) {
-  std::vector<SensorFault> faults = sensor.faults;
+std::vector<motor::SensorFault> all_faults(const Model& model, const Sensor& sensor) {
+  std::vector<motor::SensorFault> faults = sensor.faults;
   for (const SensorTerm& term : model.sensors) {
     if (term.type->signal == sensor.signal) {
       faults.push_back({term.type, term.value});
@@ -29,7 +29,7 @@ std::vector<SensorFault> all_faults(const Model& model, const Sensor& sensor) {
 }
 
 std::vector<double> start_C(const Model& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it) {
-  const Network& network = model.network;
+  const thermal::Network& network = model.network;
   for (const MeasuredRun& before : before_it) {
     const double gap_s = run.time_s.front() - before.time_s.back();
     if (recording_of(before) == recording_of(run) && gap_s > -1e-9 && gap_s < kContinues_s) {
@@ -41,7 +41,7 @@ std::vector<double> start_C(const Model& model, const MeasuredRun& run, const st
   RunStart start = start_of(network, run);
   for (const Sensor& sensor : run.sensors) {
     double& node_C = start.state_C[network.find_node(sensor.node)];
-    node_C = true_at_rest_C(all_faults(model, sensor), sensor_at_rest_C(sensor.faults, node_C));
+    node_C = motor::true_at_rest_C(all_faults(model, sensor), motor::sensor_at_rest_C(sensor.faults, node_C));
   }
   start.prior_C = start.state_C;
   const Eigen::VectorXd decided_C = decided_start_C(
@@ -63,7 +63,7 @@ Errors open_loop_errors(const Model& model, const std::vector<MeasuredRun>& runs
   Errors errors;
   std::map<std::string, double> counts;
   std::vector<Eigen::MatrixXd> off_K(runs.size());
-  in_parallel(runs.size(), 0, [&](std::size_t r) { off_K[r] = runs[r].measured_C - open_loop_C(model, runs[r], before_them); });
+  base::in_parallel(runs.size(), 0, [&](std::size_t r) { off_K[r] = runs[r].measured_C - open_loop_C(model, runs[r], before_them); });
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const MeasuredRun& run = runs[r];
     for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
@@ -91,4 +91,4 @@ double rms_K(const Errors& errors) {
   return std::sqrt(squares_K2 / static_cast<double>(std::max<std::size_t>(1, errors.size())));
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

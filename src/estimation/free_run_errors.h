@@ -9,7 +9,7 @@
 #include "estimation/model_along_run.h"
 #include "estimation/open_loop.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 struct ErrorOfSignal {
   double rmse_K = 0.0;
@@ -27,4 +27,4 @@ Eigen::MatrixXd open_loop_C(const Model& model, const MeasuredRun& run, const st
 /// Returns the RMS over all signals, with equal weights.
 double rms_K(const Errors& errors);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -8,7 +8,7 @@
 #include "estimation/evidence.h"
 #include "estimation/posterior.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 /// Sum of the errors of all sensors for each sample, per run; missing samples count as 0.
@@ -113,4 +113,4 @@ double free_run_rmse_K(std::span<const LinearisedRun> paths) {
   return std::sqrt(sum_K2 / count);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

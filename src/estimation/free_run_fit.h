@@ -10,7 +10,7 @@
 #include "estimation/measured_run.h"
 #include "estimation/model.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 struct FreeRunFit {
   Eigen::VectorXd theta;
@@ -33,4 +33,4 @@ double left_out_rmse_K(const Model& model, const std::vector<MeasuredRun>& runs,
 /// RMS of residual_K over all samples of all paths, without NaN.
 double free_run_rmse_K(std::span<const LinearisedRun> paths);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 constexpr std::size_t kLongest = 60;
@@ -53,4 +53,4 @@ GapStatistics GapStatisticsTable::from_windows(std::size_t rows) const {
   return {std::sqrt(share), std::sqrt(std::max(0.0, (y - share * x) / count))};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// Deviation of the mean over a gap from the midpoint of the values at its ends: variance = step_share² · (difference of the ends)² +
 /// beyond_sd². Fitted to all windows of that length by least squares. A quantity that changes once within a gap of one row has a
@@ -36,4 +36,4 @@ class GapStatisticsTable {
   std::map<std::size_t, GapStatistics> told_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -6,7 +6,7 @@
 #include "estimation/spans.h"
 #include "thermal/tangent_run.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -46,7 +46,7 @@ class Recorder {
     }
   }
 
-  void advance(Eigen::Index interval, const NetworkStep& step) {
+  void advance(Eigen::Index interval, const thermal::NetworkStep& step) {
     const auto place = static_cast<std::size_t>(interval);
     const Eigen::Index x = out_.states;
     const Eigen::Index wanted = by_parameter_.cols();
@@ -79,8 +79,8 @@ class Recorder {
 
 }  // namespace
 
-void add_fault(const SensorFault& fault, Eigen::Index sensor, const MeasuredRun& run, LinearisedRun& out) {
-  const SensorLaw& law = fault.type->law;
+void add_fault(const motor::SensorFault& fault, Eigen::Index sensor, const MeasuredRun& run, LinearisedRun& out) {
+  const motor::SensorLaw& law = fault.type->law;
   law.apply(run.time_s, fault.size, false, as_span(out.sensor_C.col(sensor)));
   const auto rows = Eigen::seq(sensor, out.residual_K.size() - 1, out.sensors());
   out.residual_K(rows) = run.measured_C.col(sensor) - out.sensor_C.col(sensor);
@@ -95,7 +95,7 @@ void add_fault(const SensorFault& fault, Eigen::Index sensor, const MeasuredRun&
 
 namespace {
 
-LinearisedRun linearise_unnamed(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
+LinearisedRun linearise_unnamed(const thermal::Network& network, std::span<const double> parameters, std::span<const int> wanted,
                                 std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run,
                                 const Eigen::MatrixXd* path_C) {
   LinearisedRun out;
@@ -107,7 +107,7 @@ LinearisedRun linearise_unnamed(const Network& network, std::span<const double> 
   Recorder recorder(out, run, static_cast<Eigen::Index>(wanted.size()), path_C);
   out.state_C.col(0) = Eigen::Map<const Eigen::VectorXd>(start_C.data(), out.states);
   recorder.note(0);
-  TangentRun tangent(network, parameters, wanted, flux_nodes);
+  thermal::TangentRun tangent(network, parameters, wanted, flux_nodes);
   Eigen::MatrixXd others_C;
   auto unknown = run.unknown_inputs.begin();
   for (Eigen::Index k = 0; k + 1 < run.samples(); ++k) {
@@ -119,7 +119,7 @@ LinearisedRun linearise_unnamed(const Network& network, std::span<const double> 
       others_C.conservativeResize(Eigen::NoChange, others_C.cols() + 1);
       others_C.rightCols<1>() = tangent.over(start, duration_s, unknown->other).state_C;
     }
-    const NetworkStep& step = tangent.over(start, duration_s, run.at[place]);
+    const thermal::NetworkStep& step = tangent.over(start, duration_s, run.at[place]);
     recorder.advance(k, step);
     if (others_C.cols() > 0) {
       others_C.colwise() -= step.state_C;
@@ -128,7 +128,7 @@ LinearisedRun linearise_unnamed(const Network& network, std::span<const double> 
     recorder.note(k + 1);
   }
   for (Eigen::Index sensor = 0; sensor < out.sensors(); ++sensor) {
-    for (const SensorFault& fault : run.sensors[static_cast<std::size_t>(sensor)].faults) {
+    for (const motor::SensorFault& fault : run.sensors[static_cast<std::size_t>(sensor)].faults) {
       add_fault(fault, sensor, run, out);
     }
   }
@@ -140,22 +140,23 @@ template <class Make>
 LinearisedRun named(const MeasuredRun& run, const Make& make) {
   try {
     return make();
-  } catch (const Failure& failure) {
-    throw Failure(failure.code(),
-                  fmt::format("{}: {}; check the units of the log's columns (milliamperes, a sensor's gain) and the resistances of the "
-                              "model; `heatsoak log inspect` shows the log, `heatsoak lint` checks the motor",
-                              run.name, failure.message()));
+  } catch (const base::Failure& failure) {
+    throw base::Failure(
+        failure.code(),
+        fmt::format("{}: {}; check the units of the log's columns (milliamperes, a sensor's gain) and the resistances of the "
+                    "model; `heatsoak log inspect` shows the log, `heatsoak lint` checks the motor",
+                    run.name, failure.message()));
   }
 }
 
 }  // namespace
 
-LinearisedRun linearise(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
+LinearisedRun linearise(const thermal::Network& network, std::span<const double> parameters, std::span<const int> wanted,
                         std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run) {
   return named(run, [&] { return linearise_unnamed(network, parameters, wanted, flux_nodes, start_C, run, nullptr); });
 }
 
-LinearisedRun linearise_along(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
+LinearisedRun linearise_along(const thermal::Network& network, std::span<const double> parameters, std::span<const int> wanted,
                               std::span<const int> flux_nodes, const Eigen::MatrixXd& path_C, const MeasuredRun& run) {
   const Eigen::VectorXd start_C = path_C.col(0);
   return named(run, [&] {
@@ -164,4 +165,4 @@ LinearisedRun linearise_along(const Network& network, std::span<const double> pa
   });
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

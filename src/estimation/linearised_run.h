@@ -8,7 +8,7 @@
 #include "estimation/measured_run.h"
 #include "thermal/network.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// Row index = sample · number of sensors + sensor. Row-major, because filters proceed in time.
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -39,17 +39,17 @@ struct LinearisedRun {
 };
 
 /// Applies one more sensor fault to the predicted readings, residuals and sensitivities of `sensor` in `out`.
-void add_fault(const SensorFault& fault, Eigen::Index sensor, const MeasuredRun& run, LinearisedRun& out);
+void add_fault(const motor::SensorFault& fault, Eigen::Index sensor, const MeasuredRun& run, LinearisedRun& out);
 
 /// Simulates from `start_C` (°C, per state node) and linearises along the result. Includes the sensor faults stated in the run.
 /// `parameters` are in the network's order; `wanted` and `flux_nodes` are indices into its lists of parameters and nodes. Throws Failure
 /// (numerics_failed) if the temperatures diverge. Allocates memory once per run, not per sample.
-LinearisedRun linearise(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
+LinearisedRun linearise(const thermal::Network& network, std::span<const double> parameters, std::span<const int> wanted,
                         std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run);
 
 /// Same as linearise(), but linearises along a given path (states × samples, in °C), which the network need not follow by itself. sensor_C
 /// is the solution of these linear equations from the start of the path.
-LinearisedRun linearise_along(const Network& network, std::span<const double> parameters, std::span<const int> wanted,
+LinearisedRun linearise_along(const thermal::Network& network, std::span<const double> parameters, std::span<const int> wanted,
                               std::span<const int> flux_nodes, const Eigen::MatrixXd& path_C, const MeasuredRun& run);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -8,11 +8,11 @@
 
 #include "base/unknown.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
-Eigen::VectorXd means_along(const Channel& channel, const std::vector<double>& row_time_s, const std::vector<double>& time_s) {
-  Eigen::VectorXd means = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(time_s.size()) - 1, kUnknown);
+Eigen::VectorXd means_along(const recording::Channel& channel, const std::vector<double>& row_time_s, const std::vector<double>& time_s) {
+  Eigen::VectorXd means = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(time_s.size()) - 1, base::kUnknown);
   auto row = static_cast<std::size_t>(std::ranges::lower_bound(row_time_s, time_s.front()) - row_time_s.begin());
   for (Eigen::Index k = 0; k < means.size(); ++k) {
     double sum = 0.0;
@@ -23,7 +23,7 @@ Eigen::VectorXd means_along(const Channel& channel, const std::vector<double>& r
         count += 1.0;
       }
     }
-    means[k] = count > 0.0 ? sum / count : kUnknown;
+    means[k] = count > 0.0 ? sum / count : base::kUnknown;
   }
   return means;
 }
@@ -49,10 +49,12 @@ Eigen::VectorXd without_gaps(Eigen::VectorXd values) {
 
 }  // namespace
 
-std::string columns_lacking(std::span<const std::string> columns, std::span<const Recording> recordings) {
+std::string columns_lacking(std::span<const std::string> columns, std::span<const recording::Recording> recordings) {
   std::vector<std::string> lacking;
   for (const std::string& column : columns) {
-    const auto has_it = [&](const Recording& each) { return each.time_s.size() > 1 && columns_along(each, each.time_s).contains(column); };
+    const auto has_it = [&](const recording::Recording& each) {
+      return each.time_s.size() > 1 && columns_along(each, each.time_s).contains(column);
+    };
     if (!column.empty() && !std::ranges::all_of(recordings, has_it)) {
       lacking.push_back(column);
     }
@@ -62,20 +64,20 @@ std::string columns_lacking(std::span<const std::string> columns, std::span<cons
                                        fmt::join(lacking, ", "));
 }
 
-std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording, const std::vector<double>& time_s) {
+std::map<std::string, Eigen::VectorXd> columns_along(const recording::Recording& recording, const std::vector<double>& time_s) {
   // The shaft power is torque times speed, so the torque stays a column of its own.
   const auto is_elsewhere = [](std::string_view key) {
-    return std::ranges::any_of(kQuantities<double>, [&](const OperatingQuantity<double>& each) {
-      return each.column == key && each.signal != Signal::shaft_power;
+    return std::ranges::any_of(thermal::kQuantities<double>, [&](const thermal::OperatingQuantity<double>& each) {
+      return each.column == key && each.signal != thermal::Signal::shaft_power;
     });
   };
   std::map<std::string, Eigen::VectorXd> columns;
-  for (const Channel& channel : recording.channels) {
+  for (const recording::Channel& channel : recording.channels) {
     // The network's laws use the current's magnitude; its sign is only available from the log.
     const bool has_both_signs = channel.quantity.key == "current_A" &&
                                 std::ranges::any_of(channel.values, [](double a) { return a < 0.0; }) &&
                                 std::ranges::any_of(channel.values, [](double a) { return a > 0.0; });
-    if (channel.quantity.kind != QuantityKind::temperature && (!is_elsewhere(channel.quantity.key) || has_both_signs)) {
+    if (channel.quantity.kind != recording::QuantityKind::temperature && (!is_elsewhere(channel.quantity.key) || has_both_signs)) {
       columns.emplace(channel.quantity.key, means_along(channel, recording.time_s, time_s));
     }
   }
@@ -106,9 +108,9 @@ void set_columns(MeasuredRun& run, std::span<const std::string> keys) {
     const auto found = run.columns.find(keys[place]);
     const Eigen::VectorXd values = found == run.columns.end() ? Eigen::VectorXd() : without_gaps(found->second);
     const bool is_known = values.size() > 0 && !std::isnan(values[0]);
-    const auto set = [&](OperatingPoint<double>& at, Eigen::Index k) {
-      at.*kColumns<double>[place] = is_known ? values[k] : 0.0;
-      at.*kColumnShares<double>[place] = is_known ? 1.0 : 0.0;
+    const auto set = [&](thermal::OperatingPoint<double>& at, Eigen::Index k) {
+      at.*thermal::kColumns<double>[place] = is_known ? values[k] : 0.0;
+      at.*thermal::kColumnShares<double>[place] = is_known ? 1.0 : 0.0;
     };
     for (std::size_t k = 0; k < run.at.size(); ++k) {
       set(run.at[k], static_cast<Eigen::Index>(k));
@@ -123,4 +125,4 @@ void set_columns(std::vector<MeasuredRun>& runs, std::span<const std::string> ke
   std::ranges::for_each(runs, [&](MeasuredRun& run) { set_columns(run, keys); });
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

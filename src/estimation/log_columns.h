@@ -11,15 +11,15 @@
 #include "estimation/measured_run.h"
 #include "recording/recording.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// Returns these columns by key: the mean over each interval between `time_s`, in the column's unit, NaN if the log has no value there.
 /// Includes a current that has both signs, because the network's laws use only its magnitude.
-std::map<std::string, Eigen::VectorXd> columns_along(const Recording& recording, const std::vector<double>& time_s);
+std::map<std::string, Eigen::VectorXd> columns_along(const recording::Recording& recording, const std::vector<double>& time_s);
 
 /// Returns a sentence for the user about those of `columns`, over which the model has curves, that not all logs have; empty if all have
 /// them.
-std::string columns_lacking(std::span<const std::string> columns, std::span<const Recording> recordings);
+std::string columns_lacking(std::span<const std::string> columns, std::span<const recording::Recording> recordings);
 
 /// Removes the columns that not all runs have, except `of_model`, over which the model already has a curve. Their effect would be
 /// confounded with other differences between the runs. Returns the names of the removed columns.
@@ -30,4 +30,4 @@ std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std
 void set_columns(MeasuredRun& run, std::span<const std::string> keys);
 void set_columns(std::vector<MeasuredRun>& runs, std::span<const std::string> keys);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -6,30 +6,32 @@
 
 #include "base/unknown.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
-bool is_there(const Recording& recording, Signal signal, const ShaftTorque& torque) {
-  const auto is_recorded = [&](Signal each) { return has_values(recording.find(column_of(each))); };
-  if (signal == Signal::modulation && torque.resistance_ohm > 0.0 && torque.per_current_Nm_per_A > 0.0) {
-    const bool is_identifiable = is_recorded(Signal::current) && is_recorded(Signal::speed) && is_recorded(Signal::bus_voltage);
+bool is_there(const recording::Recording& recording, thermal::Signal signal, const ShaftTorque& torque) {
+  const auto is_recorded = [&](thermal::Signal each) { return has_values(recording.find(column_of(each))); };
+  if (signal == thermal::Signal::modulation && torque.resistance_ohm > 0.0 && torque.per_current_Nm_per_A > 0.0) {
+    const bool is_identifiable =
+        is_recorded(thermal::Signal::current) && is_recorded(thermal::Signal::speed) && is_recorded(thermal::Signal::bus_voltage);
     return is_identifiable || is_recorded(signal);
   }
-  if (signal == Signal::current && torque.per_current_Nm_per_A > 0.0 && is_recorded(Signal::shaft_power)) {
+  if (signal == thermal::Signal::current && torque.per_current_Nm_per_A > 0.0 && is_recorded(thermal::Signal::shaft_power)) {
     return true;
   }
-  if (signal != Signal::shaft_power) {
+  if (signal != thermal::Signal::shaft_power) {
     return is_recorded(signal);
   }
-  return is_recorded(Signal::speed) && (is_recorded(signal) || (torque.per_current_Nm_per_A > 0.0 && is_recorded(Signal::current)));
+  return is_recorded(thermal::Signal::speed) &&
+         (is_recorded(signal) || (torque.per_current_Nm_per_A > 0.0 && is_recorded(thermal::Signal::current)));
 }
 
 bool has_negative(const std::vector<double>* values) {
   return values && std::ranges::any_of(*values, [](double value) { return value < 0.0; });
 }
 
-const std::vector<double>* values(std::string_view key, const Recording& recording) {
-  const Channel* const channel = recording.find(key);
+const std::vector<double>* values(std::string_view key, const recording::Recording& recording) {
+  const recording::Channel* const channel = recording.find(key);
   return has_values(channel) ? &channel->values : nullptr;
 }
 /// Fills gaps shorter than 60 s by linear interpolation, at the ends by the nearest value. Air and coolant change slowly enough for that.
@@ -59,15 +61,15 @@ double of(const std::vector<double>* values, std::size_t row) { return values ? 
 
 }  // namespace
 
-std::string_view column_of(Signal signal) { return quantity_of(signal).column; }
+std::string_view column_of(thermal::Signal signal) { return thermal::quantity_of(signal).column; }
 
-std::string_view words_of(Signal signal) { return quantity_of(signal).lacking; }
+std::string_view words_of(thermal::Signal signal) { return thermal::quantity_of(signal).lacking; }
 
-bool has_values(const Channel* channel) {
+bool has_values(const recording::Channel* channel) {
   return channel && std::ranges::any_of(channel->values, [](double value) { return !std::isnan(value); });
 }
 
-LogRows::LogRows(const Recording& recording, const MeasuredRunOptions& options)
+LogRows::LogRows(const recording::Recording& recording, const MeasuredRunOptions& options)
     : current_A_(values("current_A", recording)),
       speed_rad_per_s_(values("speed_rad_per_s", recording)),
       torque_Nm_(values("torque_Nm", recording)),
@@ -79,19 +81,19 @@ LogRows::LogRows(const Recording& recording, const MeasuredRunOptions& options)
       is_driven_(current_A_ && std::ranges::any_of(*current_A_, [&](double each_A) { return std::abs(each_A) > options.least_current_A; })),
       time_s_(recording.time_s),
       options_(options) {
-  for (std::size_t i = 0; i < kQuantityCount; ++i) {
-    const OperatingQuantity<double>& each = kQuantities<double>[i];
-    columns_[i] = each.from == FromColumn::computed ? nullptr : values(each.column, recording);
+  for (std::size_t i = 0; i < thermal::kQuantityCount; ++i) {
+    const thermal::OperatingQuantity<double>& each = thermal::kQuantities<double>[i];
+    columns_[i] = each.from == thermal::FromColumn::computed ? nullptr : values(each.column, recording);
   }
 }
 
-OperatingPoint<double> LogRows::at(std::size_t row) const {
+thermal::OperatingPoint<double> LogRows::at(std::size_t row) const {
   const double speed_rad_per_s = of(speed_rad_per_s_, row);
-  OperatingPoint<double> at;
-  for (std::size_t i = 0; i < kQuantityCount; ++i) {
-    if (const OperatingQuantity<double>& each = kQuantities<double>[i]; each.from != FromColumn::computed) {
+  thermal::OperatingPoint<double> at;
+  for (std::size_t i = 0; i < thermal::kQuantityCount; ++i) {
+    if (const thermal::OperatingQuantity<double>& each = thermal::kQuantities<double>[i]; each.from != thermal::FromColumn::computed) {
       const double value = of(columns_[i], row);
-      at.*each.value = each.from == FromColumn::magnitude ? std::abs(value) : value;
+      at.*each.value = each.from == thermal::FromColumn::magnitude ? std::abs(value) : value;
     }
   }
   const bool has_torque_only = !current_A_ && torque_Nm_ && options_.torque.per_current_Nm_per_A > 0.0;
@@ -101,7 +103,7 @@ OperatingPoint<double> LogRows::at(std::size_t row) const {
   if (speed_rad_per_s_ && row + 1 < time_s_.size()) {
     at.acceleration_rad_per_s2 = std::abs((*speed_rad_per_s_)[row + 1] - speed_rad_per_s) / (time_s_[row + 1] - time_s_[row]);
   }
-  at.ambient_C = surroundings_C_.empty() ? options_.ambient_C.value_or(kUnknown) : surroundings_C_[row];
+  at.ambient_C = surroundings_C_.empty() ? options_.ambient_C.value_or(base::kUnknown) : surroundings_C_[row];
   at.shaft_power_W = torque_Nm_ ? of(torque_Nm_, row) * speed_rad_per_s : power_of_current_W(of(current_A_, row), speed_rad_per_s);
   at.modulation_ratio =
       modulation_ ? std::abs(of(modulation_, row)) : modulation_of_current(of(current_A_, row), speed_rad_per_s, at.bus_V);
@@ -117,9 +119,9 @@ double LogRows::current_of_torque_A(double torque_Nm, double speed_rad_per_s) co
 }
 
 bool LogRows::is_known(std::size_t row) const {
-  const OperatingPoint<double> point = at(row);
+  const thermal::OperatingPoint<double> point = at(row);
   return !std::isnan(point.ambient_C) &&
-         std::ranges::none_of(options_.needed, [&](Signal signal) { return std::isnan(quantity_of(point, signal)); });
+         std::ranges::none_of(options_.needed, [&](thermal::Signal signal) { return std::isnan(quantity_of(point, signal)); });
 }
 
 double LogRows::power_of_current_W(double current_A, double speed_rad_per_s) const {
@@ -138,16 +140,16 @@ double LogRows::modulation_of_current(double current_A, double speed_rad_per_s, 
   return bus_V > 0.0 ? std::min(1.0, terminal_V / bus_V) : std::isnan(bus_V) ? bus_V : 0.0;
 }
 
-double quantity_of(const OperatingPoint<double>& at, Signal signal) { return at.*quantity_of(signal).value; }
+double quantity_of(const thermal::OperatingPoint<double>& at, thermal::Signal signal) { return at.*thermal::quantity_of(signal).value; }
 
-std::vector<Signal> signals_of(const Recording& recording, const ShaftTorque& torque) {
-  std::vector<Signal> signals;
-  for (std::size_t i = 0; i < kSignalCount; ++i) {
-    if (const auto signal = static_cast<Signal>(i); is_there(recording, signal, torque)) {
+std::vector<thermal::Signal> signals_of(const recording::Recording& recording, const ShaftTorque& torque) {
+  std::vector<thermal::Signal> signals;
+  for (std::size_t i = 0; i < thermal::kSignalCount; ++i) {
+    if (const auto signal = static_cast<thermal::Signal>(i); is_there(recording, signal, torque)) {
       signals.push_back(signal);
     }
   }
   return signals;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

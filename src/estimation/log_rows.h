@@ -9,23 +9,23 @@
 #include "estimation/measured_run.h"
 #include "recording/recording.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// Returns the column of a canonical log from which a signal is read; for the shaft power this is the torque.
-std::string_view column_of(Signal signal);
+std::string_view column_of(thermal::Signal signal);
 /// Returns the name of a signal in sentences, for example "torque and speed".
-std::string_view words_of(Signal signal);
+std::string_view words_of(thermal::Signal signal);
 
-bool has_values(const Channel* channel);
+bool has_values(const recording::Channel* channel);
 
 /// Returns the value of a signal in an operating point, in SI units (°C for temperatures, h for age).
-double quantity_of(const OperatingPoint<double>& at, Signal signal);
+double quantity_of(const thermal::OperatingPoint<double>& at, thermal::Signal signal);
 
 /// Operating points of single rows; NaN if a logged quantity has no value there. Recording and options must outlive this object.
 class LogRows {
  public:
-  LogRows(const Recording& recording, const MeasuredRunOptions& options);
-  [[nodiscard]] OperatingPoint<double> at(std::size_t row) const;
+  LogRows(const recording::Recording& recording, const MeasuredRunOptions& options);
+  [[nodiscard]] thermal::OperatingPoint<double> at(std::size_t row) const;
   /// True if the row has the temperature of the surroundings and all signals that the options need.
   [[nodiscard]] bool is_known(std::size_t row) const;
   [[nodiscard]] bool has_surroundings() const { return !surroundings_C_.empty(); }
@@ -40,7 +40,7 @@ class LogRows {
 
   const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *bus_V_, *modulation_, *neighbour_C_;
   /// Columns in the order of the table of quantities; null if the log lacks one, or if the quantity is computed.
-  std::array<const std::vector<double>*, kQuantityCount> columns_{};
+  std::array<const std::vector<double>*, thermal::kQuantityCount> columns_{};
   std::vector<double> surroundings_C_;
   bool is_signed_;  ///< current and speed both have negative values
   bool is_driven_;  ///< the current exceeds least_current_A at any time
@@ -48,4 +48,4 @@ class LogRows {
   const MeasuredRunOptions& options_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

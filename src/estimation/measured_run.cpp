@@ -16,7 +16,7 @@
 #include "recording/noise.h"
 #include "recording/row_order.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 /// A segment with fewer samples contains no information about thermal time constants.
@@ -32,7 +32,7 @@ struct SensorPlace {
 constexpr std::array kSensorPlaces{SensorPlace{"winding_C", "winding"}, SensorPlace{"stator_C", "stator"},
                                    SensorPlace{"housing_C", "stator"}};
 
-bool is_stuck(const Channel& channel) {
+bool is_stuck(const recording::Channel& channel) {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   for (const double value : channel.values) {
@@ -46,7 +46,7 @@ bool is_stuck(const Channel& channel) {
 double sample_at(const std::vector<double>& time_s, const std::vector<double>& value_C, std::size_t begin, std::size_t end, std::size_t row,
                  double reach_s) {
   if (std::isnan(value_C[row])) {
-    return kUnknown;
+    return base::kUnknown;
   }
   double sum_C = value_C[row];
   double count = 1.0;
@@ -66,18 +66,18 @@ double sample_at(const std::vector<double>& time_s, const std::vector<double>& v
 
 class Builder {
  public:
-  Builder(const Recording& recording, const MeasuredRunOptions& options)
+  Builder(const recording::Recording& recording, const MeasuredRunOptions& options)
       : recording_(recording), options_(options), rows_(recording, options) {
     signals_ = signals_of(recording, options.torque);
     for (const SensorPlace& place : kSensorPlaces) {
-      const Channel* const channel = recording.find(place.key);
+      const recording::Channel* const channel = recording.find(place.key);
       const bool is_taken = std::ranges::find(sensors_, place.node, &Sensor::node) != sensors_.end();
       if (has_values(channel) && !is_taken && is_stuck(*channel)) {
         all_.notes.push_back(fmt::format("{}: {} is not used as a sensor, because its value never changes", recording.name, place.key));
       } else if (has_values(channel) && !is_taken) {
         Sensor& sensor = sensors_.emplace_back(Sensor{std::string(place.key), std::string(place.node)});
         std::ranges::copy_if(options.faults, std::back_inserter(sensor.faults),
-                             [&](const SensorFault& fault) { return fault.type->signal == place.key; });
+                             [&](const motor::SensorFault& fault) { return fault.type->signal == place.key; });
         sensor_values_.push_back(&channel->values);
       }
     }
@@ -86,7 +86,7 @@ class Builder {
   MeasuredRuns build() {
     check();
     for (const auto& [begin, end] : segments()) {
-      const double longest_s = std::max(kLongestStep_ratio * steps_of(begin, end).usual_s, kLongestPause_s);
+      const double longest_s = std::max(recording::kLongestStep_ratio * steps_of(begin, end).usual_s, kLongestPause_s);
       for (std::size_t first = begin; first < end;) {
         std::size_t last = first;
         while (last + 1 < end && rows_.is_known(last)) {
@@ -98,8 +98,8 @@ class Builder {
       }
     }
     if (all_.runs.empty()) {
-      throw Failure(
-          ExitCode::cannot_answer,
+      throw base::Failure(
+          base::ExitCode::cannot_answer,
           fmt::format("{}: no interval of {} rows or more has temperatures and all heat inputs: {}; see `heatsoak log inspect {}`",
                       recording_.name, kLeastSamples, fmt::join(reasons_of_loss(), ", "), recording_.file.string()));
     }
@@ -121,7 +121,7 @@ class Builder {
   /// Row ranges of the recording's runs, joined across short pauses. A pause is short compared with a motor's time constants, whereas each
   /// separate run would have its own unknown start temperatures and heat.
   [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> segments() const {
-    const double usual_s = usual_period_s(recording_.time_s);
+    const double usual_s = recording::usual_period_s(recording_.time_s);
     std::vector<std::pair<std::size_t, std::size_t>> all;
     for (const auto& run : recording_.runs()) {
       if (!all.empty() && is_pause(all.back().second - 1, run.first, usual_s)) {
@@ -136,13 +136,13 @@ class Builder {
   [[nodiscard]] bool is_pause(std::size_t last, std::size_t first, double usual_s) const {
     constexpr double kJump_K = 5.0;
     const double step_s = recording_.time_s[first] - recording_.time_s[last];
-    return step_s > kLongestStep_ratio * usual_s && step_s <= kLongestPause_s &&
+    return step_s > recording::kLongestStep_ratio * usual_s && step_s <= kLongestPause_s &&
            std::ranges::none_of(sensor_values_, [&](const auto* values) { return std::abs((*values)[first] - (*values)[last]) > kJump_K; });
   }
 
   void check() const {
-    std::vector<Diagnostic> lacking;
-    for (const Signal signal : options_.needed) {
+    std::vector<base::Diagnostic> lacking;
+    for (const thermal::Signal signal : options_.needed) {
       if (std::ranges::find(signals_, signal) == signals_.end()) {
         lacking.push_back(
             {{recording_.file.string()}, std::string(column_of(signal)), "the model needs it, and the log has no such column"});
@@ -155,7 +155,8 @@ class Builder {
       lacking.push_back({{recording_.file.string()}, "winding_C", "the log has no temperature of winding, stator or housing"});
     }
     if (!lacking.empty()) {
-      throw Failure(ExitCode::bad_input, fmt::format("{} cannot be compared with the model", recording_.name), std::move(lacking));
+      throw base::Failure(base::ExitCode::bad_input, fmt::format("{} cannot be compared with the model", recording_.name),
+                          std::move(lacking));
     }
   }
 
@@ -175,15 +176,15 @@ class Builder {
         reasons.push_back(fmt::format("{} of {} rows have no {}", lacking, recording_.rows(), key));
       }
     };
-    for (const Signal signal : options_.needed) {
+    for (const thermal::Signal signal : options_.needed) {
       tell(column_of(signal), [&](std::size_t row) { return std::isnan(quantity_of(rows_.at(row), signal)); });
     }
     tell("ambient temperature within a minute", [&](std::size_t row) { return std::isnan(rows_.at(row).ambient_C); });
     tell("temperature of winding or stator", [&](std::size_t row) { return !is_sampled(row); });
     if (reasons.empty()) {
       const double whole_s = recording_.time_s.back() - recording_.time_s.front();
-      reasons.push_back(all_.runs.empty() ? fmt::format("its {} s make fewer than {} intervals of {} s", significant(whole_s, 2),
-                                                        kLeastSamples - 1, significant(options_.longest_step_s, 2))
+      reasons.push_back(all_.runs.empty() ? fmt::format("its {} s make fewer than {} intervals of {} s", base::significant(whole_s, 2),
+                                                        kLeastSamples - 1, base::significant(options_.longest_step_s, 2))
                                           : std::string("intervals are too short"));
     }
     return reasons;
@@ -269,7 +270,7 @@ class Builder {
       }
       // No real sensor is better than this; a lower estimate means that the sensor repeats values.
       constexpr double kLeastNoise_K = 0.01;
-      const NoiseLevel level = noise_level(all_C, runs);
+      const recording::NoiseLevel level = recording::noise_level(all_C, runs);
       for (MeasuredRun& run : all_.runs) {
         run.sensors[sensor].noise_K = std::max(kLeastNoise_K, level.noise);
         run.sensors[sensor].step_K = level.step;
@@ -277,10 +278,10 @@ class Builder {
     }
   }
 
-  const Recording& recording_;
+  const recording::Recording& recording_;
   const MeasuredRunOptions& options_;
   LogRows rows_;
-  std::vector<Signal> signals_;
+  std::vector<thermal::Signal> signals_;
   std::vector<Sensor> sensors_;
   std::vector<const std::vector<double>*> sensor_values_;
   MeasuredRuns all_;
@@ -289,7 +290,7 @@ class Builder {
 
 }  // namespace
 
-bool MeasuredRun::has(Signal signal) const { return std::ranges::find(signals, signal) != signals.end(); }
+bool MeasuredRun::has(thermal::Signal signal) const { return std::ranges::find(signals, signal) != signals.end(); }
 
 bool MeasuredRun::has(const std::map<std::string, std::string>& of_conditions) const {
   return std::ranges::all_of(of_conditions, [&](const auto& each) {
@@ -303,6 +304,8 @@ Eigen::Index MeasuredRun::sensor_at(std::string_view node) const {
   return found == sensors.end() ? -1 : found - sensors.begin();
 }
 
-MeasuredRuns measured_runs(const Recording& recording, const MeasuredRunOptions& options) { return Builder(recording, options).build(); }
+MeasuredRuns measured_runs(const recording::Recording& recording, const MeasuredRunOptions& options) {
+  return Builder(recording, options).build();
+}
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -13,38 +13,38 @@
 #include "recording/recording.h"
 #include "thermal/network.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 struct Sensor {
-  std::string signal;                    ///< key in the recording, for example "winding_C"
-  std::string node;                      ///< node of the network
-  double noise_K = 0.0;                  ///< standard deviation of one sample, model-free estimate, quantisation included
-  double step_K = 0.0;                   ///< resolution; 0 if no quantisation is visible
-  std::vector<SensorFault> faults = {};  ///< stated faults of this sensor
+  std::string signal;                           ///< key in the recording, for example "winding_C"
+  std::string node;                             ///< node of the network
+  double noise_K = 0.0;                         ///< standard deviation of one sample, model-free estimate, quantisation included
+  double step_K = 0.0;                          ///< resolution; 0 if no quantisation is visible
+  std::vector<motor::SensorFault> faults = {};  ///< stated faults of this sensor
 };
 
 /// Uncertainty from missing rows while the inputs changed: over `interval` the inputs may have been `other` instead of at[interval], or
 /// equally far in the other direction.
 struct UnknownInputs {
   Eigen::Index interval = 0;
-  OperatingPoint<double> other;
+  thermal::OperatingPoint<double> other;
 };
 
 /// Measured run with n samples. The inputs are at[k] between sample k and k + 1.
 struct MeasuredRun {
   std::string name;  ///< name of the recording; with suffix #2, #3 … if it was split
   std::vector<double> time_s;
-  std::vector<OperatingPoint<double>> at;     ///< n − 1
-  std::vector<UnknownInputs> unknown_inputs;  ///< in ascending order of the interval; several for one interval are independent
+  std::vector<thermal::OperatingPoint<double>> at;  ///< n − 1
+  std::vector<UnknownInputs> unknown_inputs;        ///< in ascending order of the interval; several for one interval are independent
   std::vector<Sensor> sensors;
-  Eigen::MatrixXd measured_C;   ///< n × sensors; NaN: not measured
-  std::vector<Signal> signals;  ///< quantities of the operating points that were measured
+  Eigen::MatrixXd measured_C;            ///< n × sensors; NaN: not measured
+  std::vector<thermal::Signal> signals;  ///< quantities of the operating points that were measured
   /// Conditions of the recording, and "run" with the recording's name.
   std::map<std::string, std::string> conditions;
   std::map<std::string, Eigen::VectorXd> columns;  ///< result of columns_along()
 
   [[nodiscard]] Eigen::Index samples() const { return static_cast<Eigen::Index>(time_s.size()); }
-  [[nodiscard]] bool has(Signal signal) const;
+  [[nodiscard]] bool has(thermal::Signal signal) const;
   /// True if the run has all these conditions.
   [[nodiscard]] bool has(const std::map<std::string, std::string>& of_conditions) const;
   /// Index of the sensor at a node; −1 if it has none.
@@ -62,12 +62,12 @@ struct MeasuredRunOptions {
   /// Longest interval that rows are merged to; the merged inputs conserve heat. Rows are kept if their mean spacing is at least half of it.
   double longest_step_s = 2.0;
   /// Heat inputs that the model needs. The run is split if one of them is unknown for longer than both 10 s and three usual steps.
-  std::vector<Signal> needed = {};
-  double least_current_A = 0.0;           ///< smallest current that can turn the motor: a log that never exceeds it is one at standstill
-  ShaftTorque torque = {};                ///< used if the recording has no torque but current and speed
-  std::vector<SensorFault> faults = {};   ///< stated faults of the sensors
-  std::vector<std::string> columns = {};  ///< keys of the log columns that are copied into the operating points, see set_columns()
-  std::optional<double> ambient_C = {};   ///< used if the recording has neither coolant nor ambient temperature; empty: it must have one
+  std::vector<thermal::Signal> needed = {};
+  double least_current_A = 0.0;  ///< smallest current that can turn the motor: a log that never exceeds it is one at standstill
+  ShaftTorque torque = {};       ///< used if the recording has no torque but current and speed
+  std::vector<motor::SensorFault> faults = {};  ///< stated faults of the sensors
+  std::vector<std::string> columns = {};        ///< keys of the log columns that are copied into the operating points, see set_columns()
+  std::optional<double> ambient_C = {};  ///< used if the recording has neither coolant nor ambient temperature; empty: it must have one
 };
 
 struct MeasuredRuns {
@@ -76,12 +76,12 @@ struct MeasuredRuns {
 };
 
 /// Returns the signals that a recording has or that follow from it, for example the shaft power from torque or current.
-std::vector<Signal> signals_of(const Recording& recording, const ShaftTorque& torque = {});
+std::vector<thermal::Signal> signals_of(const recording::Recording& recording, const ShaftTorque& torque = {});
 
 /// Splits a recording into runs whose inputs are known. Merged temperatures are means over ± a tenth of longest_step_s around the sample.
 /// Throws Failure: bad_input if a needed signal, the surroundings' temperature or every sensor is missing; cannot_answer if no segment
 /// with all of them is left.
-MeasuredRuns measured_runs(const Recording& recording, const MeasuredRunOptions& options);
+MeasuredRuns measured_runs(const recording::Recording& recording, const MeasuredRunOptions& options);
 
 /// Merges every `merged` intervals into one with the same heat. Readings are not averaged; log columns are dropped.
 MeasuredRun thinned(const MeasuredRun& run, int merged);
@@ -89,4 +89,4 @@ MeasuredRun thinned(const MeasuredRun& run, int merged);
 /// starting points.
 std::vector<MeasuredRun> roughly(std::span<const MeasuredRun> runs);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -144,4 +144,4 @@ void Model::set_free(const FreeParameter& parameter, double spread) {
   prior.precision(count - 1, count - 1) = 1.0 / (spread * spread);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

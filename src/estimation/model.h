@@ -9,7 +9,7 @@
 #include "motor/sensor_effect.h"
 #include "thermal/network.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// Free parameter with coordinate θ: ln(value) for positive values (`by_log`), or value / scale for values that may be 0.
 struct FreeParameter {
@@ -39,7 +39,7 @@ struct ConditionalTerm {
 
 /// A sensor error whose size is a coordinate of the model.
 struct SensorTerm {
-  const SensorEffectType* type = nullptr;
+  const motor::SensorEffectType* type = nullptr;
   double value = 0.0;      ///< size, in the unit of the type
   double spread_sd = 1.0;  ///< prior standard deviation around 0, in the same unit
 };
@@ -47,7 +47,7 @@ struct SensorTerm {
 /// Coordinates θ, in this order: free parameters of the network; sensor errors, in typical sizes; run deviations, in units of their type's
 /// `usual`. A calibration has coordinates of the first kind only; a diagnosis adds the others.
 struct Model {
-  Network network;
+  thermal::Network network;
   std::vector<double> values;  ///< all parameters of the network, in its order
   std::vector<FreeParameter> free;
   Prior prior;                            ///< free parameters of the network only; full_prior() includes the other coordinates
@@ -85,4 +85,4 @@ struct Model {
   void set_free(const FreeParameter& parameter, double spread);
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

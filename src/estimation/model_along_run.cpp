@@ -4,7 +4,7 @@
 
 #include "estimation/spans.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 /// Returns the factor between the parameter at `place` in a run and in the model.
@@ -25,7 +25,7 @@ double factor_in(const Model& model, int place, const MeasuredRun& run) {
 /// `along` linearises the network for given values and requested parameters.
 template <class Along>
 LinearisedRun linearised(const Model& model, const MeasuredRun& run, const Along& along) {
-  const Network& network = model.network;
+  const thermal::Network& network = model.network;
   std::vector<int> wanted;
   for (const FreeParameter& free : model.free) {
     wanted.push_back(free.place);
@@ -50,7 +50,7 @@ LinearisedRun linearised(const Model& model, const MeasuredRun& run, const Along
                                                            out.by_parameter.col(static_cast<Eigen::Index>(own));
   }
   out.by_parameter.conservativeResize(Eigen::NoChange, model.network_count());
-  by_theta.leftCols(model.network_count()) = heatsoak::by_theta(model, model.theta(), out.by_parameter);
+  by_theta.leftCols(model.network_count()) = estimation::by_theta(model, model.theta(), out.by_parameter);
   for (Eigen::Index i = 0; i < model.network_count(); ++i) {
     by_theta.col(i) *= factor_in(model, wanted[static_cast<std::size_t>(i)], run);
   }
@@ -58,7 +58,7 @@ LinearisedRun linearised(const Model& model, const MeasuredRun& run, const Along
   for (std::size_t i = 0; i < model.sensors.size(); ++i) {
     for (Eigen::Index sensor = 0; sensor < out.sensors(); ++sensor) {
       if (run.sensors[static_cast<std::size_t>(sensor)].signal == model.sensors[i].type->signal) {
-        const SensorFault fault{model.sensors[i].type, model.sensors[i].value};
+        const motor::SensorFault fault{model.sensors[i].type, model.sensors[i].value};
         const std::vector<double> by_size = fault.type->law.by_size(run.time_s, fault.size, as_span(out.sensor_C.col(sensor)));
         add_fault(fault, sensor, run, out);
         const auto rows = Eigen::seq(sensor, out.residual_K.size() - 1, out.sensors());
@@ -72,7 +72,7 @@ LinearisedRun linearised(const Model& model, const MeasuredRun& run, const Along
 }  // namespace
 
 LinearisedRun linearise(const Model& model, std::span<const double> start_C, const MeasuredRun& run) {
-  const Network& network = model.network;
+  const thermal::Network& network = model.network;
   std::vector<double> start(start_C.begin(), start_C.end());
   start.resize(static_cast<std::size_t>(network.state_count()), run.at.front().ambient_C);
   return linearised(model, run, [&](const std::vector<double>& values, const std::vector<int>& wanted) {
@@ -86,4 +86,4 @@ LinearisedRun linearise_along(const Model& model, const Eigen::MatrixXd& path_C,
   });
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

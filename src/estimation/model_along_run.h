@@ -7,7 +7,7 @@
 #include "estimation/linearised_run.h"
 #include "estimation/model.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// Same as linearise() of a network, with the sensor errors of the model. The columns are per unit of each coordinate. If `start_C` is
 /// shorter than the number of state nodes, the other nodes start at ambient temperature.
@@ -15,4 +15,4 @@ LinearisedRun linearise(const Model& model, std::span<const double> start_C, con
 /// Same as linearise_along() of a network, with the sensor errors of the model.
 LinearisedRun linearise_along(const Model& model, const Eigen::MatrixXd& path_C, const MeasuredRun& run);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

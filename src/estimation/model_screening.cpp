@@ -7,7 +7,7 @@
 #include "estimation/smoothed_path.h"
 #include "estimation/whitening.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 /// Sequence of equal readings of one sensor; `samples` are indices in the run.
@@ -125,7 +125,7 @@ void hide_outliers(const LinearisedRun& fitted, const MeasuredRun& run, const La
 std::vector<Eigen::VectorXd> weights_by_model(const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
                                               double unknown_W, const ModelScreeningRules& rules) {
   std::vector<Eigen::VectorXd> all(runs.size());
-  in_parallel(runs.size(), 0, [&](std::size_t r) {
+  base::in_parallel(runs.size(), 0, [&](std::size_t r) {
     const MeasuredRun& run = runs[r];
     const LinearisedRun& path = fitted[r];
     const auto fluxes = static_cast<std::size_t>(path.fluxes);
@@ -160,4 +160,4 @@ std::vector<Eigen::VectorXd> weights_by_model(const std::vector<LinearisedRun>& 
   return all;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

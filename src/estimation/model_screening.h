@@ -6,7 +6,7 @@
 
 #include "estimation/linearised_run.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 struct ModelScreeningRules {
   int least_equal = 8;        ///< shortest sequence of equal readings that is tested
@@ -24,4 +24,4 @@ struct ModelScreeningRules {
 std::vector<Eigen::VectorXd> weights_by_model(const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
                                               double unknown_W, const ModelScreeningRules& rules = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
-RunStart start_of(const Network& network, const MeasuredRun& run) {
+RunStart start_of(const thermal::Network& network, const MeasuredRun& run) {
   const Eigen::Index states = network.state_count();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kSensed_K = 5.0;
@@ -22,7 +22,7 @@ RunStart start_of(const Network& network, const MeasuredRun& run) {
     const auto sensor_C = run.measured_C.col(static_cast<Eigen::Index>(sensor));
     const auto first = std::ranges::find_if(sensor_C, [](double value_C) { return !std::isnan(value_C); });
     if (const int node = network.find_node(run.sensors[sensor].node); node >= 0 && node < states && first != sensor_C.end()) {
-      const double true_C = true_at_rest_C(run.sensors[sensor].faults, *first);
+      const double true_C = motor::true_at_rest_C(run.sensors[sensor].faults, *first);
       start.state_C[node] = true_C;
       sum_C += true_C;
       farthest_K = std::max(farthest_K, std::abs(true_C - ambient_C));
@@ -47,7 +47,7 @@ RunStart start_of(const Network& network, const MeasuredRun& run) {
 namespace {
 
 /// Returns the number of samples that determine the start: five, or more if a state node has no sensor, since its temperature shows later.
-Eigen::Index deciding_samples(const Network& network, const MeasuredRun& run) {
+Eigen::Index deciding_samples(const thermal::Network& network, const MeasuredRun& run) {
   constexpr Eigen::Index kFew = 5;
   bool all_are_sensed = true;
   for (int node = 0; node < network.state_count(); ++node) {
@@ -72,7 +72,7 @@ MeasuredRun beginning_of(const MeasuredRun& run, Eigen::Index samples) {
 
 }  // namespace
 
-DecidedStart decided_start(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along) {
+DecidedStart decided_start(const thermal::Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along) {
   // No model predicts the first seconds better than this; with less noise, its error would distort unmeasured nodes.
   constexpr double kLeastNoise_K = 0.3;
   const MeasuredRun beginning = beginning_of(run, std::min(run.samples(), deciding_samples(network, run)));
@@ -90,11 +90,11 @@ DecidedStart decided_start(const Network& network, const RunStart& start, const 
   return {start.state_C + covariance_K2 * right, covariance_K2};
 }
 
-Eigen::VectorXd decided_start_C(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along) {
+Eigen::VectorXd decided_start_C(const thermal::Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along) {
   return decided_start(network, start, run, along).state_C;
 }
 
-Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run) {
+Eigen::MatrixXd open_loop_C(const thermal::Network& network, std::span<const double> parameters, const MeasuredRun& run) {
   const std::vector<int> none;
   const RunFrom along = [&](std::span<const double> start_C, const MeasuredRun& part) {
     return linearise(network, parameters, none, none, start_C, part);
@@ -123,4 +123,4 @@ double standard_deviation_K(std::span<const MeasuredRun> runs, std::string_view 
   return std::sqrt(std::max(0.0, squares_C2 / count - sum_C * sum_C / (count * count)));
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -10,7 +10,7 @@
 #include "estimation/linearised_run.h"
 #include "estimation/measured_run.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 inline constexpr double kMatters_K = 0.1;  ///< smaller differences between errors are below the accuracy of ordinary sensors
 
@@ -23,7 +23,7 @@ struct RunStart {
 
 /// Estimates the start temperatures without a fit: the first sample of each sensor; for other nodes the mean of the sensors, or the ambient
 /// temperature if there are none.
-RunStart start_of(const Network& network, const MeasuredRun& run);
+RunStart start_of(const thermal::Network& network, const MeasuredRun& run);
 
 /// Simulates and linearises the model along a run from given start temperatures.
 using RunFrom = std::function<LinearisedRun(std::span<const double> start_C, const MeasuredRun& run)>;
@@ -33,12 +33,12 @@ struct DecidedStart {
 };
 /// Estimates the start temperatures from the first five samples, or from the first minute (at most a tenth of the run) if a node has no
 /// sensor. The prior is that of `start`.
-DecidedStart decided_start(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
-Eigen::VectorXd decided_start_C(const Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
+DecidedStart decided_start(const thermal::Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
+Eigen::VectorXd decided_start_C(const thermal::Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
 
 /// Returns the predicted readings (n × sensors, in °C) of a free-running simulation. The start temperatures come from decided_start(), that
 /// is, only from the first samples: otherwise they could compensate for heat that the model lacks.
-Eigen::MatrixXd open_loop_C(const Network& network, std::span<const double> parameters, const MeasuredRun& run);
+Eigen::MatrixXd open_loop_C(const thermal::Network& network, std::span<const double> parameters, const MeasuredRun& run);
 
 struct SignalError {
   std::string signal;
@@ -50,4 +50,4 @@ struct SignalError {
 /// Standard deviation of all readings of a sensor in all runs. It is the RMS error of a constant prediction.
 double standard_deviation_K(std::span<const MeasuredRun> runs, std::string_view signal);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -12,7 +12,7 @@
 #include "estimation/open_loop.h"
 #include "estimation/uneven_bodies.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 /// The fit has converged if the next step promises a smaller decrease; differences of 0.1 nats decide nothing.
@@ -148,7 +148,7 @@ class Fitter {
  private:
   void linearise_all(Posterior& at) const {
     at.fitted.resize(runs_.size());
-    in_parallel(runs_.size(), 0, [&](std::size_t r) { at.fitted[r] = linearise(at.model, at.start_C[r], runs_[r]); });
+    base::in_parallel(runs_.size(), 0, [&](std::size_t r) { at.fitted[r] = linearise(at.model, at.start_C[r], runs_[r]); });
   }
 
   [[nodiscard]] std::vector<DesignRun> design_of(const Posterior& at, const std::vector<Columns>& extra = {}) const {
@@ -166,7 +166,7 @@ class Fitter {
   [[nodiscard]] static RunEvidence all_runs(const std::vector<DesignRun>& designs, const std::vector<DesignRun>& whitened_by,
                                             const LatentFlux& flux) {
     std::vector<RunEvidence> each(designs.size());
-    in_parallel(designs.size(), 0, [&](std::size_t r) {
+    base::in_parallel(designs.size(), 0, [&](std::size_t r) {
       const DesignRun& one = designs[r];
       each[r] = run_evidence(one.run, one.columns, Whitening(whitened_by[r].run, flux, whitened_by[r].noise), one.start);
     });
@@ -229,7 +229,7 @@ class Fitter {
     now_.covariance = (square / total_weight - mean * mean.transpose()).topLeftCorner(count, count);
     try {
       now_ = moved(mean.head(count), start_steps_K(mean, designs));
-    } catch (const Failure&) {
+    } catch (const base::Failure&) {
       return;
     }
   }
@@ -279,7 +279,7 @@ class Fitter {
           designs = std::move(next_designs);
           return true;
         }
-      } catch (const Failure&) {
+      } catch (const base::Failure&) {
         // The temperatures diverge there: the step is too long.
       }
       if (options_.holds_covariance) {
@@ -318,7 +318,7 @@ Posterior try_posterior_of(Model model, const std::vector<MeasuredRun>& runs, st
                            const PosteriorOptions& options) {
   try {
     return posterior_of(std::move(model), runs, std::move(start_C), options);
-  } catch (const Failure&) {
+  } catch (const base::Failure&) {
     Posterior none;
     none.flux = options.flux;
     none.evidence_nats = -std::numeric_limits<double>::infinity();
@@ -327,4 +327,4 @@ Posterior try_posterior_of(Model model, const std::vector<MeasuredRun>& runs, st
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -6,7 +6,7 @@
 
 #include "estimation/design.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 struct Posterior {
   Model model;
@@ -54,4 +54,4 @@ Posterior posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::v
 Posterior try_posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                            const PosteriorOptions& options);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 constexpr int kCrossLags = 20;
@@ -133,4 +133,4 @@ InnovationTests test_innovations(std::string signal, const Eigen::VectorXd& inno
   return out;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// Results for one sensor. With fewer than 160 samples only `count` is set.
 struct InnovationTests {
@@ -32,4 +32,4 @@ inline constexpr int kMostLag = 40;
 /// Tests one sensor. `innovation` is in order of time, NaN for a missing sample.
 InnovationTests test_innovations(std::string signal, const Eigen::VectorXd& innovation, const std::vector<NamedInput>& inputs);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

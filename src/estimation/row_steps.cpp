@@ -6,7 +6,7 @@
 
 #include "recording/spread.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 RowSteps row_steps(std::span<const double> time_s) {
   std::vector<double> steps_s;
@@ -16,7 +16,7 @@ RowSteps row_steps(std::span<const double> time_s) {
   if (steps_s.empty()) {
     return {};
   }
-  const double usual_s = middle_of(steps_s);
+  const double usual_s = recording::middle_of(steps_s);
   // Timing jitter and the loss of a third of the rows still count as regular.
   constexpr double kJitter_ratio = 0.25;
   constexpr double kUsual_share = 0.6;
@@ -31,4 +31,4 @@ RowSteps row_steps(std::span<const double> time_s) {
   return {usual_s, is_regular};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

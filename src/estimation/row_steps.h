@@ -3,7 +3,7 @@
 
 #include <span>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 struct RowSteps {
   double usual_s = 0.0;  ///< median time between rows
@@ -13,4 +13,4 @@ struct RowSteps {
 
 RowSteps row_steps(std::span<const double> time_s);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -5,19 +5,19 @@
 #include <algorithm>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
-bool turns_input_into_heat(const Network& /*network*/, const EffectInPlace& effect) {
+bool turns_input_into_heat(const thermal::Network& /*network*/, const thermal::EffectInPlace& effect) {
   return effect.type->name == "copper_loss" || effect.type->name == "input_power_loss";
 }
 
-bool is_resistance_to_ambient(const Network& network, const EffectInPlace& effect) {
+bool is_resistance_to_ambient(const thermal::Network& network, const thermal::EffectInPlace& effect) {
   return effect.type->name == "conduction" &&
-         std::ranges::any_of(effect.node_index, [&](int node) { return network.node_name(node) == Network::kAmbient; });
+         std::ranges::any_of(effect.node_index, [&](int node) { return network.node_name(node) == thermal::Network::kAmbient; });
 }
 
-bool is_contact(const Network& network, const EffectInPlace& effect) {
+bool is_contact(const thermal::Network& network, const thermal::EffectInPlace& effect) {
   return effect.type->name == "conduction" && !is_resistance_to_ambient(network, effect);
 }
 
@@ -26,7 +26,7 @@ bool is_contact(const Network& network, const EffectInPlace& effect) {
 const std::vector<RunDeviationType>& all_run_deviations() {
   static const std::vector<RunDeviationType> all{
       {.name = "heat_share",
-       .size = {"deviation", "", Range::between(-0.9, 3.0), "deviation of the heat input from the logged value, as a fraction of it"},
+       .size = {"deviation", "", base::Range::between(-0.9, 3.0), "deviation of the heat input from the logged value, as a fraction of it"},
        .usual = 0.1,
        .node = "winding",
        .summary = "The heat input differs from the log: another phase carries the current, or the motor driver takes another share.",
@@ -38,7 +38,7 @@ const std::vector<RunDeviationType>& all_run_deviations() {
        .concerns = turns_input_into_heat,
        .part_ratio = [](double d_share) { return d_share / std::max(0.01, 1.0 + d_share); }},
       {.name = "hindered_cooling",
-       .size = {"resistance_rise", "", Range::between(0.0, 20.0), "increase of the resistance to ambient, as a fraction of it"},
+       .size = {"resistance_rise", "", base::Range::between(0.0, 20.0), "increase of the resistance to ambient, as a fraction of it"},
        .usual = 0.3,
        .node = "stator",
        .summary = "Less heat leaves than the model predicts: a cover, a loose mount, or a missing fan or draught.",
@@ -49,7 +49,7 @@ const std::vector<RunDeviationType>& all_run_deviations() {
        .concerns = is_resistance_to_ambient,
        .part_ratio = [](double d_share) { return -d_share; }},
       {.name = "changed_contact",
-       .size = {"resistance_change", "", Range::between(-0.9, 20.0),
+       .size = {"resistance_change", "", base::Range::between(-0.9, 20.0),
                 "change of the resistance between winding and stator, as a fraction of it"},
        .usual = 0.2,
        .node = "winding",
@@ -65,9 +65,9 @@ const std::vector<RunDeviationType>& all_run_deviations() {
   return all;
 }
 
-std::vector<int> RunDeviationType::places_in(const Network& network) const {
+std::vector<int> RunDeviationType::places_in(const thermal::Network& network) const {
   std::vector<int> places;
-  for (const EffectInPlace& effect : network.effects()) {
+  for (const thermal::EffectInPlace& effect : network.effects()) {
     if (concerns(network, effect)) {
       places.push_back(effect.parameter_index.front());
     }
@@ -83,4 +83,4 @@ std::string in_words(const Condition& condition) {
   return text;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

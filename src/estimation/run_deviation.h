@@ -10,7 +10,7 @@
 #include "estimation/measured_run.h"
 #include "thermal/network.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// Property that some runs share: "cooling" -> "fan", or "run" -> "run4".
 using Condition = std::map<std::string, std::string>;
@@ -21,8 +21,8 @@ std::string in_words(const Condition& condition);
 /// A kind of deviation: it multiplies parameters of the network by 1 + d in runs with a condition.
 struct RunDeviationType {
   std::string_view name;
-  ParameterSpec size;  ///< d, dimensionless
-  double usual = 0.1;  ///< typical size of d
+  base::ParameterSpec size;  ///< d, dimensionless
+  double usual = 0.1;        ///< typical size of d
   std::string_view node;
   std::string_view summary;
   std::string_view equation;
@@ -30,12 +30,12 @@ struct RunDeviationType {
   std::string_view confounded_with;
   std::string_view experiment;
   /// True for effects whose first parameter is multiplied.
-  bool (*concerns)(const Network& network, const EffectInPlace& effect) = nullptr;
+  bool (*concerns)(const thermal::Network& network, const thermal::EffectInPlace& effect) = nullptr;
   /// Additional heat (negative: less) as a fraction of the heat of those effects with the deviation.
   double (*part_ratio)(double deviation_share) = nullptr;
 
   /// Returns the indices of the multiplied parameters in the network's list.
-  [[nodiscard]] std::vector<int> places_in(const Network& network) const;
+  [[nodiscard]] std::vector<int> places_in(const thermal::Network& network) const;
 };
 
 /// Returns all kinds. The list lives as long as the program.
@@ -51,4 +51,4 @@ struct RunDeviation {
   [[nodiscard]] bool is_same(const RunDeviationType* other, const Condition& where) const { return type == other && condition == where; }
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

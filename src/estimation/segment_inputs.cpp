@@ -5,15 +5,16 @@
 
 #include "base/unknown.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 /// Ratio to the usual step above which a row is missing.
 constexpr double kLostRow_ratio = 1.5;
 
-double square_A2(const OperatingPoint<double>& at) { return at.current_rms_A * at.current_rms_A; }
+double square_A2(const thermal::OperatingPoint<double>& at) { return at.current_rms_A * at.current_rms_A; }
 
-std::vector<double> along(const LogRows& rows, std::size_t first, std::size_t last, double (*quantity)(const OperatingPoint<double>&)) {
+std::vector<double> along(const LogRows& rows, std::size_t first, std::size_t last,
+                          double (*quantity)(const thermal::OperatingPoint<double>&)) {
   std::vector<double> all;
   for (std::size_t row = first; row <= last; ++row) {
     all.push_back(quantity(rows.at(row)));
@@ -21,23 +22,23 @@ std::vector<double> along(const LogRows& rows, std::size_t first, std::size_t la
   return all;
 }
 
-OperatingPoint<double> nowhere() {
-  OperatingPoint<double> none;
-  for_each_quantity([](double& value) { value = kUnknown; }, none);
+thermal::OperatingPoint<double> nowhere() {
+  thermal::OperatingPoint<double> none;
+  thermal::for_each_quantity([](double& value) { value = base::kUnknown; }, none);
   return none;
 }
 
 /// Replaces assumed quantities by the logged cells of a row, where these are not NaN.
-OperatingPoint<double> with_cells(OperatingPoint<double> supposed, const OperatingPoint<double>& cells) {
+thermal::OperatingPoint<double> with_cells(thermal::OperatingPoint<double> supposed, const thermal::OperatingPoint<double>& cells) {
   const double unlogged_share = supposed.unlogged_speed_share;
-  for_each_quantity([](double& value, const double& cell) { value = std::isnan(cell) ? value : cell; }, supposed, cells);
+  thermal::for_each_quantity([](double& value, const double& cell) { value = std::isnan(cell) ? value : cell; }, supposed, cells);
   supposed.unlogged_speed_share = unlogged_share;
   return supposed;
 }
 
 }  // namespace
 
-SegmentInputs::SegmentInputs(const Recording& recording, const LogRows& rows, std::size_t first, std::size_t last)
+SegmentInputs::SegmentInputs(const recording::Recording& recording, const LogRows& rows, std::size_t first, std::size_t last)
     : recording_(recording),
       rows_(rows),
       steps_(row_steps(std::span(recording.time_s).subspan(first, last - first + 1))),
@@ -48,8 +49,9 @@ SegmentInputs::SegmentInputs(const Recording& recording, const LogRows& rows, st
 void SegmentInputs::add(std::size_t row, std::size_t next, MeanInputs& mean, const Ends& ends) {
   const double duration_s = recording_.time_s[next] - recording_.time_s[row];
   const double own_s = recording_.time_s[row + 1] - recording_.time_s[row];
-  const bool lacks_rows = steps_.is_regular && own_s > kLostRow_ratio * steps_.usual_s && recording_.inputs != InputConvention::linear;
-  const bool speaks_of_end = lacks_rows && next == row + 1 && recording_.inputs == InputConvention::previous_interval;
+  const bool lacks_rows =
+      steps_.is_regular && own_s > kLostRow_ratio * steps_.usual_s && recording_.inputs != recording::InputConvention::linear;
+  const bool speaks_of_end = lacks_rows && next == row + 1 && recording_.inputs == recording::InputConvention::previous_interval;
   const double unknown_s = duration_s - (lacks_rows ? steps_.usual_s : own_s);
   const std::size_t behind = speaks_of_end ? row : next;
   if (!(unknown_s > 0.0) || !rows_.is_known(behind)) {
@@ -87,7 +89,7 @@ void SegmentInputs::add_gap(const Gap& gap, MeanInputs& mean, const Ends& ends) 
 
 void SegmentInputs::add_middle(const Gap& gap, const Point& cells, double middle_s, MeanInputs& mean) const {
   Point first_half = gap.before, second_half = gap.after;
-  if (recording_.inputs == InputConvention::linear) {
+  if (recording_.inputs == recording::InputConvention::linear) {
     const double from_A = gap.before.current_rms_A, to_A = gap.after.current_rms_A;
     first_half.current_rms_A = second_half.current_rms_A = std::sqrt((from_A * from_A + from_A * to_A + to_A * to_A) / 3.0);
   }
@@ -108,19 +110,19 @@ void SegmentInputs::add_uncertainty(const Gap& gap, const Point& cells, double u
   mean.add_uncertainty(from, burst, uncertain_s);
 }
 
-OperatingPoint<double> SegmentInputs::always_known(const Gap& gap) const {
+thermal::OperatingPoint<double> SegmentInputs::always_known(const Gap& gap) const {
   Point always = gap.lacks_rows ? nowhere() : rows_.at(gap.row + 1);
   for (std::size_t blank = gap.row + 1; blank < gap.next; ++blank) {
     const Point cells = rows_.at(blank);
-    for_each_quantity([](double& all, const double& cell) { all = std::isnan(cell) ? kUnknown : all; }, always, cells);
+    thermal::for_each_quantity([](double& all, const double& cell) { all = std::isnan(cell) ? base::kUnknown : all; }, always, cells);
   }
   return always;
 }
 
-OperatingPoint<double> SegmentInputs::filled(std::size_t row) const {
+thermal::OperatingPoint<double> SegmentInputs::filled(std::size_t row) const {
   Point at = rows_.at(row);
-  for_each_quantity([](double& value) { value = std::isnan(value) ? 0.0 : value; }, at);
+  thermal::for_each_quantity([](double& value) { value = std::isnan(value) ? 0.0 : value; }, at);
   return at;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -8,12 +8,12 @@
 #include "estimation/mean_inputs.h"
 #include "estimation/row_steps.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 class SegmentInputs {
  public:
   /// Uses rows first … last. Recording and rows must outlive this object.
-  SegmentInputs(const Recording& recording, const LogRows& rows, std::size_t first, std::size_t last);
+  SegmentInputs(const recording::Recording& recording, const LogRows& rows, std::size_t first, std::size_t last);
 
   /// Called for every row at which an interval may end.
   using Ends = std::function<void(std::size_t row)>;
@@ -24,7 +24,7 @@ class SegmentInputs {
   void add(std::size_t row, std::size_t next, MeanInputs& mean, const Ends& ends);
 
  private:
-  using Point = OperatingPoint<double>;
+  using Point = thermal::OperatingPoint<double>;
   /// Gap between two rows with known inputs.
   struct Gap {
     std::size_t row, next;
@@ -41,10 +41,10 @@ class SegmentInputs {
   /// Operating point of a row with 0 for unknown quantities (the model does not need them), so that means are not NaN.
   [[nodiscard]] Point filled(std::size_t row) const;
 
-  const Recording& recording_;
+  const recording::Recording& recording_;
   const LogRows& rows_;
   RowSteps steps_;
   GapStatisticsTable square_A2_, speed_rad_per_s_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -2,7 +2,7 @@
 
 #include "estimation/evidence.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 Eigen::MatrixXd smoothed_path_C(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise& noise) {
   constexpr double kStart_K = 5.0;
@@ -23,4 +23,4 @@ Eigen::MatrixXd smoothed_path_C(const LinearisedRun& run, const LatentFlux& flux
   return path_C;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <span>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// Returns a view of a vector or of a column of a matrix.
 inline std::span<double> as_span(Eigen::Ref<Eigen::VectorXd> values) { return {values.data(), static_cast<std::size_t>(values.size())}; }
@@ -13,4 +13,4 @@ inline Eigen::Map<const Eigen::VectorXd> as_vector(std::span<const double> value
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

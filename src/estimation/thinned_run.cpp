@@ -3,7 +3,7 @@
 #include "estimation/mean_inputs.h"
 #include "estimation/measured_run.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 MeasuredRun thinned(const MeasuredRun& run, int merged) {
   MeasuredRun thin;
@@ -45,4 +45,4 @@ std::vector<MeasuredRun> roughly(std::span<const MeasuredRun> runs) {
   return rough;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 /// Weight of the neighbours' means in the speed at the ends of a row. This value gives no bias for ramps shorter than a row that are
@@ -25,7 +25,7 @@ struct Neighbours {
 template <class Visit>
 void each_turning(const MeasuredRun& run, const Visit& visit) {
   for (std::size_t k = 1; k + 1 < run.at.size(); ++k) {
-    const OperatingPoint<double>& at = run.at[k];
+    const thermal::OperatingPoint<double>& at = run.at[k];
     const bool is_one_row = at.speed_mean_rad_per_s <= std::abs(at.velocity_rad_per_s) + 1e-9;
     const auto [least, most] = std::minmax({run.at[k - 1].velocity_rad_per_s, at.velocity_rad_per_s, run.at[k + 1].velocity_rad_per_s});
     if (is_one_row && least < 0.0 && most > 0.0) {
@@ -43,7 +43,7 @@ bool may_turn_within_rows(const MeasuredRun& run) {
 }
 
 MeasuredRun turning_within_rows(MeasuredRun run) {
-  std::vector<OperatingPoint<double>> at = run.at;
+  std::vector<thermal::OperatingPoint<double>> at = run.at;
   each_turning(run, [&](std::size_t k, const Neighbours& speed) {
     const double mean = speed.own_rad_per_s;
     const double from = std::lerp(mean, speed.before_rad_per_s, kTowardsNeighbour_share);
@@ -58,4 +58,4 @@ MeasuredRun turning_within_rows(MeasuredRun run) {
   return run;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

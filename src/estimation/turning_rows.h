@@ -5,7 +5,7 @@
 
 #include "estimation/measured_run.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// True if the motor may reverse within a row: the speeds of the row and its two neighbours have both signs.
 bool may_turn_within_rows(const MeasuredRun& run);
@@ -18,4 +18,4 @@ inline constexpr std::string_view kTurningRowsReason =
     "the speed is interpolated linearly within rows, because it changes its sign from row to row and this has the larger evidence in these "
     "runs";
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

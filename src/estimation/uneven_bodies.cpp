@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 std::vector<Columns> uneven_bodies(const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs) {
   std::vector<std::string> signals;
@@ -31,4 +31,4 @@ std::vector<Columns> uneven_bodies(const std::vector<LinearisedRun>& fitted, con
   return all;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -5,7 +5,7 @@
 
 #include "estimation/linearised_run.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// Prior standard deviation of a sensor's error, as a fraction of the temperature difference to another body. It is far below the Biot
 /// number of 0.1 up to which a body may be lumped (F. P. Incropera et al., Fundamentals of Heat and Mass Transfer, 7th edition, section
@@ -16,4 +16,4 @@ inline constexpr double kUneven_share = 0.002;
 /// the same columns.
 std::vector<Columns> uneven_bodies(const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const std::vector<RunStart>& starts) {
-  const Network& network = model.network;
+  const thermal::Network& network = model.network;
   const auto nodes = static_cast<std::size_t>(network.node_count());
   std::vector<double> heat_W(network.effects().size() * nodes);
   double made_J = 0.0;
@@ -20,7 +20,7 @@ double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const
       for (const Sensor& sensor : runs[r].sensors) {
         const double sensor_C = runs[r].measured_C(static_cast<Eigen::Index>(k), runs[r].sensor_at(sensor.node));
         double& node_C = state_C[static_cast<std::size_t>(network.find_node(sensor.node))];
-        node_C = std::isnan(sensor_C) ? node_C : true_at_rest_C(sensor.faults, sensor_C);
+        node_C = std::isnan(sensor_C) ? node_C : motor::true_at_rest_C(sensor.faults, sensor_C);
       }
       network.balance_W(runs[r].at[k], model.values, state_C, heat_W);
       double away_W = 0.0;
@@ -36,4 +36,4 @@ double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const
   return std::max({kLeast_W, made_J / duration_s, led_away_J / duration_s});
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

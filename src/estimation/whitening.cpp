@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 /// Largest filter state: every state node of the largest network has a flux and a drifting sensor.
-constexpr int kMostSize = 3 * (Network::kMostNodes - 1);
+constexpr int kMostSize = 3 * (thermal::Network::kMostNodes - 1);
 constexpr Eigen::Index kStrip = 8;
 
 /// Layout of the filter's state: X temperatures, Q fluxes, W sensor drifts, in this order.
@@ -376,4 +376,4 @@ FluxEstimate Whitening::smoothed_flux(const Eigen::VectorXd& residual_K) const {
   return {std::move(flux_W), std::move(sd_W)};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

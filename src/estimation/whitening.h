@@ -12,7 +12,7 @@
 
 #include "estimation/linearised_run.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 /// Unknown heat flux: stationary standard deviation per flux node, and correlation time. All sensors may also drift, which represents
 /// bodies that the network does not have; this drift is ignored if SensorNoise has its own.
@@ -104,4 +104,4 @@ class Whitening {
   Eigen::Index count_ = 0;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

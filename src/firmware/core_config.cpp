@@ -14,24 +14,24 @@
 #include "robot/assumed_friction.h"
 #include "robot/driver.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
 constexpr double kPushed = 1.1;
 
 float single(double value) { return static_cast<float>(value); }
 
-void require_all(const Robot& robot, const MotorValues& motor) {
+void require_all(const robot::Robot& robot, const motor::MotorValues& motor) {
   constexpr std::array<std::string_view, 6> kTables{"body", "wheels", "drive", "battery", "traction", "limits"};
   std::vector<std::string_view> tables(kTables.begin(), kTables.end());
-  if (has_friction(robot)) {
+  if (robot::has_friction(robot)) {
     tables.emplace_back("friction");
   }
-  Diagnostics diagnostics;
+  base::Diagnostics diagnostics;
   try {
-    require_parameters(robot, tables);
-  } catch (const Failure& failure) {
-    for (const Diagnostic& each : failure.diagnostics()) {
+    robot::require_parameters(robot, tables);
+  } catch (const base::Failure& failure) {
+    for (const base::Diagnostic& each : failure.diagnostics()) {
       diagnostics.add(each.at, each.key, each.message);
     }
   }
@@ -41,8 +41,8 @@ void require_all(const Robot& robot, const MotorValues& motor) {
   diagnostics.throw_if_any();
 }
 
-void set_geometry(const BodyConfig& body, robot_core::Config& config) {
-  const Kinematics& kinematics = body.kinematics;
+void set_geometry(const robot::BodyConfig& body, robot_core::Config& config) {
+  const robot::Kinematics& kinematics = body.kinematics;
   config.wheel_count = kinematics.wheel_count;
   config.wheel_radius_m = single(kinematics.wheel_radius_m);
   config.contact_radius_m = single(kinematics.contact_radius_m);
@@ -60,7 +60,7 @@ void set_geometry(const BodyConfig& body, robot_core::Config& config) {
   }
 }
 
-void set_friction(const Robot& robot, const MotorValues& motor, const BodyConfig& body, robot_core::Config& config) {
+void set_friction(const robot::Robot& robot, const motor::MotorValues& motor, const robot::BodyConfig& body, robot_core::Config& config) {
   const FrictionVoltage friction = friction_voltage(robot, motor);
   config.has_friction = friction.is_known;
   config.rotation_friction_V = single(friction.rotation_V);
@@ -75,21 +75,21 @@ void set_friction(const Robot& robot, const MotorValues& motor, const BodyConfig
   }
 }
 
-double lowest_resistance_ohm(const Robot& robot, const MotorValues& motor, const CoreOptions& options) {
-  const MotorElectrics electrics = make_electrics(robot, motor);
-  const double cold_ratio = resistance_ratio(electrics.resistance_rise_per_K, options.coldest_ambient_C);
+double lowest_resistance_ohm(const robot::Robot& robot, const motor::MotorValues& motor, const CoreOptions& options) {
+  const robot::MotorElectrics electrics = robot::make_electrics(robot, motor);
+  const double cold_ratio = base::resistance_ratio(electrics.resistance_rise_per_K, options.coldest_ambient_C);
   return electrics.heating_factor * electrics.resistance_25C_ohm * options.lowest_resistance_ratio * cold_ratio +
          robot.series_resistance_ohm();
 }
 
-double current_limit_A(const Robot& robot, double geared_V_s_per_rad, double fastest_rad_per_s, double lowest_ohm) {
+double current_limit_A(const robot::Robot& robot, double geared_V_s_per_rad, double fastest_rad_per_s, double lowest_ohm) {
   const double most_V = std::min(robot.battery.full_V.value(), robot.drive.voltage_limit_V) + geared_V_s_per_rad * fastest_rad_per_s;
   return std::min(robot.drive.current_limit_A, most_V / lowest_ohm);
 }
 
-void set_drive(const Robot& robot, const MotorValues& motor, const BodyConfig& body, const CoreOptions& options,
+void set_drive(const robot::Robot& robot, const motor::MotorValues& motor, const robot::BodyConfig& body, const CoreOptions& options,
                robot_core::Config& config) {
-  const DriveConstants drive = drive_constants(robot, motor);
+  const robot::DriveConstants drive = robot::drive_constants(robot, motor);
   const double geared = drive.torque_constant_Nm_per_A * drive.gear_ratio;
   const double efficiency = drive.gear_efficiency * body.rolling_efficiency;
   const double lowest_ohm = lowest_resistance_ohm(robot, motor, options);
@@ -97,7 +97,7 @@ void set_drive(const Robot& robot, const MotorValues& motor, const BodyConfig& b
   const double most_A = current_limit_A(robot, geared, fastest_rad_per_s, lowest_ohm);
   config.torque_constant_Nm_per_A = single(drive.torque_constant_Nm_per_A);
   config.resistance_ohm = single(drive.resistance_ohm);
-  const MotorElectrics electrics = make_electrics(robot, motor);
+  const robot::MotorElectrics electrics = robot::make_electrics(robot, motor);
   config.resistance_rise_per_K =
       single(electrics.resistance_rise_per_K * electrics.heating_factor * electrics.resistance_25C_ohm / drive.resistance_ohm);
   config.lowest_resistance_ohm = single(lowest_ohm);
@@ -121,7 +121,7 @@ void set_gains(const WheelLoopGains& gains, robot_core::Config& config) {
   config.tracking_time_s = single(gains.tracking_time_s);
 }
 
-void set_limits(const Robot& robot, const BodyConfig& body, robot_core::Config& config) {
+void set_limits(const robot::Robot& robot, const robot::BodyConfig& body, robot_core::Config& config) {
   config.speed_limit_m_per_s = single(robot.limits.speed_m_per_s.value());
   config.yaw_rate_limit_rad_per_s = single(robot.limits.yaw_rate_rad_per_s.value());
   config.acceleration_limit_m_per_s2 = single(robot.limits.acceleration_m_per_s2.value());
@@ -136,9 +136,9 @@ void set_limits(const Robot& robot, const BodyConfig& body, robot_core::Config& 
 robot_core::Config finished(robot_core::Config config) {
   robot_core::complete(config);
   if (!robot_core::is_possible(config)) {
-    throw Failure(ExitCode::bad_input,
-                  "the drive core refuses the values of this robot and motor: expected finite values, three or four "
-                  "wheels and an empty battery below the full one");
+    throw base::Failure(base::ExitCode::bad_input,
+                        "the drive core refuses the values of this robot and motor: expected finite values, three or four "
+                        "wheels and an empty battery below the full one");
   }
   robot_core::complete(config);
   return config;
@@ -152,7 +152,7 @@ struct Stop {
 };
 
 /// Of one wheel for each direction of travel: the larger current decides, and for equal currents the faster motor.
-std::vector<Stop> stops(const Robot& robot, const DriveConstants& drive, const BodyConfig& body) {
+std::vector<Stop> stops(const robot::Robot& robot, const robot::DriveConstants& drive, const robot::BodyConfig& body) {
   constexpr int kHeadings = 72;
   const double most_A =
       current_limit_A(robot, drive.torque_constant_Nm_per_A * drive.gear_ratio,
@@ -160,12 +160,14 @@ std::vector<Stop> stops(const Robot& robot, const DriveConstants& drive, const B
   std::vector<Stop> all;
   for (int h = 0; h < kHeadings; ++h) {
     const double heading_rad = 2.0 * std::numbers::pi * h / kHeadings;
-    const Direction along = Direction::of(heading_rad);
+    const robot::Direction along = robot::Direction::of(heading_rad);
     const double a_m_per_s2 = robot.limits.braking_m_per_s2.value();
     const double v_m_per_s = robot.limits.speed_m_per_s.value();
-    const Wrench wrench = wrench_of_acceleration(body, 0.0, {a_m_per_s2 * along.cosine_ratio, a_m_per_s2 * along.sine_ratio, 0.0});
-    const PerWheel force_N = rolling_forces_N(body.kinematics, wrench);
-    const PerWheel per_s2 = wheel_speeds_rad_per_s(body.kinematics, {a_m_per_s2 * along.cosine_ratio, a_m_per_s2 * along.sine_ratio, 0.0});
+    const robot::Wrench wrench =
+        robot::wrench_of_acceleration(body, 0.0, {a_m_per_s2 * along.cosine_ratio, a_m_per_s2 * along.sine_ratio, 0.0});
+    const robot::PerWheel force_N = robot::rolling_forces_N(body.kinematics, wrench);
+    const robot::PerWheel per_s2 =
+        robot::wheel_speeds_rad_per_s(body.kinematics, {a_m_per_s2 * along.cosine_ratio, a_m_per_s2 * along.sine_ratio, 0.0});
     for (int i = 0; i < body.kinematics.wheel_count; ++i) {
       const double torque_Nm = force_N[i] * body.kinematics.wheel_radius_m + body.wheel_inertia_kg_m2 * per_s2[i];
       const double current_A = std::abs(torque_Nm) / (drive.torque_constant_Nm_per_A * drive.gear_ratio);
@@ -177,45 +179,47 @@ std::vector<Stop> stops(const Robot& robot, const DriveConstants& drive, const B
 
 }  // namespace
 
-CoreOptions with_tolerance(CoreOptions options, const Motor& motor) {
-  if (const std::optional<Spread> spread = spread_or_default(motor, "terminal_resistance")) {
+CoreOptions with_tolerance(CoreOptions options, const motor::Motor& motor) {
+  if (const std::optional<base::Spread> spread = motor::spread_or_default(motor, "terminal_resistance")) {
     options.lowest_resistance_ratio = spread->low / motor.nominal.terminal_resistance_ohm;
   }
   return options;
 }
 
-robot_core::Config make_core_config(const Robot& robot, const MotorValues& motor, const CoreOptions& options) {
+robot_core::Config make_core_config(const robot::Robot& robot, const motor::MotorValues& motor, const CoreOptions& options) {
   require_all(robot, motor);
-  const BodyConfig body = make_body_with_known_friction(robot, motor);
+  const robot::BodyConfig body = make_body_with_known_friction(robot, motor);
   robot_core::Config config;
   config.period_s = single(options.period_s);
   set_geometry(body, config);
   set_drive(robot, motor, body, options, config);
   set_friction(robot, motor, body, config);
-  set_gains(wheel_loop_gains(wheel_loop_plant(body, drive_constants(robot, motor)), options.period_s), config);
+  set_gains(wheel_loop_gains(wheel_loop_plant(body, robot::drive_constants(robot, motor)), options.period_s), config);
   set_limits(robot, body, config);
   config.plan_step = options.has_pose_targets ? &robot_core::plan_to_pose : nullptr;
   return finished(config);
 }
 
-robot_core::Config make_core_config(const Robot& robot, const Motor& motor, const CoreOptions& options, const Derating& derating,
-                                    const HostGuard& guard) {
+robot_core::Config make_core_config(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options,
+                                    const derate::Derating& derating, const HostGuard& guard) {
   CoreOptions with_cold = with_tolerance(options, motor);
   with_cold.coldest_ambient_C = derating.options.coldest_ambient_C;
   const double periods = derating.options.period_s / options.period_s;
   if (std::round(periods) < 1.0 || std::abs(periods - std::round(periods)) > 1e-3 * periods) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("the guard's period of {:.6g} ms is not a whole number of control periods of {:.6g} ms: choose one that is",
-                              1e3 * derating.options.period_s, 1e3 * options.period_s));
+    throw base::Failure(
+        base::ExitCode::bad_input,
+        fmt::format("the guard's period of {:.6g} ms is not a whole number of control periods of {:.6g} ms: choose one that is",
+                    1e3 * derating.options.period_s, 1e3 * options.period_s));
   }
   robot_core::Config config = make_core_config(robot, motor.nominal, with_cold);
   config.guard = &guard.model();
-  config.limp_current_A = single(std::min(limp_current_A(derating), double{config.current_limit_A}));
+  config.limp_current_A = single(std::min(derate::limp_current_A(derating), double{config.current_limit_A}));
   config.braking_reserve_K = single(braking_reserve_K(robot, motor.nominal, derating));
   return finished(config);
 }
 
-void require_driving_current(const Robot& robot, const Motor& motor, const Derating& derating, const robot_core::Config& config) {
+void require_driving_current(const robot::Robot& robot, const motor::Motor& motor, const derate::Derating& derating,
+                             const robot_core::Config& config) {
   const double reserve_K = config.braking_reserve_K;
   const double hottest_C = derating.rules.hottest_ambient_C;
   const double limit_C = derating.rules.limits.winding_C;
@@ -223,35 +227,36 @@ void require_driving_current(const Robot& robot, const Motor& motor, const Derat
   if (reserve_K < limit_C - hottest_C && allowed_A > 0.0F) {
     return;
   }
-  throw Failure(ExitCode::bad_input,
-                fmt::format("{} in {}: one full stop from {:.3g} m/s at {:.3g} m/s2 heats the winding by {:.0f} K; expected less than the "
-                            "{:.0f} K between air of {:.0f} degC and the limit of {:.0f} degC, or the thermal guard could never let the "
-                            "robot drive; lower limits.speed or limits.braking in the robot file, or choose a stronger motor or a gear",
-                            motor.id, robot.id, robot.limits.speed_m_per_s.value(), robot.limits.braking_m_per_s2.value(), reserve_K,
-                            limit_C - hottest_C, hottest_C, limit_C));
+  throw base::Failure(
+      base::ExitCode::bad_input,
+      fmt::format("{} in {}: one full stop from {:.3g} m/s at {:.3g} m/s2 heats the winding by {:.0f} K; expected less than the "
+                  "{:.0f} K between air of {:.0f} degC and the limit of {:.0f} degC, or the thermal guard could never let the "
+                  "robot drive; lower limits.speed or limits.braking in the robot file, or choose a stronger motor or a gear",
+                  motor.id, robot.id, robot.limits.speed_m_per_s.value(), robot.limits.braking_m_per_s2.value(), reserve_K,
+                  limit_C - hottest_C, hottest_C, limit_C));
 }
 
-double braking_reserve_K(const Robot& robot, const MotorValues& motor, const Derating& derating) {
+double braking_reserve_K(const robot::Robot& robot, const motor::MotorValues& motor, const derate::Derating& derating) {
   require_all(robot, motor);
-  const BodyConfig body = make_body_with_known_friction(robot, motor);
-  FormulaRun<double> law(derating.observer.formula(), derating.observer.rate_steps());
-  std::vector<double> inputs(observed::kSignalCount + derating.observer.state_count(), derating.rules.limits.winding_C);
+  const robot::BodyConfig body = make_body_with_known_friction(robot, motor);
+  thermal::FormulaRun<double> law(derating.observer.formula(), derating.observer.rate_steps());
+  std::vector<double> inputs(derate::observed::kSignalCount + derating.observer.state_count(), derating.rules.limits.winding_C);
   std::vector<double> rate_K_per_s(derating.observer.state_count());
   double most_K = 0.0;
-  for (const HotCase& around : hot_cases(derating.observer, derating.rules)) {
-    for (const Stop& stop : stops(robot, drive_constants(robot, motor), body)) {
+  for (const derate::HotCase& around : derate::hot_cases(derating.observer, derating.rules)) {
+    for (const Stop& stop : stops(robot, robot::drive_constants(robot, motor), body)) {
       constexpr int kSteps = 16;
       double heating_K = 0.0;
       for (int step = 0; step < kSteps; ++step) {
         // Midpoints: the speed falls evenly, the current stays.
         const double speed_rad_per_s = stop.speed_rad_per_s * (step + 0.5) / kSteps;
-        Signals signals = around.signals(derating.rules, stop.current_A, speed_rad_per_s);
-        signals[observed::current] = -stop.current_A;
-        signals[observed::speed] = speed_rad_per_s;
-        signals[observed::ambient] = derating.rules.limits.winding_C;
+        derate::Signals signals = around.signals(derating.rules, stop.current_A, speed_rad_per_s);
+        signals[derate::observed::current] = -stop.current_A;
+        signals[derate::observed::speed] = speed_rad_per_s;
+        signals[derate::observed::ambient] = derating.rules.limits.winding_C;
         std::ranges::copy(signals, inputs.begin());
         law.run(inputs, rate_K_per_s);
-        heating_K += std::max(0.0, rate_K_per_s[states::winding]) * stop.duration_s / kSteps;
+        heating_K += std::max(0.0, rate_K_per_s[motor::states::winding]) * stop.duration_s / kSteps;
       }
       most_K = std::max(most_K, heating_K);
     }
@@ -259,4 +264,4 @@ double braking_reserve_K(const Robot& robot, const MotorValues& motor, const Der
   return most_K;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

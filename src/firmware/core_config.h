@@ -9,7 +9,7 @@
 #include "firmware/wheel_loop.h"
 #include "robot_core/drive_core.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 
 struct CoreOptions {
   double period_s = 0.001;               ///< between two calls of robot_core::step()
@@ -19,7 +19,7 @@ struct CoreOptions {
 };
 
 /// The options with the lower end of the tolerance or range of the motor's terminal_resistance, a default one where it declares none.
-CoreOptions with_tolerance(CoreOptions options, const Motor& motor);
+CoreOptions with_tolerance(CoreOptions options, const motor::Motor& motor);
 
 /// Without guard. Needs the tables body, wheels, drive, battery, traction and limits of the robot's file and the rotor inertia of the
 /// motor; [friction] may be missing as a whole (friction_note() tells the user). Throws Failure (bad_input) that names all parameters that
@@ -35,22 +35,23 @@ CoreOptions with_tolerance(CoreOptions options, const Motor& motor);
 ///   traction            √(μ² − c²) of coefficient μ and roller drag c, as inverse_dynamics() passes on
 ///   friction smoothing  that of the plant (FrictionConfig::smoothing) at the rim
 ///   gains               wheel_loop_gains()
-robot_core::Config make_core_config(const Robot& robot, const MotorValues& motor, const CoreOptions& options);
+robot_core::Config make_core_config(const robot::Robot& robot, const motor::MotorValues& motor, const CoreOptions& options);
 
 /// With the guard; `guard` must be of that derating and outlive the Config. The lowest resistance follows from the motor's tolerance and
 /// the derating's coldest air. Throws Failure (bad_input) as above, and where the guard period is not a whole number of control periods.
-robot_core::Config make_core_config(const Robot& robot, const Motor& motor, const CoreOptions& options, const Derating& derating,
-                                    const HostGuard& guard);
+robot_core::Config make_core_config(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options,
+                                    const derate::Derating& derating, const HostGuard& guard);
 
 /// Throws Failure (bad_input) if the reserve for one full stop leaves a rested motor in the hottest air no current to drive: such a core
 /// would be useless. `config` comes from make_core_config() with a guard of this derating.
-void require_driving_current(const Robot& robot, const Motor& motor, const Derating& derating, const robot_core::Config& config);
+void require_driving_current(const robot::Robot& robot, const motor::Motor& motor, const derate::Derating& derating,
+                             const robot_core::Config& config);
 
 /// Heating of the winding by one full stop from the speed limit with the braking limit, in K: Σ over the stop of the observer's dT_w/dt,
 /// where every body and the air are at the winding's limit. So it is adiabatic, ∫I²·R(T_limit) dt·(safety factor on heat)/C_w, plus what
 /// effects of the motor's file add. I is that of the wheel and direction of travel with the largest force, with friction, drag and gear
 /// losses counted as none, because they would help to brake: (r·F_i + J·dω_i/dt)/(K_t·n), at most the current limit.
 /// Needs the tables that make_core_config() needs.
-double braking_reserve_K(const Robot& robot, const MotorValues& motor, const Derating& derating);
+double braking_reserve_K(const robot::Robot& robot, const motor::MotorValues& motor, const derate::Derating& derating);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

@@ -10,22 +10,22 @@
 
 #include "firmware/core_files.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
 using Origins = std::map<std::string, std::string, std::less<>>;
 
 /// "robot file: body.yaw_inertia (estimated)".
-std::string of_robot(const Robot& robot, std::string_view key) {
+std::string of_robot(const robot::Robot& robot, std::string_view key) {
   const auto found = robot.parameters.find(key);
   return found == robot.parameters.end() ? fmt::format("robot file: {}", key)
-                                         : fmt::format("robot file: {} ({})", key, to_string(found->second.origin));
+                                         : fmt::format("robot file: {} ({})", key, base::to_string(found->second.origin));
 }
 
-std::string of_motor(const Motor& motor, std::string_view key) {
+std::string of_motor(const motor::Motor& motor, std::string_view key) {
   const auto found = motor.parameters.find(key);
   return found == motor.parameters.end() ? fmt::format("motor file: {}", key)
-                                         : fmt::format("motor file: {} ({})", key, to_string(found->second.origin));
+                                         : fmt::format("motor file: {} ({})", key, base::to_string(found->second.origin));
 }
 
 Origins wheel_origins(bool has_friction) {
@@ -149,7 +149,7 @@ class Writer {
   std::string config() {
     std::string text = members("Config", origins_, "    ");
     if (offset_ != offsetof(robot_core::Config, unused)) {
-      throw Failure(ExitCode::bug, "drive_core.h declares a Config that core_config.h cannot be written from");
+      throw base::Failure(base::ExitCode::bug, "drive_core.h declares a Config that core_config.h cannot be written from");
     }
     return text;
   }
@@ -221,7 +221,7 @@ std::string declaration() {
       return std::string(each.text);
     }
   }
-  throw Failure(ExitCode::bug, "the program has no drive_core.h to write");
+  throw base::Failure(base::ExitCode::bug, "the program has no drive_core.h to write");
 }
 
 }  // namespace
@@ -238,7 +238,7 @@ std::string core_config_header(const CoreSource& source) {
       "#pragma once\n\n#include \"motor_guard.h\"\n#include \"robot_core/drive_core.h\"\n\n"
       "/// Without the planner of pose targets.\n"
       "inline constexpr robot_core::Config kCoreConfig{{\n",
-      in_one_line(source.robot.id), in_one_line(source.motor.id), source.version, in_one_line(source.options_text), kInputHash,
+      in_one_line(source.robot.id), in_one_line(source.motor.id), source.version, in_one_line(source.options_text), derate::kInputHash,
       source.hash);
   text += Writer(source, declaration()).config() + "    .guard = &kMotorGuard,\n};\n\n";
   return text +
@@ -249,4 +249,4 @@ std::string core_config_header(const CoreSource& source) {
          "inline constexpr robot_core::Config kCoreConfigWithPlanner = detail::with_planner(kCoreConfig);\n";
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

@@ -9,7 +9,7 @@
 
 #include "base/xml_text.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
 using robot_core::Block;
@@ -236,7 +236,7 @@ class Picture {
   }
   void write(double x_px, double y_px, std::string_view kind, std::string_view words, std::string_view style = {}) {
     text_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"{}\"{}{}>{}</text>\n", x_px, y_px, kind, style.empty() ? "" : " ", style,
-                         xml_text(words));
+                         base::xml_text(words));
   }
   /// On a white ground, so that it passes over what it crosses.
   void line(double from_x_px, double from_y_px, double to_x_px, double to_y_px, std::string_view color) {
@@ -427,4 +427,4 @@ std::string core_diagram_svg() {
       plan.width_px(), plan.height_px(), kStyle, picture.text());
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

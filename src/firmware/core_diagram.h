@@ -7,7 +7,7 @@
 
 #include "robot_core/block_diagram.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 
 /// "every period".
 std::string_view rate_words(robot_core::BlockRate rate);
@@ -33,4 +33,4 @@ std::string numbers_of(robot_core::Blocks blocks);
 /// SVG: blocks from top to bottom in the order of the calls, signals on lanes beside them. Needs no font but a sans and a monospaced one.
 std::string core_diagram_svg();
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

@@ -14,7 +14,7 @@
 #include "base/files.h"
 #include "base/quantity.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
 constexpr std::string_view kTemplates = "src/firmware/templates/";
@@ -32,7 +32,7 @@ std::string filled(std::string_view text, const Words& words) {
   while (std::regex_search(begin, end, match, kWord)) {
     const auto found = words.find(match[1]);
     if (found == words.end()) {
-      throw Failure(ExitCode::bug, fmt::format("a template asks for @{}@", match[1].str()));
+      throw base::Failure(base::ExitCode::bug, fmt::format("a template asks for @{}@", match[1].str()));
     }
     result.append(begin, match[0].first).append(found->second);
     begin = match[0].second;
@@ -44,7 +44,7 @@ std::string_view source_text(std::string_view path) {
   const auto all = embedded::core_sources();
   const auto found = std::ranges::find(all, path, &embedded::Text::path);
   if (found == all.end()) {
-    throw Failure(ExitCode::bug, fmt::format("the program has no {} to write", path));
+    throw base::Failure(base::ExitCode::bug, fmt::format("the program has no {} to write", path));
   }
   return found->text;
 }
@@ -80,7 +80,7 @@ void add_places(Words& words, const std::string& c, const std::string& cpp) {
   }
 }
 
-std::string limitations(const Robot& robot, const Derating& derating, const std::vector<std::string>& notes) {
+std::string limitations(const robot::Robot& robot, const derate::Derating& derating, const std::vector<std::string>& notes) {
   std::string text = fmt::format(
       "- The thermal guard is computed from the files, not measured on this robot: {} thermal data of the motor. Air up to {:.0f} °C.\n"
       "- The example has not been run on a board. Its default board functions have no sensors, so the core keeps all bridges open.\n",
@@ -112,8 +112,8 @@ Words words_for(const CoreSource& source, const std::vector<std::string>& notes)
   return words;
 }
 
-std::string options_text(const Motor& motor, const CoreOptions& options, const Derating& derating) {
-  const DerateOptions& derate = derating.options;
+std::string options_text(const motor::Motor& motor, const CoreOptions& options, const derate::Derating& derating) {
+  const derate::DerateOptions& derate = derating.options;
   std::string text = fmt::format(
       "--period {:.9g}s --ambient {:.9g}degC --coldest {:.9g}degC --approach {:.9g}s --confidence {:.9g} --samples {} --seed {}",
       options.period_s, derate.hottest_ambient_C, derate.coldest_ambient_C, derating.rules.approach_s, derate.guarantee.confidence,
@@ -125,10 +125,10 @@ std::string options_text(const Motor& motor, const CoreOptions& options, const D
 }
 
 /// Effects of the motor that need a signal, "vehicle_airflow, fan".
-std::string effects_with(const Motor& motor, Signal signal) {
+std::string effects_with(const motor::Motor& motor, thermal::Signal signal) {
   std::string names;
-  for (const MotorEffect& effect : motor.effects) {
-    const std::vector<Signal> needed = effect.type->needed_with(effect.values());
+  for (const motor::MotorEffect& effect : motor.effects) {
+    const std::vector<thermal::Signal> needed = effect.type->needed_with(effect.values());
     if (std::ranges::find(needed, signal) != needed.end()) {
       names += fmt::format("{}{}", names.empty() ? "" : ", ", effect.name);
     }
@@ -136,27 +136,27 @@ std::string effects_with(const Motor& motor, Signal signal) {
   return names.empty() ? "the motor's thermal law" : names;
 }
 
-std::vector<std::string> notes_on(const Robot& robot, const Motor& motor, const Derating& derating) {
+std::vector<std::string> notes_on(const robot::Robot& robot, const motor::Motor& motor, const derate::Derating& derating) {
   std::vector<std::string> notes;
   if (const std::string friction = friction_note(robot); !friction.empty()) {
     notes.push_back(friction);
   }
-  const Observer& observer = derating.observer;
-  if (observer.uses(observed::vehicle_speed)) {
+  const derate::Observer& observer = derating.observer;
+  if (observer.uses(derate::observed::vehicle_speed)) {
     notes.push_back(
         fmt::format("{} depends on the robot's speed through the air, which the core does not know: it uses the speed with the most "
                     "heating, still air if wind cools",
-                    effects_with(motor, Signal::vehicle_speed)));
+                    effects_with(motor, thermal::Signal::vehicle_speed)));
   }
-  if (observer.uses(observed::neighbour)) {
+  if (observer.uses(derate::observed::neighbour)) {
     notes.push_back(fmt::format("{} depends on the motors beside it: the core uses the hottest of the other wheels' guards",
-                                effects_with(motor, Signal::neighbour_temperature)));
+                                effects_with(motor, thermal::Signal::neighbour_temperature)));
   }
-  if (observer.uses(observed::age)) {
+  if (observer.uses(derate::observed::age)) {
     notes.push_back(fmt::format("{} depends on operating hours, which the core does not know: it uses the age with the most heating",
-                                effects_with(motor, Signal::age)));
+                                effects_with(motor, thermal::Signal::age)));
   }
-  for (const MotorEffect& effect : motor.effects) {
+  for (const motor::MotorEffect& effect : motor.effects) {
     if (!effect.column.empty()) {
       notes.push_back(fmt::format("{} depends on {} of the logs, which the core does not know: it uses the value with the most heating",
                                   effect.name, effect.column));
@@ -164,7 +164,7 @@ std::vector<std::string> notes_on(const Robot& robot, const Motor& motor, const 
   }
   if (!derating.default_spreads.empty()) {
     notes.push_back(fmt::format("the motor's file gives no tolerance for these values, defaults by origin are assumed: {}",
-                                to_string(derating.default_spreads)));
+                                motor::to_string(derating.default_spreads)));
   }
   for (const auto& [key, value] : motor.assumed) {
     notes.push_back(fmt::format("the guard is valid only if {} is {}, as stated with --condition", key, value));
@@ -183,7 +183,7 @@ double guard_period_s(double period_s) {
 
 std::string float_literal(float value) {
   if (!std::isfinite(value)) {
-    throw Failure(ExitCode::bug, "a value that is not finite cannot be written");
+    throw base::Failure(base::ExitCode::bug, "a value that is not finite cannot be written");
   }
   std::string text = fmt::format("{}", value);
   if (text.find_first_of(".e") == std::string::npos) {
@@ -206,7 +206,7 @@ std::string in_one_line(std::string text) {
 namespace {
 
 /// Adds a note if the reserve for a full stop takes much of the driving current.
-void add_stop_note(const Derating& derating, CoreFolder& folder) {
+void add_stop_note(const derate::Derating& derating, CoreFolder& folder) {
   constexpr double kLarge_share = 0.25;
   const double room_K = derating.rules.limits.winding_C - derating.rules.hottest_ambient_C;
   if (folder.braking_reserve_K > kLarge_share * room_K) {
@@ -219,7 +219,7 @@ void add_stop_note(const Derating& derating, CoreFolder& folder) {
 
 }  // namespace
 
-CoreFolder core_files(const Robot& robot, const Motor& motor, const CoreOptions& options, const Derating& derating,
+CoreFolder core_files(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options, const derate::Derating& derating,
                       std::string_view version) {
   const HostGuard guard(derating);
   CoreSource source{.robot = robot,
@@ -232,8 +232,8 @@ CoreFolder core_files(const Robot& robot, const Motor& motor, const CoreOptions&
                     .options_text = options_text(motor, options, derating),
                     .hash = {}};
   require_driving_current(robot, motor, derating, source.config);
-  source.hash =
-      input_hash(read_file(robot.file, kLargestFile_bytes) + '\n' + read_file(motor.file, kLargestFile_bytes) + '\n' + source.options_text);
+  source.hash = derate::input_hash(base::read_file(robot.file, kLargestFile_bytes) + '\n' +
+                                   base::read_file(motor.file, kLargestFile_bytes) + '\n' + source.options_text);
   CoreFolder folder{.files = {},
                     .hash = source.hash,
                     .config_check_sum = source.config.check_sum,
@@ -263,13 +263,13 @@ CoreFolder core_files(const Robot& robot, const Motor& motor, const CoreOptions&
   return folder;
 }
 
-GeneratedCore generate_core(const Robot& robot, const Motor& motor, const CoreOptions& options, DerateOptions derate_options,
-                            std::string_view version, const Progress& progress) {
+GeneratedCore generate_core(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options,
+                            derate::DerateOptions derate_options, std::string_view version, const base::Progress& progress) {
   static_cast<void>(make_core_config(robot, motor.nominal, options));
   derate_options.period_s = guard_period_s(options.period_s);
-  Derating derating = derate(motor, robot, derate_options, progress);
+  derate::Derating derating = derate::derate(motor, robot, derate_options, progress);
   CoreFolder folder = core_files(robot, motor, options, derating, version);
   return {std::move(derating), std::move(folder)};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

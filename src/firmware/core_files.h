@@ -10,7 +10,7 @@
 #include "firmware/core_config.h"
 #include "firmware/host_guard.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 
 struct CoreFile {
   std::string path;  ///< within the folder
@@ -31,9 +31,9 @@ struct CoreFolder {
 
 /// What the generators of single files share.
 struct CoreSource {
-  const Robot& robot;
-  const Motor& motor;
-  const Derating& derating;
+  const robot::Robot& robot;
+  const motor::Motor& motor;
+  const derate::Derating& derating;
   CoreOptions options;
   robot_core::Config config;  ///< its guard is the model below
   robot_core::GuardModel guard;
@@ -47,18 +47,18 @@ double guard_period_s(double period_s);
 
 /// Same inputs, same bytes. The derating must have guard_period_s(). Reads the files of robot and motor again for the hash. Throws Failure
 /// (bad_input) as make_core_config() and HostGuard do, or where a file cannot be read.
-CoreFolder core_files(const Robot& robot, const Motor& motor, const CoreOptions& options, const Derating& derating,
+CoreFolder core_files(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options, const derate::Derating& derating,
                       std::string_view version);
 
 struct GeneratedCore {
-  Derating derating;
+  derate::Derating derating;
   CoreFolder folder;
 };
 /// Derates the motor for the core's guard and generates the folder. The guard's period follows from that of the core, not from
 /// `derate_options`. Throws Failure as make_core_config() does, before the derating, which takes seconds; and as derate() and core_files()
 /// do.
-GeneratedCore generate_core(const Robot& robot, const Motor& motor, const CoreOptions& options, DerateOptions derate_options,
-                            std::string_view version, const Progress& progress = {});
+GeneratedCore generate_core(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options,
+                            derate::DerateOptions derate_options, std::string_view version, const base::Progress& progress = {});
 
 // The generated files that are no templates.
 std::string core_config_header(const CoreSource& source);
@@ -70,4 +70,4 @@ std::string float_literal(float value);
 /// Without line breaks, so that no comment ends early.
 std::string in_one_line(std::string text);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

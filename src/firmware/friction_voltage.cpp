@@ -11,7 +11,7 @@
 #include "robot/inverse_dynamics.h"
 #include "robot/motor_drive.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
 constexpr int kHeadings = 72;
@@ -19,7 +19,7 @@ constexpr int kHeadings = 72;
 constexpr double kNoRolling = 1e-6;
 
 /// The body as it moves slowly but with every sign settled: no damping, no smoothing, any grip.
-BodyConfig at_low_speed(BodyConfig body) {
+robot::BodyConfig at_low_speed(robot::BodyConfig body) {
   constexpr double kNarrow = 1e-9;
   body.friction.wheel_damping_Nm_s_per_rad = 0.0;
   body.friction.smoothing_rad_per_s = kNarrow;
@@ -30,22 +30,22 @@ BodyConfig at_low_speed(BodyConfig body) {
 
 struct Sample {
   double heading_rad = 0.0;
-  PerWheel voltage_V{};
+  robot::PerWheel voltage_V{};
 };
 
 /// Voltage of each wheel over the direction of travel, back-EMF apart. Headings lie half a step beside those where a wheel stands still.
-std::vector<Sample> steady_voltages(const Robot& robot, const DriveConstants& drive, const BodyConfig& body) {
+std::vector<Sample> steady_voltages(const robot::Robot& robot, const robot::DriveConstants& drive, const robot::BodyConfig& body) {
   constexpr double kSpeed_m_per_s = 0.1;
-  const BodyConfig slow = at_low_speed(body);
+  const robot::BodyConfig slow = at_low_speed(body);
   std::vector<Sample> samples(kHeadings);
   for (int h = 0; h < kHeadings; ++h) {
     Sample& sample = samples[static_cast<std::size_t>(h)];
     sample.heading_rad = 2.0 * std::numbers::pi * (h + 0.5) / kHeadings;
-    BodyMotion motion;
+    robot::BodyMotion motion;
     motion.velocity = {kSpeed_m_per_s * std::cos(sample.heading_rad), kSpeed_m_per_s * std::sin(sample.heading_rad), 0.0};
-    const WheelDemands wheels = inverse_dynamics(slow, motion);
+    const robot::WheelDemands wheels = robot::inverse_dynamics(slow, motion);
     for (int i = 0; i < body.kinematics.wheel_count; ++i) {
-      const double factor = shaft_torque_factor(robot, wheels.torque_Nm[i] * wheels.speed_rad_per_s[i] >= 0.0);
+      const double factor = robot::shaft_torque_factor(robot, wheels.torque_Nm[i] * wheels.speed_rad_per_s[i] >= 0.0);
       const double drag_Nm = std::copysign(drive.drag_torque_Nm, wheels.speed_rad_per_s[i]);
       sample.voltage_V[i] = (wheels.torque_Nm[i] * factor + drag_Nm) * drive.resistance_ohm / drive.torque_constant_Nm_per_A;
     }
@@ -104,31 +104,31 @@ double residual_rms_V(const std::vector<Point>& points, double sine_V, double si
 
 }  // namespace
 
-BodyConfig make_body_with_known_friction(const Robot& robot, const MotorValues& motor) {
-  if (has_friction(robot)) {
-    return make_body(robot, motor);
+robot::BodyConfig make_body_with_known_friction(const robot::Robot& robot, const motor::MotorValues& motor) {
+  if (robot::has_friction(robot)) {
+    return robot::make_body(robot, motor);
   }
-  Robot smooth = robot;
+  robot::Robot smooth = robot;
   smooth.friction.rolling_efficiency.reset();
   smooth.friction.wheel_torque_Nm = 0.0;
   smooth.friction.wheel_damping_Nm_s_per_rad = 0.0;
   smooth.friction.roller_drag_ratio = 0.0;
-  return make_body(smooth, motor);
+  return robot::make_body(smooth, motor);
 }
 
-FrictionVoltage friction_voltage(const Robot& robot, const MotorValues& motor) {
-  const BodyConfig body = make_body_with_known_friction(robot, motor);
-  const DriveConstants drive = drive_constants(robot, motor);
+FrictionVoltage friction_voltage(const robot::Robot& robot, const motor::MotorValues& motor) {
+  const robot::BodyConfig body = make_body_with_known_friction(robot, motor);
+  const robot::DriveConstants drive = robot::drive_constants(robot, motor);
   const double geared_Nm_per_A = drive.torque_constant_Nm_per_A * drive.gear_ratio;
   const double volt_per_Nm = drive.resistance_ohm / (geared_Nm_per_A * drive.gear_efficiency);
   const double drag_V = drive.drag_torque_Nm * drive.resistance_ohm / drive.torque_constant_Nm_per_A;
-  const FrictionConfig& friction = body.friction;
+  const robot::FrictionConfig& friction = body.friction;
   FrictionVoltage made;
   made.damping_V_s_per_rad = geared_Nm_per_A + friction.wheel_damping_Nm_s_per_rad * volt_per_Nm;
-  made.is_known = has_friction(robot);
+  made.is_known = robot::has_friction(robot);
   for (int i = 0; i < body.kinematics.wheel_count; ++i) {
-    const Direction& offset = friction.heading.phase_offset[i];
-    made.phase_rad[i] = rolling_phase_rad(body.kinematics.wheels[i]) + std::atan2(offset.sine_ratio, offset.cosine_ratio);
+    const robot::Direction& offset = friction.heading.phase_offset[i];
+    made.phase_rad[i] = robot::rolling_phase_rad(body.kinematics.wheels[i]) + std::atan2(offset.sine_ratio, offset.cosine_ratio);
   }
   if (!made.is_known) {
     return made;
@@ -148,8 +148,8 @@ FrictionVoltage friction_voltage(const Robot& robot, const MotorValues& motor) {
   return made;
 }
 
-std::string friction_note(const Robot& robot) {
-  if (has_friction(robot)) {
+std::string friction_note(const robot::Robot& robot) {
+  if (robot::has_friction(robot)) {
     return {};
   }
   return fmt::format(
@@ -159,4 +159,4 @@ std::string friction_note(const Robot& robot) {
       robot.file.filename().string());
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

@@ -6,18 +6,19 @@
 
 #include "robot/body.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 
 /// V_i = d·ω_i + f_i(θ), f_i(θ) = a_i·sin(θ + φ_i) + b_i·sign(sin(θ + φ_i)): equations (2) and (3) of RoboTeam Twente, ETDP 2025. Voltages
 /// are those of the driver; unlike the torques of a robot file they contain the drag of the motor, and d its back-EMF.
 struct FrictionVoltage {
   bool is_known = false;             ///< false: the robot's file has no friction; d is the back-EMF alone, all else is 0
   double damping_V_s_per_rad = 0.0;  ///< d, per wheel speed
-  PerWheel sine_V{};                 ///< a
-  PerWheel sign_V{};                 ///< b
-  PerWheel phase_rad{};              ///< φ
+  robot::PerWheel sine_V{};          ///< a
+  robot::PerWheel sign_V{};          ///< b
+  robot::PerWheel phase_rad{};       ///< φ
   double rotation_V = 0.0;           ///< in pure rotation, in place of f
-  PerWheel residual_rms_V{};  ///< over the directions of travel: what this form cannot represent of the friction that the file states
+  robot::PerWheel
+      residual_rms_V{};  ///< over the directions of travel: what this form cannot represent of the friction that the file states
 };
 
 /// Method:
@@ -28,12 +29,12 @@ struct FrictionVoltage {
 /// follows from inverse_dynamics() without damping, and a_i and b_i from linear least squares, φ_i being the phase of the file or, where it
 /// has none, that of the wheel's rolling direction.
 /// Needs the parameters that make_body() needs, [friction] apart; throws Failure (bad_input) that names those that are missing.
-FrictionVoltage friction_voltage(const Robot& robot, const MotorValues& motor);
+FrictionVoltage friction_voltage(const robot::Robot& robot, const motor::MotorValues& motor);
 
 /// The body with the friction of the file, or without any where the file has none.
-BodyConfig make_body_with_known_friction(const Robot& robot, const MotorValues& motor);
+robot::BodyConfig make_body_with_known_friction(const robot::Robot& robot, const motor::MotorValues& motor);
 
 /// For the user; empty where nothing is missing.
-std::string friction_note(const Robot& robot);
+std::string friction_note(const robot::Robot& robot);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

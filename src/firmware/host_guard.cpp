@@ -7,15 +7,16 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
-static_assert(robot_core::kGuardSignals == int{observed::kSignalCount});
-static_assert(robot_core::guard_current_A == int{observed::current} && robot_core::guard_speed_rad_per_s == int{observed::speed} &&
-              robot_core::guard_ambient_C == int{observed::ambient} &&
-              robot_core::guard_vehicle_speed_m_per_s == int{observed::vehicle_speed} &&
-              robot_core::guard_neighbour_C == int{observed::neighbour} && robot_core::guard_age_h == int{observed::age} &&
-              robot_core::guard_acceleration_rad_per_s2 == int{observed::acceleration});
+static_assert(robot_core::kGuardSignals == int{derate::observed::kSignalCount});
+static_assert(robot_core::guard_current_A == int{derate::observed::current} &&
+              robot_core::guard_speed_rad_per_s == int{derate::observed::speed} &&
+              robot_core::guard_ambient_C == int{derate::observed::ambient} &&
+              robot_core::guard_vehicle_speed_m_per_s == int{derate::observed::vehicle_speed} &&
+              robot_core::guard_neighbour_C == int{derate::observed::neighbour} && robot_core::guard_age_h == int{derate::observed::age} &&
+              robot_core::guard_acceleration_rad_per_s2 == int{derate::observed::acceleration});
 
 std::vector<float> single(const std::vector<double>& values) {
   std::vector<float> rounded(values.size());
@@ -27,20 +28,20 @@ heatsoak_axis axis(const std::vector<float>& points) { return {points.data(), st
 
 }  // namespace
 
-HostGuard::Law::Law(const Observer& observer)
+HostGuard::Law::Law(const derate::Observer& observer)
     : run(observer.formula(), observer.rate_steps()),
-      values(observed::kSignalCount + observer.state_count()),
+      values(derate::observed::kSignalCount + observer.state_count()),
       rates_K_per_s(observer.state_count()) {}
 
-HostGuard::HostGuard(const Derating& derating)
+HostGuard::HostGuard(const derate::Derating& derating)
     : speed_rad_per_s_(single(derating.table.speed_rad_per_s)),
       stator_C_(single(derating.table.stator_C)),
       winding_C_(single(derating.table.winding_C)),
       square_A2_(single(derating.table.square_A2)),
       law_(derating.observer) {
   if (derating.observer.state_count() > robot_core::kMostGuardNodes) {
-    throw Failure(
-        ExitCode::bad_input,
+    throw base::Failure(
+        base::ExitCode::bad_input,
         fmt::format("{}: the thermal network has {} nodes; the drive core's guard takes at most {}: remove nodes from the motor's file",
                     derating.motor_id, derating.observer.state_count(), robot_core::kMostGuardNodes));
   }
@@ -50,7 +51,7 @@ HostGuard::HostGuard(const Derating& derating)
   model_.coldest_ambient_C = static_cast<float>(derating.options.coldest_ambient_C);
   model_.hottest_ambient_C = static_cast<float>(derating.rules.hottest_ambient_C);
   model_.most_current_A = static_cast<float>(derating.rules.most_current_A);
-  const CurrentTable& table = derating.table;
+  const derate::CurrentTable& table = derating.table;
   model_.cold_current_A = table.allowed_A(0.0F, static_cast<float>(table.stator_C.front()), static_cast<float>(table.winding_C.front()));
   model_.heat_ratio = static_cast<float>(derating.observer.heat_safety_factor());
   model_.table.most_current_A = static_cast<float>(table.most_current_A);
@@ -59,7 +60,7 @@ HostGuard::HostGuard(const Derating& derating)
   model_.table.no_current_speed_rad_per_s = static_cast<float>(table.no_current_speed_rad_per_s);
   model_.table.winding_per_stator_K = static_cast<float>(table.winding_per_stator_K);
   for (std::size_t i = 0; i < plausible_ranges_.size(); ++i) {
-    plausible_ranges_[i] = plausible_range(derating, static_cast<observed::Signal>(i));
+    plausible_ranges_[i] = derate::plausible_range(derating, static_cast<derate::observed::Signal>(i));
   }
   model_.rates = &HostGuard::rates;
   point_to_own();
@@ -96,7 +97,7 @@ void HostGuard::point_to_own() {
   model_.table.winding_C = axis(winding_C_);
   model_.table.square_A2 = square_A2_.data();
   for (std::size_t i = 0; i < plausible_ranges_.size(); ++i) {
-    const PlausibleRange& from = plausible_ranges_[i];
+    const derate::PlausibleRange& from = plausible_ranges_[i];
     model_.plausible_range[i] = {from.is_used, from.low, from.high, from.values.data(), static_cast<int>(from.values.size())};
   }
   model_.context = &law_;
@@ -105,10 +106,10 @@ void HostGuard::point_to_own() {
 void HostGuard::rates(const void* context, const float* signals, const float* state_C, float* rate_K_per_s) {
   // The context is the `mutable` law of a HostGuard, never a constant.
   Law& law = *const_cast<Law*>(static_cast<const Law*>(context));
-  std::copy_n(signals, observed::kSignalCount, law.values.begin());
-  std::copy_n(state_C, law.rates_K_per_s.size(), law.values.begin() + observed::kSignalCount);
+  std::copy_n(signals, derate::observed::kSignalCount, law.values.begin());
+  std::copy_n(state_C, law.rates_K_per_s.size(), law.values.begin() + derate::observed::kSignalCount);
   law.run.run(law.values, law.rates_K_per_s);
   std::ranges::copy(law.rates_K_per_s, rate_K_per_s);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

@@ -7,7 +7,7 @@
 #include "derate/plausible_range.h"
 #include "robot_core/thermal_guard.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 
 /// Owns the tables of one motor's guard and runs the observer's formula in single precision, with the bits of the code generated for the
 /// controller. Steps of one HostGuard must not run in two threads at once, because the formula has scratch memory: give each thread a
@@ -15,7 +15,7 @@ namespace heatsoak {
 class HostGuard {
  public:
   /// Throws Failure (bad_input) where the motor has more nodes than robot_core::kMostGuardNodes.
-  explicit HostGuard(const Derating& derating);
+  explicit HostGuard(const derate::Derating& derating);
   HostGuard(const HostGuard& other);
   HostGuard& operator=(const HostGuard& other);
   ~HostGuard() = default;
@@ -24,8 +24,8 @@ class HostGuard {
 
  private:
   struct Law {
-    explicit Law(const Observer& observer);
-    FormulaRun<float> run;
+    explicit Law(const derate::Observer& observer);
+    thermal::FormulaRun<float> run;
     std::vector<float> values;  ///< of the formula's inputs: signals, then temperatures
     std::vector<float> rates_K_per_s;
   };
@@ -37,8 +37,8 @@ class HostGuard {
   std::vector<float> stator_C_;
   std::vector<float> winding_C_;
   std::vector<float> square_A2_;
-  std::array<PlausibleRange, observed::kSignalCount> plausible_ranges_;
+  std::array<derate::PlausibleRange, derate::observed::kSignalCount> plausible_ranges_;
   mutable Law law_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

@@ -7,10 +7,10 @@
 #include "derate/rate_lines.h"
 #include "firmware/core_files.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
-std::string_view name_of(observed::Signal signal) { return observed::signals()[static_cast<std::size_t>(signal)].name; }
+std::string_view name_of(derate::observed::Signal signal) { return derate::observed::signals()[static_cast<std::size_t>(signal)].name; }
 
 /// Negative ones in parentheses.
 std::string operand_literal(double value) {
@@ -18,9 +18,10 @@ std::string operand_literal(double value) {
   return text.front() == '-' ? fmt::format("({})", text) : text;
 }
 
-const LineStyle kGuardStyle{.literal = operand_literal,
-                            .signal = [](observed::Signal signal) { return fmt::format("signal[robot_core::guard_{}]", name_of(signal)); },
-                            .square_root = "robot_core::square_root"};
+const derate::LineStyle kGuardStyle{
+    .literal = operand_literal,
+    .signal = [](derate::observed::Signal signal) { return fmt::format("signal[robot_core::guard_{}]", name_of(signal)); },
+    .square_root = "robot_core::square_root"};
 
 std::string array(std::string_view name, const float* values, int count) {
   std::string text = fmt::format("constexpr float {}[{}] = {{", name, count);
@@ -41,7 +42,7 @@ std::string arrays(const robot_core::GuardModel& guard) {
                      array("kSquare_A2", table.square_A2, squares) + "\n// Possible values of an unknown signal.\n";
   for (int i = 0; i < robot_core::kGuardSignals; ++i) {
     if (const robot_core::PlausibleRange& plausible_range = guard.plausible_range[i]; plausible_range.is_used) {
-      text += array(fmt::format("kPossible_{}", name_of(static_cast<observed::Signal>(i))), plausible_range.possible,
+      text += array(fmt::format("kPossible_{}", name_of(static_cast<derate::observed::Signal>(i))), plausible_range.possible,
                     plausible_range.possible_count);
     }
   }
@@ -66,7 +67,7 @@ std::string plausible_ranges(const robot_core::GuardModel& guard) {
   std::string text;
   for (int i = 0; i < robot_core::kGuardSignals; ++i) {
     const robot_core::PlausibleRange& plausible_range = guard.plausible_range[i];
-    const std::string_view name = name_of(static_cast<observed::Signal>(i));
+    const std::string_view name = name_of(static_cast<derate::observed::Signal>(i));
     text += plausible_range.is_used ? fmt::format("            {{true, {}, {}, kPossible_{}, {}}},  // {}: accepted range\n",
                                                   float_literal(plausible_range.least), float_literal(plausible_range.most), name,
                                                   plausible_range.possible_count, name)
@@ -75,9 +76,9 @@ std::string plausible_ranges(const robot_core::GuardModel& guard) {
   return text;
 }
 
-std::string effects(const Derating& derating) {
+std::string effects(const derate::Derating& derating) {
   std::string text;
-  for (const ActingEffect& effect : derating.effects) {
+  for (const derate::ActingEffect& effect : derating.effects) {
     text += fmt::format("//   {}{}: {}{}\n", in_one_line(effect.name), effect.name == effect.type ? "" : fmt::format(" ({})", effect.type),
                         in_one_line(effect.equation),
                         effect.column.empty()
@@ -87,8 +88,8 @@ std::string effects(const Derating& derating) {
   return text;
 }
 
-std::string guarantee(const Derating& derating) {
-  const Guarantee& checked = derating.guarantee;
+std::string guarantee(const derate::Derating& derating) {
+  const derate::Guarantee& checked = derating.guarantee;
   std::string text = fmt::format(
       "// Winding at most {:.0f} degC{}, air from {:.0f} to {:.0f} degC; thermal data: {}.\n"
       "// Safety factor on heat {:.3g}, which covers motors worse than their nominal values; the hottest winding reached {:.0f} degC.\n"
@@ -97,13 +98,13 @@ std::string guarantee(const Derating& derating) {
       derating.rules.limits.winding_C,
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
       derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),
-      checked.winding_most_C, confidence_text(derating, checked));
-  if (const std::string lacking = unmodelled_heat_text(derating); !lacking.empty()) {
+      checked.winding_most_C, derate::confidence_text(derating, checked));
+  if (const std::string lacking = derate::unmodelled_heat_text(derating); !lacking.empty()) {
     text += fmt::format("// {}\n", lacking);
   }
   if (!derating.default_spreads.empty()) {
     text += fmt::format("// The motor's file gives no tolerance for these values; the drawn motors use defaults by origin:\n//   {}\n",
-                        to_string(derating.default_spreads));
+                        motor::to_string(derating.default_spreads));
   }
   for (const auto& [key, value] : derating.assumed) {
     text += fmt::format("// VALID ONLY IF {} is {}: stated with --condition.\n", in_one_line(key), in_one_line(value));
@@ -122,8 +123,8 @@ std::string motor_guard_header(const CoreSource& source) {
 
 std::string motor_guard_source(const CoreSource& source) {
   const robot_core::GuardModel& guard = source.guard;
-  const Observer& observer = source.derating.observer;
-  const RateLines lines(observer, observer.rate_steps(), kGuardStyle);
+  const derate::Observer& observer = source.derating.observer;
+  const derate::RateLines lines(observer, observer.rate_steps(), kGuardStyle);
   std::string nodes;
   for (const std::string& name : source.derating.observer.state_names()) {
     nodes += fmt::format("{}{}", nodes.empty() ? "" : ", ", in_one_line(name));
@@ -150,4 +151,4 @@ std::string motor_guard_source(const CoreSource& source) {
              float_literal(guard.hottest_ambient_C), float_literal(guard.most_current_A), table(guard), plausible_ranges(guard));
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

@@ -11,12 +11,13 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace fs = std::filesystem;
 namespace {
 
-Failure unwritable(const fs::path& path, const std::error_code& problem) {
-  return {ExitCode::bad_input, fmt::format("{} cannot be written: {}; choose another folder with --out", path.string(), problem.message())};
+base::Failure unwritable(const fs::path& path, const std::error_code& problem) {
+  return {base::ExitCode::bad_input,
+          fmt::format("{} cannot be written: {}; choose another folder with --out", path.string(), problem.message())};
 }
 
 /// Without a trailing slash, links followed.
@@ -55,7 +56,7 @@ void copy_others(const fs::path& from, const fs::path& to) {
     }
   }
   if (problem) {
-    throw Failure(ExitCode::bad_input, fmt::format("the files in {} cannot be kept: {}", from.string(), problem.message()));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("the files in {} cannot be kept: {}", from.string(), problem.message()));
   }
 }
 
@@ -66,29 +67,30 @@ void check_target_folder(const fs::path& folder, bool may_replace) {
   std::error_code problem;
   const fs::file_status status = fs::status(path, problem);
   if (fs::exists(status) && !fs::is_directory(status)) {
-    throw Failure(ExitCode::bad_input, fmt::format("--out {} is a file; expected a folder, which may be new", folder.string()));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("--out {} is a file; expected a folder, which may be new", folder.string()));
   }
   if (const fs::path parent = path.parent_path();
       !fs::exists(status) && fs::exists(parent, problem) && !fs::is_directory(parent, problem)) {
-    throw Failure(ExitCode::bad_input, fmt::format("--out {}: {} is a file; expected a folder", folder.string(), parent.string()));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("--out {}: {} is a file; expected a folder", folder.string(), parent.string()));
   }
   if (!fs::exists(status) && !fs::is_directory(path.parent_path(), problem)) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("--out {}: there is no folder {}; make it first", folder.string(), path.parent_path().string()));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("--out {}: there is no folder {}; make it first", folder.string(), path.parent_path().string()));
   }
   if (path == path.parent_path()) {
-    throw Failure(ExitCode::bad_input, fmt::format("--out {}: expected a folder of its own", folder.string()));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("--out {}: expected a folder of its own", folder.string()));
   }
   // The folder is replaced as a whole: a shell inside would stay in the old one, which is deleted.
   if (const fs::path here = fs::current_path(problem); fs::is_directory(status) && std::ranges::mismatch(path, here).in1 == path.end()) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("--out {} contains the current folder {}; change to another folder first", folder.string(), here.string()));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("--out {} contains the current folder {}; change to another folder first",
+                                                               folder.string(), here.string()));
   }
   if (fs::is_directory(status) && !may_replace && !fs::is_empty(path, problem)) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("--out {} is not empty; name another folder, or --force replaces the generated files in it "
-                              "and keeps all others",
-                              folder.string()));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("--out {} is not empty; name another folder, or --force replaces the generated files in it "
+                                    "and keeps all others",
+                                    folder.string()));
   }
   if (problem) {
     throw unwritable(path, problem);
@@ -158,4 +160,4 @@ void StagedFolder::commit() {
   fs::remove_all(old, problem);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

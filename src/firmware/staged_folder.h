@@ -8,7 +8,7 @@
 #include "base/delayed_signals.h"
 #include "firmware/core_files.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 
 /// Throws Failure (bad_input) where `folder` could not be made: its parent is missing, it is a file, or it holds something and
 /// `may_replace` is not set.
@@ -29,9 +29,9 @@ class StagedFolder {
  private:
   void write(std::span<const CoreFile> files) const;
 
-  DelayedSignals delayed_;  ///< until the temporary folder has its name or is removed
+  base::DelayedSignals delayed_;  ///< until the temporary folder has its name or is removed
   std::filesystem::path folder_;
   std::filesystem::path stage_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

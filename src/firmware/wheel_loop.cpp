@@ -8,7 +8,7 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
 constexpr double kDamping = 1.0;
@@ -26,8 +26,8 @@ double ultimate_gain() { return 2.0 * std::tan(std::numbers::pi / 8.0); }
 
 }  // namespace
 
-WheelLoopPlant wheel_loop_plant(const BodyConfig& body, const DriveConstants& drive) {
-  const Kinematics& kinematics = body.kinematics;
+WheelLoopPlant wheel_loop_plant(const robot::BodyConfig& body, const robot::DriveConstants& drive) {
+  const robot::Kinematics& kinematics = body.kinematics;
   double xx = 0.0;
   double xy = 0.0;
   double yy = 0.0;
@@ -59,8 +59,8 @@ WheelLoopGains wheel_loop_gains(const WheelLoopPlant& plant, double period_s) {
   gains.longest_period_s = std::min(wheel_share * in_air_s / kLeastGain_ratio,
                                     2.0 * kDamping * kDelayShare / (kDelay_periods * (1.0 + kLeastGain_ratio)) * loaded_s);
   if (period_s > gains.longest_period_s) {
-    throw Failure(
-        ExitCode::bad_input,
+    throw base::Failure(
+        base::ExitCode::bad_input,
         fmt::format("a control period of {:.3g} ms is too long for the wheel-speed loop of this robot: expected at most {:.3g} ms; "
                     "`generate core --period` accepts a shorter one, the simulation has 1 ms; a motor with more inertia at the wheel "
                     "allows a longer one",
@@ -83,4 +83,4 @@ WheelLoopGains wheel_loop_gains(const WheelLoopPlant& plant, double period_s) {
   return gains;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

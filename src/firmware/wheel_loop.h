@@ -3,7 +3,7 @@
 
 #include "robot/body.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 
 /// What the loops act on. Inertias at the wheel.
 struct WheelLoopPlant {
@@ -17,7 +17,7 @@ struct WheelLoopPlant {
 
 /// J_eff = J_wheel + m·r²·level share (of the mean wheel); the hardest direction has m·r²·λ, λ the larger eigenvalue of the plane part of
 /// (JᵀJ)⁻¹ = J⁺·J⁺ᵀ.
-WheelLoopPlant wheel_loop_plant(const BodyConfig& body, const DriveConstants& drive);
+WheelLoopPlant wheel_loop_plant(const robot::BodyConfig& body, const robot::DriveConstants& drive);
 
 struct WheelLoopGains {
   double wheel_gain_V_s_per_rad = 0.0;    ///< k_p
@@ -47,4 +47,4 @@ struct WheelLoopGains {
 /// Throws Failure (bad_input) where the period is so long that k_p would be less than half of K_t·n: then the loop adds too little.
 WheelLoopGains wheel_loop_gains(const WheelLoopPlant& plant, double period_s);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

@@ -7,7 +7,7 @@
 #include "friction/robust_fit.h"
 #include "recording/noise.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -86,7 +86,7 @@ BlockMedians block_medians(const FrictionLog& log, int wheel_count, std::size_t 
       blocks.raw(s, k) = median_of_rows(column, blocks.first_row[static_cast<std::size_t>(k)], blocks.rows_per_block);
     }
     blocks.values.row(s) = without_outliers(blocks.raw.row(s));
-    blocks.resolution(s) = resolution_of(column);
+    blocks.resolution(s) = recording::resolution_of(column);
     blocks.top(s) = top_of(blocks.values.row(s));
   }
   return blocks;
@@ -101,4 +101,4 @@ double block_deviation(const BlockMedians& blocks, Eigen::Index signal, Eigen::I
   return std::max(std::isfinite(typical) ? 1.4826 / std::sqrt(6.0) * typical : 0.0, 0.5 * blocks.resolution(signal));
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

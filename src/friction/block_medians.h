@@ -7,7 +7,7 @@
 
 #include "friction/friction_log.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 
 /// Medians of blocks of rows. The signals are in the order wheel speeds, voltages; signals without a column are omitted.
 struct BlockMedians {
@@ -28,4 +28,4 @@ BlockMedians block_medians(const FrictionLog& log, int wheel_count, std::size_t 
 /// as noise. At least half of the resolution.
 double block_deviation(const BlockMedians& blocks, Eigen::Index signal, Eigen::Index begin, Eigen::Index end);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

@@ -5,43 +5,43 @@
 
 #include "robot/inverse_dynamics.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
-std::optional<BodyConfig> body_of(const Robot& robot, const MotorValues& motor) {
+std::optional<robot::BodyConfig> body_of(const robot::Robot& robot, const motor::MotorValues& motor) {
   try {
-    return make_body(robot, motor);
-  } catch (const Failure&) {
+    return robot::make_body(robot, motor);
+  } catch (const base::Failure&) {
     return std::nullopt;
   }
 }
 
 }  // namespace
 
-Expectation expectation(const Robot& robot, const MotorValues& motor) {
-  const DriveConstants drive = drive_constants(robot, motor);
+Expectation expectation(const robot::Robot& robot, const motor::MotorValues& motor) {
+  const robot::DriveConstants drive = robot::drive_constants(robot, motor);
   const int wheels = static_cast<int>(robot.wheels.axis_rad.size());
   Expectation found;
-  DriveConstants without_drag = drive;
+  robot::DriveConstants without_drag = drive;
   without_drag.drag_torque_Nm = 0.0;
   const double damping_Nm_s_per_rad = robot.friction.wheel_damping_Nm_s_per_rad.value_or(0.0);
-  found.damping_V_s_per_rad = steady_voltage_V(without_drag, damping_Nm_s_per_rad, 1.0);
-  const std::optional<BodyConfig> body = body_of(robot, motor);
+  found.damping_V_s_per_rad = robot::steady_voltage_V(without_drag, damping_Nm_s_per_rad, 1.0);
+  const std::optional<robot::BodyConfig> body = body_of(robot, motor);
   found.from = body ? "the robot's file" : "the motor's data sheet";
   found.voltages = [drive, wheels, body](const SteadyPart& part) {
-    PerWheel torque_Nm{};
+    robot::PerWheel torque_Nm{};
     if (body) {
-      const BodyVelocity velocity{part.speed_m_per_s * std::cos(part.heading_rad), part.speed_m_per_s * std::sin(part.heading_rad),
-                                  part.is_rotation ? part.yaw_rad_per_s : 0.0};
-      torque_Nm = inverse_dynamics(*body, {velocity, {}, {}, 0.0}).torque_Nm;
+      const robot::BodyVelocity velocity{part.speed_m_per_s * std::cos(part.heading_rad), part.speed_m_per_s * std::sin(part.heading_rad),
+                                         part.is_rotation ? part.yaw_rad_per_s : 0.0};
+      torque_Nm = robot::inverse_dynamics(*body, {velocity, {}, {}, 0.0}).torque_Nm;
     }
-    PerWheel voltage_V{};
+    robot::PerWheel voltage_V{};
     for (int i = 0; i < wheels; ++i) {
-      voltage_V[i] = steady_voltage_V(drive, torque_Nm[i], part.wheel_speed_rad_per_s[i]);
+      voltage_V[i] = robot::steady_voltage_V(drive, torque_Nm[i], part.wheel_speed_rad_per_s[i]);
     }
     return voltage_V;
   };
   return found;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

@@ -7,7 +7,7 @@
 #include "motor/motor.h"
 #include "robot/friction.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 
 struct Expectation {
   ExpectedVoltages voltages;
@@ -16,6 +16,6 @@ struct Expectation {
 };
 
 /// Returns the expectation from the friction in the robot file, if that describes the body; else from back-EMF and drag of the motor only.
-Expectation expectation(const Robot& robot, const MotorValues& motor);
+Expectation expectation(const robot::Robot& robot, const motor::MotorValues& motor);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::friction {
 
 /// Source of the wheels' voltages.
 struct VoltageFrom {
@@ -45,4 +45,4 @@ struct BackEmfExceedsDamping {
 };
 using WrittenAsZero = std::variant<DragExceedsOffset, BackEmfExceedsDamping>;
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

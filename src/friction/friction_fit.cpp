@@ -11,7 +11,7 @@
 #include "friction/wheel_terms.h"
 #include "robot/friction.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 constexpr double kSameHeading_rad = 2.5 * std::numbers::pi / 180.0;
@@ -142,7 +142,7 @@ void judge(const std::vector<WheelPoint>& points, const Eigen::VectorXd& weights
   found.r2_ratio = variance_V2 > 0.0 ? 1.0 - error_V2 / variance_V2 : std::numeric_limits<double>::quiet_NaN();
 }
 
-WheelFriction fit_wheel(const WheelPoints& wheel_points, std::span<const int> heading, const Kinematics& kinematics, int wheel,
+WheelFriction fit_wheel(const WheelPoints& wheel_points, std::span<const int> heading, const robot::Kinematics& kinematics, int wheel,
                         const FitSettings& settings, Eigen::VectorXd& weights) {
   const std::vector<WheelPoint>& points = wheel_points.points;
   WheelFriction found;
@@ -179,7 +179,7 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, std::span<const int> he
   found.damping_V_s_per_rad = has(WheelTerm::damping) ? estimate(WheelTerm::damping) : Estimate{.value = given};
   found.rotation_V = estimate(WheelTerm::rotation);
   found.constant_V = estimate(WheelTerm::constant);
-  const double phase_rad = rolling_phase_rad(kinematics.wheels[wheel]);
+  const double phase_rad = robot::rolling_phase_rad(kinematics.wheels[wheel]);
   if (has(WheelTerm::cosine)) {
     const Eigen::Index sine = place(WheelTerm::sine);
     const Eigen::Index cosine = place(WheelTerm::cosine);
@@ -323,7 +323,7 @@ std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts, const Fit
   return numbers;
 }
 
-FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, const FitSettings& settings) {
+FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const robot::Kinematics& kinematics, const FitSettings& settings) {
   FrictionFit found;
   const std::vector<int> numbers = heading_numbers(parts, settings);
   found.headings = parts.empty() ? 0 : *std::ranges::max_element(numbers) + 1;
@@ -339,8 +339,8 @@ FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const Kinematics&
   return found;
 }
 
-HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, const FitSettings& settings,
-                                        const ExpectedVoltages& before) {
+HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, const robot::Kinematics& kinematics,
+                                        const FitSettings& settings, const ExpectedVoltages& before) {
   HeldOutError error;
   const std::vector<int> numbers = heading_numbers(parts, settings);
   std::vector<SteadyPart> taught;
@@ -383,4 +383,4 @@ HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, co
   return error;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

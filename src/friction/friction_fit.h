@@ -10,7 +10,7 @@
 #include "friction/robust_fit.h"
 #include "friction/steady_parts.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 
 // In steady motion  V_i = d_i·ω_i + f_i(θ),  f_i(θ) = a_i·sin(θ + φ_i) + b_i·sign(sin(θ + φ_i)).
 // A wheel that should stand by geometry carries no information and is omitted, as in the paper.
@@ -83,10 +83,10 @@ struct FitSettings {
 /// Returns the heading number of each part; −1 for rotation and for legs that are not used. Headings within 2.5° of each other are one.
 std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts, const FitSettings& settings);
 
-FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, const FitSettings& settings);
+FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const robot::Kinematics& kinematics, const FitSettings& settings);
 
 /// Returns the voltages of all wheels that are expected before the fit.
-using ExpectedVoltages = std::function<PerWheel(const SteadyPart&)>;
+using ExpectedVoltages = std::function<robot::PerWheel(const SteadyPart&)>;
 
 /// Prediction errors on hold-out headings: every third heading is excluded from the fit and then predicted.
 struct HeldOutError {
@@ -97,7 +97,7 @@ struct HeldOutError {
   std::vector<double> before_of_wheel_V;
   std::vector<double> after_of_wheel_V;
 };
-HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, const FitSettings& settings,
-                                        const ExpectedVoltages& before);
+HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, const robot::Kinematics& kinematics,
+                                        const FitSettings& settings, const ExpectedVoltages& before);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

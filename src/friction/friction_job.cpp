@@ -16,56 +16,57 @@
 #include "recording/quality.h"
 #include "recording/read_recording.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 constexpr std::size_t kLargestRobotFile_bytes = 1'000'000;
 
 /// Throws if a log is given twice, because it would make the intervals too narrow. `seen` holds files and the hash of their content.
-void refuse_repeated(const Recording& recording, std::vector<std::pair<std::filesystem::path, std::size_t>>& seen) {
+void refuse_repeated(const recording::Recording& recording, std::vector<std::pair<std::filesystem::path, std::size_t>>& seen) {
   std::size_t held = recording.rows();
   const auto add = [&held](double value) { held = held * 1'000'003 + std::hash<double>{}(value); };
   std::ranges::for_each(recording.time_s, add);
-  for (const Channel& channel : recording.channels) {
+  for (const recording::Channel& channel : recording.channels) {
     std::ranges::for_each(channel.values, add);
   }
   if (const auto found = std::ranges::find(seen, held, &std::pair<std::filesystem::path, std::size_t>::second); found != seen.end()) {
-    throw Failure(ExitCode::bad_input, "a log is given twice",
-                  {{{recording.file.string()}, {}, fmt::format("holds the same rows as {}", found->first.string())}});
+    throw base::Failure(base::ExitCode::bad_input, "a log is given twice",
+                        {{{recording.file.string()}, {}, fmt::format("holds the same rows as {}", found->first.string())}});
   }
   seen.emplace_back(recording.file, held);
 }
 
 /// Values from a wrong unit would get into the robot's file and from there into its firmware.
-void refuse_what_looks_wrong(const FrictionJob& job, const std::vector<Diagnostic>& blocking) {
+void refuse_what_looks_wrong(const FrictionJob& job, const std::vector<base::Diagnostic>& blocking) {
   if (!blocking.empty() && !job.takes_logs_as_they_are) {
-    throw Failure(ExitCode::bad_input,
-                  "units, signs or wheels of the logs look wrong; correct them in a mapping (--map) or in the robot's file, or use --as-is "
-                  "if they are right",
-                  blocking);
+    throw base::Failure(
+        base::ExitCode::bad_input,
+        "units, signs or wheels of the logs look wrong; correct them in a mapping (--map) or in the robot's file, or use --as-is "
+        "if they are right",
+        blocking);
   }
 }
 
 struct FrictionInput {
   std::vector<FrictionLog> logs;
-  std::vector<Diagnostic> blocking;  ///< the suspicions (units, signs, wheel order) that would make the answer wrong if true
+  std::vector<base::Diagnostic> blocking;  ///< the suspicions (units, signs, wheel order) that would make the answer wrong if true
 };
 
-FrictionInput read_logs(const FrictionJob& job, bool needs_voltage, FrictionRun& run, const Progress& progress) {
+FrictionInput read_logs(const FrictionJob& job, bool needs_voltage, FrictionRun& run, const base::Progress& progress) {
   FrictionInput input;
   FrictionLogNeeds needs;
   needs.voltage = needs_voltage;
   needs.direction = job.direction;
   if (job.motor) {
-    needs.drive = drive_constants(job.robot, *job.motor);
+    needs.drive = robot::drive_constants(job.robot, *job.motor);
   }
   std::vector<std::pair<std::filesystem::path, std::size_t>> seen;
   for (std::size_t i = 0; i < job.logs.size(); ++i) {
-    RecordingReport report;
-    const std::filesystem::path file = log_named(job.folders, job.logs[i]);
-    const Recording recording = read_recording(file, mapping_for(file, job.map), report);
+    recording::RecordingReport report;
+    const std::filesystem::path file = input::log_named(job.folders, job.logs[i]);
+    const recording::Recording recording = recording::read_recording(file, recording::mapping_for(file, job.map), report);
     input.logs.push_back(friction_log(recording, job.robot, needs, run.findings));
-    const DataQuality quality = assess(recording, report);
+    const recording::DataQuality quality = recording::assess(recording, report);
     for (const std::string& suspicion : quality.suspicions) {
       run.suspicions.push_back(fmt::format("{}: {}", recording.name, suspicion));
     }
@@ -87,31 +88,31 @@ std::string source_of(const FrictionJob& job) {
 }
 
 /// Explains why nothing was learned, with the problem of wheel 1 as the example.
-Failure nothing_learned(const SteadyParts& steady, const FrictionFit& fit, const std::vector<std::string>& suspicions) {
+base::Failure nothing_learned(const SteadyParts& steady, const FrictionFit& fit, const std::vector<std::string>& suspicions) {
   const std::string suspected = suspicions.empty() ? "" : fmt::format("\nsuspicious: {}", fmt::join(suspicions, "\nsuspicious: "));
   if (steady.parts.empty()) {
     return {
-        ExitCode::cannot_answer,
+        base::ExitCode::cannot_answer,
         "nothing is identifiable: in no interval do the wheels turn steadily; legs of one speed and direction must last a second or more" +
             suspected};
   }
-  return {ExitCode::cannot_answer,
-          fmt::format("nothing is identifiable from {} on {}: of wheel 1, {}{}", counted(steady.parts.size(), "steady leg"),
-                      counted(static_cast<std::size_t>(fit.headings), "heading"), fit.wheels.front().problem, suspected)};
+  return {base::ExitCode::cannot_answer,
+          fmt::format("nothing is identifiable from {} on {}: of wheel 1, {}{}", base::counted(steady.parts.size(), "steady leg"),
+                      base::counted(static_cast<std::size_t>(fit.headings), "heading"), fit.wheels.front().problem, suspected)};
 }
 
 }  // namespace
 
-SteadyFriction steady_friction(const FrictionJob& job, const Progress& progress) {
+SteadyFriction steady_friction(const FrictionJob& job, const base::Progress& progress) {
   SteadyFriction answer;
   FrictionInput input = read_logs(job, true, answer, progress);
-  const Kinematics kinematics = make_kinematics(job.robot);
+  const robot::Kinematics kinematics = robot::make_kinematics(job.robot);
   answer.steady = find_steady_parts(input.logs, kinematics);
   answer.settings.use_return_legs = job.use_return_legs;
-  std::optional<DriveConstants> drive;
+  std::optional<robot::DriveConstants> drive;
   Expectation before;
   if (job.motor) {
-    drive = drive_constants(job.robot, *job.motor);
+    drive = robot::drive_constants(job.robot, *job.motor);
     before = expectation(job.robot, *job.motor);
     answer.settings.known_damping_V_s_per_rad = before.damping_V_s_per_rad;
   }
@@ -129,33 +130,34 @@ SteadyFriction steady_friction(const FrictionJob& job, const Progress& progress)
   answer.expected_from = before.from;
   if (job.writes_robot_file) {
     if (!drive) {
-      throw Failure(ExitCode::bad_input, "--out: a robot's file has torques; --motor must name the motor that converts volts to torques");
+      throw base::Failure(base::ExitCode::bad_input,
+                          "--out: a robot's file has torques; --motor must name the motor that converts volts to torques");
     }
-    answer.robot_text = with_measured_friction(read_file(job.robot.file, kLargestRobotFile_bytes), job.robot, *drive, answer.fit,
+    answer.robot_text = with_measured_friction(base::read_file(job.robot.file, kLargestRobotFile_bytes), job.robot, *drive, answer.fit,
                                                source_of(job), answer.notes);
   }
   return answer;
 }
 
-RollOutFriction roll_out_friction(const FrictionJob& job, const Progress& progress) {
+RollOutFriction roll_out_friction(const FrictionJob& job, const base::Progress& progress) {
   RollOutFriction answer;
   const FrictionInput input = read_logs(job, false, answer, progress);
   if (!job.motor) {
-    throw Failure(ExitCode::bad_input, "a roll-out needs the inertia of the motor's rotor; --motor must name the motor");
+    throw base::Failure(base::ExitCode::bad_input, "a roll-out needs the inertia of the motor's rotor; --motor must name the motor");
   }
   refuse_what_looks_wrong(job, input.blocking);
   answer.result = roll_out(input.logs, job.robot, *job.motor, job.is_lifted);
   if (answer.result.runs.empty()) {
-    throw Failure(ExitCode::cannot_answer,
-                  "nothing is identifiable: in no interval of 15 rows do the wheels roll out with their drivers off");
+    throw base::Failure(base::ExitCode::cannot_answer,
+                        "nothing is identifiable: in no interval of 15 rows do the wheels roll out with their drivers off");
   }
-  answer.drive = drive_constants(job.robot, *job.motor);
+  answer.drive = robot::drive_constants(job.robot, *job.motor);
   answer.drive.drag_torque_Nm = 0.0;
   if (job.writes_robot_file) {
-    answer.robot_text = with_measured_damping(read_file(job.robot.file, kLargestRobotFile_bytes), job.robot,
+    answer.robot_text = with_measured_damping(base::read_file(job.robot.file, kLargestRobotFile_bytes), job.robot,
                                               answer.result.wheel_damping_Nm_s_per_rad, source_of(job));
   }
   return answer;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

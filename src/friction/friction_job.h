@@ -12,14 +12,14 @@
 #include "friction/steady_parts.h"
 #include "input/data_folders.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 
 struct FrictionJob {
-  Robot robot;
-  std::optional<MotorValues> motor = {};  ///< motor that the robot drove with, if it is known
-  std::vector<std::string> logs;          ///< at least one; files, or names as log_named() resolves them
-  DataFolders folders = {};               ///< folders of log_named()
-  std::string map = {};                   ///< mapping of foreign logs; empty: the file beside each log, if there is one
+  robot::Robot robot;
+  std::optional<motor::MotorValues> motor = {};  ///< motor that the robot drove with, if it is known
+  std::vector<std::string> logs;                 ///< at least one; files, or names as log_named() resolves them
+  input::DataFolders folders = {};               ///< folders of log_named()
+  std::string map = {};                          ///< mapping of foreign logs; empty: the file beside each log, if there is one
   TravelDirection direction = TravelDirection::best;
   bool use_return_legs = false;         ///< steady-state test: use the return legs too
   bool is_lifted = false;               ///< roll-out test: the wheels were off the ground
@@ -46,14 +46,14 @@ struct SteadyFriction : FrictionRun {
 
 struct RollOutFriction : FrictionRun {
   RollOutResult result;
-  DriveConstants drive;  ///< with a drag torque of 0
+  robot::DriveConstants drive;  ///< with a drag torque of 0
 };
 
 /// Fits friction and damping of every wheel to a steady-state test. Throws Failure: bad_input for logs that cannot be read, are given twice
 /// or look wrong, and for a robot file without a known motor; cannot_answer if nothing is identifiable.
-SteadyFriction steady_friction(const FrictionJob& job, const Progress& progress = {});
+SteadyFriction steady_friction(const FrictionJob& job, const base::Progress& progress = {});
 
 /// Estimates damping from decelerations with open motors. Throws Failure as above; the motor must be known.
-RollOutFriction roll_out_friction(const FrictionJob& job, const Progress& progress = {});
+RollOutFriction roll_out_friction(const FrictionJob& job, const base::Progress& progress = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

@@ -8,7 +8,7 @@
 
 #include "base/quantity.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 constexpr double kFarOff_deg = 20.0;
@@ -19,11 +19,11 @@ constexpr double kLeastExplained_ratio = 0.7;
 constexpr double kDead_share = 0.05;
 
 /// Median angle in degrees between the log's direction of travel and that computed from the wheel speeds; 0 without legs.
-double direction_off_deg(const SteadyParts& steady, const Kinematics& kinematics) {
+double direction_off_deg(const SteadyParts& steady, const robot::Kinematics& kinematics) {
   std::vector<double> off_deg;
   for (const SteadyPart& part : steady.parts) {
     if (!part.is_rotation) {
-      const BodyVelocity velocity = body_velocity(kinematics, part.wheel_speed_rad_per_s);
+      const robot::BodyVelocity velocity = robot::body_velocity(kinematics, part.wheel_speed_rad_per_s);
       const double wheels_rad = std::atan2(velocity.y_m_per_s, velocity.x_m_per_s);
       off_deg.push_back(std::abs(std::remainder(part.heading_rad - wheels_rad, 2.0 * std::numbers::pi)) * 180.0 / std::numbers::pi);
     }
@@ -32,10 +32,11 @@ double direction_off_deg(const SteadyParts& steady, const Kinematics& kinematics
 }
 
 /// Median share of the wheel speeds that no motion of the robot explains; always 0 with three wheels.
-double contradiction_share(const SteadyParts& steady, const Kinematics& kinematics) {
+double contradiction_share(const SteadyParts& steady, const robot::Kinematics& kinematics) {
   std::vector<double> shares;
   for (const SteadyPart& part : steady.parts) {
-    const PerWheel expected = wheel_speeds_rad_per_s(kinematics, body_velocity(kinematics, part.wheel_speed_rad_per_s));
+    const robot::PerWheel expected =
+        robot::wheel_speeds_rad_per_s(kinematics, robot::body_velocity(kinematics, part.wheel_speed_rad_per_s));
     double off_rad2_per_s2 = 0.0;
     double all_rad2_per_s2 = 0.0;
     for (int i = 0; i < kinematics.wheel_count; ++i) {
@@ -83,7 +84,7 @@ std::string suspicion_of_wheel(const SteadyParts& steady, const WheelFriction& w
   if (wheel.constant_V.high < 0.0 || wheel.sine_V.high + wheel.constant_V.high < 0.0) {
     return fmt::format(
         "friction of wheel {} would drive it (a = {} V, b = {} V): is its modulation that of another wheel, or of the wrong sign?", number,
-        significant(wheel.sine_V.value, 2), significant(wheel.constant_V.value, 2));
+        base::significant(wheel.sine_V.value, 2), base::significant(wheel.constant_V.value, 2));
   }
   if (wheel.r2_ratio < kLeastExplained_ratio) {
     return fmt::format("voltage of wheel {} hardly follows its speed and direction (R² {:.2f}): is its modulation that of another wheel?",
@@ -92,15 +93,15 @@ std::string suspicion_of_wheel(const SteadyParts& steady, const WheelFriction& w
   const double ratio = damping / back_emf_V_s_per_rad;
   if (!wheel.damping_is_given && (ratio < kLeastOfBackEmf_ratio || ratio > kMostOfBackEmf_ratio)) {
     return fmt::format("d of wheel {} is {} times the motor's back-EMF, expected 1 to 2 times: is its speed or modulation in another unit?",
-                       number, significant(ratio, 2));
+                       number, base::significant(ratio, 2));
   }
   return {};
 }
 
 }  // namespace
 
-std::vector<std::string> friction_suspicions(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics,
-                                             const std::optional<DriveConstants>& drive) {
+std::vector<std::string> friction_suspicions(const SteadyParts& steady, const FrictionFit& fit, const robot::Kinematics& kinematics,
+                                             const std::optional<robot::DriveConstants>& drive) {
   std::vector<std::string> found;
   if (const double off_deg = direction_off_deg(steady, kinematics); off_deg > kFarOff_deg) {
     found.push_back(
@@ -132,7 +133,7 @@ std::vector<std::string> friction_suspicions(const SteadyParts& steady, const Fr
       found.push_back(
           fmt::format("d is {} times the motor's back-EMF, expected 1 to 2 times: is a speed in rpm or that of the wheel instead of its "
                       "motor, a modulation in percent, a voltage in millivolts or too high, or is it another motor?",
-                      significant(ratio, 2)));
+                      base::significant(ratio, 2)));
     }
   }
   // Report single wheels only if no common problem was found.
@@ -149,4 +150,4 @@ std::vector<std::string> friction_suspicions(const SteadyParts& steady, const Fr
   return found;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

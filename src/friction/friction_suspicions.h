@@ -8,10 +8,10 @@
 #include "friction/friction_fit.h"
 #include "robot/friction.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 
 /// Returns sentences for the user about implausible results; nothing is corrected. `drive`: constants of the motor, if known.
-std::vector<std::string> friction_suspicions(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics,
-                                             const std::optional<DriveConstants>& drive);
+std::vector<std::string> friction_suspicions(const SteadyParts& steady, const FrictionFit& fit, const robot::Kinematics& kinematics,
+                                             const std::optional<robot::DriveConstants>& drive);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

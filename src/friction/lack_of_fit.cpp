@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 constexpr double kFalseAlarm_share = 1e-3;
@@ -144,4 +144,4 @@ void widen(const std::vector<WheelPoint>& points, const Eigen::MatrixXd& X, doub
   fit.freedom_counts = fit.freedom_counts.cwiseMin(seen.trace() * seen.trace() / seen.squaredNorm());
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

@@ -5,7 +5,7 @@
 
 #include "friction/wheel_terms.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 
 // Method. Residuals are averaged per leg; the differences between legs on one heading are the scatter of repeats. If each heading was
 // driven only once, the speeds of one leg or two neighbouring headings serve as repeats instead. If the means over headings deviate from
@@ -20,4 +20,4 @@ LackOfFit lack_of_fit(const std::vector<WheelPoint>& points, std::span<const int
 /// Adds to the covariance of `fit` the effect of a heading-dependent error with RMS value `left_V`. No effect if `left_V` is 0.
 void widen(const std::vector<WheelPoint>& points, const Eigen::MatrixXd& X, double left_V, RobustFit& fit);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

@@ -7,14 +7,15 @@
 
 #include "base/unknown.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 using Column = std::vector<double>;
 
 class ColumnsOfRobot {
  public:
-  ColumnsOfRobot(const Recording& recording, const Robot& robot, const FrictionLogNeeds& needs, FrictionFindings& findings)
+  ColumnsOfRobot(const recording::Recording& recording, const robot::Robot& robot, const FrictionLogNeeds& needs,
+                 FrictionFindings& findings)
       : recording_(recording), robot_(robot), needs_(needs), findings_(findings) {}
 
   FrictionLog log() {
@@ -42,7 +43,7 @@ class ColumnsOfRobot {
 
  private:
   [[nodiscard]] const Column* column(std::string_view key) const {
-    const Channel* channel = recording_.find(key);
+    const recording::Channel* channel = recording_.find(key);
     return channel ? &channel->values : nullptr;
   }
   [[nodiscard]] const Column* numbered(std::string_view key, std::size_t wheel) const {
@@ -116,7 +117,7 @@ class ColumnsOfRobot {
   static Column directions_rad(const Column& x, const Column& y) {
     Column direction_rad(x.size());
     for (std::size_t row = 0; row < x.size(); ++row) {
-      direction_rad[row] = x[row] == 0.0 && y[row] == 0.0 ? kUnknown : std::atan2(y[row], x[row]);
+      direction_rad[row] = x[row] == 0.0 && y[row] == 0.0 ? base::kUnknown : std::atan2(y[row], x[row]);
     }
     return direction_rad;
   }
@@ -181,17 +182,18 @@ class ColumnsOfRobot {
     return {};
   }
 
-  const Recording& recording_;
-  const Robot& robot_;
+  const recording::Recording& recording_;
+  const robot::Robot& robot_;
   const FrictionLogNeeds& needs_;
   FrictionFindings& findings_;
-  Diagnostics diagnostics_;
+  base::Diagnostics diagnostics_;
 };
 
 }  // namespace
 
-FrictionLog friction_log(const Recording& recording, const Robot& robot, const FrictionLogNeeds& needs, FrictionFindings& findings) {
+FrictionLog friction_log(const recording::Recording& recording, const robot::Robot& robot, const FrictionLogNeeds& needs,
+                         FrictionFindings& findings) {
   return ColumnsOfRobot(recording, robot, needs, findings).log();
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

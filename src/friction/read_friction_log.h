@@ -9,7 +9,7 @@
 #include "robot/friction.h"
 #include "robot/robot.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 
 /// Source of the direction of travel.
 enum class TravelDirection {
@@ -20,8 +20,8 @@ enum class TravelDirection {
 };
 
 struct FrictionLogNeeds {
-  bool voltage = true;                  ///< the voltage of every wheel is needed
-  std::optional<DriveConstants> drive;  ///< motor constants to convert currents to voltages
+  bool voltage = true;                         ///< the voltage of every wheel is needed
+  std::optional<robot::DriveConstants> drive;  ///< motor constants to convert currents to voltages
   TravelDirection direction = TravelDirection::best;
 };
 
@@ -29,6 +29,7 @@ struct FrictionLogNeeds {
 /// wheel_voltage_V, else wheel_pwm_ratio × battery_V (or bus_V, or the robot's nominal voltage), else R·I + K_t·n·ω with
 /// I = wheel_current_A, which gets the sign of the speed if it has none. Throws Failure (bad_input) with all missing columns. Adds to
 /// `findings` how it read the columns.
-FrictionLog friction_log(const Recording& recording, const Robot& robot, const FrictionLogNeeds& needs, FrictionFindings& findings);
+FrictionLog friction_log(const recording::Recording& recording, const robot::Robot& robot, const FrictionLogNeeds& needs,
+                         FrictionFindings& findings);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

@@ -8,7 +8,7 @@
 #include <regex>
 #include <sstream>
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -58,8 +58,9 @@ bool is_header_of(const std::string& line, const std::string& table) {
                            std::regex(R"(^\s*\[\[?\s*)" + std::regex_replace(table, std::regex(R"(\.)"), R"(\s*\.\s*)") + R"(\s*[\].])"));
 }
 
-Failure other_form(const Robot& robot, const std::string& table) {
-  return bad_input({robot.file.string()}, table, fmt::format("is not written as a table [{}], so it cannot be updated in place", table));
+base::Failure other_form(const robot::Robot& robot, const std::string& table) {
+  return base::bad_input({robot.file.string()}, table,
+                         fmt::format("is not written as a table [{}], so it cannot be updated in place", table));
 }
 
 /// Removes [friction.heading], its wheels and the comments before it; keeps comments that belong to the next table.
@@ -82,7 +83,7 @@ void remove_heading(Lines& lines) {
 }
 
 /// Returns the position after the last line with text of the table [friction]; appends the table if the file has none.
-Lines::iterator end_of_friction(Lines& lines, const Robot& robot) {
+Lines::iterator end_of_friction(Lines& lines, const robot::Robot& robot) {
   static const std::regex kHeader(R"(^\s*\[\s*friction\s*\])");
   const auto header = std::ranges::find_if(lines, [](const std::string& line) { return std::regex_search(line, kHeader); });
   if (header == lines.end()) {
@@ -99,7 +100,7 @@ Lines::iterator end_of_friction(Lines& lines, const Robot& robot) {
   return end;
 }
 
-void set_damping(Lines& lines, const Robot& robot, const std::string& value) {
+void set_damping(Lines& lines, const robot::Robot& robot, const std::string& value) {
   const std::string line = "wheel_damping = " + value;
   const auto place = robot.parameters.find("friction.wheel_damping");
   if (place == robot.parameters.end()) {
@@ -135,10 +136,12 @@ std::string volts(const Estimate& estimate) {
 }
 
 /// Lines of the table of one wheel.
-Lines wheel_table(const WheelFriction& wheel, const DriveConstants& drive, const std::string& conversion, const std::string& source) {
+Lines wheel_table(const WheelFriction& wheel, const robot::DriveConstants& drive, const std::string& conversion,
+                  const std::string& source) {
   const double Nm_per_V = drive.torque_constant_Nm_per_A / drive.resistance_ohm * drive.gear_ratio * drive.gear_efficiency;
-  const Estimate constant = converted(
-      wheel.constant_V, [&](double value_V) { return std::isnan(value_V) ? value_V : friction_torque_of_voltage_Nm(drive, value_V); });
+  const Estimate constant = converted(wheel.constant_V, [&](double value_V) {
+    return std::isnan(value_V) ? value_V : robot::friction_torque_of_voltage_Nm(drive, value_V);
+  });
   Estimate sine = converted(wheel.sine_V, [&](double value_V) { return value_V * Nm_per_V; });
   // Friction must not drive the wheel on any heading.
   sine = converted(sine, [&](double value) { return std::max(value, -constant.value); });
@@ -152,7 +155,7 @@ Lines wheel_table(const WheelFriction& wheel, const DriveConstants& drive, const
                                  wheel.phase_is_given ? "the wheel's rolling direction: too few headings to determine it" : "fitted")};
 }
 
-void note_what_is_cut(const FrictionFit& fit, const DriveConstants& drive, std::vector<WrittenAsZero>& notes) {
+void note_what_is_cut(const FrictionFit& fit, const robot::DriveConstants& drive, std::vector<WrittenAsZero>& notes) {
   const double drag_V = drive.drag_torque_Nm * drive.resistance_ohm / drive.torque_constant_Nm_per_A;
   const double back_emf_V_s_per_rad = drive.torque_constant_Nm_per_A * drive.gear_ratio;
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
@@ -167,25 +170,26 @@ void note_what_is_cut(const FrictionFit& fit, const DriveConstants& drive, std::
 }
 
 /// Joins the lines. Throws Failure (bug) if the result cannot be read as a robot file.
-std::string checked(const Lines& lines, const Robot& robot) {
+std::string checked(const Lines& lines, const robot::Robot& robot) {
   std::string text = joined(lines);
   try {
-    parse_robot(text, robot.file);
-  } catch (const Failure& failure) {
-    throw Failure(ExitCode::bug, fmt::format("the updated robot file cannot be read: {}", failure.what()));
+    robot::parse_robot(text, robot.file);
+  } catch (const base::Failure& failure) {
+    throw base::Failure(base::ExitCode::bug, fmt::format("the updated robot file cannot be read: {}", failure.what()));
   }
   return text;
 }
 
 }  // namespace
 
-std::string with_measured_friction(const std::string& text, const Robot& robot, const DriveConstants& drive, const FrictionFit& fit,
-                                   const std::string& source, std::vector<WrittenAsZero>& notes) {
+std::string with_measured_friction(const std::string& text, const robot::Robot& robot, const robot::DriveConstants& drive,
+                                   const FrictionFit& fit, const std::string& source, std::vector<WrittenAsZero>& notes) {
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     if (!fit.wheels[i].is_learned() || std::isnan(fit.wheels[i].constant_V.value)) {
-      throw Failure(ExitCode::cannot_answer,
-                    fmt::format("no robot file is written, because the friction of wheel {} over the directions is not identifiable: {}",
-                                i + 1, fit.wheels[i].is_learned() ? "its logs only turn on the spot" : fit.wheels[i].problem));
+      throw base::Failure(
+          base::ExitCode::cannot_answer,
+          fmt::format("no robot file is written, because the friction of wheel {} over the directions is not identifiable: {}", i + 1,
+                      fit.wheels[i].is_learned() ? "its logs only turn on the spot" : fit.wheels[i].problem));
     }
   }
   note_what_is_cut(fit, drive, notes);
@@ -204,7 +208,8 @@ std::string with_measured_friction(const std::string& text, const Robot& robot, 
   if (std::ranges::none_of(fit.wheels, &WheelFriction::damping_is_given)) {
     std::vector<Estimate> dampings;
     for (const WheelFriction& wheel : fit.wheels) {
-      dampings.push_back(converted(wheel.damping_V_s_per_rad, [&](double value) { return damping_of_voltage_Nm_s_per_rad(drive, value); }));
+      dampings.push_back(
+          converted(wheel.damping_V_s_per_rad, [&](double value) { return robot::damping_of_voltage_Nm_s_per_rad(drive, value); }));
     }
     const Estimate all = over_wheels(dampings);
     set_damping(lines, robot,
@@ -216,8 +221,9 @@ std::string with_measured_friction(const std::string& text, const Robot& robot, 
               "[friction.heading]"};
   std::vector<Estimate> rotations;
   for (const WheelFriction& wheel : fit.wheels) {
-    rotations.push_back(converted(
-        wheel.rotation_V, [&](double value_V) { return std::isnan(value_V) ? value_V : friction_torque_of_voltage_Nm(drive, value_V); }));
+    rotations.push_back(converted(wheel.rotation_V, [&](double value_V) {
+      return std::isnan(value_V) ? value_V : robot::friction_torque_of_voltage_Nm(drive, value_V);
+    }));
   }
   if (const Estimate all = over_wheels(rotations); std::isfinite(all.value)) {
     table.push_back("rotation = " +
@@ -233,8 +239,8 @@ std::string with_measured_friction(const std::string& text, const Robot& robot, 
   return checked(lines, robot);
 }
 
-std::string with_measured_damping(const std::string& text, const Robot& robot, const std::vector<Estimate>& wheel_damping_Nm_s_per_rad,
-                                  const std::string& source) {
+std::string with_measured_damping(const std::string& text, const robot::Robot& robot,
+                                  const std::vector<Estimate>& wheel_damping_Nm_s_per_rad, const std::string& source) {
   Lines lines = lines_of(text);
   set_damping(lines, robot,
               parameter(over_wheels(wheel_damping_Nm_s_per_rad), 1e3, "mN m s/rad", 0.0, source,
@@ -242,4 +248,4 @@ std::string with_measured_damping(const std::string& text, const Robot& robot, c
   return checked(lines, robot);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

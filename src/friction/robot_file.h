@@ -9,7 +9,7 @@
 #include "robot/friction.h"
 #include "robot/robot.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 
 /// Returns the text of the robot file with new friction values of origin "measured"; everything else, comments included, is unchanged.
 /// friction.wheel_damping is the mean of the wheels, [friction.heading] has one table per wheel. As in all robot files, they are torques
@@ -17,11 +17,11 @@ namespace heatsoak {
 /// steady_voltage_V() reproduces the measured voltages. If the motor's drag or back-EMF alone exceeds the measured value, 0 is written and
 /// `notes` gets an entry. Throws Failure: cannot_answer if a wheel was not fitted; bad_input if the file has its friction in another
 /// form than tables [friction] and [friction.heading].
-std::string with_measured_friction(const std::string& text, const Robot& robot, const DriveConstants& drive, const FrictionFit& fit,
-                                   const std::string& source, std::vector<WrittenAsZero>& notes);
+std::string with_measured_friction(const std::string& text, const robot::Robot& robot, const robot::DriveConstants& drive,
+                                   const FrictionFit& fit, const std::string& source, std::vector<WrittenAsZero>& notes);
 
 /// Same for the mechanical damping of a roll-out only.
-std::string with_measured_damping(const std::string& text, const Robot& robot, const std::vector<Estimate>& wheel_damping_Nm_s_per_rad,
-                                  const std::string& source);
+std::string with_measured_damping(const std::string& text, const robot::Robot& robot,
+                                  const std::vector<Estimate>& wheel_damping_Nm_s_per_rad, const std::string& source);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 constexpr double kBisquare = 4.685;  // 95 % efficiency for normal errors
@@ -200,4 +200,4 @@ double independent_share(const Eigen::MatrixXd& X, Eigen::Index column) {
   return (wanted - others * others.colPivHouseholderQr().solve(wanted)).norm() / size;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::friction {
 
 /// A value with its 95 % interval; NaN if the data do not determine it.
 struct Estimate {
@@ -46,4 +46,4 @@ RobustFit robust_fit(const Eigen::MatrixXd& X, const Eigen::VectorXd& y, std::sp
 /// Returns the RMS share of a column that is linearly independent of the other columns; 0 means collinear.
 double independent_share(const Eigen::MatrixXd& X, Eigen::Index column);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

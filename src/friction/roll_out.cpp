@@ -10,7 +10,7 @@
 
 #include "base/random.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 constexpr double kOff_share = 0.02;
@@ -205,28 +205,28 @@ std::optional<RollOutRun> fitted(const FrictionLog& log, const Rolling& rolling,
   return run;
 }
 
-PerWheel wheel_speeds(const std::array<std::vector<double>, kMostWheels>& columns, int wheel_count, std::size_t row) {
-  PerWheel speed_rad_per_s{};
+robot::PerWheel wheel_speeds(const std::array<std::vector<double>, robot::kMostWheels>& columns, int wheel_count, std::size_t row) {
+  robot::PerWheel speed_rad_per_s{};
   for (int i = 0; i < wheel_count; ++i) {
     speed_rad_per_s[i] = columns[static_cast<std::size_t>(i)][row];
   }
   return speed_rad_per_s;
 }
 
-void add_robot(const FrictionLog& log, const BodyConfig& body, RollOutResult& result) {
-  const Kinematics& kinematics = body.kinematics;
-  std::array<std::vector<double>, kMostWheels> smooth;
+void add_robot(const FrictionLog& log, const robot::BodyConfig& body, RollOutResult& result) {
+  const robot::Kinematics& kinematics = body.kinematics;
+  std::array<std::vector<double>, robot::kMostWheels> smooth;
   for (int i = 0; i < kinematics.wheel_count; ++i) {
     smooth[static_cast<std::size_t>(i)] = without_spikes(log.wheel_speed_rad_per_s[static_cast<std::size_t>(i)]);
   }
   Rolling rolling(log.rows());
-  std::vector<BodyVelocity> velocity(log.rows());
+  std::vector<robot::BodyVelocity> velocity(log.rows());
   for (std::size_t row = 0; row < log.rows(); ++row) {
-    const PerWheel measured = wheel_speeds(log.wheel_speed_rad_per_s, kinematics.wheel_count, row);
-    rolling.energy_J[row] = kinetic_energy_J(body, body_velocity(kinematics, measured), measured);
-    const PerWheel speeds = wheel_speeds(smooth, kinematics.wheel_count, row);
-    velocity[row] = body_velocity(kinematics, speeds);
-    rolling.smooth_energy_J[row] = kinetic_energy_J(body, velocity[row], speeds);
+    const robot::PerWheel measured = wheel_speeds(log.wheel_speed_rad_per_s, kinematics.wheel_count, row);
+    rolling.energy_J[row] = robot::kinetic_energy_J(body, robot::body_velocity(kinematics, measured), measured);
+    const robot::PerWheel speeds = wheel_speeds(smooth, kinematics.wheel_count, row);
+    velocity[row] = robot::body_velocity(kinematics, speeds);
+    rolling.smooth_energy_J[row] = robot::kinetic_energy_J(body, velocity[row], speeds);
     rolling.speed[row] =
         std::hypot(velocity[row].x_m_per_s, velocity[row].y_m_per_s, kinematics.contact_radius_m * velocity[row].yaw_rad_per_s);
     for (int i = 0; i < kinematics.wheel_count; ++i) {
@@ -235,7 +235,7 @@ void add_robot(const FrictionLog& log, const BodyConfig& body, RollOutResult& re
     }
   }
   for (const RollOutSegment& segment : segments(log, rows_off(log, kinematics.wheel_count), rolling.speed)) {
-    const BodyVelocity& first = velocity[segment.begin];
+    const robot::BodyVelocity& first = velocity[segment.begin];
     const double moving_m_per_s = std::hypot(first.x_m_per_s, first.y_m_per_s);
     const bool turns = kinematics.contact_radius_m * std::abs(first.yaw_rad_per_s) > moving_m_per_s;
     rolling.run = {.kind = turns ? RollOut::rotation : RollOut::translation};
@@ -249,7 +249,7 @@ void add_robot(const FrictionLog& log, const BodyConfig& body, RollOutResult& re
   }
 }
 
-void add_lifted(const FrictionLog& log, const BodyConfig& body, RollOutResult& result) {
+void add_lifted(const FrictionLog& log, const robot::BodyConfig& body, RollOutResult& result) {
   const std::vector<bool> off = rows_off(log, body.kinematics.wheel_count);
   for (int i = 0; i < body.kinematics.wheel_count; ++i) {
     const std::vector<double>& speed_rad_per_s = log.wheel_speed_rad_per_s[static_cast<std::size_t>(i)];
@@ -292,7 +292,7 @@ Estimate over_runs(const std::vector<double>& values) {
 
 }  // namespace
 
-RollOutResult roll_out(const std::vector<FrictionLog>& logs, const BodyConfig& body, bool is_lifted) {
+RollOutResult roll_out(const std::vector<FrictionLog>& logs, const robot::BodyConfig& body, bool is_lifted) {
   RollOutResult result;
   for (const FrictionLog& log : logs) {
     result.rows += log.rows();
@@ -312,13 +312,13 @@ RollOutResult roll_out(const std::vector<FrictionLog>& logs, const BodyConfig& b
   return result;
 }
 
-RollOutResult roll_out(const std::vector<FrictionLog>& logs, const Robot& robot, const MotorValues& motor, bool is_lifted) {
+RollOutResult roll_out(const std::vector<FrictionLog>& logs, const robot::Robot& robot, const motor::MotorValues& motor, bool is_lifted) {
   constexpr int kDraws = 100;
-  RollOutResult result = roll_out(logs, make_body(robot, motor), is_lifted);
+  RollOutResult result = roll_out(logs, robot::make_body(robot, motor), is_lifted);
   std::vector<RollOutResult> drawn;
-  Random random(1, 0);
+  base::Random random(1, 0);
   for (int i = 0; i < kDraws; ++i) {
-    drawn.push_back(roll_out(logs, make_body(draw_sample(robot, random), motor), is_lifted));
+    drawn.push_back(roll_out(logs, robot::make_body(robot::draw_sample(robot, random), motor), is_lifted));
   }
   const auto widen = [&](std::vector<Estimate> RollOutResult::*which) {
     for (std::size_t wheel = 0; wheel < (result.*which).size(); ++wheel) {
@@ -344,4 +344,4 @@ RollOutResult roll_out(const std::vector<FrictionLog>& logs, const Robot& robot,
   return result;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

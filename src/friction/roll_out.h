@@ -8,7 +8,7 @@
 #include "friction/robust_fit.h"
 #include "robot/body.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 
 // With open motor terminals, a friction torque τ and a damping D act on each wheel. They reduce the kinetic energy of body, wheels and
 // rotors:
@@ -39,8 +39,8 @@ struct RollOutResult {
 };
 
 /// Evaluates the roll-outs of all logs. `body` has the masses and inertias.
-RollOutResult roll_out(const std::vector<FrictionLog>& logs, const BodyConfig& body, bool is_lifted);
+RollOutResult roll_out(const std::vector<FrictionLog>& logs, const robot::BodyConfig& body, bool is_lifted);
 /// Same, but the intervals include the uncertainty of masses and inertias in the robot file, with which all results scale.
-RollOutResult roll_out(const std::vector<FrictionLog>& logs, const Robot& robot, const MotorValues& motor, bool is_lifted);
+RollOutResult roll_out(const std::vector<FrictionLog>& logs, const robot::Robot& robot, const motor::MotorValues& motor, bool is_lifted);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

@@ -8,7 +8,7 @@
 #include "friction/block_medians.h"
 #include "friction/robust_fit.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 constexpr Eigen::Index kLeastBlocks = 5;
@@ -23,7 +23,7 @@ enum class Movement { standing, translating, rotating, unknown };
 
 struct Block {
   Movement kind = Movement::unknown;
-  BodyVelocity velocity;
+  robot::BodyVelocity velocity;
   double direction_rad = 0.0;
 };
 
@@ -36,15 +36,15 @@ struct Leg {
 
 double angle_between(double a_rad, double b_rad) { return std::abs(std::remainder(a_rad - b_rad, 2.0 * std::numbers::pi)); }
 
-std::vector<Block> classified(const BlockMedians& medians, const Kinematics& kinematics) {
+std::vector<Block> classified(const BlockMedians& medians, const robot::Kinematics& kinematics) {
   const double rim_m_per_s = kinematics.wheel_radius_m * medians.top.head(kinematics.wheel_count).maxCoeff();
   std::vector<Block> blocks(medians.first_row.size());
   for (std::size_t k = 0; k < blocks.size(); ++k) {
-    PerWheel speed_rad_per_s{};
+    robot::PerWheel speed_rad_per_s{};
     Eigen::VectorXd::Map(speed_rad_per_s.data(), kinematics.wheel_count) =
         medians.values.col(static_cast<Eigen::Index>(k)).head(kinematics.wheel_count);
     Block& block = blocks[k];
-    block.velocity = body_velocity(kinematics, speed_rad_per_s);
+    block.velocity = robot::body_velocity(kinematics, speed_rad_per_s);
     const double moving_m_per_s = std::hypot(block.velocity.x_m_per_s, block.velocity.y_m_per_s);
     const double turning_m_per_s = kinematics.contact_radius_m * std::abs(block.velocity.yaw_rad_per_s);
     block.direction_rad = std::atan2(block.velocity.y_m_per_s, block.velocity.x_m_per_s);
@@ -94,7 +94,7 @@ void mark_returns(std::vector<Leg>& legs, const std::vector<Block>& blocks, cons
         continue;
       }
       const double measured_rad = log.yaw_rad.empty() ? std::numeric_limits<double>::quiet_NaN() : log.yaw_rad[medians.first_row[k]];
-      const BodyVelocity field = to_global(blocks[k].velocity, std::isfinite(measured_rad) ? measured_rad : yaw_rad);
+      const robot::BodyVelocity field = robot::to_global(blocks[k].velocity, std::isfinite(measured_rad) ? measured_rad : yaw_rad);
       const double duration_s = medians.duration_s[k];
       x_m += field.x_m_per_s * duration_s;
       y_m += field.y_m_per_s * duration_s;
@@ -116,7 +116,7 @@ struct Change {
 
 /// Per signal, true if its wheel turns in this leg. A wheel that should stand sticks and slips irregularly.
 std::vector<bool> turning_signals(const BlockMedians& medians, const std::vector<Block>& blocks, const Leg& leg,
-                                  const Kinematics& kinematics) {
+                                  const robot::Kinematics& kinematics) {
   std::vector<bool> turns(static_cast<std::size_t>(medians.values.rows()), true);
   if (leg.kind != Movement::translating) {
     return turns;
@@ -196,7 +196,7 @@ std::span<const double> rows_of(const std::vector<double>& column, const SteadyP
 }
 
 /// Direction of travel from the log, or else from the wheels.
-double heading_rad(const FrictionLog& log, const SteadyPart& part, const BodyVelocity& velocity) {
+double heading_rad(const FrictionLog& log, const SteadyPart& part, const robot::BodyVelocity& velocity) {
   if (!log.heading_rad.empty()) {
     std::vector<double> x, y;
     for (const double angle_rad : rows_of(log.heading_rad, part)) {
@@ -212,7 +212,7 @@ double heading_rad(const FrictionLog& log, const SteadyPart& part, const BodyVel
   return std::atan2(velocity.y_m_per_s, velocity.x_m_per_s);
 }
 
-SteadyPart measured_part(const FrictionLog& log, const Kinematics& kinematics, SteadyPart part, const BlockMedians& blocks) {
+SteadyPart measured_part(const FrictionLog& log, const robot::Kinematics& kinematics, SteadyPart part, const BlockMedians& blocks) {
   for (int i = 0; i < kinematics.wheel_count; ++i) {
     const auto wheel = static_cast<std::size_t>(i);
     const RobustLocation speed = robust_location(rows_of(log.wheel_speed_rad_per_s[wheel], part), blocks.resolution(i));
@@ -228,7 +228,7 @@ SteadyPart measured_part(const FrictionLog& log, const Kinematics& kinematics, S
       part.rows_kept[wheel] += speed.kept[row] && (!has_voltage || voltage.kept[row]) ? 1 : 0;
     }
   }
-  const BodyVelocity velocity = body_velocity(kinematics, part.wheel_speed_rad_per_s);
+  const robot::BodyVelocity velocity = robot::body_velocity(kinematics, part.wheel_speed_rad_per_s);
   part.heading_rad = heading_rad(log, part, velocity);
   part.speed_m_per_s = std::hypot(velocity.x_m_per_s, velocity.y_m_per_s);
   part.yaw_rad_per_s = velocity.yaw_rad_per_s;
@@ -256,7 +256,7 @@ std::vector<SteadyPart> settled(const std::vector<SteadyPart>& parts) {
   return kept;
 }
 
-void add_run(const FrictionLog& log, const Kinematics& kinematics, std::size_t begin, std::size_t end, SteadyParts& found) {
+void add_run(const FrictionLog& log, const robot::Kinematics& kinematics, std::size_t begin, std::size_t end, SteadyParts& found) {
   const BlockMedians medians = block_medians(log, kinematics.wheel_count, begin, end);
   if (medians.first_row.size() < static_cast<std::size_t>(kLeastBlocks)) {
     return;
@@ -291,13 +291,13 @@ void add_run(const FrictionLog& log, const Kinematics& kinematics, std::size_t b
 
 }  // namespace
 
-double rolling_share(const WheelDirections& wheel, double heading_rad) {
+double rolling_share(const robot::WheelDirections& wheel, double heading_rad) {
   return wheel.rolling_x_share * std::cos(heading_rad) + wheel.rolling_y_share * std::sin(heading_rad);
 }
 
-bool should_stand(const WheelDirections& wheel, double heading_rad) { return std::abs(rolling_share(wheel, heading_rad)) < 0.1; }
+bool should_stand(const robot::WheelDirections& wheel, double heading_rad) { return std::abs(rolling_share(wheel, heading_rad)) < 0.1; }
 
-SteadyParts find_steady_parts(const std::vector<FrictionLog>& logs, const Kinematics& kinematics) {
+SteadyParts find_steady_parts(const std::vector<FrictionLog>& logs, const robot::Kinematics& kinematics) {
   SteadyParts found;
   for (const FrictionLog& log : logs) {
     found.rows += log.rows();
@@ -309,4 +309,4 @@ SteadyParts find_steady_parts(const std::vector<FrictionLog>& logs, const Kinema
   return found;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

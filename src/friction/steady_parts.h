@@ -7,7 +7,7 @@
 
 #include "friction/friction_log.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 
 // Method. Rows are condensed into medians of five to nine rows, which are insensitive to one or two bad rows. Standstill and changes of
 // direction divide the log into legs. Within a leg, the cumulative sum of each signal about its mean detects changes of the mean (Page
@@ -23,10 +23,10 @@ struct SteadyPart {
   bool is_rotation = false;
   std::size_t first_row = 0;  ///< in its log
   std::size_t row_count = 0;
-  PerWheel wheel_speed_rad_per_s{};
-  PerWheel voltage_V{};
-  PerWheel speed_noise_rad_per_s{};  ///< standard deviation of single rows
-  std::array<int, kMostWheels> rows_kept{};
+  robot::PerWheel wheel_speed_rad_per_s{};
+  robot::PerWheel voltage_V{};
+  robot::PerWheel speed_noise_rad_per_s{};  ///< standard deviation of single rows
+  std::array<int, robot::kMostWheels> rows_kept{};
   double heading_rad = 0.0;  ///< direction of travel in the robot's frame
   double speed_m_per_s = 0.0;
   double yaw_rad_per_s = 0.0;
@@ -41,11 +41,11 @@ struct SteadyParts {
 };
 
 /// Returns t_i·v/|v|, the component of the direction of travel along the wheel's rolling direction, −1 to 1.
-double rolling_share(const WheelDirections& wheel, double heading_rad);
+double rolling_share(const robot::WheelDirections& wheel, double heading_rad);
 /// Returns true if the wheel should stand on this heading by geometry: |t_i·v| < 0.1·|v|, as in the paper. It then carries no information.
-bool should_stand(const WheelDirections& wheel, double heading_rad);
+bool should_stand(const robot::WheelDirections& wheel, double heading_rad);
 
 /// Finds the steady parts of several logs, in order.
-SteadyParts find_steady_parts(const std::vector<FrictionLog>& logs, const Kinematics& kinematics);
+SteadyParts find_steady_parts(const std::vector<FrictionLog>& logs, const robot::Kinematics& kinematics);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

@@ -8,7 +8,7 @@
 
 #include "robot/friction.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 constexpr double kIndependent_share = 0.05;
@@ -63,9 +63,9 @@ bool friction_is_identifiable(const std::vector<WheelPoint>& points, int wheel, 
 
 bool is_used(const SteadyPart& part, const FitSettings& settings) { return settings.use_return_legs || !part.is_return; }
 
-WheelPoints points_of(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, int wheel, const FitSettings& settings) {
+WheelPoints points_of(const std::vector<SteadyPart>& parts, const robot::Kinematics& kinematics, int wheel, const FitSettings& settings) {
   WheelPoints found;
-  const double phase_rad = rolling_phase_rad(kinematics.wheels[wheel]);
+  const double phase_rad = robot::rolling_phase_rad(kinematics.wheels[wheel]);
   for (const SteadyPart& part : parts) {
     if (!is_used(part, settings)) {
       continue;
@@ -145,4 +145,4 @@ WheelRegression regression_of(const std::vector<WheelPoint>& points, int wheel, 
   return asked;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

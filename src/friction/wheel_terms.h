@@ -7,7 +7,7 @@
 
 #include "friction/friction_fit.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 
 /// One steady part as data point of one wheel.
 struct WheelPoint {
@@ -25,7 +25,7 @@ struct WheelPoints {
 enum class WheelTerm { damping, sine, cosine, constant, rotation };
 
 bool is_used(const SteadyPart& part, const FitSettings& settings);
-WheelPoints points_of(const std::vector<SteadyPart>& parts, const Kinematics& kinematics, int wheel, const FitSettings& settings);
+WheelPoints points_of(const std::vector<SteadyPart>& parts, const robot::Kinematics& kinematics, int wheel, const FitSettings& settings);
 
 /// Returns the points for the phase φ_0 + offset. The signs of the measured speeds stay.
 std::vector<WheelPoint> turned(std::vector<WheelPoint> points, double offset_rad);
@@ -50,4 +50,4 @@ struct WheelRegression {
 WheelRegression regression_of(const std::vector<WheelPoint>& points, int wheel, const std::vector<WheelTerm>& terms,
                               double given_V_s_per_rad);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

@@ -22,7 +22,7 @@
 #include "base/files.h"
 #include "base/quantity.h"
 
-namespace heatsoak {
+namespace heatsoak::input {
 namespace {
 
 constexpr std::size_t kMostProblems = 20;
@@ -48,7 +48,7 @@ class Table {
     } else if (column_ < place_of_.size() && place_of_[column_] >= 0 && words_of_[column_] != nullptr) {
       word(text, words_of_[column_]->words);
     } else if (column_ < place_of_.size() && place_of_[column_] >= 0) {
-      const std::optional<double> value = text.empty() ? kNothing : parse_number(text);
+      const std::optional<double> value = text.empty() ? kNothing : base::parse_number(text);
       if (may_be_blank_[column_] && value && std::isnan(*value)) {
         values_[static_cast<std::size_t>(place_of_[column_])] = kNothing;
       } else if (!value || !std::isfinite(*value)) {
@@ -92,7 +92,7 @@ class Table {
   void skip_line() { ++line_; }
 
   /// Throws immediately: after this error the rest of the file cannot be interpreted.
-  [[noreturn]] void stop(std::string message) const { throw bad_input({file_, line_, 1}, "", std::move(message)); }
+  [[noreturn]] void stop(std::string message) const { throw base::bad_input({file_, line_, 1}, "", std::move(message)); }
 
   void finish() {
     problems_ = with_characters(std::move(problems_));
@@ -103,12 +103,12 @@ class Table {
       problem(1, "", "is empty; expected a header row with names such as time_s, current_A");
     }
     if (left_out_ > 0) {
-      Diagnostic& rest = problems_.emplace_back();
+      base::Diagnostic& rest = problems_.emplace_back();
       rest.at.file = file_;
       rest.message = fmt::format("and {} more problems{}", left_out_, is_hopeless() ? "; the rest was not read" : "");
     }
     if (!problems_.empty()) {
-      throw Failure(ExitCode::bad_input, "", std::move(problems_));
+      throw base::Failure(base::ExitCode::bad_input, "", std::move(problems_));
     }
   }
 
@@ -137,7 +137,7 @@ class Table {
         return fmt::format("; '{}' is in another unit: convert its values and name the column '{}'", *other, name);
       }
     }
-    return did_you_mean(name, header_);
+    return base::did_you_mean(name, header_);
   }
 
   void word(std::string_view text, const std::vector<std::string>& words) {
@@ -145,7 +145,7 @@ class Table {
     if (found == words.end()) {
       const std::string_view shown = first_line(text);
       problem(static_cast<int>(column_) + 1, header_[column_],
-              fmt::format("\"{}\" is not {}{}", shown, fmt::join(words, " or "), did_you_mean(shown, words)));
+              fmt::format("\"{}\" is not {}{}", shown, fmt::join(words, " or "), base::did_you_mean(shown, words)));
     } else {
       values_[static_cast<std::size_t>(place_of_[column_])] = static_cast<double>(found - words.begin());
     }
@@ -196,7 +196,7 @@ class Table {
   std::vector<bool> may_be_blank_;
   std::vector<int> cells_;
   std::vector<double> values_;
-  std::vector<Diagnostic> problems_;
+  std::vector<base::Diagnostic> problems_;
   std::size_t left_out_ = 0;
   std::size_t problems_before_row_ = 0;
   std::size_t left_out_before_row_ = 0;
@@ -210,7 +210,9 @@ class Table {
 };
 
 std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(const std::filesystem::path& path) {
-  const auto cannot_read = [&](const char* reason) { return bad_input({path.string()}, "", fmt::format("cannot be read: {}", reason)); };
+  const auto cannot_read = [&](const char* reason) {
+    return base::bad_input({path.string()}, "", fmt::format("cannot be read: {}", reason));
+  };
   // O_NONBLOCK: without it, opening a pipe that has no writer would block the program.
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(descriptor < 0 ? nullptr : ::fdopen(descriptor, "rb"), &std::fclose);
@@ -221,7 +223,7 @@ std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(const std::filesystem::pa
   if (!S_ISREG(about.st_mode)) {
     throw cannot_read(S_ISDIR(about.st_mode) ? "it is a folder" : "it is a device or a pipe; expected a file");
   }
-  note_input(path);
+  base::note_input(path);
   return file;
 }
 
@@ -290,7 +292,7 @@ void read_csv(const std::filesystem::path& path, const ChooseCsvColumns& choose,
       bytes.remove_prefix(kByteOrderMark.size());
     }
     if (bytes.find('\0') != std::string_view::npos) {
-      throw bad_input({path.string()}, "", "cannot be read: it is a binary file; expected CSV text");
+      throw base::bad_input({path.string()}, "", "cannot be read: it is a binary file; expected CSV text");
     }
     const std::size_t parsed = csv_parse(&parser, bytes.data(), bytes.size(), cell, end_of_row, &guard);
     if (guard.error) {
@@ -320,11 +322,11 @@ void read_csv(const std::filesystem::path& path, const ChooseCsvColumns& choose,
   table.finish();
 }
 
-std::vector<Diagnostic> with_characters(std::vector<Diagnostic> of_cells) {
+std::vector<base::Diagnostic> with_characters(std::vector<base::Diagnostic> of_cells) {
   std::ifstream file;
   std::string text;
   int line = 0;
-  for (Diagnostic& each : of_cells) {
+  for (base::Diagnostic& each : of_cells) {
     if (each.at.column <= 1 || each.at.line < 1) {
       continue;
     }
@@ -351,4 +353,4 @@ std::vector<Diagnostic> with_characters(std::vector<Diagnostic> of_cells) {
   return of_cells;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::input

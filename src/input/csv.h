@@ -10,7 +10,7 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::input {
 
 /// A file with more columns is rejected, because it is not a log.
 inline constexpr std::size_t kMostColumns = 1000;
@@ -56,6 +56,6 @@ void read_csv(const std::filesystem::path& path, const ChooseCsvColumns& choose,
 
 /// Converts diagnostics of one file whose `column` counts cells: afterwards it counts characters from 1, as an editor does. Reads the file
 /// again.
-std::vector<Diagnostic> with_characters(std::vector<Diagnostic> of_cells);
+std::vector<base::Diagnostic> with_characters(std::vector<base::Diagnostic> of_cells);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::input

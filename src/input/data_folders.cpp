@@ -6,7 +6,7 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::input {
 namespace fs = std::filesystem;
 namespace {
 
@@ -45,7 +45,7 @@ DataFolders DataFolders::find(const fs::path& database) {
   DataFolders folders = beside_the_program();
   if (!database.empty()) {
     if (!is_folder(database)) {
-      throw Failure(ExitCode::bad_input, fmt::format("--db {}: there is no such folder", database.string()));
+      throw base::Failure(base::ExitCode::bad_input, fmt::format("--db {}: there is no such folder", database.string()));
     }
     for (const DataFolders& candidate : {source_tree(database), installed(database)}) {
       folders.motors = is_folder(candidate.motors) ? candidate.motors : folders.motors;
@@ -57,9 +57,10 @@ DataFolders DataFolders::find(const fs::path& database) {
     }
   }
   if (!complete(folders)) {
-    throw Failure(ExitCode::bad_input,
-                  "the folders motor_db, duty_profiles and robots are found neither beside the program nor in share/heatsoak; name them "
-                  "with --db DIR");
+    throw base::Failure(
+        base::ExitCode::bad_input,
+        "the folders motor_db, duty_profiles and robots are found neither beside the program nor in share/heatsoak; name them "
+        "with --db DIR");
   }
   return folders;
 }
@@ -82,13 +83,15 @@ fs::path file_of(const fs::path& folder, std::string_view kind, std::string_view
     const std::string stem = fs::path(name).stem().string();
     std::error_code error;
     if (!fs::exists(name, error) && fs::path(name).filename() == name && std::ranges::find(ids, stem) != ids.end()) {
-      throw Failure(ExitCode::bad_input, fmt::format("there is no file {} in this folder; did you mean the {} '{}'?", name, kind, stem));
+      throw base::Failure(base::ExitCode::bad_input,
+                          fmt::format("there is no file {} in this folder; did you mean the {} '{}'?", name, kind, stem));
     }
     return name;
   }
   if (std::ranges::find(ids, name) == ids.end()) {
-    throw Failure(ExitCode::bad_input, fmt::format("there is no {} '{}' in {}{} (`heatsoak list {}s` shows them)", kind, name,
-                                                   folder.string(), did_you_mean(name, ids), kind == "duty" ? "dutie" : kind));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("there is no {} '{}' in {}{} (`heatsoak list {}s` shows them)", kind, name, folder.string(),
+                                    base::did_you_mean(name, ids), kind == "duty" ? "dutie" : kind));
   }
   return folder / fmt::format("{}.toml", name);
 }
@@ -99,4 +102,4 @@ fs::path log_named(const DataFolders& folders, const fs::path& name) {
   return is_only_there ? folders.shipped / name : name;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::input

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::input {
 
 /// The folders of data files. The stem of a file is the id of the motor, robot or duty.
 struct DataFolders {
@@ -31,4 +31,4 @@ std::filesystem::path file_of(const std::filesystem::path& folder, std::string_v
 /// Returns `name`, or the log shipped with the program if `name` is relative and exists only there.
 std::filesystem::path log_named(const DataFolders& folders, const std::filesystem::path& name);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::input

@@ -7,14 +7,14 @@
 
 #include "base/files.h"
 
-namespace heatsoak {
+namespace heatsoak::input {
 namespace {
 
 constexpr std::size_t kLargestToml_bytes = 1'000'000;
 constexpr std::size_t kMostKeys = 1000;  ///< per table, because looking up a key is a linear search
 constexpr int kMostDots = 16;            ///< per key
 
-Location place(const toml::node& node, const std::string& file) {
+base::Location place(const toml::node& node, const std::string& file) {
   const toml::source_position at = node.source().begin;
   return {file, static_cast<int>(at.line), static_cast<int>(at.column)};
 }
@@ -56,7 +56,7 @@ Value convert(const toml::node& node, const std::string& file) {
   if (const auto* table = node.as_table()) {
     value.kind = Value::Kind::table;
     if (table->size() > kMostKeys) {
-      throw bad_input(value.at, "", fmt::format("a table of {} keys; expected at most {}", table->size(), kMostKeys));
+      throw base::bad_input(value.at, "", fmt::format("a table of {} keys; expected at most {}", table->size(), kMostKeys));
     }
     for (const auto& [key, member] : *table) {
       value.members.push_back({std::string(key.str()), convert(member, file)});
@@ -146,10 +146,10 @@ std::string_view to_string(Value::Kind kind) {
   return "?";
 }
 
-Value read_toml(const std::filesystem::path& path) { return parse_toml(read_file(path, kLargestToml_bytes), path.string()); }
+Value read_toml(const std::filesystem::path& path) { return parse_toml(base::read_file(path, kLargestToml_bytes), path.string()); }
 
-Location place_of(const std::filesystem::path& path, std::string_view key) {
-  Location place{path.string()};
+base::Location place_of(const std::filesystem::path& path, std::string_view key) {
+  base::Location place{path.string()};
   try {
     const Value root = read_toml(path);
     place = {path.string(), 1, 1};
@@ -163,7 +163,7 @@ Location place_of(const std::filesystem::path& path, std::string_view key) {
       place = value->at;
       key.remove_prefix(std::min(dot + 1, key.size()));
     }
-  } catch (const Failure&) {
+  } catch (const base::Failure&) {
     // The file cannot be parsed: the position then has no line.
   }
   return place;
@@ -171,10 +171,10 @@ Location place_of(const std::filesystem::path& path, std::string_view key) {
 
 Value parse_toml(const std::string& content, const std::string& file) {
   if (content.find('\0') != std::string::npos) {
-    throw bad_input({file}, "", "cannot be read: it is a binary file; expected TOML text");
+    throw base::bad_input({file}, "", "cannot be read: it is a binary file; expected TOML text");
   }
   if (const int line = line_of_deep_key(content); line > 0) {
-    throw bad_input({file, line, 1}, "", fmt::format("a key of more than {} dots, which no file of this kind has", kMostDots));
+    throw base::bad_input({file, line, 1}, "", fmt::format("a key of more than {} dots, which no file of this kind has", kMostDots));
   }
   try {
     const toml::table table = toml::parse(content, file);
@@ -183,8 +183,8 @@ Value parse_toml(const std::string& content, const std::string& file) {
     return root;
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
-    throw bad_input({file, static_cast<int>(at.line), static_cast<int>(at.column)}, "", explanation(error, content));
+    throw base::bad_input({file, static_cast<int>(at.line), static_cast<int>(at.column)}, "", explanation(error, content));
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::input

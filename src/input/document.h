@@ -7,14 +7,14 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::input {
 
 struct Member;
 
 struct Value {
   enum class Kind { text, number, boolean, array, table, other };
   Kind kind = Kind::other;
-  Location at;
+  base::Location at;
   std::string text;  ///< of a text: its content; of a number: as written in the file
   bool boolean = false;
   std::vector<Value> items;     ///< elements of an array
@@ -36,9 +36,9 @@ std::string_view to_string(Value::Kind kind);
 Value read_toml(const std::filesystem::path& path);
 
 /// Returns the position of a dotted key, or of the last table on its path that exists. Line 0 if the file cannot be read.
-Location place_of(const std::filesystem::path& path, std::string_view key);
+base::Location place_of(const std::filesystem::path& path, std::string_view key);
 
 /// Like read_toml() for a text in memory; `file` is its name in messages.
 Value parse_toml(const std::string& content, const std::string& file);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::input

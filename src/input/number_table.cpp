@@ -21,7 +21,7 @@
 #include "base/unknown.h"
 #include "input/csv.h"
 
-namespace heatsoak {
+namespace heatsoak::input {
 namespace {
 
 constexpr std::size_t kBlockRows = 4096;
@@ -49,7 +49,7 @@ class LineReader {
     if (!S_ISREG(about.st_mode)) {
       fail(S_ISDIR(about.st_mode) ? "it is a folder" : "it is a device or a pipe; expected a file");
     }
-    note_input(path);
+    base::note_input(path);
   }
   LineReader(const LineReader&) = delete;
   LineReader& operator=(const LineReader&) = delete;
@@ -79,7 +79,7 @@ class LineReader {
         return true;
       }
       if (searched_ > kLongestLine_bytes) {
-        throw bad_input({path_, line_ + 1, 1}, "", "a line of more than 1 MB; is it a binary file, or is a quote not closed?");
+        throw base::bad_input({path_, line_ + 1, 1}, "", "a line of more than 1 MB; is it a binary file, or is a quote not closed?");
       }
       fill();
     }
@@ -106,7 +106,7 @@ class LineReader {
     if (descriptor_ >= 0) {
       ::close(std::exchange(descriptor_, -1));
     }
-    throw bad_input({path_}, "", fmt::format("cannot be read: {}", reason));
+    throw base::bad_input({path_}, "", fmt::format("cannot be read: {}", reason));
   }
 
   void take(std::string_view& line, std::size_t size, std::size_t with_end) {
@@ -189,7 +189,7 @@ struct NumberTable::State {
     }
     std::optional<std::vector<std::string>> cells = quoted_cells(record, format.separator);
     if (!cells) {
-      throw bad_input({lines.path(), first_line, 1}, "", "a quote in this row is not closed, or stands inside a cell");
+      throw base::bad_input({lines.path(), first_line, 1}, "", "a quote in this row is not closed, or stands inside a cell");
     }
     return std::move(*cells);
   }
@@ -198,10 +198,11 @@ struct NumberTable::State {
     std::string_view line;
     for (int row = 1; row <= format.header_rows; ++row) {
       if (!next_content(line)) {
-        throw bad_input({lines.path()}, "", row == 1 ? "is empty; expected a table with a header" : "ends inside its header");
+        throw base::bad_input({lines.path()}, "", row == 1 ? "is empty; expected a table with a header" : "ends inside its header");
       }
       if (line.find('\r') != std::string_view::npos && line.find('"') == std::string_view::npos) {
-        throw bad_input({lines.path(), lines.line(), 1}, "", "its lines end with a carriage return alone; expected a line feed, or both");
+        throw base::bad_input({lines.path(), lines.line(), 1}, "",
+                              "its lines end with a carriage return alone; expected a line feed, or both");
       }
       std::vector<std::string> cells = cells_of(line);
       if (row == format.names_row) {
@@ -210,13 +211,13 @@ struct NumberTable::State {
       }
     }
     if (format.header_rows == 0) {
-      throw bad_input({lines.path()}, "", "has no header row; expected names of columns");
+      throw base::bad_input({lines.path()}, "", "has no header row; expected names of columns");
     }
     for (std::string& name : header) {
       name = trimmed(name);
     }
     if (header.size() > kMostColumns) {
-      throw bad_input({lines.path(), header_line, 1}, "", fmt::format("has more than {} columns, which no log has", kMostColumns));
+      throw base::bad_input({lines.path(), header_line, 1}, "", fmt::format("has more than {} columns, which no log has", kMostColumns));
     }
     slots.assign(header.size(), -1);
   }
@@ -233,10 +234,10 @@ struct NumberTable::State {
       begin = copy;
       end = copy + digits.size();
     }
-    double value = kUnknown;
+    double value = base::kUnknown;
     const auto [stopped, error] = std::from_chars(begin, end, value);
     if (error != std::errc() || stopped != end || !std::isfinite(value)) {
-      value = kUnknown;
+      value = base::kUnknown;
       block.bad_cells.push_back({block.rows(), static_cast<std::size_t>(slot), std::string(cell.substr(0, kLongestExample_bytes))});
     }
     block.columns[static_cast<std::size_t>(slot)].push_back(value);
@@ -344,4 +345,4 @@ bool NumberTable::next(TableBlock& block) {
   return block.rows() + block.bad_lines.size() > 0;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::input

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::input {
 
 /// CSV dialect of a file.
 struct TableFormat {
@@ -65,4 +65,4 @@ class NumberTable {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::input

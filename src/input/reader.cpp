@@ -7,12 +7,12 @@
 
 #include "base/quantity.h"
 
-namespace heatsoak {
+namespace heatsoak::input {
 
 namespace {
 
-std::string out_of_range(std::string_view text, const ParameterSpec& spec) {
-  return fmt::format(R"("{}" is out of range; expected {} ({}))", text, to_string(spec.range, spec.unit), spec.meaning);
+std::string out_of_range(std::string_view text, const base::ParameterSpec& spec) {
+  return fmt::format(R"("{}" is out of range; expected {} ({}))", text, base::to_string(spec.range, spec.unit), spec.meaning);
 }
 
 /// NaN and infinity: TOML accepts them as numbers, but they cannot be quantities.
@@ -22,16 +22,16 @@ bool is_no_quantity(std::string_view number) {
 
 }  // namespace
 
-Reader::Reader(const Value& table, std::string path, Diagnostics& diagnostics)
+Reader::Reader(const Value& table, std::string path, base::Diagnostics& diagnostics)
     : table_(&table), path_(std::move(path)), diagnostics_(&diagnostics) {}
 
 std::string Reader::full(std::string_view key) const {
   return path_.empty() ? std::string(key) : key.empty() ? path_ : fmt::format("{}.{}", path_, key);
 }
 
-void Reader::add(const Diagnostic& found) { diagnostics_->add(found.at, found.key, found.message); }
+void Reader::add(const base::Diagnostic& found) { diagnostics_->add(found.at, found.key, found.message); }
 
-Location Reader::at(std::string_view key) const {
+base::Location Reader::at(std::string_view key) const {
   const Value* value = table_->find(key);
   return value ? value->at : table_->at;
 }
@@ -98,7 +98,7 @@ std::optional<std::string> Reader::choice(std::string_view key, std::span<const 
   std::optional<std::string> given = text(key, need);
   if (given && std::ranges::find(choices, *given) == choices.end()) {
     const std::vector<std::string> names(choices.begin(), choices.end());
-    problem(key, fmt::format("'{}' is not known; expected one of {}{}", *given, fmt::join(names, ", "), did_you_mean(*given, names)));
+    problem(key, fmt::format("'{}' is not known; expected one of {}{}", *given, fmt::join(names, ", "), base::did_you_mean(*given, names)));
     return std::nullopt;
   }
   return given;
@@ -115,7 +115,7 @@ std::optional<double> Reader::parse(const Value& value, std::string_view key, st
                                                           : fmt::format("is {}, expected a quantity as text", to_string(value.kind)));
     return std::nullopt;
   }
-  const ParsedQuantity parsed = parse_quantity(value.text, unit);
+  const base::ParsedQuantity parsed = base::parse_quantity(value.text, unit);
   if (!parsed.ok()) {
     diagnostics_->add(value.at, full(key), parsed.problem);
     return std::nullopt;
@@ -123,7 +123,7 @@ std::optional<double> Reader::parse(const Value& value, std::string_view key, st
   return parsed.value;
 }
 
-const Value* Reader::find(const ParameterSpec& spec, Need need) {
+const Value* Reader::find(const base::ParameterSpec& spec, Need need) {
   asked_.insert(std::string(spec.key));
   const Value* value = table_->find(spec.key);
   if (!value && need == Need::required) {
@@ -132,7 +132,7 @@ const Value* Reader::find(const ParameterSpec& spec, Need need) {
   return value;
 }
 
-std::optional<double> Reader::quantity(const ParameterSpec& spec, Need need) {
+std::optional<double> Reader::quantity(const base::ParameterSpec& spec, Need need) {
   const Value* value = find(spec, need);
   if (!value) {
     return std::nullopt;
@@ -145,7 +145,7 @@ std::optional<double> Reader::quantity(const ParameterSpec& spec, Need need) {
   return parsed;
 }
 
-std::vector<double> Reader::quantities(const ParameterSpec& spec, Need need) {
+std::vector<double> Reader::quantities(const base::ParameterSpec& spec, Need need) {
   std::vector<double> result;
   const Value* list = get(spec.key, Value::Kind::array, need);
   for (std::size_t i = 0; list && i < list->items.size(); ++i) {
@@ -190,7 +190,7 @@ std::vector<std::pair<std::string, Reader>> Reader::named_tables() {
   return result;
 }
 
-std::optional<ParameterValue> Reader::parameter(const ParameterSpec& spec, Need need) {
+std::optional<base::ParameterValue> Reader::parameter(const base::ParameterSpec& spec, Need need) {
   const Value* value = find(spec, need);
   if (!value) {
     return std::nullopt;
@@ -201,19 +201,19 @@ std::optional<ParameterValue> Reader::parameter(const ParameterSpec& spec, Need 
     return std::nullopt;
   }
   Reader inner(*value, full(spec.key), *diagnostics_);
-  ParameterValue parameter;
+  base::ParameterValue parameter;
   parameter.at = value->at;
   const std::optional<double> parsed = inner.quantity({"value", spec.unit, spec.range, spec.meaning}, Need::required);
   const std::optional<std::string> origin = inner.text("origin", Need::required);
   if (origin) {
-    const std::optional<Origin> known = origin_from(*origin);
+    const std::optional<base::Origin> known = base::origin_from(*origin);
     if (!known) {
       inner.problem("origin", fmt::format("'{}' is not known; expected measured, datasheet, third_party, derived or estimated", *origin));
     }
-    parameter.origin = known.value_or(Origin::estimated);
+    parameter.origin = known.value_or(base::Origin::estimated);
   }
-  const bool has_origin = origin && origin_from(*origin);  // without a valid origin the other required keys are unknown
-  const bool calculated = parameter.origin == Origin::derived || parameter.origin == Origin::estimated;
+  const bool has_origin = origin && base::origin_from(*origin);  // without a valid origin the other required keys are unknown
+  const bool calculated = parameter.origin == base::Origin::derived || parameter.origin == base::Origin::estimated;
   parameter.derivation = inner.text("derivation", has_origin && calculated ? Need::required : Need::optional).value_or("");
   const Value* source = value->find("source");
   if (source && source->kind == Value::Kind::array) {
@@ -240,7 +240,7 @@ std::optional<ParameterValue> Reader::parameter(const ParameterSpec& spec, Need 
   return parsed && origin ? std::optional(parameter) : std::nullopt;
 }
 
-void Reader::read_confirmations(const ParameterSpec& spec, ParameterValue& parameter) {
+void Reader::read_confirmations(const base::ParameterSpec& spec, base::ParameterValue& parameter) {
   std::optional<Reader> others = table("confirmed_by", Need::optional);
   if (!others) {
     return;
@@ -252,7 +252,7 @@ void Reader::read_confirmations(const ParameterSpec& spec, ParameterValue& param
   }
 }
 
-void Reader::read_spread(const ParameterSpec& spec, ParameterValue& parameter) {
+void Reader::read_spread(const base::ParameterSpec& spec, base::ParameterValue& parameter) {
   const bool is_temperature = spec.unit == "degC";
   asked_.insert({"tolerance", "range"});
   const Value* range = table_->find("range");
@@ -260,12 +260,13 @@ void Reader::read_spread(const ParameterSpec& spec, ParameterValue& parameter) {
     if (range) {
       problem("range", "stands beside a tolerance; expected one of them");
     }
-    const std::optional<double> share = quantity({"tolerance", is_temperature ? "K" : "", Range::between(0.0, is_temperature ? 100.0 : 0.9),
-                                                  "± part of the value that no part exceeds"},
-                                                 Need::required);
+    const std::optional<double> share =
+        quantity({"tolerance", is_temperature ? "K" : "", base::Range::between(0.0, is_temperature ? 100.0 : 0.9),
+                  "± part of the value that no part exceeds"},
+                 Need::required);
     if (share) {
       const double half = is_temperature ? *share : *share * std::abs(parameter.value);
-      parameter.spread = {Spread::Kind::tolerance, parameter.value - half, parameter.value + half, !is_temperature};
+      parameter.spread = {base::Spread::Kind::tolerance, parameter.value - half, parameter.value + half, !is_temperature};
     }
     return;
   }
@@ -284,9 +285,9 @@ void Reader::read_spread(const ParameterSpec& spec, ParameterValue& parameter) {
   if (!(*low <= parameter.value && parameter.value <= *high)) {
     problem("range", "does not enclose the value; expected lowest ≤ value ≤ highest");
   } else if (!spec.range.contains(*low) || !spec.range.contains(*high)) {
-    problem("range", fmt::format("is outside the possible range; expected {}", to_string(spec.range, spec.unit)));
+    problem("range", fmt::format("is outside the possible range; expected {}", base::to_string(spec.range, spec.unit)));
   } else {
-    parameter.spread = {Spread::Kind::range, *low, *high, !is_temperature && *low > 0.0};
+    parameter.spread = {base::Spread::Kind::range, *low, *high, !is_temperature && *low > 0.0};
   }
 }
 
@@ -294,9 +295,9 @@ void Reader::finish() {
   const std::vector<std::string> known(asked_.begin(), asked_.end());
   for (const auto& [key, value] : table_->members) {
     if (!asked_.contains(key)) {
-      diagnostics_->add(value.at, full(key), fmt::format("is not a key of this table{}", did_you_mean(key, known)));
+      diagnostics_->add(value.at, full(key), fmt::format("is not a key of this table{}", base::did_you_mean(key, known)));
     }
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::input

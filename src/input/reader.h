@@ -13,7 +13,7 @@
 #include "base/parameter_value.h"
 #include "input/document.h"
 
-namespace heatsoak {
+namespace heatsoak::input {
 
 enum class Need { required, optional };
 
@@ -22,7 +22,7 @@ enum class Need { required, optional };
 class Reader {
  public:
   /// `table` and `diagnostics` must outlive the reader. `path` is the dotted name of the table, "" at the top.
-  Reader(const Value& table, std::string path, Diagnostics& diagnostics);
+  Reader(const Value& table, std::string path, base::Diagnostics& diagnostics);
 
   std::optional<std::string> text(std::string_view key, Need need);
   std::optional<bool> flag(std::string_view key, Need need);
@@ -30,11 +30,11 @@ class Reader {
   /// Returns one of `choices`; any other text is a problem whose message lists them.
   std::optional<std::string> choice(std::string_view key, std::span<const std::string_view> choices, Need need);
   /// Returns a quantity written as text with a unit, converted to the unit of `spec` and checked against its range.
-  std::optional<double> quantity(const ParameterSpec& spec, Need need);
+  std::optional<double> quantity(const base::ParameterSpec& spec, Need need);
   /// Returns a list of such quantities. An invalid element is reported as key[index] and returned as 0, so that the length is kept.
-  std::vector<double> quantities(const ParameterSpec& spec, Need need);
+  std::vector<double> quantities(const base::ParameterSpec& spec, Need need);
   /// Reads `{ value = "…", origin = "…", source = "…", tolerance = "…" }`; see motor_db/README.md.
-  std::optional<ParameterValue> parameter(const ParameterSpec& spec, Need need);
+  std::optional<base::ParameterValue> parameter(const base::ParameterSpec& spec, Need need);
   std::optional<Reader> table(std::string_view key, Need need);
   std::vector<Reader> tables(std::string_view key);  ///< the elements of [[key]]; empty if there are none
   /// Returns every member of this table as a table, with its key.
@@ -47,22 +47,22 @@ class Reader {
   /// Adds a problem at the value of `key`, or at the table itself if it has no such key.
   void problem(std::string_view key, std::string message);
   /// Adds a problem found in another file that this table refers to.
-  void add(const Diagnostic& found);
-  [[nodiscard]] Location at(std::string_view key) const;
+  void add(const base::Diagnostic& found);
+  [[nodiscard]] base::Location at(std::string_view key) const;
   [[nodiscard]] std::vector<std::string> keys() const;
 
  private:
   const Value* get(std::string_view key, Value::Kind kind, Need need);
-  const Value* find(const ParameterSpec& spec, Need need);
+  const Value* find(const base::ParameterSpec& spec, Need need);
   [[nodiscard]] std::string full(std::string_view key) const;
   std::optional<double> parse(const Value& value, std::string_view key, std::string_view unit);
-  void read_spread(const ParameterSpec& spec, ParameterValue& parameter);
-  void read_confirmations(const ParameterSpec& spec, ParameterValue& parameter);
+  void read_spread(const base::ParameterSpec& spec, base::ParameterValue& parameter);
+  void read_confirmations(const base::ParameterSpec& spec, base::ParameterValue& parameter);
 
   const Value* table_;
   std::string path_;
-  Diagnostics* diagnostics_;
+  base::Diagnostics* diagnostics_;
   std::set<std::string, std::less<>> asked_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::input

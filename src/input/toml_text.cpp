@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace heatsoak {
+namespace heatsoak::input {
 
 std::string toml_text(std::string_view text) {
   std::string out = "\"";
@@ -21,4 +21,4 @@ std::string toml_text(std::string_view text) {
   return out + '"';
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::input

@@ -10,13 +10,13 @@
 #include "base/diagnostic.h"
 #include "thermal/network.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 namespace {
 
 /// A hot motor under load, with all signals that a law may need.
-OperatingPoint<double> at_work() {
-  OperatingPoint<double> at;
-  for (const OperatingQuantity<double>& each : kQuantities<double>) {
+thermal::OperatingPoint<double> at_work() {
+  thermal::OperatingPoint<double> at;
+  for (const thermal::OperatingQuantity<double>& each : thermal::kQuantities<double>) {
     at.*each.value = each.usual;
   }
   return at;
@@ -27,11 +27,11 @@ double probe_C(const std::string& node) { return node == "winding" ? 100.0 : nod
 }  // namespace
 
 bool acts_by_default(const MotorEffect& effect, std::span<const double> parameters) {
-  Network network;
+  thermal::Network network;
   for (std::size_t role = 0; role < effect.nodes.size(); ++role) {
     const std::string& node = effect.nodes[role];
     const bool is_own = effect.type->nodes[role].own_capacity.has_value();
-    if (!is_own && node != Network::kAmbient && network.find_node(node) < 0) {
+    if (!is_own && node != thermal::Network::kAmbient && network.find_node(node) < 0) {
       network.add_node(node, 1.0);
     }
   }
@@ -56,9 +56,10 @@ Motor under(Motor motor, const std::map<std::string, std::string>& conditions) {
   for (const auto& [key, value] : conditions) {
     const bool is_key = std::ranges::any_of(there, [start = key + "="](const std::string& each) { return each.starts_with(start); });
     if (!is_key) {
-      throw Failure(ExitCode::bad_input,
-                    there.empty() ? fmt::format("condition {}={}: no effect of {} depends on a condition", key, value, motor.id)
-                                  : fmt::format("condition {}={}: expected one of {}'s: {}", key, value, motor.id, fmt::join(there, ", ")));
+      throw base::Failure(base::ExitCode::bad_input,
+                          there.empty()
+                              ? fmt::format("condition {}={}: no effect of {} depends on a condition", key, value, motor.id)
+                              : fmt::format("condition {}={}: expected one of {}'s: {}", key, value, motor.id, fmt::join(there, ", ")));
     }
   }
   std::erase_if(motor.effects, [&](const MotorEffect& effect) {
@@ -74,4 +75,4 @@ Motor under(Motor motor, const std::map<std::string, std::string>& conditions) {
   return motor;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

@@ -7,7 +7,7 @@
 
 #include "motor/motor.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 
 /// Returns whether an effect acts if its condition is unknown. The choice is pessimistic: it acts unless it cools the hottest node that it
 /// touches. `parameters` in the type's declared order.
@@ -17,4 +17,4 @@ bool acts_by_default(const MotorEffect& effect, std::span<const double> paramete
 /// value become unconditional. Throws Failure (bad_input) if no effect of the motor has such a key; the message lists the existing ones.
 Motor under(Motor motor, const std::map<std::string, std::string>& conditions);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

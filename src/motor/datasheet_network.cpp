@@ -2,17 +2,17 @@
 
 #include "motor/conditions.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 
-bool is_loss_of_every_motor(const EffectType& type) { return type.name == "copper_loss" || type.name == "no_load_loss"; }
+bool is_loss_of_every_motor(const thermal::EffectType& type) { return type.name == "copper_loss" || type.name == "no_load_loss"; }
 
-Network datasheet_network(const Motor& motor, const MotorSample& sample) {
+thermal::Network datasheet_network(const Motor& motor, const MotorSample& sample) {
   const MotorValues& values = sample.values;
-  Network network;
+  thermal::Network network;
   network.add_node("winding", values.thermal_time_constant_winding_s / values.thermal_resistance_winding_stator_K_per_W);
   network.add_node("stator", values.thermal_time_constant_stator_s / values.thermal_resistance_stator_ambient_K_per_W);
   const auto add = [&](std::string_view name, std::string_view type, std::vector<std::string> nodes, std::vector<double> parameters) {
-    network.add_effect(std::string(name), *find_effect(type), nodes, parameters);
+    network.add_effect(std::string(name), *thermal::find_effect(type), nodes, parameters);
   };
   const auto& [copper, no_load, winding_stator, stator_ambient] = kDatasheetEffects;
   add(copper, "copper_loss", {"winding"}, {values.terminal_resistance_ohm, values.temperature_coefficient_per_K});
@@ -30,4 +30,4 @@ Network datasheet_network(const Motor& motor, const MotorSample& sample) {
   return network;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

@@ -9,7 +9,7 @@
 #include "motor/lint.h"
 #include "motor/read_motor.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 namespace {
 
 /// Bounds as ratios to the value.
@@ -50,16 +50,16 @@ constexpr std::array kDefaults{
 /// Effects have parameters of many kinds, so the default depends on the origin only: an estimate may be wrong by a factor of 1.5.
 constexpr DefaultRow kEffectDefault{"", {0.75, 1.25}, {0.75, 1.25}, {0.70, 1.35}, {1.0 / 1.5, 1.5}};
 
-const Ratios& ratios(const DefaultRow& row, Origin origin) {
+const Ratios& ratios(const DefaultRow& row, base::Origin origin) {
   switch (origin) {
-    case Origin::datasheet:
+    case base::Origin::datasheet:
       return row.sheet;
-    case Origin::third_party:
+    case base::Origin::third_party:
       return row.third_party;
-    case Origin::derived:
+    case base::Origin::derived:
       return row.derived;
-    case Origin::measured:
-    case Origin::estimated:
+    case base::Origin::measured:
+    case base::Origin::estimated:
       break;
   }
   return row.estimated;
@@ -71,34 +71,35 @@ const DefaultRow* row_of(std::string_view key) {
 }
 
 /// Returns the spread around the value, clipped to the declared range so that no sample leaves it.
-Spread spread_by(const Ratios& by, const ParameterValue& parameter, const Range& range) {
+base::Spread spread_by(const Ratios& by, const base::ParameterValue& parameter, const base::Range& range) {
   const double one = parameter.value * by.low;
   const double other = parameter.value * by.high;
-  return {Spread::Kind::range, std::max(std::min(one, other), range.low), std::min(std::max(one, other), range.high),
+  return {base::Spread::Kind::range, std::max(std::min(one, other), range.low), std::min(std::max(one, other), range.high),
           parameter.value > 0.0};
 }
 
 /// Returns the narrowest credible bounds. Well documented files of motor_db state at least 27 % of the default spread. A fit can be more
 /// accurate, but no thermal measurement is more accurate than its sensors. A measured value that no fit supports is a claim: a
 /// thermocouple of 1 K gives 2 % of a rise of 50 K, and a winding differs from the next by about 2 % in resistance and torque constant.
-Ratios least_ratios(const DefaultRow& row, Origin origin, bool is_fitted) {
+Ratios least_ratios(const DefaultRow& row, base::Origin origin, bool is_fitted) {
   constexpr double kLeastShare = 0.25;
   constexpr double kLeastFitted = 0.01;
   constexpr double kLeastMeasured = 0.02;
-  const Ratios& by = ratios(row, origin == Origin::measured ? Origin::datasheet : origin);
+  const Ratios& by = ratios(row, origin == base::Origin::measured ? base::Origin::datasheet : origin);
   const double low = kLeastShare * (1.0 - by.low);
   const double high = kLeastShare * (by.high - 1.0);
   const double least = is_fitted ? kLeastFitted : kLeastMeasured;
-  return origin == Origin::measured ? Ratios{1.0 - std::min(low, least), 1.0 + std::min(high, least)} : Ratios{1.0 - low, 1.0 + high};
+  return origin == base::Origin::measured ? Ratios{1.0 - std::min(low, least), 1.0 + std::min(high, least)} : Ratios{1.0 - low, 1.0 + high};
 }
 
 /// Returns whether the file records the fit that a measured value comes from.
-bool is_fitted(const Motor& motor, std::string_view key, const ParameterValue& parameter) {
-  return parameter.origin == Origin::measured && motor.fit && std::ranges::find(motor.fit->parameters, key) != motor.fit->parameters.end();
+bool is_fitted(const Motor& motor, std::string_view key, const base::ParameterValue& parameter) {
+  return parameter.origin == base::Origin::measured && motor.fit &&
+         std::ranges::find(motor.fit->parameters, key) != motor.fit->parameters.end();
 }
 
 /// Returns whether the stated spread is too narrow. A bound at the end of the declared range is always wide enough.
-bool is_narrow(const ParameterValue& parameter, const Spread& least, const Range& range) {
+bool is_narrow(const base::ParameterValue& parameter, const base::Spread& least, const base::Range& range) {
   constexpr double kRounding = 1e-3;  // rounding of a printed tolerance
   const double slack = kRounding * std::abs(parameter.value);
   return parameter.spread && ((parameter.spread->low > least.low + slack && parameter.spread->low > range.low) ||
@@ -106,28 +107,29 @@ bool is_narrow(const ParameterValue& parameter, const Spread& least, const Range
 }
 
 /// Returns the spread that replaces the stated one; nothing if the stated one is credible.
-std::optional<Spread> replacement(const DefaultRow& row, const ParameterValue& parameter, const Range& range, bool is_fitted) {
+std::optional<base::Spread> replacement(const DefaultRow& row, const base::ParameterValue& parameter, const base::Range& range,
+                                        bool is_fitted) {
   if (parameter.value == 0.0) {
     return std::nullopt;
   }
-  const Spread usual = spread_by(ratios(row, parameter.origin), parameter, range);
+  const base::Spread usual = spread_by(ratios(row, parameter.origin), parameter, range);
   if (!parameter.spread || is_exact(parameter)) {
     return usual;
   }
-  const Spread least = spread_by(least_ratios(row, parameter.origin, is_fitted), parameter, range);
+  const base::Spread least = spread_by(least_ratios(row, parameter.origin, is_fitted), parameter, range);
   if (!is_narrow(parameter, least, range)) {
     return std::nullopt;
   }
   if (!is_fitted) {
     return usual;
   }
-  return Spread{Spread::Kind::range, std::min(parameter.spread->low, least.low), std::max(parameter.spread->high, least.high),
-                parameter.value > 0.0};
+  return base::Spread{base::Spread::Kind::range, std::min(parameter.spread->low, least.low), std::max(parameter.spread->high, least.high),
+                      parameter.value > 0.0};
 }
 
 /// False for the knots of a curve and for temperatures: these are chosen, so no relative uncertainty applies.
-bool takes_default(const EffectType& type, std::size_t place) {
-  const ParameterSpec& spec = type.parameters[place];
+bool takes_default(const thermal::EffectType& type, std::size_t place) {
+  const base::ParameterSpec& spec = type.parameters[place];
   return spec.choices.empty() && spec.unit != "degC" && !spec.key.ends_with("_knot");
 }
 
@@ -144,7 +146,7 @@ void for_each_value(AnyMotor& motor, const Visit& visit) {
   for (auto& effect : motor.effects) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
       if (takes_default(*effect.type, i)) {
-        const ParameterSpec& spec = effect.type->parameters[i];
+        const base::ParameterSpec& spec = effect.type->parameters[i];
         visit(fmt::format("effects.{}.{}", effect.name, spec.key), effect.parameters[i], kEffectDefault, spec.range);
       }
     }
@@ -153,7 +155,7 @@ void for_each_value(AnyMotor& motor, const Visit& visit) {
 
 }  // namespace
 
-bool is_exact(const ParameterValue& parameter) {
+bool is_exact(const base::ParameterValue& parameter) {
   return parameter.spread && parameter.value != 0.0 && !(parameter.spread->high > parameter.spread->low);
 }
 
@@ -161,43 +163,45 @@ bool needs_spread(std::string_view key) { return row_of(key) != nullptr; }
 
 std::vector<DefaultSpread> default_spreads(const Motor& motor) {
   std::vector<DefaultSpread> missing;
-  for_each_value(motor, [&](const std::string& key, const ParameterValue& parameter, const DefaultRow& row, const Range& range) {
-    if (const std::optional<Spread> spread = replacement(row, parameter, range, is_fitted(motor, key, parameter))) {
-      missing.push_back({key, parameter.origin, parameter.value, *spread});
-    }
-  });
+  for_each_value(motor,
+                 [&](const std::string& key, const base::ParameterValue& parameter, const DefaultRow& row, const base::Range& range) {
+                   if (const std::optional<base::Spread> spread = replacement(row, parameter, range, is_fitted(motor, key, parameter))) {
+                     missing.push_back({key, parameter.origin, parameter.value, *spread});
+                   }
+                 });
   return missing;
 }
 
 std::vector<NarrowSpread> narrow_spreads(const Motor& motor) {
   std::vector<NarrowSpread> narrow;
-  for_each_value(motor, [&](const std::string& key, const ParameterValue& parameter, const DefaultRow& row, const Range& range) {
-    const bool fitted = is_fitted(motor, key, parameter);
-    const Spread least = spread_by(least_ratios(row, parameter.origin, fitted), parameter, range);
-    if (parameter.value != 0.0 && !is_exact(parameter) && is_narrow(parameter, least, range)) {
-      narrow.push_back({key, &parameter, least, fitted});
-    }
-  });
+  for_each_value(motor,
+                 [&](const std::string& key, const base::ParameterValue& parameter, const DefaultRow& row, const base::Range& range) {
+                   const bool fitted = is_fitted(motor, key, parameter);
+                   const base::Spread least = spread_by(least_ratios(row, parameter.origin, fitted), parameter, range);
+                   if (parameter.value != 0.0 && !is_exact(parameter) && is_narrow(parameter, least, range)) {
+                     narrow.push_back({key, &parameter, least, fitted});
+                   }
+                 });
   return narrow;
 }
 
 Motor with_default_spreads(Motor motor) {
-  for_each_value(motor, [&motor](const std::string& key, ParameterValue& parameter, const DefaultRow& row, const Range& range) {
-    if (const std::optional<Spread> spread = replacement(row, parameter, range, is_fitted(motor, key, parameter))) {
+  for_each_value(motor, [&motor](const std::string& key, base::ParameterValue& parameter, const DefaultRow& row, const base::Range& range) {
+    if (const std::optional<base::Spread> spread = replacement(row, parameter, range, is_fitted(motor, key, parameter))) {
       parameter.spread = spread;
     }
   });
   return motor;
 }
 
-std::optional<Spread> spread_or_default(const Motor& motor, std::string_view key) {
+std::optional<base::Spread> spread_or_default(const Motor& motor, std::string_view key) {
   const auto found = motor.parameters.find(key);
   const auto spec = std::ranges::find(motor_parameter_specs(), key, [](const MotorParameterSpec& each) { return each.spec.key; });
   if (found == motor.parameters.end() || spec == motor_parameter_specs().end()) {
     return std::nullopt;
   }
   const DefaultRow* const row = row_of(key);
-  const std::optional<Spread> other =
+  const std::optional<base::Spread> other =
       row ? replacement(*row, found->second, spec->spec.range, is_fitted(motor, key, found->second)) : std::nullopt;
   return other ? other : found->second.spread;
 }
@@ -207,23 +211,23 @@ std::string to_string(std::span<const DefaultSpread> spreads) {
   for (const DefaultSpread& each : spreads) {
     const auto percent = [&](double bound) { return 100.0 * (bound / each.value - 1.0); };
     const auto [low, high] = std::minmax({percent(each.spread.low), percent(each.spread.high)});
-    text += fmt::format("{}{} {:+.0f} to {:+.0f} % ({})", text.empty() ? "" : ", ", each.key, low, high, heatsoak::to_string(each.origin));
+    text += fmt::format("{}{} {:+.0f} to {:+.0f} % ({})", text.empty() ? "" : ", ", each.key, low, high, base::to_string(each.origin));
   }
   return text;
 }
 
 void require_sound(const Motor& motor) {
-  Diagnostics diagnostics;
+  base::Diagnostics diagnostics;
   add_lint_errors(motor, diagnostics);
   diagnostics.throw_if_any();
 }
 
 Motor read_sound_motor(const std::filesystem::path& path) {
-  Diagnostics diagnostics;
+  base::Diagnostics diagnostics;
   Motor motor = read_motor(path, diagnostics);
   add_lint_errors(motor, diagnostics);
   diagnostics.throw_if_any();
   return motor;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

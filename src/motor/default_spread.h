@@ -10,19 +10,19 @@
 
 #include "motor/motor.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 
 /// A value of a motor whose spread is replaced, and the spread that is assumed for it.
 struct DefaultSpread {
   std::string key;  ///< "thermal_resistance_stator_ambient", "effects.chassis.conductance"
-  Origin origin = Origin::estimated;
-  double value = 0.0;  ///< in the unit of the declaration
-  Spread spread;       ///< range around the value, in the same unit
+  base::Origin origin = base::Origin::estimated;
+  double value = 0.0;   ///< in the unit of the declaration
+  base::Spread spread;  ///< range around the value, in the same unit
 };
 
 /// Returns true if the stated spread has zero width, such as a tolerance of 0 %. False for a value of 0, whose relative spread is always
 /// zero.
-bool is_exact(const ParameterValue& parameter);
+bool is_exact(const base::ParameterValue& parameter);
 
 /// Returns true if temperatures depend on the value of this key, so that its spread affects the probability of exceeding a limit.
 bool needs_spread(std::string_view key);
@@ -38,8 +38,8 @@ std::vector<DefaultSpread> default_spreads(const Motor& motor);
 /// the fit that gave it, else less than 2 %.
 struct NarrowSpread {
   std::string key;
-  const ParameterValue* parameter = nullptr;
-  Spread least;            ///< narrowest credible range, in the unit of the declaration
+  const base::ParameterValue* parameter = nullptr;
+  base::Spread least;      ///< narrowest credible range, in the unit of the declaration
   bool is_fitted = false;  ///< measured by a fit of the file
 };
 std::vector<NarrowSpread> narrow_spreads(const Motor& motor);
@@ -48,7 +48,7 @@ std::vector<NarrowSpread> narrow_spreads(const Motor& motor);
 Motor with_default_spreads(Motor motor);
 
 /// Returns the spread of a value, the stated or the assumed one. Nothing if the motor lacks the value or it has no spread.
-std::optional<Spread> spread_or_default(const Motor& motor, std::string_view key);
+std::optional<base::Spread> spread_or_default(const Motor& motor, std::string_view key);
 
 /// Formats as "thermal_resistance_stator_ambient -25 to +25 % (datasheet), …"; empty for an empty list.
 std::string to_string(std::span<const DefaultSpread> spreads);
@@ -60,4 +60,4 @@ void require_sound(const Motor& motor);
 /// Reads a motor file and checks it like require_sound(). Throws Failure (bad_input) with all problems of reading and of lint.
 Motor read_sound_motor(const std::filesystem::path& path);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

@@ -12,7 +12,7 @@
 
 #include "base/quantity.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 namespace {
 
 constexpr std::array<std::string_view, 2> kHeatedNodes{"winding", "stator"};
@@ -25,9 +25,9 @@ Eigen::Map<const Eigen::MatrixXd> as_matrix(const Correlation& correlation) {
 }
 
 /// Reads the rows of a lower triangular matrix with a diagonal of 1: "1", "0.2 1", …
-Correlation read_correlation(Reader& table, std::size_t count) {
+Correlation read_correlation(input::Reader& table, std::size_t count) {
   Correlation correlation(count);
-  const std::vector<std::string> rows = table.texts("correlation", Need::required);
+  const std::vector<std::string> rows = table.texts("correlation", input::Need::required);
   if (rows.size() != count) {
     table.problem("correlation", fmt::format("has {} rows, expected {}: one per fitted parameter", rows.size(), count));
     return correlation;
@@ -36,7 +36,7 @@ Correlation read_correlation(Reader& table, std::size_t count) {
     std::istringstream row(rows[i]);
     std::vector<double> values;
     for (std::string word; row >> word;) {
-      const std::optional<double> value = parse_number(word);
+      const std::optional<double> value = base::parse_number(word);
       if (!value || !(*value >= -1.0 && *value <= 1.0)) {
         table.problem("correlation", fmt::format("'{}' in row {}: expected a number between -1 and 1", word, i + 1));
         return correlation;
@@ -64,16 +64,16 @@ namespace {
 
 constexpr double kLargestInput = 1e5;
 
-std::optional<ForecastBand> read_band(Reader& table) {
+std::optional<ForecastBand> read_band(input::Reader& table) {
   const auto share = [&](const char* key, const char* meaning) {
-    return table.quantity({key, "", Range::between(0.0, kMostShare), meaning}, Need::optional);
+    return table.quantity({key, "", base::Range::between(0.0, kMostShare), meaning}, input::Need::optional);
   };
   const auto winding = share("forecast_unknown_heat_winding", "rms of slow unknown heat per rms heat of a run");
   const auto stator = share("forecast_unknown_heat_stator", "rms of slow unknown heat per rms heat of a run");
   const auto heat = share("forecast_heat_factor", "standard deviation of the logarithm of a factor on all heat of a run");
   const auto time_s =
-      table.quantity({"forecast_time_scale", "s", Range::positive(), "correlation time of the unknown heat"}, Need::optional);
-  const auto width = table.quantity({"forecast_width", "", Range::between(0.01, 100.0), "factor on the band"}, Need::optional);
+      table.quantity({"forecast_time_scale", "s", base::Range::positive(), "correlation time of the unknown heat"}, input::Need::optional);
+  const auto width = table.quantity({"forecast_width", "", base::Range::between(0.01, 100.0), "factor on the band"}, input::Need::optional);
   if (!winding || !stator || !heat || !time_s || !width) {
     return std::nullopt;
   }
@@ -88,14 +88,15 @@ struct RangeKey {
 constexpr std::array kRangeKeys{RangeKey{"trained_ambient", "ambient_C", "degC"}, RangeKey{"trained_speed", "speed_rad_per_s", "rad/s"},
                                 RangeKey{"trained_current", "current_A", "A"}};
 
-TrainingRange read_training(Reader& table) {
+TrainingRange read_training(input::Reader& table) {
   TrainingRange range;
-  for (const std::string& each : table.texts("trained_conditions", Need::optional)) {
+  for (const std::string& each : table.texts("trained_conditions", input::Need::optional)) {
     range.conditions.insert(each);
   }
   for (const RangeKey& each : kRangeKeys) {
     const std::vector<double> ends = table.quantities(
-        {each.key, each.unit, Range::between(-kLargestInput, kLargestInput), "lowest and highest of the fitted runs"}, Need::optional);
+        {each.key, each.unit, base::Range::between(-kLargestInput, kLargestInput), "lowest and highest of the fitted runs"},
+        input::Need::optional);
     if (ends.size() == 2 && ends[0] <= ends[1]) {
       range.inputs.emplace(each.channel, InputRange{ends[0], ends[1]});
     } else if (!ends.empty()) {
@@ -109,8 +110,8 @@ std::string training_text(const TrainingRange& range) {
   std::string text = range.conditions.empty() ? "" : fmt::format("trained_conditions = [\"{}\"]\n", fmt::join(range.conditions, "\", \""));
   for (const RangeKey& each : kRangeKeys) {
     if (const auto found = range.inputs.find(std::string(each.channel)); found != range.inputs.end()) {
-      text += fmt::format("{0} = [\"{1} {3}\", \"{2} {3}\"]\n", each.key, significant(found->second.low, 3),
-                          significant(found->second.high, 3), each.unit);
+      text += fmt::format("{0} = [\"{1} {3}\", \"{2} {3}\"]\n", each.key, base::significant(found->second.low, 3),
+                          base::significant(found->second.high, 3), each.unit);
     }
   }
   return text.empty() ? "" : "# conditions and ranges of the fitted runs: forecasts outside are extrapolations\n" + text;
@@ -121,8 +122,8 @@ std::string band_text(const ForecastBand& band) {
       "# for forecasts of other runs: rms of slow unknown heat per rms heat of the run, and a factor on all heat\n"
       "forecast_unknown_heat_winding = \"{}\"\nforecast_unknown_heat_stator = \"{}\"\nforecast_time_scale = \"{} s\"\n"
       "forecast_heat_factor = \"{}\"\nforecast_width = \"{}\"\n",
-      significant(band.unknown_heat_share[0], 2), significant(band.unknown_heat_share[1], 2), significant(band.time_scale_s, 2),
-      significant(band.heat_factor_sd, 2), significant(band.width_ratio, 2));
+      base::significant(band.unknown_heat_share[0], 2), base::significant(band.unknown_heat_share[1], 2),
+      base::significant(band.time_scale_s, 2), base::significant(band.heat_factor_sd, 2), base::significant(band.width_ratio, 2));
 }
 
 }  // namespace
@@ -136,37 +137,38 @@ Correlation::Correlation(std::size_t count) : count_(count), values_(count * cou
 Correlation::Correlation(std::span<const double> values)
     : count_(static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(values.size()))))), values_(values.begin(), values.end()) {}
 
-MotorFit read_fit(Reader& table, std::span<const std::string> parameters) {
+MotorFit read_fit(input::Reader& table, std::span<const std::string> parameters) {
   MotorFit fit;
-  fit.motor = table.text("motor", Need::required).value_or("");
-  fit.runs = table.texts("runs", Need::optional);
-  fit.parameters = table.texts("figures", Need::required);
+  fit.motor = table.text("motor", input::Need::required).value_or("");
+  fit.runs = table.texts("runs", input::Need::optional);
+  fit.parameters = table.texts("figures", input::Need::required);
   for (const std::string& each : fit.parameters) {
     if (std::ranges::find(parameters, each) == parameters.end()) {
-      table.problem("figures", fmt::format("'{}' is not a parameter of this file{}", each, did_you_mean(each, parameters)));
+      table.problem("figures", fmt::format("'{}' is not a parameter of this file{}", each, base::did_you_mean(each, parameters)));
     }
   }
   fit.correlation = read_correlation(table, fit.parameters.size());
   for (const std::string_view node : kHeatedNodes) {
     const std::string noise = fmt::format("noise_{}", node);
-    if (const std::optional<double> noise_K = table.quantity({noise, "K", Range::non_negative(), "of one sample"}, Need::optional)) {
+    if (const std::optional<double> noise_K =
+            table.quantity({noise, "K", base::Range::non_negative(), "of one sample"}, input::Need::optional)) {
       fit.noise_K.emplace_back(node, *noise_K);
     }
     const std::string flux = fmt::format("latent_flux_{}", node);
     fit.latent_flux_W.push_back(
-        table.quantity({flux, "W", Range::between(0.0, kLargest_W), "rms of the unknown heat"}, Need::optional).value_or(0.0));
+        table.quantity({flux, "W", base::Range::between(0.0, kLargest_W), "rms of the unknown heat"}, input::Need::optional).value_or(0.0));
   }
   fit.latent_flux_time_scale_s =
-      table.quantity({"latent_flux_time_scale", "s", Range::positive(), "its correlation time"}, Need::optional).value_or(0.0);
+      table.quantity({"latent_flux_time_scale", "s", base::Range::positive(), "its correlation time"}, input::Need::optional).value_or(0.0);
   fit.unmodelled_heat_share = table.quantity(
-      {"unmodelled_heat", "", Range::between(0.0, kMostShare), "rms of the heat that the model lacks, per mean heat of the runs"},
-      Need::optional);
+      {"unmodelled_heat", "", base::Range::between(0.0, kMostShare), "rms of the heat that the model lacks, per mean heat of the runs"},
+      input::Need::optional);
   fit.free_run_error_K =
       table
-          .quantity({"free_run_error", "K", Range::between(1e-3, 20.0), "rms error of the free runs that determined the values"},
-                    Need::optional)
+          .quantity({"free_run_error", "K", base::Range::between(1e-3, 20.0), "rms error of the free runs that determined the values"},
+                    input::Need::optional)
           .value_or(0.0);
-  fit.extensions = table.texts("extensions", Need::optional);
+  fit.extensions = table.texts("extensions", input::Need::optional);
   fit.training = read_training(table);
   fit.band = read_band(table);
   table.finish();
@@ -189,20 +191,20 @@ std::string to_toml(const MotorFit& fit) {
   }
   text += "]\n";
   for (const auto& [node, noise_K] : fit.noise_K) {
-    text += fmt::format("noise_{} = \"{} K\"\n", node, significant(noise_K, 2));
+    text += fmt::format("noise_{} = \"{} K\"\n", node, base::significant(noise_K, 2));
   }
   for (std::size_t i = 0; i < std::min(kHeatedNodes.size(), fit.latent_flux_W.size()); ++i) {
-    text += fmt::format("latent_flux_{} = \"{} W\"\n", kHeatedNodes[i], significant(fit.latent_flux_W[i], 2));
+    text += fmt::format("latent_flux_{} = \"{} W\"\n", kHeatedNodes[i], base::significant(fit.latent_flux_W[i], 2));
   }
-  text += fmt::format("latent_flux_time_scale = \"{} s\"\n", significant(fit.latent_flux_time_scale_s, 2));
+  text += fmt::format("latent_flux_time_scale = \"{} s\"\n", base::significant(fit.latent_flux_time_scale_s, 2));
   if (fit.unmodelled_heat_share) {
     text += fmt::format("# the model lacks an effect: this share of the mean heat is not modelled\nunmodelled_heat = \"{}\"\n",
-                        significant(*fit.unmodelled_heat_share, 2));
+                        base::significant(*fit.unmodelled_heat_share, 2));
   }
   text += fit.extensions.empty()
               ? ""
               : fmt::format("# added for better forecasts, no diagnosis\nextensions = [\"{}\"]\n", fmt::join(fit.extensions, "\", \""));
-  text += fit.free_run_error_K > 0.0 ? fmt::format("free_run_error = \"{} K\"\n", significant(fit.free_run_error_K, 2)) : "";
+  text += fit.free_run_error_K > 0.0 ? fmt::format("free_run_error = \"{} K\"\n", base::significant(fit.free_run_error_K, 2)) : "";
   text += training_text(fit.training);
   return text + (fit.band ? band_text(*fit.band) : "");
 }
@@ -230,4 +232,4 @@ void correlate(const MotorFit& fit, std::span<double> uniforms) {
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

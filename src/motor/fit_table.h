@@ -12,7 +12,7 @@
 
 #include "input/reader.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 
 /// Uncertainty of a forecast beyond that of the parameters.
 struct ForecastBand {
@@ -74,7 +74,7 @@ struct MotorFit {
 };
 
 /// Reads the table; `parameters` are the keys of the file. Adds problems to the reader's diagnostics.
-MotorFit read_fit(Reader& table, std::span<const std::string> parameters);
+MotorFit read_fit(input::Reader& table, std::span<const std::string> parameters);
 std::string to_toml(const MotorFit& fit);
 
 /// Returns the factor on all heat of a run at the quantile `uniform` in (0, 1). It combines the heat factor of the band with the unknown
@@ -84,4 +84,4 @@ double drawn_heat_factor(const ForecastBand& band, double uniform);
 /// Converts independent uniform numbers in (0, 1), one per fitted parameter, to numbers with the correlation of the fit (Gaussian copula).
 void correlate(const MotorFit& fit, std::span<double> uniforms);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

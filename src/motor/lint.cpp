@@ -11,42 +11,44 @@
 #include "base/quantity.h"
 #include "motor/lint_checks.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 namespace lint_checks {
 
 void Findings::add(LintFinding::Level level, std::string_view key, std::string message) {
   const auto parameter = motor_.parameters.find(key);
-  Location at = parameter != motor_.parameters.end() ? parameter->second.at : Location{motor_.file.string(), 0, 0};
+  base::Location at = parameter != motor_.parameters.end() ? parameter->second.at : base::Location{motor_.file.string(), 0, 0};
   add_at(level, std::move(at), std::move(message));
 }
 
 LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_list<std::string_view> keys) {
   const bool rests_on_estimate = std::ranges::any_of(keys, [&](std::string_view key) {
     const auto parameter = motor.parameters.find(key);
-    return parameter != motor.parameters.end() && parameter->second.origin == Origin::estimated;
+    return parameter != motor.parameters.end() && parameter->second.origin == base::Origin::estimated;
   });
   return rests_on_estimate ? LintFinding::Level::warning : LintFinding::Level::error;
 }
 
 bool is_complete(const MotorValues& values) {
   return std::ranges::all_of(motor_parameter_specs(), [&](const MotorParameterSpec& each) {
-    return each.need == Need::optional || value_of(values, each).has_value();
+    return each.need == input::Need::optional || value_of(values, each).has_value();
   });
 }
 
 double resistance_ohm(const MotorValues& values, double temperature_C) {
-  return values.terminal_resistance_ohm * resistance_ratio(values.temperature_coefficient_per_K, temperature_C);
+  return values.terminal_resistance_ohm * base::resistance_ratio(values.temperature_coefficient_per_K, temperature_C);
 }
 
-std::string shown(double value, std::string_view unit) { return fmt::format("{} {}", significant(value, 3), unit_for_display(unit)); }
+std::string shown(double value, std::string_view unit) {
+  return fmt::format("{} {}", base::significant(value, 3), base::unit_for_display(unit));
+}
 std::string shown_torque(double torque_Nm) { return shown(torque_Nm * 1e3, "mN m"); }
-std::string shown_speed(double speed_rad_per_s) { return shown(convert(speed_rad_per_s, "rad/s", "rpm"), "rpm"); }
+std::string shown_speed(double speed_rad_per_s) { return shown(base::convert(speed_rad_per_s, "rad/s", "rpm"), "rpm"); }
 std::string shown_torque_constant(double constant_Nm_per_A) { return shown(constant_Nm_per_A * 1e3, "mN m/A"); }
 std::string shown_speed_constant(double constant_rad_per_s_per_V) {
-  return shown(convert(constant_rad_per_s_per_V, "rad/s/V", "rpm/V"), "rpm/V");
+  return shown(base::convert(constant_rad_per_s_per_V, "rad/s/V", "rpm/V"), "rpm/V");
 }
 std::string shown_gradient(double gradient_rad_per_s_per_Nm) {
-  return shown(convert(gradient_rad_per_s_per_Nm, "rad/s/(N m)", "rpm/(mN m)"), "rpm/(mN m)");
+  return shown(base::convert(gradient_rad_per_s_per_Nm, "rad/s/(N m)", "rpm/(mN m)"), "rpm/(mN m)");
 }
 std::string shown_inertia(double inertia_kg_m2) { return shown(inertia_kg_m2 * 1e7, "g cm2"); }
 
@@ -117,14 +119,14 @@ std::vector<LintFinding> lint(const Motor& motor) {
   return list;
 }
 
-void add_lint_errors(const Motor& motor, Diagnostics& diagnostics) {
+void add_lint_errors(const Motor& motor, base::Diagnostics& diagnostics) {
   Motor checked = motor;
   if (!diagnostics.empty()) {
     checked.effects.clear();
     checked.sensors.clear();
   }
   std::set<int> lines;
-  for (const Diagnostic& each : diagnostics.list()) {
+  for (const base::Diagnostic& each : diagnostics.list()) {
     lines.insert(each.at.line);
   }
   for (const LintFinding& each : lint(checked)) {
@@ -135,4 +137,4 @@ void add_lint_errors(const Motor& motor, Diagnostics& diagnostics) {
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

@@ -8,7 +8,7 @@
 
 #include "motor/motor.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 
 struct LintFinding {
   enum class Level {
@@ -19,7 +19,7 @@ struct LintFinding {
   Level level = Level::note;
   std::string check;    ///< name of the check, "constants"
   std::string message;  ///< what was found, what was expected, what to do
-  Location at;
+  base::Location at;
 };
 
 std::string_view to_string(LintFinding::Level level);
@@ -30,7 +30,7 @@ std::vector<LintFinding> lint(const Motor& motor);
 /// Adds the errors of lint() to `diagnostics`. If these already contain problems, the file was read incompletely: effects are then not
 /// checked, because they may name missing nodes. Not added: missing spreads, which defaults replace, and errors on lines that already have
 /// a problem.
-void add_lint_errors(const Motor& motor, Diagnostics& diagnostics);
+void add_lint_errors(const Motor& motor, base::Diagnostics& diagnostics);
 
 /// The nominal operating point according to the thermal network.
 struct NominalPointHeat {
@@ -40,4 +40,4 @@ struct NominalPointHeat {
 /// Returns nothing if the file lacks the nominal torque, the nominal speed or a value of the network.
 std::optional<NominalPointHeat> nominal_point_heat(const Motor& motor);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

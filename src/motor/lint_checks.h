@@ -11,7 +11,7 @@
 #include "base/unknown.h"
 #include "motor/lint.h"
 
-namespace heatsoak::lint_checks {
+namespace heatsoak::motor::lint_checks {
 
 /// Collects the findings of one check.
 class Findings {
@@ -21,14 +21,14 @@ class Findings {
   void error(std::string_view key, std::string message) { add(LintFinding::Level::error, key, std::move(message)); }
   void warning(std::string_view key, std::string message) { add(LintFinding::Level::warning, key, std::move(message)); }
   void note(std::string_view key, std::string message) { add(LintFinding::Level::note, key, std::move(message)); }
-  void error_at(Location at, std::string message) { add_at(LintFinding::Level::error, std::move(at), std::move(message)); }
-  void note_at(Location at, std::string message) { add_at(LintFinding::Level::note, std::move(at), std::move(message)); }
-  void warning_at(Location at, std::string message) { add_at(LintFinding::Level::warning, std::move(at), std::move(message)); }
+  void error_at(base::Location at, std::string message) { add_at(LintFinding::Level::error, std::move(at), std::move(message)); }
+  void note_at(base::Location at, std::string message) { add_at(LintFinding::Level::note, std::move(at), std::move(message)); }
+  void warning_at(base::Location at, std::string message) { add_at(LintFinding::Level::warning, std::move(at), std::move(message)); }
   /// Adds a finding about the value `key`, with its place in the file.
   void add(LintFinding::Level level, std::string_view key, std::string message);
 
  private:
-  void add_at(LintFinding::Level level, Location at, std::string message) {
+  void add_at(LintFinding::Level level, base::Location at, std::string message) {
     list_.push_back({level, std::string(check_), std::move(message), std::move(at)});
   }
 
@@ -48,7 +48,7 @@ struct Bounds {
 };
 
 /// Returns the value, or NaN if it is absent: every comparison with it is false, so that the check finds nothing.
-inline double plain(const std::optional<double>& value) { return value.value_or(kUnknown); }
+inline double plain(const std::optional<double>& value) { return value.value_or(base::kUnknown); }
 
 /// Returns error, or warning if one of the contradicting values is an estimate.
 LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_list<std::string_view> keys);
@@ -100,4 +100,4 @@ void exact_values(const Motor& motor, Findings& findings);
 void narrow_values(const Motor& motor, Findings& findings);
 void heat_counted_twice(const Motor& motor, Findings& findings);
 
-}  // namespace heatsoak::lint_checks
+}  // namespace heatsoak::motor::lint_checks

@@ -9,7 +9,7 @@
 #include "base/quantity.h"
 #include "motor/lint_checks.h"
 
-namespace heatsoak::lint_checks {
+namespace heatsoak::motor::lint_checks {
 namespace {
 
 /// Rounding to three digits is ±0.5 % if the number begins with 1. Two values give 1 %, and unit conversion by the manufacturer adds
@@ -119,8 +119,8 @@ void constants(const Motor& motor, Findings& findings) {
   if (around_one(kConstantsTolerance).excludes(product)) {
     findings.error("torque_constant", fmt::format("torque constant {} times speed constant {} is {}, expected 1 within 1.5 %; {}",
                                                   shown_torque_constant(v.torque_constant_Nm_per_A),
-                                                  shown_speed_constant(plain(v.speed_constant_rad_per_s_per_V)), significant(product, 3),
-                                                  verdict_on_constants(v)));
+                                                  shown_speed_constant(plain(v.speed_constant_rad_per_s_per_V)),
+                                                  base::significant(product, 3), verdict_on_constants(v)));
   }
 }
 
@@ -204,10 +204,11 @@ void max_efficiency(const Motor& motor, Findings& findings) {
   const double root = std::sqrt(v.no_load_current_A * v.terminal_resistance_ohm / v.nominal_voltage_V);
   const double linear = (1.0 - root) * (1.0 - root);
   if (kEfficiency.excludes(plain(v.max_efficiency) / linear)) {
-    findings.error("max_efficiency", fmt::format("{} % is listed, but (1 - sqrt(I_0·R/U))² is {} %; expected 0.9 to 1.015 times that; "
-                                                 "check no-load current and resistance",
-                                                 significant(100.0 * plain(v.max_efficiency), 3), significant(100.0 * linear, 3)));
+    findings.error("max_efficiency",
+                   fmt::format("{} % is listed, but (1 - sqrt(I_0·R/U))² is {} %; expected 0.9 to 1.015 times that; "
+                               "check no-load current and resistance",
+                               base::significant(100.0 * plain(v.max_efficiency), 3), base::significant(100.0 * linear, 3)));
   }
 }
 
-}  // namespace heatsoak::lint_checks
+}  // namespace heatsoak::motor::lint_checks

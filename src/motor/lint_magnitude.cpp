@@ -6,7 +6,7 @@
 #include "base/quantity.h"
 #include "motor/lint_checks.h"
 
-namespace heatsoak::lint_checks {
+namespace heatsoak::motor::lint_checks {
 namespace {
 
 /// Copper (385 J/(kg K)) is 3 to 30 % of a motor's mass, and resin adds at most as much again; maxon sheets give 32 to 51 J/(kg K).
@@ -79,7 +79,7 @@ void density(const Motor& motor, Findings& findings) {
   const double density_kg_per_m3 = plain(v.mass_kg) / (body_area_m2(v) * plain(v.length_m));
   const std::string found =
       fmt::format("{} in a body of {} diameter and {} length are {} kg/m3", shown(1e3 * plain(v.mass_kg), "g"),
-                  shown(1e3 * plain(v.diameter_m), "mm"), shown(1e3 * plain(v.length_m), "mm"), significant(density_kg_per_m3, 3));
+                  shown(1e3 * plain(v.diameter_m), "mm"), shown(1e3 * plain(v.length_m), "mm"), base::significant(density_kg_per_m3, 3));
   if (kDensity_kg_per_m3.excludes(density_kg_per_m3)) {
     findings.error("mass",
                    found + ", expected 1500 to 7500 kg/m3 (solid steel has 7850); check mass and dimensions of the body without shaft");
@@ -137,4 +137,4 @@ void limits(const Motor& motor, Findings& findings) {
   }
 }
 
-}  // namespace heatsoak::lint_checks
+}  // namespace heatsoak::motor::lint_checks

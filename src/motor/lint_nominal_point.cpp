@@ -10,7 +10,7 @@
 #include "motor/lint_checks.h"
 #include "thermal/steady_state.h"
 
-namespace heatsoak::lint_checks {
+namespace heatsoak::motor::lint_checks {
 namespace {
 
 /// motors.yaml: T_n/(K_t·I_n) is 0.98 to 1.09 on EC flat pages, because the listed current is the mean supply current during commutation.
@@ -40,10 +40,11 @@ constexpr Bounds kCopperLimit{0.65, 1.05};
 double limit_current_A(const Motor& motor, double speed_rad_per_s) {
   Motor sheet = motor;
   sheet.effects.clear();
-  const Network network = datasheet_network(sheet, nominal_sample(sheet));
+  const thermal::Network network = datasheet_network(sheet, nominal_sample(sheet));
   const auto winding = static_cast<std::size_t>(network.find_node("winding"));
   const auto excess_K = [&](double current_A) {
-    const std::optional<SteadyState> rest = steady_state(network, {current_A, speed_rad_per_s, speed_rad_per_s, kSheetAmbient_C});
+    const std::optional<thermal::SteadyState> rest =
+        thermal::steady_state(network, {current_A, speed_rad_per_s, speed_rad_per_s, kSheetAmbient_C});
     constexpr double kRunaway_K = 1e6;
     return rest ? rest->temperature_C[winding] - motor.nominal.winding_limit_C : kRunaway_K;
   };
@@ -86,7 +87,7 @@ void nominal_current(const Motor& motor, Findings& findings) {
         "nominal_current",
         fmt::format("nominal torque {} is {} times K_t·I_n = {} (with {} and {}), expected 0.85 to 1.2 times; "
                     "check the nominal current and the convention of the torque constant",
-                    shown_torque(plain(v.nominal_torque_Nm)), significant(plain(v.nominal_torque_Nm) / linear_Nm, 3),
+                    shown_torque(plain(v.nominal_torque_Nm)), base::significant(plain(v.nominal_torque_Nm) / linear_Nm, 3),
                     shown_torque(linear_Nm), shown_torque_constant(v.torque_constant_Nm_per_A), shown(plain(v.nominal_current_A), "A")));
   }
 }
@@ -105,8 +106,8 @@ void peak_point(const Motor& motor, Findings& findings) {
   if (kPeakTorque.excludes(plain(v.peak_torque_Nm) / linear_Nm)) {
     findings.error("peak_torque", fmt::format("peak torque {} is {} times K_t·I_peak = {}, expected 0.2 (saturated) to 1.2 times; "
                                               "check the peak current and the convention of the torque constant",
-                                              shown_torque(plain(v.peak_torque_Nm)), significant(plain(v.peak_torque_Nm) / linear_Nm, 3),
-                                              shown_torque(linear_Nm)));
+                                              shown_torque(plain(v.peak_torque_Nm)),
+                                              base::significant(plain(v.peak_torque_Nm) / linear_Nm, 3), shown_torque(linear_Nm)));
   }
 }
 
@@ -132,7 +133,7 @@ void power_balance(const Motor& motor, Findings& findings) {
         level_of_contradiction(motor, {"nominal_current", "nominal_torque", "nominal_speed", "terminal_resistance"}), "terminal_resistance",
         fmt::format("{}; with {} lost in a winding at its limit and by drag it takes {} times the input, expected at most 1.08 times; "
                     "check resistance, nominal current, speed and torque",
-                    found, shown(most_loss_W, "W"), significant(explained, 3)));
+                    found, shown(most_loss_W, "W"), base::significant(explained, 3)));
   }
   if (explained < kPowerExplained.low) {
     findings.error("nominal_current",
@@ -228,7 +229,7 @@ void nominal_point_heat_check(const Motor& motor, Findings& findings) {
         fmt::format(
             "the nominal torque {} and the drag take {}, {} times the {} that bring the winding to {} at 25 °C ambient, expected {}; check "
             "thermal resistances, winding limit, resistance and nominal point",
-            shown_torque(plain(motor.nominal.nominal_torque_Nm)), shown(heat->equivalent_current_A, "A"), significant(ratio, 3),
+            shown_torque(plain(motor.nominal.nominal_torque_Nm)), shown(heat->equivalent_current_A, "A"), base::significant(ratio, 3),
             shown(heat->limit_current_A, "A"), shown(motor.nominal.winding_limit_C, "degC"),
             is_impossible ? "0.85 to 1.1 times" : "0.94 to 1.05 times, as on known sheets"));
   }
@@ -248,13 +249,13 @@ void copper_limit(const Motor& motor, Findings& findings) {
         fmt::format(
             "nominal current {} is {} times the {} that bring the winding to {} by copper loss alone at 25 °C ambient, expected 0.65 to "
             "1.05 times; check thermal resistances, winding limit and resistance",
-            shown(plain(v.nominal_current_A), "A"), significant(ratio, 3), shown(limit_A, "A"), shown(v.winding_limit_C, "degC")));
+            shown(plain(v.nominal_current_A), "A"), base::significant(ratio, 3), shown(limit_A, "A"), shown(v.winding_limit_C, "degC")));
   }
 }
 
-}  // namespace heatsoak::lint_checks
+}  // namespace heatsoak::motor::lint_checks
 
-namespace heatsoak {
+namespace heatsoak::motor {
 
 std::optional<NominalPointHeat> nominal_point_heat(const Motor& motor) {
   const MotorValues& v = motor.nominal;
@@ -266,4 +267,4 @@ std::optional<NominalPointHeat> nominal_point_heat(const Motor& motor) {
                           lint_checks::limit_current_A(motor, *v.nominal_speed_rad_per_s)};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

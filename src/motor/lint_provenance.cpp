@@ -9,7 +9,7 @@
 #include "motor/lint_checks.h"
 #include "motor/write_motor.h"
 
-namespace heatsoak::lint_checks {
+namespace heatsoak::motor::lint_checks {
 namespace {
 
 /// Relative tolerance of agreed values, which have no spread.
@@ -37,9 +37,9 @@ void for_each_parameter(const Motor& motor, const Visit& visit) {
 }  // namespace
 
 void sources(const Motor& motor, Findings& findings) {
-  for_each_parameter(motor, [&](const std::string& key, const ParameterValue& parameter) {
+  for_each_parameter(motor, [&](const std::string& key, const base::ParameterValue& parameter) {
     // The derivation of an estimate replaces its source.
-    const bool is_derived = parameter.origin == Origin::estimated && !parameter.derivation.empty();
+    const bool is_derived = parameter.origin == base::Origin::estimated && !parameter.derivation.empty();
     if (parameter.source.empty() && !is_derived) {
       findings.error_at(parameter.at,
                         fmt::format("{} of {} names no source; expected the ids of what it was derived from, or one whose text "
@@ -51,11 +51,11 @@ void sources(const Motor& motor, Findings& findings) {
 
 /// Two independent sources must agree within the tolerance of the value, else one of them is wrong.
 void confirmations(const Motor& motor, Findings& findings) {
-  for_each_parameter(motor, [&](const std::string& key, const ParameterValue& parameter) {
+  for_each_parameter(motor, [&](const std::string& key, const base::ParameterValue& parameter) {
     const Bounds bounds =
         parameter.spread ? Bounds{parameter.spread->low, parameter.spread->high}
                          : Bounds{parameter.value - kSame * std::abs(parameter.value), parameter.value + kSame * std::abs(parameter.value)};
-    for (const Confirmation& other : parameter.confirmed_by) {
+    for (const base::Confirmation& other : parameter.confirmed_by) {
       if (bounds.excludes(other.value)) {
         findings.error_at(parameter.at,
                           fmt::format("{} is {}, but {} says {}, expected agreement within the tolerance; one of the two is wrong", key,
@@ -68,7 +68,7 @@ void confirmations(const Motor& motor, Findings& findings) {
 void estimates(const Motor& motor, Findings& findings) {
   for (const MotorParameterSpec& each : motor_parameter_specs()) {
     const auto parameter = motor.parameters.find(each.spec.key);
-    if (parameter == motor.parameters.end() || parameter->second.origin != Origin::estimated) {
+    if (parameter == motor.parameters.end() || parameter->second.origin != base::Origin::estimated) {
       continue;
     }
     const std::string found = fmt::format("{} is estimated ({})", each.spec.key, shown(parameter->second.value, each.spec.unit));
@@ -93,7 +93,7 @@ void spreads(const Motor& motor, Findings& findings) {
 
 /// Real parts have a tolerance, so a spread of zero width is an error.
 void exact_values(const Motor& motor, Findings& findings) {
-  for_each_parameter(motor, [&](const std::string& key, const ParameterValue& parameter) {
+  for_each_parameter(motor, [&](const std::string& key, const base::ParameterValue& parameter) {
     if (is_exact(parameter) && !is_agreed(key)) {
       findings.error_at(parameter.at,
                         fmt::format("{} of {} has a tolerance or range of zero, expected the spread of real motors; state that, "
@@ -107,15 +107,16 @@ void exact_values(const Motor& motor, Findings& findings) {
 /// because there is nothing that the user could correct.
 void narrow_values(const Motor& motor, Findings& findings) {
   for (const NarrowSpread& each : narrow_spreads(motor)) {
-    const ParameterValue& parameter = *each.parameter;
+    const base::ParameterValue& parameter = *each.parameter;
     const auto percent = [&](double bound) { return 100.0 * std::abs(bound / parameter.value - 1.0); };
     if (each.is_fitted && parameter.source == kCalibrationSource) {
       continue;
     }
     const std::string message = fmt::format(
         "{} of {} ({}) has a spread of -{} to +{} %, expected at least -{} to +{} % for a value of this origin; {}", each.key,
-        parameter.printed, to_string(parameter.origin), significant(percent(parameter.spread->low), 2),
-        significant(percent(parameter.spread->high), 2), significant(percent(each.least.low), 2), significant(percent(each.least.high), 2),
+        parameter.printed, base::to_string(parameter.origin), base::significant(percent(parameter.spread->low), 2),
+        base::significant(percent(parameter.spread->high), 2), base::significant(percent(each.least.low), 2),
+        base::significant(percent(each.least.high), 2),
         each.is_fitted ? "this spread is assumed" : "state that, or leave tolerance and range out to assume a default by its origin");
     each.is_fitted ? findings.note_at(parameter.at, message) : findings.error_at(parameter.at, message);
   }
@@ -132,4 +133,4 @@ void heat_counted_twice(const Motor& motor, Findings& findings) {
   }
 }
 
-}  // namespace heatsoak::lint_checks
+}  // namespace heatsoak::motor::lint_checks

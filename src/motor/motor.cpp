@@ -12,63 +12,63 @@
 #include "motor/motor_effects.h"
 #include "motor/read_motor.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 namespace {
 
 /// Ranges from a watch motor to a locomotive motor; a value outside them has a wrong unit.
-constexpr Range kVoltage = Range::between(0.1, 1e4);
-constexpr Range kCurrent = Range::between(1e-4, 1e5);
-constexpr Range kResistance = Range::between(1e-5, 1e5);
-constexpr Range kInductance = Range::between(1e-8, 1e2);
-constexpr Range kTorqueConstant = Range::between(1e-6, 1e3);
-constexpr Range kSpeedConstant = Range::between(1e-3, 1e6);
-constexpr Range kGradient = Range::between(1e-6, 1e12);
-constexpr Range kMechanicalTime = Range::between(1e-5, 1e3);
-constexpr Range kInertia = Range::between(1e-13, 1e4);
-constexpr Range kSpeed = Range::between(0.1, 1e5);
-constexpr Range kTorque = Range::between(1e-8, 1e6);
-constexpr Range kPower = Range::between(1e-5, 1e8);
-constexpr Range kMass = Range::between(1e-5, 1e5);
-constexpr Range kSize = Range::between(1e-3, 10.0);
-constexpr Range kThermalResistance = Range::between(1e-3, 1e3);
-constexpr Range kThermalTime = Range::between(0.1, 1e6);
-constexpr Range kTemperature = Range::between(-60.0, 400.0);
+constexpr base::Range kVoltage = base::Range::between(0.1, 1e4);
+constexpr base::Range kCurrent = base::Range::between(1e-4, 1e5);
+constexpr base::Range kResistance = base::Range::between(1e-5, 1e5);
+constexpr base::Range kInductance = base::Range::between(1e-8, 1e2);
+constexpr base::Range kTorqueConstant = base::Range::between(1e-6, 1e3);
+constexpr base::Range kSpeedConstant = base::Range::between(1e-3, 1e6);
+constexpr base::Range kGradient = base::Range::between(1e-6, 1e12);
+constexpr base::Range kMechanicalTime = base::Range::between(1e-5, 1e3);
+constexpr base::Range kInertia = base::Range::between(1e-13, 1e4);
+constexpr base::Range kSpeed = base::Range::between(0.1, 1e5);
+constexpr base::Range kTorque = base::Range::between(1e-8, 1e6);
+constexpr base::Range kPower = base::Range::between(1e-5, 1e8);
+constexpr base::Range kMass = base::Range::between(1e-5, 1e5);
+constexpr base::Range kSize = base::Range::between(1e-3, 10.0);
+constexpr base::Range kThermalResistance = base::Range::between(1e-3, 1e3);
+constexpr base::Range kThermalTime = base::Range::between(0.1, 1e6);
+constexpr base::Range kTemperature = base::Range::between(-60.0, 400.0);
 
 // clang-format off
 constexpr std::array kSpecs = {
-    MotorParameterSpec{{"nominal_voltage", "V", kVoltage, "supply voltage of the nominal values"}, &MotorValues::nominal_voltage_V, Need::required},
-    MotorParameterSpec{{"terminal_resistance", "ohm", kResistance, "of the winding at 25 °C"}, &MotorValues::terminal_resistance_ohm, Need::required, true},
+    MotorParameterSpec{{"nominal_voltage", "V", kVoltage, "supply voltage of the nominal values"}, &MotorValues::nominal_voltage_V, input::Need::required},
+    MotorParameterSpec{{"terminal_resistance", "ohm", kResistance, "of the winding at 25 °C"}, &MotorValues::terminal_resistance_ohm, input::Need::required, true},
     MotorParameterSpec{{"terminal_inductance", "H", kInductance, "of the winding"}, &MotorValues::terminal_inductance_H},
-    MotorParameterSpec{{"torque_constant", "N m/A", kTorqueConstant, "torque per ampere"}, &MotorValues::torque_constant_Nm_per_A, Need::required, true},
+    MotorParameterSpec{{"torque_constant", "N m/A", kTorqueConstant, "torque per ampere"}, &MotorValues::torque_constant_Nm_per_A, input::Need::required, true},
     MotorParameterSpec{{"speed_constant", "rad/s/V", kSpeedConstant, "speed per volt of back-EMF"}, &MotorValues::speed_constant_rad_per_s_per_V},
     MotorParameterSpec{{"speed_torque_gradient", "rad/s/(N m)", kGradient, "loss of speed per torque at constant voltage"}, &MotorValues::speed_torque_gradient_rad_per_s_per_Nm},
     MotorParameterSpec{{"mechanical_time_constant", "s", kMechanicalTime, "R·J/K_t²"}, &MotorValues::mechanical_time_constant_s},
     MotorParameterSpec{{"rotor_inertia", "kg m2", kInertia, "moment of inertia of the rotor"}, &MotorValues::rotor_inertia_kg_m2},
     MotorParameterSpec{{"no_load_speed", "rad/s", kSpeed, "at nominal voltage"}, &MotorValues::no_load_speed_rad_per_s},
-    MotorParameterSpec{{"no_load_current", "A", Range::between(0.0, 1e5), "at nominal voltage: iron and friction loss"}, &MotorValues::no_load_current_A, Need::required, true},
+    MotorParameterSpec{{"no_load_current", "A", base::Range::between(0.0, 1e5), "at nominal voltage: iron and friction loss"}, &MotorValues::no_load_current_A, input::Need::required, true},
     MotorParameterSpec{{"nominal_speed", "rad/s", kSpeed, "at nominal voltage and torque"}, &MotorValues::nominal_speed_rad_per_s},
     MotorParameterSpec{{"nominal_torque", "N m", kTorque, "largest continuous torque at 25 °C ambient"}, &MotorValues::nominal_torque_Nm},
     MotorParameterSpec{{"nominal_current", "A", kCurrent, "largest continuous current at 25 °C ambient"}, &MotorValues::nominal_current_A},
     MotorParameterSpec{{"stall_torque", "N m", kTorque, "at nominal voltage"}, &MotorValues::stall_torque_Nm},
     MotorParameterSpec{{"stall_current", "A", kCurrent, "at nominal voltage"}, &MotorValues::stall_current_A},
-    MotorParameterSpec{{"max_efficiency", "", Range::between(0.0, 1.0), "at nominal voltage"}, &MotorValues::max_efficiency},
+    MotorParameterSpec{{"max_efficiency", "", base::Range::between(0.0, 1.0), "at nominal voltage"}, &MotorValues::max_efficiency},
     MotorParameterSpec{{"peak_current", "A", kCurrent, "short-time limit of the manufacturer"}, &MotorValues::peak_current_A},
     MotorParameterSpec{{"peak_torque", "N m", kTorque, "short-time limit of the manufacturer"}, &MotorValues::peak_torque_Nm},
     MotorParameterSpec{{"max_speed", "rad/s", kSpeed, "mechanical limit"}, &MotorValues::max_speed_rad_per_s},
     MotorParameterSpec{{"assigned_power", "W", kPower, "name-plate power"}, &MotorValues::assigned_power_W},
-    MotorParameterSpec{{"pole_pairs", "", Range::between(1.0, 100.0), "of the rotor"}, &MotorValues::pole_pairs},
+    MotorParameterSpec{{"pole_pairs", "", base::Range::between(1.0, 100.0), "of the rotor"}, &MotorValues::pole_pairs},
     MotorParameterSpec{{"mass", "kg", kMass, "of the motor"}, &MotorValues::mass_kg},
     MotorParameterSpec{{"diameter", "m", kSize, "of the body"}, &MotorValues::diameter_m},
     MotorParameterSpec{{"length", "m", kSize, "of the body"}, &MotorValues::length_m},
-    MotorParameterSpec{{"thermal_resistance_winding_stator", "K/W", kThermalResistance, "R_th1, winding to housing"}, &MotorValues::thermal_resistance_winding_stator_K_per_W, Need::required, true},
-    MotorParameterSpec{{"thermal_resistance_stator_ambient", "K/W", kThermalResistance, "R_th2, housing to ambient, as mounted for the sheet"}, &MotorValues::thermal_resistance_stator_ambient_K_per_W, Need::required, true},
-    MotorParameterSpec{{"thermal_time_constant_winding", "s", kThermalTime, "heat capacity of the winding times R_th1"}, &MotorValues::thermal_time_constant_winding_s, Need::required, true},
-    MotorParameterSpec{{"thermal_time_constant_stator", "s", kThermalTime, "heat capacity of the stator times R_th2"}, &MotorValues::thermal_time_constant_stator_s, Need::required, true},
-    MotorParameterSpec{{"winding_limit", "degC", kTemperature, "highest permissible winding temperature"}, &MotorValues::winding_limit_C, Need::required, true},
-    MotorParameterSpec{{"stator_limit", "degC", kTemperature, "highest permissible stator temperature"}, &MotorValues::stator_limit_C, Need::optional, true},
+    MotorParameterSpec{{"thermal_resistance_winding_stator", "K/W", kThermalResistance, "R_th1, winding to housing"}, &MotorValues::thermal_resistance_winding_stator_K_per_W, input::Need::required, true},
+    MotorParameterSpec{{"thermal_resistance_stator_ambient", "K/W", kThermalResistance, "R_th2, housing to ambient, as mounted for the sheet"}, &MotorValues::thermal_resistance_stator_ambient_K_per_W, input::Need::required, true},
+    MotorParameterSpec{{"thermal_time_constant_winding", "s", kThermalTime, "heat capacity of the winding times R_th1"}, &MotorValues::thermal_time_constant_winding_s, input::Need::required, true},
+    MotorParameterSpec{{"thermal_time_constant_stator", "s", kThermalTime, "heat capacity of the stator times R_th2"}, &MotorValues::thermal_time_constant_stator_s, input::Need::required, true},
+    MotorParameterSpec{{"winding_limit", "degC", kTemperature, "highest permissible winding temperature"}, &MotorValues::winding_limit_C, input::Need::required, true},
+    MotorParameterSpec{{"stator_limit", "degC", kTemperature, "highest permissible stator temperature"}, &MotorValues::stator_limit_C, input::Need::optional, true},
     MotorParameterSpec{{"ambient_min", "degC", kTemperature, "lowest permissible ambient temperature"}, &MotorValues::ambient_min_C},
     MotorParameterSpec{{"ambient_max", "degC", kTemperature, "highest permissible ambient temperature"}, &MotorValues::ambient_max_C},
-    MotorParameterSpec{{"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "of the winding resistance at 25 °C; 0.0039 1/K (copper) unless given"}, &MotorValues::temperature_coefficient_per_K},
+    MotorParameterSpec{{"temperature_coefficient", "1/K", base::Range::between(0.0, 0.01), "of the winding resistance at 25 °C; 0.0039 1/K (copper) unless given"}, &MotorValues::temperature_coefficient_per_K},
 };
 // clang-format on
 constexpr std::array<std::string_view, 8> kAgreed{"nominal_voltage", "assigned_power", "max_speed",   "pole_pairs",
@@ -90,13 +90,13 @@ double* place_of(double& value, double /*absent*/) { return &value; }
 double* place_of(std::optional<double>& value, double absent) { return value ? &*value : &value.emplace(absent); }
 
 template <class Conventions>
-double convention_factor(Reader& conventions, std::string_view key, const Conventions& known) {
+double convention_factor(input::Reader& conventions, std::string_view key, const Conventions& known) {
   std::vector<std::string_view> names;
   names.reserve(known.size());
   for (const auto& [name, factor] : known) {
     names.push_back(name);
   }
-  const std::optional<std::string> given = conventions.choice(key, names, Need::required);
+  const std::optional<std::string> given = conventions.choice(key, names, input::Need::required);
   for (const auto& [name, factor] : known) {
     if (given == name) {
       return factor;
@@ -105,24 +105,24 @@ double convention_factor(Reader& conventions, std::string_view key, const Conven
   return 1.0;
 }
 
-void scale(ParameterValue& parameter, double factor) {
+void scale(base::ParameterValue& parameter, double factor) {
   parameter.value *= factor;
   if (parameter.spread) {
     parameter.spread->low *= factor;
     parameter.spread->high *= factor;
   }
-  for (Confirmation& other : parameter.confirmed_by) {
+  for (base::Confirmation& other : parameter.confirmed_by) {
     other.value *= factor;
   }
 }
 
-void read_file_parameters(Reader& top, Motor& motor, double resistance_factor, double torque_factor) {
-  std::optional<Reader> parameters = top.table("figures", Need::required);
+void read_file_parameters(input::Reader& top, Motor& motor, double resistance_factor, double torque_factor) {
+  std::optional<input::Reader> parameters = top.table("figures", input::Need::required);
   if (!parameters) {
     return;
   }
   for (const MotorParameterSpec& each : kSpecs) {
-    if (std::optional<ParameterValue> parameter = parameters->parameter(each.spec, each.need)) {
+    if (std::optional<base::ParameterValue> parameter = parameters->parameter(each.spec, each.need)) {
       if (each.spec.key == "terminal_resistance" || each.spec.key == "terminal_inductance") {
         scale(*parameter, resistance_factor);
       } else if (each.spec.key == "torque_constant") {
@@ -139,23 +139,23 @@ void read_file_parameters(Reader& top, Motor& motor, double resistance_factor, d
 }
 
 /// Every source id that a value names must be explained in [sources], so that its origin can be checked.
-void check_sources(const Motor& motor, Diagnostics& diagnostics) {
+void check_sources(const Motor& motor, base::Diagnostics& diagnostics) {
   std::vector<std::string> known;
   for (const auto& [id, text] : motor.sources) {
     known.push_back(id);
   }
-  const auto look_up = [&](const ParameterValue& parameter, const std::string& key, const std::string& id) {
+  const auto look_up = [&](const base::ParameterValue& parameter, const std::string& key, const std::string& id) {
     if (!motor.sources.contains(id)) {
-      diagnostics.add(parameter.at, key, fmt::format("'{}' is not in [sources]{}", id, did_you_mean(id, known)));
+      diagnostics.add(parameter.at, key, fmt::format("'{}' is not in [sources]{}", id, base::did_you_mean(id, known)));
     }
   };
-  const auto check = [&](const std::string& key, const ParameterValue& parameter) {
+  const auto check = [&](const std::string& key, const base::ParameterValue& parameter) {
     for (std::size_t at = 0; at < parameter.source.size();) {
       const std::size_t end = std::min(parameter.source.find(", ", at), parameter.source.size());
       look_up(parameter, key + ".source", parameter.source.substr(at, end - at));
       at = end + 2;
     }
-    for (const Confirmation& other : parameter.confirmed_by) {
+    for (const base::Confirmation& other : parameter.confirmed_by) {
       look_up(parameter, key + ".confirmed_by", other.source);
     }
   };
@@ -181,7 +181,7 @@ std::vector<std::string> parameter_keys(const Motor& motor) {
     }
   }
   for (const MotorEffect& effect : motor.effects) {
-    for (const ParameterSpec& spec : effect.type->parameters) {
+    for (const base::ParameterSpec& spec : effect.type->parameters) {
       keys.push_back(fmt::format("effects.{}.{}", effect.name, spec.key));
     }
   }
@@ -189,8 +189,8 @@ std::vector<std::string> parameter_keys(const Motor& motor) {
 }
 
 /// Pairs of each value and the number in the sample that it sets, in the order of parameter_keys().
-std::vector<std::pair<const ParameterValue*, double*>> places(const Motor& motor, MotorSample& sample) {
-  std::vector<std::pair<const ParameterValue*, double*>> all;
+std::vector<std::pair<const base::ParameterValue*, double*>> places(const Motor& motor, MotorSample& sample) {
+  std::vector<std::pair<const base::ParameterValue*, double*>> all;
   for (const MotorParameterSpec& each : kSpecs) {
     if (const auto found = motor.parameters.find(each.spec.key); found != motor.parameters.end()) {
       const double parameter = found->second.value;
@@ -210,7 +210,7 @@ std::vector<std::pair<const ParameterValue*, double*>> places(const Motor& motor
 
 double drag_torque_Nm(const MotorValues& motor) { return motor.torque_constant_Nm_per_A * motor.no_load_current_A; }
 
-ParameterValue* find_parameter(Motor& motor, std::string_view key) {
+base::ParameterValue* find_parameter(Motor& motor, std::string_view key) {
   if (const auto found = motor.parameters.find(key); found != motor.parameters.end()) {
     return &found->second;
   }
@@ -256,43 +256,43 @@ std::optional<double> value_of(const MotorValues& values, const MotorParameterSp
 bool is_agreed(std::string_view key) { return std::ranges::find(kAgreed, key) != kAgreed.end(); }
 
 Motor read_motor(const std::filesystem::path& path) {
-  Diagnostics diagnostics;
+  base::Diagnostics diagnostics;
   Motor motor = read_motor(path, diagnostics);
   diagnostics.throw_if_any();
   return motor;
 }
 
-Motor read_motor(const std::filesystem::path& path, Diagnostics& diagnostics) {
-  const Value root = read_toml(path);
-  Reader top(root, "", diagnostics);
+Motor read_motor(const std::filesystem::path& path, base::Diagnostics& diagnostics) {
+  const input::Value root = input::read_toml(path);
+  input::Reader top(root, "", diagnostics);
   Motor motor;
   motor.id = path.stem().string();
   motor.file = path;
-  motor.manufacturer = top.text("manufacturer", Need::required).value_or("");
-  motor.name = top.text("name", Need::required).value_or("");
-  motor.part_number = top.text("part_number", Need::optional).value_or("");
+  motor.manufacturer = top.text("manufacturer", input::Need::required).value_or("");
+  motor.name = top.text("name", input::Need::required).value_or("");
+  motor.part_number = top.text("part_number", input::Need::optional).value_or("");
   constexpr std::array<std::string_view, 2> kTypes{"brushless", "brushed"};
-  motor.type = top.choice("type", kTypes, Need::required).value_or("");
+  motor.type = top.choice("type", kTypes, input::Need::required).value_or("");
   constexpr std::array<std::string_view, 2> kRotors{"external", "internal"};
-  motor.rotor = top.choice("rotor", kRotors, Need::optional).value_or("");
-  motor.notes = top.texts("notes", Need::optional);
-  if (std::optional<Reader> sources = top.table("sources", Need::required)) {
+  motor.rotor = top.choice("rotor", kRotors, input::Need::optional).value_or("");
+  motor.notes = top.texts("notes", input::Need::optional);
+  if (std::optional<input::Reader> sources = top.table("sources", input::Need::required)) {
     for (const std::string& id : sources->keys()) {
-      motor.sources.emplace(id, sources->text(id, Need::required).value_or(""));
+      motor.sources.emplace(id, sources->text(id, input::Need::required).value_or(""));
     }
   }
   double resistance_factor = 1.0;
   double torque_factor = 1.0;
-  if (std::optional<Reader> conventions = top.table("conventions", Need::required)) {
+  if (std::optional<input::Reader> conventions = top.table("conventions", input::Need::required)) {
     resistance_factor = convention_factor(*conventions, "terminal_resistance", kResistanceConventions);
     torque_factor = convention_factor(*conventions, "torque_constant", kTorqueConventions);
-    motor.stall_includes_saturation = conventions->flag("stall_includes_saturation", Need::optional).value_or(false);
+    motor.stall_includes_saturation = conventions->flag("stall_includes_saturation", input::Need::optional).value_or(false);
     conventions->finish();
   }
-  motor.nominal.temperature_coefficient_per_K = kCopper_per_K;
+  motor.nominal.temperature_coefficient_per_K = base::kCopper_per_K;
   read_file_parameters(top, motor, resistance_factor, torque_factor);
   read_effects(top, motor);
-  if (std::optional<Reader> table = top.table("fit", Need::optional)) {
+  if (std::optional<input::Reader> table = top.table("fit", input::Need::optional)) {
     motor.fit = read_fit(*table, parameter_keys(motor));
   }
   top.finish();
@@ -308,9 +308,9 @@ MotorSample nominal_sample(const Motor& motor) {
   return sample;
 }
 
-MotorSample draw_sample(const Motor& motor, Random& random) {
+MotorSample draw_sample(const Motor& motor, base::Random& random) {
   MotorSample sample = nominal_sample(motor);
-  const std::vector<std::pair<const ParameterValue*, double*>> all = places(motor, sample);
+  const std::vector<std::pair<const base::ParameterValue*, double*>> all = places(motor, sample);
   std::vector<double> uniforms(all.size(), 0.5);
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].first->spread) {
@@ -349,14 +349,15 @@ std::string_view quality_of_fit(const Motor& motor) {
   bool is_measured = true;
   for (const MotorEffect& effect : motor.effects) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      is_measured = is_measured && (!effect.type->parameters[i].choices.empty() || effect.parameters[i].origin != Origin::estimated);
+      is_measured = is_measured && (!effect.type->parameters[i].choices.empty() || effect.parameters[i].origin != base::Origin::estimated);
     }
   }
   for (const MotorParameterSpec& each : kSpecs) {
     const auto found = motor.parameters.find(each.spec.key);
     if (each.is_thermal && found != motor.parameters.end()) {
-      const Origin origin = found->second.origin;
-      is_measured = is_measured && (each.spec.key.starts_with("thermal_") ? origin == Origin::measured : origin != Origin::estimated);
+      const base::Origin origin = found->second.origin;
+      is_measured =
+          is_measured && (each.spec.key.starts_with("thermal_") ? origin == base::Origin::measured : origin != base::Origin::estimated);
     }
   }
   return is_measured ? "measured" : "mixed";
@@ -371,14 +372,14 @@ std::string_view data_quality(const Motor& motor) {
   bool all_of_sheet = true;
   for (const MotorEffect& effect : motor.effects) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      const ParameterValue& parameter = effect.parameters[i];
+      const base::ParameterValue& parameter = effect.parameters[i];
       if (!effect.type->parameters[i].choices.empty()) {
         continue;
       }
-      if (parameter.origin == Origin::estimated) {
+      if (parameter.origin == base::Origin::estimated) {
         return "estimated";
       }
-      all_of_sheet = all_of_sheet && (parameter.origin == Origin::datasheet || parameter.origin == Origin::measured);
+      all_of_sheet = all_of_sheet && (parameter.origin == base::Origin::datasheet || parameter.origin == base::Origin::measured);
     }
   }
   for (const MotorParameterSpec& each : kSpecs) {
@@ -386,14 +387,14 @@ std::string_view data_quality(const Motor& motor) {
     if (!each.is_thermal || found == motor.parameters.end()) {
       continue;
     }
-    const Origin origin = found->second.origin;
+    const base::Origin origin = found->second.origin;
     const bool is_network = each.spec.key.starts_with("thermal_") || each.spec.key == "winding_limit";
-    if (is_network && origin == Origin::estimated) {
+    if (is_network && origin == base::Origin::estimated) {
       return "estimated";
     }
-    all_of_sheet = all_of_sheet && (origin == Origin::datasheet || origin == Origin::measured);
+    all_of_sheet = all_of_sheet && (origin == base::Origin::datasheet || origin == base::Origin::measured);
   }
   return all_of_sheet ? "datasheet" : "mixed";
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

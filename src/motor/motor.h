@@ -18,22 +18,22 @@
 #include "motor/sensor_effect.h"
 #include "thermal/effect.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 
 /// Values as numbers in this program's conventions: resistance and inductance between two terminals, torque constant per DC ampere of block
 /// commutation. A file may lack the optional ones.
 struct MotorValues {
   // Required values; kUnknown only in a motor whose file has problems, see read_motor.h.
-  double nominal_voltage_V = kUnknown;
-  double no_load_current_A = kUnknown;
-  double terminal_resistance_ohm = kUnknown;
-  double torque_constant_Nm_per_A = kUnknown;
-  double winding_limit_C = kUnknown;
-  double temperature_coefficient_per_K = kUnknown;
-  double thermal_resistance_winding_stator_K_per_W = kUnknown;
-  double thermal_resistance_stator_ambient_K_per_W = kUnknown;
-  double thermal_time_constant_winding_s = kUnknown;
-  double thermal_time_constant_stator_s = kUnknown;
+  double nominal_voltage_V = base::kUnknown;
+  double no_load_current_A = base::kUnknown;
+  double terminal_resistance_ohm = base::kUnknown;
+  double torque_constant_Nm_per_A = base::kUnknown;
+  double winding_limit_C = base::kUnknown;
+  double temperature_coefficient_per_K = base::kUnknown;
+  double thermal_resistance_winding_stator_K_per_W = base::kUnknown;
+  double thermal_resistance_stator_ambient_K_per_W = base::kUnknown;
+  double thermal_time_constant_winding_s = base::kUnknown;
+  double thermal_time_constant_stator_s = base::kUnknown;
 
   std::optional<double> no_load_speed_rad_per_s = {};
   std::optional<double> nominal_speed_rad_per_s = {};
@@ -65,9 +65,9 @@ double drag_torque_Nm(const MotorValues& motor);
 
 /// Declaration of one motor parameter: its key, unit and range in the file, and the member that stores it.
 struct MotorParameterSpec {
-  ParameterSpec spec;
+  base::ParameterSpec spec;
   std::variant<double MotorValues::*, std::optional<double> MotorValues::*> value;
-  Need need = Need::optional;
+  input::Need need = input::Need::optional;
   bool is_thermal = false;  ///< temperatures depend on it
 };
 std::span<const MotorParameterSpec> motor_parameter_specs();
@@ -80,9 +80,9 @@ bool is_agreed(std::string_view key);
 /// An effect that the file adds to the data sheet network.
 struct MotorEffect {
   std::string name;
-  const EffectType* type = nullptr;
+  const thermal::EffectType* type = nullptr;
   std::vector<std::string> nodes;
-  std::vector<ParameterValue> parameters;  ///< in the type's declared order
+  std::vector<base::ParameterValue> parameters;  ///< in the type's declared order
   /// Condition under which it acts: "cooling" -> "fan", as logs name their conditions. Empty: always. An effect with a condition was
   /// observed in some runs only; conditions.h describes how predictions treat it.
   std::map<std::string, std::string> condition = {};
@@ -98,7 +98,7 @@ struct MotorEffect {
 struct MotorSensor {
   std::string name;
   const SensorEffectType* type = nullptr;
-  ParameterValue size;
+  base::ParameterValue size;
 };
 
 struct Motor {
@@ -113,7 +113,7 @@ struct Motor {
   std::vector<std::string> notes;
   std::map<std::string, std::string, std::less<>> sources;
   bool stall_includes_saturation = false;
-  std::map<std::string_view, ParameterValue> parameters;  ///< by key, in this program's conventions
+  std::map<std::string_view, base::ParameterValue> parameters;  ///< by key, in this program's conventions
   std::vector<MotorEffect> effects;
   std::vector<MotorSensor> sensors;
   std::optional<MotorFit> fit;  ///< present if a calibration wrote the file
@@ -124,7 +124,7 @@ struct Motor {
 Motor read_motor(const std::filesystem::path& path);
 
 /// Finds a value by key, "thermal_resistance_winding_stator" or "effects.fan.conductance"; null if the motor has none.
-ParameterValue* find_parameter(Motor& motor, std::string_view key);
+base::ParameterValue* find_parameter(Motor& motor, std::string_view key);
 /// Updates `nominal` after values in `parameters` were changed.
 void refresh_values(Motor& motor);
 
@@ -138,7 +138,7 @@ struct MotorSample {
   std::vector<std::vector<double>> effect_parameters;  ///< per effect, in declared order
 };
 MotorSample nominal_sample(const Motor& motor);
-MotorSample draw_sample(const Motor& motor, Random& random);
+MotorSample draw_sample(const Motor& motor, base::Random& random);
 
 /// Returns the quality of the data that determine temperatures. If a calibration wrote the file: `measured` if all four thermal resistances
 /// and time constants are measured and no thermal value is an estimate, else `mixed`. Otherwise: `datasheet` if every thermal value is
@@ -146,4 +146,4 @@ MotorSample draw_sample(const Motor& motor, Random& random);
 /// `mixed`.
 std::string_view data_quality(const Motor& motor);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

@@ -7,29 +7,29 @@
 
 #include "motor/datasheet_network.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 namespace {
 
-constexpr std::array<std::string_view, 3> kNodes{"winding", "stator", Network::kAmbient};
+constexpr std::array<std::string_view, 3> kNodes{"winding", "stator", thermal::Network::kAmbient};
 
 bool is_word(std::string_view name) {
   return !name.empty() && std::ranges::all_of(name, [](char c) { return c == '_' || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
 }
 
-bool brings_node(const EffectType& type) {
-  return std::ranges::any_of(type.nodes, [](const NodeRole& role) { return role.own_capacity.has_value(); });
+bool brings_node(const thermal::EffectType& type) {
+  return std::ranges::any_of(type.nodes, [](const thermal::NodeRole& role) { return role.own_capacity.has_value(); });
 }
 
 struct Entry {
   std::string name;
-  Reader reader;
-  const EffectType* type;          ///< null for a sensor effect
-  const SensorEffectType* sensor;  ///< null for a thermal effect
+  input::Reader reader;
+  const thermal::EffectType* type;  ///< null for a sensor effect
+  const SensorEffectType* sensor;   ///< null for a thermal effect
 };
 
 std::vector<std::string> known_types() {
   std::vector<std::string> known;
-  for (const EffectType& type : all_effects()) {
+  for (const thermal::EffectType& type : thermal::all_effects()) {
     known.emplace_back(type.name);
   }
   for (const SensorEffectType& type : all_sensor_effects()) {
@@ -39,19 +39,19 @@ std::vector<std::string> known_types() {
 }
 
 /// Returns the tables with a valid name and type; adds a problem for each other one.
-std::vector<Entry> entries_of(Reader& table) {
+std::vector<Entry> entries_of(input::Reader& table) {
   std::vector<Entry> entries;
   for (auto& [name, reader] : table.named_tables()) {
     if (std::ranges::find(kDatasheetEffects, name) != kDatasheetEffects.end()) {
       table.problem(name, "is the name of an effect that every motor has; give this one another name and set type = \"…\"");
       continue;
     }
-    const std::string type_name = reader.text("type", Need::optional).value_or(name);
-    const EffectType* type = find_effect(type_name);
+    const std::string type_name = reader.text("type", input::Need::optional).value_or(name);
+    const thermal::EffectType* type = thermal::find_effect(type_name);
     const SensorEffectType* sensor = find_sensor_effect(type_name);
     if (!type && !sensor) {
       table.problem(name, fmt::format("there is no effect '{}'{} (`heatsoak list effects` shows all)", type_name,
-                                      did_you_mean(type_name, known_types())));
+                                      base::did_you_mean(type_name, known_types())));
       continue;
     }
     if (!is_word(name)) {
@@ -69,12 +69,12 @@ std::vector<Entry> entries_of(Reader& table) {
 }
 
 void read_nodes(Entry& entry, const std::vector<std::string>& known, MotorEffect& effect) {
-  for (const NodeRole& role : entry.type->nodes) {
+  for (const thermal::NodeRole& role : entry.type->nodes) {
     if (role.own_capacity) {
       effect.nodes.push_back(entry.name);
       continue;
     }
-    effect.nodes.push_back(entry.reader.text(role.role, Need::optional).value_or(std::string(role.default_node)));
+    effect.nodes.push_back(entry.reader.text(role.role, input::Need::optional).value_or(std::string(role.default_node)));
     if (std::ranges::find(known, effect.nodes.back()) == known.end() ||
         effect.nodes.back() == (brings_node(*entry.type) ? entry.name : "")) {
       const std::vector<std::string> before(known.begin(), known.end() - 1);
@@ -84,26 +84,26 @@ void read_nodes(Entry& entry, const std::vector<std::string>& known, MotorEffect
   }
 }
 
-void read_parameters(Reader& reader, const EffectType& type, MotorEffect& effect) {
+void read_parameters(input::Reader& reader, const thermal::EffectType& type, MotorEffect& effect) {
   std::vector<double> values;
   bool chosen = true;
   for (std::size_t i = 0; i < type.parameters.size(); ++i) {
-    ParameterSpec spec = type.parameters[i];
-    ParameterValue parameter;
+    base::ParameterSpec spec = type.parameters[i];
+    base::ParameterValue parameter;
     if (!spec.choices.empty()) {
       std::vector<std::string_view> names;
-      for (const Choice& choice : spec.choices) {
+      for (const base::Choice& choice : spec.choices) {
         names.push_back(choice.name);
       }
-      const std::optional<std::string> name = reader.choice(spec.key, names, Need::required);
+      const std::optional<std::string> name = reader.choice(spec.key, names, input::Need::required);
       chosen = chosen && name;
       parameter.printed = name.value_or("");
       parameter.value = name ? static_cast<double>(std::ranges::find(names, *name) - names.begin()) : 0.0;
     } else if (spec.unit_of >= 0 && !chosen) {
       reader.pass_over(spec.key);
     } else {
-      spec.unit = unit_of(type.parameters, i, values);
-      parameter = reader.parameter(spec, Need::required).value_or(ParameterValue{});
+      spec.unit = base::unit_of(type.parameters, i, values);
+      parameter = reader.parameter(spec, input::Need::required).value_or(base::ParameterValue{});
     }
     values.push_back(parameter.value);
     effect.parameters.push_back(std::move(parameter));
@@ -111,27 +111,29 @@ void read_parameters(Reader& reader, const EffectType& type, MotorEffect& effect
 }
 
 bool goes_with_column(const MotorEffect& effect) {
-  return std::ranges::any_of(effect.parameters, [](const ParameterValue& each) { return is_column_choice(each.printed); });
+  return std::ranges::any_of(effect.parameters, [](const base::ParameterValue& each) { return thermal::is_column_choice(each.printed); });
 }
 
 /// Gives the effect the place of its column among the motor's columns. Returns false if there is no free one.
 bool take_place(MotorEffect& effect, std::vector<std::string>& columns) {
   const auto place = static_cast<std::size_t>(std::ranges::find(columns, effect.column) - columns.begin());
-  if (place == kLogColumns) {
+  if (place == thermal::kLogColumns) {
     return false;
   }
   if (place == columns.size()) {
     columns.push_back(effect.column);
   }
-  const auto chosen = std::ranges::find_if(effect.parameters, [](const ParameterValue& each) { return is_column_choice(each.printed); });
-  const ParameterSpec& spec = effect.type->parameters[static_cast<std::size_t>(chosen - effect.parameters.begin())];
-  chosen->printed = kColumnChoice;
-  chosen->value = static_cast<double>(std::ranges::find(spec.choices, kColumnChoices[place], &Choice::name) - spec.choices.begin());
+  const auto chosen =
+      std::ranges::find_if(effect.parameters, [](const base::ParameterValue& each) { return thermal::is_column_choice(each.printed); });
+  const base::ParameterSpec& spec = effect.type->parameters[static_cast<std::size_t>(chosen - effect.parameters.begin())];
+  chosen->printed = thermal::kColumnChoice;
+  chosen->value =
+      static_cast<double>(std::ranges::find(spec.choices, thermal::kColumnChoices[place], &base::Choice::name) - spec.choices.begin());
   return true;
 }
 
 /// Orders the effects so that every node is added before it is used; otherwise the order of the file is kept.
-std::vector<MotorEffect> in_order(std::vector<MotorEffect> waiting, Reader& table) {
+std::vector<MotorEffect> in_order(std::vector<MotorEffect> waiting, input::Reader& table) {
   std::vector<std::string> there(kNodes.begin(), kNodes.end());
   std::vector<MotorEffect> ordered;
   const auto is_there = [&](const MotorEffect& effect) {
@@ -154,10 +156,10 @@ std::vector<MotorEffect> in_order(std::vector<MotorEffect> waiting, Reader& tabl
 
 std::size_t MotorEffect::column_place() const {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const std::span<const Choice> choices = type->parameters[i].choices;
+    const std::span<const base::Choice> choices = type->parameters[i].choices;
     const auto chosen = static_cast<std::size_t>(parameters[i].value);
-    if (!choices.empty() && is_column_choice(choices[chosen].name)) {
-      return static_cast<std::size_t>(std::ranges::find(kColumnChoices, choices[chosen].name) - kColumnChoices.begin());
+    if (!choices.empty() && thermal::is_column_choice(choices[chosen].name)) {
+      return static_cast<std::size_t>(std::ranges::find(thermal::kColumnChoices, choices[chosen].name) - thermal::kColumnChoices.begin());
     }
   }
   return 0;
@@ -165,12 +167,12 @@ std::size_t MotorEffect::column_place() const {
 
 std::vector<double> MotorEffect::values() const {
   std::vector<double> all;
-  std::ranges::transform(parameters, std::back_inserter(all), &ParameterValue::value);
+  std::ranges::transform(parameters, std::back_inserter(all), &base::ParameterValue::value);
   return all;
 }
 
-void read_effects(Reader& top, Motor& motor) {
-  std::optional<Reader> table = top.table("effects", Need::optional);
+void read_effects(input::Reader& top, Motor& motor) {
+  std::optional<input::Reader> table = top.table("effects", input::Need::optional);
   if (!table) {
     return;
   }
@@ -178,7 +180,7 @@ void read_effects(Reader& top, Motor& motor) {
   for (Entry& entry : entries) {
     if (entry.sensor) {
       motor.sensors.push_back(
-          {entry.name, entry.sensor, entry.reader.parameter(entry.sensor->size, Need::required).value_or(ParameterValue{})});
+          {entry.name, entry.sensor, entry.reader.parameter(entry.sensor->size, input::Need::required).value_or(base::ParameterValue{})});
       entry.reader.finish();
     }
   }
@@ -189,9 +191,9 @@ void read_effects(Reader& top, Motor& motor) {
       known.push_back(entry.name);
     }
   }
-  if (known.size() > Network::kMostNodes) {
+  if (known.size() > thermal::Network::kMostNodes) {
     table->problem(known.back(),
-                   fmt::format("is node number {}; expected at most {}, ambient among them", known.size(), Network::kMostNodes));
+                   fmt::format("is node number {}; expected at most {}, ambient among them", known.size(), thermal::Network::kMostNodes));
   }
   std::vector<MotorEffect> effects;
   std::vector<std::string> columns;
@@ -200,13 +202,13 @@ void read_effects(Reader& top, Motor& motor) {
     MotorEffect effect{entry.name, entry.type, {}, {}, {}};
     read_nodes(entry, known, effect);
     read_parameters(entry.reader, *entry.type, effect);
-    if (std::optional<Reader> condition = entry.reader.table("condition", Need::optional)) {
+    if (std::optional<input::Reader> condition = entry.reader.table("condition", input::Need::optional)) {
       for (const std::string& key : condition->keys()) {
-        effect.condition.emplace(key, condition->text(key, Need::required).value_or(""));
+        effect.condition.emplace(key, condition->text(key, input::Need::required).value_or(""));
       }
     }
     if (goes_with_column(effect)) {
-      effect.column = entry.reader.text("column", Need::required).value_or("");
+      effect.column = entry.reader.text("column", input::Need::required).value_or("");
       if (effect.column.empty()) {
         entry.reader.problem("column",
                              "is not a column name; expected the name of a column of the logs with its unit, such as \"fan_ratio\"");
@@ -216,7 +218,7 @@ void read_effects(Reader& top, Motor& motor) {
       }
       if (!take_place(effect, columns)) {
         entry.reader.problem("column", fmt::format("is column number {} of this motor; expected at most {}: {}", columns.size() + 1,
-                                                   kLogColumns, fmt::join(columns, ", ")));
+                                                   thermal::kLogColumns, fmt::join(columns, ", ")));
       }
     }
     entry.reader.finish();
@@ -228,4 +230,4 @@ void read_effects(Reader& top, Motor& motor) {
   motor.effects = sound ? in_order(std::move(effects), *table) : std::move(effects);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

@@ -3,11 +3,11 @@
 
 #include "motor/motor.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 
 /// Reads the table `effects`, if present: thermal effects and sensor faults. A node that an effect adds has the effect's name, and other
 /// effects may use it. The motor gets the effects ordered so that every node is added before it is used. Adds problems to the reader's
 /// diagnostics.
-void read_effects(Reader& top, Motor& motor);
+void read_effects(input::Reader& top, Motor& motor);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

@@ -5,7 +5,7 @@
 
 #include "motor/sensors_registry.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 namespace {
 
 constexpr double kGainReference_C = 25.0;
@@ -125,4 +125,4 @@ SensorLaw sensor_lag_law() {
               }};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

@@ -7,7 +7,7 @@
 
 #include "base/parameter.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 
 /// Law of a sensor fault. The reading is linear in the history of the temperature: shown = L(T) + c; both depend on the size.
 struct SensorLaw {
@@ -40,7 +40,7 @@ struct SensorEffectType {
   std::string_view equation;
   std::string_view reference;
   std::string_view signal;  ///< column of the log that it affects, "winding_C"
-  ParameterSpec size;
+  base::ParameterSpec size;
   double typical_size = 0.0;  ///< in the unit of `size`
   std::string_view typical;
   std::string_view confounded_with;
@@ -89,4 +89,4 @@ SensorLaw sensor_offset_law();
 SensorLaw sensor_gain_law();
 SensorLaw sensor_lag_law();
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

@@ -6,7 +6,7 @@
 
 #include "motor/motor.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 
 /// Source of the values that a calibration writes.
 inline constexpr std::string_view kCalibrationSource = "calibration";
@@ -15,4 +15,4 @@ inline constexpr std::string_view kCalibrationSource = "calibration";
 /// original file if they have one.
 std::string to_toml(const Motor& motor);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

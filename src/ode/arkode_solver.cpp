@@ -3,7 +3,7 @@
 
 #include "ode/solver.h"
 
-namespace heatsoak {
+namespace heatsoak::ode {
 namespace {
 
 class ArkodeSolver final : public OdeSolver {
@@ -57,4 +57,4 @@ std::unique_ptr<OdeSolver> make_arkode_solver(OdeSystem& system, OdeTolerances t
   return std::make_unique<ArkodeSolver>(system, tolerances);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::ode

@@ -8,7 +8,7 @@
 
 #include "ode/solver.h"
 
-namespace heatsoak {
+namespace heatsoak::ode {
 namespace {
 
 class CvodesSolver final : public OdeSolver {
@@ -74,4 +74,4 @@ std::unique_ptr<OdeSolver> make_cvodes_solver(OdeSystem& system, OdeMethod metho
   return std::make_unique<CvodesSolver>(system, method, tolerances);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::ode

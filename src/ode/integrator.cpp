@@ -2,7 +2,7 @@
 
 #include "ode/solver.h"
 
-namespace heatsoak {
+namespace heatsoak::ode {
 
 Integrator::Integrator(OdeSystem& system, OdeMethod method, OdeTolerances tolerances)
     : solver_(method == OdeMethod::arkode_erk ? make_arkode_solver(system, tolerances) : make_cvodes_solver(system, method, tolerances)) {}
@@ -21,4 +21,4 @@ double Integrator::time_s() const { return solver_->time_s(); }
 
 long Integrator::derivative_count() const { return solver_->derivative_count(); }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::ode

@@ -6,7 +6,7 @@
 
 #include "ode/ode_system.h"
 
-namespace heatsoak {
+namespace heatsoak::ode {
 
 /// cvodes_bdf: for stiff networks. cvodes_adams: for smooth inputs. arkode_erk: an explicit one-step method, Dormand-Prince 5(4). It loses
 /// nothing at a restart and is therefore the fastest for inputs with jumps.
@@ -56,4 +56,4 @@ class Integrator {
   std::unique_ptr<OdeSolver> solver_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::ode

@@ -3,7 +3,7 @@
 
 #include <span>
 
-namespace heatsoak {
+namespace heatsoak::ode {
 
 /// dy/dt = f(t, y), with event functions whose zero crossings end a step. Implementations may throw; the integrator passes the exception
 /// through the C solver.
@@ -19,4 +19,4 @@ class OdeSystem {
   virtual void events(double /*time_s*/, std::span<const double> /*y*/, std::span<double> /*values*/) {}
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::ode

@@ -9,7 +9,7 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::ode {
 
 OdeSolver::OdeSolver(OdeSystem& system)
     : system_(system), y_(N_VNew_Serial(system.size(), context_), N_VDestroy), crossed_(static_cast<std::size_t>(system.event_count())) {
@@ -20,7 +20,7 @@ OdeSolver::OdeSolver(OdeSystem& system)
 
 void OdeSolver::start(double time_s, std::span<const double> y) {
   if (y.size() != state().size()) {
-    throw Failure(ExitCode::bug, fmt::format("start: {} values for {} states", y.size(), state().size()));
+    throw base::Failure(base::ExitCode::bug, fmt::format("start: {} values for {} states", y.size(), state().size()));
   }
   time_s_ = time_s;
   std::ranges::copy(y, values(y_.get()).begin());
@@ -31,14 +31,14 @@ void OdeSolver::start(double time_s, std::span<const double> y) {
 
 OdeStep OdeSolver::integrate(double stop_s, Stride stride) {
   if (!ready_) {
-    throw Failure(ExitCode::bug, "integrator: start() has to come before a step");
+    throw base::Failure(base::ExitCode::bug, "integrator: start() has to come before a step");
   }
   // Equal times may differ by rounding if they were summed in different orders; no package accepts such a short step.
   constexpr double kShortest_s = 1e-15;
   const double rounding_s = 100.0 * std::numeric_limits<double>::epsilon() * std::max({std::abs(time_s_), std::abs(stop_s), kShortest_s});
   if (!(stop_s > time_s_ + rounding_s)) {
     if (!(stop_s >= time_s_ - rounding_s)) {
-      throw Failure(ExitCode::bug, fmt::format("integrator: stop {} s lies before {} s", stop_s, time_s_));
+      throw base::Failure(base::ExitCode::bug, fmt::format("integrator: stop {} s lies before {} s", stop_s, time_s_));
     }
     time_s_ = stop_s;
     return {.time_s = time_s_, .at_event = false, .crossed = {}};
@@ -65,7 +65,7 @@ void OdeSolver::check(int flag) {
   if (flag < 0) {
     const std::string reason = reason_.empty() ? fmt::format("SUNDIALS code {}", flag) : reason_;
     reason_.clear();
-    throw Failure(ExitCode::numerics_failed, fmt::format("integration from {} s failed: {}", time_s_, reason));
+    throw base::Failure(base::ExitCode::numerics_failed, fmt::format("integration from {} s failed: {}", time_s_, reason));
   }
 }
 
@@ -77,7 +77,8 @@ int OdeSolver::shield(const char* what, double time_s, std::span<double> written
       write();
       for (std::size_t i = 0; i < written.size(); ++i) {
         if (!std::isfinite(written[i])) {
-          throw Failure(ExitCode::numerics_failed, fmt::format("integration failed at {} s: {} {} is {}", time_s, what, i, written[i]));
+          throw base::Failure(base::ExitCode::numerics_failed,
+                              fmt::format("integration failed at {} s: {} {} is {}", time_s, what, i, written[i]));
         }
       }
       return 0;
@@ -112,4 +113,4 @@ void OdeSolver::keep_reason(int code, const char* /*module*/, const char* /*func
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::ode

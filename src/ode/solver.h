@@ -12,7 +12,7 @@
 
 #include "ode/integrator.h"
 
-namespace heatsoak {
+namespace heatsoak::ode {
 
 /// Owns a SUNDIALS object together with the function that frees it.
 template <typename T>
@@ -84,4 +84,4 @@ class OdeSolver {
 std::unique_ptr<OdeSolver> make_cvodes_solver(OdeSystem& system, OdeMethod method, OdeTolerances tolerances);
 std::unique_ptr<OdeSolver> make_arkode_solver(OdeSystem& system, OdeTolerances tolerances);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::ode

@@ -10,18 +10,18 @@
 namespace heatsoak::present {
 namespace {
 
-std::vector<Text> conclusion(std::span<const Outcome> outcomes, bool is_update) {
-  const bool all_pass = std::ranges::all_of(outcomes, &Outcome::passed);
-  std::vector<Text> text{{conclusion_text(outcomes), all_pass ? Tone::good : Tone::bad}};
+std::vector<Text> conclusion(std::span<const check::Outcome> outcomes, bool is_update) {
+  const bool all_pass = std::ranges::all_of(outcomes, &check::Outcome::passed);
+  std::vector<Text> text{{check::conclusion_text(outcomes), all_pass ? Tone::good : Tone::bad}};
   if (is_update) {
-    const auto changed = std::ranges::count_if(outcomes, [](const Outcome& each) { return !each.before.empty(); });
+    const auto changed = std::ranges::count_if(outcomes, [](const check::Outcome& each) { return !each.before.empty(); });
     text.push_back({fmt::format("{} limit{} rewritten", changed, changed == 1 ? "" : "s")});
   }
   return text;
 }
 
-Table table_of(const Check& check) {
-  const std::string things = things_of(check);
+Table table_of(const check::Check& check) {
+  const std::string things = check::things_of(check);
   return {.title = things.empty() ? check.name : fmt::format("{} ({})", check.name, things),
           .columns = {{"", "", 0, Alignment::left},
                       {"threshold", "", 0, Alignment::left},
@@ -34,15 +34,15 @@ Table table_of(const Check& check) {
 
 }  // namespace
 
-Document check_document(std::span<const Outcome> outcomes, bool is_update) {
+Document check_document(std::span<const check::Outcome> outcomes, bool is_update) {
   Document document{.headline = conclusion(outcomes, is_update), .paragraphs = {}};
-  const Check* before = nullptr;
-  for (const Outcome& each : outcomes) {
+  const check::Check* before = nullptr;
+  for (const check::Outcome& each : outcomes) {
     if (each.check != before) {
       document.tables.push_back(table_of(*each.check));
       before = each.check;
     }
-    std::string why = explanation(each);
+    std::string why = check::explanation(each);
     if (!each.before.empty()) {
       why += fmt::format("{}limit {} → {}", why.empty() ? "" : "; ", each.before, each.limit.text);
     }
@@ -51,12 +51,12 @@ Document check_document(std::span<const Outcome> outcomes, bool is_update) {
                                                                 : "ERROR",
                                             each.passed ? Tone::good : Tone::bad},
                                            {std::string(each.limit.type->name)},
-                                           {shown(each.measured.value, *each.limit.type)},
-                                           {limit_text(each)},
-                                           {margin_text(each)},
+                                           {check::shown(each.measured.value, *each.limit.type)},
+                                           {check::limit_text(each)},
+                                           {check::margin_text(each)},
                                            {std::move(why)}});
   }
-  const auto loosened = std::ranges::count(outcomes, true, &Outcome::failed_before);
+  const auto loosened = std::ranges::count(outcomes, true, &check::Outcome::failed_before);
   if (loosened > 0) {
     document.add_note(Severity::warning, fmt::format("{} of the rewritten limits did not hold before. Read the difference before you "
                                                      "commit the file: a limit that follows the value gates nothing.",

@@ -12,8 +12,8 @@
 namespace heatsoak::present {
 
 /// One table for each check: result, threshold, value, limit, margin, and what the value rests on. `is_update`: limits were rewritten.
-Document check_document(std::span<const Outcome> outcomes, bool is_update);
+Document check_document(std::span<const check::Outcome> outcomes, bool is_update);
 /// `files` are the names as the user gave them.
-Json check_json(std::span<const Outcome> outcomes, const std::vector<std::string>& files);
+Json check_json(std::span<const check::Outcome> outcomes, const std::vector<std::string>& files);
 
 }  // namespace heatsoak::present

@@ -9,13 +9,13 @@
 namespace heatsoak::present {
 namespace {
 
-Json json(const Outcome& each) {
-  const ThresholdType& type = *each.limit.type;
+Json json(const check::Outcome& each) {
+  const check::ThresholdType& type = *each.limit.type;
   return {{"name", fmt::format("{}: {}", each.check->name, type.name)},
           {"check", each.check->name},
           {"threshold", type.name},
           {"value", rounded(each.measured.value, 6)},
-          {"direction", type.direction == Bound::at_most ? "at_most" : "at_least"},
+          {"direction", type.direction == check::Bound::at_most ? "at_most" : "at_least"},
           {"limit", rounded(each.limit.value, 6)},
           {"margin", rounded(each.margin_value(), 6)},
           {"unit", type.unit},
@@ -31,12 +31,12 @@ Json json(const Outcome& each) {
 
 }  // namespace
 
-Json check_json(std::span<const Outcome> outcomes, const std::vector<std::string>& files) {
+Json check_json(std::span<const check::Outcome> outcomes, const std::vector<std::string>& files) {
   Json thresholds = Json::array();
-  std::ranges::transform(outcomes, std::back_inserter(thresholds), [](const Outcome& each) { return json(each); });
+  std::ranges::transform(outcomes, std::back_inserter(thresholds), [](const check::Outcome& each) { return json(each); });
   return {{"schema", "heatsoak.check/1"},
           {"files", files},
-          {"passed", std::ranges::all_of(outcomes, &Outcome::passed)},
+          {"passed", std::ranges::all_of(outcomes, &check::Outcome::passed)},
           {"thresholds", thresholds}};
 }
 

@@ -9,13 +9,13 @@
 namespace heatsoak::present {
 namespace {
 
-std::string spread_text(const GameSpread& spread, double scale, int decimals) {
+std::string spread_text(const simulate::GameSpread& spread, double scale, int decimals) {
   return fmt::format("{:.{}f} [{:.{}f}…{:.{}f}]", scale * spread.nominal, decimals, scale * spread.low, decimals, scale * spread.high,
                      decimals);
 }
 
-std::vector<Text> closed_loop_row(std::size_t rank, const ClosedLoopRank& of) {
-  const GameDrives& drives = of.drives;
+std::vector<Text> closed_loop_row(std::size_t rank, const simulate::ClosedLoopRank& of) {
+  const simulate::GameDrives& drives = of.drives;
   if (drives.games.empty()) {
     std::vector<Text> cells{{fmt::format("{}", rank)}, {drives.motor_id}, {"not driven", Tone::bad}};
     cells.resize(8, {"–"});
@@ -23,31 +23,31 @@ std::vector<Text> closed_loop_row(std::size_t rank, const ClosedLoopRank& of) {
   }
   return {{fmt::format("{}", rank)},
           {drives.motor_id},
-          {std::string(to_string(of.verdict)), tone_of(of.verdict)},
-          {spread_text(drives.spread(&DriveScore::winding_peak_C), 1.0, 0)},
-          {spread_text(drives.spread(&DriveScore::stator_peak_C), 1.0, 0)},
-          {drives.is_guarded ? spread_text(drives.spread(&DriveScore::guard_limited_s), 1.0, 0) : "no guard"},
-          {spread_text(drives.spread(&DriveScore::tracking_rms_m), 1e3, 0)},
-          {spread_text(drives.spread(&DriveScore::distance_m), 1.0, 0)}};
+          {std::string(select::to_string(of.verdict)), tone_of(of.verdict)},
+          {spread_text(drives.spread(&simulate::DriveScore::winding_peak_C), 1.0, 0)},
+          {spread_text(drives.spread(&simulate::DriveScore::stator_peak_C), 1.0, 0)},
+          {drives.is_guarded ? spread_text(drives.spread(&simulate::DriveScore::guard_limited_s), 1.0, 0) : "no guard"},
+          {spread_text(drives.spread(&simulate::DriveScore::tracking_rms_m), 1e3, 0)},
+          {spread_text(drives.spread(&simulate::DriveScore::distance_m), 1.0, 0)}};
 }
 
 }  // namespace
 
-std::string words_of(DriveProblem problem, const DriveScore& score) {
+std::string words_of(simulate::DriveProblem problem, const simulate::DriveScore& score) {
   switch (problem) {
-    case DriveProblem::battery_empty:
+    case simulate::DriveProblem::battery_empty:
       return fmt::format("the battery is empty after {:.0f} s; the robot stands still for the rest of the match",
                          score.time_s - score.battery_empty_s);
-    case DriveProblem::tips:
+    case simulate::DriveProblem::tips:
       return fmt::format("wheels are off the ground for {:.0f} s: the robot tips", score.lifted_s);
-    case DriveProblem::off_plan:
+    case simulate::DriveProblem::off_plan:
       break;
   }
   return fmt::format("the robot is {:.1f} m (rms) off its plan, more than its own size: motors, driver or grip are too weak",
                      score.tracking_rms_m);
 }
 
-void add_closed_loop(Document& document, const std::vector<ClosedLoopRank>& ranks, int games, std::uint64_t seed) {
+void add_closed_loop(Document& document, const std::vector<simulate::ClosedLoopRank>& ranks, int games, std::uint64_t seed) {
   Table table{
       .title = fmt::format("Closed loop: {} driven by the drive core, seeds {} to {}; first game [lowest…highest of all]",
                            fmt::format("{} game{}", games, games == 1 ? "" : "s"), seed, seed + static_cast<std::uint64_t>(games) - 1),
@@ -61,19 +61,20 @@ void add_closed_loop(Document& document, const std::vector<ClosedLoopRank>& rank
                   {"driven", "m", 4}}};
   for (std::size_t i = 0; i < ranks.size(); ++i) {
     table.rows.push_back(closed_loop_row(i + 1, ranks[i]));
-    const GameDrives& drives = ranks[i].drives;
+    const simulate::GameDrives& drives = ranks[i].drives;
     if (drives.games.empty()) {
       document.add_note(Severity::warning, fmt::format("{} was not driven: {}", drives.motor_id, drives.why_none));
     }
-    const auto bad = std::ranges::find_if(drives.games, [](const DriveScore& game) { return drive_problem(game).has_value(); });
+    const auto bad =
+        std::ranges::find_if(drives.games, [](const simulate::DriveScore& game) { return simulate::drive_problem(game).has_value(); });
     if (bad != drives.games.end()) {
-      document.add_note(Severity::warning, fmt::format("{}: {}", drives.motor_id, words_of(*drive_problem(*bad), *bad)));
+      document.add_note(Severity::warning, fmt::format("{}: {}", drives.motor_id, words_of(*simulate::drive_problem(*bad), *bad)));
     }
     if (!drives.why_no_guard.empty()) {
       document.add_note(Severity::note, fmt::format("{} has no thermal guard: {}", drives.motor_id, drives.why_no_guard));
     }
   }
-  const auto passed = std::ranges::count(ranks, Verdict::pass, &ClosedLoopRank::verdict);
+  const auto passed = std::ranges::count(ranks, select::Verdict::pass, &simulate::ClosedLoopRank::verdict);
   document.headline.insert(document.headline.begin(),
                            {fmt::format("Driven in a closed loop, {} of {} pass. The ranking below follows these games.", passed,
                                         fmt::format("{} motor{}", ranks.size(), ranks.size() == 1 ? "" : "s")),

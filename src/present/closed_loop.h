@@ -11,9 +11,9 @@
 namespace heatsoak::present {
 
 /// Puts the verdicts of the driven games first and adds their table and notes to those of the evaluation.
-void add_closed_loop(Document& document, const std::vector<ClosedLoopRank>& ranks, int games, std::uint64_t seed);
+void add_closed_loop(Document& document, const std::vector<simulate::ClosedLoopRank>& ranks, int games, std::uint64_t seed);
 
 /// Returns the consequence of the problem as a sentence, with the values of `score`.
-std::string words_of(DriveProblem problem, const DriveScore& score);
+std::string words_of(simulate::DriveProblem problem, const simulate::DriveScore& score);
 
 }  // namespace heatsoak::present

@@ -8,6 +8,6 @@
 
 namespace heatsoak::present {
 
-Json closed_loop_json(const ClosedLoopRank& rank, std::uint64_t seed);
+Json closed_loop_json(const simulate::ClosedLoopRank& rank, std::uint64_t seed);
 
 }  // namespace heatsoak::present

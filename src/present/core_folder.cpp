@@ -7,15 +7,16 @@
 
 namespace heatsoak::present {
 
-Document core_folder_document(const CoreFolder& folder, const Derating& derating, const CoreOptions& options, const std::string& out) {
+Document core_folder_document(const firmware::CoreFolder& folder, const derate::Derating& derating, const firmware::CoreOptions& options,
+                              const std::string& out) {
   std::size_t bytes = 0;
-  for (const CoreFile& file : folder.files) {
+  for (const firmware::CoreFile& file : folder.files) {
     bytes += file.content.size();
   }
   Document document{.headline = {{fmt::format("Drive core for {} with {}: {} files, {} kB in {}.", derating.robot_id, derating.motor_id,
                                               folder.files.size(), bytes / 1024, out)}},
                     .paragraphs = {fmt::format("Safety factor on heat {:.2f}. {}", derating.observer.heat_safety_factor(),
-                                               confidence_text(derating, derating.guarantee)),
+                                               derate::confidence_text(derating, derating.guarantee)),
                                    fmt::format("Next: `make -C {0} host` and `make -C {0} firmware`.", out)}};
   Table table = labelled_table("");
   add_labelled(table, "winding limit",
@@ -24,7 +25,7 @@ Document core_folder_document(const CoreFolder& folder, const Derating& derating
   add_labelled(table, "control period", fmt::format("{:.6g} ms, guard {:.6g} ms", 1e3 * options.period_s, 1e3 * derating.options.period_s));
   add_labelled(table, "unknown speed", fmt::format("a wheel whose speed is unknown gets at most {:.2f} A", folder.limp_current_A));
   add_labelled(table, "full stop", fmt::format("{:.1f} K are kept as a margin for one full stop", folder.braking_reserve_K));
-  add_labelled(table, "inputs", fmt::format("{} {}", kInputHash, folder.hash));
+  add_labelled(table, "inputs", fmt::format("{} {}", derate::kInputHash, folder.hash));
   add_labelled(table, "configuration", fmt::format("check sum {:08x}", folder.config_check_sum));
   document.tables.push_back(std::move(table));
   for (const std::string& note : folder.notes) {

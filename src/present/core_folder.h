@@ -9,8 +9,9 @@
 
 namespace heatsoak::present {
 
-Document core_folder_document(const CoreFolder& folder, const Derating& derating, const CoreOptions& options, const std::string& out);
-Json core_folder_json(const CoreFolder& folder, const Derating& derating, const Motor& motor, const CoreOptions& options,
-                      const std::string& out);
+Document core_folder_document(const firmware::CoreFolder& folder, const derate::Derating& derating, const firmware::CoreOptions& options,
+                              const std::string& out);
+Json core_folder_json(const firmware::CoreFolder& folder, const derate::Derating& derating, const motor::Motor& motor,
+                      const firmware::CoreOptions& options, const std::string& out);
 
 }  // namespace heatsoak::present

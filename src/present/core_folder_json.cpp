@@ -7,11 +7,11 @@
 
 namespace heatsoak::present {
 
-Json core_folder_json(const CoreFolder& folder, const Derating& derating, const Motor& motor, const CoreOptions& options,
-                      const std::string& out) {
-  const Guarantee& checked = derating.guarantee;
+Json core_folder_json(const firmware::CoreFolder& folder, const derate::Derating& derating, const motor::Motor& motor,
+                      const firmware::CoreOptions& options, const std::string& out) {
+  const derate::Guarantee& checked = derating.guarantee;
   Json files = Json::array();
-  for (const CoreFile& file : folder.files) {
+  for (const firmware::CoreFile& file : folder.files) {
     files.push_back({{"path", file.path}, {"bytes", file.content.size()}});
   }
   return {{"schema", "heatsoak.core/1"},
@@ -19,7 +19,7 @@ Json core_folder_json(const CoreFolder& folder, const Derating& derating, const 
           {"motor", derating.motor_id},
           {"out", out},
           {"period_s", options.period_s},
-          {"input_hash", {{"name", kInputHash}, {"value", folder.hash}}},
+          {"input_hash", {{"name", derate::kInputHash}, {"value", folder.hash}}},
           {"config_check_sum", fmt::format("{:08x}", folder.config_check_sum)},
           {"files", files},
           {"derating",

@@ -9,6 +9,6 @@
 namespace heatsoak::present {
 
 /// Returns [{"motor","key","origin","low_ratio","high_ratio"}]: bounds of the assumed range as ratios to the value.
-Json default_spreads_json(std::span<const Motor> motors);
+Json default_spreads_json(std::span<const motor::Motor> motors);
 
 }  // namespace heatsoak::present

@@ -18,12 +18,12 @@ namespace {
 /// Times at which the allowed current of a long use is printed.
 constexpr double kMoments_s[] = {1.0, 10.0, 60.0, 600.0};
 
-double current_at_A(const UsePlayed& played, double time_s) {
+double current_at_A(const derate::UsePlayed& played, double time_s) {
   const auto found = std::ranges::lower_bound(played.time_s, time_s);
   return found == played.time_s.end() ? played.current_A.back() : played.current_A[static_cast<std::size_t>(found - played.time_s.begin())];
 }
 
-Table allowed_currents(const Derating& derating) {
+Table allowed_currents(const derate::Derating& derating) {
   Table table{.title = "Allowed current in A over time if it is always fully used, from a start at air temperature",
               .columns = {{"speed", "rad/s", 0}},
               .rows = {}};
@@ -31,7 +31,7 @@ Table allowed_currents(const Derating& derating) {
     table.columns.push_back({fmt::format("at {}", duration_text(time_s)), "", 0});
   }
   table.columns.push_back({"lasting", "", 0});
-  for (const UsePlayed& played : derating.uses) {
+  for (const derate::UsePlayed& played : derating.uses) {
     if (played.use.on_s > 0.0) {
       break;  // the plain case, a current held without pauses, comes first
     }
@@ -46,7 +46,7 @@ Table allowed_currents(const Derating& derating) {
 }
 
 /// Adds the notes about the table: range, accuracy, and signals that the firmware must supply.
-void add_table_notes(Document& document, const Derating& derating) {
+void add_table_notes(Document& document, const derate::Derating& derating) {
   if (derating.rules.most_speed_rad_per_s < derating.reachable_speed_rad_per_s) {
     document.add_note(
         Severity::warning,
@@ -55,9 +55,9 @@ void add_table_notes(Document& document, const Derating& derating) {
                     derating.rules.most_speed_rad_per_s, derating.reachable_speed_rad_per_s, derating.table.no_current_speed_rad_per_s));
   }
   std::vector<std::string_view> asked;
-  for (std::size_t i = observed::vehicle_speed; i < observed::kSignalCount; ++i) {
-    if (derating.observer.uses(static_cast<observed::Signal>(i))) {
-      asked.push_back(observed::signals()[i].name);
+  for (std::size_t i = derate::observed::vehicle_speed; i < derate::observed::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<derate::observed::Signal>(i))) {
+      asked.push_back(derate::observed::signals()[i].name);
     }
   }
   if (!asked.empty()) {
@@ -71,7 +71,7 @@ void add_table_notes(Document& document, const Derating& derating) {
                     "limit is unknown.",
                     derating.nominal.winding_limit_C));
   }
-  const TableBound& bound = derating.table.bound;
+  const derate::TableBound& bound = derating.table.bound;
   document.add_note(
       Severity::background,
       fmt::format("Table: {} bytes, never above the exact answer of the network and at most {:.1f} % below it from {:.2g} A up; it changes "
@@ -81,11 +81,11 @@ void add_table_notes(Document& document, const Derating& derating) {
 }
 
 /// Adds the benefit and the possible faults of the sensor, if there is one.
-void add_sensor(Document& document, const Derating& derating) {
+void add_sensor(Document& document, const derate::Derating& derating) {
   if (!derating.sensor) {
     return;
   }
-  const SensorPlan& plan = *derating.sensor;
+  const derate::SensorPlan& plan = *derating.sensor;
   document.paragraphs.push_back(fmt::format(
       "With {} at the {}, error up to {:.3g} K{}: safety factor on heat {:.2f} (without {:.2f}). {} Each draw has its own "
       "sensor error; the windings reached {:.0f} °C (95th percentile), {:.0f} °C (the hottest). The cross-check drops the correct sensor "
@@ -93,7 +93,7 @@ void add_sensor(Document& document, const Derating& derating) {
       plan.resistance ? "the resistance from voltage and current" : "a thermistor",
       plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
       plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(),
-      derating.observer.heat_safety_factor(), confidence_text(derating, plan.guarantee), plan.guarantee.winding_p95_C,
+      derating.observer.heat_safety_factor(), derate::confidence_text(derating, plan.guarantee), plan.guarantee.winding_p95_C,
       plan.guarantee.winding_most_C, plan.dropped));
   document.add_note(
       Severity::warning,
@@ -107,22 +107,22 @@ void add_sensor(Document& document, const Derating& derating) {
   Table table{.title = "Continuous current of the nominal motor in A",
               .columns = {{"speed", "rad/s", 0}, {"without sensor", "", 0}, {"with sensor", "", 0}},
               .rows = {}};
-  for (const LastingCurrent& each : plan.lasting) {
+  for (const derate::LastingCurrent& each : plan.lasting) {
     table.rows.push_back(
         {{fmt::format("{:.0f}", each.speed_rad_per_s)}, {fmt::format("{:.2f}", each.without_A)}, {fmt::format("{:.2f}", each.with_A)}});
   }
   document.tables.push_back(std::move(table));
 }
 
-std::string place_text(const TablePlace& place) {
+std::string place_text(const derate::TablePlace& place) {
   return fmt::format("at {:.0f} rad/s, stator {:.1f} °C, winding {:.1f} °C: {:.3f} A, a fresh table {:.3f} A", place.speed_rad_per_s,
                      place.stator_C, place.winding_C, place.committed_A, place.fresh_A);
 }
 
 }  // namespace
 
-Document derating_document(const Derating& derating, const Motor& motor) {
-  const Guarantee& checked = derating.guarantee;
+Document derating_document(const derate::Derating& derating, const motor::Motor& motor) {
+  const derate::Guarantee& checked = derating.guarantee;
   Document document{
       .headline = {{fmt::format(
                        "{} in {}: winding below {:.0f} °C{} in air of {:.0f} °C, {} thermal data.", derating.motor_id, derating.robot_id,
@@ -132,15 +132,15 @@ Document derating_document(const Derating& derating, const Motor& motor) {
                    {fmt::format("Safety factor on heat {:.2f}; current {:.1f} A from cold, {:.2f} A lasting.",
                                 derating.observer.heat_safety_factor(),
                                 derating.table.allowed_A(0.0, derating.rules.hottest_ambient_C, derating.rules.hottest_ambient_C),
-                                limp_current_A(derating))}},
-      .paragraphs = {fmt::format("{} At least {} draws are needed for this.", confidence_text(derating, checked),
-                                 least_samples(derating.options.guarantee)),
+                                derate::limp_current_A(derating))}},
+      .paragraphs = {fmt::format("{} At least {} draws are needed for this.", derate::confidence_text(derating, checked),
+                                 derate::least_samples(derating.options.guarantee)),
                      fmt::format("The windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C "
                                  "(the hottest).",
                                  checked.samples, checked.winding_p50_C, checked.winding_p95_C, checked.winding_most_C)}};
   std::vector<std::string> own;
-  for (const ActingEffect& effect : derating.effects) {
-    if (std::ranges::find(kDatasheetEffects, effect.name) == kDatasheetEffects.end()) {
+  for (const derate::ActingEffect& effect : derating.effects) {
+    if (std::ranges::find(motor::kDatasheetEffects, effect.name) == motor::kDatasheetEffects.end()) {
       own.push_back(effect.name == effect.type ? effect.name : fmt::format("{} ({})", effect.name, effect.type));
     }
   }
@@ -156,8 +156,8 @@ Document derating_document(const Derating& derating, const Motor& motor) {
   return document;
 }
 
-void add_table_check(Document& document, const Derating& derating, const TableCheck& check) {
-  const TableComparison& found = check.found;
+void add_table_check(Document& document, const derate::Derating& derating, const derate::TableCheck& check) {
+  const derate::TableComparison& found = check.found;
   document.headline.push_back({fmt::format("{}: {}", check.committed.file.string(),
                                            check.found.holds() ? "still holds" : "no longer holds; write it again with --out"),
                                check.found.holds() ? Tone::good : Tone::bad});
@@ -184,9 +184,9 @@ void add_table_check(Document& document, const Derating& derating, const TableCh
     document.add_note(Severity::note,
                       fmt::format("It was written for the robot {}, this is {}.", check.committed.robot_id, derating.robot_id));
   }
-  if (!check.found.holds() && !check.committed.version.empty() && check.committed.version != program_version()) {
+  if (!check.found.holds() && !check.committed.version.empty() && check.committed.version != base::program_version()) {
     document.add_note(Severity::note, fmt::format("It was written by heatsoak {}, this is {}: an upgrade may explain the difference.",
-                                                  check.committed.version, program_version()));
+                                                  check.committed.version, base::program_version()));
   }
 }
 

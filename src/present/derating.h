@@ -9,10 +9,10 @@
 
 namespace heatsoak::present {
 
-Document derating_document(const Derating& derating, const Motor& motor);
+Document derating_document(const derate::Derating& derating, const motor::Motor& motor);
 
 /// Adds what changed since the file was written: unsafe changes are warnings, the others notes.
-void add_table_check(Document& document, const Derating& derating, const TableCheck& check);
-Json table_check_json(const TableCheck& check);
+void add_table_check(Document& document, const derate::Derating& derating, const derate::TableCheck& check);
+Json table_check_json(const derate::TableCheck& check);
 
 }  // namespace heatsoak::present

@@ -25,17 +25,18 @@ void add_key(Table& table, std::string_view key, std::string_view unit, std::str
   table.rows.push_back({{std::string(key)}, {std::string(unit)}, {std::move(meaning)}});
 }
 
-Table parameters_of(const EffectType& effect) {
+Table parameters_of(const thermal::EffectType& effect) {
   Table table = keys_table();
-  for (const ParameterSpec& spec : effect.parameters) {
+  for (const base::ParameterSpec& spec : effect.parameters) {
     const std::string unit = spec.unit_of >= 0 ? fmt::format("as {}", effect.parameters[static_cast<std::size_t>(spec.unit_of)].key)
-                                               : std::string(unit_for_display(spec.unit));
-    add_key(table, spec.key, unit, fmt::format("{}; {}", spec.meaning, spec.choices.empty() ? to_string(spec.range, spec.unit) : "one of"));
-    for (const Choice& choice : spec.choices) {
-      add_key(table, fmt::format("  {}", choice.name), unit_for_display(choice.unit), std::string(choice.meaning));
+                                               : std::string(base::unit_for_display(spec.unit));
+    add_key(table, spec.key, unit,
+            fmt::format("{}; {}", spec.meaning, spec.choices.empty() ? base::to_string(spec.range, spec.unit) : "one of"));
+    for (const base::Choice& choice : spec.choices) {
+      add_key(table, fmt::format("  {}", choice.name), base::unit_for_display(choice.unit), std::string(choice.meaning));
     }
   }
-  for (const NodeRole& role : effect.nodes) {
+  for (const thermal::NodeRole& role : effect.nodes) {
     add_key(table, role.role, "node",
             role.own_capacity ? "of its own, named after the effect in the file" : fmt::format("'{}' unless named", role.default_node));
   }
@@ -44,18 +45,18 @@ Table parameters_of(const EffectType& effect) {
 
 }  // namespace
 
-std::string signal_name(Signal signal) {
-  std::string name(quantity_of(signal).name);
+std::string signal_name(thermal::Signal signal) {
+  std::string name(thermal::quantity_of(signal).name);
   std::ranges::replace(name, '_', ' ');
   return name;
 }
 
-Document effect_description(const EffectType& effect) {
+Document effect_description(const thermal::EffectType& effect) {
   Document document{.headline = {{fmt::format("{}: {}", effect.name, effect.summary)}}, .paragraphs = {std::string(effect.equation)}};
   document.tables.push_back(parameters_of(effect));
   std::vector<std::string> needs;
   std::ranges::transform(effect.needs, std::back_inserter(needs), signal_name);
-  const bool has_choice = std::ranges::any_of(effect.parameters, [](const ParameterSpec& spec) { return !spec.choices.empty(); });
+  const bool has_choice = std::ranges::any_of(effect.parameters, [](const base::ParameterSpec& spec) { return !spec.choices.empty(); });
   Table table = labelled_table("");
   add_labelled(table, "typical size", effect.typical);
   add_labelled(table, "confounded", effect.confounded_with);
@@ -68,16 +69,16 @@ Document effect_description(const EffectType& effect) {
   document.tables.push_back(std::move(table));
   document.listings.push_back(
       {fmt::format("{}{}:", kAtTheEnd,
-                   is_loss_of_every_motor(effect) ? ", where it is added to the same loss of the file's own parameters" : ""),
+                   motor::is_loss_of_every_motor(effect) ? ", where it is added to the same loss of the file's own parameters" : ""),
        motor_file_lines(effect)});
   return document;
 }
 
-Document effect_outside_network(std::string_view where, std::string_view name, std::string_view summary, const ParameterSpec& size,
+Document effect_outside_network(std::string_view where, std::string_view name, std::string_view summary, const base::ParameterSpec& size,
                                 std::span<const LabelledWords> lines) {
   Document document{.headline = {{fmt::format("{}: {}", name, summary)}}, .paragraphs = {fmt::format("Place: {}.", where)}};
   Table keys = keys_table();
-  add_key(keys, size.key, unit_for_display(size.unit), fmt::format("{}; {}", size.meaning, to_string(size.range, size.unit)));
+  add_key(keys, size.key, base::unit_for_display(size.unit), fmt::format("{}; {}", size.meaning, base::to_string(size.range, size.unit)));
   Table table = labelled_table("");
   for (const LabelledWords& each : lines) {
     add_labelled(table, each.label, each.words);
@@ -86,7 +87,7 @@ Document effect_outside_network(std::string_view where, std::string_view name, s
   return document;
 }
 
-Document sensor_description(const SensorEffectType& type) {
+Document sensor_description(const motor::SensorEffectType& type) {
   const std::array lines{LabelledWords{"equation", std::string(type.equation)}, LabelledWords{"typical size", std::string(type.typical)},
                          LabelledWords{"confounded", std::string(type.confounded_with)},
                          LabelledWords{"experiment", std::string(type.experiment)},

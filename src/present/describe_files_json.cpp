@@ -9,13 +9,16 @@
 namespace heatsoak::present {
 namespace {
 
-Json parameter_json(std::string_view key, std::string_view unit, const ParameterValue& parameter) {
-  Json json{
-      {"key", key}, {"value", parameter.value}, {"unit", unit}, {"origin", to_string(parameter.origin)}, {"source", parameter.source}};
+Json parameter_json(std::string_view key, std::string_view unit, const base::ParameterValue& parameter) {
+  Json json{{"key", key},
+            {"value", parameter.value},
+            {"unit", unit},
+            {"origin", base::to_string(parameter.origin)},
+            {"source", parameter.source}};
   if (parameter.spread) {
     json["range"] = {parameter.spread->low, parameter.spread->high};
   }
-  for (const Confirmation& each : parameter.confirmed_by) {
+  for (const base::Confirmation& each : parameter.confirmed_by) {
     json["confirmed_by"][each.source] = each.value;
   }
   if (!parameter.derivation.empty()) {
@@ -25,13 +28,13 @@ Json parameter_json(std::string_view key, std::string_view unit, const Parameter
 }
 
 /// Returns the effects that the file adds to those of every motor.
-Json own_effects(const Motor& motor) {
+Json own_effects(const motor::Motor& motor) {
   Json all;
-  for (const MotorEffect& effect : motor.effects) {
+  for (const motor::MotorEffect& effect : motor.effects) {
     Json json = {{"name", effect.name}, {"type", effect.type->name}, {"nodes", effect.nodes}, {"condition", effect.condition}};
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
       if (effect.type->parameters[i].choices.empty()) {
-        const std::string_view unit = unit_of(effect.type->parameters, i, effect.values());
+        const std::string_view unit = base::unit_of(effect.type->parameters, i, effect.values());
         json["figures"].push_back(parameter_json(effect.type->parameters[i].key, unit, effect.parameters[i]));
       }
     }
@@ -42,25 +45,25 @@ Json own_effects(const Motor& motor) {
 
 }  // namespace
 
-Json motor_json(const Motor& motor) {
+Json motor_json(const motor::Motor& motor) {
   Json result{{"kind", "motor"},
               {"id", motor.id},
               {"manufacturer", motor.manufacturer},
               {"name", motor.name},
-              {"data_quality", data_quality(motor)}};
-  for (const MotorParameterSpec& each : motor_parameter_specs()) {
+              {"data_quality", motor::data_quality(motor)}};
+  for (const motor::MotorParameterSpec& each : motor::motor_parameter_specs()) {
     if (const auto found = motor.parameters.find(each.spec.key); found != motor.parameters.end()) {
       result["figures"].push_back(parameter_json(each.spec.key, each.spec.unit, found->second));
     }
   }
-  const Network network = datasheet_network(motor, nominal_sample(motor));
-  for (const NetworkParameter& each : network.parameters()) {
+  const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
+  for (const thermal::NetworkParameter& each : network.parameters()) {
     result["network"].push_back(
         {{"name", each.name},
          {"value", each.choices.empty() ? Json(each.value) : Json(each.choices[static_cast<std::size_t>(each.value)].name)},
          {"unit", each.unit}});
   }
-  for (const MotorEffect& effect : motor.effects) {
+  for (const motor::MotorEffect& effect : motor.effects) {
     if (!effect.column.empty()) {
       result["network"].push_back({{"name", effect.name + ".column"}, {"value", effect.column}, {"unit", ""}});
     }
@@ -68,7 +71,7 @@ Json motor_json(const Motor& motor) {
   if (!motor.effects.empty()) {
     result["effects"] = own_effects(motor);
   }
-  for (const MotorSensor& sensor : motor.sensors) {
+  for (const motor::MotorSensor& sensor : motor.sensors) {
     Json json = parameter_json(sensor.type->size.key, sensor.type->size.unit, sensor.size);
     json["name"] = sensor.name;
     json["type"] = sensor.type->name;
@@ -79,7 +82,7 @@ Json motor_json(const Motor& motor) {
   return result;
 }
 
-Json robot_json(const Robot& robot) {
+Json robot_json(const robot::Robot& robot) {
   Json result{{"kind", "robot"},
               {"id", robot.id},
               {"name", robot.name},
@@ -95,7 +98,7 @@ Json robot_json(const Robot& robot) {
   return result;
 }
 
-Json duty_file_json(const Duty& duty) {
+Json duty_file_json(const duty::Duty& duty) {
   Json result{{"kind", "duty"},        {"id", duty.id},       {"summary", duty.summary},
               {"origin", duty.origin}, {"shape", duty.shape}, {"ambient_C", duty.ambient_C.value},
               {"notes", duty.notes}};
@@ -103,9 +106,9 @@ Json duty_file_json(const Duty& duty) {
     result["figures"].push_back(parameter.printed.empty() ? Json{{"key", spec.key}, {"value", parameter.value}, {"unit", spec.unit}}
                                                           : parameter_json(spec.key, spec.unit, parameter));
   }
-  if (const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data)) {
+  if (const auto match = std::dynamic_pointer_cast<const duty::MatchDuty>(duty.shape_data)) {
     for (std::size_t i = 0; i < match->inputs().parameters.size(); ++i) {
-      const ParameterSpec& spec = match_input_specs()[i].spec;
+      const base::ParameterSpec& spec = duty::match_input_specs()[i].spec;
       Json json = parameter_json(spec.key, spec.unit, match->inputs().parameters[i]);
       json["meaning"] = spec.meaning;
       result["figures"].push_back(json);
@@ -114,6 +117,8 @@ Json duty_file_json(const Duty& duty) {
   return result;
 }
 
-Json shape_json(const ShapeType& shape, const std::string& file) { return {{"kind", "shape"}, {"id", shape.name}, {"example", file}}; }
+Json shape_json(const duty::ShapeType& shape, const std::string& file) {
+  return {{"kind", "shape"}, {"id", shape.name}, {"example", file}};
+}
 
 }  // namespace heatsoak::present

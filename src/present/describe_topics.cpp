@@ -9,32 +9,32 @@
 namespace heatsoak::present {
 namespace {
 
-const SettingText& setting_text(Setting setting) { return all_settings()[static_cast<std::size_t>(setting)]; }
+const check::SettingText& setting_text(check::Setting setting) { return check::all_settings()[static_cast<std::size_t>(setting)]; }
 
-void add_settings(Document& document, std::string title, const std::vector<Setting>& settings) {
+void add_settings(Document& document, std::string title, const std::vector<check::Setting>& settings) {
   if (settings.empty()) {
     return;
   }
   Table table = labelled_table(std::move(title));
-  for (const Setting setting : settings) {
+  for (const check::Setting setting : settings) {
     add_labelled(table, setting_text(setting).key, setting_text(setting).meaning);
   }
   document.tables.push_back(std::move(table));
 }
 
-std::string example_of(const ThresholdType& type) {
+std::string example_of(const check::ThresholdType& type) {
   std::string text = "[[check]]\nname = \"what this check is for\"\n";
-  for (const Setting setting : type.needs) {
+  for (const check::Setting setting : type.needs) {
     const std::string_view key = setting_text(setting).key;
-    text += setting == Setting::temperature                           ? fmt::format("{} = \"100 degC\"\n", key)
-            : setting == Setting::against || setting == Setting::logs ? fmt::format("{} = [\"…\", \"…\"]\n", key)
-                                                                      : fmt::format("{} = \"…\"\n", key);
+    text += setting == check::Setting::temperature                                  ? fmt::format("{} = \"100 degC\"\n", key)
+            : setting == check::Setting::against || setting == check::Setting::logs ? fmt::format("{} = [\"…\", \"…\"]\n", key)
+                                                                                    : fmt::format("{} = \"…\"\n", key);
   }
   return text + fmt::format("[check.limits]\n{} = \"{}\"\n", type.name, type.example);
 }
 
 /// Formats the signals of a group that `readers` read: "Input: pose (m, rad), command_age_s (s)".
-std::string signals_text(const SignalGroup& group, robot_core::Blocks readers) {
+std::string signals_text(const firmware::SignalGroup& group, robot_core::Blocks readers) {
   std::vector<std::string> signals;
   for (const robot_core::SignalText& signal : group.signals) {
     if ((signal.to & readers) != 0) {
@@ -46,7 +46,7 @@ std::string signals_text(const SignalGroup& group, robot_core::Blocks readers) {
 
 }  // namespace
 
-Document threshold_description(const ThresholdType& type) {
+Document threshold_description(const check::ThresholdType& type) {
   Document document{.headline = {{fmt::format("{}: a threshold of `heatsoak check`, such as \"{}\"", type.name, type.example)}},
                     .paragraphs = {std::string(type.meaning)}};
   add_settings(document, "Needed in the check", type.needs);
@@ -60,7 +60,7 @@ Document verdict_description() {
                     .paragraphs = {}};
   Table table = labelled_table("");
   for (const VerdictMeaning& each : verdict_meanings()) {
-    add_labelled(table, to_string(each.verdict), each.meaning);
+    add_labelled(table, select::to_string(each.verdict), each.meaning);
   }
   add_labelled(table, "undecided", undecided_meaning());
   document.tables.push_back(std::move(table));
@@ -76,15 +76,15 @@ Document core_description() {
       .paragraphs = {
           "One call of robot_core::step() runs these blocks in this order; sources in robot_core/. `heatsoak describe robot_core "
           "--diagram core.svg` draws them, `heatsoak generate core` writes the core for a robot."}};
-  const std::vector<SignalGroup> groups = signal_groups();
+  const std::vector<firmware::SignalGroup> groups = firmware::signal_groups();
   for (const robot_core::BlockText& block : robot_core::kBlocks) {
     Table table = labelled_table(
-        fmt::format("{} {}, {}: {}() in {}", block.number, block.title, rate_words(block.rate), block.function, block.files));
+        fmt::format("{} {}, {}: {}() in {}", block.number, block.title, firmware::rate_words(block.rate), block.function, block.files));
     add_labelled(table, "task", block.task);
-    for (const SignalGroup& group : groups) {
+    for (const firmware::SignalGroup& group : groups) {
       add_labelled(table, "reads", signals_text(group, robot_core::only(block.block)));
     }
-    for (const SignalGroup& group : groups) {
+    for (const firmware::SignalGroup& group : groups) {
       add_labelled(table, "writes", group.from == block.block ? signals_text(group, ~0U) : "");
     }
     document.tables.push_back(std::move(table));

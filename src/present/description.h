@@ -16,18 +16,18 @@
 
 namespace heatsoak::present {
 
-Document motor_description(const Motor& motor);
-Document robot_description(const Robot& robot);
-Document duty_description(const Duty& duty);
+Document motor_description(const motor::Motor& motor);
+Document robot_description(const robot::Robot& robot);
+Document duty_description(const duty::Duty& duty);
 
 /// `file` is a complete duty file of this shape.
-Document shape_description(const ShapeType& shape, const std::string& file);
+Document shape_description(const duty::ShapeType& shape, const std::string& file);
 
 /// Describes an effect of the thermal network, with lines for a motor file at its typical size.
-Document effect_description(const EffectType& effect);
-Document sensor_description(const SensorEffectType& type);
+Document effect_description(const thermal::EffectType& effect);
+Document sensor_description(const motor::SensorEffectType& type);
 
-Document threshold_description(const ThresholdType& type);
+Document threshold_description(const check::ThresholdType& type);
 Document verdict_description();
 
 /// Describes the blocks of the drive core with the signals that they read and write.
@@ -40,13 +40,13 @@ struct LabelledWords {
 };
 
 /// Describes an effect that is not part of the thermal network. `where` states its place in a few words.
-Document effect_outside_network(std::string_view where, std::string_view name, std::string_view summary, const ParameterSpec& size,
+Document effect_outside_network(std::string_view where, std::string_view name, std::string_view summary, const base::ParameterSpec& size,
                                 std::span<const LabelledWords> lines);
 
 /// Returns the unit of a robot value by its key "table.key" or "friction.heading.wheel[0].key".
 std::string_view robot_unit(std::string_view key);
 
 /// Returns the name of a signal that an effect needs.
-std::string signal_name(Signal signal);
+std::string signal_name(thermal::Signal signal);
 
 }  // namespace heatsoak::present

@@ -15,14 +15,14 @@
 
 namespace heatsoak::present {
 
-Json motor_json(const Motor& motor);
-Json robot_json(const Robot& robot);
-Json duty_file_json(const Duty& duty);
+Json motor_json(const motor::Motor& motor);
+Json robot_json(const robot::Robot& robot);
+Json duty_file_json(const duty::Duty& duty);
 /// `file` is a complete duty file of this shape.
-Json shape_json(const ShapeType& shape, const std::string& file);
-Json network_effect_json(const EffectType& effect);
-Json sensor_json(const SensorEffectType& type);
-Json threshold_json(const ThresholdType& type);
+Json shape_json(const duty::ShapeType& shape, const std::string& file);
+Json network_effect_json(const thermal::EffectType& effect);
+Json sensor_json(const motor::SensorEffectType& type);
+Json threshold_json(const check::ThresholdType& type);
 Json verdict_json();
 Json core_json();
 
@@ -33,7 +33,7 @@ struct TopicLine {
 
 /// Returns the JSON of an effect that is not part of the thermal network. `where` states its place in a few words; lines without words are
 /// left out.
-Json effect_outside_network_json(std::string_view where, std::string_view name, std::string_view summary, const ParameterSpec& size,
+Json effect_outside_network_json(std::string_view where, std::string_view name, std::string_view summary, const base::ParameterSpec& size,
                                  std::span<const TopicLine> lines);
 
 }  // namespace heatsoak::present

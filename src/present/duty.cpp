@@ -12,50 +12,52 @@
 namespace heatsoak::present {
 namespace {
 
-Table role_table(const RoleLoads& roles) {
+Table role_table(const duty::RoleLoads& roles) {
   Table table{
       .title = "Share of torque squared, by phase and role", .columns = {{"", "", 0, Alignment::left}, {"time", "s", 1}}, .rows = {}};
-  for (const std::string_view role : kRoleNames) {
+  for (const std::string_view role : duty::kRoleNames) {
     table.columns.push_back({std::string(role), "", 0});
   }
-  const auto add = [&](std::string_view name, const std::string& time, const std::function<std::string(const MatchLoad&)>& cell) {
+  const auto add = [&](std::string_view name, const std::string& time, const std::function<std::string(const duty::MatchLoad&)>& cell) {
     std::vector<Text> row{{std::string(name)}, {time}};
-    for (const MatchLoad& load : roles) {
+    for (const duty::MatchLoad& load : roles) {
       row.push_back({cell(load)});
     }
     table.rows.push_back(std::move(row));
   };
-  const auto share = [](double part_Nm2_s, const MatchLoad& load) {
-    return fmt::format("{:.1f} %", 100.0 * part_Nm2_s / effort_Nm2_s(load));
+  const auto share = [](double part_Nm2_s, const duty::MatchLoad& load) {
+    return fmt::format("{:.1f} %", 100.0 * part_Nm2_s / duty::effort_Nm2_s(load));
   };
-  for (std::size_t i = 0; i < kPhaseNames.size(); ++i) {
+  for (std::size_t i = 0; i < duty::kPhaseNames.size(); ++i) {
     if (const double time_s = roles.back().phases[i].time_s; time_s > 0.0) {
-      add(kPhaseNames[i], fmt::format("{:.0f}", time_s),
-          [&](const MatchLoad& load) { return share(effort_Nm2_s(load.phases[i]) - load.phases[i].duel_torque_squared_Nm2_s, load); });
+      add(duty::kPhaseNames[i], fmt::format("{:.0f}", time_s), [&](const duty::MatchLoad& load) {
+        return share(duty::effort_Nm2_s(load.phases[i]) - load.phases[i].duel_torque_squared_Nm2_s, load);
+      });
     }
   }
-  const double most_Nm2_s = most_effort_Nm2_s(roles);
-  add("duels (pushing at stall)", "", [&](const MatchLoad& load) { return share(duel_effort_Nm2_s(load), load); });
-  add("  time in them", "", [](const MatchLoad& load) { return fmt::format("{:.0f} s", duel_s(load)); });
-  add("driven", "", [](const MatchLoad& load) { return fmt::format("{:.0f} m", load.distance_m); });
-  add("torque of a mean wheel, rms", "", [](const MatchLoad& load) { return fmt::format("{:.1f} mN m", 1e3 * torque_rms_Nm(load)); });
+  const double most_Nm2_s = duty::most_effort_Nm2_s(roles);
+  add("duels (pushing at stall)", "", [&](const duty::MatchLoad& load) { return share(duty::duel_effort_Nm2_s(load), load); });
+  add("  time in them", "", [](const duty::MatchLoad& load) { return fmt::format("{:.0f} s", duty::duel_s(load)); });
+  add("driven", "", [](const duty::MatchLoad& load) { return fmt::format("{:.0f} m", load.distance_m); });
+  add("torque of a mean wheel, rms", "",
+      [](const duty::MatchLoad& load) { return fmt::format("{:.1f} mN m", 1e3 * duty::torque_rms_Nm(load)); });
   add("torque squared / busiest role's", "",
-      [&](const MatchLoad& load) { return fmt::format("{:.0f} %", 100.0 * effort_Nm2_s(load) / most_Nm2_s); });
+      [&](const duty::MatchLoad& load) { return fmt::format("{:.0f} %", 100.0 * duty::effort_Nm2_s(load) / most_Nm2_s); });
   return table;
 }
 
-Document document_of(const DutyAnswer& answer, const PrescribedLoad& load) {
-  const Duty& duty = *answer.duty;
+Document document_of(const duty::DutyAnswer& answer, const duty::PrescribedLoad& load) {
+  const duty::Duty& duty = *answer.duty;
   return {.headline = {{fmt::format("{}: {}, {:.0f} s.", duty.id, duty.summary, load.duration_s)}},
           .paragraphs = {fmt::format("Load: {}.", duty.origin)}};
 }
 
-Document document_of(const DutyAnswer& answer, const GeneratedMatch& match) {
-  const Duty& duty = *answer.duty;
-  const Robot& robot = answer.robot;
-  const MatchLoad& load = match.load;
+Document document_of(const duty::DutyAnswer& answer, const duty::GeneratedMatch& match) {
+  const duty::Duty& duty = *answer.duty;
+  const robot::Robot& robot = answer.robot;
+  const duty::MatchLoad& load = match.load;
   Document document{.headline = {{fmt::format("{} of {} as {}: {}, {:.0f} s of them play, {:.2f} km.", duty.id, robot.id,
-                                              kRoleNames.at(static_cast<std::size_t>(match.role)), duration_text(load.duration_s),
+                                              duty::kRoleNames.at(static_cast<std::size_t>(match.role)), duration_text(load.duration_s),
                                               load.play_s, load.distance_m / 1e3)}},
                     .paragraphs = {fmt::format("Seed {}. Load: {}.", match.seed, duty.origin)},
                     .tables = {role_table(match.roles)}};
@@ -65,12 +67,12 @@ Document document_of(const DutyAnswer& answer, const GeneratedMatch& match) {
   if (acceleration_m_per_s2 && braking_m_per_s2 && *braking_m_per_s2 > *acceleration_m_per_s2) {
     document.add_note(Severity::note,
                       fmt::format("In a match the robot brakes with its acceleration of {} m/s²: its braking limit of {} m/s² is not used.",
-                                  significant(*acceleration_m_per_s2, 3), significant(*braking_m_per_s2, 3)));
+                                  base::significant(*acceleration_m_per_s2, 3), base::significant(*braking_m_per_s2, 3)));
   }
   return document;
 }
 
-Document document_of(const DutyAnswer& answer, const GameDemand& game) {
+Document document_of(const duty::DutyAnswer& answer, const duty::GameDemand& game) {
   Document document{
       .headline = {{fmt::format("{} of {}, driven by {}: {}.", game.player, std::filesystem::path(answer.log).filename().string(),
                                 answer.robot.id, duration_text(game.wheels.front().duration_s()))}},
@@ -83,7 +85,7 @@ Document document_of(const DutyAnswer& answer, const GameDemand& game) {
 
 }  // namespace
 
-Document duty_document(const DutyAnswer& answer) {
+Document duty_document(const duty::DutyAnswer& answer) {
   return std::visit([&](const auto& content) { return document_of(answer, content); }, answer.content);
 }
 

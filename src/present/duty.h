@@ -9,8 +9,8 @@
 
 namespace heatsoak::present {
 
-Document duty_document(const DutyAnswer& answer);
-Json duty_json(const DutyAnswer& answer);
+Document duty_document(const duty::DutyAnswer& answer);
+Json duty_json(const duty::DutyAnswer& answer);
 
 /// Adds the names of the written table and its duty file, and the command that evaluates them.
 void add_duty_files(Document& document, const std::string& table, const std::string& description);

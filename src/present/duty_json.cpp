@@ -6,11 +6,11 @@
 namespace heatsoak::present {
 namespace {
 
-Json phase_json(const MatchLoad& load) {
+Json phase_json(const duty::MatchLoad& load) {
   Json phases = Json::array();
   for (std::size_t i = 0; i < load.phases.size(); ++i) {
-    const PhaseLoad& phase = load.phases[i];
-    phases.push_back({{"phase", kPhaseNames[i]},
+    const duty::PhaseLoad& phase = load.phases[i];
+    phases.push_back({{"phase", duty::kPhaseNames[i]},
                       {"time_s", rounded(phase.time_s, 3)},
                       {"duel_s", rounded(phase.duel_s, 3)},
                       {"slip_s", rounded(phase.slip_s, 3)},
@@ -20,11 +20,11 @@ Json phase_json(const MatchLoad& load) {
   return phases;
 }
 
-Json json_of(const DutyAnswer& answer, const PrescribedLoad& load) {
+Json json_of(const duty::DutyAnswer& answer, const duty::PrescribedLoad& load) {
   return {{"schema", "heatsoak.duty/1"}, {"duty", answer.duty->id}, {"origin", answer.duty->origin}, {"duration_s", load.duration_s}};
 }
 
-Json json_of(const DutyAnswer& answer, const GeneratedMatch& match) {
+Json json_of(const duty::DutyAnswer& answer, const duty::GeneratedMatch& match) {
   return {{"schema", "heatsoak.duty/1"},
           {"duty", answer.duty->id},
           {"robot", answer.robot.id},
@@ -37,7 +37,7 @@ Json json_of(const DutyAnswer& answer, const GeneratedMatch& match) {
           {"roles", role_json(match.roles)}};
 }
 
-Json json_of(const DutyAnswer& answer, const GameDemand& game) {
+Json json_of(const duty::DutyAnswer& answer, const duty::GameDemand& game) {
   return {{"schema", "heatsoak.duty/1"},
           {"log", answer.log},
           {"player", game.player},
@@ -48,7 +48,7 @@ Json json_of(const DutyAnswer& answer, const GameDemand& game) {
 
 }  // namespace
 
-Json duty_json(const DutyAnswer& answer) {
+Json duty_json(const duty::DutyAnswer& answer) {
   return std::visit([&](const auto& content) { return json_of(answer, content); }, answer.content);
 }
 

@@ -8,14 +8,14 @@
 namespace heatsoak::present {
 namespace {
 
-Json json(const Spread95& peak) {
+Json json(const select::Spread95& peak) {
   return {
       {"nominal", rounded(peak.nominal, 2)}, {"p05", rounded(peak.p05, 2)}, {"p50", rounded(peak.p50, 2)}, {"p95", rounded(peak.p95, 2)}};
 }
 
-Json json(const MotorEvaluation& each) {
+Json json(const select::MotorEvaluation& each) {
   const auto optional = [](const std::optional<double>& value, int decimals) { return value ? rounded(*value, decimals) : Json(); };
-  const auto interval = [](const std::optional<Interval95>& value, int decimals) {
+  const auto interval = [](const std::optional<select::Interval95>& value, int decimals) {
     return value ? Json{rounded(value->low, decimals), rounded(value->high, decimals)} : Json();
   };
   return {{"id", each.motor_id},
@@ -29,8 +29,8 @@ Json json(const MotorEvaluation& each) {
           {"winding_p95_ci95_C", interval(each.winding_p95_interval_C, 2)},
           {"time_to_limit_s", optional(each.time_to_limit_s, 3)},
           {"current_rms_A", rounded(each.current_rms_A, 4)},
-          {"verdict", to_string(each.verdict)},
-          {"limiting_factor", to_string(each.limiting_factor)},
+          {"verdict", select::to_string(each.verdict)},
+          {"limiting_factor", select::to_string(each.limiting_factor)},
           {"data_quality", each.data_quality},
           {"wheel", each.wheel},
           {"margin_K", rounded(each.margin_K, 2)},
@@ -44,12 +44,12 @@ Json json(const MotorEvaluation& each) {
           {"runaway", each.destroyed}};
 }
 
-Json changes_json(const SuggestedChanges& changes) {
+Json changes_json(const simulate::SuggestedChanges& changes) {
   Json all = Json::array();
-  for (const ChangeEffect& each : changes.effects) {
+  for (const select::ChangeEffect& each : changes.effects) {
     const bool is_value = each.other_motor.empty();
-    all.push_back({{"quantity", name_of(each.quantity)},
-                   {"unit", unit_of(each.quantity)},
+    all.push_back({{"quantity", select::name_of(each.quantity)},
+                   {"unit", select::unit_of(each.quantity)},
                    {"from", is_value ? rounded(each.before, 6) : Json(changes.motor_id)},
                    {"to", is_value ? rounded(each.before * each.factor, 6) : Json(each.other_motor)},
                    {"saved_K", rounded(each.saved_K, 2)},
@@ -61,7 +61,7 @@ Json changes_json(const SuggestedChanges& changes) {
 
 }  // namespace
 
-Json evaluation_json(const EvaluationAnswer& answer) {
+Json evaluation_json(const simulate::EvaluationAnswer& answer) {
   Json result{{"schema", "heatsoak.evaluate/1"}, {"robot", answer.robot.id},          {"conditions", answer.conditions},
               {"duty", answer.duty.id},          {"duty_origin", answer.duty.origin}, {"seed", answer.seed},
               {"samples", answer.samples},       {"duty_draws", answer.draw_count}};

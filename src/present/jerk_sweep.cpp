@@ -8,10 +8,10 @@ namespace heatsoak::present {
 namespace {
 
 /// States the jerk limit whose drives settle first, for the robot's own acceleration, which comes first.
-Text headline(const std::vector<StudyResult>& results) {
+Text headline(const std::vector<simulate::StudyResult>& results) {
   const double own_m_per_s2 = results.front().limits.acceleration_m_per_s2;
-  const StudyResult* best = &results.front();
-  for (const StudyResult& each : results) {
+  const simulate::StudyResult* best = &results.front();
+  for (const simulate::StudyResult& each : results) {
     if (each.limits.acceleration_m_per_s2 == own_m_per_s2 && each.settled_s < best->settled_s) {
       best = &each;
     }
@@ -23,8 +23,8 @@ Text headline(const std::vector<StudyResult>& results) {
 
 }  // namespace
 
-Document jerk_sweep_document(const JerkSweep& sweep) {
-  const double grip = grip_m_per_s2(sweep.robot);
+Document jerk_sweep_document(const simulate::JerkSweep& sweep) {
+  const double grip = simulate::grip_m_per_s2(sweep.robot);
   Document document{
       .headline = {headline(sweep.results)},
       .paragraphs = {fmt::format("{} on {}: simulated drives of 0.5, 1 and 2 m in eight directions, from rest to rest; means.",
@@ -41,7 +41,7 @@ Document jerk_sweep_document(const JerkSweep& sweep) {
                           {"peak", "A", 7},
                           {"copper", "J", 1}},
               .rows = {}};
-  for (const StudyResult& each : sweep.results) {
+  for (const simulate::StudyResult& each : sweep.results) {
     const double acceleration_m_per_s2 = each.limits.acceleration_m_per_s2;
     table.rows.push_back({{fmt::format("{:.1f}", acceleration_m_per_s2)},
                           {fmt::format("{:.0f}", 100.0 * acceleration_m_per_s2 / grip)},

@@ -7,7 +7,7 @@
 
 namespace heatsoak::present {
 
-Document jerk_sweep_document(const JerkSweep& sweep);
-Json jerk_sweep_json(const JerkSweep& sweep);
+Document jerk_sweep_document(const simulate::JerkSweep& sweep);
+Json jerk_sweep_json(const simulate::JerkSweep& sweep);
 
 }  // namespace heatsoak::present

@@ -6,6 +6,6 @@
 
 namespace heatsoak::present {
 
-Chart jerk_sweep_chart(const JerkSweep& sweep);
+report::Chart jerk_sweep_chart(const simulate::JerkSweep& sweep);
 
 }  // namespace heatsoak::present

@@ -5,9 +5,9 @@
 namespace heatsoak::present {
 namespace {
 
-Json cases_json(const std::vector<StudyResult>& results) {
+Json cases_json(const std::vector<simulate::StudyResult>& results) {
   Json rows = Json::array();
-  for (const StudyResult& each : results) {
+  for (const simulate::StudyResult& each : results) {
     rows.push_back({{"planner", each.is_bang_bang() ? "bang_bang" : "jerk_limited"},
                     {"acceleration_m_per_s2", rounded(each.limits.acceleration_m_per_s2, 4)},
                     {"jerk_m_per_s3", rounded(each.limits.jerk_m_per_s3, 4)},
@@ -25,11 +25,11 @@ Json cases_json(const std::vector<StudyResult>& results) {
 
 }  // namespace
 
-Json jerk_sweep_json(const JerkSweep& sweep) {
+Json jerk_sweep_json(const simulate::JerkSweep& sweep) {
   return {{"schema", "heatsoak.jerk_sweep/1"},
           {"motor", sweep.motor.id},
           {"robot", sweep.robot.id},
-          {"grip_m_per_s2", rounded(grip_m_per_s2(sweep.robot), 4)},
+          {"grip_m_per_s2", rounded(simulate::grip_m_per_s2(sweep.robot), 4)},
           {"cases", cases_json(sweep.results)}};
 }
 

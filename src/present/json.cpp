@@ -15,9 +15,9 @@ Json rounded(double value, int decimals) {
   return std::round(value * scale) / scale;
 }
 
-Json failure_json(const Failure& failure) {
+Json failure_json(const base::Failure& failure) {
   Json diagnostics = Json::array();
-  for (const Diagnostic& each : failure.diagnostics()) {
+  for (const base::Diagnostic& each : failure.diagnostics()) {
     diagnostics.push_back(
         {{"file", each.at.file}, {"line", each.at.line}, {"column", each.at.column}, {"key", each.key}, {"message", each.message}});
   }

@@ -13,6 +13,6 @@ using Json = nlohmann::ordered_json;
 Json rounded(double value, int decimals);
 
 /// Returns the answer of a command that failed.
-Json failure_json(const Failure& failure);
+Json failure_json(const base::Failure& failure);
 
 }  // namespace heatsoak::present

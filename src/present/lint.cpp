@@ -4,10 +4,10 @@
 
 namespace heatsoak::present {
 
-Document lint_document(const FilesLint& lint) {
+Document lint_document(const duty::FilesLint& lint) {
   const std::size_t files = lint.files.size();
-  const std::size_t errors = lint.count(LintFinding::Level::error);
-  const std::size_t warnings = lint.count(LintFinding::Level::warning);
+  const std::size_t errors = lint.count(motor::LintFinding::Level::error);
+  const std::size_t warnings = lint.count(motor::LintFinding::Level::warning);
   const bool is_sound = errors + warnings == 0;
   Document document{.headline = {{fmt::format("{} file{}: {}", files, files == 1 ? "" : "s",
                                               is_sound ? "sound"
@@ -16,9 +16,9 @@ Document lint_document(const FilesLint& lint) {
                                   is_sound ? Tone::good : Tone::bad}},
                     .paragraphs = {}};
   Listing listing{.title = {}, .lines = {}, .is_prose = true};
-  for (const LintFinding& each : lint.findings) {
-    listing.lines +=
-        fmt::format("{}:{}:{}: {}: {}: {}\n", each.at.file, each.at.line, each.at.column, to_string(each.level), each.check, each.message);
+  for (const motor::LintFinding& each : lint.findings) {
+    listing.lines += fmt::format("{}:{}:{}: {}: {}: {}\n", each.at.file, each.at.line, each.at.column, motor::to_string(each.level),
+                                 each.check, each.message);
   }
   if (!listing.lines.empty()) {
     document.listings.push_back(std::move(listing));

@@ -8,7 +8,7 @@
 namespace heatsoak::present {
 
 /// The findings are lines "file:line:column: level: check: message", which editors understand.
-Document lint_document(const FilesLint& lint);
-Json lint_json(const FilesLint& lint);
+Document lint_document(const duty::FilesLint& lint);
+Json lint_json(const duty::FilesLint& lint);
 
 }  // namespace heatsoak::present

@@ -4,20 +4,20 @@
 
 namespace heatsoak::present {
 
-Json lint_json(const FilesLint& lint) {
+Json lint_json(const duty::FilesLint& lint) {
   Json findings = Json::array();
-  for (const LintFinding& each : lint.findings) {
+  for (const motor::LintFinding& each : lint.findings) {
     findings.push_back({{"file", each.at.file},
                         {"line", each.at.line},
                         {"column", each.at.column},
-                        {"level", to_string(each.level)},
+                        {"level", motor::to_string(each.level)},
                         {"check", each.check},
                         {"message", each.message}});
   }
   return {{"schema", "heatsoak.lint/1"},
           {"files", lint.files},
-          {"errors", lint.count(LintFinding::Level::error)},
-          {"warnings", lint.count(LintFinding::Level::warning)},
+          {"errors", lint.count(motor::LintFinding::Level::error)},
+          {"warnings", lint.count(motor::LintFinding::Level::warning)},
           {"findings", findings}};
 }
 

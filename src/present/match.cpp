@@ -14,71 +14,72 @@
 namespace heatsoak::present {
 namespace {
 
-double limited_s(const DriveScore& score, robot_core::Reason limit) {
-  return score.limited_s.at(static_cast<std::size_t>(std::ranges::find(kLimits, limit) - kLimits.begin()));
+double limited_s(const simulate::DriveScore& score, robot_core::Reason limit) {
+  return score.limited_s.at(static_cast<std::size_t>(std::ranges::find(simulate::kLimits, limit) - simulate::kLimits.begin()));
 }
 
 /// Returns a value per metre driven.
-std::string per_metre(double value, const DriveScore& score) {
+std::string per_metre(double value, const simulate::DriveScore& score) {
   return score.distance_m > 0.0 ? fmt::format("{:.1f}", value / score.distance_m) : "not moved";
 }
 
 struct ScoreRow {
   std::string_view name;
   std::string_view unit;
-  std::string (*cell)(const DriveScore& score);
+  std::string (*cell)(const simulate::DriveScore& score);
 };
 
 constexpr ScoreRow kScores[] = {
-    {"driven", "m", [](const DriveScore& s) { return fmt::format("{:.0f}", s.distance_m); }},
-    {"slip of a mean wheel", "mm per m", [](const DriveScore& s) { return per_metre(1e3 * s.slip_m, s); }},
-    {"  of it sliding", "", [](const DriveScore& s) { return per_metre(1e3 * s.sliding_m, s); }},
-    {"time in which a wheel slides", "s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.sliding_s); }},
-    {"time in which a wheel is lifted", "s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.lifted_s); }},
-    {"tracking error", "mm rms", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.tracking_rms_m); }},
-    {"  largest", "mm", [](const DriveScore& s) { return fmt::format("{:.0f}", 1e3 * s.tracking_most_m); }},
+    {"driven", "m", [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", s.distance_m); }},
+    {"slip of a mean wheel", "mm per m", [](const simulate::DriveScore& s) { return per_metre(1e3 * s.slip_m, s); }},
+    {"  of it sliding", "", [](const simulate::DriveScore& s) { return per_metre(1e3 * s.sliding_m, s); }},
+    {"time in which a wheel slides", "s", [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", s.sliding_s); }},
+    {"time in which a wheel is lifted", "s", [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", s.lifted_s); }},
+    {"tracking error", "mm rms", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.tracking_rms_m); }},
+    {"  largest", "mm", [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", 1e3 * s.tracking_most_m); }},
     {"overshoot, mean of arrivals", "mm",
-     [](const DriveScore& s) { return fmt::format("{:.1f} of {:.0f}", 1e3 * s.overshoot_mean_m, s.arrivals_count); }},
-    {"  largest", "mm", [](const DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.overshoot_most_m); }},
-    {"peak current", "A", [](const DriveScore& s) { return fmt::format("{:.1f}", s.peak_current_A); }},
-    {"rms current, hottest motor", "A", [](const DriveScore& s) { return fmt::format("{:.2f}", s.current_rms_A); }},
-    {"driver or battery falls short", "s", [](const DriveScore& s) { return fmt::format("{:.1f}", s.short_s); }},
-    {"lowest battery voltage", "V", [](const DriveScore& s) { return fmt::format("{:.1f}", s.lowest_battery_V); }},
-    {"core limits by traction", "s", [](const DriveScore& s) { return fmt::format("{:.1f}", limited_s(s, robot_core::Reason::traction)); }},
+     [](const simulate::DriveScore& s) { return fmt::format("{:.1f} of {:.0f}", 1e3 * s.overshoot_mean_m, s.arrivals_count); }},
+    {"  largest", "mm", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.overshoot_most_m); }},
+    {"peak current", "A", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", s.peak_current_A); }},
+    {"rms current, hottest motor", "A", [](const simulate::DriveScore& s) { return fmt::format("{:.2f}", s.current_rms_A); }},
+    {"driver or battery falls short", "s", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", s.short_s); }},
+    {"lowest battery voltage", "V", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", s.lowest_battery_V); }},
+    {"core limits by traction", "s",
+     [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", limited_s(s, robot_core::Reason::traction)); }},
     {"  by voltage, current or sag", "s",
-     [](const DriveScore& s) {
+     [](const simulate::DriveScore& s) {
        return fmt::format("{:.1f}", limited_s(s, robot_core::Reason::voltage) + limited_s(s, robot_core::Reason::driver_current) +
                                         limited_s(s, robot_core::Reason::battery_sag));
      }},
-    {"faults that the core reports", "s", [](const DriveScore& s) { return fmt::format("{:.1f}", s.fault_s); }},
-    {"radio packets lost", "%", [](const DriveScore& s) { return fmt::format("{:.1f}", 100.0 * s.lost_packets_share); }},
-    {"battery empty", "s", [](const DriveScore& s) { return fmt::format("{:.0f}", s.battery_empty_s); }},
-    {"copper heat, all motors", "kJ", [](const DriveScore& s) { return fmt::format("{:.2f}", 1e-3 * s.energy.copper_J); }},
-    {"  per metre", "J", [](const DriveScore& s) { return per_metre(s.energy.copper_J, s); }},
-    {"  of it in duels", "%", [](const DriveScore& s) { return fmt::format("{:.0f}", 100.0 * s.duel_copper_share); }},
-    {"winding peak", "°C", [](const DriveScore& s) { return fmt::format("{:.1f}", s.winding_peak_C); }},
-    {"stator peak", "°C", [](const DriveScore& s) { return fmt::format("{:.1f}", s.stator_peak_C); }},
+    {"faults that the core reports", "s", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", s.fault_s); }},
+    {"radio packets lost", "%", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", 100.0 * s.lost_packets_share); }},
+    {"battery empty", "s", [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", s.battery_empty_s); }},
+    {"copper heat, all motors", "kJ", [](const simulate::DriveScore& s) { return fmt::format("{:.2f}", 1e-3 * s.energy.copper_J); }},
+    {"  per metre", "J", [](const simulate::DriveScore& s) { return per_metre(s.energy.copper_J, s); }},
+    {"  of it in duels", "%", [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", 100.0 * s.duel_copper_share); }},
+    {"winding peak", "°C", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", s.winding_peak_C); }},
+    {"stator peak", "°C", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", s.stator_peak_C); }},
 };
 
 /// Returns a table whose columns after name and unit are the planners.
-Table planner_table(std::string title, const MatchSimulation& answer) {
+Table planner_table(std::string title, const simulate::MatchSimulation& answer) {
   Table table{.title = std::move(title), .columns = {{"", "", 0, Alignment::left}, {"", "", 0, Alignment::left}}, .rows = {}};
-  for (const DrivenMatch& each : answer.runs) {
-    table.columns.push_back({std::string(to_string(each.planner)), "", 0});
+  for (const simulate::DrivenMatch& each : answer.runs) {
+    table.columns.push_back({std::string(duty::to_string(each.planner)), "", 0});
   }
   return table;
 }
 
 template <class Cell>
-void add_row(Table& table, const MatchSimulation& answer, std::string_view name, std::string_view unit, const Cell& cell) {
+void add_row(Table& table, const simulate::MatchSimulation& answer, std::string_view name, std::string_view unit, const Cell& cell) {
   std::vector<Text> row{{std::string(name)}, {std::string(unit)}};
-  for (const DrivenMatch& each : answer.runs) {
+  for (const simulate::DrivenMatch& each : answer.runs) {
     row.push_back({cell(each.run.score)});
   }
   table.rows.push_back(std::move(row));
 }
 
-Table score_table(const MatchSimulation& answer) {
+Table score_table(const simulate::MatchSimulation& answer) {
   Table table = planner_table("How well, and at what price, the match was driven", answer);
   for (const ScoreRow& each : kScores) {
     add_row(table, answer, each.name, each.unit, each.cell);
@@ -86,21 +87,24 @@ Table score_table(const MatchSimulation& answer) {
   return table;
 }
 
-Table energy_table(const MatchSimulation& answer) {
+Table energy_table(const simulate::MatchSimulation& answer) {
   Table table = planner_table("Energy out of the battery", answer);
-  add_row(table, answer, "in all", "kJ", [](const DriveScore& score) { return fmt::format("{:.2f}", 1e-3 * score.energy.battery_J); });
+  add_row(table, answer, "in all", "kJ",
+          [](const simulate::DriveScore& score) { return fmt::format("{:.2f}", 1e-3 * score.energy.battery_J); });
   for (const EnergyPart& each : energy_parts()) {
-    add_row(table, answer, each.name, "%",
-            [&](const DriveScore& score) { return fmt::format("{:.1f}", 100.0 * score.energy.*each.value / score.energy.battery_J); });
+    add_row(table, answer, each.name, "%", [&](const simulate::DriveScore& score) {
+      return fmt::format("{:.1f}", 100.0 * score.energy.*each.value / score.energy.battery_J);
+    });
   }
-  add_row(table, answer, "not accounted for", "%",
-          [](const DriveScore& score) { return fmt::format("{:.3f}", 100.0 * score.energy.residual_J() / score.energy.battery_J); });
+  add_row(table, answer, "not accounted for", "%", [](const simulate::DriveScore& score) {
+    return fmt::format("{:.3f}", 100.0 * score.energy.residual_J() / score.energy.battery_J);
+  });
   return table;
 }
 
 /// Reports what the thermal guard did or, in shadow mode, would have done.
-void add_guard_notes(Document& document, const MatchSimulation& answer) {
-  if (answer.guard_use == GuardUse::off) {
+void add_guard_notes(Document& document, const simulate::MatchSimulation& answer) {
+  if (answer.guard_use == simulate::GuardUse::off) {
     document.add_note(Severity::note, "thermal guard: off");
     return;
   }
@@ -109,9 +113,9 @@ void add_guard_notes(Document& document, const MatchSimulation& answer) {
                       fmt::format("thermal guard: none, because this motor cannot be guarded: {}", answer.guard.why_none));
     return;
   }
-  for (const DrivenMatch& each : answer.runs) {
-    const DriveScore& score = each.run.score;
-    const std::string what = answer.guard_use == GuardUse::on
+  for (const simulate::DrivenMatch& each : answer.runs) {
+    const simulate::DriveScore& score = each.run.score;
+    const std::string what = answer.guard_use == simulate::GuardUse::on
                                  ? fmt::format("limited a motor for {:.1f} s", score.guard_limited_s)
                                  : fmt::format("would have limited a motor for {:.1f} s and taken away {:.1f} A s", score.guard_limited_s,
                                                score.guard_missing_A_s);
@@ -119,66 +123,67 @@ void add_guard_notes(Document& document, const MatchSimulation& answer) {
         Severity::note,
         fmt::format(
             "thermal guard ({}), {}: {} of {}; its observer, with air of {:.0f} °C and its safety factor on heat, reached {:.0f} °C",
-            kGuardUses[static_cast<std::size_t>(answer.guard_use)], to_string(each.planner), what, duration_text(score.time_s),
+            simulate::kGuardUses[static_cast<std::size_t>(answer.guard_use)], duty::to_string(each.planner), what,
+            duration_text(score.time_s),
             answer.is_sensing_ideal ? answer.duty.ambient_C.value : static_cast<double>(answer.guard.guard->model().hottest_ambient_C),
             score.guard_winding_peak_C));
   }
 }
 
-std::string passes_or(Verdict verdict) {
-  return verdict == Verdict::pass ? "passes" : verdict == Verdict::fail ? "fails" : "cannot drive this match";
+std::string passes_or(select::Verdict verdict) {
+  return verdict == select::Verdict::pass ? "passes" : verdict == select::Verdict::fail ? "fails" : "cannot drive this match";
 }
 
 }  // namespace
 
 std::span<const EnergyPart> energy_parts() {
-  static constexpr std::array<EnergyPart, 9> kParts{{{"copper", &EnergyAccount::copper_J},
-                                                     {"iron_and_bearings", &EnergyAccount::motor_drag_J},
-                                                     {"drivers", &EnergyAccount::driver_J},
-                                                     {"battery_resistance", &EnergyAccount::battery_loss_J},
-                                                     {"gear", &EnergyAccount::gear_J},
-                                                     {"rolling", &EnergyAccount::rolling_J},
-                                                     {"wheel_friction", &EnergyAccount::friction_J},
-                                                     {"rollers", &EnergyAccount::roller_J},
-                                                     {"slip", &EnergyAccount::slip_J}}};
+  static constexpr std::array<EnergyPart, 9> kParts{{{"copper", &simulate::EnergyAccount::copper_J},
+                                                     {"iron_and_bearings", &simulate::EnergyAccount::motor_drag_J},
+                                                     {"drivers", &simulate::EnergyAccount::driver_J},
+                                                     {"battery_resistance", &simulate::EnergyAccount::battery_loss_J},
+                                                     {"gear", &simulate::EnergyAccount::gear_J},
+                                                     {"rolling", &simulate::EnergyAccount::rolling_J},
+                                                     {"wheel_friction", &simulate::EnergyAccount::friction_J},
+                                                     {"rollers", &simulate::EnergyAccount::roller_J},
+                                                     {"slip", &simulate::EnergyAccount::slip_J}}};
   return kParts;
 }
 
-Document match_document(const MatchSimulation& answer) {
-  const DrivenMatch& hottest =
-      *std::ranges::max_element(answer.runs, {}, [](const DrivenMatch& each) { return each.run.score.winding_peak_C; });
+Document match_document(const simulate::MatchSimulation& answer) {
+  const simulate::DrivenMatch& hottest =
+      *std::ranges::max_element(answer.runs, {}, [](const simulate::DrivenMatch& each) { return each.run.score.winding_peak_C; });
   Document document{
       .headline = {{fmt::format("{} {}: the hottest winding, of wheel {}{}, reaches {:.1f} °C (limit {:.0f} °C).", answer.motor.id,
                                 passes_or(answer.verdict), hottest.run.score.hottest_wheel + 1,
-                                answer.runs.size() > 1 ? fmt::format(" with {}", to_string(hottest.planner)) : "",
+                                answer.runs.size() > 1 ? fmt::format(" with {}", duty::to_string(hottest.planner)) : "",
                                 hottest.run.score.winding_peak_C, answer.motor.nominal.winding_limit_C),
                     tone_of(answer.verdict)}},
-      .paragraphs = {fmt::format(
-          "{} on {} as {}, seed {}: closed loop of {} at 1 kHz with the drive core, {}, {} thermal data. Load: {}.", answer.robot.id,
-          answer.duty.id, kRoleNames.at(static_cast<std::size_t>(answer.role)), answer.seed,
-          duration_text(answer.runs.front().run.score.time_s),
-          answer.is_sensing_ideal ? std::string("exact sensors and no delays")
-                                  : fmt::format("real sensing and {:.0f} radio packets per second", radio_of(answer.robot).packet_rate_Hz),
-          data_quality(answer.motor), answer.duty.origin)},
+      .paragraphs = {fmt::format("{} on {} as {}, seed {}: closed loop of {} at 1 kHz with the drive core, {}, {} thermal data. Load: {}.",
+                                 answer.robot.id, answer.duty.id, duty::kRoleNames.at(static_cast<std::size_t>(answer.role)), answer.seed,
+                                 duration_text(answer.runs.front().run.score.time_s),
+                                 answer.is_sensing_ideal ? std::string("exact sensors and no delays")
+                                                         : fmt::format("real sensing and {:.0f} radio packets per second",
+                                                                       simulate::radio_of(answer.robot).packet_rate_Hz),
+                                 motor::data_quality(answer.motor), answer.duty.origin)},
       .tables = {score_table(answer), energy_table(answer)}};
-  for (const DrivenMatch& each : answer.runs) {
-    if (const std::optional<DriveProblem> problem = drive_problem(each.run.score)) {
-      document.add_note(Severity::warning, fmt::format("{}: {}", to_string(each.planner), words_of(*problem, each.run.score)));
+  for (const simulate::DrivenMatch& each : answer.runs) {
+    if (const std::optional<simulate::DriveProblem> problem = simulate::drive_problem(each.run.score)) {
+      document.add_note(Severity::warning, fmt::format("{}: {}", duty::to_string(each.planner), words_of(*problem, each.run.score)));
     }
   }
   add_guard_notes(document, answer);
   add_motor_notes(document, {&answer.motor, 1});
-  if (answer.guard_use != GuardUse::off) {
+  if (answer.guard_use != simulate::GuardUse::off) {
     add_lines(document.notes, default_spreads_text({&answer.motor, 1}), Severity::note);
   }
-  add_lines(document.notes, assumed_friction_text(answer.robot), Severity::warning);
+  add_lines(document.notes, robot::assumed_friction_text(answer.robot), Severity::warning);
   return document;
 }
 
-Document load_simulation_document(const LoadSimulation& simulation) {
+Document load_simulation_document(const select::LoadSimulation& simulation) {
   const auto& [robot, motor, duty, duration_s, result, trace] = simulation;
-  Document document{.headline = {{fmt::format("{} {}: winding peak {:.1f} °C (limit {:.0f} °C).", motor.id, to_string(result.verdict),
-                                              result.winding_peak_C.nominal, result.winding_limit_C),
+  Document document{.headline = {{fmt::format("{} {}: winding peak {:.1f} °C (limit {:.0f} °C).", motor.id,
+                                              select::to_string(result.verdict), result.winding_peak_C.nominal, result.winding_limit_C),
                                   tone_of(result.verdict)}},
                     .paragraphs = {fmt::format("{} on {} ({}, {}): stator peak {:.1f} °C, rms current {:.2f} A, {} thermal data. Load: {}.",
                                                robot.id, duty.id, duration_text(duration_s), result.wheel, result.stator_peak_C.nominal,
@@ -186,7 +191,7 @@ Document load_simulation_document(const LoadSimulation& simulation) {
   Table table{.title = "Mean heat into the nodes (positive: into)",
               .columns = {{"effect", "", 0, Alignment::left}, {"node", "", 0, Alignment::left}, {"heat", "W", 0}},
               .rows = {}};
-  for (const BookedHeat& each : trace.balance) {
+  for (const select::BookedHeat& each : trace.balance) {
     table.rows.push_back({{std::string(each.effect)}, {std::string(each.node)}, {fmt::format("{:+.3f}", each.mean_W)}});
   }
   table.rows.push_back({{"stored in the motor"}, {""}, {fmt::format("{:+.3f}", trace.stored_W)}});

@@ -11,17 +11,17 @@
 
 namespace heatsoak::present {
 
-Document match_document(const MatchSimulation& match);
-Json match_json(const MatchSimulation& match);
+Document match_document(const simulate::MatchSimulation& match);
+Json match_json(const simulate::MatchSimulation& match);
 
 /// One part of the energy that left the battery.
 struct EnergyPart {
   std::string_view name;  ///< also the key in the JSON, without its unit
-  double EnergyAccount::*value;
+  double simulate::EnergyAccount::*value;
 };
 std::span<const EnergyPart> energy_parts();
 
-Document load_simulation_document(const LoadSimulation& simulation);
-Json load_simulation_json(const LoadSimulation& simulation);
+Document load_simulation_document(const select::LoadSimulation& simulation);
+Json load_simulation_json(const select::LoadSimulation& simulation);
 
 }  // namespace heatsoak::present

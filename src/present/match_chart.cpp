@@ -11,75 +11,77 @@
 namespace heatsoak::present {
 namespace {
 
-std::vector<double> column(const std::vector<MatchRow>& rows, const std::function<double(const MatchRow&)>& of) {
+std::vector<double> column(const std::vector<simulate::MatchRow>& rows, const std::function<double(const simulate::MatchRow&)>& of) {
   std::vector<double> values;
-  for (const MatchRow& row : rows) {
+  for (const simulate::MatchRow& row : rows) {
     values.push_back(of(row));
   }
   return values;
 }
 
 /// Panels for one planner: the windings of all wheels, then the motor of the hottest one, the robot and the battery.
-std::vector<ChartPanel> detail(const MatchSimulation& match, const DrivenMatch& driven) {
+std::vector<report::ChartPanel> detail(const simulate::MatchSimulation& match, const simulate::DrivenMatch& driven) {
   const auto hottest = static_cast<std::size_t>(driven.run.score.hottest_wheel);
-  const std::vector<double> minutes = column(driven.rows, [](const MatchRow& row) { return row.time_s / 60.0; });
-  const auto curve = [&](std::string name, int color, const std::function<double(const MatchRow&)>& of) {
-    return ChartCurve{std::move(name), minutes, column(driven.rows, of), color, false};
+  const std::vector<double> minutes = column(driven.rows, [](const simulate::MatchRow& row) { return row.time_s / 60.0; });
+  const auto curve = [&](std::string name, int color, const std::function<double(const simulate::MatchRow&)>& of) {
+    return report::ChartCurve{std::move(name), minutes, column(driven.rows, of), color, false};
   };
-  ChartPanel heat{.title = "Windings and stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
+  report::ChartPanel heat{.title = "Windings and stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
   for (std::size_t i = 0; i < match.robot.wheels.axis_rad.size(); ++i) {
     heat.curves.push_back(
-        curve(fmt::format("winding {}", i + 1), static_cast<int>(i), [i](const MatchRow& row) { return row.winding_peak_C[i]; }));
+        curve(fmt::format("winding {}", i + 1), static_cast<int>(i), [i](const simulate::MatchRow& row) { return row.winding_peak_C[i]; }));
   }
-  heat.curves.push_back(curve(fmt::format("stator {}", hottest + 1), 4, [&](const MatchRow& row) { return row.stator_C[hottest]; }));
+  heat.curves.push_back(
+      curve(fmt::format("stator {}", hottest + 1), 4, [&](const simulate::MatchRow& row) { return row.stator_C[hottest]; }));
   heat.levels.push_back({fmt::format("limit {:.0f} °C", match.motor.nominal.winding_limit_C), match.motor.nominal.winding_limit_C});
-  const auto single = [](std::string title, std::string label, ChartCurve one) {
-    return ChartPanel{.title = std::move(title), .y_label = std::move(label), .curves = {std::move(one)}, .bands = {}, .levels = {}};
+  const auto single = [](std::string title, std::string label, report::ChartCurve one) {
+    return report::ChartPanel{
+        .title = std::move(title), .y_label = std::move(label), .curves = {std::move(one)}, .bands = {}, .levels = {}};
   };
   const int color = static_cast<int>(hottest);
   return {std::move(heat),
           single(fmt::format("Motor {}", hottest + 1), "current, rms of 2 s / A",
-                 curve("", color, [&](const MatchRow& row) { return std::abs(row.current_A[hottest]); })),
+                 curve("", color, [&](const simulate::MatchRow& row) { return std::abs(row.current_A[hottest]); })),
           single("Robot", "speed / m/s",
-                 curve("", 5, [](const MatchRow& row) { return std::hypot(row.velocity.x_m_per_s, row.velocity.y_m_per_s); })),
-          single("Battery", "voltage / V", curve("", 6, [](const MatchRow& row) { return row.battery_V; }))};
+                 curve("", 5, [](const simulate::MatchRow& row) { return std::hypot(row.velocity.x_m_per_s, row.velocity.y_m_per_s); })),
+          single("Battery", "voltage / V", curve("", 6, [](const simulate::MatchRow& row) { return row.battery_V; }))};
 }
 
 /// Panels that compare both planners: heat and precision.
-std::vector<ChartPanel> comparison(const MatchSimulation& match) {
-  std::vector<ChartPanel> panels{
+std::vector<report::ChartPanel> comparison(const simulate::MatchSimulation& match) {
+  std::vector<report::ChartPanel> panels{
       {.title = "Hottest winding", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}},
       {.title = "Copper heat of all motors so far", .y_label = "heat / kJ", .curves = {}, .bands = {}, .levels = {}},
       {.title = "Distance between plan and robot", .y_label = "distance / mm", .curves = {}, .bands = {}, .levels = {}}};
   for (std::size_t p = 0; p < match.runs.size(); ++p) {
-    const DrivenMatch& driven = match.runs[p];
-    const std::string name(to_string(driven.planner));
+    const simulate::DrivenMatch& driven = match.runs[p];
+    const std::string name(duty::to_string(driven.planner));
     const auto hottest = static_cast<std::size_t>(driven.run.score.hottest_wheel);
-    const std::vector<double> minutes = column(driven.rows, [](const MatchRow& row) { return row.time_s / 60.0; });
+    const std::vector<double> minutes = column(driven.rows, [](const simulate::MatchRow& row) { return row.time_s / 60.0; });
     double sum_kJ = 0.0;
     const int color = static_cast<int>(p);
     panels[0].curves.push_back(
-        {name, minutes, column(driven.rows, [&](const MatchRow& row) { return row.winding_peak_C[hottest]; }), color, false});
+        {name, minutes, column(driven.rows, [&](const simulate::MatchRow& row) { return row.winding_peak_C[hottest]; }), color, false});
     panels[1].curves.push_back({"", minutes,
                                 column(driven.rows,
-                                       [&](const MatchRow& row) {
+                                       [&](const simulate::MatchRow& row) {
                                          for (const double copper_W : row.copper_W) {
-                                           sum_kJ += 1e-3 * copper_W * kMatchRow_s;
+                                           sum_kJ += 1e-3 * copper_W * simulate::kMatchRow_s;
                                          }
                                          return sum_kJ;
                                        }),
                                 color, false});
     panels[2].curves.push_back(
-        {"", minutes, column(driven.rows, [](const MatchRow& row) { return 1e3 * row.tracking_error_m; }), color, false});
+        {"", minutes, column(driven.rows, [](const simulate::MatchRow& row) { return 1e3 * row.tracking_error_m; }), color, false});
   }
   panels[0].levels.push_back({fmt::format("limit {:.0f} °C", match.motor.nominal.winding_limit_C), match.motor.nominal.winding_limit_C});
   return panels;
 }
 
 /// Formats as "winding 62 °C, within the limit of 155 °C", for the hottest run.
-std::string peak_words(const MatchSimulation& match) {
+std::string peak_words(const simulate::MatchSimulation& match) {
   double peak_C = 0.0;
-  for (const DrivenMatch& each : match.runs) {
+  for (const simulate::DrivenMatch& each : match.runs) {
     peak_C = std::max(peak_C, each.run.score.winding_peak_C);
   }
   const double limit_C = match.motor.nominal.winding_limit_C;
@@ -88,10 +90,10 @@ std::string peak_words(const MatchSimulation& match) {
 
 }  // namespace
 
-Chart match_chart(const MatchSimulation& match) {
+report::Chart match_chart(const simulate::MatchSimulation& match) {
   return {.title = fmt::format("{}: {}, {} on {}", match.motor.id, peak_words(match), match.robot.name, match.duty.id),
           .subtitle = fmt::format("closed loop, synthetic match, seed {}{}", match.seed,
-                                  data_quality(match.motor) == "estimated" ? "; thermal data partly estimated" : ""),
+                                  motor::data_quality(match.motor) == "estimated" ? "; thermal data partly estimated" : ""),
           .x_label = "time / min",
           .panels = match.runs.size() == 1 ? detail(match, match.runs.front()) : comparison(match),
           .panel_height_px = 260};

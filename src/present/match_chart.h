@@ -7,6 +7,6 @@
 namespace heatsoak::present {
 
 /// The runs must have their rows.
-Chart match_chart(const MatchSimulation& match);
+report::Chart match_chart(const simulate::MatchSimulation& match);
 
 }  // namespace heatsoak::present

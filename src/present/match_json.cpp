@@ -11,20 +11,20 @@
 namespace heatsoak::present {
 namespace {
 
-Json guard_json(const MatchSimulation& match) {
-  const MotorGuard& guard = match.guard;
-  const bool is_missing = match.guard_use != GuardUse::off && !guard.guard;
-  return {{"use", is_missing ? kGuardUses[0] : kGuardUses[static_cast<std::size_t>(match.guard_use)]},
-          {"asked_for", kGuardUses[static_cast<std::size_t>(match.guard_use)]},
+Json guard_json(const simulate::MatchSimulation& match) {
+  const simulate::MotorGuard& guard = match.guard;
+  const bool is_missing = match.guard_use != simulate::GuardUse::off && !guard.guard;
+  return {{"use", is_missing ? simulate::kGuardUses[0] : simulate::kGuardUses[static_cast<std::size_t>(match.guard_use)]},
+          {"asked_for", simulate::kGuardUses[static_cast<std::size_t>(match.guard_use)]},
           {"why_none", is_missing ? Json(guard.why_none) : Json()},
           {"heat_reserve_ratio", guard.derating ? rounded(guard.derating->observer.heat_safety_factor(), 4) : Json()}};
 }
 
-Json json(const DrivenMatch& driven) {
-  const DriveScore& s = driven.run.score;
+Json json(const simulate::DrivenMatch& driven) {
+  const simulate::DriveScore& s = driven.run.score;
   Json limited;
-  for (std::size_t limit = 0; limit < kLimits.size(); ++limit) {
-    limited[std::string(to_string(kLimits[limit]))] = rounded(s.limited_s[limit], 3);
+  for (std::size_t limit = 0; limit < simulate::kLimits.size(); ++limit) {
+    limited[std::string(simulate::to_string(simulate::kLimits[limit]))] = rounded(s.limited_s[limit], 3);
   }
   Json energy{{"battery_J", rounded(s.energy.battery_J, 2)}};
   for (const EnergyPart& row : energy_parts()) {
@@ -35,11 +35,11 @@ Json json(const DrivenMatch& driven) {
   energy["residual_J"] = rounded(s.energy.residual_J(), 4);
   Json phases = Json::array();
   for (std::size_t i = 0; i < driven.run.phases.size(); ++i) {
-    phases.push_back({{"phase", kPhaseNames[i]},
+    phases.push_back({{"phase", duty::kPhaseNames[i]},
                       {"time_s", rounded(driven.run.phases[i].time_s, 3)},
                       {"copper_J", rounded(driven.run.phases[i].copper_J, 3)}});
   }
-  return {{"planner", to_string(driven.planner)},
+  return {{"planner", duty::to_string(driven.planner)},
           {"distance_m", rounded(s.distance_m, 2)},
           {"slip_m", rounded(s.slip_m, 4)},
           {"sliding_m", rounded(s.sliding_m, 4)},
@@ -68,9 +68,9 @@ Json json(const DrivenMatch& driven) {
           {"phases", phases}};
 }
 
-Json balance_json(const Trace& trace) {
+Json balance_json(const select::Trace& trace) {
   Json rows = Json::array();
-  for (const BookedHeat& each : trace.balance) {
+  for (const select::BookedHeat& each : trace.balance) {
     rows.push_back({{"effect", each.effect}, {"node", each.node}, {"mean_W", rounded(each.mean_W, 6)}});
   }
   return rows;
@@ -78,10 +78,10 @@ Json balance_json(const Trace& trace) {
 
 }  // namespace
 
-Json match_json(const MatchSimulation& match) {
-  const DriveScore& first = match.runs.front().run.score;
+Json match_json(const simulate::MatchSimulation& match) {
+  const simulate::DriveScore& first = match.runs.front().run.score;
   Json planners = Json::array();
-  for (const DrivenMatch& each : match.runs) {
+  for (const simulate::DrivenMatch& each : match.runs) {
     planners.push_back(json(each));
   }
   return {{"schema", "heatsoak.simulate/1"},
@@ -97,17 +97,17 @@ Json match_json(const MatchSimulation& match) {
           {"stator_peak_C", rounded(first.stator_peak_C, 3)},
           {"winding_limit_C", rounded(match.motor.nominal.winding_limit_C, 2)},
           {"current_rms_A", rounded(first.current_rms_A, 4)},
-          {"verdict", to_string(match.verdict)},
-          {"data_quality", data_quality(match.motor)},
+          {"verdict", select::to_string(match.verdict)},
+          {"data_quality", motor::data_quality(match.motor)},
           {"is_friction_assumed", match.robot.friction.is_assumed},
           {"sensing", match.is_sensing_ideal ? "ideal" : "real"},
           {"guard", guard_json(match)},
-          {"default_spreads", match.guard_use != GuardUse::off ? default_spreads_json({&match.motor, 1}) : Json::array()},
+          {"default_spreads", match.guard_use != simulate::GuardUse::off ? default_spreads_json({&match.motor, 1}) : Json::array()},
           {"planners", planners}};
 }
 
-Json load_simulation_json(const LoadSimulation& simulation) {
-  const MotorEvaluation& result = simulation.result;
+Json load_simulation_json(const select::LoadSimulation& simulation) {
+  const select::MotorEvaluation& result = simulation.result;
   return {{"schema", "heatsoak.simulate/1"},
           {"motor", simulation.motor.id},
           {"conditions", simulation.motor.assumed},
@@ -119,7 +119,7 @@ Json load_simulation_json(const LoadSimulation& simulation) {
           {"stator_peak_C", rounded(result.stator_peak_C.nominal, 3)},
           {"winding_limit_C", rounded(result.winding_limit_C, 2)},
           {"current_rms_A", rounded(result.current_rms_A, 4)},
-          {"verdict", to_string(result.verdict)},
+          {"verdict", select::to_string(result.verdict)},
           {"data_quality", result.data_quality},
           {"balance", balance_json(simulation.trace)},
           {"stored_W", rounded(simulation.trace.stored_W, 6)}};

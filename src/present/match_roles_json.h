@@ -6,6 +6,6 @@
 
 namespace heatsoak::present {
 
-Json role_json(const RoleLoads& roles);
+Json role_json(const duty::RoleLoads& roles);
 
 }  // namespace heatsoak::present

@@ -15,6 +15,6 @@ std::string effect_table(std::string_view type_name);
 std::string typical_value(std::string_view key, double value, std::string_view unit);
 
 /// Returns the lines of an effect with all parameters at their typical size.
-std::string motor_file_lines(const EffectType& effect);
+std::string motor_file_lines(const thermal::EffectType& effect);
 
 }  // namespace heatsoak::present

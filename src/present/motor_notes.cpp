@@ -15,10 +15,10 @@
 
 namespace heatsoak::present {
 
-std::string columns_at_their_hottest(std::span<const Motor> motors) {
+std::string columns_at_their_hottest(std::span<const motor::Motor> motors) {
   std::string text;
-  for (const Motor& motor : motors) {
-    for (const MotorEffect& effect : motor.effects) {
+  for (const motor::Motor& motor : motors) {
+    for (const motor::MotorEffect& effect : motor.effects) {
       if (!effect.column.empty()) {
         text +=
             fmt::format("{}: {} depends on {}, which is unknown here: its hottest value is used\n", motor.id, effect.name, effect.column);
@@ -28,13 +28,13 @@ std::string columns_at_their_hottest(std::span<const Motor> motors) {
   return text;
 }
 
-std::string effects_under_conditions(std::span<const Motor> motors) {
+std::string effects_under_conditions(std::span<const motor::Motor> motors) {
   std::string text;
-  for (const Motor& motor : motors) {
+  for (const motor::Motor& motor : motors) {
     for (const auto& [key, value] : motor.assumed) {
       text += fmt::format("{}: this result is valid only if {} is {}, as stated with --condition\n", motor.id, key, value);
     }
-    for (const MotorEffect& effect : motor.effects) {
+    for (const motor::MotorEffect& effect : motor.effects) {
       if (effect.condition.empty()) {
         continue;
       }
@@ -42,21 +42,21 @@ std::string effects_under_conditions(std::span<const Motor> motors) {
       std::ranges::transform(effect.condition, std::back_inserter(where),
                              [](const auto& part) { return fmt::format("{}={}", part.first, part.second); });
       text += fmt::format("{}: {}, found under {}, {}\n", motor.id, effect.name, fmt::join(where, " "),
-                          acts_by_default(effect, effect.values()) ? "acts always unless --condition states otherwise"
-                                                                   : "cools, and acts only if --condition states it");
+                          motor::acts_by_default(effect, effect.values()) ? "acts always unless --condition states otherwise"
+                                                                          : "cools, and acts only if --condition states it");
     }
   }
   return text;
 }
 
-std::string inactive_effects(std::span<const Motor> motors) {
+std::string inactive_effects(std::span<const motor::Motor> motors) {
   std::string text = columns_at_their_hottest(motors) + effects_under_conditions(motors);
-  for (const Motor& motor : motors) {
-    for (const MotorEffect& effect : motor.effects) {
-      const std::vector<Signal> needed = effect.type->needed_with(effect.values());
-      const auto needs = [&](Signal signal) { return std::ranges::find(needed, signal) != needed.end(); };
-      const bool needs_neighbour = needs(Signal::neighbour_temperature);
-      if (needs_neighbour || needs(Signal::age)) {
+  for (const motor::Motor& motor : motors) {
+    for (const motor::MotorEffect& effect : motor.effects) {
+      const std::vector<thermal::Signal> needed = effect.type->needed_with(effect.values());
+      const auto needs = [&](thermal::Signal signal) { return std::ranges::find(needed, signal) != needed.end(); };
+      const bool needs_neighbour = needs(thermal::Signal::neighbour_temperature);
+      if (needs_neighbour || needs(thermal::Signal::age)) {
         text += fmt::format("{}: {} is left out, because a duty does not state {}\n", motor.id, effect.name,
                             needs_neighbour ? "the neighbour's temperature" : "the operating hours of the motor");
       }
@@ -65,47 +65,47 @@ std::string inactive_effects(std::span<const Motor> motors) {
   return text;
 }
 
-void add_motor_notes(Document& document, std::span<const Motor> motors) {
+void add_motor_notes(Document& document, std::span<const motor::Motor> motors) {
   add_lines(document.notes, doubtful_fits(motors), Severity::warning);
   add_lines(document.notes, inactive_effects(motors), Severity::note);
 }
 
-std::string doubtful_fits(std::span<const Motor> motors) {
+std::string doubtful_fits(std::span<const motor::Motor> motors) {
   std::string text;
-  for (const Motor& motor : motors) {
+  for (const motor::Motor& motor : motors) {
     if (motor.fit && motor.fit->unmodelled_heat_share) {
       text += fmt::format(
           "{}: the calibration found heat that the model lacks, {} % of the mean heat of its runs or more. Temperatures and allowed "
           "currents "
           "may be wrong by more than their intervals state; `heatsoak diagnose` searches for the missing effect\n",
-          motor.id, significant(100.0 * *motor.fit->unmodelled_heat_share, 2));
+          motor.id, base::significant(100.0 * *motor.fit->unmodelled_heat_share, 2));
     }
   }
   return text;
 }
 
-std::string default_spreads_text(std::span<const Motor> motors) {
+std::string default_spreads_text(std::span<const motor::Motor> motors) {
   std::string text;
-  for (const Motor& motor : motors) {
-    std::vector<DefaultSpread> stated = default_spreads(motor);
-    const auto is_fitted = [&](const DefaultSpread& each) {
-      return each.origin == Origin::measured && motor.fit &&
+  for (const motor::Motor& motor : motors) {
+    std::vector<motor::DefaultSpread> stated = motor::default_spreads(motor);
+    const auto is_fitted = [&](const motor::DefaultSpread& each) {
+      return each.origin == base::Origin::measured && motor.fit &&
              std::ranges::find(motor.fit->parameters, each.key) != motor.fit->parameters.end();
     };
     const auto first_fitted = std::ranges::stable_partition(stated, std::not_fn(is_fitted)).begin();
-    const std::vector<DefaultSpread> fitted(first_fitted, stated.end());
+    const std::vector<motor::DefaultSpread> fitted(first_fitted, stated.end());
     stated.erase(first_fitted, stated.end());
     if (!stated.empty()) {
       text += fmt::format(
           "{}: the file gives no tolerance for these values, or one that is narrower than their origin supports; defaults by origin are "
           "assumed: {}; state the real ones\n",
-          motor.id, to_string(stated));
+          motor.id, motor::to_string(stated));
     }
     if (!fitted.empty()) {
       text += fmt::format(
           "{}: the calibration gives narrower intervals for these values than sensors support; wider ones are assumed: {}; the file needs "
           "no change\n",
-          motor.id, to_string(fitted));
+          motor.id, motor::to_string(fitted));
     }
   }
   return text;

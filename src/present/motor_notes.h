@@ -10,21 +10,21 @@
 namespace heatsoak::present {
 
 /// Adds the notes that apply to every prediction with these motors: doubtful_fits() as warnings, inactive_effects() as notes.
-void add_motor_notes(Document& document, std::span<const Motor> motors);
+void add_motor_notes(Document& document, std::span<const motor::Motor> motors);
 
 /// Returns a line for each effect with an unknown input and how it is treated; empty if there is none.
-std::string inactive_effects(std::span<const Motor> motors);
+std::string inactive_effects(std::span<const motor::Motor> motors);
 
 /// Returns the lines of effects that depend on a log column; these use the value of the curve that gives the highest temperature.
-std::string columns_at_their_hottest(std::span<const Motor> motors);
+std::string columns_at_their_hottest(std::span<const motor::Motor> motors);
 
 /// Returns a line for each condition that was stated, and for each effect whose condition is unknown: it acts if it heats, not if it cools.
-std::string effects_under_conditions(std::span<const Motor> motors);
+std::string effects_under_conditions(std::span<const motor::Motor> motors);
 
 /// Returns a line for each motor whose calibration found heat that the model lacks; empty if there is none.
-std::string doubtful_fits(std::span<const Motor> motors);
+std::string doubtful_fits(std::span<const motor::Motor> motors);
 
 /// Returns a line for each motor with a value that got a default spread; empty if there is none.
-std::string default_spreads_text(std::span<const Motor> motors);
+std::string default_spreads_text(std::span<const motor::Motor> motors);
 
 }  // namespace heatsoak::present

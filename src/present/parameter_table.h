@@ -13,7 +13,7 @@ namespace heatsoak::present {
 Table parameter_table(std::string title);
 
 /// Adds a row; `meaning` comes before the derivation and the confirmations.
-void add_parameter(Table& table, std::string_view key, std::string_view unit, const ParameterValue& parameter,
+void add_parameter(Table& table, std::string_view key, std::string_view unit, const base::ParameterValue& parameter,
                    std::string_view meaning = {});
 
 /// Adds a row that has only a value.

@@ -39,8 +39,8 @@ std::string rendered_for(const std::string& file, const Document& document) {
     }
     known.push_back(each.file_ending);
   }
-  throw Failure(ExitCode::bad_input,
-                fmt::format("{}: there is no format '{}'; expected a name that ends in {}", file, ending, fmt::join(known, " or ")));
+  throw base::Failure(base::ExitCode::bad_input,
+                      fmt::format("{}: there is no format '{}'; expected a name that ends in {}", file, ending, fmt::join(known, " or ")));
 }
 
 std::vector<Note> by_urgency(std::vector<Note> notes) {

@@ -41,7 +41,3 @@ std::string rendered_for(const std::string& file, const Document& document);
 std::vector<Note> by_urgency(std::vector<Note> notes);
 
 }  // namespace heatsoak::present
-
-namespace heatsoak::renderers {
-using present::Renderer;  // for the registry
-}

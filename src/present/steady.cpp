@@ -9,29 +9,30 @@
 namespace heatsoak::present {
 namespace {
 
-Text headline(const OnOffAnswer& answer) {
-  const PeriodicState& periodic = answer.periodic;
+Text headline(const motor::OnOffAnswer& answer) {
+  const thermal::PeriodicState& periodic = answer.periodic;
   const std::string& id = answer.motor.id;
   if (periodic.destroyed_s) {
     return {
         fmt::format("{} is destroyed: thermal runaway within one cycle, {:.0f} °C are exceeded {:.3g} s after the current is switched on.",
-                    id, kDestroyed_C, *periodic.destroyed_s),
+                    id, thermal::kDestroyed_C, *periodic.destroyed_s),
         Tone::bad};
   }
   if (periodic.runaway) {
     return {fmt::format("{} has no steady state: thermal runaway, it gets hotter from cycle to cycle.", id), Tone::bad};
   }
   return {fmt::format("{} reaches at most {:.1f} °C in the steady state (winding limit {:.0f} °C, {}).", id,
-                      periodic.peak_C[states::winding], answer.motor.nominal.winding_limit_C, answer.is_over_limit ? "exceeded" : "kept"),
+                      periodic.peak_C[motor::states::winding], answer.motor.nominal.winding_limit_C,
+                      answer.is_over_limit ? "exceeded" : "kept"),
           answer.is_over_limit ? Tone::bad : Tone::good};
 }
 
-void add_temperatures(Document& document, const OnOffAnswer& answer) {
-  const PeriodicState& periodic = answer.periodic;
+void add_temperatures(Document& document, const motor::OnOffAnswer& answer) {
+  const thermal::PeriodicState& periodic = answer.periodic;
   const auto shown = [](double value_C) { return Text{fmt::format("{:.1f}", value_C)}; };
   Table table{.columns = {{"", "", 0, Alignment::left}, {"mean", "°C", 0}, {"highest", "°C", 0}}};
-  table.rows.push_back({{"winding"}, shown(periodic.mean_C[states::winding]), shown(periodic.peak_C[states::winding])});
-  table.rows.push_back({{"stator"}, shown(periodic.mean_C[states::stator]), shown(periodic.peak_C[states::stator])});
+  table.rows.push_back({{"winding"}, shown(periodic.mean_C[motor::states::winding]), shown(periodic.peak_C[motor::states::winding])});
+  table.rows.push_back({{"stator"}, shown(periodic.mean_C[motor::states::stator]), shown(periodic.peak_C[motor::states::stator])});
   if (!answer.under_rms.runaway) {
     table.rows.push_back({{answer.is_of_the_equations ? "winding, equations (8) to (12)" : "winding, rms current held"},
                           shown(answer.under_rms.winding_C),
@@ -49,10 +50,11 @@ void add_temperatures(Document& document, const OnOffAnswer& answer) {
 
 }  // namespace
 
-Document steady_document(const OnOffAnswer& answer) {
-  Document document{.headline = {headline(answer)},
-                    .paragraphs = {fmt::format("{} thermal data, rms current {:.2f} A, ambient {:.0f} °C.", data_quality(answer.motor),
-                                               answer.under_rms.current_rms_A, answer.current.ambient_C)}};
+Document steady_document(const motor::OnOffAnswer& answer) {
+  Document document{
+      .headline = {headline(answer)},
+      .paragraphs = {fmt::format("{} thermal data, rms current {:.2f} A, ambient {:.0f} °C.", motor::data_quality(answer.motor),
+                                 answer.under_rms.current_rms_A, answer.current.ambient_C)}};
   if (!answer.is_runaway() && !answer.periodic.destroyed_s) {
     add_temperatures(document, answer);
   }

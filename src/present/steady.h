@@ -7,7 +7,7 @@
 
 namespace heatsoak::present {
 
-Document steady_document(const OnOffAnswer& answer);
-Json steady_json(const OnOffAnswer& answer);
+Document steady_document(const motor::OnOffAnswer& answer);
+Json steady_json(const motor::OnOffAnswer& answer);
 
 }  // namespace heatsoak::present

@@ -5,7 +5,7 @@
 namespace heatsoak::present {
 namespace {
 
-Json json(const TablePlace& place) {
+Json json(const derate::TablePlace& place) {
   return {{"difference_A", rounded(place.difference_A, 4)}, {"committed_A", rounded(place.committed_A, 4)},
           {"fresh_A", rounded(place.fresh_A, 4)},           {"speed_rad_per_s", rounded(place.speed_rad_per_s, 3)},
           {"stator_C", rounded(place.stator_C, 2)},         {"winding_C", rounded(place.winding_C, 2)}};
@@ -13,8 +13,8 @@ Json json(const TablePlace& place) {
 
 }  // namespace
 
-Json table_check_json(const TableCheck& check) {
-  const CommittedTable& committed = check.committed;
+Json table_check_json(const derate::TableCheck& check) {
+  const derate::CommittedTable& committed = check.committed;
   const auto text = [](const std::string& words) { return words.empty() ? Json() : Json(words); };
   return {
       {"file", committed.file.string()},   {"motor", text(committed.motor_id)},

@@ -20,23 +20,23 @@ std::vector<double> in_minutes(std::vector<double> times_s) {
 }
 
 /// Returns the robot's own motor first, then the others from the best on.
-std::vector<const MotorEvaluation*> chosen(const std::vector<MotorEvaluation>& results, const Robot& robot) {
-  std::vector<const MotorEvaluation*> all;
-  for (const MotorEvaluation& each : results) {
+std::vector<const select::MotorEvaluation*> chosen(const std::vector<select::MotorEvaluation>& results, const robot::Robot& robot) {
+  std::vector<const select::MotorEvaluation*> all;
+  for (const select::MotorEvaluation& each : results) {
     all.push_back(&each);
   }
-  std::stable_partition(all.begin(), all.end(), [&](const MotorEvaluation* each) { return each->motor_id == robot.drive.motor; });
+  std::stable_partition(all.begin(), all.end(), [&](const select::MotorEvaluation* each) { return each->motor_id == robot.drive.motor; });
   all.resize(std::min(all.size(), kMostCurves));
   return all;
 }
 
-double at(const TemperatureCurves& curves, const std::vector<double>& values, double time_s) {
+double at(const select::TemperatureCurves& curves, const std::vector<double>& values, double time_s) {
   const auto next = std::ranges::lower_bound(curves.time_s, time_s);
   return values[static_cast<std::size_t>(std::min(next, curves.time_s.end() - 1) - curves.time_s.begin())];
 }
 
 /// Returns whether two lines nearly coincide: the second is then dashed, so that both are visible.
-bool coincide(const TemperatureCurves& one, const std::vector<double>& one_C, const TemperatureCurves& other,
+bool coincide(const select::TemperatureCurves& one, const std::vector<double>& one_C, const select::TemperatureCurves& other,
               const std::vector<double>& other_C) {
   constexpr int kLooks = 60;
   constexpr double kLine_K = 1.0;
@@ -54,19 +54,20 @@ std::size_t bands_of(std::size_t motors) {
   return motors > kMostWithAreas ? 2 : motors;
 }
 
-ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_winding) {
-  ChartPanel result{.title = of_winding ? "Winding" : "Stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
+report::ChartPanel panel(const std::vector<const select::MotorEvaluation*>& shown, bool of_winding) {
+  report::ChartPanel result{
+      .title = of_winding ? "Winding" : "Stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
   std::map<double, std::vector<std::string>> limits_C;
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    const TemperatureCurves& curves = shown[i]->curves;
+    const select::TemperatureCurves& curves = shown[i]->curves;
     const std::string name =
         of_winding ? fmt::format("{}, {:.0f} °C, {}", shown[i]->motor_id, shown[i]->winding_peak_C.nominal, verdict_word(*shown[i]))
                    : std::string();
     const int color = static_cast<int>(i);
-    const auto values_of = [of_winding](const TemperatureCurves& c) -> const std::vector<double>& {
+    const auto values_of = [of_winding](const select::TemperatureCurves& c) -> const std::vector<double>& {
       return of_winding ? c.winding_C : c.stator_C;
     };
-    const bool is_hidden = std::any_of(shown.begin(), shown.begin() + color, [&](const MotorEvaluation* before) {
+    const bool is_hidden = std::any_of(shown.begin(), shown.begin() + color, [&](const select::MotorEvaluation* before) {
       return coincide(curves, values_of(curves), before->curves, values_of(before->curves));
     });
     result.curves.push_back({name, in_minutes(curves.time_s), values_of(curves), color, is_hidden, false, true});
@@ -89,10 +90,10 @@ ChartPanel panel(const std::vector<const MotorEvaluation*>& shown, bool of_windi
   return result;
 }
 
-std::string title_of(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty) {
-  const auto good =
-      std::ranges::count_if(results, [](const MotorEvaluation& each) { return each.verdict == Verdict::pass && !each.samples_needed; });
-  const auto open = std::ranges::count_if(results, [](const MotorEvaluation& each) { return each.samples_needed.has_value(); });
+std::string title_of(const std::vector<select::MotorEvaluation>& results, const robot::Robot& robot, const duty::Duty& duty) {
+  const auto good = std::ranges::count_if(
+      results, [](const select::MotorEvaluation& each) { return each.verdict == select::Verdict::pass && !each.samples_needed; });
+  const auto open = std::ranges::count_if(results, [](const select::MotorEvaluation& each) { return each.samples_needed.has_value(); });
   const std::string verdict = results.size() == 1 ? fmt::format("{}: {}", results.front().motor_id, verdict_word(results.front()))
                                                   : fmt::format("{} of {} motors pass{}", good, results.size(),
                                                                 open > 0 ? fmt::format(", {} undecided", open) : "");
@@ -101,10 +102,10 @@ std::string title_of(const std::vector<MotorEvaluation>& results, const Robot& r
 
 }  // namespace
 
-Chart verdict_chart(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty) {
-  const std::vector<const MotorEvaluation*> shown = chosen(results, robot);
-  const bool sampled = std::ranges::any_of(shown, [](const MotorEvaluation* each) { return !each->curves.band_time_s.empty(); });
-  const bool estimated = std::ranges::any_of(shown, [](const MotorEvaluation* each) { return each->data_quality == "estimated"; });
+report::Chart verdict_chart(const std::vector<select::MotorEvaluation>& results, const robot::Robot& robot, const duty::Duty& duty) {
+  const std::vector<const select::MotorEvaluation*> shown = chosen(results, robot);
+  const bool sampled = std::ranges::any_of(shown, [](const select::MotorEvaluation* each) { return !each->curves.band_time_s.empty(); });
+  const bool estimated = std::ranges::any_of(shown, [](const select::MotorEvaluation* each) { return each->data_quality == "estimated"; });
   return {.title = title_of(results, robot, duty),
           .subtitle = fmt::format(
               "{}{}{}{}", shown.size() < results.size() ? fmt::format("the robot's motor and the best of {}, ", results.size()) : "",

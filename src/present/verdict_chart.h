@@ -12,6 +12,6 @@ namespace heatsoak::present {
 
 /// Maximum number of motors: the one that the robot is built with, then the best of the others.
 inline constexpr std::size_t kMostCurves = 6;
-Chart verdict_chart(const std::vector<MotorEvaluation>& results, const Robot& robot, const Duty& duty);
+report::Chart verdict_chart(const std::vector<select::MotorEvaluation>& results, const robot::Robot& robot, const duty::Duty& duty);
 
 }  // namespace heatsoak::present

@@ -5,21 +5,22 @@
 namespace heatsoak::present {
 
 std::vector<VerdictMeaning> verdict_meanings() {
-  const double rare_percent = 100.0 * kMarginalProbability;
-  const double most_percent = 100.0 * kMajority;
-  const double short_percent = 100.0 * kTolerableShortTime;
+  const double rare_percent = 100.0 * select::kMarginalProbability;
+  const double most_percent = 100.0 * select::kMajority;
+  const double short_percent = 100.0 * select::kTolerableShortTime;
   return {
-      {Verdict::pass,
+      {select::Verdict::pass,
        fmt::format("With nominal values the motor stays within every temperature limit and delivers the demand. At most {:.0f} % of the "
                    "samples exceed a limit, and at most {:.0f} % miss the demand. On a duty that is drawn, such as a match, most samples "
                    "stay within, and the upper end of the 95 % interval of the share over a limit is at most {:.0f} %.",
                    rare_percent, rare_percent, rare_percent)},
-      {Verdict::marginal,
+      {select::Verdict::marginal,
        fmt::format("As pass, but more samples exceed a limit or miss the demand than the {:.0f} % allowed there.", rare_percent)},
-      {Verdict::fail, fmt::format("With nominal values the winding or the stator exceeds its limit. On a duty that is drawn: more than "
-                                  "{:.0f} % of the samples do.",
-                                  most_percent)},
-      {Verdict::infeasible,
+      {select::Verdict::fail,
+       fmt::format("With nominal values the winding or the stator exceeds its limit. On a duty that is drawn: more than "
+                   "{:.0f} % of the samples do.",
+                   most_percent)},
+      {select::Verdict::infeasible,
        fmt::format("Voltage or current do not suffice for the demanded torque for more than {:.0f} % of the time, the winding being hot. "
                    "On a duty that is drawn: in more than {:.0f} % of the samples.",
                    short_percent, most_percent)}};
@@ -33,7 +34,7 @@ std::string undecided_meaning() {
       "of the interval: the first may err with a probability of 2.5 %, each later one with 0.36 %, so a verdict is wrong with a "
       "probability of 5 % at most (Clopper and Pearson 1934; alpha spending, Jennison and Turnbull 2000). Samples of one game count as "
       "one. Exit code and JSON then use the verdict of the samples so far.",
-      100.0 * kMarginalProbability, 100.0 * kMajority);
+      100.0 * select::kMarginalProbability, 100.0 * select::kMajority);
 }
 
 }  // namespace heatsoak::present

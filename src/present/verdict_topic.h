@@ -9,7 +9,7 @@
 namespace heatsoak::present {
 
 struct VerdictMeaning {
-  Verdict verdict;
+  select::Verdict verdict;
   std::string meaning;  ///< includes the thresholds of select/evaluate.h
 };
 /// Returns the verdicts from best to worst.

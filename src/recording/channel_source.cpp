@@ -8,7 +8,7 @@
 
 #include "base/unknown.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 std::optional<std::size_t> place_of(std::span<const std::string> header, const std::string& name) {
@@ -35,7 +35,7 @@ BlockExpression::BlockExpression(Expression expression, UsedColumns& used) : exp
   }
 }
 
-const std::vector<double>& BlockExpression::evaluate(const TableBlock& block) {
+const std::vector<double>& BlockExpression::evaluate(const input::TableBlock& block) {
   std::vector<const std::vector<double>*> inputs;
   for (const std::size_t slot : slots_) {
     inputs.push_back(&block.columns[slot]);
@@ -44,24 +44,24 @@ const std::vector<double>& BlockExpression::evaluate(const TableBlock& block) {
   return values_;
 }
 
-void BadCells::read(const TableBlock& block) {
+void BadCells::read(const input::TableBlock& block) {
   by_slot_.resize(block.columns.size());
   for (auto& column : by_slot_) {
     column.clear();
   }
-  for (const BadCell& cell : block.bad_cells) {
+  for (const input::BadCell& cell : block.bad_cells) {
     by_slot_[cell.column].push_back(&cell);
   }
 }
 
 const std::string* BadCells::find(std::size_t slot, std::size_t row) const {
   const auto& column = by_slot_[slot];
-  const auto found = std::ranges::lower_bound(column, row, {}, [](const BadCell* cell) { return cell->row; });
+  const auto found = std::ranges::lower_bound(column, row, {}, [](const input::BadCell* cell) { return cell->row; });
   return found != column.end() && (*found)->row == row ? &(*found)->text : nullptr;
 }
 
 ChannelSource::ChannelSource(const QuantityMapping& mapping, std::span<const std::string> header, const std::string& log, UsedColumns& used,
-                             Diagnostics& problems)
+                             base::Diagnostics& problems)
     : mapping_(mapping) {
   const bool is_of_mapping = !mapping.places.empty();
   const std::string key = is_of_mapping ? "quantities." + mapping.quantity.key : mapping.quantity.key;
@@ -81,7 +81,7 @@ ChannelSource::ChannelSource(const QuantityMapping& mapping, std::span<const std
     if (!place) {
       problems.add(mapping.place_of("column"), key + ".column",
                    fmt::format("{} has no column '{}'{}", log, mapping.column,
-                               did_you_mean(mapping.column, std::vector<std::string>(header.begin(), header.end()))));
+                               base::did_you_mean(mapping.column, std::vector<std::string>(header.begin(), header.end()))));
       return;
     }
     if (std::ranges::count(header, mapping.column) > 1) {
@@ -112,7 +112,7 @@ void ChannelSource::leave_out(LeftOutReason reason, int line, const std::string*
   entry->second->add(line);
 }
 
-void ChannelSource::append(const TableBlock& block, const BadCells& bad, const std::vector<char>& keep, RecordingReport& report,
+void ChannelSource::append(const input::TableBlock& block, const BadCells& bad, const std::vector<char>& keep, RecordingReport& report,
                            std::vector<double>& values) {
   const std::vector<double>& raw = expression_ ? expression_->evaluate(block) : block.columns[*slot_];
   const std::vector<double>* const valid = valid_ ? &valid_->evaluate(block) : nullptr;
@@ -138,18 +138,18 @@ void ChannelSource::append(const TableBlock& block, const BadCells& bad, const s
       }
     } else if (valid != nullptr && !is_true((*valid)[row])) {
       leave_out(LeftOutReason::not_valid, block.lines[row], nullptr, report);
-      value = kUnknown;
+      value = base::kUnknown;
     } else if (!mapping_.quantity.possible.contains(value)) {
       const std::string shown = fmt::format("{:g}", value);
       leave_out(LeftOutReason::impossible, block.lines[row], &shown, report);
-      value = kUnknown;
+      value = base::kUnknown;
     } else if ((mapping_.saturates_low && value <= *mapping_.saturates_low) ||
                (mapping_.saturates_high && value >= *mapping_.saturates_high)) {
       leave_out(LeftOutReason::saturated, block.lines[row], nullptr, report);
-      value = kUnknown;
+      value = base::kUnknown;
     }
     values.push_back(value);
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

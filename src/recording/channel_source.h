@@ -12,7 +12,7 @@
 #include "recording/mapping.h"
 #include "recording/recording_report.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Columns of a file that are used. slot() registers a column and returns its index within the blocks.
 class UsedColumns {
@@ -29,7 +29,7 @@ class BlockExpression {
  public:
   BlockExpression(Expression expression, UsedColumns& used);
   /// One value per row of the block; valid until the next call.
-  const std::vector<double>& evaluate(const TableBlock& block);
+  const std::vector<double>& evaluate(const input::TableBlock& block);
 
  private:
   Expression expression_;
@@ -40,12 +40,12 @@ class BlockExpression {
 /// Cells of a block that are not numbers, indexed by position.
 class BadCells {
  public:
-  void read(const TableBlock& block);
+  void read(const input::TableBlock& block);
   /// Returns the text of the cell, empty for a blank cell; nullptr if the cell is a number.
   [[nodiscard]] const std::string* find(std::size_t slot, std::size_t row) const;
 
  private:
-  std::vector<std::vector<const BadCell*>> by_slot_;  ///< per column, in ascending order of rows
+  std::vector<std::vector<const input::BadCell*>> by_slot_;  ///< per column, in ascending order of rows
 };
 
 /// Converts the cells of one channel to canonical values.
@@ -53,7 +53,7 @@ class ChannelSource {
  public:
   /// Adds unknown columns and invalid expressions to `problems`.
   ChannelSource(const QuantityMapping& mapping, std::span<const std::string> header, const std::string& log, UsedColumns& used,
-                Diagnostics& problems);
+                base::Diagnostics& problems);
 
   [[nodiscard]] const Quantity& quantity() const { return mapping_.quantity; }
   [[nodiscard]] double clock_offset_s() const { return mapping_.clock_offset_s; }
@@ -62,7 +62,7 @@ class ChannelSource {
   [[nodiscard]] std::size_t filled() const { return filled_; }
 
   /// Appends the rows of the block with nonzero `keep`, in the quantity's unit. Invalid samples become NaN and are reported.
-  void append(const TableBlock& block, const BadCells& bad, const std::vector<char>& keep, RecordingReport& report,
+  void append(const input::TableBlock& block, const BadCells& bad, const std::vector<char>& keep, RecordingReport& report,
               std::vector<double>& values);
 
  private:
@@ -82,4 +82,4 @@ class ChannelSource {
   bool is_absent_ = false;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

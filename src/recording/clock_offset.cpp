@@ -15,7 +15,7 @@
 #include "recording/noise.h"
 #include "recording/row_order.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 constexpr int kDelays = 61;
@@ -39,7 +39,7 @@ class Integral {
  private:
   [[nodiscard]] double at(double moment_s) const {
     if (moment_s < time_s_.front() || moment_s > time_s_.back()) {
-      return kUnknown;
+      return base::kUnknown;
     }
     const auto after = std::ranges::upper_bound(time_s_, moment_s);
     const auto row = static_cast<std::size_t>(after - time_s_.begin()) - 1;
@@ -216,7 +216,7 @@ class DelayScan {
   /// Scales the heat with the copper's resistance. Without this, heat that grows with temperature would appear to lag behind the current.
   void heat_by_hot_copper() {
     for (std::size_t row = 0; row < heat_.size(); ++row) {
-      heat_[row] *= resistance_ratio(kCopper_per_K, columns_.front()[row]);
+      heat_[row] *= base::resistance_ratio(base::kCopper_per_K, columns_.front()[row]);
     }
   }
 
@@ -305,7 +305,7 @@ ClockOffset offset_within(double around_s, double reach_s, DelayScan& scan, doub
   }
   constexpr double kTooWide_share = 0.25;
   if (!delay_s || found < kParts) {
-    offset.why_not = fmt::format("no delay within ± {} s gives a best fit", significant(reach_s, 2));
+    offset.why_not = fmt::format("no delay within ± {} s gives a best fit", base::significant(reach_s, 2));
     return offset;
   }
   const double mean_s = sum_s / kParts;
@@ -315,7 +315,7 @@ ClockOffset offset_within(double around_s, double reach_s, DelayScan& scan, doub
   const double by_parts_s = std::sqrt(std::max(0.0, (kParts - 1.0) * (sum_s2 / kParts - mean_s * mean_s)));
   const double standard_error_s = std::hypot(by_parts_s, period_s / std::sqrt(12.0), held_too_long_s);
   if (standard_error_s > kTooWide_share * reach_s) {
-    offset.why_not = fmt::format("parts of the log disagree by {} s", significant(standard_error_s, 2));
+    offset.why_not = fmt::format("parts of the log disagree by {} s", base::significant(standard_error_s, 2));
     return offset;
   }
   offset.delay_s = *delay_s;
@@ -340,7 +340,7 @@ bool is_sure(const ClockOffset& offset, double period_s) {
 }
 
 std::string shown(const ClockOffset& offset) {
-  return fmt::format("{} s ± {} s", significant(std::abs(*offset.delay_s), 2), significant(offset.delay_uncertainty_s, 2));
+  return fmt::format("{} s ± {} s", base::significant(std::abs(*offset.delay_s), 2), base::significant(offset.delay_uncertainty_s, 2));
 }
 
 }  // namespace
@@ -388,4 +388,4 @@ std::string late_answer(const ClockOffset& offset, double period_s) {
       offset.temperature, offset.heat_input, shown(offset));
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

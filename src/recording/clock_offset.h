@@ -6,7 +6,7 @@
 #include "recording/quality.h"
 #include "recording/recording.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Returns the delay for which a linear regression explains the changes of `temperature` best. The regressors are the delayed heat input
 /// and the mean temperatures in each window; no motor model is needed. `noise_K` is the standard deviation of the temperature's noise.
@@ -18,4 +18,4 @@ std::string early_answer(const ClockOffset& offset, double period_s);
 /// Returns a sentence if the winding certainly responds late, as with a sensor lag; else an empty string.
 std::string late_answer(const ClockOffset& offset, double period_s);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

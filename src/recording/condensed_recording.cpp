@@ -6,7 +6,7 @@
 
 #include "base/unknown.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 struct Group {
@@ -26,11 +26,11 @@ double mean_of(std::span<const double> values, std::span<const double> weight_ra
       weights += weight_ratio[i];
     }
   }
-  return weights > 0.0 ? by_square ? std::copysign(std::sqrt(squares / weights), sum) : sum / weights : kUnknown;
+  return weights > 0.0 ? by_square ? std::copysign(std::sqrt(squares / weights), sum) : sum / weights : base::kUnknown;
 }
 
 double lowest_of(std::span<const double> values) {
-  double lowest = kUnknown;
+  double lowest = base::kUnknown;
   for (const double value : values) {
     lowest = value < lowest || std::isnan(lowest) ? value : lowest;
   }
@@ -38,7 +38,7 @@ double lowest_of(std::span<const double> values) {
 }
 
 double highest_of(std::span<const double> values) {
-  double highest = kUnknown;
+  double highest = base::kUnknown;
   for (const double value : values) {
     highest = value > highest || std::isnan(highest) ? value : highest;
   }
@@ -47,7 +47,7 @@ double highest_of(std::span<const double> values) {
 
 double first_of(std::span<const double> values) {
   const auto found = std::ranges::find_if(values, [](double value) { return !std::isnan(value); });
-  return found == values.end() ? kUnknown : *found;
+  return found == values.end() ? base::kUnknown : *found;
 }
 
 }  // namespace
@@ -162,4 +162,4 @@ void CondensedRecording::erase_channel(std::size_t channel) {
   all_.high.erase(all_.high.begin() + at);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

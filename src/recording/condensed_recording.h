@@ -6,7 +6,7 @@
 
 #include "recording/recording.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Takes a log part by part. If it exceeds `most_rows`, neighbouring rows of a run are merged. Heat inputs and surroundings become means
 /// (currents: RMS with the sign of the mean); temperatures and other signals keep their first valid value. If a log has too many runs,
@@ -44,4 +44,4 @@ class CondensedRecording {
   Rows all_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

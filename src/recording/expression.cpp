@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 const std::vector<std::string>& functions() {
@@ -93,7 +93,7 @@ class Rewriter {
     const std::size_t next = text_.find_first_not_of(' ', end);
     if (next != std::string_view::npos && text_[next] == '(') {
       if (std::ranges::find(functions(), name) == functions().end()) {
-        return fmt::format("there is no function '{}'{}; there are {}", name, did_you_mean(name, functions()),
+        return fmt::format("there is no function '{}'{}; there are {}", name, base::did_you_mean(name, functions()),
                            fmt::join(functions(), ", "));
       }
       out += name;
@@ -110,7 +110,7 @@ class Rewriter {
     const auto found = std::ranges::find(header_, name);
     if (found == header_.end()) {
       const std::vector<std::string> names(header_.begin(), header_.end());
-      return fmt::format("the log has no column '{}'{}", name, did_you_mean(name, names));
+      return fmt::format("the log has no column '{}'{}", name, base::did_you_mean(name, names));
     }
     const auto place = static_cast<std::size_t>(found - header_.begin());
     auto known = std::ranges::find(columns_, place);
@@ -134,8 +134,8 @@ struct Expression::Compiled {
   std::vector<std::vector<double>> inputs;  ///< muParser keeps pointers to these values
 };
 
-Expression::Expression(std::string_view text, std::span<const std::string> header, Location at, const std::string& key,
-                       Diagnostics& problems)
+Expression::Expression(std::string_view text, std::span<const std::string> header, base::Location at, const std::string& key,
+                       base::Diagnostics& problems)
     : compiled_(std::make_unique<Compiled>()) {
   Rewriter rewriter(text, header, columns_);
   if (std::string problem = rewriter.run(); !problem.empty()) {
@@ -186,4 +186,4 @@ void Expression::evaluate(std::span<const std::vector<double>* const> columns, s
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -10,14 +10,15 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Supports + − * / ^, comparisons, && ||, c ? a : b, and the functions listed in expression.cpp. Column names that are not single words
 /// must be in single quotes.
 class Expression {
  public:
   /// Parses the text. `at` is its position in the mapping. On an error, adds to `problems` and sets ok() to false.
-  Expression(std::string_view text, std::span<const std::string> header, Location at, const std::string& key, Diagnostics& problems);
+  Expression(std::string_view text, std::span<const std::string> header, base::Location at, const std::string& key,
+             base::Diagnostics& problems);
   ~Expression();
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;
@@ -36,4 +37,4 @@ class Expression {
   bool is_ok_ = false;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -11,7 +11,7 @@
 #include <unordered_set>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 /// FNV-1a hash, identical on every machine.
@@ -162,4 +162,4 @@ bool is_of_run(const Recording& recording, std::string_view run) {
   return run.substr(0, run.find('#')) == recording.name;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -7,7 +7,7 @@
 
 #include "recording/recording.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Hash of all channels and of the times since the first row, as 16 hexadecimal digits.
 std::string content_hash(const Recording& recording);
@@ -28,4 +28,4 @@ bool is_cut_from(const Recording& part, const Recording& whole);
 /// Returns true if the recording shares rows with `run`, a name_and_fingerprint(). If `run` has no fingerprint, compares the names.
 bool is_of_run(const Recording& recording, std::string_view run);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

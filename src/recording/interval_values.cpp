@@ -5,7 +5,7 @@
 
 #include "base/unknown.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 bool stands_for_an_interval(const Quantity& quantity) {
@@ -23,12 +23,12 @@ void to_held(std::span<double> values, InputConvention convention, bool by_squar
   for (std::size_t i = 0; i + 1 < values.size(); ++i) {
     values[i] = convention == InputConvention::previous_interval ? values[i + 1] : even_change(values[i], values[i + 1], by_square);
   }
-  values.back() = kUnknown;
+  values.back() = base::kUnknown;
 }
 
 /// Inputs that are held from time_s[j] + offset_s on, averaged over the rows' intervals.
 std::vector<double> shifted_inputs(std::span<const double> time_s, std::span<const double> values, double offset_s, bool by_square) {
-  std::vector<double> shifted(values.size(), kUnknown);
+  std::vector<double> shifted(values.size(), base::kUnknown);
   std::size_t held = 0;
   for (std::size_t row = 0; row + 1 < values.size(); ++row) {
     const double begin_s = time_s[row];
@@ -56,7 +56,7 @@ std::vector<double> shifted_inputs(std::span<const double> time_s, std::span<con
 
 /// Samples taken at time_s[j] + offset_s, interpolated linearly to the rows' times. NaN beside a missing sample.
 std::vector<double> shifted_samples(std::span<const double> time_s, std::span<const double> values, double offset_s) {
-  std::vector<double> shifted(values.size(), kUnknown);
+  std::vector<double> shifted(values.size(), base::kUnknown);
   std::size_t before = 0;
   for (std::size_t row = 0; row < values.size(); ++row) {
     while (before + 2 < values.size() && time_s[before + 1] + offset_s <= time_s[row]) {
@@ -94,4 +94,4 @@ void to_interval_values(Recording& recording, InputConvention convention, std::s
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

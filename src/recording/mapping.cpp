@@ -13,7 +13,7 @@
 #include "input/document.h"
 #include "input/reader.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,9 +24,9 @@ constexpr std::array<std::string_view, 2> kDecimals{".", ","};
 
 bool matches(const std::string& pattern, const fs::path& log) { return ::fnmatch(pattern.c_str(), log.filename().c_str(), 0) == 0; }
 
-std::optional<int> whole_number(Reader& reader, const char* key, int lowest, int highest, const char* meaning) {
-  const std::optional<double> value =
-      reader.quantity({key, "", Range::between(static_cast<double>(lowest), static_cast<double>(highest)), meaning}, Need::optional);
+std::optional<int> whole_number(input::Reader& reader, const char* key, int lowest, int highest, const char* meaning) {
+  const std::optional<double> value = reader.quantity(
+      {key, "", base::Range::between(static_cast<double>(lowest), static_cast<double>(highest)), meaning}, input::Need::optional);
   if (value && *value != std::floor(*value)) {
     reader.problem(key, "is not a whole number");
     return std::nullopt;
@@ -34,9 +34,9 @@ std::optional<int> whole_number(Reader& reader, const char* key, int lowest, int
   return value ? std::optional(static_cast<int>(*value)) : std::nullopt;
 }
 
-TableFormat read_format(Reader& file) {
-  TableFormat format;
-  if (const std::optional<std::string> separator = file.text("separator", Need::optional)) {
+input::TableFormat read_format(input::Reader& file) {
+  input::TableFormat format;
+  if (const std::optional<std::string> separator = file.text("separator", input::Need::optional)) {
     if (*separator == "tab") {
       format.separator = '\t';
     } else if (separator->size() == 1 && std::string_view("\"\n\r.#+-").find(*separator) == std::string_view::npos) {
@@ -46,13 +46,13 @@ TableFormat read_format(Reader& file) {
                    fmt::format(R"('{}' cannot separate cells; expected one character such as "," or ";", or "tab")", *separator));
     }
   }
-  if (const std::optional<std::string> decimal = file.choice("decimal", kDecimals, Need::optional)) {
+  if (const std::optional<std::string> decimal = file.choice("decimal", kDecimals, input::Need::optional)) {
     format.decimal_point = decimal->front();
     if (format.decimal_point == format.separator) {
       file.problem("decimal", "is also the separator of the cells");
     }
   }
-  format.comment = file.text("comment", Need::optional).value_or(format.comment);
+  format.comment = file.text("comment", input::Need::optional).value_or(format.comment);
   format.header_rows = whole_number(file, "header_rows", 1, 20, "rows of the header").value_or(format.header_rows);
   format.names_row = whole_number(file, "names_row", 1, 20, "row of the header that names the columns").value_or(1);
   if (format.names_row > format.header_rows) {
@@ -63,11 +63,11 @@ TableFormat read_format(Reader& file) {
 }
 
 /// Reads unit and sign into value and scale_factor.
-void read_unit(Reader& reader, QuantityMapping& mapping) {
+void read_unit(input::Reader& reader, QuantityMapping& mapping) {
   const std::string& wanted = mapping.quantity.unit;
-  const std::string unit = reader.text("unit", Need::optional).value_or(wanted);
-  const ParsedQuantity zero = parse_quantity("0 " + unit, wanted);
-  const ParsedQuantity one = parse_quantity("1 " + unit, wanted);
+  const std::string unit = reader.text("unit", input::Need::optional).value_or(wanted);
+  const base::ParsedQuantity zero = base::parse_quantity("0 " + unit, wanted);
+  const base::ParsedQuantity one = base::parse_quantity("1 " + unit, wanted);
   if (!zero.ok() || !one.ok()) {
     reader.problem("unit", fmt::format("'{}' is not a unit of {}; expected one that converts to {}", unit, mapping.quantity.key,
                                        wanted.empty() ? "a pure number" : wanted));
@@ -75,7 +75,7 @@ void read_unit(Reader& reader, QuantityMapping& mapping) {
   }
   mapping.value = zero.value;
   mapping.scale_factor = one.value - zero.value;
-  if (reader.choice("sign", kSigns, Need::optional).value_or("+") == "-") {
+  if (reader.choice("sign", kSigns, input::Need::optional).value_or("+") == "-") {
     if (wanted == "degC") {
       reader.problem("sign", "a temperature has no sign; expected no key sign");
     }
@@ -84,15 +84,15 @@ void read_unit(Reader& reader, QuantityMapping& mapping) {
   }
 }
 
-std::optional<double> limit(Reader& reader, const char* key, const QuantityMapping& mapping) {
-  return reader.quantity({key, mapping.quantity.unit, Range::any(), "value at which the sensor saturates"}, Need::optional);
+std::optional<double> limit(input::Reader& reader, const char* key, const QuantityMapping& mapping) {
+  return reader.quantity({key, mapping.quantity.unit, base::Range::any(), "value at which the sensor saturates"}, input::Need::optional);
 }
 
-void read_fills(Reader& reader, QuantityMapping& mapping) {
-  for (Reader& fill : reader.tables("fill")) {
+void read_fills(input::Reader& reader, QuantityMapping& mapping) {
+  for (input::Reader& fill : reader.tables("fill")) {
     const std::optional<double> value =
-        fill.quantity({"value", mapping.quantity.unit, mapping.quantity.possible, "value of a blank cell"}, Need::required);
-    const std::optional<std::string> where = fill.text("where", Need::required);
+        fill.quantity({"value", mapping.quantity.unit, mapping.quantity.possible, "value of a blank cell"}, input::Need::required);
+    const std::optional<std::string> where = fill.text("where", input::Need::required);
     if (value && where) {
       mapping.fills.push_back({*value, *where});
     }
@@ -100,7 +100,7 @@ void read_fills(Reader& reader, QuantityMapping& mapping) {
   }
 }
 
-std::optional<QuantityMapping> read_quantity(const std::string& key, Reader& reader) {
+std::optional<QuantityMapping> read_quantity(const std::string& key, input::Reader& reader) {
   const std::optional<Quantity> quantity = quantity_named(key);
   if (!quantity) {
     reader.problem("",
@@ -113,23 +113,23 @@ std::optional<QuantityMapping> read_quantity(const std::string& key, Reader& rea
   for (const std::string& part : reader.keys()) {
     mapping.places[part] = reader.at(part);
   }
-  mapping.column = reader.text("column", Need::optional).value_or("");
-  mapping.expression = reader.text("expression", Need::optional).value_or("");
+  mapping.column = reader.text("column", input::Need::optional).value_or("");
+  mapping.expression = reader.text("expression", input::Need::optional).value_or("");
   if (mapping.column.empty() == mapping.expression.empty()) {
     reader.problem("", "expected one of column = \"…\" and expression = \"…\"");
   }
   read_unit(reader, mapping);
-  mapping.valid = reader.text("valid", Need::optional).value_or("");
+  mapping.valid = reader.text("valid", input::Need::optional).value_or("");
   mapping.saturates_low = limit(reader, "saturates_low", mapping);
   mapping.saturates_high = limit(reader, "saturates_high", mapping);
-  mapping.is_optional = reader.flag("optional", Need::optional).value_or(false);
+  mapping.is_optional = reader.flag("optional", input::Need::optional).value_or(false);
   if (mapping.is_optional && mapping.column.empty()) {
     reader.problem("optional", "expected for a column only");
   }
   mapping.clock_offset_s = reader
-                               .quantity({"clock_offset", "s", Range::between(-3600.0, 3600.0),
+                               .quantity({"clock_offset", "s", base::Range::between(-3600.0, 3600.0),
                                           "added to the row's time gives the moment of this channel's sample"},
-                                         Need::optional)
+                                         input::Need::optional)
                                .value_or(0.0);
   read_fills(reader, mapping);
   if (quantity->kind == QuantityKind::time && (mapping.clock_offset_s != 0.0 || !mapping.fills.empty())) {
@@ -139,23 +139,23 @@ std::optional<QuantityMapping> read_quantity(const std::string& key, Reader& rea
   return mapping;
 }
 
-void read_conditions(Reader& table, std::map<std::string, std::string>& conditions) {
+void read_conditions(input::Reader& table, std::map<std::string, std::string>& conditions) {
   for (const std::string& key : table.keys()) {
-    if (const std::optional<std::string> text = table.text(key, Need::required)) {
+    if (const std::optional<std::string> text = table.text(key, input::Need::required)) {
       conditions[key] = *text;
     }
   }
 }
 
 /// Applies the [[files]] entries for this log. Returns true if there is any.
-bool read_files(Reader& root, const fs::path& log, Mapping& mapping) {
+bool read_files(input::Reader& root, const fs::path& log, Mapping& mapping) {
   bool is_named = false;
   std::map<std::pair<std::string, std::string>, std::string> said;  // by name and condition
-  for (Reader& file : root.tables("files")) {
-    const std::string name = file.text("name", Need::required).value_or("");
+  for (input::Reader& file : root.tables("files")) {
+    const std::string name = file.text("name", input::Need::required).value_or("");
     std::map<std::string, std::string> conditions;
-    const std::optional<std::string> motor = file.text("motor", Need::optional);
-    if (std::optional<Reader> table = file.table("conditions", Need::optional)) {
+    const std::optional<std::string> motor = file.text("motor", input::Need::optional);
+    if (std::optional<input::Reader> table = file.table("conditions", input::Need::optional)) {
       read_conditions(*table, conditions);
       for (const auto& [key, text] : conditions) {
         if (const auto& [before, is_new] = said.try_emplace({name, key}, text); !is_new && before->second != text) {
@@ -175,8 +175,8 @@ bool read_files(Reader& root, const fs::path& log, Mapping& mapping) {
   return is_named;
 }
 
-void read_quantities(Reader& root, Mapping& mapping) {
-  std::optional<Reader> table = root.table("quantities", Need::required);
+void read_quantities(input::Reader& root, Mapping& mapping) {
+  std::optional<input::Reader> table = root.table("quantities", input::Need::required);
   if (!table) {
     return;
   }
@@ -193,42 +193,42 @@ void read_quantities(Reader& root, Mapping& mapping) {
 
 }  // namespace
 
-Location QuantityMapping::place_of(const std::string& part) const {
+base::Location QuantityMapping::place_of(const std::string& part) const {
   const auto found = places.find(part);
   return found == places.end() ? at : found->second;
 }
 
 Mapping read_mapping(const fs::path& file, const fs::path& log) {
-  const Value document = read_toml(file);
-  Diagnostics problems;
-  Reader root(document, "", problems);
+  const input::Value document = input::read_toml(file);
+  base::Diagnostics problems;
+  input::Reader root(document, "", problems);
   Mapping mapping;
   mapping.file = file;
-  root.text("summary", Need::optional);
-  mapping.motor = root.text("motor", Need::optional).value_or("");
-  if (std::optional<Reader> conditions = root.table("conditions", Need::optional)) {
+  root.text("summary", input::Need::optional);
+  mapping.motor = root.text("motor", input::Need::optional).value_or("");
+  if (std::optional<input::Reader> conditions = root.table("conditions", input::Need::optional)) {
     read_conditions(*conditions, mapping.conditions);
   }
-  if (std::optional<Reader> format = root.table("file", Need::optional)) {
+  if (std::optional<input::Reader> format = root.table("file", input::Need::optional)) {
     mapping.format = read_format(*format);
   }
-  if (std::optional<Reader> rows = root.table("rows", Need::optional)) {
-    mapping.valid = rows->text("valid", Need::required).value_or("");
+  if (std::optional<input::Reader> rows = root.table("rows", input::Need::optional)) {
+    mapping.valid = rows->text("valid", input::Need::required).value_or("");
     mapping.valid_at = rows->at("valid");
     rows->finish();
   }
-  if (std::optional<Reader> runs = root.table("runs", Need::optional)) {
-    mapping.run_column = runs->text("column", Need::optional).value_or("");
+  if (std::optional<input::Reader> runs = root.table("runs", input::Need::optional)) {
+    mapping.run_column = runs->text("column", input::Need::optional).value_or("");
     mapping.run_column_at = runs->at("column");
     mapping.longest_gap_s =
-        runs->quantity({"longest_gap", "s", Range::positive(), "a longer gap between rows splits the run"}, Need::optional);
+        runs->quantity({"longest_gap", "s", base::Range::positive(), "a longer gap between rows splits the run"}, input::Need::optional);
     runs->finish();
   }
-  const std::string convention = root.choice("inputs", kConventions, Need::optional).value_or("held");
+  const std::string convention = root.choice("inputs", kConventions, input::Need::optional).value_or("held");
   mapping.inputs = static_cast<InputConvention>(std::ranges::find(kConventions, convention) - kConventions.begin());
   read_quantities(root, mapping);
   const std::vector<std::string> patterns =
-      document.find("applies_to") != nullptr ? root.texts("applies_to", Need::required) : std::vector<std::string>{"*"};
+      document.find("applies_to") != nullptr ? root.texts("applies_to", input::Need::required) : std::vector<std::string>{"*"};
   const bool is_named = read_files(root, log, mapping);
   if (!is_named && std::ranges::none_of(patterns, [&log](const std::string& pattern) { return matches(pattern, log); })) {
     root.problem("applies_to",
@@ -252,4 +252,4 @@ Mapping mapping_for(const fs::path& log, const fs::path& chosen) {
   return {};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -12,7 +12,7 @@
 #include "recording/quantities.h"
 #include "recording/recording.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Value that replaces blank cells in certain rows. Without a fill, a blank cell is unknown.
 struct GapFill {
@@ -33,20 +33,20 @@ struct QuantityMapping {
   std::optional<double> saturates_high;
   std::vector<GapFill> fills;
   bool is_optional = false;  ///< true: the file need not have the column
-  Location at;
-  std::map<std::string, Location> places;  ///< positions of the keys in the mapping file
+  base::Location at;
+  std::map<std::string, base::Location> places;  ///< positions of the keys in the mapping file
 
-  [[nodiscard]] Location place_of(const std::string& part) const;
+  [[nodiscard]] base::Location place_of(const std::string& part) const;
 };
 
 struct Mapping {
   std::filesystem::path file;  ///< empty for the canonical form
-  TableFormat format;
+  input::TableFormat format;
   std::vector<QuantityMapping> quantities;  ///< empty: the column names are quantities
   std::string valid;                        ///< expression: rows for which it is 0 are omitted; empty: all count
-  Location valid_at;
+  base::Location valid_at;
   std::string run_column;  ///< column whose changes begin a new run; may be empty
-  Location run_column_at;
+  base::Location run_column_at;
   std::optional<double> longest_gap_s;  ///< a longer gap between rows begins a new run; default: three usual periods
   InputConvention inputs = InputConvention::held;
   std::string motor;
@@ -63,4 +63,4 @@ Mapping read_mapping(const std::filesystem::path& file, const std::filesystem::p
 /// canonical form.
 Mapping mapping_for(const std::filesystem::path& log, const std::filesystem::path& chosen);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

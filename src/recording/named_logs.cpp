@@ -14,7 +14,7 @@
 #include "recording/quality.h"
 #include "recording/read_recording.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 struct LogPart {
@@ -40,7 +40,7 @@ LogPart log_part(const std::string& text) {
                         number(dash + 1, text.size() - 1, part.to_share) && part.from_share >= 0.0 && part.from_share < part.to_share &&
                         part.to_share <= 1.0;
   if (!is_sound) {
-    throw Failure(ExitCode::bad_input, fmt::format("'{}': expected LOG@FROM-TO%, such as run4.csv@0-60%", text));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("'{}': expected LOG@FROM-TO%, such as run4.csv@0-60%", text));
   }
   return part;
 }
@@ -50,7 +50,7 @@ std::vector<Recording> read_each(const std::vector<std::string>& texts, const Lo
   for (const std::string& text : texts) {
     const LogPart part = log_part(text);
     RecordingReport report;
-    const std::filesystem::path file = log_named(choice.folders, part.file);
+    const std::filesystem::path file = input::log_named(choice.folders, part.file);
     Recording recording = read_recording(file, mapping_for(file, choice.map), report);
     if (part.from_share == 0.0 && part.to_share == 1.0) {
       all.push_back(std::move(recording));
@@ -104,4 +104,4 @@ NamedLogs read_named_logs(const std::vector<std::string>& fitted, const std::vec
   return logs;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

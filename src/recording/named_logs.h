@@ -9,10 +9,10 @@
 #include "recording/recording.h"
 #include "recording/recording_report.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 struct LogChoice {
-  DataFolders folders = {};              ///< folders of log_named()
+  input::DataFolders folders = {};       ///< folders of log_named()
   std::string map = {};                  ///< mapping of all logs; empty: the file beside each log, if there is one
   std::optional<double> ambient_C = {};  ///< for logs without an ambient temperature
   bool takes_logs_as_they_are = false;   ///< accept logs whose units or sensors look wrong
@@ -35,4 +35,4 @@ struct NamedLogs {
 /// fitted logs do not depend on the hold-out logs. Throws Failure (bad_input).
 NamedLogs read_named_logs(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -4,7 +4,7 @@
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 constexpr double kMedianToSigma = 1.4826;
@@ -114,4 +114,4 @@ NoiseLevel noise_level(std::span<const double> values, std::span<const std::pair
   return gauge.level();
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -9,7 +9,7 @@
 
 #include "recording/thinned.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Median; 0 if `values` is empty. The values must not be NaN.
 double median_of(std::vector<double> values);
@@ -50,4 +50,4 @@ class NoiseGauge {
 NoiseLevel noise_level(std::span<const double> values, std::span<const std::pair<std::size_t, std::size_t>> runs,
                        std::size_t most = Thinned::kMost);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

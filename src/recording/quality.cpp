@@ -16,7 +16,7 @@
 #include "recording/row_order.h"
 #include "recording/suspicions.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 constexpr std::size_t kFewestRows = 20;
@@ -32,7 +32,7 @@ const ChannelQuality* find(const DataQuality& quality, std::string_view key) {
 bool is_kind(const ChannelQuality& channel, QuantityKind kind) { return channel.quantity.kind == kind; }
 
 std::string shown(double value, const Quantity& quantity) {
-  return fmt::format("{} {}", significant(value, 4), unit_for_display(quantity.unit));
+  return fmt::format("{} {}", base::significant(value, 4), base::unit_for_display(quantity.unit));
 }
 
 /// True if every temperature has its maximum in the first third of the log and is clearly lower at the end.
@@ -75,7 +75,7 @@ Fitness thermal_fitness(const Recording& recording, std::size_t rows, const Data
     fitness.lacks.push_back(one.is_constant() ? fmt::format("{} is constant, {}", one.quantity.key, shown(one.low, one.quantity))
                                               : fmt::format("no temperature changes by more than its noise: {} from {} to {}, noise {} K",
                                                             one.quantity.key, shown(one.low, one.quantity), shown(one.high, one.quantity),
-                                                            significant(one.noise, 2)));
+                                                            base::significant(one.noise, 2)));
   }
   // Without heat, the time constants are still identifiable from a cool-down.
   if (!inputs.empty() && !cools_down(recording, temperatures) && heat_input_of(recording) == nullptr &&
@@ -258,9 +258,9 @@ DataQuality assess(const Recording& recording, const RecordingReport& report, st
 
 void require_thermal(const Recording& recording, const DataQuality& quality) {
   if (!quality.thermal.is_good()) {
-    throw Failure(ExitCode::cannot_answer, fmt::format("{}: this log contains no information about heat: {}", recording.file.string(),
-                                                       fmt::join(quality.thermal.lacks, "; ")));
+    throw base::Failure(base::ExitCode::cannot_answer, fmt::format("{}: this log contains no information about heat: {}",
+                                                                   recording.file.string(), fmt::join(quality.thermal.lacks, "; ")));
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -13,7 +13,7 @@
 #include "recording/recording.h"
 #include "recording/recording_report.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 struct Sampling {
   double duration_s = 0.0;
@@ -119,4 +119,4 @@ const Channel* heat_input_of(const Recording& recording);
 /// Returns the heat per row up to a factor: the channel itself if it is a power, else its square. NaN if not known.
 std::vector<double> relative_heat(const Channel& heat_input);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

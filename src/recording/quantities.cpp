@@ -10,15 +10,15 @@
 #include "base/diagnostic.h"
 #include "base/quantity.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 using Kind = QuantityKind;
 
-constexpr Range kTemperature_C = Range::between(-100.0, 1000.0);
-constexpr Range kAny = Range::any();
+constexpr base::Range kTemperature_C = base::Range::between(-100.0, 1000.0);
+constexpr base::Range kAny = base::Range::any();
 /// Valid for all units; larger values would make squares and sums meaningless.
-constexpr Range kHeatInput = Range::between(-1e12, 1e12);
+constexpr base::Range kHeatInput = base::Range::between(-1e12, 1e12);
 
 constexpr std::array kTypes{
     QuantityType{"time_s", Kind::time, "s", kAny, false, "time of the row; any origin, strictly increasing"},
@@ -125,7 +125,7 @@ std::optional<std::string> unit_at_end(std::string_view key) {
     unit += words[i];
   }
   const bool is_symbol = std::isalpha(static_cast<unsigned char>(unit[0])) != 0;
-  return is_symbol && parse_quantity("1 " + unit, unit).ok() ? std::optional(unit) : std::nullopt;
+  return is_symbol && base::parse_quantity("1 " + unit, unit).ok() ? std::optional(unit) : std::nullopt;
 }
 
 }  // namespace
@@ -159,7 +159,7 @@ std::optional<Quantity> quantity_named(std::string_view key) {
   if (!unit) {
     return std::nullopt;
   }
-  const Range possible = *unit == "degC" ? kTemperature_C : kAny;
+  const base::Range possible = *unit == "degC" ? kTemperature_C : kAny;
   return Quantity{std::string(key), Kind::signal, *unit, possible, ""};
 }
 
@@ -180,7 +180,7 @@ std::string nearest_quantity(std::string_view key) {
     return fmt::format("; did you mean '{0}'? A column in another unit is read with a mapping: {0} = {{ column = \"{1}\", unit = … }}",
                        same, key);
   }
-  return did_you_mean(key, names);
+  return base::did_you_mean(key, names);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -8,7 +8,7 @@
 
 #include "base/parameter.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 enum class QuantityKind {
   time,
@@ -24,7 +24,7 @@ struct QuantityType {
   std::string_view key;
   QuantityKind kind;
   std::string_view unit;  ///< UDUNITS text; "" is a pure number
-  Range possible;         ///< in that unit; values outside are invalid
+  base::Range possible;   ///< in that unit; values outside are invalid
   bool is_numbered;
   std::string_view meaning;
 };
@@ -35,7 +35,7 @@ struct Quantity {
   std::string key;  ///< name in the log
   QuantityKind kind = QuantityKind::signal;
   std::string unit;  ///< UDUNITS text; "" is a pure number
-  Range possible;
+  base::Range possible;
   std::string meaning;  ///< empty if the table does not have it
 };
 
@@ -46,4 +46,4 @@ std::optional<Quantity> quantity_named(std::string_view key);
 /// Returns a "did you mean" hint with the nearest name of the table, or an empty string.
 std::string nearest_quantity(std::string_view key);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -5,7 +5,7 @@
 #include "recording/fingerprint.h"
 #include "recording/recording_stream.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 /// Reserves memory for the expected number of rows. Growth by doubling would copy the columns and need twice the memory.
@@ -62,4 +62,4 @@ Recording read_recording(const std::filesystem::path& log, const Mapping& mappin
   return recording;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -7,10 +7,10 @@
 #include "recording/recording.h"
 #include "recording/recording_report.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Reads all rows of `log`; drops channels without any number. Omitted samples and exceptions are those of RecordingStream. Only used
 /// columns need memory.
 Recording read_recording(const std::filesystem::path& log, const Mapping& mapping, RecordingReport& report);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 const Channel* Recording::find(std::string_view key) const {
   const auto found = std::ranges::find_if(channels, [key](const Channel& channel) { return channel.quantity.key == key; });
@@ -50,4 +50,4 @@ Recording part_of(const Recording& recording, double from_share, double to_share
   return part;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -12,7 +12,7 @@
 
 #include "recording/quantities.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 struct Channel {
   Quantity quantity;
@@ -57,4 +57,4 @@ struct Recording {
 /// Returns the rows of a recording between two fractions (0 to 1) of its duration. Name and conditions stay.
 Recording part_of(const Recording& recording, double from_share, double to_share);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -1,6 +1,6 @@
 #include "recording/recording_report.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 std::string_view to_string(LeftOutReason reason) {
   switch (reason) {
@@ -44,4 +44,4 @@ const LeftOut* RecordingReport::find(std::string_view quantity, LeftOutReason re
   return found == left_out.end() ? nullptr : &found->second;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 enum class LeftOutReason {
   // reasons for whole rows
@@ -57,4 +57,4 @@ struct RecordingReport {
   [[nodiscard]] const LeftOut* find(std::string_view quantity, LeftOutReason reason) const;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

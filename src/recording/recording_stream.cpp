@@ -15,13 +15,13 @@
 #include "recording/row_order.h"
 #include "recording/screening.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 constexpr double kUnsorted_share = 0.1;
 
 /// Quantities of a canonical log: all columns whose name is a quantity. Reports the other columns.
-std::vector<QuantityMapping> quantities_of_header(const NumberTable& table, const std::string& file, RecordingReport& report) {
+std::vector<QuantityMapping> quantities_of_header(const input::NumberTable& table, const std::string& file, RecordingReport& report) {
   std::vector<QuantityMapping> found;
   for (std::size_t i = 0; i < table.header().size(); ++i) {
     const std::string& name = table.header()[i];
@@ -140,13 +140,13 @@ class RecordingStream::Intake {
  private:
   void find_sources() {
     if (table_.header().size() < 2) {
-      throw bad_input({log_.string(), table_.header_line(), 1}, "",
-                      fmt::format("the header has one column only; expected names separated by '{}'{}", mapping_.format.separator,
-                                  other_separator(table_.header())));
+      throw base::bad_input({log_.string(), table_.header_line(), 1}, "",
+                            fmt::format("the header has one column only; expected names separated by '{}'{}", mapping_.format.separator,
+                                        other_separator(table_.header())));
     }
     const std::vector<QuantityMapping> quantities =
         mapping_.is_canonical() ? quantities_of_header(table_, log_.string(), report_) : mapping_.quantities;
-    Diagnostics problems;
+    base::Diagnostics problems;
     for (const QuantityMapping& quantity : quantities) {
       if (const std::string nearest = nearest_quantity(quantity.quantity.key); quantity.quantity.meaning.empty() && !nearest.empty()) {
         report_.notes.push_back(fmt::format("{} is used as an additional signal{}", quantity.quantity.key, nearest));
@@ -162,9 +162,9 @@ class RecordingStream::Intake {
     }
     if (!time_ && problems.empty()) {
       const std::vector<std::string> names(table_.header().begin(), table_.header().end());
-      problems.add(
-          {log_.string(), table_.header_line(), 1}, "time_s",
-          fmt::format("there is no such column{}; a foreign log is read with a mapping (--map FILE.toml)", did_you_mean("time_s", names)));
+      problems.add({log_.string(), table_.header_line(), 1}, "time_s",
+                   fmt::format("there is no such column{}; a foreign log is read with a mapping (--map FILE.toml)",
+                               base::did_you_mean("time_s", names)));
     }
     valid_ = condition(mapping_.valid, mapping_.valid_at, "rows.valid", problems);
     if (!mapping_.run_column.empty()) {
@@ -179,7 +179,8 @@ class RecordingStream::Intake {
     }
   }
 
-  std::optional<BlockExpression> condition(const std::string& text, const Location& at, const char* key, Diagnostics& problems) {
+  std::optional<BlockExpression> condition(const std::string& text, const base::Location& at, const char* key,
+                                           base::Diagnostics& problems) {
     if (text.empty()) {
       return std::nullopt;
     }
@@ -187,9 +188,9 @@ class RecordingStream::Intake {
     return expression.ok() ? std::optional<BlockExpression>(std::in_place, std::move(expression), used_) : std::nullopt;
   }
 
-  void take(const TableBlock& block, const BadCells& bad) {
+  void take(const input::TableBlock& block, const BadCells& bad) {
     report_.rows_in_file += block.rows() + block.bad_lines.size();
-    for (const BadLine& line : block.bad_lines) {
+    for (const input::BadLine& line : block.bad_lines) {
       LeftOut& entry = report_.left_out[{"", line.is_cut_off ? LeftOutReason::cut_off : LeftOutReason::wrong_number_of_cells}];
       entry.example = entry.count == 0 ? fmt::format("{} instead of {}", line.cells, table_.header().size()) : entry.example;
       entry.add(line.line);
@@ -242,7 +243,7 @@ class RecordingStream::Intake {
     constexpr std::size_t kPart = 1 << 16;
     constexpr std::size_t kMargin = 1 << 12;
     margin_ = std::max(margin_, kMargin);
-    TableBlock block;
+    input::TableBlock block;
     BadCells bad;
     while (!is_at_end_ && rows_.size() < context_ + kPart + margin_) {
       if (!table_.next(block)) {
@@ -338,10 +339,11 @@ class RecordingStream::Intake {
   void refuse_where_time_repeats() const {
     constexpr double kMost_share = 0.5;
     if (static_cast<double>(report_.repeated_times) > kMost_share * static_cast<double>(rows_with_time_)) {
-      throw bad_input({log_.string(), first_backwards_->line, 1}, time_->quantity().key,
-                      fmt::format("{} of {} rows have the time of the row before, the first at {:g} s; expected a different time for every "
-                                  "row: is it written with too few digits?",
-                                  report_.repeated_times, rows_with_time_, first_backwards_->time_s));
+      throw base::bad_input(
+          {log_.string(), first_backwards_->line, 1}, time_->quantity().key,
+          fmt::format("{} of {} rows have the time of the row before, the first at {:g} s; expected a different time for every "
+                      "row: is it written with too few digits?",
+                      report_.repeated_times, rows_with_time_, first_backwards_->time_s));
     }
   }
 
@@ -349,11 +351,11 @@ class RecordingStream::Intake {
   void conclude() {
     report_.file_bytes = table_.bytes_read();
     if (rows_with_time_ == 0) {
-      throw bad_input({log_.string()}, "", report_.rows_in_file == 0 ? "has a header but no rows" : first_reason());
+      throw base::bad_input({log_.string()}, "", report_.rows_in_file == 0 ? "has a header but no rows" : first_reason());
     }
     refuse_where_time_repeats();
     if (static_cast<double>(backwards_) > kUnsorted_share * static_cast<double>(rows_with_time_)) {
-      throw bad_input(
+      throw base::bad_input(
           {log_.string(), first_backwards_->line, 1}, time_->quantity().key,
           fmt::format("time does not increase: {} of {} rows would be left out, the first is at {:g} s after {:g} s; expected rows "
                       "sorted by time, one recording per file",
@@ -368,7 +370,7 @@ class RecordingStream::Intake {
       }
     }
     if (std::ranges::count(has_numbers_, 1) == 0) {
-      throw Failure(ExitCode::cannot_answer, fmt::format("{}: no quantity except the time contains a number", log_.string()));
+      throw base::Failure(base::ExitCode::cannot_answer, fmt::format("{}: no quantity except the time contains a number", log_.string()));
     }
   }
 
@@ -388,7 +390,7 @@ class RecordingStream::Intake {
   Mapping mapping_;
   RecordingReport& report_;
   RecordingReport time_report_;  ///< separate, because a row without time is reported as a row and not as a sample
-  NumberTable table_;
+  input::NumberTable table_;
   UsedColumns used_;
   std::optional<ChannelSource> time_;
   std::vector<ChannelSource> sources_;
@@ -419,4 +421,4 @@ bool RecordingStream::next(Recording& part) { return intake_->next(part); }
 std::size_t RecordingStream::bytes_read() const { return intake_->bytes_read(); }
 bool RecordingStream::has_numbers(std::size_t channel) const { return intake_->has_numbers(channel); }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

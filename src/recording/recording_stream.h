@@ -9,7 +9,7 @@
 #include "recording/recording.h"
 #include "recording/recording_report.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Omits and reports invalid rows and samples (blank, not numbers, repeated or decreasing times, saturated, frozen, outliers of
 /// temperatures); never replaces them by guesses. Memory is bounded. Frozen and saturated samples and the order of rows are judged within
@@ -34,4 +34,4 @@ class RecordingStream {
   std::unique_ptr<Intake> intake_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

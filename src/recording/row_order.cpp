@@ -6,7 +6,7 @@
 
 #include "recording/noise.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
@@ -61,4 +61,4 @@ std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<co
   return begins;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Median time between two rows; 0 with fewer than two rows.
 double usual_period_s(std::span<const double> time_s);
@@ -21,4 +21,4 @@ inline constexpr double kLongestStep_ratio = 3.0 * (1.0 + 1e-6);
 /// per row) changes.
 std::vector<std::size_t> run_begins(std::span<const double> time_s, std::span<const double> values, double longest_gap_s);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

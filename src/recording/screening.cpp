@@ -11,7 +11,7 @@
 #include "recording/noise.h"
 #include "recording/spread.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 /// Rows [begin, end) with one value, apart from NaN.
@@ -174,7 +174,7 @@ bool piles_up(std::span<const std::vector<Segment>> runs, double end, const Chan
 bool never_rests(std::span<const double> values, double& low, double& high) {
   std::size_t longest = 0;
   std::size_t equal = 0;
-  double before = kUnknown;
+  double before = base::kUnknown;
   for (const double value : values) {
     if (!std::isnan(value)) {
       equal = value == before ? equal + 1 : 1;
@@ -199,14 +199,14 @@ struct Reported {
     if (row >= first && row < last) {
       report.left_out[{channel.quantity.key, reason}].add(part.line[row]);
     }
-    channel.values[row] = kUnknown;
+    channel.values[row] = base::kUnknown;
   }
 };
 
 /// Omits frozen and saturated samples. `frozen_at` is the frozen value before the first reported row, on return that of the last (or NaN).
 void leave_out_segments(Recording& part, Channel& channel, const NoiseLevel& noise, double& low, double& high, double& frozen_at,
                         const Reported& reported) {
-  const double was_frozen_at = std::exchange(frozen_at, kUnknown);
+  const double was_frozen_at = std::exchange(frozen_at, base::kUnknown);
   if (never_rests(channel.values, low, high)) {
     return;
   }
@@ -379,4 +379,4 @@ void Screening::leave_out_bad_samples(Recording& part, std::size_t first, std::s
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -8,7 +8,7 @@
 #include "recording/recording.h"
 #include "recording/recording_report.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Replaces invalid samples by NaN and reports their lines. Heat inputs and other signals may jump and rest, so they are kept, except for
 /// single currents and speeds that no motor reaches and that are far from their neighbours (outliers).
@@ -31,4 +31,4 @@ class Screening {
   std::vector<Past> past_;  ///< per channel
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

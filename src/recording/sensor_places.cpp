@@ -11,7 +11,7 @@
 #include "recording/row_order.h"
 #include "recording/spread.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 constexpr std::size_t kEnoughBlocks = 10;
@@ -110,7 +110,7 @@ class Places {
       }
       if (middle_of(above_K) < -kBelow_K && !was_brought_in_cold(channel, above_K)) {
         found_.push_back(fmt::format("ambient_C is hotter than {} most of the time (by {} K): are the channels swapped?",
-                                     channel.quantity.key, significant(-middle_of(above_K), 2)));
+                                     channel.quantity.key, base::significant(-middle_of(above_K), 2)));
       }
     }
   }
@@ -236,7 +236,7 @@ class Places {
         swing(*stator_) > kSwing_ratio * swing(*winding_)) {
       found_.push_back(
           fmt::format("stator_C responds to {} faster than winding_C and varies more ({} K against {} K): are the two swapped?",
-                      input->quantity.key, significant(swing(*stator_), 3), significant(swing(*winding_), 3)));
+                      input->quantity.key, base::significant(swing(*stator_), 3), base::significant(swing(*winding_), 3)));
     }
   }
 
@@ -262,7 +262,7 @@ class Places {
     }
     if (swapped > 0 && sound == 0) {
       found_.push_back(fmt::format("without heat, stator_C is hotter than winding_C (by {} K) and falls by more: are the two swapped?",
-                                   significant(apart_K, 2)));
+                                   base::significant(apart_K, 2)));
     }
   }
 
@@ -278,7 +278,7 @@ class Places {
       if (warm_up.stator_ahead_K > 0.0) {
         found_.push_back(fmt::format(
             "at standstill {} heats stator_C by {} K while winding_C is {} K cooler: are the two swapped, or is a sensor elsewhere?",
-            input->quantity.key, significant(warm_up.stator_rise_K, 2), significant(warm_up.stator_ahead_K, 2)));
+            input->quantity.key, base::significant(warm_up.stator_rise_K, 2), base::significant(warm_up.stator_ahead_K, 2)));
         return;
       }
     }
@@ -402,4 +402,4 @@ std::vector<std::string> suspicious_places(const Recording& recording, std::span
   return recording.rows() < 2 ? std::vector<std::string>{} : Places(recording, channels).run();
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -8,8 +8,8 @@
 #include "recording/quality.h"
 #include "recording/recording.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 std::vector<std::string> suspicious_places(const Recording& recording, std::span<const ChannelQuality> channels);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -7,7 +7,7 @@
 
 #include "base/unknown.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 /// First five values that are not NaN; for a reversed view the last five.
@@ -32,7 +32,7 @@ double percentile(std::span<const double> values, double share) {
     }
   }
   if (sorted.empty()) {
-    return kUnknown;
+    return base::kUnknown;
   }
   const auto place = sorted.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size() - 1));
   std::ranges::nth_element(sorted, place);
@@ -80,4 +80,4 @@ Regression regress(std::span<const double> x, std::span<const double> y) {
   return found;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

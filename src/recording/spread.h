@@ -6,7 +6,7 @@
 
 #include "recording/recording.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Quantile of the values that are not NaN; `share` is 0 to 1. NaN if there are none.
 double percentile(std::span<const double> values, double share);
@@ -35,4 +35,4 @@ struct Regression {
 };
 Regression regress(std::span<const double> x, std::span<const double> y);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -17,7 +17,7 @@
 #include "recording/spread.h"
 #include "recording/temperature_scales.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 class Suspector {
@@ -53,7 +53,7 @@ class Suspector {
     for (const char* key : {"current_A", "current_q_A", "bus_A"}) {
       const Channel* const current = recording_.find(key);
       if (const double top_A = current != nullptr ? top_of_sizes(current->values) : 0.0; top_A > kLargestCurrent_A) {
-        found_.push_back(fmt::format("{} reaches {} A: is it in milliamperes?", key, significant(top_A, 3)));
+        found_.push_back(fmt::format("{} reaches {} A: is it in milliamperes?", key, base::significant(top_A, 3)));
       }
     }
     const Channel* const power = recording_.find("power_in_W");
@@ -70,7 +70,7 @@ class Suspector {
       }
       const double ratio = middle_of(ratios);
       if (std::abs(ratio) < 0.5 || std::abs(ratio) > 2.0) {
-        found_.push_back(fmt::format("power_in_W is {} times bus_V × bus_A: is one of them in another unit?", significant(ratio, 3)));
+        found_.push_back(fmt::format("power_in_W is {} times bus_V × bus_A: is one of them in another unit?", base::significant(ratio, 3)));
       } else if (ratio < 0.0) {
         found_.emplace_back("power_in_W and bus_V × bus_A have opposite signs");
       }
@@ -100,8 +100,8 @@ class Suspector {
       const double fastest = top_of_sizes(channel.values);
       if (channel.quantity.unit == "rad/s" && channel.quantity.key.find("speed") != std::string::npos && fastest > kFastest_rad_per_s) {
         found_.push_back(fmt::format("{} reaches {} rad/s: is it in rpm ({} rad/s) or degrees per second ({} rad/s)?", channel.quantity.key,
-                                     significant(fastest, 4), significant(fastest / kRpm, 3),
-                                     significant(fastest * std::numbers::pi / 180.0, 3)));
+                                     base::significant(fastest, 4), base::significant(fastest / kRpm, 3),
+                                     base::significant(fastest * std::numbers::pi / 180.0, 3)));
       }
     }
     const Channel* const speed = recording_.find("speed_rad_per_s");
@@ -121,7 +121,7 @@ class Suspector {
       found_.push_back(
           fmt::format("torque_Nm × speed_rad_per_s is {} times power_in_W, more than the input: is the speed in rpm (÷ 9.55) or "
                       "degrees per second (÷ 57.3)?",
-                      significant(ratio, 3)));
+                      base::significant(ratio, 3)));
     }
   }
 
@@ -130,7 +130,7 @@ class Suspector {
       const double span = channel.high - channel.low;
       const bool is_angle = channel.quantity.key.starts_with("yaw") || channel.quantity.key.starts_with("heading");
       if (channel.quantity.unit == "rad" && is_angle && span > 100.0 && span <= 721.0) {
-        found_.push_back(fmt::format("{} spans {} rad: is it in degrees?", channel.quantity.key, significant(span, 3)));
+        found_.push_back(fmt::format("{} spans {} rad: is it in degrees?", channel.quantity.key, base::significant(span, 3)));
       }
     }
   }
@@ -143,18 +143,18 @@ class Suspector {
     const bool has_wheels = std::ranges::any_of(recording_.channels,
                                                 [](const Channel& each) { return each.quantity.key.starts_with("wheel_speed_rad_per_s"); });
     if (has_wheels && period_s > kLongestPeriod_s && recording_.time_s.back() - recording_.time_s.front() <= kLongest_s) {
-      found_.push_back(fmt::format("the speeds of wheels are {} s apart: is the time in milliseconds?", significant(period_s, 3)));
+      found_.push_back(fmt::format("the speeds of wheels are {} s apart: is the time in milliseconds?", base::significant(period_s, 3)));
     }
     for (const Channel& channel : recording_.channels) {
       const std::string& key = channel.quantity.key;
       const double top = top_of_sizes(channel.values);
       if (key.starts_with("wheel_pwm_ratio") && top > 1.5) {
         found_.push_back(fmt::format("{} reaches {}: is it in percent or in counts of a timer? 1 is the whole battery voltage", key,
-                                     significant(top, 3)));
+                                     base::significant(top, 3)));
       } else if ((key == "battery_V" || key.starts_with("wheel_voltage_V")) && top > kLargestBattery_V) {
-        found_.push_back(fmt::format("{} reaches {} V: is it in millivolts?", key, significant(top, 3)));
+        found_.push_back(fmt::format("{} reaches {} V: is it in millivolts?", key, base::significant(top, 3)));
       } else if (key.starts_with("wheel_current_A") && top > kLargestCurrent_A) {
-        found_.push_back(fmt::format("{} reaches {} A: is it in milliamperes?", key, significant(top, 3)));
+        found_.push_back(fmt::format("{} reaches {} A: is it in milliamperes?", key, base::significant(top, 3)));
       }
     }
   }
@@ -163,8 +163,8 @@ class Suspector {
     const double duration_s = recording_.time_s.back() - recording_.time_s.front();
     if (duration_s > kLongest_s) {
       const double in_days = duration_s / 86400.0;
-      found_.push_back(fmt::format("the log lasts {} days at {} s per row: is the time in {}?", significant(in_days, 3),
-                                   significant(usual_period_s(recording_.time_s), 3),
+      found_.push_back(fmt::format("the log lasts {} days at {} s per row: is the time in {}?", base::significant(in_days, 3),
+                                   base::significant(usual_period_s(recording_.time_s), 3),
                                    duration_s > 1e3 * kLongest_s ? "microseconds" : "milliseconds"));
     }
   }
@@ -197,8 +197,9 @@ class Suspector {
         // The rate of a rise depends on the current, but the rate of a fall only on the motor.
         const double fast_s = channel.quantity.key.find("winding") != std::string::npos ? 0.5 : 5.0;
         if (const double fall_s = usual_fall_s(channel); fall_s < fast_s) {
-          found_.push_back(fmt::format("the rows are {} s apart and {} falls by {} K in {} s: is the time in {}?", significant(period_s, 3),
-                                       channel.quantity.key, significant(kFall_K, 2), significant(fall_s, 2), unit));
+          found_.push_back(fmt::format("the rows are {} s apart and {} falls by {} K in {} s: is the time in {}?",
+                                       base::significant(period_s, 3), channel.quantity.key, base::significant(kFall_K, 2),
+                                       base::significant(fall_s, 2), unit));
           return;
         }
       }
@@ -239,7 +240,7 @@ class Suspector {
       });
       if (moving != recording_.channels.end()) {
         found_.push_back(fmt::format("{} is constant, {} °C, while {} changes by {} K: is its sensor connected?", constant.quantity.key,
-                                     significant(range->low, 4), moving->quantity.key, significant(swing(*moving), 3)));
+                                     base::significant(range->low, 4), moving->quantity.key, base::significant(swing(*moving), 3)));
       }
     }
   }
@@ -258,7 +259,7 @@ class Suspector {
         if (end != 0.0 && there > kMuch_share * static_cast<double>(range->samples) && range->noise > 0.0 &&
             range->distinct > kManyValues) {
           found_.push_back(fmt::format("{} stays at exactly {} {} in {:.0f} % of its rows: a limit, or a saturated sensor?",
-                                       channel.quantity.key, significant(end, 5), unit_for_display(channel.quantity.unit),
+                                       channel.quantity.key, base::significant(end, 5), base::unit_for_display(channel.quantity.unit),
                                        100.0 * there / static_cast<double>(range->samples)));
         }
       }
@@ -279,4 +280,4 @@ Suspicions suspicions(const Recording& recording, const DataQuality& quality, st
   return Suspector(recording, quality, ambient_C).run();
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

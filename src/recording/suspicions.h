@@ -8,7 +8,7 @@
 #include "recording/quality.h"
 #include "recording/recording.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 struct Suspicions {
   std::vector<std::string> all;
@@ -19,4 +19,4 @@ struct Suspicions {
 /// user states it.
 Suspicions suspicions(const Recording& recording, const DataQuality& quality, std::optional<double> ambient_C);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -11,7 +11,7 @@
 #include "base/unknown.h"
 #include "recording/spread.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 constexpr double kApart_K = 15.0;
@@ -58,7 +58,7 @@ double rests_at(const Recording& recording, const Channel& channel, std::size_t 
   constexpr double kFall_K = 3.0;
   constexpr double kDecay_ratio = 0.72;
   if (recording.rows() < first + kFewestRows) {
-    return kUnknown;
+    return base::kUnknown;
   }
   const double begin_s = recording.time_s[first];
   const double third_s = (recording.time_s.back() - begin_s) / 3.0;
@@ -73,7 +73,7 @@ double rests_at(const Recording& recording, const Channel& channel, std::size_t 
   const double early_K = at[0] - at[1];
   const double late_K = at[1] - at[2];
   const bool decays = at[0] - at[2] > kFall_K && late_K > 0.0 && late_K < kDecay_ratio * early_K;
-  return decays ? at[2] - late_K * late_K / (early_K - late_K) : kUnknown;
+  return decays ? at[2] - late_K * late_K / (early_K - late_K) : base::kUnknown;
 }
 
 /// True if the channel never falls below its start, as for a motor that starts at room temperature. `degree` is the value of 1 K in the
@@ -103,16 +103,16 @@ class Scales {
       const std::string& key = each->quantity.key;
       const double start = at_start(*each);
       if (is_in_tenths(*each) || (in_tenths && is_of_a_room(from_tenths_C(start)) && start > 250.0)) {
-        found_.push_back(fmt::format("{} starts at {} °C: is it in tenths of degrees ({} °C)?", key, significant(start, 4),
-                                     significant(from_tenths_C(start), 3)));
+        found_.push_back(fmt::format("{} starts at {} °C: is it in tenths of degrees ({} °C)?", key, base::significant(start, 4),
+                                     base::significant(from_tenths_C(start), 3)));
       } else if (start > 250.0 && from_kelvin_C(start) > -25.0 && from_kelvin_C(start) < 60.0 &&
                  percentile(each->values, 0.02) > kColdest_K) {
-        found_.push_back(
-            fmt::format("{} starts at {} °C: is it in kelvin ({} °C)?", key, significant(start, 4), significant(from_kelvin_C(start), 3)));
+        found_.push_back(fmt::format("{} starts at {} °C: is it in kelvin ({} °C)?", key, base::significant(start, 4),
+                                     base::significant(from_kelvin_C(start), 3)));
       } else if (is_in_fahrenheit(*each)) {
         is_told_ = is_told_ || each->quantity.kind == QuantityKind::temperature;
-        found_.push_back(fmt::format("{} starts at {} °C: is it in degrees Fahrenheit ({} °C)?", key, significant(start, 3),
-                                     significant(from_fahrenheit_C(start), 3)));
+        found_.push_back(fmt::format("{} starts at {} °C: is it in degrees Fahrenheit ({} °C)?", key, base::significant(start, 3),
+                                     base::significant(from_fahrenheit_C(start), 3)));
       }
     }
     if (!is_told_) {
@@ -176,7 +176,7 @@ class Scales {
 
   /// Detects a motor in Fahrenheit: all sensors start alike, far above room temperature, but at room temperature if read as Fahrenheit.
   void motor_in_fahrenheit() {
-    const double room_C = ambient_ != nullptr ? at_start(*ambient_) : stated_C_.value_or(kUnknown);
+    const double room_C = ambient_ != nullptr ? at_start(*ambient_) : stated_C_.value_or(base::kUnknown);
     if (std::isnan(room_C) || sensors_.size() < 2) {
       return;
     }
@@ -188,15 +188,16 @@ class Scales {
     });
     if (all) {
       is_told_ = true;
-      found_.push_back(fmt::format(
-          "{} and the motor's other temperatures start at {} °C in air of {} °C: are they in degrees Fahrenheit ({} °C)?",
-          sensors_.front()->quantity.key, significant(first, 3), significant(room_C, 3), significant(from_fahrenheit_C(first), 3)));
+      found_.push_back(
+          fmt::format("{} and the motor's other temperatures start at {} °C in air of {} °C: are they in degrees Fahrenheit ({} °C)?",
+                      sensors_.front()->quantity.key, base::significant(first, 3), base::significant(room_C, 3),
+                      base::significant(from_fahrenheit_C(first), 3)));
     }
   }
 
   /// Detects Fahrenheit from a cool-down: without heat, a motor approaches the air temperature, but in Fahrenheit a value far above it.
   void cooling_in_fahrenheit() {
-    const double room_C = ambient_ != nullptr ? middle_of(ambient_->values) : stated_C_.value_or(kUnknown);
+    const double room_C = ambient_ != nullptr ? middle_of(ambient_->values) : stated_C_.value_or(base::kUnknown);
     if (std::isnan(room_C) || sensors_.empty() || is_told_) {
       return;
     }
@@ -211,7 +212,8 @@ class Scales {
       const double rest = rests_at(recording_, *sensors_.front(), first);
       found_.push_back(fmt::format(
           "{} reaches a steady state of {} °C without heat, in air of {} °C: are the motor's temperatures in degrees Fahrenheit ({} °C)?",
-          sensors_.front()->quantity.key, significant(rest, 3), significant(room_C, 3), significant(from_fahrenheit_C(rest), 3)));
+          sensors_.front()->quantity.key, base::significant(rest, 3), base::significant(room_C, 3),
+          base::significant(from_fahrenheit_C(rest), 3)));
     }
   }
 
@@ -230,4 +232,4 @@ std::vector<std::string> suspicious_scales(const Recording& recording, std::opti
   return Scales(recording, ambient_C).run();
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -7,10 +7,10 @@
 
 #include "recording/recording.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Returns sentences about suspicious temperature scales. `ambient_C`: air temperature if the user states it; the
 /// recording's own ambient temperature takes precedence.
 std::vector<std::string> suspicious_scales(const Recording& recording, std::optional<double> ambient_C);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

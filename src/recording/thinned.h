@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Keeps every n-th number; n is the smallest power of two for which the count stays within a bound.
 class Thinned {
@@ -37,4 +37,4 @@ class Thinned {
   std::vector<double> values_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iterator>
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 std::string to_canonical_csv(const Recording& recording) {
   std::string text = fmt::format("# from {}\n", recording.file.filename().string());
@@ -33,4 +33,4 @@ std::string to_canonical_csv(const Recording& recording) {
   return text;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -5,10 +5,10 @@
 
 #include "recording/recording.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 /// Returns the CSV text. Every channel is in its unit with full precision; omitted samples are blank cells. Motor and conditions are
 /// written as comments.
 std::string to_canonical_csv(const Recording& recording);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -11,7 +11,7 @@
 #include "base/diagnostic.h"
 #include "report/chart_plugin.h"
 
-namespace heatsoak {
+namespace heatsoak::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,8 +39,8 @@ fs::path find_plugin() {
     }
     searched += "\n  " + folder.string();
   }
-  throw Failure(ExitCode::bug, fmt::format("the drawing library {} is missing; HEATSOAK_PLUGINS names its folder; searched:{}",
-                                           chart_plugin_file, searched));
+  throw base::Failure(base::ExitCode::bug, fmt::format("the drawing library {} is missing; HEATSOAK_PLUGINS names its folder; searched:{}",
+                                                       chart_plugin_file, searched));
 }
 
 /// The library is never closed: VTK's object factories do not survive unloading. Opening it again is cheap.
@@ -49,14 +49,15 @@ void* plugin_function(const char* name) {
   void* library = dlopen(plugin.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* function = library != nullptr ? dlsym(library, name) : nullptr;
   if (function == nullptr) {
-    throw Failure(ExitCode::bug, fmt::format("cannot open the drawing library: {}; is it of the same build as the program?", dlerror()));
+    throw base::Failure(base::ExitCode::bug,
+                        fmt::format("cannot open the drawing library: {}; is it of the same build as the program?", dlerror()));
   }
   return function;
 }
 
 void check_lengths(const Chart& chart) {
   const auto fail = [](const std::string& name) {
-    throw Failure(ExitCode::bug, fmt::format("chart: the columns of '{}' differ in length", name));
+    throw base::Failure(base::ExitCode::bug, fmt::format("chart: the columns of '{}' differ in length", name));
   };
   for (const ChartPanel& panel : chart.panels) {
     for (const ChartCurve& curve : panel.curves) {
@@ -78,7 +79,7 @@ std::string draw_svg(const Chart& chart) {
   check_lengths(chart);
   std::string text;
   if (!reinterpret_cast<DrawSvg>(plugin_function(chart_plugin_function))(&chart, &text, chart_layout)) {
-    throw Failure(ExitCode::bug, "drawing failed: " + text);
+    throw base::Failure(base::ExitCode::bug, "drawing failed: " + text);
   }
   return text;
 }
@@ -90,9 +91,9 @@ std::string draw_picture(const Chart& chart, const std::string& file) {
   }
   std::string png;
   if (!reinterpret_cast<SvgToPng>(plugin_function(png_plugin_function))(&svg, &png)) {
-    throw Failure(ExitCode::bug, "drawing failed: " + png);
+    throw base::Failure(base::ExitCode::bug, "drawing failed: " + png);
   }
   return png;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::report

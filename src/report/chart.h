@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::report {
 
 /// A curve. `x` and `y` have the same length and the units of the axes. NaN interrupts the line if the gap is at least one pixel wide.
 struct ChartCurve {
@@ -57,4 +57,4 @@ std::string draw_svg(const Chart& chart);
 /// Returns the bytes of a picture in the format of the file's extension: PNG for ".png" with two pixels per chart pixel, else SVG.
 std::string draw_picture(const Chart& chart, const std::string& file);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::report

@@ -6,7 +6,7 @@
 
 #include "report/chart.h"
 
-namespace heatsoak {
+namespace heatsoak::report {
 
 inline constexpr const char* chart_plugin_file = "heatsoak_charts.so";
 inline constexpr const char* chart_plugin_function = "heatsoak_draw_chart";
@@ -22,4 +22,4 @@ inline constexpr const char* png_plugin_function = "heatsoak_svg_to_png";
 /// The same for the conversion of an SVG to a PNG.
 using SvgToPng = bool (*)(const std::string* svg, std::string* png);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::report

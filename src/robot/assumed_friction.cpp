@@ -8,7 +8,7 @@
 
 #include "robot/traction.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 struct Assumed {
@@ -48,10 +48,10 @@ Robot with_assumed_friction(Robot robot) {
   const double load_Nm = robot.mass_kg * kGravity_m_per_s2 * robot.wheels.radius_m;
   for (const Assumed& each : kAssumed) {
     const double scale = each.is_per_load ? load_Nm : 1.0;
-    ParameterValue parameter;
+    base::ParameterValue parameter;
     parameter.value = scale * each.nominal;
     parameter.derivation = "assumed: that of other robots, per weight and wheel radius";
-    parameter.spread = Spread{Spread::Kind::range, scale * each.low, scale * each.high, each.low > 0.0};
+    parameter.spread = base::Spread{base::Spread::Kind::range, scale * each.low, scale * each.high, each.low > 0.0};
     friction_value(robot, each.key) = parameter.value;
     robot.parameters.insert_or_assign(fmt::format("friction.{}", each.key), parameter);
   }
@@ -70,4 +70,4 @@ std::string assumed_friction_text(const Robot& robot) {
       robot.friction.rolling_efficiency.value());
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -5,7 +5,7 @@
 
 #include "robot/robot.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 /// Returns whether the file states any value of [friction] or [friction.heading]; false for assumed friction.
 bool has_friction(const Robot& robot);
@@ -19,4 +19,4 @@ Robot with_assumed_friction(Robot robot);
 /// Returns a line for the user with the assumed values; empty if nothing was assumed.
 std::string assumed_friction_text(const Robot& robot);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 /// The open-circuit voltage is linear in the remaining charge; one internal resistance.
 struct BatteryConfig {
@@ -39,4 +39,4 @@ inline BatteryLoad battery_load(const BatteryConfig& battery, double charge_A_s,
   return load;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

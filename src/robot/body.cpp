@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 FrictionConfig make_friction(const Robot& robot, const Kinematics& kinematics) {
@@ -43,20 +43,21 @@ bool stands(const WeightConfig& weight) {
 
 }  // namespace
 
-BodyConfig make_body(const Robot& robot, const MotorValues& motor) {
+BodyConfig make_body(const Robot& robot, const motor::MotorValues& motor) {
   constexpr std::array<std::string_view, 4> kTables{"body", "wheels", "friction", "traction"};
   require_parameters(robot, kTables);
   if (!motor.rotor_inertia_kg_m2) {
-    throw bad_input({}, "figures.rotor_inertia", "of the motor is missing: without it no acceleration of a wheel can be calculated");
+    throw base::bad_input({}, "figures.rotor_inertia", "of the motor is missing: without it no acceleration of a wheel can be calculated");
   }
   BodyConfig body;
   body.kinematics = make_kinematics(robot);
   body.weight = make_weight(body.kinematics, robot.mass_kg, robot.body.center_of_gravity_height_m.value(),
                             robot.body.center_of_gravity_x_m.value_or(0.0), robot.body.center_of_gravity_y_m.value_or(0.0));
   if (!stands(body.weight)) {
-    throw bad_input({robot.file.string()}, "wheels.axis_angles",
-                    "put all wheels on one side of the centre of gravity, so the robot tips over at standstill; expected the centre of "
-                    "gravity between the wheels");
+    throw base::bad_input(
+        {robot.file.string()}, "wheels.axis_angles",
+        "put all wheels on one side of the centre of gravity, so the robot tips over at standstill; expected the centre of "
+        "gravity between the wheels");
   }
   body.friction = make_friction(robot, body.kinematics);
   body.traction.traction_ratio = robot.traction.coefficient_ratio.value();
@@ -95,4 +96,4 @@ double transmission_loss_Nm(double efficiency, double output_Nm, double speed_ra
   return loss_torque_Nm(1.0 / efficiency - 1.0, 1.0 - efficiency, output_Nm, smooth_sign(speed_rad_per_s, smoothing_rad_per_s));
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -9,7 +9,7 @@
 #include "robot/robot.h"
 #include "robot/traction.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 struct BodyConfig {
   Kinematics kinematics;
@@ -24,7 +24,7 @@ struct BodyConfig {
 /// Uses the tables body, wheels, friction and traction of the robot's file and the rotor inertia of the motor. Throws Failure (bad_input)
 /// with all missing values. If the file has a measured friction curve over the direction of travel, it replaces wheel torque and roller
 /// drag.
-BodyConfig make_body(const Robot& robot, const MotorValues& motor);
+BodyConfig make_body(const Robot& robot, const motor::MotorValues& motor);
 
 /// Returns the force and the moment about the origin for an acceleration of the origin, local axes:
 /// F = m·(a + dω/dt × c − ω²·c), M = I·dω/dt + c × F, with c the offset of the centre of gravity.
@@ -54,4 +54,4 @@ S loss_torque_Nm(double driving_ratio, double braking_ratio, const S& torque_Nm,
 /// output/η when driving and η·output when braking. The sign of the speed is smoothed over `smoothing`.
 double transmission_loss_Nm(double efficiency, double output_Nm, double speed_rad_per_s, double smoothing_rad_per_s);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -8,20 +8,20 @@
 #include "robot/motor_drive.h"
 #include "robot/wheel_laws.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 DriverConfig make_driver(const Robot& robot) {
   return {robot.drive.voltage_limit_V, robot.drive.current_limit_A, robot.drive.driver_resistance_ohm.value(),
           robot.drive.driver_standby_W.value()};
 }
 
-MotorElectrics make_electrics(const Robot& robot, const MotorValues& motor) {
+MotorElectrics make_electrics(const Robot& robot, const motor::MotorValues& motor) {
   MotorElectrics made;
   made.resistance_25C_ohm = motor.terminal_resistance_ohm;
   made.resistance_rise_per_K = motor.temperature_coefficient_per_K;
   made.torque_constant_25C_Nm_per_A = motor.torque_constant_Nm_per_A;
   made.heating_factor = heating_factor(robot) * heating_factor(robot);
-  made.drag_torque_Nm = drag_torque_Nm(motor);
+  made.drag_torque_Nm = motor::drag_torque_Nm(motor);
   return made;
 }
 
@@ -55,4 +55,4 @@ MotorPoint motor_point(const MotorElectrics& motor, const DriverConfig& driver, 
   return point;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -7,7 +7,7 @@
 #include "motor/motor.h"
 #include "robot/kinematics.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 /// Currents are equivalent DC currents of block commutation, voltages between two terminals (as in MotorValues).
 struct DriverConfig {
@@ -27,7 +27,7 @@ struct MotorElectrics {
   double drag_torque_Nm = 0.0;  ///< iron and bearing loss, K_t·I_0, at the motor
 };
 DriverConfig make_driver(const Robot& robot);
-MotorElectrics make_electrics(const Robot& robot, const MotorValues& motor);
+MotorElectrics make_electrics(const Robot& robot, const motor::MotorValues& motor);
 
 struct MotorCommand {
   enum class Kind { voltage, current, open };
@@ -51,4 +51,4 @@ struct MotorPoint {
 MotorPoint motor_point(const MotorElectrics& motor, const DriverConfig& driver, const MotorCommand& command, double motor_speed_rad_per_s,
                        double winding_C, double magnet_C, double bus_V);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -7,7 +7,7 @@
 #include "robot/driver.h"
 #include "robot/wheel_laws.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 /// Returns γ: 0 in translation, 1 if rotation moves the contact points at least as fast as translation.
@@ -58,7 +58,7 @@ PerWheel friction_torques_Nm(const FrictionConfig& friction, const Kinematics& k
 
 double rolling_phase_rad(const WheelDirections& wheel) { return std::atan2(wheel.rolling_x_share, wheel.rolling_y_share); }
 
-DriveConstants drive_constants(const Robot& robot, const MotorValues& motor) {
+DriveConstants drive_constants(const Robot& robot, const motor::MotorValues& motor) {
   const MotorElectrics electrics = make_electrics(robot, motor);
   const double driver_ohm = robot.series_resistance_ohm();
   return {electrics.heating_factor * electrics.resistance_25C_ohm + driver_ohm, electrics.torque_constant_25C_Nm_per_A,
@@ -83,4 +83,4 @@ double steady_voltage_V(const DriveConstants& drive, double wheel_torque_Nm, dou
          drive.torque_constant_Nm_per_A * drive.gear_ratio * wheel_speed_rad_per_s;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -7,7 +7,7 @@
 #include "motor/motor.h"
 #include "robot/kinematics.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 // Two descriptions exist. The physical one consists of a friction torque at each wheel and of the drag of the rollers along the axles
 // (traction.h). The drag is a force on the body that the wheels must overcome. How it is distributed depends on the direction of travel, so
@@ -72,7 +72,7 @@ struct DriveConstants {
   double gear_efficiency = 1.0;
 };
 /// A missing driver_resistance counts as 0.
-DriveConstants drive_constants(const Robot& robot, const MotorValues& motor);
+DriveConstants drive_constants(const Robot& robot, const motor::MotorValues& motor);
 
 /// Converts friction that a team states as a voltage to a torque at the wheel: at standstill the voltage drives the current V/R, so the
 /// torque is (V/R·K_t − motor drag)·gear ratio·efficiency. The drag K_t·I_0 is subtracted because the motor model includes it; at least 0.
@@ -85,4 +85,4 @@ double damping_of_voltage_Nm_s_per_rad(const DriveConstants& drive, double dampi
 /// Returns the driver voltage that keeps a wheel turning against a torque: (T/(n·efficiency) + drag·sign ω)·R/K_t + K_t·n·ω.
 double steady_voltage_V(const DriveConstants& drive, double wheel_torque_Nm, double wheel_speed_rad_per_s);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

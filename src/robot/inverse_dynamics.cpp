@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 Wrench operator-(const Wrench& a, const Wrench& b) { return {a.x_N - b.x_N, a.y_N - b.y_N, a.yaw_Nm - b.yaw_Nm}; }
@@ -203,4 +203,4 @@ double largest_push_N(const BodyConfig& body, double direction_rad, double heigh
   return holds_N;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

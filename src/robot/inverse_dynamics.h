@@ -3,7 +3,7 @@
 
 #include "robot/body.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 /// Motion of the body in the local frame.
 struct BodyMotion {
@@ -52,4 +52,4 @@ WheelDemands inverse_dynamics(const BodyConfig& body, const BodyMotion& motion);
 /// `height_m` is the height of the contact with the pushed object above the ground.
 double largest_push_N(const BodyConfig& body, double direction_rad, double height_m);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 struct Rotated {
@@ -50,8 +50,8 @@ BodyAcceleration acceleration_from_rates(const BodyVelocity& local, const BodyAc
 Kinematics make_kinematics(const Robot& robot) {
   const std::size_t count = robot.wheels.axis_rad.size();
   if (count < 3 || count > kMostWheels) {
-    throw bad_input({robot.file.string()}, "wheels.axis_angles",
-                    fmt::format("names {} wheels; a motion can be calculated for three or four", count));
+    throw base::bad_input({robot.file.string()}, "wheels.axis_angles",
+                          fmt::format("names {} wheels; a motion can be calculated for three or four", count));
   }
   Kinematics made;
   made.wheel_count = static_cast<int>(count);
@@ -69,8 +69,8 @@ Kinematics make_kinematics(const Robot& robot) {
   constexpr double kWorstCondition = 1e3;
   const Eigen::Vector3d squares = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(jacobian.transpose() * jacobian).eigenvalues();
   if (!(squares(2) <= kWorstCondition * kWorstCondition * squares(0))) {
-    throw bad_input({robot.file.string()}, "wheels.axis_angles",
-                    "leave a motion that no wheel can drive, or hardly; expected at least three clearly different angles");
+    throw base::bad_input({robot.file.string()}, "wheels.axis_angles",
+                          "leave a motion that no wheel can drive, or hardly; expected at least three clearly different angles");
   }
   const Eigen::Matrix3Xd inverse = jacobian.completeOrthogonalDecomposition().pseudoInverse();
   for (std::size_t i = 0; i < count; ++i) {
@@ -99,4 +99,4 @@ BodyVelocity body_velocity(const Kinematics& kinematics, const PerWheel& wheel_s
   return velocity;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -5,7 +5,7 @@
 
 #include "robot/robot.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 // Frames. Global: fixed to the field, x towards the right goal. Local: fixed to the robot, origin on the axis of the wheel circle, x
 // straight ahead, y to the left. Yaw is the angle from the global to the local x axis. Angles are positive counter-clockwise. (RoboTeam
@@ -156,4 +156,4 @@ inline Wrench wrench_of_lateral_forces(const Kinematics& kinematics, const PerWh
   return wrench;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

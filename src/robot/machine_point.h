@@ -5,16 +5,16 @@
 #include "robot/robot.h"
 #include "thermal/operating_point.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 /// Returns the electrical power into the motor: copper loss at 25 °C, drag and shaft power. `speed_rad_per_s` is |ω|.
 template <class S>
-S input_power_W(const MotorValues& motor, const S& heating_current_A, const S& shaft_power_W, const S& speed_rad_per_s);
+S input_power_W(const motor::MotorValues& motor, const S& heating_current_A, const S& shaft_power_W, const S& speed_rad_per_s);
 
 /// The part of an operating point that follows from current and speed alone; without headroom and vehicle speed. `current_A` and
 /// `velocity_rad_per_s` have the same sign when driving.
 template <class S>
-OperatingPoint<S> machine_point(const MotorValues& motor, const Robot& robot, const S& current_A, const S& velocity_rad_per_s,
-                                const S& shaft_power_W);
+thermal::OperatingPoint<S> machine_point(const motor::MotorValues& motor, const Robot& robot, const S& current_A,
+                                         const S& velocity_rad_per_s, const S& shaft_power_W);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

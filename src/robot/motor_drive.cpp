@@ -9,7 +9,7 @@
 #include "thermal/lanes.h"
 #include "thermal/traced.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
@@ -20,7 +20,7 @@ double shaft_torque_factor(const Robot& robot, bool drives) {
   return (drives ? 1.0 / robot.drive.gear_efficiency : robot.drive.gear_efficiency) / robot.drive.gear_ratio;
 }
 
-DrivePoint clamped_point(const MotorValues& motor, const Robot& robot, double wanted_A, double motor_speed_rad_per_s) {
+DrivePoint clamped_point(const motor::MotorValues& motor, const Robot& robot, double wanted_A, double motor_speed_rad_per_s) {
   DrivePoint point;
   point.current_wanted_A = wanted_A;
   point.motor_speed_rad_per_s = motor_speed_rad_per_s;
@@ -38,27 +38,27 @@ DrivePoint clamped_point(const MotorValues& motor, const Robot& robot, double wa
     point.limit = DriveLimit::voltage;
     point.current_A = within_voltage_A;
   }
-  point.motor_torque_Nm = motor.torque_constant_Nm_per_A * point.current_A - drag_torque_Nm(motor) * sign(motor_speed_rad_per_s);
+  point.motor_torque_Nm = motor.torque_constant_Nm_per_A * point.current_A - motor::drag_torque_Nm(motor) * sign(motor_speed_rad_per_s);
   return point;
 }
 
-DrivePoint drive_point(const MotorValues& motor, const Robot& robot, const WheelLoad& load) {
+DrivePoint drive_point(const motor::MotorValues& motor, const Robot& robot, const WheelLoad& load) {
   const double motor_torque_Nm = load.torque_Nm * shaft_torque_factor(robot, load.torque_Nm * load.speed_rad_per_s >= 0.0);
   const double motor_speed_rad_per_s = load.speed_rad_per_s * robot.drive.gear_ratio;
-  const double wanted_A = (motor_torque_Nm + drag_torque_Nm(motor) * sign(motor_speed_rad_per_s)) / motor.torque_constant_Nm_per_A;
+  const double wanted_A = (motor_torque_Nm + motor::drag_torque_Nm(motor) * sign(motor_speed_rad_per_s)) / motor.torque_constant_Nm_per_A;
   return clamped_point(motor, robot, wanted_A, motor_speed_rad_per_s);
 }
 
-DrivePoint drive_point_of_current(const MotorValues& motor, const Robot& robot, double current_A, double wheel_speed_rad_per_s) {
+DrivePoint drive_point_of_current(const motor::MotorValues& motor, const Robot& robot, double current_A, double wheel_speed_rad_per_s) {
   return clamped_point(motor, robot, current_A, wheel_speed_rad_per_s * robot.drive.gear_ratio);
 }
 
-double terminal_voltage_V(const MotorValues& motor, const DrivePoint& point, double winding_C) {
-  const double resistance_ohm = motor.terminal_resistance_ohm * resistance_ratio(motor.temperature_coefficient_per_K, winding_C);
+double terminal_voltage_V(const motor::MotorValues& motor, const DrivePoint& point, double winding_C) {
+  const double resistance_ohm = motor.terminal_resistance_ohm * base::resistance_ratio(motor.temperature_coefficient_per_K, winding_C);
   return point.current_A * resistance_ohm + motor.torque_constant_Nm_per_A * point.motor_speed_rad_per_s;
 }
 
-double driver_voltage_V(const MotorValues& motor, const Robot& robot, const DrivePoint& point, double winding_C) {
+double driver_voltage_V(const motor::MotorValues& motor, const Robot& robot, const DrivePoint& point, double winding_C) {
   return terminal_voltage_V(motor, point, winding_C) + point.current_A * robot.series_resistance_ohm();
 }
 
@@ -68,41 +68,50 @@ double heating_factor(const Robot& robot) {
 }
 
 template <class S>
-S input_power_W(const MotorValues& motor, const S& heating_current_A, const S& shaft_power_W, const S& speed_rad_per_s) {
-  return heating_current_A * heating_current_A * motor.terminal_resistance_ohm + shaft_power_W + drag_torque_Nm(motor) * speed_rad_per_s;
+S input_power_W(const motor::MotorValues& motor, const S& heating_current_A, const S& shaft_power_W, const S& speed_rad_per_s) {
+  return heating_current_A * heating_current_A * motor.terminal_resistance_ohm + shaft_power_W +
+         motor::drag_torque_Nm(motor) * speed_rad_per_s;
 }
 
 template <class S>
-OperatingPoint<S> machine_point(const MotorValues& motor, const Robot& robot, const S& current_A, const S& velocity_rad_per_s,
-                                const S& shaft_power_W) {
-  OperatingPoint<S> at;
-  at.current_rms_A = magnitude(current_A) * heating_factor(robot);
-  at.speed_mean_rad_per_s = magnitude(velocity_rad_per_s);
+thermal::OperatingPoint<S> machine_point(const motor::MotorValues& motor, const Robot& robot, const S& current_A,
+                                         const S& velocity_rad_per_s, const S& shaft_power_W) {
+  thermal::OperatingPoint<S> at;
+  at.current_rms_A = thermal::magnitude(current_A) * heating_factor(robot);
+  at.speed_mean_rad_per_s = thermal::magnitude(velocity_rad_per_s);
   at.speed_rms_rad_per_s = at.speed_mean_rad_per_s;
   at.velocity_rad_per_s = velocity_rad_per_s;
   at.shaft_power_W = shaft_power_W;
   at.input_power_W = input_power_W(motor, at.current_rms_A, shaft_power_W, at.speed_mean_rad_per_s);
   at.bus_V = robot.battery.nominal_V;
   const S terminal_V = current_A * motor.terminal_resistance_ohm + motor.torque_constant_Nm_per_A * velocity_rad_per_s;
-  const S modulation_ratio = magnitude(terminal_V + current_A * robot.series_resistance_ohm()) / robot.battery.nominal_V;
-  at.modulation_ratio = modulation_ratio - positive_part(modulation_ratio - 1.0);
+  const S modulation_ratio = thermal::magnitude(terminal_V + current_A * robot.series_resistance_ohm()) / robot.battery.nominal_V;
+  at.modulation_ratio = modulation_ratio - thermal::positive_part(modulation_ratio - 1.0);
   return at;
 }
 
-template double input_power_W<double>(const MotorValues&, const double&, const double&, const double&);
-template OperatingPoint<double> machine_point<double>(const MotorValues&, const Robot&, const double&, const double&, const double&);
-template Lanes input_power_W<Lanes>(const MotorValues&, const Lanes&, const Lanes&, const Lanes&);
-template OperatingPoint<Lanes> machine_point<Lanes>(const MotorValues&, const Robot&, const Lanes&, const Lanes&, const Lanes&);
-template Traced input_power_W<Traced>(const MotorValues&, const Traced&, const Traced&, const Traced&);
-template OperatingPoint<Traced> machine_point<Traced>(const MotorValues&, const Robot&, const Traced&, const Traced&, const Traced&);
+template double input_power_W<double>(const motor::MotorValues&, const double&, const double&, const double&);
+template thermal::OperatingPoint<double> machine_point<double>(const motor::MotorValues&, const Robot&, const double&, const double&,
+                                                               const double&);
+template thermal::Lanes input_power_W<thermal::Lanes>(const motor::MotorValues&, const thermal::Lanes&, const thermal::Lanes&,
+                                                      const thermal::Lanes&);
+template thermal::OperatingPoint<thermal::Lanes> machine_point<thermal::Lanes>(const motor::MotorValues&, const Robot&,
+                                                                               const thermal::Lanes&, const thermal::Lanes&,
+                                                                               const thermal::Lanes&);
+template thermal::Traced input_power_W<thermal::Traced>(const motor::MotorValues&, const thermal::Traced&, const thermal::Traced&,
+                                                        const thermal::Traced&);
+template thermal::OperatingPoint<thermal::Traced> machine_point<thermal::Traced>(const motor::MotorValues&, const Robot&,
+                                                                                 const thermal::Traced&, const thermal::Traced&,
+                                                                                 const thermal::Traced&);
 
-OperatingPoint<double> operating_point(const DrivePoint& point, const MotorValues& motor, const Robot& robot, double ambient_C) {
+thermal::OperatingPoint<double> operating_point(const DrivePoint& point, const motor::MotorValues& motor, const Robot& robot,
+                                                double ambient_C) {
   const double speed_rad_per_s = std::abs(point.motor_speed_rad_per_s);
   // The back-EMF opposes the supply when driving and supports it when braking.
   const double back_emf_V =
       motor.torque_constant_Nm_per_A * speed_rad_per_s * (point.current_A * point.motor_speed_rad_per_s >= 0.0 ? 1.0 : -1.0);
-  OperatingPoint<double> at = machine_point<double>(motor, robot, point.current_A, point.motor_speed_rad_per_s,
-                                                    point.motor_torque_Nm * point.motor_speed_rad_per_s);
+  thermal::OperatingPoint<double> at = machine_point<double>(motor, robot, point.current_A, point.motor_speed_rad_per_s,
+                                                             point.motor_torque_Nm * point.motor_speed_rad_per_s);
   at.ambient_C = ambient_C;
   at.resistive_headroom_V = std::max(0.0, robot.available_V() - back_emf_V) * heating_factor(robot);
   at.series_resistance_ohm = robot.series_resistance_ohm();
@@ -110,4 +119,4 @@ OperatingPoint<double> operating_point(const DrivePoint& point, const MotorValue
   return at;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -6,7 +6,7 @@
 
 #include "robot/wheel_laws.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 constexpr std::array<std::string_view, 2> kElectricTables{"drive", "battery"};
@@ -391,7 +391,7 @@ class StiffPart {
 
 }  // namespace
 
-PlantConfig make_plant(const Robot& robot, const MotorValues& motor, double period_s) {
+PlantConfig make_plant(const Robot& robot, const motor::MotorValues& motor, double period_s) {
   PlantConfig plant;
   plant.body = make_body(robot, motor);
   require_parameters(robot, kElectricTables);
@@ -444,4 +444,4 @@ PlantOutput step(const PlantConfig& plant, PlantState& state, const PlantInput& 
   return output;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

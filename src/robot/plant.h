@@ -7,7 +7,7 @@
 #include "robot/body.h"
 #include "robot/driver.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 struct PlantConfig {
   BodyConfig body;
@@ -20,7 +20,7 @@ struct PlantConfig {
 };
 
 /// Needs all tables of the robot's file except [limits]. Throws Failure (bad_input) with the missing values.
-PlantConfig make_plant(const Robot& robot, const MotorValues& motor, double period_s);
+PlantConfig make_plant(const Robot& robot, const motor::MotorValues& motor, double period_s);
 
 struct PlantState {
   Pose pose;
@@ -83,4 +83,4 @@ double heat_W(const PlantOutput& output);
 void step(const PlantConfig& plant, PlantState& state, const PlantInput& input, PlantOutput& output);
 PlantOutput step(const PlantConfig& plant, PlantState& state, const PlantInput& input);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -9,127 +9,128 @@
 #include "base/quantity.h"
 #include "input/document.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 /// The ranges include any robot for a lab floor and exclude values with a wrong unit.
 constexpr std::array<RobotParameterSpec, 29> kSpecs{
     {{"body",
-      {"yaw_inertia", "kg m2", Range::between(1e-5, 200.0),
+      {"yaw_inertia", "kg m2", base::Range::between(1e-5, 200.0),
        "about the vertical axis through the centre of gravity; check the unit, g cm2 or kg m2"},
       [](auto& robot) -> auto& {return robot.body.yaw_inertia_kg_m2;
 }  // namespace
-}  // namespace heatsoak
-, {"body", {"center_of_gravity_height", "m", Range::between(0.0, 2.0), "above the ground"},
+}  // namespace heatsoak::robot
+, {"body", {"center_of_gravity_height", "m", base::Range::between(0.0, 2.0), "above the ground"},
    [](auto& robot) -> auto& {return robot.body.center_of_gravity_height_m;
 }
 }
-, {"body", {"center_of_gravity_x", "m", Range::between(-1.0, 1.0), "ahead of the robot's axis"},
+, {"body", {"center_of_gravity_x", "m", base::Range::between(-1.0, 1.0), "ahead of the robot's axis"},
    [](auto& robot) -> auto& {return robot.body.center_of_gravity_x_m;
 }
 }
-, {"body", {"center_of_gravity_y", "m", Range::between(-1.0, 1.0), "left of the robot's axis"},
+, {"body", {"center_of_gravity_y", "m", base::Range::between(-1.0, 1.0), "left of the robot's axis"},
    [](auto& robot) -> auto& {return robot.body.center_of_gravity_y_m;
 }
 }
 , {"wheels",
-   {"inertia", "kg m2", Range::between(1e-9, 1.0), "of one wheel about its axle, without the rotor; check the unit, g cm2 or kg m2"},
+   {"inertia", "kg m2", base::Range::between(1e-9, 1.0), "of one wheel about its axle, without the rotor; check the unit, g cm2 or kg m2"},
    [](auto& robot) -> auto& {return robot.wheels.inertia_kg_m2;
 }
 }
-, {"friction", {"wheel_torque", "N m", Range::between(0.0, 20.0), "resisting torque of one wheel, without the motor's own drag"},
+, {"friction", {"wheel_torque", "N m", base::Range::between(0.0, 20.0), "resisting torque of one wheel, without the motor's own drag"},
    [](auto& robot) -> auto& {return robot.friction.wheel_torque_Nm;
 }
 }
-, {"friction", {"wheel_damping", "N m s/rad", Range::between(0.0, 1.0), "resisting torque of one wheel per speed of the wheel"},
+, {"friction", {"wheel_damping", "N m s/rad", base::Range::between(0.0, 1.0), "resisting torque of one wheel per speed of the wheel"},
    [](auto& robot) -> auto& {return robot.friction.wheel_damping_Nm_s_per_rad;
 }
 }
-, {"friction", {"roller_drag", "", Range::between(0.0, 1.0), "force along the axle per normal force while the rollers turn"},
+, {"friction", {"roller_drag", "", base::Range::between(0.0, 1.0), "force along the axle per normal force while the rollers turn"},
    [](auto& robot) -> auto& {return robot.friction.roller_drag_ratio;
 }
 }
-, {"friction", {"rolling_efficiency", "", Range::between(0.1, 1.0), "share of the wheel's torque that reaches the ground"},
+, {"friction", {"rolling_efficiency", "", base::Range::between(0.1, 1.0), "share of the wheel's torque that reaches the ground"},
    [](auto& robot) -> auto& {return robot.friction.rolling_efficiency;
 }
 }
-, {"friction.heading", {"constant", "N m", Range::between(0.0, 20.0), "friction in translation, mean over the directions"},
+, {"friction.heading", {"constant", "N m", base::Range::between(0.0, 20.0), "friction in translation, mean over the directions"},
    [](auto& robot) -> auto& {return robot.friction.heading.constant_Nm;
 }
 }
-, {"friction.heading", {"sine", "N m", Range::between(-20.0, 20.0), "part that grows with the wheel's share of rolling"},
+, {"friction.heading", {"sine", "N m", base::Range::between(-20.0, 20.0), "part that grows with the wheel's share of rolling"},
    [](auto& robot) -> auto& {return robot.friction.heading.sine_Nm;
 }
 }
-, {"friction.heading", {"double_angle", "N m", Range::between(0.0, 20.0), "amplitude of the part with twice the direction"},
+, {"friction.heading", {"double_angle", "N m", base::Range::between(0.0, 20.0), "amplitude of the part with twice the direction"},
    [](auto& robot) -> auto& {return robot.friction.heading.double_angle_Nm;
 }
 }
-, {"friction.heading", {"rotation", "N m", Range::between(0.0, 20.0), "friction in pure rotation"},
+, {"friction.heading", {"rotation", "N m", base::Range::between(0.0, 20.0), "friction in pure rotation"},
    [](auto& robot) -> auto& {return robot.friction.heading.rotation_Nm;
 }
 }
-, {"traction", {"coefficient", "", Range::between(0.01, 5.0), "largest rolling force per normal force"},
+, {"traction", {"coefficient", "", base::Range::between(0.01, 5.0), "largest rolling force per normal force"},
    [](auto& robot) -> auto& {return robot.traction.coefficient_ratio;
 }
 }
-, {"traction", {"slip_speed", "m/s", Range::between(1e-4, 10.0), "slip at which 0.71 of it is used"},
+, {"traction", {"slip_speed", "m/s", base::Range::between(1e-4, 10.0), "slip at which 0.71 of it is used"},
    [](auto& robot) -> auto& {return robot.traction.slip_speed_m_per_s;
 }
 }
-, {"drive", {"driver_resistance", "ohm", Range::between(0.0, 10.0), "of switches and traces in series with one motor"},
+, {"drive", {"driver_resistance", "ohm", base::Range::between(0.0, 10.0), "of switches and traces in series with one motor"},
    [](auto& robot) -> auto& {return robot.drive.driver_resistance_ohm;
 }
 }
-, {"drive", {"driver_standby_power", "W", Range::between(0.0, 100.0), "of one motor's driver without current"},
+, {"drive", {"driver_standby_power", "W", base::Range::between(0.0, 100.0), "of one motor's driver without current"},
    [](auto& robot) -> auto& {return robot.drive.driver_standby_W;
 }
 }
-, {"drive", {"control_rate", "Hz", Range::between(20.0, 1000.0), "rate at which the firmware commands the motors"},
+, {"drive", {"control_rate", "Hz", base::Range::between(20.0, 1000.0), "rate at which the firmware commands the motors"},
    [](auto& robot) -> auto& {return robot.drive.control_rate_Hz;
 }
 }
-, {"drive", {"command_rate", "Hz", Range::between(5.0, 1000.0), "rate at which the team's computer commands the robot"},
+, {"drive", {"command_rate", "Hz", base::Range::between(5.0, 1000.0), "rate at which the team's computer commands the robot"},
    [](auto& robot) -> auto& {return robot.drive.command_rate_Hz;
 }
 }
-, {"battery", {"full_voltage", "V", Range::between(1.0, 5000.0), "open circuit, full"},
+, {"battery", {"full_voltage", "V", base::Range::between(1.0, 5000.0), "open circuit, full"},
    [](auto& robot) -> auto& {return robot.battery.full_V;
 }
 }
-, {"battery", {"empty_voltage", "V", Range::between(1.0, 5000.0), "open circuit, empty"},
+, {"battery", {"empty_voltage", "V", base::Range::between(1.0, 5000.0), "open circuit, empty"},
    [](auto& robot) -> auto& {return robot.battery.empty_V;
 }
 }
-, {"battery", {"internal_resistance", "ohm", Range::between(0.0, 10.0), "of the pack with its leads"},
+, {"battery", {"internal_resistance", "ohm", base::Range::between(0.0, 10.0), "of the pack with its leads"},
    [](auto& robot) -> auto& {return robot.battery.resistance_ohm;
 }
 }
-, {"battery", {"capacity", "A s", Range::between(30.0, 4e6), "from full to empty"},
+, {"battery", {"capacity", "A s", base::Range::between(30.0, 4e6), "from full to empty"},
    [](auto& robot) -> auto& {return robot.battery.capacity_A_s;
 }
 }
-, {"limits", {"speed", "m/s", Range::between(0.01, 30.0), "largest speed that the team plans"},
+, {"limits", {"speed", "m/s", base::Range::between(0.01, 30.0), "largest speed that the team plans"},
    [](auto& robot) -> auto& {return robot.limits.speed_m_per_s;
 }
 }
-, {"limits", {"acceleration", "m/s2", Range::between(0.1, 200.0), "when speeding up"},
+, {"limits", {"acceleration", "m/s2", base::Range::between(0.1, 200.0), "when speeding up"},
    [](auto& robot) -> auto& {return robot.limits.acceleration_m_per_s2;
 }
 }
-, {"limits", {"braking", "m/s2", Range::between(0.1, 200.0), "when slowing down; a match plans with the smaller of this and acceleration"},
+, {"limits",
+   {"braking", "m/s2", base::Range::between(0.1, 200.0), "when slowing down; a match plans with the smaller of this and acceleration"},
    [](auto& robot) -> auto& {return robot.limits.braking_m_per_s2;
 }
 }
-, {"limits", {"jerk", "m/s3", Range::between(0.1, 1e5), "change of the acceleration"},
+, {"limits", {"jerk", "m/s3", base::Range::between(0.1, 1e5), "change of the acceleration"},
    [](auto& robot) -> auto& {return robot.limits.jerk_m_per_s3;
 }
 }
-, {"limits", {"yaw_rate", "rad/s", Range::between(0.01, 200.0), "largest rate of turning"},
+, {"limits", {"yaw_rate", "rad/s", base::Range::between(0.01, 200.0), "largest rate of turning"},
    [](auto& robot) -> auto& {return robot.limits.yaw_rate_rad_per_s;
 }
 }
-, {"limits", {"yaw_acceleration", "rad/s2", Range::between(0.01, 1e4), "change of the rate of turning"},
+, {"limits", {"yaw_acceleration", "rad/s2", base::Range::between(0.01, 1e4), "change of the rate of turning"},
    [](auto& robot) -> auto& {return robot.limits.yaw_acceleration_rad_per_s2;
 }
 }
@@ -139,26 +140,26 @@ constexpr std::array<RobotParameterSpec, 29> kSpecs{
 ;
 
 constexpr std::array<WheelParameterSpec, 3> kWheelSpecs{{
-    {{"constant", "N m", Range::between(0.0, 20.0), "friction of this wheel in translation"}, &HeadingWheel::constant_Nm},
-    {{"sine", "N m", Range::between(-20.0, 20.0), "part that grows with the wheel's share of rolling"}, &HeadingWheel::sine_Nm},
-    {{"phase", "rad", Range::any(), "phase of that part and of the sign, near the negative angle of the wheel's axle"},
+    {{"constant", "N m", base::Range::between(0.0, 20.0), "friction of this wheel in translation"}, &HeadingWheel::constant_Nm},
+    {{"sine", "N m", base::Range::between(-20.0, 20.0), "part that grows with the wheel's share of rolling"}, &HeadingWheel::sine_Nm},
+    {{"phase", "rad", base::Range::any(), "phase of that part and of the sign, near the negative angle of the wheel's axle"},
      &HeadingWheel::phase_rad},
 }};
 
 constexpr std::array<std::string_view, 5> kOptionalKeys{"center_of_gravity_x", "center_of_gravity_y", "rolling_efficiency", "control_rate",
                                                         "command_rate"};
 
-void read_parameter(Reader& reader, const RobotParameterSpec& each, Need need, Robot& robot) {
-  if (std::optional<ParameterValue> parameter = reader.parameter(each.spec, need)) {
+void read_parameter(input::Reader& reader, const RobotParameterSpec& each, input::Need need, Robot& robot) {
+  if (std::optional<base::ParameterValue> parameter = reader.parameter(each.spec, need)) {
     each.value.of(robot) = parameter->value;
     robot.parameters.emplace(fmt::format("{}.{}", each.table, each.spec.key), std::move(*parameter));
   }
 }
 
-void read_file_parameters(Reader& reader, std::string_view table, Robot& robot) {
+void read_file_parameters(input::Reader& reader, std::string_view table, Robot& robot) {
   for (const RobotParameterSpec& each : kSpecs) {
     if (each.table == table) {
-      read_parameter(reader, each, Need::optional, robot);
+      read_parameter(reader, each, input::Need::optional, robot);
     }
   }
 }
@@ -168,18 +169,18 @@ std::string wheel_parameter_key(std::size_t wheel, const WheelParameterSpec& par
 }
 
 /// Adds a problem if the friction would drive the wheel in some direction of travel.
-void check_sign(Reader& reader, std::optional<double> constant_Nm, std::optional<double> sine_Nm, double double_angle_Nm) {
+void check_sign(input::Reader& reader, std::optional<double> constant_Nm, std::optional<double> sine_Nm, double double_angle_Nm) {
   if (constant_Nm && sine_Nm && *constant_Nm + std::min(0.0, *sine_Nm) < double_angle_Nm) {
     reader.problem("constant", "is smaller than the other parts in some direction, so that friction would drive the wheel");
   }
 }
 
 /// Reads [[friction.heading.wheel]], wheel 1 first.
-void read_heading_wheels(std::vector<Reader>& wheels, Robot& robot, double double_angle_Nm) {
-  for (Reader& reader : wheels) {
+void read_heading_wheels(std::vector<input::Reader>& wheels, Robot& robot, double double_angle_Nm) {
+  for (input::Reader& reader : wheels) {
     HeadingWheel& wheel = robot.friction.heading.wheels.emplace_back();
     for (const WheelParameterSpec& each : kWheelSpecs) {
-      if (std::optional<ParameterValue> parameter = reader.parameter(each.spec, Need::required)) {
+      if (std::optional<base::ParameterValue> parameter = reader.parameter(each.spec, input::Need::required)) {
         wheel.*each.value = parameter->value;
         robot.parameters.emplace(wheel_parameter_key(robot.friction.heading.wheels.size() - 1, each), std::move(*parameter));
       }
@@ -189,20 +190,20 @@ void read_heading_wheels(std::vector<Reader>& wheels, Robot& robot, double doubl
   }
 }
 
-void read_heading(Reader& heading, Robot& robot) {
-  std::vector<Reader> wheels = heading.tables("wheel");
+void read_heading(input::Reader& heading, Robot& robot) {
+  std::vector<input::Reader> wheels = heading.tables("wheel");
   for (const RobotParameterSpec& each : kSpecs) {
     const bool of_all_wheels = each.spec.key == "constant" || each.spec.key == "sine";
     if (each.table == "friction.heading") {
-      read_parameter(heading, each, of_all_wheels && wheels.empty() ? Need::required : Need::optional, robot);
+      read_parameter(heading, each, of_all_wheels && wheels.empty() ? input::Need::required : input::Need::optional, robot);
       if (of_all_wheels && !wheels.empty() && each.value.in(robot)) {
         heading.problem(each.spec.key, "is given together with the same value for every wheel; expected only one of the two");
       }
     }
   }
   const bool has_double_angle = robot.friction.heading.double_angle_Nm.has_value();
-  robot.friction.heading.double_angle_phase_rad =
-      heading.quantities({"double_angle_phases", "rad", Range::any(), "one per wheel"}, has_double_angle ? Need::required : Need::optional);
+  robot.friction.heading.double_angle_phase_rad = heading.quantities({"double_angle_phases", "rad", base::Range::any(), "one per wheel"},
+                                                                     has_double_angle ? input::Need::required : input::Need::optional);
   if (has_double_angle && robot.friction.heading.double_angle_phase_rad.size() != robot.wheels.axis_rad.size()) {
     heading.problem("double_angle_phases", "expected one phase per wheel");
   }
@@ -216,31 +217,32 @@ void read_heading(Reader& heading, Robot& robot) {
   heading.finish();
 }
 
-void read_friction(Reader& top, Robot& robot) {
-  std::optional<Reader> friction = top.table("friction", Need::optional);
+void read_friction(input::Reader& top, Robot& robot) {
+  std::optional<input::Reader> friction = top.table("friction", input::Need::optional);
   if (!friction) {
     return;
   }
   read_file_parameters(*friction, "friction", robot);
-  if (std::optional<Reader> heading = friction->table("heading", Need::optional)) {
+  if (std::optional<input::Reader> heading = friction->table("heading", input::Need::optional)) {
     read_heading(*heading, robot);
   }
   friction->finish();
 }
 
-void read_wheels(Reader& top, Robot& robot) {
-  std::optional<Reader> wheels = top.table("wheels", Need::required);
+void read_wheels(input::Reader& top, Robot& robot) {
+  std::optional<input::Reader> wheels = top.table("wheels", input::Need::required);
   if (!wheels) {
     return;
   }
   robot.wheels.radius_m =
-      wheels->quantity({"radius", "m", Range::between(0.005, 0.5), "of a wheel; check the unit, mm or m"}, Need::required).value_or(1.0);
+      wheels->quantity({"radius", "m", base::Range::between(0.005, 0.5), "of a wheel; check the unit, mm or m"}, input::Need::required)
+          .value_or(1.0);
   robot.wheels.contact_radius_m = wheels
-                                      ->quantity({"contact_radius", "m", Range::between(0.01, 2.0),
+                                      ->quantity({"contact_radius", "m", base::Range::between(0.01, 2.0),
                                                   "from the robot's axis to the contact points; check the unit, mm or m"},
-                                                 Need::required)
+                                                 input::Need::required)
                                       .value_or(1.0);
-  robot.wheels.axis_rad = wheels->quantities({"axis_angles", "rad", Range::any(), "of the wheels' axes"}, Need::required);
+  robot.wheels.axis_rad = wheels->quantities({"axis_angles", "rad", base::Range::any(), "of the wheels' axes"}, input::Need::required);
   if (robot.wheels.axis_rad.size() < 3) {
     wheels->problem("axis_angles", "names fewer than three wheels; an omni-directional robot has at least three");
   }
@@ -248,26 +250,31 @@ void read_wheels(Reader& top, Robot& robot) {
   wheels->finish();
 }
 
-void read_drive(Reader& top, Robot& robot) {
-  std::optional<Reader> drive = top.table("drive", Need::required);
+void read_drive(input::Reader& top, Robot& robot) {
+  std::optional<input::Reader> drive = top.table("drive", input::Need::required);
   if (!drive) {
     return;
   }
-  robot.drive.motor = drive->text("motor", Need::required).value_or("");
+  robot.drive.motor = drive->text("motor", input::Need::required).value_or("");
   robot.drive.gear_ratio =
-      drive->quantity({"gear_ratio", "", Range::between(0.1, 500.0), "motor turns per wheel turn"}, Need::required).value_or(1.0);
+      drive->quantity({"gear_ratio", "", base::Range::between(0.1, 500.0), "motor turns per wheel turn"}, input::Need::required)
+          .value_or(1.0);
   robot.drive.gear_efficiency =
-      drive->quantity({"gear_efficiency", "", Range::between(0.1, 1.0), "share of the torque that the gear transmits"}, Need::optional)
+      drive
+          ->quantity({"gear_efficiency", "", base::Range::between(0.1, 1.0), "share of the torque that the gear transmits"},
+                     input::Need::optional)
           .value_or(1.0);
   robot.drive.voltage_limit_V =
-      drive->quantity({"voltage_limit", "V", Range::between(0.5, 5000.0), "largest command to one motor"}, Need::optional)
+      drive->quantity({"voltage_limit", "V", base::Range::between(0.5, 5000.0), "largest command to one motor"}, input::Need::optional)
           .value_or(robot.drive.voltage_limit_V);
   robot.drive.current_limit_A =
-      drive->quantity({"current_limit", "A", Range::between(0.01, 1000.0), "largest equivalent DC current of one motor"}, Need::optional)
+      drive
+          ->quantity({"current_limit", "A", base::Range::between(0.01, 1000.0), "largest equivalent DC current of one motor"},
+                     input::Need::optional)
           .value_or(robot.drive.current_limit_A);
   constexpr std::array<std::string_view, 2> kCommutations{"block", "sinusoidal"};
   robot.drive.commutation =
-      drive->choice("commutation", kCommutations, Need::required) == "sinusoidal" ? Commutation::sinusoidal : Commutation::block;
+      drive->choice("commutation", kCommutations, input::Need::required) == "sinusoidal" ? Commutation::sinusoidal : Commutation::block;
   read_file_parameters(*drive, "drive", robot);
   drive->finish();
 }
@@ -278,7 +285,7 @@ std::span<const RobotParameterSpec> robot_parameter_specs() { return kSpecs; }
 std::span<const WheelParameterSpec> wheel_parameter_specs() { return kWheelSpecs; }
 
 void require_parameters(const Robot& robot, std::span<const std::string_view> tables) {
-  Diagnostics diagnostics;
+  base::Diagnostics diagnostics;
   for (const RobotParameterSpec& each : kSpecs) {
     const bool asked = std::ranges::find(tables, each.table) != tables.end();
     const bool optional = std::ranges::find(kOptionalKeys, each.spec.key) != kOptionalKeys.end();
@@ -290,7 +297,7 @@ void require_parameters(const Robot& robot, std::span<const std::string_view> ta
   diagnostics.throw_if_any();
 }
 
-Robot draw_sample(const Robot& robot, Random& random) {
+Robot draw_sample(const Robot& robot, base::Random& random) {
   Robot drawn = robot;
   const auto draw = [&](const std::string& key, auto& value) {
     const auto found = robot.parameters.find(key);
@@ -315,28 +322,29 @@ double Robot::series_resistance_ohm() const { return drive.driver_resistance_ohm
 
 namespace {
 
-Robot robot_of(const Value& root, const std::filesystem::path& path) {
-  Diagnostics diagnostics;
-  Reader top(root, "", diagnostics);
+Robot robot_of(const input::Value& root, const std::filesystem::path& path) {
+  base::Diagnostics diagnostics;
+  input::Reader top(root, "", diagnostics);
   Robot robot;
   robot.id = path.stem().string();
   robot.file = path;
-  robot.name = top.text("name", Need::required).value_or("");
-  robot.source = top.text("source", Need::required).value_or("");
-  top.texts("notes", Need::optional);
-  robot.mass_kg =
-      top.quantity({"mass", "kg", Range::between(0.1, 200.0), "of the robot with battery; check the unit, g or kg"}, Need::required)
-          .value_or(1.0);
+  robot.name = top.text("name", input::Need::required).value_or("");
+  robot.source = top.text("source", input::Need::required).value_or("");
+  top.texts("notes", input::Need::optional);
+  robot.mass_kg = top.quantity({"mass", "kg", base::Range::between(0.1, 200.0), "of the robot with battery; check the unit, g or kg"},
+                               input::Need::required)
+                      .value_or(1.0);
   read_wheels(top, robot);
   read_drive(top, robot);
-  if (std::optional<Reader> battery = top.table("battery", Need::required)) {
+  if (std::optional<input::Reader> battery = top.table("battery", input::Need::required)) {
     robot.battery.nominal_V =
-        battery->quantity({"nominal_voltage", "V", Range::between(1.0, 5000.0), "of the battery"}, Need::required).value_or(1.0);
+        battery->quantity({"nominal_voltage", "V", base::Range::between(1.0, 5000.0), "of the battery"}, input::Need::required)
+            .value_or(1.0);
     read_file_parameters(*battery, "battery", robot);
     battery->finish();
   }
   for (const std::string_view name : {"body", "traction", "limits"}) {
-    if (std::optional<Reader> table = top.table(name, Need::optional)) {
+    if (std::optional<input::Reader> table = top.table(name, input::Need::optional)) {
       read_file_parameters(*table, name, robot);
       table->finish();
     }
@@ -349,8 +357,10 @@ Robot robot_of(const Value& root, const std::filesystem::path& path) {
 
 }  // namespace
 
-Robot read_robot(const std::filesystem::path& path) { return robot_of(read_toml(path), path); }
+Robot read_robot(const std::filesystem::path& path) { return robot_of(input::read_toml(path), path); }
 
-Robot parse_robot(const std::string& text, const std::filesystem::path& path) { return robot_of(parse_toml(text, path.string()), path); }
+Robot parse_robot(const std::string& text, const std::filesystem::path& path) {
+  return robot_of(input::parse_toml(text, path.string()), path);
+}
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -17,7 +17,7 @@
 #include "input/reader.h"
 #include "motor/motor.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 /// Phase currents of the driver. For equal torque sinusoidal current gives 0.912 of the copper loss of block commutation: 0.75·R·Î²
 /// relative to R·I², with K_t per peak ampere 0.907 of the one per DC ampere.
@@ -115,7 +115,7 @@ struct Robot {
   RobotFriction friction;
   RobotTraction traction;
   RobotLimits limits;
-  std::map<std::string, ParameterValue, std::less<>> parameters;  ///< by "table.key" or "friction.heading.wheel[0].key"
+  std::map<std::string, base::ParameterValue, std::less<>> parameters;  ///< by "table.key" or "friction.heading.wheel[0].key"
 
   [[nodiscard]] double available_V() const;
   /// Resistance between the battery and a motor's terminals in ohm; 0 if the file does not give it.
@@ -136,14 +136,14 @@ struct RobotMember {
 /// Declaration of one robot parameter: its table, key, unit and range in the file, and the member that stores it.
 struct RobotParameterSpec {
   std::string_view table;
-  ParameterSpec spec;
+  base::ParameterSpec spec;
   RobotMember value;
 };
 std::span<const RobotParameterSpec> robot_parameter_specs();
 
 /// The same for the values of one [[friction.heading.wheel]].
 struct WheelParameterSpec {
-  ParameterSpec spec;
+  base::ParameterSpec spec;
   double HeadingWheel::*value = nullptr;
 };
 std::span<const WheelParameterSpec> wheel_parameter_specs();
@@ -152,7 +152,7 @@ std::span<const WheelParameterSpec> wheel_parameter_specs();
 void require_parameters(const Robot& robot, std::span<const std::string_view> tables);
 
 /// Returns the robot with one random sample of every uncertain value.
-Robot draw_sample(const Robot& robot, Random& random);
+Robot draw_sample(const Robot& robot, base::Random& random);
 
 /// Throws Failure (bad_input) with every problem of the file.
 Robot read_robot(const std::filesystem::path& path);
@@ -160,4 +160,4 @@ Robot read_robot(const std::filesystem::path& path);
 /// Like read_robot() for a text in memory; `path` names the robot.
 Robot parse_robot(const std::string& text, const std::filesystem::path& path);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -9,7 +9,7 @@
 #include "input/document.h"
 #include "robot/body.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 std::string in_mm(double length_m) { return fmt::format("{:.0f} mm", 1e3 * length_m); }
@@ -29,24 +29,25 @@ double closest_axles_rad(const Robot& robot) {
 }
 
 /// Wheels are discs that touch the contact circle; two of them overlap if their radius reaches the intersection of their planes.
-void check_wheels(const Robot& robot, std::vector<LintFinding>& findings) {
+void check_wheels(const Robot& robot, std::vector<motor::LintFinding>& findings) {
   const double room_m = robot.wheels.contact_radius_m * std::tan(0.5 * std::min(closest_axles_rad(robot), 0.9 * std::numbers::pi));
   // Known robots have wheels of 0.35 to 0.42 of the contact radius.
   constexpr double kLargestShare = 0.6;
   const bool is_overlap = robot.wheels.radius_m > room_m;
   if (is_overlap || robot.wheels.radius_m > kLargestShare * robot.wheels.contact_radius_m) {
     findings.push_back(
-        {is_overlap ? LintFinding::Level::error : LintFinding::Level::warning, "wheels",
+        {is_overlap ? motor::LintFinding::Level::error : motor::LintFinding::Level::warning, "wheels",
          fmt::format("wheels.radius: wheels with a radius of {} {} on a circle of {}; expected at most {}. Is {} the diameter?",
                      in_mm(robot.wheels.radius_m), is_overlap ? "overlap" : "are large", in_mm(robot.wheels.contact_radius_m),
                      in_mm(std::min(room_m, kLargestShare * robot.wheels.contact_radius_m)), in_mm(robot.wheels.radius_m)),
-         place_of(robot.file, "wheels.radius")});
+         input::place_of(robot.file, "wheels.radius")});
   }
 }
 
-void check_battery(const Robot& robot, std::vector<LintFinding>& findings) {
+void check_battery(const Robot& robot, std::vector<motor::LintFinding>& findings) {
   const auto add = [&](const char* key, std::string message) {
-    findings.push_back({LintFinding::Level::error, "battery", fmt::format("{}: {}", key, message), place_of(robot.file, key)});
+    findings.push_back(
+        {motor::LintFinding::Level::error, "battery", fmt::format("{}: {}", key, message), input::place_of(robot.file, key)});
   };
   const RobotBattery& battery = robot.battery;
   if (battery.full_V && battery.nominal_V > *battery.full_V) {
@@ -63,9 +64,10 @@ void check_battery(const Robot& robot, std::vector<LintFinding>& findings) {
   }
 }
 
-void check_drive(const Robot& robot, std::vector<LintFinding>& findings) {
+void check_drive(const Robot& robot, std::vector<motor::LintFinding>& findings) {
   const auto add = [&](const char* key, std::string message) {
-    findings.push_back({LintFinding::Level::warning, "drive", fmt::format("{}: {}", key, message), place_of(robot.file, key)});
+    findings.push_back(
+        {motor::LintFinding::Level::warning, "drive", fmt::format("{}: {}", key, message), input::place_of(robot.file, key)});
   };
   if (std::isfinite(robot.drive.voltage_limit_V) && robot.battery.full_V && robot.drive.voltage_limit_V > 1.1 * *robot.battery.full_V) {
     add("drive.voltage_limit", fmt::format("{:.4g} V is more than the full battery's {:.4g} V; expected at most that; check the unit",
@@ -80,7 +82,7 @@ void check_drive(const Robot& robot, std::vector<LintFinding>& findings) {
 }
 
 /// A disc with the contact radius has 0.5 of mass times radius squared, a ring of twice the radius has 4.
-void check_inertia(const Robot& robot, std::vector<LintFinding>& findings) {
+void check_inertia(const Robot& robot, std::vector<motor::LintFinding>& findings) {
   constexpr double kLeast = 0.15;
   constexpr double kMost = 4.0;
   if (!robot.body.yaw_inertia_kg_m2) {
@@ -89,43 +91,43 @@ void check_inertia(const Robot& robot, std::vector<LintFinding>& findings) {
   const double share = *robot.body.yaw_inertia_kg_m2 / (robot.mass_kg * robot.wheels.contact_radius_m * robot.wheels.contact_radius_m);
   if (share < kLeast || share > kMost) {
     findings.push_back(
-        {LintFinding::Level::warning, "inertia",
+        {motor::LintFinding::Level::warning, "inertia",
          fmt::format("body.yaw_inertia: is {:.3g} times mass times contact radius squared; expected {} to {} times. Check the "
                      "unit: 1 kg m2 is 10 000 000 g cm2",
                      share, kLeast, kMost),
-         place_of(robot.file, "body.yaw_inertia")});
+         input::place_of(robot.file, "body.yaw_inertia")});
   }
 }
 
 }  // namespace
 
-std::vector<LintFinding> lint(const Robot& robot, std::span<const std::string> known_motors) {
-  std::vector<LintFinding> findings;
+std::vector<motor::LintFinding> lint(const Robot& robot, std::span<const std::string> known_motors) {
+  std::vector<motor::LintFinding> findings;
   if (robot.drive.motor != "none" && std::ranges::find(known_motors, robot.drive.motor) == known_motors.end()) {
     findings.push_back(
-        {LintFinding::Level::warning, "motor",
-         fmt::format("drive.motor: there is no motor '{}'{}", robot.drive.motor, did_you_mean(robot.drive.motor, known_motors)),
-         place_of(robot.file, "drive.motor")});
+        {motor::LintFinding::Level::warning, "motor",
+         fmt::format("drive.motor: there is no motor '{}'{}", robot.drive.motor, base::did_you_mean(robot.drive.motor, known_motors)),
+         input::place_of(robot.file, "drive.motor")});
   }
   check_wheels(robot, findings);
   check_battery(robot, findings);
   check_drive(robot, findings);
   check_inertia(robot, findings);
   try {
-    MotorValues any;
+    motor::MotorValues any;
     any.rotor_inertia_kg_m2 = 0.0;
     make_body(robot, any);
-  } catch (const Failure& failure) {
+  } catch (const base::Failure& failure) {
     if (std::ranges::any_of(robot.parameters, [](const auto& each) { return each.first.starts_with("body."); })) {
       throw;
     }
-    for (const Diagnostic& each : failure.diagnostics()) {
-      findings.push_back({LintFinding::Level::note, "motion",
+    for (const base::Diagnostic& each : failure.diagnostics()) {
+      findings.push_back({motor::LintFinding::Level::note, "motion",
                           each.key + " " + each.message + "; a match needs it, a prescribed duty does not",
-                          place_of(robot.file, each.key)});
+                          input::place_of(robot.file, each.key)});
     }
   }
   return findings;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -6,7 +6,7 @@
 
 #include "robot/wheel_laws.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 /// Computes loads of the wheels in `standing`, linear in the contact position; for three wheels they are determinate.
@@ -85,4 +85,4 @@ NormalLoads normal_loads(const WeightConfig& weight, const LoadMoment& moment) {
   return loads.lifted ? loads_with_a_wheel_lifted(weight, moment, loads.force_N) : loads;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -5,7 +5,7 @@
 
 #include "robot/kinematics.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 inline constexpr double kGravity_m_per_s2 = 9.80665;
 
@@ -92,4 +92,4 @@ ContactRatios<S> contact_ratios(const TractionConfig& traction, const S& slip_m_
   return ratios;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

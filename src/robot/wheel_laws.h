@@ -10,7 +10,7 @@
 #include "robot/traction.h"
 #include "robot/wheels.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 /// Returns the loads in N, linear in the contact position. A negative load means that the wheel lifts off: see normal_loads().
 inline Wheels plane_loads_N(const WeightConfig& weight, const LoadMoment& moment) {
@@ -32,9 +32,9 @@ inline MotorCircuits motor_circuits(const MotorElectrics& motor, const DriverCon
                                     const Wheels& magnet_C) {
   MotorCircuits made;
   made.torque_constant_Nm_per_A =
-      motor.torque_constant_25C_Nm_per_A * (1.0 - motor.torque_constant_fall_per_K * (magnet_C - kSheetTemperature_C));
-  made.winding_ohm =
-      motor.heating_factor * motor.resistance_25C_ohm * resistance_ratio<Wheels>(Wheels::Constant(motor.resistance_rise_per_K), winding_C);
+      motor.torque_constant_25C_Nm_per_A * (1.0 - motor.torque_constant_fall_per_K * (magnet_C - base::kSheetTemperature_C));
+  made.winding_ohm = motor.heating_factor * motor.resistance_25C_ohm *
+                     base::resistance_ratio<Wheels>(Wheels::Constant(motor.resistance_rise_per_K), winding_C);
   made.resistance_ohm = made.winding_ohm + driver.resistance_ohm;
   made.conductance_S = 1.0 / made.resistance_ohm;
   return made;
@@ -93,4 +93,4 @@ inline MotorCurrents motor_currents(const MotorCircuits& circuits, const DriverD
   return made;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -5,7 +5,7 @@
 
 #include "robot/kinematics.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 /// One value per wheel with element-wise arithmetic. The fourth value is 0 for a robot with three wheels, as in PerWheel.
 using Wheels = Eigen::Array<double, kMostWheels, 1>;
@@ -35,4 +35,4 @@ inline WheelArrays wheel_arrays(const Kinematics& kinematics) {
           present_share};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

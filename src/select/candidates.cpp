@@ -9,18 +9,18 @@
 
 #include "motor/conditions.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 
-std::vector<Motor> named_candidates(const CandidateNames& names, NamedFiles& files) {
+std::vector<motor::Motor> named_candidates(const CandidateNames& names, duty::NamedFiles& files) {
   std::vector<std::string> single;
   for (const std::string& name : names.motors) {
-    const std::vector<std::string> all = name == "all" ? ids_in(files.folders().motors) : std::vector<std::string>{name};
+    const std::vector<std::string> all = name == "all" ? input::ids_in(files.folders().motors) : std::vector<std::string>{name};
     single.insert(single.end(), all.begin(), all.end());
   }
-  std::vector<Motor> motors;
-  const std::optional<Motor> model = names.model.empty() ? std::nullopt : files.motor(names.model);
+  std::vector<motor::Motor> motors;
+  const std::optional<motor::Motor> model = names.model.empty() ? std::nullopt : files.motor(names.model);
   if (model) {
-    motors.push_back(under(*model, names.conditions));
+    motors.push_back(motor::under(*model, names.conditions));
   }
   std::set<std::filesystem::path> taken;
   for (const std::string& name : single) {
@@ -32,25 +32,25 @@ std::vector<Motor> named_candidates(const CandidateNames& names, NamedFiles& fil
     const auto same =
         std::ranges::find_if(taken, [&](const std::filesystem::path& other) { return other != *file && other.stem() == file->stem(); });
     if (same != taken.end()) {
-      throw Failure(ExitCode::bad_input, fmt::format("{} and {} are two motors with the same id, '{}'; rename one of the files",
-                                                     same->string(), file->string(), file->stem().string()));
+      throw base::Failure(base::ExitCode::bad_input, fmt::format("{} and {} are two motors with the same id, '{}'; rename one of the files",
+                                                                 same->string(), file->string(), file->stem().string()));
     }
-    if (const std::optional<Motor> motor = files.motor(name)) {
-      motors.push_back(names.model.empty() ? under(*motor, names.conditions) : *motor);
-    }
-  }
-  return motors;
-}
-
-std::vector<Motor> motors_of_database(const DataFolders& folders, const std::map<std::string, std::string>& conditions) {
-  std::vector<Motor> motors;
-  for (const std::string& id : ids_in(folders.motors)) {
-    NamedFiles files(folders);
-    if (const std::optional<Motor> motor = files.motor(id)) {
-      motors.push_back(under(*motor, conditions));
+    if (const std::optional<motor::Motor> motor = files.motor(name)) {
+      motors.push_back(names.model.empty() ? motor::under(*motor, names.conditions) : *motor);
     }
   }
   return motors;
 }
 
-}  // namespace heatsoak
+std::vector<motor::Motor> motors_of_database(const input::DataFolders& folders, const std::map<std::string, std::string>& conditions) {
+  std::vector<motor::Motor> motors;
+  for (const std::string& id : input::ids_in(folders.motors)) {
+    duty::NamedFiles files(folders);
+    if (const std::optional<motor::Motor> motor = files.motor(id)) {
+      motors.push_back(motor::under(*motor, conditions));
+    }
+  }
+  return motors;
+}
+
+}  // namespace heatsoak::select

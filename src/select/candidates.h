@@ -7,7 +7,7 @@
 
 #include "duty/named_files.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 
 struct CandidateNames {
   std::vector<std::string> motors;                     ///< ids or files; "all": the whole data base
@@ -17,9 +17,9 @@ struct CandidateNames {
 
 /// Reads the model, then the motors in the order of their names, each once. `files` collects problems of files. Throws Failure (bad_input)
 /// if two files have the same id.
-std::vector<Motor> named_candidates(const CandidateNames& names, NamedFiles& files);
+std::vector<motor::Motor> named_candidates(const CandidateNames& names, duty::NamedFiles& files);
 
 /// Returns the sound motors of the data base under `conditions`. A file with problems is no candidate.
-std::vector<Motor> motors_of_database(const DataFolders& folders, const std::map<std::string, std::string>& conditions);
+std::vector<motor::Motor> motors_of_database(const input::DataFolders& folders, const std::map<std::string, std::string>& conditions);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::select

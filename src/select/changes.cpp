@@ -9,33 +9,33 @@
 
 #include "select/evaluate.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 namespace {
 
 /// One value of the robot and the factor of a usual step.
 struct Variant {
   ChangedQuantity quantity;
   double factor;
-  double* (*value)(Robot&);  ///< null if the robot file does not give it
+  double* (*value)(robot::Robot&);  ///< null if the robot file does not give it
 };
 
 double* given(std::optional<double>& value) { return value ? &*value : nullptr; }
 
 /// Steps that a team can make from one day to the next.
 constexpr std::array<Variant, 6> kVariants{
-    {{ChangedQuantity::acceleration, 0.8, [](Robot& robot) { return given(robot.limits.acceleration_m_per_s2); }},
-     {ChangedQuantity::jerk, 0.5, [](Robot& robot) { return given(robot.limits.jerk_m_per_s3); }},
-     {ChangedQuantity::speed, 0.9, [](Robot& robot) { return given(robot.limits.speed_m_per_s); }},
-     {ChangedQuantity::yaw_acceleration, 0.7, [](Robot& robot) { return given(robot.limits.yaw_acceleration_rad_per_s2); }},
-     {ChangedQuantity::mass, 0.9, [](Robot& robot) { return &robot.mass_kg; }},
-     {ChangedQuantity::wheel_radius, 0.9, [](Robot& robot) { return &robot.wheels.radius_m; }}}};
-constexpr Variant kHigherGear{ChangedQuantity::gear_ratio, 1.25, [](Robot& robot) { return &robot.drive.gear_ratio; }};
+    {{ChangedQuantity::acceleration, 0.8, [](robot::Robot& robot) { return given(robot.limits.acceleration_m_per_s2); }},
+     {ChangedQuantity::jerk, 0.5, [](robot::Robot& robot) { return given(robot.limits.jerk_m_per_s3); }},
+     {ChangedQuantity::speed, 0.9, [](robot::Robot& robot) { return given(robot.limits.speed_m_per_s); }},
+     {ChangedQuantity::yaw_acceleration, 0.7, [](robot::Robot& robot) { return given(robot.limits.yaw_acceleration_rad_per_s2); }},
+     {ChangedQuantity::mass, 0.9, [](robot::Robot& robot) { return &robot.mass_kg; }},
+     {ChangedQuantity::wheel_radius, 0.9, [](robot::Robot& robot) { return &robot.wheels.radius_m; }}}};
+constexpr Variant kHigherGear{ChangedQuantity::gear_ratio, 1.25, [](robot::Robot& robot) { return &robot.drive.gear_ratio; }};
 /// A motor that lacks voltage needs less speed, not less torque.
-constexpr Variant kLowerGear{ChangedQuantity::gear_ratio, 0.8, [](Robot& robot) { return &robot.drive.gear_ratio; }};
+constexpr Variant kLowerGear{ChangedQuantity::gear_ratio, 0.8, [](robot::Robot& robot) { return &robot.drive.gear_ratio; }};
 constexpr double kLongerPauses_ratio = 1.5;
 
-Robot changed(const Robot& robot, const Variant& variant) {
-  Robot result = robot;
+robot::Robot changed(const robot::Robot& robot, const Variant& variant) {
+  robot::Robot result = robot;
   if (double* const value = variant.value(result)) {
     *value *= variant.factor;
   }
@@ -47,11 +47,11 @@ Robot changed(const Robot& robot, const Variant& variant) {
   return result;
 }
 
-bool is_pause(const LoadBin& bin) { return bin.torque_rms_Nm == 0.0 && bin.current_rms_A == 0.0; }
+bool is_pause(const duty::LoadBin& bin) { return bin.torque_rms_Nm == 0.0 && bin.current_rms_A == 0.0; }
 
-double pause_s(const WheelDemand& wheel) {
+double pause_s(const duty::WheelDemand& wheel) {
   double sum_s = 0.0;
-  for (const LoadBin& bin : wheel.bins) {
+  for (const duty::LoadBin& bin : wheel.bins) {
     sum_s += is_pause(bin) ? bin.duration_s : 0.0;
   }
   return sum_s;
@@ -66,7 +66,7 @@ struct Played {
   bool passes = false;
 };
 
-Played played(const MotorEvaluation& result, const WheelDemand& wheel) {
+Played played(const MotorEvaluation& result, const duty::WheelDemand& wheel) {
   const bool is_deliverable = result.short_time_share <= kTolerableShortTime;
   return {.peak_C = result.winding_peak_C.nominal,
           .margin_K = nearest_margin_K(result),
@@ -79,27 +79,29 @@ Played played(const MotorEvaluation& result, const WheelDemand& wheel) {
 /// The same games for every change: seeds follow each other.
 class Games {
  public:
-  Games(const Duty& duty, std::uint64_t seed)
+  Games(const duty::Duty& duty, std::uint64_t seed)
       : duty_(duty), seed_(seed), count_(duty.shape_data->has_unknowns() ? static_cast<std::size_t>(kChangeGames) : 1) {}
 
   [[nodiscard]] std::size_t count() const { return count_; }
 
-  [[nodiscard]] std::vector<WheelDemand> demand(const Robot& robot, std::size_t game) const { return duty_.demand(robot, seed_ + game); }
+  [[nodiscard]] std::vector<duty::WheelDemand> demand(const robot::Robot& robot, std::size_t game) const {
+    return duty_.demand(robot, seed_ + game);
+  }
 
-  [[nodiscard]] Played result(const Robot& robot, const Motor& motor, const std::vector<WheelDemand>& wheels) const {
+  [[nodiscard]] Played result(const robot::Robot& robot, const motor::Motor& motor, const std::vector<duty::WheelDemand>& wheels) const {
     const EvaluateOptions nominal{.samples = 0, .threads = 1, .with_current_margin = false};
     return played(evaluate(robot, duty_, wheels, std::span(&motor, 1), nominal).front(), wheels.front());
   }
 
  private:
-  const Duty& duty_;
+  const duty::Duty& duty_;
   std::uint64_t seed_;
   std::size_t count_;
 };
 
-std::vector<WheelDemand> with_longer_pauses(std::vector<WheelDemand> wheels) {
-  for (WheelDemand& wheel : wheels) {
-    for (LoadBin& bin : wheel.bins) {
+std::vector<duty::WheelDemand> with_longer_pauses(std::vector<duty::WheelDemand> wheels) {
+  for (duty::WheelDemand& wheel : wheels) {
+    for (duty::LoadBin& bin : wheel.bins) {
       bin.duration_s *= is_pause(bin) ? kLongerPauses_ratio : 1.0;
     }
   }
@@ -112,20 +114,20 @@ class ChangeWork {
   static constexpr std::size_t kEvaluation = 1;
   static constexpr std::size_t kPlayedGame = 12;
 
-  ChangeWork(std::size_t total, int threads, const Progress& progress) : total_(total), threads_(threads), progress_(progress) {}
+  ChangeWork(std::size_t total, int threads, const base::Progress& progress) : total_(total), threads_(threads), progress_(progress) {}
 
   void run(std::size_t count, std::size_t units_each, const std::function<void(std::size_t)>& job) {
     const auto show = [this, units_each](std::size_t done, std::size_t /*count*/) {
       progress_(std::min(total_, done_ + units_each * done), total_);
     };
-    in_parallel(count, threads_, 0, count, progress_ ? Progress(show) : Progress(), job);
+    base::in_parallel(count, threads_, 0, count, progress_ ? base::Progress(show) : base::Progress(), job);
     done_ += units_each * count;
   }
 
  private:
   std::size_t total_;
   int threads_;
-  const Progress& progress_;
+  const base::Progress& progress_;
   std::size_t done_ = 0;
 };
 
@@ -150,11 +152,11 @@ ChangeEffect effect_of(ChangedQuantity quantity, double value, double factor, st
 /// The motor with the largest margin among those that pass all games. A motor's margin in the first game is the most that it can have in
 /// all of them, so only motors that may still win take part in the other games.
 struct OtherMotor {
-  const Motor* motor = nullptr;
+  const motor::Motor* motor = nullptr;
   std::vector<Played> games;
 };
-OtherMotor best_other_motor(const Games& games, const Robot& robot, const std::vector<std::vector<WheelDemand>>& demands,
-                            std::span<const Motor* const> candidates, ChangeWork& work) {
+OtherMotor best_other_motor(const Games& games, const robot::Robot& robot, const std::vector<std::vector<duty::WheelDemand>>& demands,
+                            std::span<const motor::Motor* const> candidates, ChangeWork& work) {
   std::vector<Played> first(candidates.size());
   work.run(first.size(), ChangeWork::kEvaluation, [&](std::size_t i) { first[i] = games.result(robot, *candidates[i], demands.front()); });
   std::vector<std::size_t> order;
@@ -188,26 +190,27 @@ OtherMotor best_other_motor(const Games& games, const Robot& robot, const std::v
 
 }  // namespace
 
-std::vector<ChangeEffect> effects_of_changes(const Robot& robot, const Duty& duty, const Motor& motor, std::span<const Motor> others,
-                                             std::uint64_t seed, int threads, const Progress& progress) {
+std::vector<ChangeEffect> effects_of_changes(const robot::Robot& robot, const duty::Duty& duty, const motor::Motor& motor,
+                                             std::span<const motor::Motor> others, std::uint64_t seed, int threads,
+                                             const base::Progress& progress) {
   const Games games(duty, seed);
   const std::size_t count = games.count();
   std::vector<Variant> variants;
-  Robot own = robot;
+  robot::Robot own = robot;
   for (const Variant& each : kVariants) {
     if (duty.shape_data->depends_on_robot() && each.value(own)) {
       variants.push_back(each);
     }
   }
-  std::vector<const Motor*> candidates;
-  for (const Motor& each : others) {
+  std::vector<const motor::Motor*> candidates;
+  for (const motor::Motor& each : others) {
     if (each.id != motor.id) {
       candidates.push_back(&each);
     }
   }
   const std::size_t played_games = (variants.size() + 1) * count;
   ChangeWork work(ChangeWork::kPlayedGame * played_games + ChangeWork::kEvaluation * (2 * count + candidates.size()), threads, progress);
-  std::vector<std::vector<WheelDemand>> demands(count);
+  std::vector<std::vector<duty::WheelDemand>> demands(count);
   std::vector<Played> before(count);
   work.run(count, ChangeWork::kPlayedGame, [&](std::size_t game) {
     demands[game] = games.demand(robot, game);
@@ -216,12 +219,12 @@ std::vector<ChangeEffect> effects_of_changes(const Robot& robot, const Duty& dut
   std::vector<std::vector<Played>> after(variants.size(), std::vector<Played>(count));
   work.run(variants.size() * count, ChangeWork::kPlayedGame, [&](std::size_t job) {
     const std::size_t game = job % count;
-    const Robot other = changed(robot, variants[job / count]);
+    const robot::Robot other = changed(robot, variants[job / count]);
     after[job / count][game] = games.result(other, motor, games.demand(other, game));
   });
   // Gear, pauses and motor leave the wheels' loads as they are: the games need not be played again.
   const Variant gear = std::ranges::any_of(before, &Played::lacks_voltage) ? kLowerGear : kHigherGear;
-  const Robot geared = changed(robot, gear);
+  const robot::Robot geared = changed(robot, gear);
   std::vector<Played> after_gear(count);
   std::vector<Played> after_pauses(count);
   work.run(2 * count, ChangeWork::kEvaluation, [&](std::size_t job) {
@@ -262,4 +265,4 @@ std::string_view unit_of(ChangedQuantity quantity) {
   return kUnits.at(static_cast<std::size_t>(quantity));
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::select

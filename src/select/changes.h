@@ -12,7 +12,7 @@
 #include "motor/motor.h"
 #include "robot/robot.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 
 enum class ChangedQuantity { acceleration, jerk, speed, yaw_acceleration, mass, wheel_radius, gear_ratio, pauses, motor };
 
@@ -33,11 +33,12 @@ inline constexpr int kChangeGames = 4;
 /// played once for each change of the wheels' loads. A duty that fixes the wheel's load is one game, on which only gear ratio, pauses and
 /// motor act. Pauses: the time without load lasts half as long again. Motor: of `others` the motor that keeps all limits, delivers the
 /// demand in every game and has the largest margin; nothing if none does. `others` may contain `motor`, which is ignored.
-std::vector<ChangeEffect> effects_of_changes(const Robot& robot, const Duty& duty, const Motor& motor, std::span<const Motor> others,
-                                             std::uint64_t seed, int threads, const Progress& progress = {});
+std::vector<ChangeEffect> effects_of_changes(const robot::Robot& robot, const duty::Duty& duty, const motor::Motor& motor,
+                                             std::span<const motor::Motor> others, std::uint64_t seed, int threads,
+                                             const base::Progress& progress = {});
 
 /// Returns the name ("acceleration limit") and the unit of `before`.
 std::string_view name_of(ChangedQuantity quantity);
 std::string_view unit_of(ChangedQuantity quantity);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::select

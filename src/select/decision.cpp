@@ -11,7 +11,7 @@
 #include "base/lanes.h"
 #include "select/spread.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 namespace {
 
 constexpr int kFirstGames = 75;
@@ -22,9 +22,9 @@ std::optional<int> needed_for(double threshold_ratio, double probability_ratio, 
   if (interval.low > threshold_ratio || interval.high <= threshold_ratio) {
     return std::nullopt;
   }
-  const int per_draw = is_drawn ? kLanes : 1;
+  const int per_draw = is_drawn ? base::kLanes : 1;
   const auto decides = [&](int draws) {
-    const ShareInterval then = share_interval(probability_ratio, draws, error_share(draws, is_drawn));
+    const base::ShareInterval then = base::share_interval(probability_ratio, draws, error_share(draws, is_drawn));
     return then.low > threshold_ratio || then.high <= threshold_ratio;
   };
   const int now = (samples + per_draw - 1) / per_draw;
@@ -47,7 +47,7 @@ std::optional<int> needed_for(double threshold_ratio, double probability_ratio, 
 
 }  // namespace
 
-int first_samples(const Duty& duty) { return duty.shape_data->has_unknowns() ? kFirstGames * kLanes : kFirstSamples; }
+int first_samples(const duty::Duty& duty) { return duty.shape_data->has_unknowns() ? kFirstGames * base::kLanes : kFirstSamples; }
 
 double error_share(int count, bool is_drawn) {
   constexpr double kFirst_share = 0.5;
@@ -88,7 +88,7 @@ std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95
   return most;
 }
 
-int most_samples(const Duty& duty) {
+int most_samples(const duty::Duty& duty) {
   constexpr int kOneDoubling = 2;
   constexpr int kFiveDoublings = 32;
   return first_samples(duty) * (duty.shape_data->has_unknowns() ? kOneDoubling : kFiveDoublings);
@@ -104,7 +104,7 @@ double seconds_since(Clock::time_point begin) { return std::chrono::duration<dou
 /// are needed; it changes when a round shows that more are needed.
 class LaterRounds {
  public:
-  LaterRounds(double s_per_draw, double s_per_sample, Progress progress)
+  LaterRounds(double s_per_draw, double s_per_sample, base::Progress progress)
       : s_per_draw_(s_per_draw), s_per_sample_(s_per_sample), progress_(std::move(progress)) {}
 
   /// A round with `draws` new draws and `samples` samples of `motors` motors, and the rounds that double them until `needed` or `most`.
@@ -117,11 +117,11 @@ class LaterRounds {
       later_s_ += factor * (play_s_ + evaluate_s_);
     }
   }
-  [[nodiscard]] Progress playing() const { return part(done_s_, play_s_, evaluate_s_ + later_s_); }
-  [[nodiscard]] Progress evaluating() const { return part(done_s_ + play_s_, evaluate_s_, later_s_); }
+  [[nodiscard]] base::Progress playing() const { return part(done_s_, play_s_, evaluate_s_ + later_s_); }
+  [[nodiscard]] base::Progress evaluating() const { return part(done_s_ + play_s_, evaluate_s_, later_s_); }
 
  private:
-  [[nodiscard]] Progress part(double before_s, double part_s, double after_s) const {
+  [[nodiscard]] base::Progress part(double before_s, double part_s, double after_s) const {
     if (!progress_) {
       return {};
     }
@@ -134,7 +134,7 @@ class LaterRounds {
   }
   double s_per_draw_;
   double s_per_sample_;
-  Progress progress_;
+  base::Progress progress_;
   Clock::time_point begin_ = Clock::now();
   double done_s_ = 0.0;
   double play_s_ = 0.0;
@@ -144,12 +144,13 @@ class LaterRounds {
 
 }  // namespace
 
-std::vector<MotorEvaluation> evaluate_until_decided(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
-                                                    std::span<const Motor> motors, EvaluateOptions options, int most,
-                                                    std::vector<WheelDemand>& draws, const ProgressFor& progress) {
+std::vector<MotorEvaluation> evaluate_until_decided(const robot::Robot& robot, const duty::Duty& duty,
+                                                    std::span<const duty::WheelDemand> wheels, std::span<const motor::Motor> motors,
+                                                    EvaluateOptions options, int most, std::vector<duty::WheelDemand>& draws,
+                                                    const base::ProgressFor& progress) {
   double play_s = 0.0;
   double evaluate_s = 0.0;
-  const auto run = [&](std::span<const Motor> wanted, const Progress& playing, const Progress& evaluating) {
+  const auto run = [&](std::span<const motor::Motor> wanted, const base::Progress& playing, const base::Progress& evaluating) {
     const Clock::time_point begin = Clock::now();
     add_draws(draws, duty, robot, options.seed, draw_count(duty, options.samples), options.threads, playing);
     play_s = seconds_since(begin);
@@ -158,15 +159,16 @@ std::vector<MotorEvaluation> evaluate_until_decided(const Robot& robot, const Du
     evaluate_s = seconds_since(begin) - play_s;
     return found;
   };
-  std::vector<MotorEvaluation> results = run(motors, progress_of(progress, "playing games"), progress_of(progress, "evaluating"));
+  std::vector<MotorEvaluation> results =
+      run(motors, base::progress_of(progress, "playing games"), base::progress_of(progress, "evaluating"));
   std::optional<LaterRounds> later;
   const bool is_drawn = duty.shape_data->has_unknowns();
   while (options.samples < most) {
-    std::vector<Motor> open;
+    std::vector<motor::Motor> open;
     int needed = 0;
     for (const MotorEvaluation& each : results) {
       if (each.samples_needed && (!is_drawn || *each.samples_needed <= most)) {
-        open.push_back(*std::ranges::find(motors, each.motor_id, &Motor::id));
+        open.push_back(*std::ranges::find(motors, each.motor_id, &motor::Motor::id));
         needed = std::max(needed, *each.samples_needed);
       }
     }
@@ -176,7 +178,7 @@ std::vector<MotorEvaluation> evaluate_until_decided(const Robot& robot, const Du
     if (!later) {
       const auto samples = static_cast<double>(options.samples) * static_cast<double>(motors.size());
       later.emplace(play_s / static_cast<double>(std::max<std::size_t>(1, draws.size())), evaluate_s / samples,
-                    progress_of(progress, "undecided, drawing more samples"));
+                    base::progress_of(progress, "undecided, drawing more samples"));
     }
     const int before = draw_count(duty, options.samples);
     options.samples = std::min(most, 2 * options.samples);
@@ -189,4 +191,4 @@ std::vector<MotorEvaluation> evaluate_until_decided(const Robot& robot, const Du
   return results;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::select

@@ -6,11 +6,11 @@
 
 #include "select/evaluate.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 
 /// The first look of evaluate_until_decided(). Without a hit it decides that a share is at most kMarginalProbability, which takes 72
 /// independent draws at the error of that look.
-int first_samples(const Duty& duty);
+int first_samples(const duty::Duty& duty);
 
 /// The chance of a wrong verdict that a look after `count` independent draws (games, or samples of a duty without draws) may spend: half of
 /// kError_share up to the first look, a seventh of the other half for each look behind it. evaluate_until_decided() makes five of them at
@@ -26,7 +26,7 @@ std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95
 
 /// The most samples that evaluate_until_decided() takes for a motor by itself: some seconds of work. A count and not a time, so that the
 /// same command gives the same answer on every computer.
-int most_samples(const Duty& duty);
+int most_samples(const duty::Duty& duty);
 
 /// The most samples that can be asked for. A drawn game takes 0.6 MB and a tenth of a second: memory and hours end there.
 int most_samples_at_all(bool is_drawn);
@@ -35,8 +35,9 @@ int most_samples_at_all(bool is_drawn);
 /// decided, up to `most`. On a duty with draws, whose games take nearly all of the time, only a motor that `most` samples would decide
 /// takes part. The first samples of a longer round are those of the shorter one. `draws` receives all drawn demands; `options.draws` is not
 /// used. Sorted as by evaluate().
-std::vector<MotorEvaluation> evaluate_until_decided(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
-                                                    std::span<const Motor> motors, EvaluateOptions options, int most,
-                                                    std::vector<WheelDemand>& draws, const ProgressFor& progress = {});
+std::vector<MotorEvaluation> evaluate_until_decided(const robot::Robot& robot, const duty::Duty& duty,
+                                                    std::span<const duty::WheelDemand> wheels, std::span<const motor::Motor> motors,
+                                                    EvaluateOptions options, int most, std::vector<duty::WheelDemand>& draws,
+                                                    const base::ProgressFor& progress = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::select

@@ -20,11 +20,11 @@
 #include "select/sustainable_current.h"
 #include "thermal/ensemble.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 namespace {
 
-using states::stator;
-using states::winding;
+using motor::states::stator;
+using motor::states::winding;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kBandCells = 160;
@@ -34,18 +34,18 @@ constexpr std::uint64_t kRobotStreams = std::uint64_t{1} << 40U;
 /// Eight samples side by side: their parameters, and what each piece of the duty asks of them.
 class Block {
  public:
-  Block(const Motor& motor, const Robot& robot, const Duty& duty, const WheelDemand& demand, const EvaluateOptions& options,
-        int first_sample)
+  Block(const motor::Motor& motor, const robot::Robot& robot, const duty::Duty& duty, const duty::WheelDemand& demand,
+        const EvaluateOptions& options, int first_sample)
       : kind_(duty.kind), demand_(demand), name_(motor.id) {
-    std::vector<Network> networks;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      Random random(options.seed, static_cast<std::uint64_t>(first_sample + lane));
+    std::vector<thermal::Network> networks;
+    for (int lane = 0; lane < base::kLanes; ++lane) {
+      base::Random random(options.seed, static_cast<std::uint64_t>(first_sample + lane));
       // The duty first: every motor, however many parameters it has, then meets the same air and load.
       duties_.push_back(draw_sample(duty, random));
-      Random of_robot(options.seed, kRobotStreams + static_cast<std::uint64_t>(first_sample + lane));
-      robots_.push_back(draw_sample(robot, of_robot));
-      motors_.push_back(draw_sample(motor, random));
-      networks.push_back(datasheet_network(motor, motors_.back()));
+      base::Random of_robot(options.seed, kRobotStreams + static_cast<std::uint64_t>(first_sample + lane));
+      robots_.push_back(robot::draw_sample(robot, of_robot));
+      motors_.push_back(motor::draw_sample(motor, random));
+      networks.push_back(motor::datasheet_network(motor, motors_.back()));
       const std::vector<double> values = networks.back().values();
       parameters_.resize(values.size());
       for (std::size_t p = 0; p < values.size(); ++p) {
@@ -57,19 +57,19 @@ class Block {
 
   /// Gives `visit(time_s, state_C)` the end of every bin, and moments between no further apart than `longest_visit_s`.
   template <class Visit>
-  std::vector<Lanes> peaks(double longest_visit_s, const Visit& visit) const {
-    std::vector<Lanes> start_C(static_cast<std::size_t>(network_.state_count()));
-    for (int lane = 0; lane < kLanes; ++lane) {
-      for (Lanes& node : start_C) {
+  std::vector<thermal::Lanes> peaks(double longest_visit_s, const Visit& visit) const {
+    std::vector<thermal::Lanes> start_C(static_cast<std::size_t>(network_.state_count()));
+    for (int lane = 0; lane < base::kLanes; ++lane) {
+      for (thermal::Lanes& node : start_C) {
         node[lane] = duties_[static_cast<std::size_t>(lane)].ambient_C;
       }
     }
-    EnsembleRun run(network_, parameters_, start_C);
+    thermal::EnsembleRun run(network_, parameters_, start_C);
     const double step_s = shortest_of_longest_steps_s();
     double time_s = 0.0;
-    for (const LoadBin& bin : demand_.bins) {
+    for (const duty::LoadBin& bin : demand_.bins) {
       const double parts = std::max(1.0, std::ceil(bin.duration_s / longest_visit_s));
-      const OperatingPoint<Lanes> at = point(bin);
+      const thermal::OperatingPoint<thermal::Lanes> at = point(bin);
       for (int part = 0; part < static_cast<int>(parts); ++part) {
         run.over(bin.duration_s / parts, at, step_s);
         time_s += bin.duration_s / parts;
@@ -79,59 +79,61 @@ class Block {
     return run.peak_C();
   }
 
-  [[nodiscard]] const Robot& robot(int lane) const { return robots_[static_cast<std::size_t>(lane)]; }
-  [[nodiscard]] const MotorSample& motor(int lane) const { return motors_[static_cast<std::size_t>(lane)]; }
+  [[nodiscard]] const robot::Robot& robot(int lane) const { return robots_[static_cast<std::size_t>(lane)]; }
+  [[nodiscard]] const motor::MotorSample& motor(int lane) const { return motors_[static_cast<std::size_t>(lane)]; }
   [[nodiscard]] const DutySample& duty(int lane) const { return duties_[static_cast<std::size_t>(lane)]; }
 
  private:
-  [[nodiscard]] OperatingPoint<Lanes> point(const LoadBin& bin) const {
-    OperatingPoint<Lanes> at;
-    for (int lane = 0; lane < kLanes; ++lane) {
+  [[nodiscard]] thermal::OperatingPoint<thermal::Lanes> point(const duty::LoadBin& bin) const {
+    thermal::OperatingPoint<thermal::Lanes> at;
+    for (int lane = 0; lane < base::kLanes; ++lane) {
       const auto i = static_cast<std::size_t>(lane);
-      const OperatingPoint<double> one = operating_point(motors_[i].values, robots_[i], kind_, bin, duties_[i]);
-      for_each_quantity([lane](Lanes& to, const double& from) { to[lane] = from; }, at, one);
+      const thermal::OperatingPoint<double> one = operating_point(motors_[i].values, robots_[i], kind_, bin, duties_[i]);
+      thermal::for_each_quantity([lane](thermal::Lanes& to, const double& from) { to[lane] = from; }, at, one);
     }
     return at;
   }
 
   /// The step that suits every bin: the network is fastest where current or speed is highest, or where there is none.
   [[nodiscard]] double shortest_of_longest_steps_s() const {
-    const auto by_current =
-        std::ranges::max_element(demand_.bins, {}, [&](const LoadBin& bin) { return std::max(bin.torque_rms_Nm, bin.current_rms_A); });
-    const auto by_speed = std::ranges::max_element(demand_.bins, {}, &LoadBin::speed_rms_rad_per_s);
-    const double calm_s = longest_step_s(network_, parameters_, point(constant_bin(1.0, 0.0, 0.0, 0.0)));
-    const double shortest_s = demand_.duration_s() / static_cast<double>(kMostSteps);
+    const auto by_current = std::ranges::max_element(
+        demand_.bins, {}, [&](const duty::LoadBin& bin) { return std::max(bin.torque_rms_Nm, bin.current_rms_A); });
+    const auto by_speed = std::ranges::max_element(demand_.bins, {}, &duty::LoadBin::speed_rms_rad_per_s);
+    const double calm_s = thermal::longest_step_s(network_, parameters_, point(duty::constant_bin(1.0, 0.0, 0.0, 0.0)));
+    const double shortest_s = demand_.duration_s() / static_cast<double>(thermal::kMostSteps);
     double step_s = calm_s;
     constexpr double kHotter_K = 60.0;
     for (const auto& bin : {by_current, by_speed}) {
-      const OperatingPoint<Lanes> at = point(*bin);
-      step_s = std::min({step_s, longest_step_s(network_, parameters_, at), longest_step_s(network_, parameters_, at, kHotter_K)});
+      const thermal::OperatingPoint<thermal::Lanes> at = point(*bin);
+      step_s = std::min(
+          {step_s, thermal::longest_step_s(network_, parameters_, at), thermal::longest_step_s(network_, parameters_, at, kHotter_K)});
     }
     if (calm_s < shortest_s) {
-      throw Failure(ExitCode::numerics_failed,
-                    fmt::format("{}: a duty of {:.0f} s has too many steps for a thermal network with a time constant of {:.2g} s; check "
-                                "whether a thermal resistance or a heat capacity is too small",
-                                name_, demand_.duration_s(), calm_s));
+      throw base::Failure(
+          base::ExitCode::numerics_failed,
+          fmt::format("{}: a duty of {:.0f} s has too many steps for a thermal network with a time constant of {:.2g} s; check "
+                      "whether a thermal resistance or a heat capacity is too small",
+                      name_, demand_.duration_s(), calm_s));
     }
     if (step_s < shortest_s) {
       // The heat that makes the network fast goes with the square of the current.
       const double current_A = point(*by_current).current_rms_A.maxCoeff();
-      throw Failure(ExitCode::bad_input,
-                    fmt::format("{}: the duty drives {:.0f} A through it, which heats the winding by its own heat within {:.2g} s; "
-                                "expected at most about {:.0f} A: check the duty's load and the robot's voltage and current limits",
-                                name_, current_A, step_s, current_A * std::sqrt(step_s / shortest_s)));
+      throw base::Failure(base::ExitCode::bad_input,
+                          fmt::format("{}: the duty drives {:.0f} A through it, which heats the winding by its own heat within {:.2g} s; "
+                                      "expected at most about {:.0f} A: check the duty's load and the robot's voltage and current limits",
+                                      name_, current_A, step_s, current_A * std::sqrt(step_s / shortest_s)));
     }
     return step_s;
   }
 
-  DutyKind kind_;
-  const WheelDemand& demand_;
+  duty::DutyKind kind_;
+  const duty::WheelDemand& demand_;
   const std::string& name_;
-  Network network_;
-  std::vector<Robot> robots_;
-  std::vector<MotorSample> motors_;
+  thermal::Network network_;
+  std::vector<robot::Robot> robots_;
+  std::vector<motor::MotorSample> motors_;
   std::vector<DutySample> duties_;
-  std::vector<Lanes> parameters_;
+  std::vector<thermal::Lanes> parameters_;
 };
 
 /// Lowest and highest temperature of every sample in every cell of the picture's time grid, [cell][sample]:
@@ -151,39 +153,39 @@ struct Envelope {
 
 /// Everything one motor needs while its samples come in from several threads, each to its own place.
 struct Work {
-  const Motor* motor = nullptr;
-  const WheelDemand* wheel = nullptr;  ///< the hottest one
-  double duration_s = 0.0;             ///< of its demand
+  const motor::Motor* motor = nullptr;
+  const duty::WheelDemand* wheel = nullptr;  ///< the hottest one
+  double duration_s = 0.0;                   ///< of its demand
   MotorEvaluation result;
   std::vector<double> winding_peak_C, stator_peak_C;  ///< per sample
   std::vector<char> over_limit;                       ///< per sample
-  std::vector<DriveLimit> short_of_demand;            ///< per sample: what leaves the demand unmet, or none
+  std::vector<robot::DriveLimit> short_of_demand;     ///< per sample: what leaves the demand unmet, or none
   Envelope winding_envelope_C, stator_envelope_C;
 };
 
-LimitingFactor limiting_factor_of(DriveLimit limit) {
-  return limit == DriveLimit::current ? LimitingFactor::current : LimitingFactor::voltage;
+LimitingFactor limiting_factor_of(robot::DriveLimit limit) {
+  return limit == robot::DriveLimit::current ? LimitingFactor::current : LimitingFactor::voltage;
 }
 
 /// One nominal run at one wheel, through the reference.
 struct NominalRun {
-  std::vector<Interval> intervals;
+  std::vector<thermal::Interval> intervals;
   double current_rms_A = 0.0;  ///< that flows, which falls behind the demand where the hot winding lets less through
-  TransientResult transient;
+  thermal::TransientResult transient;
   TemperatureCurves curves;
 };
 
-NominalRun run_nominal(const Network& network, const MotorSample& sample, const Robot& robot, const Duty& duty, const WheelDemand& demand,
-                       const std::vector<NodeLimit>& limits, bool with_curves) {
+NominalRun run_nominal(const thermal::Network& network, const motor::MotorSample& sample, const robot::Robot& robot, const duty::Duty& duty,
+                       const duty::WheelDemand& demand, const std::vector<thermal::NodeLimit>& limits, bool with_curves) {
   NominalRun run;
   run.intervals = intervals(sample.values, robot, duty.kind, demand, nominal_sample(duty));
-  TransientOptions options;
+  thermal::TransientOptions options;
   options.limits = limits;
   const std::vector<double> parameters = network.values();
   double charge_A2_s = 0.0;
   double last_A2 = 0.0;
   double last_s = 0.0;
-  const auto keep = [&](const TransientMoment& moment) {
+  const auto keep = [&](const thermal::TransientMoment& moment) {
     const double flows_A = network.within_headroom(run.intervals[moment.interval].at, parameters.data(), moment.state_C.data());
     if (!moment.begins_interval) {
       charge_A2_s += 0.5 * (last_A2 + flows_A * flows_A) * (moment.time_s - last_s);
@@ -197,13 +199,14 @@ NominalRun run_nominal(const Network& network, const MotorSample& sample, const 
     run.curves.winding_C.push_back(moment.state_C[winding]);
     run.curves.stator_C.push_back(moment.state_C[stator]);
   };
-  run.transient = run_transient(network, parameters, run.intervals, options, keep);
+  run.transient = thermal::run_transient(network, parameters, run.intervals, options, keep);
   run.current_rms_A = last_s > 0.0 ? std::sqrt(charge_A2_s / last_s) : 0.0;
   return run;
 }
 
 /// As much of `most` times the load as voltage and driver let through while the winding is as hot as it may be.
-double deliverable_factor(const MotorValues& values, const Robot& robot, const Duty& duty, const WheelDemand& wheel, double most) {
+double deliverable_factor(const motor::MotorValues& values, const robot::Robot& robot, const duty::Duty& duty,
+                          const duty::WheelDemand& wheel, double most) {
   const auto is_delivered = [&](double factor) {
     DutySample sample = nominal_sample(duty);
     sample.load *= factor;
@@ -217,19 +220,19 @@ double deliverable_factor(const MotorValues& values, const Robot& robot, const D
   return boost::math::tools::bisect(is_short, 1.0, most, boost::math::tools::eps_tolerance<double>(kBits)).first;
 }
 
-void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
+void evaluate_nominal(Work& work, const robot::Robot& robot, const duty::Duty& duty, std::span<const duty::WheelDemand> wheels,
                       const EvaluateOptions& options) {
-  const Motor& motor = *work.motor;
+  const motor::Motor& motor = *work.motor;
   MotorEvaluation& result = work.result;
-  const MotorSample sample = nominal_sample(motor);
-  const Network network = datasheet_network(motor, sample);
-  std::vector<NodeLimit> limits{{winding, sample.values.winding_limit_C}};
+  const motor::MotorSample sample = motor::nominal_sample(motor);
+  const thermal::Network network = motor::datasheet_network(motor, sample);
+  std::vector<thermal::NodeLimit> limits{{winding, sample.values.winding_limit_C}};
   if (sample.values.stator_limit_C) {
     limits.push_back({stator, *sample.values.stator_limit_C});
     result.stator_limit_C = sample.values.stator_limit_C;
   }
   NominalRun run;
-  for (const WheelDemand& wheel : wheels) {
+  for (const duty::WheelDemand& wheel : wheels) {
     NominalRun candidate = run_nominal(network, sample, robot, duty, wheel, limits, options.with_curves);
     if (!work.wheel || candidate.transient.peak_C[winding] > run.transient.peak_C[winding]) {
       work.wheel = &wheel;
@@ -237,7 +240,7 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
     }
   }
   work.duration_s = work.wheel->duration_s();
-  const TransientResult& transient = run.transient;
+  const thermal::TransientResult& transient = run.transient;
   const DutySample demanded = nominal_sample(duty);
   const Feasibility hot = feasibility(sample.values, robot, duty.kind, *work.wheel, demanded,
                                       std::min(transient.peak_C[winding], sample.values.winding_limit_C));
@@ -247,7 +250,7 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
   result.short_time_share = hot.short_time_share;
   result.short_limit = limiting_factor_of(hot.limit);
   result.motor_id = motor.id;
-  result.data_quality = data_quality(motor);
+  result.data_quality = motor::data_quality(motor);
   result.winding_limit_C = sample.values.winding_limit_C;
   result.winding_peak_C.nominal = transient.peak_C[winding];
   result.stator_peak_C.nominal = transient.peak_C[stator];
@@ -283,34 +286,35 @@ void evaluate_nominal(Work& work, const Robot& robot, const Duty& duty, std::spa
   }
 }
 
-void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const EvaluateOptions& options, int first_sample) {
-  const auto turn = static_cast<std::size_t>(first_sample / kLanes);
-  const WheelDemand& demand = options.draws.empty() ? *work.wheel : options.draws[turn % options.draws.size()];
+void evaluate_samples(Work& work, const robot::Robot& robot, const duty::Duty& duty, const EvaluateOptions& options, int first_sample) {
+  const auto turn = static_cast<std::size_t>(first_sample / base::kLanes);
+  const duty::WheelDemand& demand = options.draws.empty() ? *work.wheel : options.draws[turn % options.draws.size()];
   const Block block(*work.motor, robot, duty, demand, options, first_sample);
   const double cell_s = work.duration_s / static_cast<double>(kBandCells);
   const auto samples = static_cast<std::size_t>(options.samples);
   std::size_t cell = 0;
-  const auto take = [&](const std::vector<Lanes>& state_C) {
-    for (int lane = 0; lane < kLanes && first_sample + lane < options.samples; ++lane) {
+  const auto take = [&](const std::vector<thermal::Lanes>& state_C) {
+    for (int lane = 0; lane < base::kLanes && first_sample + lane < options.samples; ++lane) {
       const std::size_t place = cell * samples + static_cast<std::size_t>(first_sample + lane);
       work.winding_envelope_C.take(place, state_C[winding][lane]);
       work.stator_envelope_C.take(place, state_C[stator][lane]);
     }
   };
-  const std::vector<Lanes> peak_C = block.peaks(
-      options.with_bands ? cell_s : std::numeric_limits<double>::infinity(), [&](double time_s, const std::vector<Lanes>& state_C) {
-        if (!options.with_bands || time_s > work.duration_s * (1.0 + 1e-9)) {
-          return;  // the picture ends with the nominal duty, a draw may go on
-        }
-        take(state_C);
-        while (cell + 1 < kBandCells && time_s >= static_cast<double>(cell + 1) * cell_s * (1.0 - 1e-9)) {
-          ++cell;
-          take(state_C);
-        }
-      });
-  for (int lane = 0; lane < kLanes && first_sample + lane < options.samples; ++lane) {
+  const std::vector<thermal::Lanes> peak_C =
+      block.peaks(options.with_bands ? cell_s : std::numeric_limits<double>::infinity(),
+                  [&](double time_s, const std::vector<thermal::Lanes>& state_C) {
+                    if (!options.with_bands || time_s > work.duration_s * (1.0 + 1e-9)) {
+                      return;  // the picture ends with the nominal duty, a draw may go on
+                    }
+                    take(state_C);
+                    while (cell + 1 < kBandCells && time_s >= static_cast<double>(cell + 1) * cell_s * (1.0 - 1e-9)) {
+                      ++cell;
+                      take(state_C);
+                    }
+                  });
+  for (int lane = 0; lane < base::kLanes && first_sample + lane < options.samples; ++lane) {
     const std::size_t place = static_cast<std::size_t>(first_sample) + static_cast<std::size_t>(lane);
-    const MotorValues& values = block.motor(lane).values;
+    const motor::MotorValues& values = block.motor(lane).values;
     work.winding_peak_C[place] = peak_C[winding][lane];
     work.stator_peak_C[place] = peak_C[stator][lane];
     const bool is_over =
@@ -318,7 +322,7 @@ void evaluate_samples(Work& work, const Robot& robot, const Duty& duty, const Ev
     work.over_limit[place] = is_over ? 1 : 0;
     const double hottest_C = std::min(peak_C[winding][lane], values.winding_limit_C);
     const Feasibility each = feasibility(values, block.robot(lane), duty.kind, demand, block.duty(lane), hottest_C);
-    work.short_of_demand[place] = each.short_time_share > kTolerableShortTime ? each.limit : DriveLimit::none;
+    work.short_of_demand[place] = each.short_time_share > kTolerableShortTime ? each.limit : robot::DriveLimit::none;
   }
 }
 
@@ -372,8 +376,8 @@ void conclude(Work& work, const EvaluateOptions& options) {
   result.stator_peak_C = spread(result.stator_peak_C.nominal, work.stator_peak_C);
   result.probability_over_limit =
       options.samples > 0 ? static_cast<double>(std::ranges::count(work.over_limit, char{1})) / options.samples : kNothing;
-  const auto by_voltage = std::ranges::count(work.short_of_demand, DriveLimit::voltage);
-  const auto by_current = std::ranges::count(work.short_of_demand, DriveLimit::current);
+  const auto by_voltage = std::ranges::count(work.short_of_demand, robot::DriveLimit::voltage);
+  const auto by_current = std::ranges::count(work.short_of_demand, robot::DriveLimit::current);
   result.short_probability = options.samples > 0 ? static_cast<double>(by_voltage + by_current) / options.samples : kNothing;
   if (result.verdict != Verdict::infeasible) {
     result.short_limit = by_current > by_voltage ? LimitingFactor::current : LimitingFactor::voltage;
@@ -383,7 +387,7 @@ void conclude(Work& work, const EvaluateOptions& options) {
     const bool is_drawn = !options.draws.empty();
     const double wrong = error_share(is_drawn ? result.games : result.samples, is_drawn);
     const auto intervals_of = [&](std::span<const double> peak_C, std::span<const char> flags) {
-      return is_drawn ? draw_intervals(peak_C, flags, {options.draws.size(), kLanes, options.seed}, wrong)
+      return is_drawn ? draw_intervals(peak_C, flags, {options.draws.size(), base::kLanes, options.seed}, wrong)
                       : sample_intervals(peak_C, flags, wrong);
     };
     const DrawIntervals intervals = intervals_of(work.winding_peak_C, work.over_limit);
@@ -392,7 +396,7 @@ void conclude(Work& work, const EvaluateOptions& options) {
     result.probability_interval = intervals.probability;
     std::vector<char> is_short;
     std::ranges::transform(work.short_of_demand, std::back_inserter(is_short),
-                           [](DriveLimit limit) { return limit == DriveLimit::none ? char{0} : char{1}; });
+                           [](robot::DriveLimit limit) { return limit == robot::DriveLimit::none ? char{0} : char{1}; });
     short_interval = intervals_of(work.winding_peak_C, is_short).probability;
   }
   if (!options.draws.empty()) {
@@ -428,34 +432,39 @@ std::string_view to_string(LimitingFactor factor) {
   return kNames.at(static_cast<std::size_t>(factor));
 }
 
-int draw_count(const Duty& duty, int samples) { return duty.shape_data->has_unknowns() ? (samples + kLanes - 1) / kLanes : 0; }
+int draw_count(const duty::Duty& duty, int samples) {
+  return duty.shape_data->has_unknowns() ? (samples + base::kLanes - 1) / base::kLanes : 0;
+}
 
-std::vector<WheelDemand> draw_demands(const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
-                                      const Progress& progress) {
-  std::vector<WheelDemand> draws;
+std::vector<duty::WheelDemand> draw_demands(const duty::Duty& duty, const robot::Robot& robot, std::uint64_t seed, int count, int threads,
+                                            const base::Progress& progress) {
+  std::vector<duty::WheelDemand> draws;
   add_draws(draws, duty, robot, seed, count, threads, progress);
   return draws;
 }
 
-void add_draws(std::vector<WheelDemand>& draws, const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
-               const Progress& progress) {
+void add_draws(std::vector<duty::WheelDemand>& draws, const duty::Duty& duty, const robot::Robot& robot, std::uint64_t seed, int count,
+               int threads, const base::Progress& progress) {
   const std::size_t first = draws.size();
   draws.resize(std::max(first, static_cast<std::size_t>(count)));
   const std::size_t more = draws.size() - first;
-  in_parallel(more, threads, 0, more, progress, [&](std::size_t i) { draws[first + i] = duty.shape_data->draw(robot, seed, first + i); });
+  base::in_parallel(more, threads, 0, more, progress,
+                    [&](std::size_t i) { draws[first + i] = duty.shape_data->draw(robot, seed, first + i); });
 }
 
-std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
-                                      std::span<const Motor> motors, const EvaluateOptions& options, const Progress& progress) {
-  std::vector<Motor> complete;
-  std::ranges::transform(motors, std::back_inserter(complete), with_default_spreads);
+std::vector<MotorEvaluation> evaluate(const robot::Robot& robot, const duty::Duty& duty, std::span<const duty::WheelDemand> wheels,
+                                      std::span<const motor::Motor> motors, const EvaluateOptions& options,
+                                      const base::Progress& progress) {
+  std::vector<motor::Motor> complete;
+  std::ranges::transform(motors, std::back_inserter(complete), motor::with_default_spreads);
   return evaluate_as_stated(robot, duty, wheels, complete, options, progress);
 }
 
-std::vector<MotorEvaluation> evaluate_as_stated(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
-                                                std::span<const Motor> motors, const EvaluateOptions& options, const Progress& progress) {
+std::vector<MotorEvaluation> evaluate_as_stated(const robot::Robot& robot, const duty::Duty& duty,
+                                                std::span<const duty::WheelDemand> wheels, std::span<const motor::Motor> motors,
+                                                const EvaluateOptions& options, const base::Progress& progress) {
   const auto samples = static_cast<std::size_t>(options.samples);
-  const std::size_t blocks = (samples + kLanes - 1) / kLanes;
+  const std::size_t blocks = (samples + base::kLanes - 1) / base::kLanes;
   std::vector<Work> works(motors.size());
   for (std::size_t i = 0; i < motors.size(); ++i) {
     works[i].motor = &motors[i];
@@ -468,11 +477,11 @@ std::vector<MotorEvaluation> evaluate_as_stated(const Robot& robot, const Duty& 
   }
   // The samples need to know the hottest wheel, so every motor's nominal run comes first. It takes another time than a block of samples,
   // so where there are any, they alone are the progress.
-  in_parallel(motors.size(), options.threads, 0, motors.size(), blocks > 0 ? Progress() : progress,
-              [&](std::size_t i) { evaluate_nominal(works[i], robot, duty, wheels, options); });
+  base::in_parallel(motors.size(), options.threads, 0, motors.size(), blocks > 0 ? base::Progress() : progress,
+                    [&](std::size_t i) { evaluate_nominal(works[i], robot, duty, wheels, options); });
   const std::size_t jobs = motors.size() * blocks;
-  in_parallel(jobs, options.threads, 0, jobs, progress, [&](std::size_t job) {
-    evaluate_samples(works[job / blocks], robot, duty, options, static_cast<int>(job % blocks) * kLanes);
+  base::in_parallel(jobs, options.threads, 0, jobs, progress, [&](std::size_t job) {
+    evaluate_samples(works[job / blocks], robot, duty, options, static_cast<int>(job % blocks) * base::kLanes);
   });
   std::vector<MotorEvaluation> results;
   for (Work& work : works) {
@@ -483,4 +492,4 @@ std::vector<MotorEvaluation> evaluate_as_stated(const Robot& robot, const Duty& 
   return results;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::select

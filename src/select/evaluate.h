@@ -13,7 +13,7 @@
 #include "motor/motor.h"
 #include "robot/robot.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 
 /// What each one means stands in verdict_meanings() of present/verdict_topic.h, in words made from the constants below.
 enum class Verdict { pass, marginal, fail, infeasible };
@@ -37,7 +37,7 @@ struct EvaluateOptions {
   bool with_current_margin = true;  ///< find margin_A, which takes a quarter of the time of a nominal run
   /// Demands of the hardest wheel under draws of the duty's own unknowns, which blocks of samples take in turn; empty: all
   /// samples have the nominal demand.
-  std::span<const WheelDemand> draws{};
+  std::span<const duty::WheelDemand> draws{};
 };
 
 /// The parameter without uncertainty and the 5th, 50th and 95th percentile of the samples (NaN without samples).
@@ -99,15 +99,15 @@ struct MotorEvaluation {
 
 /// How many draws of a duty's unknowns serve `samples`: one for every eight, because playing a game takes some hundred times as long as
 /// evaluating eight samples of it. 0 for a duty without unknowns.
-int draw_count(const Duty& duty, int samples);
+int draw_count(const duty::Duty& duty, int samples);
 
 /// Of each draw the wheel that works hardest. The same for every number of threads.
-std::vector<WheelDemand> draw_demands(const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
-                                      const Progress& progress = {});
+std::vector<duty::WheelDemand> draw_demands(const duty::Duty& duty, const robot::Robot& robot, std::uint64_t seed, int count, int threads,
+                                            const base::Progress& progress = {});
 
 /// The same for draws draws.size() to count - 1, added at the end.
-void add_draws(std::vector<WheelDemand>& draws, const Duty& duty, const Robot& robot, std::uint64_t seed, int count, int threads,
-               const Progress& progress = {});
+void add_draws(std::vector<duty::WheelDemand>& draws, const duty::Duty& duty, const robot::Robot& robot, std::uint64_t seed, int count,
+               int threads, const base::Progress& progress = {});
 
 /// To the limit that is nearer.
 double nearest_margin_K(const MotorEvaluation& motor);
@@ -119,12 +119,13 @@ void sort_by_verdict(std::vector<MotorEvaluation>& results);
 /// infeasible; with draws, where the nominal run is one of many games, more than half of the samples do. `wheels` is the duty's demand;
 /// every parameter is of the wheel whose winding gets hottest. Values of a motor without a spread are drawn from a default one
 /// (motor/default_spread.h), never as exact. `progress` is called from one thread at a time.
-std::vector<MotorEvaluation> evaluate(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
-                                      std::span<const Motor> motors, const EvaluateOptions& options, const Progress& progress = {});
+std::vector<MotorEvaluation> evaluate(const robot::Robot& robot, const duty::Duty& duty, std::span<const duty::WheelDemand> wheels,
+                                      std::span<const motor::Motor> motors, const EvaluateOptions& options,
+                                      const base::Progress& progress = {});
 
 /// The same with the spreads that the motors have, be they missing or narrower than anybody can know: for comparisons, not for verdicts.
-std::vector<MotorEvaluation> evaluate_as_stated(const Robot& robot, const Duty& duty, std::span<const WheelDemand> wheels,
-                                                std::span<const Motor> motors, const EvaluateOptions& options,
-                                                const Progress& progress = {});
+std::vector<MotorEvaluation> evaluate_as_stated(const robot::Robot& robot, const duty::Duty& duty,
+                                                std::span<const duty::WheelDemand> wheels, std::span<const motor::Motor> motors,
+                                                const EvaluateOptions& options, const base::Progress& progress = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::select

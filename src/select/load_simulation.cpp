@@ -7,23 +7,24 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 
 LoadSimulation simulate_load(const LoadJob& job) {
   constexpr double kMostTraceRows = 5e6;  // about 1 GB
-  const std::vector<WheelDemand> wheels = job.duty.demand(job.robot, job.seed);
+  const std::vector<duty::WheelDemand> wheels = job.duty.demand(job.robot, job.seed);
   const double duration_s = wheels.front().duration_s();
   if (duration_s / job.every_s > kMostTraceRows) {
-    throw Failure(ExitCode::bad_input, fmt::format("--every {} s makes more than {:.0f} rows out of {:.0f} s; expected a longer time",
-                                                   job.every_s, kMostTraceRows, duration_s));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("--every {} s makes more than {:.0f} rows out of {:.0f} s; expected a longer time", job.every_s,
+                                    kMostTraceRows, duration_s));
   }
   EvaluateOptions nominal;
   nominal.samples = 0;
   nominal.with_curves = job.with_curves;
   MotorEvaluation result = evaluate(job.robot, job.duty, wheels, std::span(&job.motor, 1), nominal).front();
-  const WheelDemand& wheel = *std::ranges::find(wheels, result.wheel, &WheelDemand::wheel);
+  const duty::WheelDemand& wheel = *std::ranges::find(wheels, result.wheel, &duty::WheelDemand::wheel);
   Trace trace = run_trace(job.robot, job.duty, wheel, job.motor, job.every_s);
   return {job.robot, job.motor, job.duty, duration_s, std::move(result), std::move(trace)};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::select

@@ -6,21 +6,21 @@
 #include "select/evaluate.h"
 #include "select/trace.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 
 struct LoadJob {
-  Robot robot;
-  Motor motor;
-  Duty duty;                 ///< not a match
+  robot::Robot robot;
+  motor::Motor motor;
+  duty::Duty duty;           ///< not a match
   std::uint64_t seed = 1;    ///< seed of the duty's demand
   double every_s = 1.0;      ///< longest time between two rows of the trace
   bool with_curves = false;  ///< keep the temperatures over time in `result`
 };
 
 struct LoadSimulation {
-  Robot robot;
-  Motor motor;
-  Duty duty;
+  robot::Robot robot;
+  motor::Motor motor;
+  duty::Duty duty;
   double duration_s = 0.0;
   MotorEvaluation result;  ///< evaluation of the wheel whose winding gets hottest
   Trace trace;             ///< trace of the same wheel
@@ -29,4 +29,4 @@ struct LoadSimulation {
 /// Throws Failure (bad_input) if the trace would have more rows than memory allows.
 LoadSimulation simulate_load(const LoadJob& job);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::select

@@ -8,7 +8,7 @@
 #include "base/binomial_bound.h"
 #include "base/random.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 
 namespace {
 
@@ -16,7 +16,7 @@ constexpr double kNotKnown = std::numeric_limits<double>::infinity();
 
 Interval95 probability_interval(std::span<const char> is_over, std::size_t trials, double error_share) {
   const double share = static_cast<double>(std::ranges::count(is_over, char{1})) / static_cast<double>(is_over.size());
-  const ShareInterval interval = share_interval(share, static_cast<double>(trials), error_share);
+  const base::ShareInterval interval = base::share_interval(share, static_cast<double>(trials), error_share);
   return {interval.low, interval.high};
 }
 
@@ -64,7 +64,7 @@ DrawIntervals draw_intervals(std::span<const double> samples_C, std::span<const 
   std::vector<double> p95_C;
   std::vector<double> drawn_C;
   for (std::uint64_t repeat = 0; repeat < kRepeats; ++repeat) {
-    Random random(shared.seed, repeat);
+    base::Random random(shared.seed, repeat);
     drawn_C.clear();
     for (std::size_t i = 0; i < shared.draw_count; ++i) {
       for (const std::size_t sample : members[static_cast<std::size_t>(random.uniform() * static_cast<double>(shared.draw_count))]) {
@@ -86,4 +86,4 @@ DrawIntervals draw_intervals(std::span<const double> samples_C, std::span<const 
           probability_interval(is_over, shared.draw_count, error_share)};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::select

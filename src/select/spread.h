@@ -7,7 +7,7 @@
 
 #include "select/evaluate.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 
 /// Between the two samples next to the place, linearly; `sorted_C` is not empty.
 double quantile(std::span<const double> sorted_C, double share);
@@ -36,4 +36,4 @@ DrawIntervals sample_intervals(std::span<const double> samples_C, std::span<cons
 DrawIntervals draw_intervals(std::span<const double> samples_C, std::span<const char> is_over, const SharedDraws& shared,
                              double error_share = kError_share);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::select

@@ -6,12 +6,12 @@
 
 #include "thermal/ensemble.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 namespace {
 
-Lanes worst_excess_K(const std::vector<Lanes>& peak_C, std::span<const NodeLimit> limits) {
-  Lanes worst_K = Lanes::Constant(-std::numeric_limits<double>::infinity());
-  for (const NodeLimit& limit : limits) {
+thermal::Lanes worst_excess_K(const std::vector<thermal::Lanes>& peak_C, std::span<const thermal::NodeLimit> limits) {
+  thermal::Lanes worst_K = thermal::Lanes::Constant(-std::numeric_limits<double>::infinity());
+  for (const thermal::NodeLimit& limit : limits) {
     worst_K = worst_K.max(peak_C[static_cast<std::size_t>(limit.node)] - limit.limit_C);
   }
   return worst_K;
@@ -19,40 +19,41 @@ Lanes worst_excess_K(const std::vector<Lanes>& peak_C, std::span<const NodeLimit
 
 }  // namespace
 
-std::optional<double> sustainable_current_factor(const Network& network, std::span<const Interval> intervals,
-                                                 std::span<const NodeLimit> limits, bool is_too_much) {
+std::optional<double> sustainable_current_factor(const thermal::Network& network, std::span<const thermal::Interval> intervals,
+                                                 std::span<const thermal::NodeLimit> limits, bool is_too_much) {
   constexpr int kRounds = 4;
   constexpr double kWider = 16.0;
   constexpr double kFarthest = 1e6;
   double low = 0.0;
   double high = is_too_much ? 1.0 : kWider;
   double share = 0.5;
-  std::vector<Lanes> parameters;
+  std::vector<thermal::Lanes> parameters;
   for (const double value : network.values()) {
-    parameters.emplace_back(Lanes::Constant(value));
+    parameters.emplace_back(thermal::Lanes::Constant(value));
   }
   for (int round = 0; round < kRounds;) {
-    const Lanes factor = Lanes::LinSpaced(low, high);
-    const std::vector<Lanes> start_C(static_cast<std::size_t>(network.state_count()), Lanes::Constant(intervals.front().at.ambient_C));
-    EnsembleRun run(network, parameters, start_C);
-    for (const Interval& interval : intervals) {
-      OperatingPoint<Lanes> at;
-      for_each_quantity([](Lanes& to, const double& from) { to = Lanes::Constant(from); }, at, interval.at);
+    const thermal::Lanes factor = thermal::Lanes::LinSpaced(low, high);
+    const std::vector<thermal::Lanes> start_C(static_cast<std::size_t>(network.state_count()),
+                                              thermal::Lanes::Constant(intervals.front().at.ambient_C));
+    thermal::EnsembleRun run(network, parameters, start_C);
+    for (const thermal::Interval& interval : intervals) {
+      thermal::OperatingPoint<thermal::Lanes> at;
+      thermal::for_each_quantity([](thermal::Lanes& to, const double& from) { to = thermal::Lanes::Constant(from); }, at, interval.at);
       at.current_rms_A *= factor;
       at.input_power_W = at.shaft_power_W * factor + (at.input_power_W - at.shaft_power_W) * factor * factor;
       at.shaft_power_W *= factor;
-      at.resistive_headroom_V = Lanes::Constant(std::numeric_limits<double>::infinity());
-      run.over(interval.duration_s, at, longest_step_s(network, parameters, at));
+      at.resistive_headroom_V = thermal::Lanes::Constant(std::numeric_limits<double>::infinity());
+      run.over(interval.duration_s, at, thermal::longest_step_s(network, parameters, at));
     }
-    const Lanes excess_K = worst_excess_K(run.peak_C(), limits);
+    const thermal::Lanes excess_K = worst_excess_K(run.peak_C(), limits);
     int within = -1;
-    while (within + 1 < kLanes && excess_K[within + 1] <= 0.0) {
+    while (within + 1 < base::kLanes && excess_K[within + 1] <= 0.0) {
       ++within;
     }
     if (within < 0) {
       return std::nullopt;
     }
-    if (within + 1 == kLanes) {
+    if (within + 1 == base::kLanes) {
       if (high >= kFarthest) {
         return std::nullopt;
       }
@@ -68,4 +69,4 @@ std::optional<double> sustainable_current_factor(const Network& network, std::sp
   return std::lerp(low, high, share);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::select

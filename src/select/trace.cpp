@@ -9,18 +9,18 @@
 
 #include "motor/datasheet_network.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 namespace {
 
-using states::stator;
-using states::winding;
+using motor::states::stator;
+using motor::states::winding;
 
 /// The same demand in bins no longer than `every_s`.
-WheelDemand subdivided(const WheelDemand& demand, double every_s) {
-  WheelDemand fine{.wheel = demand.wheel, .bins = {}, .points = {}};
-  for (const LoadBin& bin : demand.bins) {
+duty::WheelDemand subdivided(const duty::WheelDemand& demand, double every_s) {
+  duty::WheelDemand fine{.wheel = demand.wheel, .bins = {}, .points = {}};
+  for (const duty::LoadBin& bin : demand.bins) {
     const double parts = std::max(1.0, std::ceil(bin.duration_s / every_s - 1e-9));
-    LoadBin part = bin;
+    duty::LoadBin part = bin;
     part.duration_s = bin.duration_s / parts;
     fine.bins.insert(fine.bins.end(), static_cast<std::size_t>(parts), part);
   }
@@ -28,14 +28,15 @@ WheelDemand subdivided(const WheelDemand& demand, double every_s) {
 }
 
 /// What flows during a bin, with the sign of its mean.
-DrivePoint point_of(const MotorValues& motor, const Robot& robot, const LoadBin& bin, double heating_A) {
-  DrivePoint point;
+robot::DrivePoint point_of(const motor::MotorValues& motor, const robot::Robot& robot, const duty::LoadBin& bin, double heating_A) {
+  robot::DrivePoint point;
   point.motor_speed_rad_per_s = bin.velocity_mean_rad_per_s * robot.drive.gear_ratio;
   const double direction = bin.torque_mean_Nm != 0.0   ? bin.torque_mean_Nm
                            : bin.current_mean_A != 0.0 ? bin.current_mean_A
                                                        : bin.velocity_mean_rad_per_s;
-  point.current_A = std::copysign(heating_A / heating_factor(robot), direction);
-  const double drag_Nm = bin.velocity_mean_rad_per_s == 0.0 ? 0.0 : std::copysign(drag_torque_Nm(motor), bin.velocity_mean_rad_per_s);
+  point.current_A = std::copysign(heating_A / robot::heating_factor(robot), direction);
+  const double drag_Nm =
+      bin.velocity_mean_rad_per_s == 0.0 ? 0.0 : std::copysign(motor::drag_torque_Nm(motor), bin.velocity_mean_rad_per_s);
   point.motor_torque_Nm = motor.torque_constant_Nm_per_A * point.current_A - drag_Nm;
   return point;
 }
@@ -43,9 +44,9 @@ DrivePoint point_of(const MotorValues& motor, const Robot& robot, const LoadBin&
 /// The sensors of a motor with faults, while it warms.
 class FaultySensors {
  public:
-  FaultySensors(const Motor& motor, double start_C) {
+  FaultySensors(const motor::Motor& motor, double start_C) {
     for (const auto& [node, name] : {std::pair(winding, "winding"), std::pair(stator, "stator")}) {
-      if (std::vector<SensorFault> faults = faults_of(motor, fmt::format("{}_C", name)); !faults.empty()) {
+      if (std::vector<motor::SensorFault> faults = motor::faults_of(motor, fmt::format("{}_C", name)); !faults.empty()) {
         names.emplace_back(name);
         nodes_.push_back(static_cast<std::size_t>(node));
         readings_.emplace_back(std::move(faults), start_C);
@@ -53,7 +54,7 @@ class FaultySensors {
     }
   }
 
-  void advance(const TransientMoment& moment) {
+  void advance(const thermal::TransientMoment& moment) {
     for (std::size_t i = 0; i < readings_.size(); ++i) {
       readings_[i].advance(moment.time_s - time_s_, moment.state_C[nodes_[i]]);
     }
@@ -62,7 +63,7 @@ class FaultySensors {
 
   [[nodiscard]] std::vector<double> sensor_C() const {
     std::vector<double> all_C;
-    std::ranges::transform(readings_, std::back_inserter(all_C), &Reading::sensor_C);
+    std::ranges::transform(readings_, std::back_inserter(all_C), &motor::Reading::sensor_C);
     return all_C;
   }
 
@@ -70,11 +71,11 @@ class FaultySensors {
 
  private:
   std::vector<std::size_t> nodes_;
-  std::vector<Reading> readings_;
+  std::vector<motor::Reading> readings_;
   double time_s_ = 0.0;
 };
 
-std::vector<BookedHeat> balance(const Network& network, const TransientResult& result) {
+std::vector<BookedHeat> balance(const thermal::Network& network, const thermal::TransientResult& result) {
   std::vector<BookedHeat> booked;
   const auto nodes = static_cast<std::size_t>(network.node_count());
   for (std::size_t e = 0; e < network.effects().size(); ++e) {
@@ -90,29 +91,30 @@ std::vector<BookedHeat> balance(const Network& network, const TransientResult& r
 
 }  // namespace
 
-Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, const Motor& motor, double every_s) {
-  const MotorSample sample = nominal_sample(motor);
+Trace run_trace(const robot::Robot& robot, const duty::Duty& duty, const duty::WheelDemand& wheel, const motor::Motor& motor,
+                double every_s) {
+  const motor::MotorSample sample = motor::nominal_sample(motor);
   const DutySample demand = nominal_sample(duty);
-  const Network network = datasheet_network(motor, sample);
+  const thermal::Network network = motor::datasheet_network(motor, sample);
   const std::vector<double> parameters = network.values();
-  const WheelDemand fine = subdivided(wheel, every_s);
-  const std::vector<Interval> all = intervals(sample.values, robot, duty.kind, fine, demand);
-  TransientOptions options;
+  const duty::WheelDemand fine = subdivided(wheel, every_s);
+  const std::vector<thermal::Interval> all = intervals(sample.values, robot, duty.kind, fine, demand);
+  thermal::TransientOptions options;
   options.with_ledger = true;
   const double end_s = wheel.duration_s() * (1.0 - 1e-12);
   Trace trace;
-  for (int node = states::first_own; node < network.state_count(); ++node) {
+  for (int node = motor::states::first_own; node < network.state_count(); ++node) {
     trace.own_nodes.emplace_back(network.node_name(node));
   }
   FaultySensors sensors(motor, demand.ambient_C);
   trace.shown_at = sensors.names;
-  const auto add_row = [&](const TransientMoment& moment) {
+  const auto add_row = [&](const thermal::TransientMoment& moment) {
     sensors.advance(moment);
     if (!moment.begins_interval && moment.time_s < end_s) {
       return;
     }
     const double flows_A = network.within_headroom(all[moment.interval].at, parameters.data(), moment.state_C.data());
-    const DrivePoint point = point_of(sample.values, robot, fine.bins[moment.interval], flows_A);
+    const robot::DrivePoint point = point_of(sample.values, robot, fine.bins[moment.interval], flows_A);
     TraceRow row{.time_s = moment.time_s,
                  .winding_C = moment.state_C[winding],
                  .stator_C = moment.state_C[stator],
@@ -120,13 +122,13 @@ Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, 
                  .current_A = point.current_A,
                  .speed_rad_per_s = point.motor_speed_rad_per_s,
                  .torque_Nm = point.motor_torque_Nm,
-                 .motor_V = terminal_voltage_V(sample.values, point, moment.state_C[winding])};
+                 .motor_V = robot::terminal_voltage_V(sample.values, point, moment.state_C[winding])};
     row.power_in_W = row.motor_V * row.current_A;
     row.sensor_C = sensors.sensor_C();
-    row.own_C.assign(moment.state_C.begin() + states::first_own, moment.state_C.end());
+    row.own_C.assign(moment.state_C.begin() + motor::states::first_own, moment.state_C.end());
     trace.rows.push_back(row);
   };
-  const TransientResult result = run_transient(network, parameters, all, options, add_row);
+  const thermal::TransientResult result = thermal::run_transient(network, parameters, all, options, add_row);
   trace.balance = balance(network, result);
   for (int node = 0; node < network.state_count(); ++node) {
     const double capacity_J_per_K = parameters[static_cast<std::size_t>(network.capacity_index(node))];
@@ -158,4 +160,4 @@ std::string to_csv(const Trace& trace) {
   return text;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::select

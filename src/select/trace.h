@@ -6,7 +6,7 @@
 
 #include "select/drive_profile.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 
 /// One row: inputs hold from time_s until the next row, temperatures are those at time_s.
 struct TraceRow {
@@ -39,10 +39,11 @@ struct Trace {
 };
 
 /// Rows stand at every change of the inputs and at most `every_s` apart.
-Trace run_trace(const Robot& robot, const Duty& duty, const WheelDemand& wheel, const Motor& motor, double every_s);
+Trace run_trace(const robot::Robot& robot, const duty::Duty& duty, const duty::WheelDemand& wheel, const motor::Motor& motor,
+                double every_s);
 
 /// The canonical log format: one header row, names end in units. Nodes of effects stand behind the ambient, then what sensors with
 /// faults show.
 std::string to_csv(const Trace& trace);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::select

@@ -3,35 +3,35 @@
 #include <algorithm>
 #include <utility>
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 namespace {
 
 bool is_over_limit(const ClosedLoopRank& rank, const DriveScore& game) {
   return game.winding_peak_C > rank.winding_limit_C || (rank.stator_limit_C && game.stator_peak_C > *rank.stator_limit_C);
 }
 
-Verdict verdict_of(const ClosedLoopRank& rank) {
+select::Verdict verdict_of(const ClosedLoopRank& rank) {
   const std::vector<DriveScore>& games = rank.drives.games;
   if (games.empty()) {
-    return Verdict::infeasible;
+    return select::Verdict::infeasible;
   }
   const auto over = std::ranges::count_if(games, [&](const DriveScore& game) { return is_over_limit(rank, game); });
   if (is_over_limit(rank, games.front()) || 2 * over > std::ssize(games)) {
-    return Verdict::fail;
+    return select::Verdict::fail;
   }
   if (std::ranges::any_of(games, [](const DriveScore& game) { return drive_problem(game).has_value(); })) {
-    return Verdict::infeasible;
+    return select::Verdict::infeasible;
   }
-  return over > 0 ? Verdict::marginal : Verdict::pass;
+  return over > 0 ? select::Verdict::marginal : select::Verdict::pass;
 }
 
 double margin_K(const ClosedLoopRank& rank) { return rank.winding_limit_C - rank.drives.spread(&DriveScore::winding_peak_C).high; }
 
 }  // namespace
 
-std::vector<ClosedLoopRank> rank_closed_loop(std::vector<GameDrives> drives, std::vector<MotorEvaluation>& results) {
-  std::vector<std::pair<MotorEvaluation, ClosedLoopRank>> pairs;
-  for (MotorEvaluation& result : results) {
+std::vector<ClosedLoopRank> rank_closed_loop(std::vector<GameDrives> drives, std::vector<select::MotorEvaluation>& results) {
+  std::vector<std::pair<select::MotorEvaluation, ClosedLoopRank>> pairs;
+  for (select::MotorEvaluation& result : results) {
     const auto found = std::ranges::find(drives, result.motor_id, &GameDrives::motor_id);
     ClosedLoopRank rank{std::move(*found), result.winding_limit_C, result.stator_limit_C};
     rank.verdict = verdict_of(rank);
@@ -55,4 +55,4 @@ std::vector<ClosedLoopRank> rank_closed_loop(std::vector<GameDrives> drives, std
   return ranks;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

@@ -7,21 +7,22 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 namespace {
 
 std::int64_t plant_periods(double period_s) {
   const std::int64_t count = std::llround(period_s / SimulatedRobot::kPeriod_s);
   if (count < 1 || std::abs(static_cast<double>(count) * SimulatedRobot::kPeriod_s - period_s) > 1e-6 * period_s) {
-    throw bad_input({}, "control period",
-                    fmt::format("is {} s; expected a multiple of the simulation's period of {} s", period_s, SimulatedRobot::kPeriod_s));
+    throw base::bad_input(
+        {}, "control period",
+        fmt::format("is {} s; expected a multiple of the simulation's period of {} s", period_s, SimulatedRobot::kPeriod_s));
   }
   return count;
 }
 
 }  // namespace
 
-DriveOptions real_drive(const Robot& robot, std::uint64_t seed) { return {sensing_of(robot), radio_of(robot), seed}; }
+DriveOptions real_drive(const robot::Robot& robot, std::uint64_t seed) { return {sensing_of(robot), radio_of(robot), seed}; }
 DriveOptions ideal_drive() { return {ideal_sensing(), ideal_radio(), 1}; }
 
 CoreDrive::CoreDrive(const robot_core::Config& config, const SimulatedRobot& robot, const DriveOptions& options)
@@ -30,7 +31,7 @@ CoreDrive::CoreDrive(const robot_core::Config& config, const SimulatedRobot& rob
       sensing_(options.sensing, robot, static_cast<double>(config.period_s), options.seed),
       is_delayed_(options.sensing.delay_periods_count > 0.5),
       ambient_C_(robot.ambient_C()),
-      battery_V_(open_circuit_V(robot.plant().battery, robot.state().battery_charge_A_s)),
+      battery_V_(robot::open_circuit_V(robot.plant().battery, robot.state().battery_charge_A_s)),
       periods_per_step_(plant_periods(static_cast<double>(config.period_s))) {
   input_.elapsed_s = config.period_s;
   double hottest_C = robot.winding_C(0);
@@ -38,11 +39,12 @@ CoreDrive::CoreDrive(const robot_core::Config& config, const SimulatedRobot& rob
     hottest_C = std::max(hottest_C, robot.winding_C(i));
   }
   if (!robot_core::start(config_, state_, {true, static_cast<float>(hottest_C)})) {
-    throw Failure(ExitCode::bug, "the drive core refuses its configuration");
+    throw base::Failure(base::ExitCode::bug, "the drive core refuses its configuration");
   }
 }
 
-const std::array<MotorCommand, kMostWheels>& CoreDrive::advance(const Follower& plan, const SimulatedRobot& robot, const Wrench& push) {
+const std::array<robot::MotorCommand, robot::kMostWheels>& CoreDrive::advance(const duty::Follower& plan, const SimulatedRobot& robot,
+                                                                              const robot::Wrench& push) {
   const double time_s = static_cast<double>(now_) * SimulatedRobot::kPeriod_s;
   if (const robot_core::Command* const command = off_board_.advance(time_s, plan, robot.state().pose, push)) {
     input_.command = *command;
@@ -62,18 +64,18 @@ const std::array<MotorCommand, kMostWheels>& CoreDrive::advance(const Follower& 
 }
 
 void CoreDrive::apply(const robot_core::Output& output) {
-  for (std::size_t i = 0; i < kMostWheels; ++i) {
+  for (std::size_t i = 0; i < robot::kMostWheels; ++i) {
     if (output.is_open[i]) {
-      commands_[i] = {MotorCommand::Kind::open, 0.0};
+      commands_[i] = {robot::MotorCommand::Kind::open, 0.0};
     } else {
-      commands_[i] = {MotorCommand::Kind::voltage, static_cast<double>(output.pwm_ratio[i]) * battery_V_};
+      commands_[i] = {robot::MotorCommand::Kind::voltage, static_cast<double>(output.pwm_ratio[i]) * battery_V_};
     }
   }
 }
 
-void CoreDrive::follow(const SimulatedRobot& robot, const PlantOutput& out) {
+void CoreDrive::follow(const SimulatedRobot& robot, const robot::PlantOutput& out) {
   sensing_.follow(robot, out);
   battery_V_ = out.battery_V;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

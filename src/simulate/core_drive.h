@@ -6,7 +6,7 @@
 #include "simulate/radio.h"
 #include "simulate/sensing.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 struct DriveOptions {
   SensingConfig sensing;
@@ -15,7 +15,7 @@ struct DriveOptions {
 };
 
 /// Robot's own sensors and link, or exact ones.
-DriveOptions real_drive(const Robot& robot, std::uint64_t seed);
+DriveOptions real_drive(const robot::Robot& robot, std::uint64_t seed);
 DriveOptions ideal_drive();
 
 /// Runs robot_core::step() every Config::period_s, which is a whole number of the plant's periods. The motors get pwm_ratio times the
@@ -28,9 +28,10 @@ class CoreDrive {
 
   /// Begins a period of the plant: radio, sensors and the core where they are due. Returns what the drivers do in this period. `push` is
   /// the force on another robot, field frame.
-  const std::array<MotorCommand, kMostWheels>& advance(const Follower& plan, const SimulatedRobot& robot, const Wrench& push);
+  const std::array<robot::MotorCommand, robot::kMostWheels>& advance(const duty::Follower& plan, const SimulatedRobot& robot,
+                                                                     const robot::Wrench& push);
   /// Ends it.
-  void follow(const SimulatedRobot& robot, const PlantOutput& out);
+  void follow(const SimulatedRobot& robot, const robot::PlantOutput& out);
 
   [[nodiscard]] const robot_core::Config& config() const { return config_; }
   [[nodiscard]] const robot_core::State& state() const { return state_; }
@@ -38,7 +39,7 @@ class CoreDrive {
   [[nodiscard]] const robot_core::Output& output() const { return output_; }
   [[nodiscard]] const robot_core::Input& input() const { return input_; }
   /// Of the present period of the plant.
-  [[nodiscard]] const std::array<MotorCommand, kMostWheels>& commands() const { return commands_; }
+  [[nodiscard]] const std::array<robot::MotorCommand, robot::kMostWheels>& commands() const { return commands_; }
   [[nodiscard]] const OffBoard& off_board() const { return off_board_; }
 
  private:
@@ -55,10 +56,10 @@ class CoreDrive {
   bool is_delayed_;
   double ambient_C_;
   double battery_V_;
-  std::array<MotorCommand, kMostWheels> commands_{};
+  std::array<robot::MotorCommand, robot::kMostWheels> commands_{};
   std::int64_t periods_per_step_;
   std::int64_t now_ = 0;
   std::int64_t received_ = -1;  ///< period in which the command came; < 0: none yet
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

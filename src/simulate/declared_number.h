@@ -8,24 +8,24 @@
 #include "base/parameter.h"
 #include "base/parameter_value.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 /// One number of a `Config`, which holds its default.
 template <class Config>
 struct DeclaredNumber {
-  ParameterSpec spec;  ///< its range is what a run accepts
+  base::ParameterSpec spec;  ///< its range is what a run accepts
   double Config::*value = nullptr;
-  Origin origin = Origin::estimated;
-  Range plausible;  ///< where the true value of a robot of this league is expected
+  base::Origin origin = base::Origin::estimated;
+  base::Range plausible;  ///< where the true value of a robot of this league is expected
   std::string_view derivation;
 };
 
 /// Throws Failure (bad_input) with every number of `config` that is outside of its declared range.
-void require_declared_ranges(std::span<const ParameterSpec> specs, std::span<const double> values);
+void require_declared_ranges(std::span<const base::ParameterSpec> specs, std::span<const double> values);
 
 template <class Config>
 void require_declared_ranges(const Config& config, std::span<const DeclaredNumber<Config>> numbers) {
-  std::vector<ParameterSpec> specs;
+  std::vector<base::ParameterSpec> specs;
   std::vector<double> values;
   for (const DeclaredNumber<Config>& each : numbers) {
     specs.push_back(each.spec);
@@ -34,4 +34,4 @@ void require_declared_ranges(const Config& config, std::span<const DeclaredNumbe
   require_declared_ranges(specs, values);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

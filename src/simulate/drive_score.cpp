@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 namespace {
 
@@ -18,8 +18,8 @@ void DriveScorer::take(const LoopMoment& moment) {
   robot_ = moment.robot;
   drive_ = moment.drive;
   follow_core(moment);
-  const PlantOutput& out = *moment.out;
-  const PlantState& state = moment.robot->state();
+  const robot::PlantOutput& out = *moment.out;
+  const robot::PlantState& state = moment.robot->state();
   const int wheels = moment.robot->wheel_count();
   const double creep_m_per_s = moment.robot->plant().body.traction.slip_speed_m_per_s;
   bool slides = false;
@@ -44,7 +44,7 @@ void DriveScorer::take(const LoopMoment& moment) {
     return;  // nothing drives any more: where it stands says nothing of planner or motor
   }
   score_.distance_m += std::hypot(state.velocity.x_m_per_s, state.velocity.y_m_per_s) * kStep_s;
-  const Pose planned = moment.plan->pose();
+  const robot::Pose planned = moment.plan->pose();
   const double error_m = std::hypot(planned.x_m - state.pose.x_m, planned.y_m - state.pose.y_m);
   score_.tracking_most_m = std::max(score_.tracking_most_m, error_m);
   if (!moment.planned_at_rest) {
@@ -77,7 +77,7 @@ void DriveScorer::follow_command(const LoopMoment& moment) {
     command_ = moment.command;
   }
   if (!moment.planned_at_rest) {
-    const BodyVelocity planned = moment.plan->velocity_global();
+    const robot::BodyVelocity planned = moment.plan->velocity_global();
     const double speed_m_per_s = std::hypot(planned.x_m_per_s, planned.y_m_per_s);
     if (speed_m_per_s > kLeastSpeed_m_per_s) {
       way_x_share_ = planned.x_m_per_s / speed_m_per_s;
@@ -86,8 +86,8 @@ void DriveScorer::follow_command(const LoopMoment& moment) {
     }
     return;
   }
-  const Pose& pose = moment.robot->state().pose;
-  const Pose target = moment.plan->pose();
+  const robot::Pose& pose = moment.robot->state().pose;
+  const robot::Pose target = moment.plan->pose();
   arrived_ = came_from_afar_;
   beyond_m_ = std::max(beyond_m_, (pose.x_m - target.x_m) * way_x_share_ + (pose.y_m - target.y_m) * way_y_share_);
 }
@@ -146,4 +146,4 @@ std::optional<DriveProblem> drive_problem(const DriveScore& score) {
   return score.tracking_rms_m > kRobot_m ? std::optional(DriveProblem::off_plan) : std::nullopt;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

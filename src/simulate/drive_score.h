@@ -7,7 +7,7 @@
 
 #include "simulate/drive_script.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 /// Limits of the core that a wheel can meet, in the order of DriveScore::limited_s.
 inline constexpr std::array<robot_core::Reason, 5> kLimits{robot_core::Reason::voltage, robot_core::Reason::driver_current,
@@ -74,9 +74,9 @@ class DriveScorer {
   double error_squared_m2_s_ = 0.0;
   double planned_moving_s_ = 0.0;
   double duel_copper_J_ = 0.0;
-  PerWheel current_squared_A2_s_{};
+  robot::PerWheel current_squared_A2_s_{};
   // The command that is being driven.
-  const ScheduledCommand* command_ = nullptr;
+  const duty::ScheduledCommand* command_ = nullptr;
   double way_x_share_ = 0.0;  ///< direction of the plan's last motion
   double way_y_share_ = 0.0;
   double beyond_m_ = 0.0;
@@ -84,4 +84,4 @@ class DriveScorer {
   bool arrived_ = false;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

@@ -5,35 +5,38 @@
 
 #include "robot/inverse_dynamics.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 namespace {
 
 /// The force of the opponent on the robot: against the push, only while they touch.
 class Duel {
  public:
-  void begin(const MotionCommand& command, const Pose& at, const BodyConfig& body) {
+  void begin(const duty::MotionCommand& command, const robot::Pose& at, const robot::BodyConfig& body) {
     x_share_ = std::cos(command.push_direction_rad);
     y_share_ = std::sin(command.push_direction_rad);
-    force_N_ = command.push_share * largest_push_N(body, command.push_direction_rad - at.yaw_rad, body.weight.center_of_gravity_height_m);
+    force_N_ =
+        command.push_share * robot::largest_push_N(body, command.push_direction_rad - at.yaw_rad, body.weight.center_of_gravity_height_m);
     wall_m_ = along(at.x_m, at.y_m);
     active_ = true;
   }
   void end() { active_ = false; }
   [[nodiscard]] bool active() const { return active_; }
   /// What the robot is to push with, global frame.
-  [[nodiscard]] Wrench push() const { return active_ ? Wrench{force_N_ * x_share_, force_N_ * y_share_, 0.0} : Wrench{}; }
+  [[nodiscard]] robot::Wrench push() const {
+    return active_ ? robot::Wrench{force_N_ * x_share_, force_N_ * y_share_, 0.0} : robot::Wrench{};
+  }
   /// What comes back, local frame.
-  [[nodiscard]] Wrench reaction(const SimulatedRobot& robot) const {
+  [[nodiscard]] robot::Wrench reaction(const SimulatedRobot& robot) const {
     if (!active_) {
       return {};
     }
-    const Pose& pose = robot.state().pose;
-    const BodyVelocity velocity = robot.velocity_global();
+    const robot::Pose& pose = robot.state().pose;
+    const robot::BodyVelocity velocity = robot.velocity_global();
     const double into_m = along(pose.x_m, pose.y_m) - wall_m_;
     const double force_N = into_m > 0.0 ? std::max(0.0, opponent_.stiffness_N_per_m * into_m +
                                                             opponent_.damping_N_s_per_m * along(velocity.x_m_per_s, velocity.y_m_per_s))
                                         : 0.0;
-    return to_local(Wrench{-force_N * x_share_, -force_N * y_share_, 0.0}, pose.yaw_rad);
+    return robot::to_local(robot::Wrench{-force_N * x_share_, -force_N * y_share_, 0.0}, pose.yaw_rad);
   }
 
  private:
@@ -49,10 +52,10 @@ class Duel {
 
 class Loop {
  public:
-  Loop(SimulatedRobot& robot, CoreDrive& drive, Follower& plan, const LoopObserver& observer)
+  Loop(SimulatedRobot& robot, CoreDrive& drive, duty::Follower& plan, const LoopObserver& observer)
       : robot_(robot), drive_(drive), plan_(plan), observer_(observer) {}
 
-  void run(std::span<const ScheduledCommand> script, double end_s) {
+  void run(std::span<const duty::ScheduledCommand> script, double end_s) {
     for (std::size_t i = 0; i < script.size(); ++i) {
       const std::int64_t until = periods(i + 1 < script.size() ? script[i + 1].time_s : end_s);
       if (now_ >= until) {
@@ -68,14 +71,14 @@ class Loop {
  private:
   static std::int64_t periods(double time_s) { return std::llround(time_s / SimulatedRobot::kPeriod_s); }
 
-  void period(const ScheduledCommand& scheduled, std::size_t index) {
+  void period(const duty::ScheduledCommand& scheduled, std::size_t index) {
     const bool at_rest = plan_.at_rest();
     if (scheduled.command.duel && at_rest && !duel_.active()) {
       duel_.begin(scheduled.command, robot_.state().pose, robot_.plant().body);
     }
-    const std::array<MotorCommand, kMostWheels>& commands = drive_.advance(plan_, robot_, duel_.push());
+    const std::array<robot::MotorCommand, robot::kMostWheels>& commands = drive_.advance(plan_, robot_, duel_.push());
     plan_.advance(SimulatedRobot::kPeriod_s);
-    const PlantOutput& out = robot_.advance(commands, duel_.reaction(robot_));
+    const robot::PlantOutput& out = robot_.advance(commands, duel_.reaction(robot_));
     drive_.follow(robot_, out);
     ++now_;
     observer_({static_cast<double>(now_) * SimulatedRobot::kPeriod_s, &scheduled, index, at_rest, duel_.active(), &plan_, &out, &robot_,
@@ -84,7 +87,7 @@ class Loop {
 
   SimulatedRobot& robot_;
   CoreDrive& drive_;
-  Follower& plan_;
+  duty::Follower& plan_;
   const LoopObserver& observer_;
   Duel duel_;
   std::int64_t now_ = 0;
@@ -92,9 +95,9 @@ class Loop {
 
 }  // namespace
 
-void drive_script(SimulatedRobot& robot, CoreDrive& drive, Follower& plan, std::span<const ScheduledCommand> script, double end_s,
-                  const LoopObserver& observer) {
+void drive_script(SimulatedRobot& robot, CoreDrive& drive, duty::Follower& plan, std::span<const duty::ScheduledCommand> script,
+                  double end_s, const LoopObserver& observer) {
   Loop(robot, drive, plan, observer).run(script, end_s);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

@@ -9,17 +9,17 @@
 #include "simulate/core_drive.h"
 #include "simulate/simulated_robot.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 /// What the loop shows after every period of the plant.
 struct LoopMoment {
   double time_s = 0.0;  ///< at the end of the period
-  const ScheduledCommand* command = nullptr;
+  const duty::ScheduledCommand* command = nullptr;
   std::size_t command_index = 0;
   bool planned_at_rest = false;  ///< the plan of this command has ended
   bool pushes = false;
-  const Follower* plan = nullptr;
-  const PlantOutput* out = nullptr;  ///< means over the period
+  const duty::Follower* plan = nullptr;
+  const robot::PlantOutput* out = nullptr;  ///< means over the period
   const SimulatedRobot* robot = nullptr;
   const CoreDrive* drive = nullptr;
 };
@@ -34,7 +34,7 @@ struct Opponent {
 
 /// Drives `script` until `end_s`, from the plan's and the robot's present state on. In a duel the robot pushes from when its plan stands
 /// still. Times of the script are taken to the nearest period of the plant.
-void drive_script(SimulatedRobot& robot, CoreDrive& drive, Follower& plan, std::span<const ScheduledCommand> script, double end_s,
-                  const LoopObserver& observer);
+void drive_script(SimulatedRobot& robot, CoreDrive& drive, duty::Follower& plan, std::span<const duty::ScheduledCommand> script,
+                  double end_s, const LoopObserver& observer);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

@@ -9,74 +9,75 @@
 #include "robot/assumed_friction.h"
 #include "select/decision.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 namespace {
 
 void check_job(const EvaluationJob& job, bool is_match) {
   if (job.closed_loop && !is_match) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("--closed-loop can drive only a match; {} is {}. Expected a duty of the shape match, or no "
-                              "--closed-loop",
-                              job.duty.id, job.duty.shape));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("--closed-loop can drive only a match; {} is {}. Expected a duty of the shape match, or no "
+                                    "--closed-loop",
+                                    job.duty.id, job.duty.shape));
   }
-  if (const int most = most_samples_at_all(job.duty.shape_data->has_unknowns()); job.samples.value_or(0) > most) {
-    throw Failure(ExitCode::bad_input, fmt::format("--samples {}: a game is played for every eight samples on {}; expected at most {}",
-                                                   *job.samples, job.duty.id, most));
+  if (const int most = select::most_samples_at_all(job.duty.shape_data->has_unknowns()); job.samples.value_or(0) > most) {
+    throw base::Failure(
+        base::ExitCode::bad_input,
+        fmt::format("--samples {}: a game is played for every eight samples on {}; expected at most {}", *job.samples, job.duty.id, most));
   }
 }
 
-std::optional<SuggestedChanges> changes_for(const EvaluationJob& job, const EvaluationAnswer& answer, const ProgressFor& progress) {
-  const auto own = std::ranges::find(answer.results, answer.robot.drive.motor, &MotorEvaluation::motor_id);
-  const MotorEvaluation& subject = own == answer.results.end() ? answer.results.front() : *own;
-  if (!job.suggests && subject.verdict == Verdict::pass) {
+std::optional<SuggestedChanges> changes_for(const EvaluationJob& job, const EvaluationAnswer& answer, const base::ProgressFor& progress) {
+  const auto own = std::ranges::find(answer.results, answer.robot.drive.motor, &select::MotorEvaluation::motor_id);
+  const select::MotorEvaluation& subject = own == answer.results.end() ? answer.results.front() : *own;
+  if (!job.suggests && subject.verdict == select::Verdict::pass) {
     return std::nullopt;
   }
-  const Motor& motor = *std::ranges::find(job.motors, subject.motor_id, &Motor::id);
-  const std::vector<Motor> others = job.database ? job.database() : std::vector<Motor>();
-  return SuggestedChanges{subject.motor_id, effects_of_changes(answer.robot, job.duty, motor, others, job.seed, job.threads,
-                                                               progress_of(progress, "trying changes"))};
+  const motor::Motor& motor = *std::ranges::find(job.motors, subject.motor_id, &motor::Motor::id);
+  const std::vector<motor::Motor> others = job.database ? job.database() : std::vector<motor::Motor>();
+  return SuggestedChanges{subject.motor_id, select::effects_of_changes(answer.robot, job.duty, motor, others, job.seed, job.threads,
+                                                                       base::progress_of(progress, "trying changes"))};
 }
 
 }  // namespace
 
-Verdict EvaluationAnswer::worst_verdict() const {
-  return ranks.empty() ? std::ranges::max_element(results, {}, &MotorEvaluation::verdict)->verdict
+select::Verdict EvaluationAnswer::worst_verdict() const {
+  return ranks.empty() ? std::ranges::max_element(results, {}, &select::MotorEvaluation::verdict)->verdict
                        : std::ranges::max_element(ranks, {}, &ClosedLoopRank::verdict)->verdict;
 }
 
-EvaluationAnswer run_evaluation(const EvaluationJob& job, const ProgressFor& progress) {
-  const auto match = std::dynamic_pointer_cast<const MatchDuty>(job.duty.shape_data);
+EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::ProgressFor& progress) {
+  const auto match = std::dynamic_pointer_cast<const duty::MatchDuty>(job.duty.shape_data);
   check_job(job, match != nullptr);
-  EvaluationAnswer answer{.robot = match ? with_assumed_friction(job.robot) : job.robot,
+  EvaluationAnswer answer{.robot = match ? robot::with_assumed_friction(job.robot) : job.robot,
                           .duty = job.duty,
                           .motors = job.motors,
                           .conditions = job.conditions,
                           .seed = job.seed,
-                          .samples = job.samples.value_or(first_samples(job.duty)),
+                          .samples = job.samples.value_or(select::first_samples(job.duty)),
                           .demand = {},
                           .results = {},
                           .closed_loop = job.closed_loop,
                           .ranks = {},
                           .changes = {}};
-  EvaluateOptions options;
+  select::EvaluateOptions options;
   options.samples = answer.samples;
   options.seed = job.seed;
   options.threads = job.threads;
   options.with_curves = true;
   options.with_bands = job.with_bands;
-  const int most = job.samples.value_or(most_samples(job.duty));
-  const std::vector<WheelDemand> wheels = job.duty.demand(answer.robot, job.seed);
-  std::vector<WheelDemand> draws;
-  answer.results = evaluate_until_decided(answer.robot, job.duty, wheels, job.motors, options, most, draws, progress);
+  const int most = job.samples.value_or(select::most_samples(job.duty));
+  const std::vector<duty::WheelDemand> wheels = job.duty.demand(answer.robot, job.seed);
+  std::vector<duty::WheelDemand> draws;
+  answer.results = select::evaluate_until_decided(answer.robot, job.duty, wheels, job.motors, options, most, draws, progress);
   answer.demand = wheels.front();
   answer.draw_count = draws.size();
   if (job.closed_loop) {
     const GameDriveOptions drive{job.closed_loop->games, job.seed, job.duty.ambient_C.value, job.closed_loop->guard, false, job.threads};
-    answer.ranks = rank_closed_loop(drive_games(answer.robot, match->inputs(), job.motors, drive, progress_of(progress, "driving games")),
-                                    answer.results);
+    answer.ranks = rank_closed_loop(
+        drive_games(answer.robot, match->inputs(), job.motors, drive, base::progress_of(progress, "driving games")), answer.results);
   }
   answer.changes = changes_for(job, answer, progress);
   return answer;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

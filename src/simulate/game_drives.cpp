@@ -5,12 +5,12 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 GameSpread GameDrives::spread(double DriveScore::*value) const {
   GameSpread made;
   if (games.empty()) {
-    return {kUnknown, kUnknown, kUnknown};
+    return {base::kUnknown, base::kUnknown, base::kUnknown};
   }
   made.nominal = made.low = made.high = games.front().*value;
   for (const DriveScore& each : games) {
@@ -23,14 +23,14 @@ GameSpread GameDrives::spread(double DriveScore::*value) const {
 namespace {
 
 /// Returns why the drive core cannot drive this motor, or an empty text. A robot file without a needed table is an error for all motors.
-std::string why_not_driven(const Robot& robot, const Motor& motor, GuardUse use, const MotorGuard& guard) {
+std::string why_not_driven(const robot::Robot& robot, const motor::Motor& motor, GuardUse use, const MotorGuard& guard) {
   if (!motor.nominal.rotor_inertia_kg_m2) {
     return "the motor's file has no rotor_inertia: without it no acceleration of a wheel can be calculated";
   }
   try {
     const GuardedCore core(robot, motor, use, guard);
-  } catch (const Failure& failure) {
-    if (failure.code() != ExitCode::bad_input || !failure.diagnostics().empty()) {
+  } catch (const base::Failure& failure) {
+    if (failure.code() != base::ExitCode::bad_input || !failure.diagnostics().empty()) {
       throw;
     }
     return failure.message();
@@ -40,15 +40,16 @@ std::string why_not_driven(const Robot& robot, const Motor& motor, GuardUse use,
 
 }  // namespace
 
-std::vector<GameDrives> drive_games(const Robot& robot, const MatchInputs& inputs, std::span<const Motor> motors,
-                                    const GameDriveOptions& options, const Progress& progress) {
+std::vector<GameDrives> drive_games(const robot::Robot& robot, const duty::MatchInputs& inputs, std::span<const motor::Motor> motors,
+                                    const GameDriveOptions& options, const base::Progress& progress) {
   const auto games = static_cast<std::size_t>(options.games);
   const std::size_t all = games + motors.size() * (1 + games);
   std::vector<Game> played(games);
-  in_parallel(games, options.threads, 0, all, progress, [&](std::size_t i) { played[i] = play_game(inputs, robot, options.seed + i); });
+  base::in_parallel(games, options.threads, 0, all, progress,
+                    [&](std::size_t i) { played[i] = play_game(inputs, robot, options.seed + i); });
   std::vector<GameDrives> drives(motors.size());
   std::vector<MotorGuard> guards(motors.size());
-  in_parallel(motors.size(), options.threads, games, all, progress, [&](std::size_t i) {
+  base::in_parallel(motors.size(), options.threads, games, all, progress, [&](std::size_t i) {
     drives[i].motor_id = motors[i].id;
     drives[i].why_none = why_not_driven(robot, motors[i], GuardUse::off, {});
     if (drives[i].why_none.empty() && options.guard != GuardUse::off) {
@@ -59,7 +60,7 @@ std::vector<GameDrives> drive_games(const Robot& robot, const MatchInputs& input
     }
     drives[i].games.resize(drives[i].why_none.empty() ? games : 0);
   });
-  in_parallel(motors.size() * games, options.threads, games + motors.size(), all, progress, [&](std::size_t job) {
+  base::in_parallel(motors.size() * games, options.threads, games + motors.size(), all, progress, [&](std::size_t job) {
     const std::size_t motor = job / games;
     const std::size_t game = job % games;
     if (!drives[motor].why_none.empty()) {
@@ -74,4 +75,4 @@ std::vector<GameDrives> drive_games(const Robot& robot, const MatchInputs& input
   return drives;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

@@ -8,7 +8,7 @@
 #include "simulate/guarded_core.h"
 #include "simulate/match_run.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 struct GameDriveOptions {
   int games = 3;
@@ -38,7 +38,7 @@ struct GameDrives {
 
 /// In the order of `motors`. Every motor gets the same games. A motor whose file lacks what motion needs is not driven and says so. Throws
 /// Failure (bad_input) where the robot's file lacks something. `progress` counts guards and games.
-std::vector<GameDrives> drive_games(const Robot& robot, const MatchInputs& inputs, std::span<const Motor> motors,
-                                    const GameDriveOptions& options, const Progress& progress = {});
+std::vector<GameDrives> drive_games(const robot::Robot& robot, const duty::MatchInputs& inputs, std::span<const motor::Motor> motors,
+                                    const GameDriveOptions& options, const base::Progress& progress = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

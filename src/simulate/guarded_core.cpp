@@ -6,19 +6,19 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
-MotorGuard make_guard(const Motor& motor, const Robot& robot, double ambient_C, int threads, const Progress& progress) {
-  DerateOptions options;
+MotorGuard make_guard(const motor::Motor& motor, const robot::Robot& robot, double ambient_C, int threads, const base::Progress& progress) {
+  derate::DerateOptions options;
   options.hottest_ambient_C = std::max(options.hottest_ambient_C, ambient_C);
   options.coldest_ambient_C = std::min(options.coldest_ambient_C, ambient_C);
   options.guarantee.threads = threads;
   MotorGuard made;
   try {
-    made.derating.emplace(derate(motor, robot, options, progress));
+    made.derating.emplace(derate::derate(motor, robot, options, progress));
     made.guard.emplace(*made.derating);
-  } catch (const Failure& failure) {
-    if (failure.code() != ExitCode::limit_exceeded && failure.code() != ExitCode::bad_input) {
+  } catch (const base::Failure& failure) {
+    if (failure.code() != base::ExitCode::limit_exceeded && failure.code() != base::ExitCode::bad_input) {
       throw;
     }
     made.why_none = failure.message();
@@ -30,21 +30,21 @@ namespace {
 
 /// Calls make_core_config() and names the motor in its message.
 template <class... Arguments>
-robot_core::Config named_config(const Robot& robot, const Motor& motor, const Arguments&... rest) {
+robot_core::Config named_config(const robot::Robot& robot, const motor::Motor& motor, const Arguments&... rest) {
   try {
-    return make_core_config(robot, rest...);
-  } catch (const Failure& failure) {
+    return firmware::make_core_config(robot, rest...);
+  } catch (const base::Failure& failure) {
     if (!failure.diagnostics().empty()) {
       throw;
     }
-    throw Failure(failure.code(), fmt::format("{} in {}: {}", motor.id, robot.id, failure.message()));
+    throw base::Failure(failure.code(), fmt::format("{} in {}: {}", motor.id, robot.id, failure.message()));
   }
 }
 
 }  // namespace
 
-GuardedCore::GuardedCore(const Robot& robot, const Motor& motor, GuardUse use, const MotorGuard& guard) {
-  const CoreOptions options = with_tolerance({}, motor);
+GuardedCore::GuardedCore(const robot::Robot& robot, const motor::Motor& motor, GuardUse use, const MotorGuard& guard) {
+  const firmware::CoreOptions options = firmware::with_tolerance({}, motor);
   if (use == GuardUse::off || !guard.guard) {
     config_ = named_config(robot, motor, motor.nominal, options);
     return;
@@ -52,10 +52,10 @@ GuardedCore::GuardedCore(const Robot& robot, const Motor& motor, GuardUse use, c
   guard_.emplace(*guard.guard);
   config_ = named_config(robot, motor, motor, options, *guard.derating, *guard_);
   if (use == GuardUse::on) {
-    require_driving_current(robot, motor, *guard.derating, config_);
+    firmware::require_driving_current(robot, motor, *guard.derating, config_);
   }
   config_.shadow_mode = use == GuardUse::shadow;
   robot_core::complete(config_);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

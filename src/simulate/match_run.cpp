@@ -6,19 +6,19 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
-Game play_game(const MatchInputs& inputs, const Robot& robot, std::uint64_t seed) {
-  const MatchValues values = inputs.nominal();
-  MatchLoad load = play_match(inputs, values, robot, seed, Planner::jerk_limited);
+Game play_game(const duty::MatchInputs& inputs, const robot::Robot& robot, std::uint64_t seed) {
+  const duty::MatchValues values = inputs.nominal();
+  duty::MatchLoad load = duty::play_match(inputs, values, robot, seed, duty::Planner::jerk_limited);
   return {std::move(load.script), load.duration_s, values.aggressiveness};
 }
 
-MatchRun run_match(const Game& game, const Robot& robot, const Motor& motor, const robot_core::Config& core, const MatchRunOptions& options,
-                   const LoopObserver& observer) {
+MatchRun run_match(const Game& game, const robot::Robot& robot, const motor::Motor& motor, const robot_core::Config& core,
+                   const MatchRunOptions& options, const LoopObserver& observer) {
   SimulatedRobot simulated(robot, motor, options.ambient_C, options.start_C);
   CoreDrive drive(core, simulated, options.drive);
-  const std::unique_ptr<Follower> plan = ideal_tracking(robot, game.aggressiveness, options.planner);
+  const std::unique_ptr<duty::Follower> plan = duty::ideal_tracking(robot, game.aggressiveness, options.planner);
   MatchRun run;
   DriveScorer scorer;
   const auto all_s = static_cast<std::size_t>(game.duration_s);
@@ -39,10 +39,11 @@ MatchRun run_match(const Game& game, const Robot& robot, const Motor& motor, con
   return run;
 }
 
-void require_rotor_inertia(const Motor& motor) {
+void require_rotor_inertia(const motor::Motor& motor) {
   if (!motor.nominal.rotor_inertia_kg_m2) {
-    throw bad_input({motor.file.string()}, "figures.rotor_inertia", "is missing: without it no acceleration of a wheel can be calculated");
+    throw base::bad_input({motor.file.string()}, "figures.rotor_inertia",
+                          "is missing: without it no acceleration of a wheel can be calculated");
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

@@ -7,14 +7,14 @@
 #include "duty/match/match_duty.h"
 #include "simulate/drive_score.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 struct MatchRunOptions {
-  Planner planner = Planner::jerk_limited;
+  duty::Planner planner = duty::Planner::jerk_limited;
   double ambient_C = 25.0;
   std::optional<double> start_C = {};  ///< initial temperature of the motors; the ambient if empty
   DriveOptions drive;
-  Progress progress;  ///< in whole seconds of the match
+  base::Progress progress;  ///< in whole seconds of the match
 };
 
 /// What the phases cost the motors.
@@ -25,24 +25,24 @@ struct PhaseHeat {
 
 struct MatchRun {
   DriveScore score;
-  std::array<PhaseHeat, kPhaseNames.size()> phases{};
+  std::array<PhaseHeat, duty::kPhaseNames.size()> phases{};
 };
 
 /// What a game asks of a robot that follows the jerk-limited planner exactly, so that every planner, motor and drive core is asked the same
 /// at the same time.
 struct Game {
-  std::vector<ScheduledCommand> script;
+  std::vector<duty::ScheduledCommand> script;
   double duration_s = 0.0;
   double aggressiveness = 1.0;
 };
-Game play_game(const MatchInputs& inputs, const Robot& robot, std::uint64_t seed);
+Game play_game(const duty::MatchInputs& inputs, const robot::Robot& robot, std::uint64_t seed);
 
 /// Throws Failure (bad_input) if the motor's file has no inertia of the rotor.
-void require_rotor_inertia(const Motor& motor);
+void require_rotor_inertia(const motor::Motor& motor);
 
 /// Drives a game. `core` is the robot's (guarded_core.h). `observer` sees every period of the plant.
 /// Throws Failure (bad_input) that names what the files of robot or motor lack.
-MatchRun run_match(const Game& game, const Robot& robot, const Motor& motor, const robot_core::Config& core, const MatchRunOptions& options,
-                   const LoopObserver& observer = {});
+MatchRun run_match(const Game& game, const robot::Robot& robot, const motor::Motor& motor, const robot_core::Config& core,
+                   const MatchRunOptions& options, const LoopObserver& observer = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

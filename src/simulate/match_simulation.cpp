@@ -7,7 +7,7 @@
 #include "base/diagnostic.h"
 #include "robot/assumed_friction.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 namespace {
 
 constexpr double kMostCsvRows = 500'000.0;  ///< about 250 MB of text
@@ -15,15 +15,16 @@ constexpr double kLongestMatch_s = 1e4;
 
 void check_table(const MatchJob& job) {
   if (job.with_table && job.planners.size() > 1) {
-    throw Failure(ExitCode::bad_input, "--out holds one run; expected --planner bang_bang or jerk_limited with it");
+    throw base::Failure(base::ExitCode::bad_input, "--out holds one run; expected --planner bang_bang or jerk_limited with it");
   }
   if (job.with_table && kLongestMatch_s / job.every_s > kMostCsvRows) {
-    throw Failure(ExitCode::bad_input, fmt::format("--every {} s makes too many rows of a match; expected 0.02 s or more", job.every_s));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("--every {} s makes too many rows of a match; expected 0.02 s or more", job.every_s));
   }
 }
 
-DrivenMatch drive_once(const MatchJob& job, const Robot& robot, const Game& game, const robot_core::Config& core, Planner planner,
-                       Progress progress) {
+DrivenMatch drive_once(const MatchJob& job, const robot::Robot& robot, const Game& game, const robot_core::Config& core,
+                       duty::Planner planner, base::Progress progress) {
   DrivenMatch driven{planner, {}, {}, {}};
   const double ambient_C = job.duty.ambient_C.value;
   const auto wheels = static_cast<int>(robot.wheels.axis_rad.size());
@@ -51,25 +52,25 @@ DrivenMatch drive_once(const MatchJob& job, const Robot& robot, const Game& game
   return driven;
 }
 
-Verdict verdict_of(const std::vector<DrivenMatch>& runs, const MotorValues& limits) {
+select::Verdict verdict_of(const std::vector<DrivenMatch>& runs, const motor::MotorValues& limits) {
   const auto is_too_hot = [&](const DrivenMatch& each) {
     return each.run.score.winding_peak_C > limits.winding_limit_C ||
            (limits.stator_limit_C && each.run.score.stator_peak_C > *limits.stator_limit_C);
   };
   if (std::ranges::any_of(runs, is_too_hot)) {
-    return Verdict::fail;
+    return select::Verdict::fail;
   }
-  return std::ranges::all_of(runs, [](const DrivenMatch& each) { return !drive_problem(each.run.score); }) ? Verdict::pass
-                                                                                                           : Verdict::infeasible;
+  return std::ranges::all_of(runs, [](const DrivenMatch& each) { return !drive_problem(each.run.score); }) ? select::Verdict::pass
+                                                                                                           : select::Verdict::infeasible;
 }
 
 }  // namespace
 
-MatchSimulation simulate_match(const MatchJob& job, const ProgressFor& progress) {
+MatchSimulation simulate_match(const MatchJob& job, const base::ProgressFor& progress) {
   require_rotor_inertia(job.motor);
   check_table(job);
-  const MatchInputs& inputs = dynamic_cast<const MatchDuty&>(*job.duty.shape_data).inputs();
-  MatchSimulation answer{.robot = with_assumed_friction(job.robot),
+  const duty::MatchInputs& inputs = dynamic_cast<const duty::MatchDuty&>(*job.duty.shape_data).inputs();
+  MatchSimulation answer{.robot = robot::with_assumed_friction(job.robot),
                          .motor = job.motor,
                          .duty = job.duty,
                          .role = inputs.role,
@@ -79,16 +80,16 @@ MatchSimulation simulate_match(const MatchJob& job, const ProgressFor& progress)
                          .is_sensing_ideal = job.is_sensing_ideal,
                          .runs = {}};
   if (job.guard != GuardUse::off) {
-    answer.guard = make_guard(job.motor, answer.robot, job.duty.ambient_C.value, 0, progress_of(progress, "making the guard"));
+    answer.guard = make_guard(job.motor, answer.robot, job.duty.ambient_C.value, 0, base::progress_of(progress, "making the guard"));
   }
   const Game game = play_game(inputs, answer.robot, job.seed);
-  for (const Planner planner : job.planners) {
+  for (const duty::Planner planner : job.planners) {
     const GuardedCore core(answer.robot, job.motor, job.guard, answer.guard);
-    answer.runs.push_back(
-        drive_once(job, answer.robot, game, core.config(), planner, progress_of(progress, fmt::format("driving, {}", to_string(planner)))));
+    answer.runs.push_back(drive_once(job, answer.robot, game, core.config(), planner,
+                                     base::progress_of(progress, fmt::format("driving, {}", duty::to_string(planner)))));
   }
   answer.verdict = verdict_of(answer.runs, job.motor.nominal);
   return answer;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

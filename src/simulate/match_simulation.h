@@ -11,13 +11,13 @@
 #include "simulate/match_run.h"
 #include "simulate/match_trace.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 struct MatchJob {
-  Robot robot;
-  Motor motor;
-  Duty duty;  ///< a match
-  std::vector<Planner> planners{Planner::jerk_limited};
+  robot::Robot robot;
+  motor::Motor motor;
+  duty::Duty duty;  ///< a match
+  std::vector<duty::Planner> planners{duty::Planner::jerk_limited};
   std::uint64_t seed = 1;  ///< seed of game, sensors and radio
   GuardUse guard = GuardUse::shadow;
   bool is_sensing_ideal = false;
@@ -27,7 +27,7 @@ struct MatchJob {
 };
 
 struct DrivenMatch {
-  Planner planner = Planner::jerk_limited;
+  duty::Planner planner = duty::Planner::jerk_limited;
   MatchRun run;
   std::string csv;
   std::vector<MatchRow> rows;  ///< every kMatchRow_s
@@ -35,20 +35,20 @@ struct DrivenMatch {
 inline constexpr double kMatchRow_s = 2.0;
 
 struct MatchSimulation {
-  Robot robot;  ///< with assumed friction if its file has none
-  Motor motor;
-  Duty duty;
-  Role role = Role::attacker;
+  robot::Robot robot;  ///< with assumed friction if its file has none
+  motor::Motor motor;
+  duty::Duty duty;
+  duty::Role role = duty::Role::attacker;
   std::uint64_t seed = 1;
   GuardUse guard_use = GuardUse::shadow;
   MotorGuard guard;  ///< empty if its use is off
   bool is_sensing_ideal = false;
   std::vector<DrivenMatch> runs;  ///< one for each planner
   /// Over all runs: fail (a limit exceeded) takes precedence over infeasible (not driven).
-  Verdict verdict = Verdict::pass;
+  select::Verdict verdict = select::Verdict::pass;
 };
 
 /// Throws Failure (bad_input) if the files of robot or motor lack values that motion needs, or the CSV would be too large.
-MatchSimulation simulate_match(const MatchJob& job, const ProgressFor& progress = {});
+MatchSimulation simulate_match(const MatchJob& job, const base::ProgressFor& progress = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

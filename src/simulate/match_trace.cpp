@@ -8,12 +8,12 @@
 
 #include "motor/datasheet_network.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
-MatchAdditions additions_of(const Motor& motor) {
-  MatchAdditions added{faults_of(motor, "winding_C"), faults_of(motor, "stator_C"), {}};
-  const Network network = datasheet_network(motor, nominal_sample(motor));
-  for (int body = states::first_own; body < network.state_count(); ++body) {
+MatchAdditions additions_of(const motor::Motor& motor) {
+  MatchAdditions added{motor::faults_of(motor, "winding_C"), motor::faults_of(motor, "stator_C"), {}};
+  const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
+  for (int body = motor::states::first_own; body < network.state_count(); ++body) {
     added.bodies.emplace_back(network.node_name(body));
   }
   return added;
@@ -21,20 +21,20 @@ MatchAdditions additions_of(const Motor& motor) {
 
 MatchRows::MatchRows(double every_s, double ambient_C, const MatchAdditions& added, std::function<void(const MatchRow&)> row)
     : every_s_(every_s), row_(std::move(row)) {
-  winding_.fill(Reading(added.winding, ambient_C));
-  stator_.fill(Reading(added.stator, ambient_C));
+  winding_.fill(motor::Reading(added.winding, ambient_C));
+  stator_.fill(motor::Reading(added.stator, ambient_C));
   open_.winding_C.fill(ambient_C);
   open_.winding_peak_C.fill(ambient_C);
   open_.stator_C.fill(ambient_C);
-  PerWheel cold_C{};
+  robot::PerWheel cold_C{};
   cold_C.fill(ambient_C);
   open_.bodies_C.assign(added.bodies.size(), cold_C);
   open_.winding_sensor_C.fill(winding_.front().sensor_C());
   open_.stator_sensor_C.fill(stator_.front().sensor_C());
 }
 
-void MatchRows::start(double time_s, const SimulatedRobot& robot, const Pose& plan, Phase phase, bool duel) {
-  std::vector<PerWheel> bodies_C = std::move(open_.bodies_C);
+void MatchRows::start(double time_s, const SimulatedRobot& robot, const robot::Pose& plan, duty::Phase phase, bool duel) {
+  std::vector<robot::PerWheel> bodies_C = std::move(open_.bodies_C);
   open_ = {};
   open_.bodies_C = std::move(bodies_C);
   open_.time_s = time_s;
@@ -50,7 +50,7 @@ void MatchRows::start(double time_s, const SimulatedRobot& robot, const Pose& pl
     open_.winding_peak_C[i] = open_.winding_C[i];
     open_.stator_C[i] = robot.stator_C(i);
     for (std::size_t body = 0; body < open_.bodies_C.size(); ++body) {
-      open_.bodies_C[body][static_cast<std::size_t>(i)] = robot.body_C(states::first_own + body, i);
+      open_.bodies_C[body][static_cast<std::size_t>(i)] = robot.body_C(motor::states::first_own + body, i);
     }
     open_.winding_sensor_C[i] = winding_.at(static_cast<std::size_t>(i)).sensor_C();
     open_.stator_sensor_C[i] = stator_.at(static_cast<std::size_t>(i)).sensor_C();
@@ -71,13 +71,13 @@ void MatchRows::take_core(const LoopMoment& moment) {
 }
 
 void MatchRows::take(const LoopMoment& moment) {
-  const PlantOutput& out = *moment.out;
+  const robot::PlantOutput& out = *moment.out;
   if (!begun_) {
     begun_ = true;
     open_.phase = moment.command->phase;
     open_.battery_charge_A_s = moment.robot->plant().battery.capacity_A_s;
   }
-  for (std::size_t i = 0; i < kMostWheels; ++i) {
+  for (std::size_t i = 0; i < robot::kMostWheels; ++i) {
     open_.current_A[i] += out.current_A[i];
     current_squared_A2_[i] += out.current_A[i] * out.current_A[i];
     open_.motor_V[i] += out.terminal_V[i];
@@ -108,13 +108,13 @@ void MatchRows::finish() {
     return;
   }
   const double count = periods_;
-  for (PerWheel MatchRow::*const mean : {&MatchRow::motor_V, &MatchRow::speed_rad_per_s, &MatchRow::torque_Nm, &MatchRow::slip_m_per_s,
-                                         &MatchRow::normal_N, &MatchRow::copper_W}) {
+  for (robot::PerWheel MatchRow::*const mean : {&MatchRow::motor_V, &MatchRow::speed_rad_per_s, &MatchRow::torque_Nm,
+                                                &MatchRow::slip_m_per_s, &MatchRow::normal_N, &MatchRow::copper_W}) {
     for (double& each : open_.*mean) {
       each /= count;
     }
   }
-  for (std::size_t i = 0; i < kMostWheels; ++i) {
+  for (std::size_t i = 0; i < robot::kMostWheels; ++i) {
     open_.current_A[i] = std::copysign(std::sqrt(current_squared_A2_[i] / count), open_.current_A[i]);
   }
   open_.battery_V /= count;
@@ -148,14 +148,14 @@ std::string csv_header(int wheel_count, const MatchAdditions& added) {
 void append_csv(std::string& text, const MatchRow& row, int wheel_count, double ambient_C, const MatchAdditions& added) {
   const auto to = std::back_inserter(text);
   fmt::format_to(to, "{:.10g},{},{:d},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.2f},{:.2f}",
-                 row.time_s, kPhaseNames.at(static_cast<std::size_t>(row.phase)), row.duel, row.plan.x_m, row.plan.y_m, row.plan.yaw_rad,
-                 row.pose.x_m, row.pose.y_m, row.pose.yaw_rad, row.velocity.x_m_per_s, row.velocity.y_m_per_s, row.velocity.yaw_rad_per_s,
-                 row.battery_V, row.battery_A, row.battery_charge_A_s, ambient_C);
+                 row.time_s, duty::kPhaseNames.at(static_cast<std::size_t>(row.phase)), row.duel, row.plan.x_m, row.plan.y_m,
+                 row.plan.yaw_rad, row.pose.x_m, row.pose.y_m, row.pose.yaw_rad, row.velocity.x_m_per_s, row.velocity.y_m_per_s,
+                 row.velocity.yaw_rad_per_s, row.battery_V, row.battery_A, row.battery_charge_A_s, ambient_C);
   for (int i = 0; i < wheel_count; ++i) {
     fmt::format_to(to, ",{:.4f},{:.4f},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g}", row.winding_C[i], row.stator_C[i],
                    row.current_A[i], row.motor_V[i], row.speed_rad_per_s[i], row.torque_Nm[i], row.slip_m_per_s[i], row.normal_N[i],
                    row.copper_W[i]);
-    for (const PerWheel& body_C : row.bodies_C) {
+    for (const robot::PerWheel& body_C : row.bodies_C) {
       fmt::format_to(to, ",{:.4f}", body_C[static_cast<std::size_t>(i)]);
     }
     if (!added.winding.empty()) {
@@ -173,4 +173,4 @@ void append_csv(std::string& text, const MatchRow& row, int wheel_count, double 
   text += "\n";
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

@@ -11,7 +11,7 @@
 #include "robot/robot.h"
 #include "simulate/core_drive.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 /// Limits of the planner.
 struct StudyCase {
@@ -37,26 +37,27 @@ inline constexpr double kSettled_m = 0.01;
 
 /// Drives of 0.5, 1 and 2 m in eight directions of the robot, without thermal guard. The same for every number of threads.
 /// Throws Failure (bad_input) that names what the files of robot or motor lack.
-std::vector<StudyResult> study_planners(const Robot& robot, const Motor& motor, std::span<const StudyCase> cases, const DriveOptions& drive,
-                                        int threads, const Progress& progress = {});
+std::vector<StudyResult> study_planners(const robot::Robot& robot, const motor::Motor& motor, std::span<const StudyCase> cases,
+                                        const DriveOptions& drive, int threads, const base::Progress& progress = {});
 
 /// Cases around a robot's own limits: its acceleration, its grip and half as much again, each with twelve jerks from 3
 /// to 60 m/s³ and bang-bang. Where two of the three are within 5 % of each other, the robot's own stands for both.
-std::vector<StudyCase> jerk_sweep(const Robot& robot);
+std::vector<StudyCase> jerk_sweep(const robot::Robot& robot);
 
 /// The answer of `simulate --jerk-sweep`.
 struct JerkSweep {
-  Robot robot;  ///< with assumed friction if its file has none
-  Motor motor;
+  robot::Robot robot;  ///< with assumed friction if its file has none
+  motor::Motor motor;
   std::vector<StudyResult> results;  ///< results of jerk_sweep()
 };
 
 /// Runs the study of jerk_sweep() with ideal or real sensing; `seed` is that of sensors and radio. Throws Failure (bad_input) that names
 /// what the files of robot or motor lack.
-JerkSweep sweep_jerk(const Robot& robot, const Motor& motor, bool is_sensing_ideal, std::uint64_t seed, const Progress& progress = {});
+JerkSweep sweep_jerk(const robot::Robot& robot, const motor::Motor& motor, bool is_sensing_ideal, std::uint64_t seed,
+                     const base::Progress& progress = {});
 
 /// The acceleration from rest at which the first wheel slides, in the least favourable direction: less than μ·g, because
 /// some wheels bear less and push more than others.
-double grip_m_per_s2(const Robot& robot);
+double grip_m_per_s2(const robot::Robot& robot);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

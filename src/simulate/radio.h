@@ -9,7 +9,7 @@
 #include "robot_core/drive_core.h"
 #include "simulate/declared_number.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 /// radio_numbers() has unit, origin and range of every number.
 struct RadioConfig {
@@ -28,7 +28,7 @@ struct RadioConfig {
 std::span<const DeclaredNumber<RadioConfig>> radio_numbers();
 
 /// The defaults with the robot's own command_rate.
-RadioConfig radio_of(const Robot& robot);
+RadioConfig radio_of(const robot::Robot& robot);
 /// A command in every period of the plant, no loss, no latency, exact poses; twice the default's gains, as nothing is late.
 RadioConfig ideal_radio();
 
@@ -37,7 +37,7 @@ RadioConfig ideal_radio();
 class PacketLoss {
  public:
   PacketLoss(double loss_share, double burst_count);
-  bool arrives(Random& random);
+  bool arrives(base::Random& random);
 
  private:
   double begin_probability_;
@@ -56,7 +56,7 @@ class OffBoard {
 
   /// What the computer has to say at `time_s`; `push` is the force on another robot, field frame. Call once per period of the plant, in
   /// order. Returns the command that the robot receives in this period, or null.
-  const robot_core::Command* advance(double time_s, const Follower& plan, const Pose& truth, const Wrench& push);
+  const robot_core::Command* advance(double time_s, const duty::Follower& plan, const robot::Pose& truth, const robot::Wrench& push);
 
   [[nodiscard]] std::int64_t sent() const { return sent_; }
   [[nodiscard]] std::int64_t lost() const { return lost_; }
@@ -65,7 +65,7 @@ class OffBoard {
   /// Distance between plan and robot in one picture.
   struct Picture {
     double ready_s = 0.0;
-    Pose error;
+    robot::Pose error;
   };
   struct Packet {
     double ready_s = 0.0;
@@ -86,14 +86,14 @@ class OffBoard {
     Entry taken_{};
   };
 
-  void look(double time_s, const Follower& plan, const Pose& truth);
-  [[nodiscard]] robot_core::Command command(const Follower& plan, const Wrench& push) const;
+  void look(double time_s, const duty::Follower& plan, const robot::Pose& truth);
+  [[nodiscard]] robot_core::Command command(const duty::Follower& plan, const robot::Wrench& push) const;
 
   RadioConfig config_;
-  Random vision_random_;
-  Random loss_random_;
+  base::Random vision_random_;
+  base::Random loss_random_;
   PacketLoss loss_;
-  Pose error_;  ///< newest that is known
+  robot::Pose error_;  ///< newest that is known
   Pipe<Picture> pictures_;
   Pipe<Packet> packets_;
   robot_core::Command received_;
@@ -102,4 +102,4 @@ class OffBoard {
   std::int64_t lost_ = 0;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

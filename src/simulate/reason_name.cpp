@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 namespace {
 
 using robot_core::Reason;
@@ -53,4 +53,4 @@ std::string_view to_string(Reason reason) {
   return found == std::end(kNames) ? "unknown" : found->name;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

@@ -5,9 +5,9 @@
 
 #include "robot_core/reason.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 /// "wheel_speed_stuck"; "unknown" for a number that is none of them.
 std::string_view to_string(robot_core::Reason reason);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

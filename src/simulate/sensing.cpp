@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 namespace {
 
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
@@ -11,60 +11,60 @@ constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr int kSamplesPerDriftStep = 100;
 
 constexpr DeclaredNumber<SensingConfig> kSensingNumbers[] = {
-    {{"encoder_turn", "1", Range::between(0.0, 1e6), "counts per turn of the motor's shaft; 0: the true speed"},
+    {{"encoder_turn", "1", base::Range::between(0.0, 1e6), "counts per turn of the motor's shaft; 0: the true speed"},
      &SensingConfig::encoder_turn_count,
-     Origin::third_party,
-     Range::between(1024.0, 16384.0),
+     base::Origin::third_party,
+     base::Range::between(1024.0, 16384.0),
      "MILE 2048 impulses, four edges each (RoboTeam Twente, ETDP 2025, table 1)"},
-    {{"gyro_noise", "rad/s", Range::between(0.0, 1.0), "standard deviation of one sample of the yaw rate"},
+    {{"gyro_noise", "rad/s", base::Range::between(0.0, 1.0), "standard deviation of one sample of the yaw rate"},
      &SensingConfig::gyro_noise_rad_per_s,
-     Origin::derived,
-     Range::between(0.001, 0.01),
+     base::Origin::derived,
+     base::Range::between(0.001, 0.01),
      "MEMS gyro class of 0.003 to 0.014 deg/s per root Hz: 0.007 deg/s x sqrt(500 Hz) = 0.16 deg/s at 1 kHz without filter"},
-    {{"gyro_bias", "rad/s", Range::between(0.0, 0.5), "standard deviation of the bias that is left after zeroing at the start"},
+    {{"gyro_bias", "rad/s", base::Range::between(0.0, 0.5), "standard deviation of the bias that is left after zeroing at the start"},
      &SensingConfig::gyro_bias_rad_per_s,
-     Origin::estimated,
-     Range::between(0.0002, 0.01),
+     base::Origin::estimated,
+     base::Range::between(0.0002, 0.01),
      "0.1 deg/s: mean of 1 s at rest, and a board that vibrates; engineering judgement"},
-    {{"gyro_drift", "rad s-1 s-0.5", Range::between(0.0, 0.1), "random walk of the bias: its standard deviation after 1 s"},
+    {{"gyro_drift", "rad s-1 s-0.5", base::Range::between(0.0, 0.1), "random walk of the bias: its standard deviation after 1 s"},
      &SensingConfig::gyro_drift_rad_per_s_per_root_s,
-     Origin::estimated,
-     Range::between(1e-5, 5e-4),
+     base::Origin::estimated,
+     base::Range::between(1e-5, 5e-4),
      "0.25 deg/s after 2000 s: MEMS gyros drift by 0.01 to 0.03 deg/s per K and the board warms by 10 K; engineering judgement"},
-    {{"gyro_step", "rad/s", Range::between(0.0, 0.5), "resolution of the yaw rate"},
+    {{"gyro_step", "rad/s", base::Range::between(0.0, 0.5), "resolution of the yaw rate"},
      &SensingConfig::gyro_step_rad_per_s,
-     Origin::derived,
-     Range::between(0.0002, 0.0011),
+     base::Origin::derived,
+     base::Range::between(0.0002, 0.0011),
      "16 bits over +-2000 deg/s: 0.061 deg/s"},
-    {{"current_noise", "A", Range::between(0.0, 10.0), "standard deviation of one sample of a motor current"},
+    {{"current_noise", "A", base::Range::between(0.0, 10.0), "standard deviation of one sample of a motor current"},
      &SensingConfig::current_noise_A,
-     Origin::estimated,
-     Range::between(0.01, 0.1),
+     base::Origin::estimated,
+     base::Range::between(0.01, 0.1),
      "shunt of 1 mohm, gain 40 and 12 bits over 3.3 V: 20 mA per step, and the ripple of the commutation; engineering judgement"},
-    {{"current_offset", "A", Range::between(0.0, 10.0), "standard deviation of the offset of a motor current"},
+    {{"current_offset", "A", base::Range::between(0.0, 10.0), "standard deviation of the offset of a motor current"},
      &SensingConfig::current_offset_A,
-     Origin::estimated,
-     Range::between(0.01, 0.15),
+     base::Origin::estimated,
+     base::Range::between(0.01, 0.15),
      "two steps of the converter are left after zeroing; engineering judgement"},
-    {{"battery_step", "V", Range::between(0.0, 5.0), "resolution of the battery voltage"},
+    {{"battery_step", "V", base::Range::between(0.0, 5.0), "resolution of the battery voltage"},
      &SensingConfig::battery_step_V,
-     Origin::derived,
-     Range::between(0.004, 0.05),
+     base::Origin::derived,
+     base::Range::between(0.004, 0.05),
      "12 bits over a divider to 33 V"},
-    {{"temperature_step", "K", Range::between(0.0, 20.0), "resolution of temperatures"},
+    {{"temperature_step", "K", base::Range::between(0.0, 20.0), "resolution of temperatures"},
      &SensingConfig::temperature_step_K,
-     Origin::estimated,
-     Range::between(0.05, 1.0),
+     base::Origin::estimated,
+     base::Range::between(0.05, 1.0),
      "thermistor on a converter of 12 bits around 60 degC; engineering judgement"},
-    {{"temperature_noise", "K", Range::between(0.0, 20.0), "standard deviation of one sample of a temperature"},
+    {{"temperature_noise", "K", base::Range::between(0.0, 20.0), "standard deviation of one sample of a temperature"},
      &SensingConfig::temperature_noise_K,
-     Origin::estimated,
-     Range::between(0.02, 0.5),
+     base::Origin::estimated,
+     base::Range::between(0.02, 0.5),
      "half a step; engineering judgement"},
-    {{"delay", "1", Range::between(0.0, 1.0), "control periods from sampling to actuation"},
+    {{"delay", "1", base::Range::between(0.0, 1.0), "control periods from sampling to actuation"},
      &SensingConfig::delay_periods_count,
-     Origin::derived,
-     Range::between(1.0, 1.0),
+     base::Origin::derived,
+     base::Range::between(1.0, 1.0),
      "firmware reads its sensors, computes, and writes the PWM registers that act from the next period on"}};
 
 double rounded_to(double value, double step) { return step > 0.0 ? step * std::round(value / step) : value; }
@@ -73,7 +73,7 @@ double rounded_to(double value, double step) { return step > 0.0 ? step * std::r
 
 std::span<const DeclaredNumber<SensingConfig>> sensing_numbers() { return kSensingNumbers; }
 
-SensingConfig sensing_of(const Robot& robot) {
+SensingConfig sensing_of(const robot::Robot& robot) {
   SensingConfig config;
   config.has_motor_current = std::isfinite(robot.drive.current_limit_A);
   return config;
@@ -88,7 +88,7 @@ SensingConfig ideal_sensing() {
   return config;
 }
 
-double noise(Random& random) {
+double noise(base::Random& random) {
   constexpr std::uint64_t kPart = (std::uint64_t{1} << 13) - 1;
   auto bits = static_cast<std::uint64_t>(random.uniform() * 0x1p52);
   std::uint64_t sum = 0;
@@ -108,7 +108,7 @@ Sensing::Sensing(const SensingConfig& config, const SimulatedRobot& robot, doubl
       control_period_s_(control_period_s),
       count_per_rad_(config.encoder_turn_count * robot.plant().gear_ratio / kTurn_rad),
       last_rad_per_s_(robot.state().wheel_speed_rad_per_s),
-      battery_V_(open_circuit_V(robot.plant().battery, robot.state().battery_charge_A_s)) {
+      battery_V_(robot::open_circuit_V(robot.plant().battery, robot.state().battery_charge_A_s)) {
   require_declared_ranges(config, sensing_numbers());
   bias_rad_per_s_ = config_.gyro_bias_rad_per_s * noise(random_);
   for (int i = 0; i < wheel_count_; ++i) {
@@ -117,8 +117,8 @@ Sensing::Sensing(const SensingConfig& config, const SimulatedRobot& robot, doubl
   }
 }
 
-void Sensing::follow(const SimulatedRobot& robot, const PlantOutput& out) {
-  const PerWheel& speed_rad_per_s = robot.state().wheel_speed_rad_per_s;
+void Sensing::follow(const SimulatedRobot& robot, const robot::PlantOutput& out) {
+  const robot::PerWheel& speed_rad_per_s = robot.state().wheel_speed_rad_per_s;
   for (int i = 0; i < wheel_count_; ++i) {
     angle_rad_[i] += 0.5 * SimulatedRobot::kPeriod_s * (last_rad_per_s_[i] + speed_rad_per_s[i]);
     current_A_[i] += out.current_A[i];
@@ -178,4 +178,4 @@ double Sensing::temperature_C(double true_C) {
   return rounded_to(true_C + noise_K, config_.temperature_step_K);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

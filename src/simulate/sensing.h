@@ -9,7 +9,7 @@
 #include "simulate/declared_number.h"
 #include "simulate/simulated_robot.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 /// sensing_numbers() has unit, origin and range of every number. 0 switches that error off.
 struct SensingConfig {
@@ -31,13 +31,13 @@ struct SensingConfig {
 std::span<const DeclaredNumber<SensingConfig>> sensing_numbers();
 
 /// The defaults; a robot whose driver limits the current also measures it.
-SensingConfig sensing_of(const Robot& robot);
+SensingConfig sensing_of(const robot::Robot& robot);
 /// Exact samples of everything, ambient included, and no delay.
 SensingConfig ideal_sensing();
 
 /// Normal noise of standard deviation 1 to a fourth moment of 2.7: four uniform numbers of 13 bits, never beyond ±3.5. The same bits on
 /// every machine.
-double noise(Random& random);
+double noise(base::Random& random);
 
 /// One robot's sensors over one run. Same seed, same samples.
 class Sensing {
@@ -46,7 +46,7 @@ class Sensing {
   Sensing(const SensingConfig& config, const SimulatedRobot& robot, double control_period_s, std::uint64_t seed);
 
   /// One period of the plant has passed.
-  void follow(const SimulatedRobot& robot, const PlantOutput& out);
+  void follow(const SimulatedRobot& robot, const robot::PlantOutput& out);
   /// Sets the sensors' part of `input` at the end of a control period: speeds are counts per control period, currents means over it.
   void sample(const SimulatedRobot& robot, double ambient_C, robot_core::Input& input);
 
@@ -56,20 +56,20 @@ class Sensing {
   double temperature_C(double true_C);
 
   SensingConfig config_;
-  Random random_;
+  base::Random random_;
   int wheel_count_;
   double control_period_s_;
   double count_per_rad_ = 0.0;  ///< of the wheel
   double bias_rad_per_s_ = 0.0;
-  PerWheel offset_A_{};
-  PerWheel phase_count_{};  ///< of each encoder at the start: where between two edges
-  PerWheel last_rad_per_s_{};
-  PerWheel angle_rad_{};  ///< of the wheels
-  std::array<std::int64_t, kMostWheels> counts_{};
-  PerWheel current_A_{};  ///< sum since the last sample
+  robot::PerWheel offset_A_{};
+  robot::PerWheel phase_count_{};  ///< of each encoder at the start: where between two edges
+  robot::PerWheel last_rad_per_s_{};
+  robot::PerWheel angle_rad_{};  ///< of the wheels
+  std::array<std::int64_t, robot::kMostWheels> counts_{};
+  robot::PerWheel current_A_{};  ///< sum since the last sample
   double battery_V_;
   int periods_ = 0;
   int samples_ = 0;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

@@ -8,28 +8,29 @@
 #include "robot/wheels.h"
 #include "thermal/ensemble.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 namespace {
 
 const int kPeriodsPerThermal = static_cast<int>(std::lround(SimulatedRobot::kThermalPeriod_s / SimulatedRobot::kPeriod_s));
 
-std::vector<Lanes> same_in_all_lanes(const std::vector<double>& values) {
-  std::vector<Lanes> lanes;
+std::vector<thermal::Lanes> same_in_all_lanes(const std::vector<double>& values) {
+  std::vector<thermal::Lanes> lanes;
   for (const double value : values) {
-    lanes.emplace_back(Lanes::Constant(value));
+    lanes.emplace_back(thermal::Lanes::Constant(value));
   }
   return lanes;
 }
 
 /// Cooling by speed makes a network fast, and heat by current does: the step that suits rest and the utmost of both.
-double shortest_of_longest_steps_s(const PlantConfig& plant, const Network& network, std::span<const Lanes> parameters, double ambient_C) {
-  OperatingPoint<Lanes> rest;
-  rest.ambient_C = Lanes::Constant(ambient_C);
-  OperatingPoint<Lanes> utmost = rest;
-  utmost.current_rms_A = Lanes::Constant(plant.battery.full_V / plant.motor.resistance_25C_ohm);
-  utmost.speed_mean_rad_per_s = Lanes::Constant(plant.battery.full_V / plant.motor.torque_constant_25C_Nm_per_A);
+double shortest_of_longest_steps_s(const robot::PlantConfig& plant, const thermal::Network& network,
+                                   std::span<const thermal::Lanes> parameters, double ambient_C) {
+  thermal::OperatingPoint<thermal::Lanes> rest;
+  rest.ambient_C = thermal::Lanes::Constant(ambient_C);
+  thermal::OperatingPoint<thermal::Lanes> utmost = rest;
+  utmost.current_rms_A = thermal::Lanes::Constant(plant.battery.full_V / plant.motor.resistance_25C_ohm);
+  utmost.speed_mean_rad_per_s = thermal::Lanes::Constant(plant.battery.full_V / plant.motor.torque_constant_25C_Nm_per_A);
   utmost.speed_rms_rad_per_s = utmost.speed_mean_rad_per_s;
-  return std::min(longest_step_s(network, parameters, rest), longest_step_s(network, parameters, utmost));
+  return std::min(thermal::longest_step_s(network, parameters, rest), thermal::longest_step_s(network, parameters, utmost));
 }
 
 }  // namespace
@@ -37,43 +38,44 @@ double shortest_of_longest_steps_s(const PlantConfig& plant, const Network& netw
 struct SimulatedRobot::Heating {
   /// Sums of the plant's powers over all periods. Times kPeriod_s they are energies.
   struct Sums {
-    Wheels copper_W = Wheels::Zero();
-    Wheels driver_W = Wheels::Zero();
-    Wheels motor_drag_W = Wheels::Zero();
-    Wheels gear_W = Wheels::Zero();
-    Wheels rolling_W = Wheels::Zero();
-    Wheels friction_W = Wheels::Zero();
-    Wheels slip_W = Wheels::Zero();
-    Wheels roller_W = Wheels::Zero();
+    robot::Wheels copper_W = robot::Wheels::Zero();
+    robot::Wheels driver_W = robot::Wheels::Zero();
+    robot::Wheels motor_drag_W = robot::Wheels::Zero();
+    robot::Wheels gear_W = robot::Wheels::Zero();
+    robot::Wheels rolling_W = robot::Wheels::Zero();
+    robot::Wheels friction_W = robot::Wheels::Zero();
+    robot::Wheels slip_W = robot::Wheels::Zero();
+    robot::Wheels roller_W = robot::Wheels::Zero();
     double battery_loss_W = 0.0;
     double external_W = 0.0;
   };
 
-  Heating(const PlantConfig& plant, const Motor& motor, double ambient_C, double start_C)
-      : network(datasheet_network(motor, nominal_sample(motor))),
+  Heating(const robot::PlantConfig& plant, const motor::Motor& motor, double ambient_C, double start_C)
+      : network(motor::datasheet_network(motor, motor::nominal_sample(motor))),
         parameters(same_in_all_lanes(network.values())),
-        thermal(network, parameters, std::vector<Lanes>(static_cast<std::size_t>(network.state_count()), Lanes::Constant(start_C))),
+        thermal(network, parameters,
+                std::vector<thermal::Lanes>(static_cast<std::size_t>(network.state_count()), thermal::Lanes::Constant(start_C))),
         longest_step_s(shortest_of_longest_steps_s(plant, network, parameters, ambient_C)) {
-    static_assert(kMostWheels <= kLanes);
-    means.ambient_C = Lanes::Constant(ambient_C);
+    static_assert(robot::kMostWheels <= base::kLanes);
+    means.ambient_C = thermal::Lanes::Constant(ambient_C);
   }
 
   Sums sums;
-  Network network;
-  std::vector<Lanes> parameters;
-  EnsembleRun thermal;  ///< a wheel per lane
+  thermal::Network network;
+  std::vector<thermal::Lanes> parameters;
+  thermal::EnsembleRun thermal;  ///< a wheel per lane
   double longest_step_s;
-  OperatingPoint<Lanes> means;  ///< over the last kThermalPeriod_s
+  thermal::OperatingPoint<thermal::Lanes> means;  ///< over the last kThermalPeriod_s
   // Sums over the periods since the network was last advanced.
-  Wheels copper_W = Wheels::Zero();
-  Wheels speed_rad_per_s = Wheels::Zero();
-  Wheels speed_squared_rad2_per_s2 = Wheels::Zero();
+  robot::Wheels copper_W = robot::Wheels::Zero();
+  robot::Wheels speed_rad_per_s = robot::Wheels::Zero();
+  robot::Wheels speed_squared_rad2_per_s2 = robot::Wheels::Zero();
   int periods = 0;
 };
 
-SimulatedRobot::SimulatedRobot(const Robot& robot, const Motor& motor, double ambient_C, std::optional<double> start_C)
-    : plant_(make_plant(robot, motor.nominal, kPeriod_s)),
-      state_(plant_at_rest(plant_)),
+SimulatedRobot::SimulatedRobot(const robot::Robot& robot, const motor::Motor& motor, double ambient_C, std::optional<double> start_C)
+    : plant_(robot::make_plant(robot, motor.nominal, kPeriod_s)),
+      state_(robot::plant_at_rest(plant_)),
       ambient_C_(ambient_C),
       heating_(std::make_unique<Heating>(plant_, motor, ambient_C, start_C.value_or(ambient_C))) {
   input_.winding_C.fill(winding_C(0));
@@ -87,10 +89,11 @@ double SimulatedRobot::body_C(std::size_t state, int wheel) const { return heati
 
 double SimulatedRobot::peak_C(std::size_t state, int wheel) const { return heating_->thermal.peak_C()[state][wheel]; }
 
-const PlantOutput& SimulatedRobot::advance(const std::array<MotorCommand, kMostWheels>& command, const Wrench& external) {
+const robot::PlantOutput& SimulatedRobot::advance(const std::array<robot::MotorCommand, robot::kMostWheels>& command,
+                                                  const robot::Wrench& external) {
   input_.command = command;
   input_.external = external;
-  step(plant_, state_, input_, output_);
+  robot::step(plant_, state_, input_, output_);
   book();
   if (++heating_->periods == kPeriodsPerThermal) {
     warm_up();
@@ -100,18 +103,18 @@ const PlantOutput& SimulatedRobot::advance(const std::array<MotorCommand, kMostW
 
 void SimulatedRobot::book() {
   Heating::Sums& sums = heating_->sums;
-  sums.copper_W += as_wheels(output_.copper_W);
-  sums.driver_W += as_wheels(output_.driver_W);
-  sums.motor_drag_W += as_wheels(output_.motor_drag_W);
-  sums.gear_W += as_wheels(output_.gear_W);
-  sums.rolling_W += as_wheels(output_.rolling_W);
-  sums.friction_W += as_wheels(output_.friction_W);
-  sums.slip_W += as_wheels(output_.slip_W);
-  sums.roller_W += as_wheels(output_.roller_W);
+  sums.copper_W += robot::as_wheels(output_.copper_W);
+  sums.driver_W += robot::as_wheels(output_.driver_W);
+  sums.motor_drag_W += robot::as_wheels(output_.motor_drag_W);
+  sums.gear_W += robot::as_wheels(output_.gear_W);
+  sums.rolling_W += robot::as_wheels(output_.rolling_W);
+  sums.friction_W += robot::as_wheels(output_.friction_W);
+  sums.slip_W += robot::as_wheels(output_.slip_W);
+  sums.roller_W += robot::as_wheels(output_.roller_W);
   sums.battery_loss_W += output_.battery_loss_W;
   sums.external_W += output_.external_W;
-  const Wheels speed_rad_per_s = as_wheels(output_.motor_speed_rad_per_s);
-  heating_->copper_W += as_wheels(output_.copper_W);
+  const robot::Wheels speed_rad_per_s = robot::as_wheels(output_.motor_speed_rad_per_s);
+  heating_->copper_W += robot::as_wheels(output_.copper_W);
   heating_->speed_rad_per_s += speed_rad_per_s.abs();
   heating_->speed_squared_rad2_per_s2 += speed_rad_per_s.square();
 }
@@ -119,11 +122,12 @@ void SimulatedRobot::book() {
 void SimulatedRobot::warm_up() {
   Heating& heat = *heating_;
   // The plant's copper loss as the current that makes it, so that the network gets that heat.
-  const Wheels resistance_ohm = plant_.motor.resistance_25C_ohm *
-                                resistance_ratio<Wheels>(Wheels::Constant(plant_.motor.resistance_rise_per_K), as_wheels(input_.winding_C));
-  heat.means.current_rms_A.head<kMostWheels>() = (heat.copper_W / heat.periods / resistance_ohm).sqrt();
-  heat.means.speed_mean_rad_per_s.head<kMostWheels>() = heat.speed_rad_per_s / heat.periods;
-  heat.means.speed_rms_rad_per_s.head<kMostWheels>() = (heat.speed_squared_rad2_per_s2 / heat.periods).sqrt();
+  const robot::Wheels resistance_ohm =
+      plant_.motor.resistance_25C_ohm * base::resistance_ratio<robot::Wheels>(robot::Wheels::Constant(plant_.motor.resistance_rise_per_K),
+                                                                              robot::as_wheels(input_.winding_C));
+  heat.means.current_rms_A.head<robot::kMostWheels>() = (heat.copper_W / heat.periods / resistance_ohm).sqrt();
+  heat.means.speed_mean_rad_per_s.head<robot::kMostWheels>() = heat.speed_rad_per_s / heat.periods;
+  heat.means.speed_rms_rad_per_s.head<robot::kMostWheels>() = (heat.speed_squared_rad2_per_s2 / heat.periods).sqrt();
   heat.thermal.over(kPeriod_s * heat.periods, heat.means, heat.longest_step_s);
   for (int i = 0; i < wheel_count(); ++i) {
     input_.winding_C[i] = winding_C(i);
@@ -148,10 +152,10 @@ EnergyAccount SimulatedRobot::energy() const {
   account.slip_J = sums.slip_W.sum() * kPeriod_s;
   account.roller_J = sums.roller_W.sum() * kPeriod_s;
   account.external_J = sums.external_W * kPeriod_s;
-  account.battery_J =
-      stored_energy_J(plant_.battery, plant_.battery.capacity_A_s) - stored_energy_J(plant_.battery, state_.battery_charge_A_s);
-  account.kinetic_J = kinetic_energy_J(plant_.body, state_.velocity, state_.wheel_speed_rad_per_s);
+  account.battery_J = robot::stored_energy_J(plant_.battery, plant_.battery.capacity_A_s) -
+                      robot::stored_energy_J(plant_.battery, state_.battery_charge_A_s);
+  account.kinetic_J = robot::kinetic_energy_J(plant_.body, state_.velocity, state_.wheel_speed_rad_per_s);
   return account;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

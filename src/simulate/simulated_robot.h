@@ -7,7 +7,7 @@
 #include "motor/motor.h"
 #include "robot/plant.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 /// Where energy went since the start. battery = losses + kinetic − external, all as integrals of the plant's powers but
 /// `battery_J`, which is what the charge has lost, and `kinetic_J`, which follows from the state.
@@ -42,18 +42,18 @@ class SimulatedRobot {
 
   /// Motors start at `start_C`, or at ambient temperature without it. Throws Failure (bad_input) that names what the robot's or
   /// the motor's file lacks.
-  SimulatedRobot(const Robot& robot, const Motor& motor, double ambient_C, std::optional<double> start_C = {});
+  SimulatedRobot(const robot::Robot& robot, const motor::Motor& motor, double ambient_C, std::optional<double> start_C = {});
   ~SimulatedRobot();
   SimulatedRobot(const SimulatedRobot&) = delete;
   SimulatedRobot& operator=(const SimulatedRobot&) = delete;
 
   /// One period of the plant. `external` acts on the body from outside at the height of its centre of gravity, local axes.
-  const PlantOutput& advance(const std::array<MotorCommand, kMostWheels>& command, const Wrench& external);
+  const robot::PlantOutput& advance(const std::array<robot::MotorCommand, robot::kMostWheels>& command, const robot::Wrench& external);
 
   [[nodiscard]] double ambient_C() const { return ambient_C_; }
-  [[nodiscard]] const PlantConfig& plant() const { return plant_; }
-  [[nodiscard]] const PlantState& state() const { return state_; }
-  [[nodiscard]] BodyVelocity velocity_global() const { return to_global(state_.velocity, state_.pose.yaw_rad); }
+  [[nodiscard]] const robot::PlantConfig& plant() const { return plant_; }
+  [[nodiscard]] const robot::PlantState& state() const { return state_; }
+  [[nodiscard]] robot::BodyVelocity velocity_global() const { return robot::to_global(state_.velocity, state_.pose.yaw_rad); }
   [[nodiscard]] int wheel_count() const { return plant_.body.kinematics.wheel_count; }
   [[nodiscard]] double winding_C(int wheel) const { return body_C(kWinding, wheel); }
   [[nodiscard]] double stator_C(int wheel) const { return body_C(kStator, wheel); }
@@ -73,12 +73,12 @@ class SimulatedRobot {
   void book();
   void warm_up();
 
-  PlantConfig plant_;
-  PlantState state_;
-  PlantInput input_;
-  PlantOutput output_;
+  robot::PlantConfig plant_;
+  robot::PlantState state_;
+  robot::PlantInput input_;
+  robot::PlantOutput output_;
   double ambient_C_;
   std::unique_ptr<Heating> heating_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

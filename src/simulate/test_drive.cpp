@@ -6,31 +6,31 @@
 #include "base/diagnostic.h"
 #include "robot_core/trajectory.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 namespace {
 
 /// The planner's way to a constant velocity.
-class StraightPlan final : public Follower {
+class StraightPlan final : public duty::Follower {
  public:
   explicit StraightPlan(const StraightDrive& drive) : x_share_(std::cos(drive.direction_rad)), y_share_(std::sin(drive.direction_rad)) {
     const auto limits =
         robot_core::AxisLimits<double>::symmetric(drive.speed_m_per_s * 1.001, drive.acceleration_m_per_s2, drive.jerk_m_per_s3);
     if (robot_core::plan_velocity<double>({}, {0.0, drive.speed_m_per_s, 0.0}, limits, way_) != robot_core::PlanResult::ok) {
-      throw bad_input({}, "test drive", "has no trajectory; expected positive speed, acceleration and jerk");
+      throw base::bad_input({}, "test drive", "has no trajectory; expected positive speed, acceleration and jerk");
     }
   }
 
-  void take(const MotionCommand& command) override { static_cast<void>(command); }
+  void take(const duty::MotionCommand& command) override { static_cast<void>(command); }
   void advance(double step_s) override { time_s_ += step_s; }
-  [[nodiscard]] Pose pose() const override {
+  [[nodiscard]] robot::Pose pose() const override {
     const double way_m = way_.at(time_s_).position;
     return {way_m * x_share_, way_m * y_share_, 0.0};
   }
-  [[nodiscard]] BodyVelocity velocity_global() const override {
+  [[nodiscard]] robot::BodyVelocity velocity_global() const override {
     const double speed_m_per_s = way_.at(time_s_).velocity;
     return {speed_m_per_s * x_share_, speed_m_per_s * y_share_, 0.0};
   }
-  [[nodiscard]] BodyAcceleration acceleration_global() const override {
+  [[nodiscard]] robot::BodyAcceleration acceleration_global() const override {
     const double acceleration_m_per_s2 = way_.at(time_s_).acceleration;
     return {acceleration_m_per_s2 * x_share_, acceleration_m_per_s2 * y_share_, 0.0};
   }
@@ -54,7 +54,7 @@ DriveMoment moment_of(const LoopMoment& moment) {
   made.current_A = moment.out->current_A;
   made.terminal_V = moment.out->terminal_V;
   made.slip_m_per_s = moment.out->slip_m_per_s;
-  std::copy_n(moment.drive->output().reason, kMostWheels, made.reason.begin());
+  std::copy_n(moment.drive->output().reason, robot::kMostWheels, made.reason.begin());
   return made;
 }
 
@@ -88,18 +88,18 @@ void judge(DrivenLine& driven, double direction_rad) {
 
 }  // namespace
 
-DrivenLine drive_straight(const Robot& robot, const Motor& motor, const robot_core::Config& core, const DriveOptions& options,
+DrivenLine drive_straight(const robot::Robot& robot, const motor::Motor& motor, const robot_core::Config& core, const DriveOptions& options,
                           const StraightDrive& drive, double ambient_C) {
   SimulatedRobot simulated(robot, motor, ambient_C);
   CoreDrive core_drive(core, simulated, options);
   StraightPlan plan(drive);
   DrivenLine driven;
   driven.moments.reserve(static_cast<std::size_t>(std::llround(drive.duration_s / SimulatedRobot::kPeriod_s)));
-  const std::array<ScheduledCommand, 1> script{{{0.0, Phase::running, {}}}};
+  const std::array<duty::ScheduledCommand, 1> script{{{0.0, duty::Phase::running, {}}}};
   drive_script(simulated, core_drive, plan, script, drive.duration_s,
                [&](const LoopMoment& moment) { driven.moments.push_back(moment_of(moment)); });
   if (driven.moments.size() < 4) {
-    throw bad_input({}, "test drive", "is shorter than four periods of the simulation");
+    throw base::bad_input({}, "test drive", "is shorter than four periods of the simulation");
   }
   judge(driven, drive.direction_rad);
   return driven;
@@ -121,16 +121,16 @@ robot_core::Config with_friction_factor(robot_core::Config config, double factor
   return config;
 }
 
-Robot with_dirty_wheel(const Robot& robot, std::size_t wheel, double factor) {
-  Robot dirty = robot;
+robot::Robot with_dirty_wheel(const robot::Robot& robot, std::size_t wheel, double factor) {
+  robot::Robot dirty = robot;
   if (dirty.friction.heading.wheels.empty() && !dirty.friction.heading.constant_Nm) {
-    throw bad_input({robot.file.string()}, "friction.heading", "is missing: without it no wheel has a friction of its own");
+    throw base::bad_input({robot.file.string()}, "friction.heading", "is missing: without it no wheel has a friction of its own");
   }
   if (dirty.friction.heading.wheels.empty()) {
-    const Kinematics kinematics = make_kinematics(robot);
+    const robot::Kinematics kinematics = robot::make_kinematics(robot);
     for (std::size_t i = 0; i < robot.wheels.axis_rad.size(); ++i) {
       dirty.friction.heading.wheels.push_back({robot.friction.heading.constant_Nm.value(), robot.friction.heading.sine_Nm.value_or(0.0),
-                                               rolling_phase_rad(kinematics.wheels.at(i))});
+                                               robot::rolling_phase_rad(kinematics.wheels.at(i))});
     }
     dirty.friction.heading.constant_Nm.reset();
     dirty.friction.heading.sine_Nm.reset();
@@ -139,4 +139,4 @@ Robot with_dirty_wheel(const Robot& robot, std::size_t wheel, double factor) {
   return dirty;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

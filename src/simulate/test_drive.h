@@ -6,7 +6,7 @@
 
 #include "simulate/drive_script.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 
 /// From a stand to a constant velocity, then on until the end; the heading is held.
 struct StraightDrive {
@@ -20,15 +20,15 @@ struct StraightDrive {
 /// One period of the plant.
 struct DriveMoment {
   double time_s = 0.0;
-  Pose plan;
-  Pose pose;
-  BodyVelocity planned;   ///< field frame
-  BodyVelocity velocity;  ///< field frame
-  PerWheel wheel_speed_rad_per_s{};
-  PerWheel current_A{};
-  PerWheel terminal_V{};
-  PerWheel slip_m_per_s{};
-  std::array<robot_core::Reason, kMostWheels> reason{};
+  robot::Pose plan;
+  robot::Pose pose;
+  robot::BodyVelocity planned;   ///< field frame
+  robot::BodyVelocity velocity;  ///< field frame
+  robot::PerWheel wheel_speed_rad_per_s{};
+  robot::PerWheel current_A{};
+  robot::PerWheel terminal_V{};
+  robot::PerWheel slip_m_per_s{};
+  std::array<robot_core::Reason, robot::kMostWheels> reason{};
 };
 
 struct DrivenLine {
@@ -41,7 +41,7 @@ struct DrivenLine {
 };
 
 /// The robot starts at rest at the field's centre, looks along x, and its motors are at `ambient_C`.
-DrivenLine drive_straight(const Robot& robot, const Motor& motor, const robot_core::Config& core, const DriveOptions& options,
+DrivenLine drive_straight(const robot::Robot& robot, const motor::Motor& motor, const robot_core::Config& core, const DriveOptions& options,
                           const StraightDrive& drive, double ambient_C = 25.0);
 
 /// The real drive without what the team's computer corrects: the core alone keeps the course.
@@ -53,6 +53,6 @@ robot_core::Config with_friction_factor(robot_core::Config config, double factor
 
 /// The robot with `factor` times the constant friction of one wheel (from 0), as dirt in its bearing and rollers makes it. Throws Failure
 /// (bad_input) where the robot's file has no [friction.heading]: without it all wheels have one friction.
-Robot with_dirty_wheel(const Robot& robot, std::size_t wheel, double factor);
+robot::Robot with_dirty_wheel(const robot::Robot& robot, std::size_t wheel, double factor);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

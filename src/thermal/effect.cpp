@@ -4,7 +4,7 @@
 
 #include "thermal/effects_registry.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 const std::vector<EffectType>& all_effects() {
   static const std::vector<EffectType> kAll = [] {
@@ -23,4 +23,4 @@ const EffectType* find_effect(std::string_view name) {
   return found == all_effects().end() ? nullptr : &*found;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

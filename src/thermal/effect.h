@@ -11,7 +11,7 @@
 #include "base/parameter.h"
 #include "thermal/operating_point.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 struct Laws;
 
@@ -54,7 +54,7 @@ struct EffectType {
   std::string_view equation;
   std::string_view reference;
   std::vector<NodeRole> nodes;
-  std::vector<ParameterSpec> parameters;
+  std::vector<base::ParameterSpec> parameters;
   std::string_view typical;          ///< typical size for a motor of about 50 W
   std::string_view confounded_with;  ///< effects that it is confounded with, and what separates them
   WorkedExample example;
@@ -72,4 +72,4 @@ const std::vector<EffectType>& all_effects();
 /// Returns the effect of that name, or null if there is none.
 const EffectType* find_effect(std::string_view name);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -5,7 +5,7 @@
 
 #include "thermal/transient.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 double longest_step_s(const Network& network, std::span<const Lanes> parameters, const OperatingPoint<Lanes>& at, double rise_K) {
   constexpr double kStepPerTimeConstant = 0.25;
@@ -76,4 +76,4 @@ void EnsembleRun::one_step(double step_s) {
   }
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

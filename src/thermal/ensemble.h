@@ -8,7 +8,7 @@
 #include "thermal/lanes.h"
 #include "thermal/network.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 /// Maximum number of steps of one run; more would mean a time constant far too small for the duty.
 inline constexpr long kMostSteps = 2'000'000;
@@ -41,4 +41,4 @@ class EnsembleRun {
   std::vector<Lanes> sum_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -6,9 +6,9 @@
 #include "base/lanes.h"
 #include "thermal/scalar.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
-using Lanes = Eigen::Array<double, kLanes, 1>;
+using Lanes = Eigen::Array<double, base::kLanes, 1>;
 
 // The functions of scalar.h.
 inline Lanes magnitude(const Lanes& x) { return x.abs(); }
@@ -27,4 +27,4 @@ inline Lanes soft_step(const Lanes& x) {
 /// The choice is the same in all samples.
 inline int chosen(const Lanes& parameter) { return static_cast<int>(parameter[0]); }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -15,7 +15,7 @@
 #include "thermal/tangent.h"
 #include "thermal/traced.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 /// The inputs of a law: the operating point, its own parameters and the temperatures of its nodes. Parameters and nodes are numbered in the
 /// order of the effect's declaration.
@@ -101,4 +101,4 @@ const Laws* laws() {
   return &kLaws;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

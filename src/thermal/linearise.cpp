@@ -5,7 +5,7 @@
 #include "thermal/linearised.h"
 #include "thermal/network.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 constexpr int kMostRoles = Network::kMostRoles;
@@ -197,4 +197,4 @@ void Network::linearise(const OperatingPoint<double>& at, std::span<const double
   linearisation.divide_by(capacity_index_);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 /// Rates of the state nodes and their exact derivatives at one moment; n state nodes, p parameters.
 struct Linearised {
@@ -12,4 +12,4 @@ struct Linearised {
   Eigen::MatrixXd by_parameter;  ///< n × p, K/s per unit of the parameter
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -10,7 +10,7 @@
 #include "base/copper.h"
 #include "thermal/law.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 template <class S>
@@ -35,7 +35,7 @@ int Network::add_parameter(NetworkParameter parameter) {
 }
 
 int Network::add_node(std::string name, double heat_capacity_J_per_K) {
-  const int capacity = add_parameter({name + ".heat_capacity", "J/K", Range::positive(), heat_capacity_J_per_K, {}});
+  const int capacity = add_parameter({name + ".heat_capacity", "J/K", base::Range::positive(), heat_capacity_J_per_K, {}});
   return add_state(std::move(name), capacity);
 }
 
@@ -72,9 +72,10 @@ void Network::add_effect(std::string name, const EffectType& type, std::span<con
   }
   EffectInPlace effect{.name = std::move(name), .type = &type, .node_index = {}, .parameter_index = {}};
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const ParameterSpec& spec = type.parameters[i];
-    effect.parameter_index.push_back(add_parameter(
-        {fmt::format("{}.{}", effect.name, spec.key), unit_of(type.parameters, i, parameters), spec.range, parameters[i], spec.choices}));
+    const base::ParameterSpec& spec = type.parameters[i];
+    effect.parameter_index.push_back(
+        add_parameter({fmt::format("{}.{}", effect.name, spec.key), base::unit_of(type.parameters, i, parameters), spec.range,
+                       parameters[i], spec.choices}));
   }
   for (std::size_t role = 0; role < nodes.size(); ++role) {
     if (const std::optional<int> capacity = type.nodes[role].own_capacity) {
@@ -105,7 +106,7 @@ S Network::within_headroom(const OperatingPoint<S>& at, const S* parameters, con
     return at.current_rms_A;
   }
   const EffectInPlace& copper = effects_[static_cast<std::size_t>(copper_effect_)];
-  const S hot_ratio = resistance_ratio(parameters[copper.parameter_index[1]], temperature_C[copper.node_index[0]]);
+  const S hot_ratio = base::resistance_ratio(parameters[copper.parameter_index[1]], temperature_C[copper.node_index[0]]);
   const S loop_ohm = parameters[copper.parameter_index[0]] * hot_ratio + at.series_resistance_ohm;
   // A solver may try temperatures at which the linear resistance is negative; an infinite headroom must not give -inf A there.
   constexpr double kLeast_ohm = std::numeric_limits<double>::min();
@@ -202,4 +203,4 @@ template double Network::within_headroom<double>(const OperatingPoint<double>&, 
 template void Network::rate_K_per_s<double>(OperatingPoint<double>&, std::span<const double>, std::span<double>, std::span<double>) const;
 template void Network::rate_K_per_s<Lanes>(OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>, std::span<Lanes>) const;
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

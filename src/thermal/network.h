@@ -8,7 +8,7 @@
 
 #include "thermal/effect.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 struct Linearised;
 class Traced;
@@ -17,9 +17,9 @@ struct TracedHeat;
 struct NetworkParameter {
   std::string name;  ///< "winding_stator.thermal_resistance", "winding.heat_capacity"
   std::string_view unit;
-  Range range;
+  base::Range range;
   double value = 0.0;
-  std::span<const Choice> choices = {};  ///< if not empty, the value is the index of a choice, which is neither sampled nor fitted
+  std::span<const base::Choice> choices = {};  ///< if not empty, the value is the index of a choice, which is neither sampled nor fitted
 };
 
 /// An effect in a network: the nodes of its roles and the indices of its parameters in the flat list.
@@ -108,4 +108,4 @@ extern template double Network::within_headroom<double>(const OperatingPoint<dou
 extern template void Network::rate_K_per_s<double>(OperatingPoint<double>&, std::span<const double>, std::span<double>,
                                                    std::span<double>) const;
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

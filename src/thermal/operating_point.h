@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 /// Means over one interval, chosen so that intervals can be merged without changing the heat: I²R uses the RMS current, a loss ∝ |ω| the
 /// mean speed, one ∝ ω² the RMS speed. Products such as |I|·ω² use the product of the means. That is accurate if the interval is short
@@ -147,4 +147,4 @@ constexpr void for_each_quantity(F&& f, Point&... at) {
   (std::make_index_sequence<kQuantityCount>());
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

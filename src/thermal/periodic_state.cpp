@@ -9,7 +9,7 @@
 #include "base/diagnostic.h"
 #include "thermal/linearised.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 /// One cycle as a map from the state before it to the state after it.
@@ -33,7 +33,7 @@ class CycleMap {
     }
     // An explicit method needs a step per fastest time constant even in the steady state.
     constexpr double kLong = 1e4;
-    options_.method = cycle_s * fastest_per_s > kLong ? OdeMethod::cvodes_bdf : OdeMethod::arkode_erk;
+    options_.method = cycle_s * fastest_per_s > kLong ? ode::OdeMethod::cvodes_bdf : ode::OdeMethod::arkode_erk;
     options_.tolerances = {1e-11, 1e-11};
   }
 
@@ -131,7 +131,7 @@ std::optional<Eigen::VectorXd> repeating_start_C(CycleMap& map, Eigen::VectorXd 
       return start_C;
     }
   }
-  throw Failure(ExitCode::numerics_failed, fmt::format("the periodic steady state was not found in {} steps", kMostIterations));
+  throw base::Failure(base::ExitCode::numerics_failed, fmt::format("the periodic steady state was not found in {} steps", kMostIterations));
 }
 
 }  // namespace
@@ -155,4 +155,4 @@ PeriodicState periodic_state(const Network& network, std::span<const Interval> c
   return result;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

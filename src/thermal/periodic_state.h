@@ -7,7 +7,7 @@
 
 #include "thermal/transient.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 /// Temperatures over one cycle after all transients have decayed; one entry per state node.
 struct PeriodicState {
@@ -25,4 +25,4 @@ struct PeriodicState {
 /// (numerics_failed) if the iteration does not converge.
 PeriodicState periodic_state(const Network& network, std::span<const Interval> cycle);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

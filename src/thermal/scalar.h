@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 /// Returns |x|.
 inline double magnitude(double x) { return std::abs(x); }
@@ -28,4 +28,4 @@ inline double soft_step(double x) {
 /// Returns the index that a choice parameter holds.
 inline int chosen(double parameter) { return static_cast<int>(parameter); }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -6,7 +6,7 @@
 #include "base/copper.h"
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 class Rates {
@@ -58,14 +58,14 @@ std::optional<SteadyState> steady_state(const Network& network, const OperatingP
       return SteadyState{{state_C.begin(), state_C.end()}};
     }
   }
-  throw Failure(ExitCode::numerics_failed, "the steady state was not found in 50 Newton steps");
+  throw base::Failure(base::ExitCode::numerics_failed, "the steady state was not found in 50 Newton steps");
 }
 
 OnOffSteadyState on_off_steady_state(const TwoNodeMotor& motor, const OnOffCurrent& current) {
   OnOffSteadyState result;
   result.current_rms_A = current.current_on_A * std::sqrt(current.time_on_s / (current.time_on_s + current.time_off_s));  // (8)
   const double resistance_ambient_ohm =
-      motor.terminal_resistance_25C_ohm * resistance_ratio(motor.temperature_coefficient_per_K, current.ambient_C);
+      motor.terminal_resistance_25C_ohm * base::resistance_ratio(motor.temperature_coefficient_per_K, current.ambient_C);
   const double coefficient_per_K = motor.temperature_coefficient_per_K * motor.terminal_resistance_25C_ohm / resistance_ambient_ohm;
   const double total_K_per_W = motor.thermal_resistance_winding_stator_K_per_W + motor.thermal_resistance_stator_ambient_K_per_W;
   const double cold_rise_K = total_K_per_W * resistance_ambient_ohm * result.current_rms_A * result.current_rms_A;
@@ -78,4 +78,4 @@ OnOffSteadyState on_off_steady_state(const TwoNodeMotor& motor, const OnOffCurre
   return result;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -6,7 +6,7 @@
 
 #include "thermal/network.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 struct SteadyState {
   std::vector<double> temperature_C;  ///< one per state node
@@ -40,4 +40,4 @@ struct OnOffSteadyState {
 };
 OnOffSteadyState on_off_steady_state(const TwoNodeMotor& motor, const OnOffCurrent& current);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -3,7 +3,7 @@
 
 #include <ceres/jet.h>
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 inline constexpr int kDirections = 8;
 using Tangent = ceres::Jet<double, kDirections>;
@@ -20,4 +20,4 @@ inline Tangent soft_step(const Tangent& x) {
 }
 inline int chosen(const Tangent& parameter) { return static_cast<int>(parameter.a); }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -8,7 +8,7 @@
 #include "base/diagnostic.h"
 #include "thermal/transient.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 /// Step size times the bound of the fastest eigenvalue; the local error is then below 1e-5 of the change.
@@ -58,9 +58,10 @@ const NetworkStep& TangentRun::over(std::span<const double> start_C, double dura
   const double fastest_per_s = slope_.by_state.cwiseAbs().rowwise().sum().maxCoeff();
   const double parts = std::max(1.0, std::ceil(duration_s * fastest_per_s / kStepPerTimeConstant));
   if (!(parts <= kMostParts)) {
-    throw Failure(ExitCode::numerics_failed, fmt::format("a thermal network with a time constant of {:.2g} s is too fast for an interval "
-                                                         "of {:.3g} s; check whether a thermal resistance or a heat capacity is too small",
-                                                         1.0 / fastest_per_s, duration_s));
+    throw base::Failure(base::ExitCode::numerics_failed,
+                        fmt::format("a thermal network with a time constant of {:.2g} s is too fast for an interval "
+                                    "of {:.3g} s; check whether a thermal resistance or a heat capacity is too small",
+                                    1.0 / fastest_per_s, duration_s));
   }
   for (int part = 0; part < static_cast<int>(parts); ++part) {
     if (part > 0) {
@@ -69,8 +70,9 @@ const NetworkStep& TangentRun::over(std::span<const double> start_C, double dura
     one_step(duration_s / parts, duration_s * fastest_per_s < kShortStep, at);
   }
   if (!(step_.state_C.minCoeff() > kAbsoluteZero_C && step_.state_C.maxCoeff() < kDestroyed_C)) {
-    throw Failure(ExitCode::numerics_failed, fmt::format("the simulated temperature leaves {:.0f} to {:.0f} °C with the logged heat input",
-                                                         kAbsoluteZero_C, kDestroyed_C));
+    throw base::Failure(
+        base::ExitCode::numerics_failed,
+        fmt::format("the simulated temperature leaves {:.0f} to {:.0f} °C with the logged heat input", kAbsoluteZero_C, kDestroyed_C));
   }
   return step_;
 }
@@ -107,4 +109,4 @@ void TangentRun::one_step(double step_s, bool is_short, const OperatingPoint<dou
   step_.by_parameter += step_s * by_parameter_sum_;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

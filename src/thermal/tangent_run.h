@@ -8,7 +8,7 @@
 #include "thermal/linearised.h"
 #include "thermal/network.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 /// Result of one interval; n state nodes, w wanted parameters, q heated nodes.
 struct NetworkStep {
@@ -48,4 +48,4 @@ class TangentRun {
   Eigen::MatrixXd rate_by_parameter_, by_parameter_sum_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

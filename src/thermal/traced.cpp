@@ -10,7 +10,7 @@
 #include "robot_core/thermal_math.h"
 #include "thermal/lanes.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 // Single precision uses the functions of the controller, so that host and controller give identical bits.
@@ -258,4 +258,4 @@ int chosen(const Traced& parameter) {
   return static_cast<int>(parameter.value());
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

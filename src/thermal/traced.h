@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 enum class Operation { constant, input, add, subtract, multiply, divide, magnitude, positive_part, square_root, power, exponential };
 
@@ -137,4 +137,4 @@ struct TracedHeat {
   Traced made_W;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

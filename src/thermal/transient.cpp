@@ -7,12 +7,12 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 /// The network as an initial value problem. With a ledger the heat of every effect is integrated by the same method as the temperatures, so
 /// that the heat balance closes to rounding error and not only to the tolerance.
-class NetworkSystem final : public OdeSystem {
+class NetworkSystem final : public ode::OdeSystem {
  public:
   NetworkSystem(const Network& network, std::span<const double> parameters, const TransientOptions& options)
       : network_(network),
@@ -112,11 +112,12 @@ class Run {
     observe(start_s, index, true);
     while (result_.end_s < stop_s && !result_.destroyed) {
       if (++steps_ > kMostTransientSteps) {
-        throw Failure(ExitCode::numerics_failed, fmt::format("{} steps took the run only to {:.6g} s; check whether a thermal resistance "
-                                                             "or a heat capacity is too small, or the duty too long",
-                                                             kMostTransientSteps, result_.end_s));
+        throw base::Failure(base::ExitCode::numerics_failed,
+                            fmt::format("{} steps took the run only to {:.6g} s; check whether a thermal resistance "
+                                        "or a heat capacity is too small, or the duty too long",
+                                        kMostTransientSteps, result_.end_s));
       }
-      const OdeStep step = integrator_.step(stop_s);
+      const ode::OdeStep step = integrator_.step(stop_s);
       note_crossings(step);
       advance_to(step.time_s);
       observe(step.time_s, index, false);
@@ -128,7 +129,7 @@ class Run {
     }
   }
 
-  void note_crossings(const OdeStep& step) {
+  void note_crossings(const ode::OdeStep& step) {
     for (std::size_t i = 0; step.at_event && i < step.crossed.size(); ++i) {
       if (step.crossed[i] > 0 && !result_.time_to_limit_s[i]) {
         result_.time_to_limit_s[i] = step.time_s;
@@ -177,7 +178,7 @@ class Run {
   const TransientOptions& options_;
   const TransientObserver& observer_;
   NetworkSystem system_;
-  Integrator integrator_;
+  ode::Integrator integrator_;
   std::vector<double> y_;
   std::vector<double> slope_;
   std::vector<double> slope_before_;
@@ -192,4 +193,4 @@ TransientResult run_transient(const Network& network, std::span<const double> pa
   return Run(network, parameters, options, observer).over(intervals);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -9,7 +9,7 @@
 #include "ode/integrator.h"
 #include "thermal/network.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 /// A time interval with a constant operating point.
 struct Interval {
@@ -26,8 +26,8 @@ struct NodeLimit {
 inline constexpr double kDestroyed_C = 1000.0;
 
 struct TransientOptions {
-  OdeMethod method = OdeMethod::arkode_erk;
-  OdeTolerances tolerances;
+  ode::OdeMethod method = ode::OdeMethod::arkode_erk;
+  ode::OdeTolerances tolerances;
   std::vector<NodeLimit> limits;
   std::vector<double> start_C;  ///< one per state node; empty: ambient of the first interval
   bool with_ledger = false;     ///< also integrate the heat of every effect
@@ -59,4 +59,4 @@ using TransientObserver = std::function<void(const TransientMoment&)>;
 TransientResult run_transient(const Network& network, std::span<const double> parameters, std::span<const Interval> intervals,
                               const TransientOptions& options, const TransientObserver& observer = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

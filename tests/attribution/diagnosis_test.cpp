@@ -9,7 +9,7 @@
 #include "drive_rows.h"
 #include "scoring.h"
 
-namespace heatsoak::truth {
+namespace heatsoak::attribution::truth {
 namespace {
 
 Case sealed(const Missing& missing, std::uint64_t seed) {
@@ -22,8 +22,8 @@ Case sealed(const Missing& missing, std::uint64_t seed) {
 const Subject& subject(std::string_view name) { return *std::ranges::find(subjects(), name, &Subject::name); }
 
 /// Returns the model fitted to the runs, with a standard deviation of sd_share for every parameter.
-Model known_to(double sd_share, const DiagnosisInput& input) {
-  Model known = diagnose(input, {}).selection.before.model;
+estimation::Model known_to(double sd_share, const diagnosis::DiagnosisInput& input) {
+  estimation::Model known = diagnosis::diagnose(input, {}).selection.before.model;
   const Eigen::Index count = known.network_count();
   known.prior = {known.theta(), Eigen::MatrixXd::Identity(count, count) / (sd_share * sd_share)};
   return known;
@@ -40,7 +40,7 @@ TEST(Examination, ACurveAndALawThatBalanceEachOtherAreUnexplainedHeat) {
   Case one = sealed(missing, 12);
   one.is_calibrated = true;
   const Answer answer = examine(one);
-  ASSERT_EQ(answer.diagnosis.verdict, DiagnosisVerdict::unexplained) << account(answer);
+  ASSERT_EQ(answer.diagnosis.verdict, diagnosis::DiagnosisVerdict::unexplained) << account(answer);
   EXPECT_EQ(answer.diagnosis.unexplained.front().node, "stator");
   EXPECT_THAT(answer.named, testing::IsEmpty());
 }
@@ -50,13 +50,13 @@ TEST(Examination, CurveOverAColumnOfTheLogIsPartOfTheModel) {
   Missing missing;
   missing.heat.emplace_back([](const Moment& now, PerPart& q) { q[slot] += now.in.current_A > 0.0 ? 0.5 * now.copper_loss_W : 0.0; });
   const Answer answer = examine(sealed(missing, 12));
-  const Diagnosis& found_diagnosis = answer.diagnosis;
+  const diagnosis::Diagnosis& found_diagnosis = answer.diagnosis;
   ASSERT_EQ(found_diagnosis.effects.size(), 1U) << account(answer);
   EXPECT_EQ(found_diagnosis.effects.front().drivers, std::vector<std::string>{"current_A"}) << account(answer);
   EXPECT_THAT(found_diagnosis.selection.after.model.columns, testing::ElementsAre("current_A"));
   ASSERT_FALSE(found_diagnosis.unexplained.empty());
   EXPECT_TRUE(found_diagnosis.unexplained.front().is_in_model);
-  EXPECT_LT(rms_K(answer.score.after), 0.3 * rms_K(answer.score.refitted)) << account(answer);
+  EXPECT_LT(estimation::rms_K(answer.score.after), 0.3 * estimation::rms_K(answer.score.refitted)) << account(answer);
 }
 
 TEST(Examination, ConstantHeatInTheWindingOfAllRunsIsOneEffect) {
@@ -65,7 +65,7 @@ TEST(Examination, ConstantHeatInTheWindingOfAllRunsIsOneEffect) {
   missing.heat.emplace_back([](const Moment&, PerPart& q) { q[slot] += kHeat_W; });
   const Answer answer = examine(sealed(missing, 12));
   ASSERT_EQ(answer.diagnosis.effects.size(), 1U) << account(answer);
-  const FoundEffect& found = answer.diagnosis.effects.front();
+  const diagnosis::FoundEffect& found = answer.diagnosis.effects.front();
   EXPECT_EQ(found.id, "constant_heat");
   EXPECT_EQ(found.node, "winding");
   EXPECT_THAT(found.condition, testing::IsEmpty());
@@ -77,7 +77,7 @@ TEST(Examination, NothingMissingIsSaidToBeNothing) {
   for (const std::uint64_t seed : {1, 2}) {
     const Answer answer = examine(sealed({}, seed));
     EXPECT_TRUE(is_silent(answer)) << account(answer);
-    EXPECT_EQ(answer.diagnosis.verdict, DiagnosisVerdict::nothing_missing);
+    EXPECT_EQ(answer.diagnosis.verdict, diagnosis::DiagnosisVerdict::nothing_missing);
   }
 }
 
@@ -91,7 +91,7 @@ TEST(Examination, TypicalEffectsAreNamedAndHelpOnUnseenRuns) {
     one.missing = subject(name).make(1.0);
     const Answer answer = examine(one);
     EXPECT_TRUE(names_only(answer.named, {&subject(name)})) << name << account(answer);
-    EXPECT_EQ(answer.diagnosis.verdict, DiagnosisVerdict::effect_found) << name;
+    EXPECT_EQ(answer.diagnosis.verdict, diagnosis::DiagnosisVerdict::effect_found) << name;
     EXPECT_LT(answer.after_K, 0.7 * answer.before_K) << name << account(answer);
     after_over_floor += answer.after_K / floor_of_all_K / static_cast<double>(some.size());
   }
@@ -104,7 +104,7 @@ TEST(Examination, HeatThatNoLawHasIsUnexplainedButDescribed) {
   EXPECT_TRUE(names_outsider(answer, resonance)) << account(answer);
   ASSERT_FALSE(answer.diagnosis.unexplained.empty());
   // The true curve has its peak of 3 W at 300 rad/s and hardly any heat at standstill.
-  const Unexplained& heat = answer.diagnosis.unexplained.front();
+  const diagnosis::Unexplained& heat = answer.diagnosis.unexplained.front();
   const auto top = std::ranges::max_element(heat.curve) - heat.curve.begin();
   EXPECT_NEAR(heat.knots[static_cast<std::size_t>(top)], 300.0, 50.0) << account(answer);
   EXPECT_NEAR(heat.curve[static_cast<std::size_t>(top)], 3.0, 1.0) << account(answer);
@@ -115,7 +115,7 @@ TEST(Examination, HeatThatFollowsTwoSignalsIsReportedAsSuch) {
   const auto two = std::ranges::find(outsiders(), "current", &Outsider::times);
   const Answer answer = examine(sealed(two->make(1.0), 40004));
   ASSERT_TRUE(names_outsider(answer, *two)) << account(answer);
-  const Unexplained& heat = answer.diagnosis.unexplained.front();
+  const diagnosis::Unexplained& heat = answer.diagnosis.unexplained.front();
   EXPECT_EQ(heat.times, "current");
   EXPECT_EQ(heat.curve_unit, "W/A");
   EXPECT_TRUE(heat.is_in_model);
@@ -167,7 +167,7 @@ TEST(Examination, HeatThatFollowsNoLoggedSignalIsReportedInWattsAndRarelyNamed) 
         continue;
       }
       ++unnamed;
-      const Unexplained& heat = answer.diagnosis.unexplained.front();
+      const diagnosis::Unexplained& heat = answer.diagnosis.unexplained.front();
       EXPECT_EQ(heat.node, one.node);
       EXPECT_GT(heat.rms_W, 0.2) << account(answer);
       EXPECT_LT(heat.rms_W, 2.0) << account(answer);
@@ -181,10 +181,10 @@ TEST(Examination, HeatThatFollowsNoLoggedSignalIsReportedInWattsAndRarelyNamed) 
 TEST(Examination, AnOutdatedParameterIsReportedAndRefittedAndIsNoEffect) {
   const Case one = sealed({}, 5);
   const Runs runs = record(one);
-  DiagnosisInput input = question(one, runs);
+  diagnosis::DiagnosisInput input = question(one, runs);
   input.model = known_to(0.02, input);
-  Model& known = input.model;
-  EXPECT_THAT(diagnose(input, {}).changed, testing::IsEmpty());
+  estimation::Model& known = input.model;
+  EXPECT_THAT(diagnosis::diagnose(input, {}).changed, testing::IsEmpty());
   Eigen::Index coordinate = 0;
   while (known.name(coordinate) != "stator_ambient.thermal_resistance") {
     ++coordinate;
@@ -193,8 +193,8 @@ TEST(Examination, AnOutdatedParameterIsReportedAndRefittedAndIsNoEffect) {
   const double true_K_per_W = out_K_per_W;
   out_K_per_W *= 1.4;
   known.prior.mean = known.theta();
-  const Diagnosis found = diagnose(input, {});
-  EXPECT_EQ(found.verdict, DiagnosisVerdict::not_identifiable) << account(found);
+  const diagnosis::Diagnosis found = diagnosis::diagnose(input, {});
+  EXPECT_EQ(found.verdict, diagnosis::DiagnosisVerdict::not_identifiable) << account(found);
   EXPECT_THAT(found.effects, testing::IsEmpty()) << account(found);
   ASSERT_EQ(found.changed.size(), 1U) << account(found);
   EXPECT_EQ(found.changed.front().name, known.name(coordinate));
@@ -202,8 +202,8 @@ TEST(Examination, AnOutdatedParameterIsReportedAndRefittedAndIsNoEffect) {
   EXPECT_NEAR(found.changed.front().value, true_K_per_W, 0.05 * true_K_per_W);
   EXPECT_LT(found.changed.front().low, true_K_per_W);
   EXPECT_GT(found.changed.front().high, true_K_per_W);
-  const HoldoutScore score = score_holdout(input, found, holdout(runs));
-  EXPECT_LT(rms_K(score.after), rms_K(score.before) / 3.0);
+  const diagnosis::HoldoutScore score = diagnosis::score_holdout(input, found, holdout(runs));
+  EXPECT_LT(estimation::rms_K(score.after), estimation::rms_K(score.before) / 3.0);
 }
 
 /// The conductance from winding to iron now rises by a seventh in 30 K, while the file has 1 % uncertainty for a constant resistance. The
@@ -211,9 +211,10 @@ TEST(Examination, AnOutdatedParameterIsReportedAndRefittedAndIsNoEffect) {
 TEST(Examination, LawIsFoundDespiteANarrowPriorOfACorrelatedParameter) {
   Case one = sealed({}, 63);
   const Runs runs_before = record(one);
-  DiagnosisInput input = question(one, runs_before);
+  diagnosis::DiagnosisInput input = question(one, runs_before);
   input.model = known_to(0.01, input);
-  const double nothing_missing_K = rms_K(score_holdout(input, diagnose(input, {}), holdout(runs_before)).after);
+  const double nothing_missing_K =
+      estimation::rms_K(diagnosis::score_holdout(input, diagnosis::diagnose(input, {}), holdout(runs_before)).after);
   one.missing.heat.push_back([](const Moment& now, PerPart& heat_W) {
     const double more_W = 0.14 / 1.6 * (0.5 * (now.copper_C + now.iron_C) - 45.0) / 30.0 * (now.copper_C - now.iron_C);
     heat_W[slot] -= more_W;
@@ -221,14 +222,14 @@ TEST(Examination, LawIsFoundDespiteANarrowPriorOfACorrelatedParameter) {
   });
   const Runs runs = record(one);
   input.train = question(one, runs).train;
-  const Diagnosis found = diagnose(input, {});
+  const diagnosis::Diagnosis found = diagnosis::diagnose(input, {});
   ASSERT_EQ(found.effects.size(), 1U) << account(found);
   EXPECT_EQ(found.effects.front().id, "contact_temperature_dependence") << account(found);
-  EXPECT_EQ(found.verdict, DiagnosisVerdict::effect_found);
+  EXPECT_EQ(found.verdict, diagnosis::DiagnosisVerdict::effect_found);
   ASSERT_EQ(found.changed.size(), 1U) << account(found);
   EXPECT_EQ(found.changed.front().name, "winding_stator.thermal_resistance");
   EXPECT_GT(found.changed.front().value, 1.02 * found.changed.front().before) << "at 25 °C it is more than at 45";
-  EXPECT_LT(rms_K(score_holdout(input, found, holdout(runs)).after), 1.1 * nothing_missing_K) << account(found);
+  EXPECT_LT(estimation::rms_K(diagnosis::score_holdout(input, found, holdout(runs)).after), 1.1 * nothing_missing_K) << account(found);
 }
 
 /// In one of four runs a cover reduces the heat to the air by three tenths. The resistance is then 1 / 0.7 of its former value. Unseen runs
@@ -240,16 +241,16 @@ TEST(Examination, WorseCoolingInOneRunIsReportedAndStaysThere) {
     heat_W[yoke] += 0.3 * (now.iron_C - now.in.ambient_C) / air_K_per_W;
   });
   runs.training[1] = record(one).training[1];
-  const DiagnosisInput input = question(one, runs);
-  const Diagnosis found = diagnose(input, {});
+  const diagnosis::DiagnosisInput input = question(one, runs);
+  const diagnosis::Diagnosis found = diagnosis::diagnose(input, {});
   ASSERT_EQ(found.effects.size(), 1U) << account(found);
-  const FoundEffect& effect = found.effects.front();
+  const diagnosis::FoundEffect& effect = found.effects.front();
   EXPECT_EQ(effect.id, "hindered_cooling") << account(found);
-  EXPECT_EQ(effect.condition, (Condition{{"run", "run2"}}));
+  EXPECT_EQ(effect.condition, (estimation::Condition{{"run", "run2"}}));
   EXPECT_NEAR(effect.parameters.front().value, 1.0 / 0.7 - 1.0, 0.06) << account(found);
-  EXPECT_LT(rms_K(found.after_train), 0.5 * rms_K(found.before_train)) << account(found);
-  const HoldoutScore score = score_holdout(input, found, holdout(runs));
-  EXPECT_LT(rms_K(score.after), rms_K(score.before) + 0.02) << account(found);
+  EXPECT_LT(estimation::rms_K(found.after_train), 0.5 * estimation::rms_K(found.before_train)) << account(found);
+  const diagnosis::HoldoutScore score = diagnosis::score_holdout(input, found, holdout(runs));
+  EXPECT_LT(estimation::rms_K(score.after), estimation::rms_K(score.before) + 0.02) << account(found);
 }
 
 /// A winding has come loose in one run: the contact conductance falls by a fifth, so the contact resistance is 1 / 0.8 of its former value.
@@ -262,14 +263,14 @@ TEST(Examination, LooseWindingInOneRunIsAnotherContactThere) {
     heat_W[tooth] -= kept_back_W;
   });
   runs.training[1] = record(one).training[1];
-  const DiagnosisInput input = question(one, runs);
-  const Diagnosis found = diagnose(input, {});
+  const diagnosis::DiagnosisInput input = question(one, runs);
+  const diagnosis::Diagnosis found = diagnosis::diagnose(input, {});
   ASSERT_EQ(found.effects.size(), 1U) << account(found);
   EXPECT_EQ(found.effects.front().id, "changed_contact") << account(found);
-  EXPECT_EQ(found.effects.front().condition, (Condition{{"run", "run2"}}));
+  EXPECT_EQ(found.effects.front().condition, (estimation::Condition{{"run", "run2"}}));
   EXPECT_NEAR(found.effects.front().parameters.front().value, 0.25, 0.05) << account(found);
-  const HoldoutScore score = score_holdout(input, found, holdout(runs));
-  EXPECT_LT(rms_K(score.after), rms_K(score.before) + 0.02) << account(found);
+  const diagnosis::HoldoutScore score = diagnosis::score_holdout(input, found, holdout(runs));
+  EXPECT_LT(estimation::rms_K(score.after), estimation::rms_K(score.before) + 0.02) << account(found);
 }
 
 /// The effect is less than half as wide as a seventh of the stator's temperature range. Knots spread over the whole range would not resolve
@@ -278,7 +279,7 @@ TEST(Examination, KnotsAreDrawnToWhereSomethingHappens) {
   const auto fan = std::ranges::find(outsiders(), "a fan that starts at 45 °C of the stator", &Outsider::name);
   const Answer answer = examine(sealed(fan->make(1.0), 40003));
   ASSERT_TRUE(names_outsider(answer, *fan)) << account(answer);
-  const Unexplained& heat = answer.diagnosis.unexplained.front();
+  const diagnosis::Unexplained& heat = answer.diagnosis.unexplained.front();
   EXPECT_LT(heat.knots.back() - heat.knots.front(), 12.0) << "K, of some 30";
   EXPECT_GT(heat.knots.back(), 45.0);
   EXPECT_LT(heat.knots.front(), 46.0);
@@ -290,7 +291,7 @@ TEST(Examination, ConfoundedEffectsComeWithAnExperimentThatSeparatesThem) {
   ASSERT_EQ(answer.diagnosis.effects.size(), 1U) << account(answer);
   ASSERT_FALSE(answer.diagnosis.effects.front().confusable_with.empty()) << account(answer);
   ASSERT_EQ(answer.diagnosis.experiments.size(), answer.diagnosis.effects.front().confusable_with.size());
-  for (const Experiment& experiment : answer.diagnosis.experiments) {
+  for (const diagnosis::Experiment& experiment : answer.diagnosis.experiments) {
     EXPECT_EQ(experiment.effect, answer.named.front());
     EXPECT_FALSE(experiment.what.empty());
   }
@@ -309,7 +310,7 @@ TEST(Examination, IntervalsHoldTheTruthThoughBodiesAreUneven) {
       continue;
     }
     ASSERT_EQ(answer.diagnosis.effects.size(), 1U) << account(answer);
-    const FittedParameter& size = answer.diagnosis.effects.front().parameters.front();
+    const diagnosis::FittedParameter& size = answer.diagnosis.effects.front().parameters.front();
     held += size.low <= 0.02 && 0.02 <= size.high ? 1 : 0;
     EXPECT_LT(size.high - size.low, 0.03) << account(answer);
   }
@@ -320,10 +321,10 @@ TEST(Examination, IntervalsHoldTheTruthThoughBodiesAreUneven) {
 /// An experiment must not hold a single-row peak for minutes: ten minutes of it would destroy the motor.
 TEST(Examination, ExperimentsStayAsCoolAsTheRuns) {
   const Case one = sealed(subject("connection_resistance").make(1.0), 60906);
-  DiagnosisInput input = question(one, record(one));
-  const Diagnosis diagnosis = diagnose(input, {});
+  diagnosis::DiagnosisInput input = question(one, record(one));
+  const diagnosis::Diagnosis diagnosis = diagnosis::diagnose(input, {});
   input.train.front().at[100].current_rms_A = 200.0;
-  const std::vector<Experiment> experiments = next_experiments(diagnosis.selection, input.train);
+  const std::vector<diagnosis::Experiment> experiments = diagnosis::next_experiments(diagnosis.selection, input.train);
   ASSERT_FALSE(experiments.empty());
   ASSERT_TRUE(experiments.front().most_A);
   EXPECT_LT(*experiments.front().most_A, 200.0);
@@ -335,30 +336,30 @@ TEST(Examination, WindingsForAnotherVoltageGetTheSameNames) {
   constexpr double kTurns_ratio = 10.0;
   for (const std::string_view name : {"connection_resistance", "saturation", "load_friction"}) {
     const Case one = sealed(subject(name).make(1.2), 60106);
-    DiagnosisInput input = question(one, record(one));
-    for (MeasuredRun& run : input.train) {
+    diagnosis::DiagnosisInput input = question(one, record(one));
+    for (estimation::MeasuredRun& run : input.train) {
       run.columns.clear();
-      for (OperatingPoint<double>& at : run.at) {
+      for (thermal::OperatingPoint<double>& at : run.at) {
         at.current_rms_A /= kTurns_ratio;
       }
     }
-    Model& model = input.model;
+    estimation::Model& model = input.model;
     for (std::size_t place = 0; place < model.values.size(); ++place) {
       if (model.network.parameters()[place].name == "copper_loss.terminal_resistance") {
         model.values[place] *= kTurns_ratio * kTurns_ratio;
       }
     }
-    const Diagnosis diagnosis = diagnose(input, {});
+    const diagnosis::Diagnosis diagnosis = diagnosis::diagnose(input, {});
     ASSERT_EQ(diagnosis.effects.size(), 1U) << name << ": " << account(diagnosis);
     EXPECT_TRUE(names({diagnosis.effects.front().id}, subject(name))) << account(diagnosis);
   }
 }
 
 TEST(Examination, TheBoundOfASearchIsReachedExactly) {
-  Model model = model_before(record(sealed({}, 1)).make, 1);
+  estimation::Model model = model_before(record(sealed({}, 1)).make, 1);
   Eigen::VectorXd theta = model.theta();
   for (const double bound : {3.0, 0.7, 1.9}) {
-    FreeParameter& first = model.free.front();
+    estimation::FreeParameter& first = model.free.front();
     first.low = first.high = bound;
     theta[0] = std::log(bound);
     EXPECT_EQ(model.values_at(theta)[static_cast<std::size_t>(first.place)], bound);
@@ -418,4 +419,4 @@ TEST(TruthMotor, LosesInTheEndWhatItTakesIn) {
 }
 
 }  // namespace
-}  // namespace heatsoak::truth
+}  // namespace heatsoak::attribution::truth

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace heatsoak::truth {
+namespace heatsoak::attribution::truth {
 namespace {
 
 constexpr double kVoltage_V_s_per_rad = 0.034;
@@ -104,4 +104,4 @@ std::vector<RowInputs> bench_rows(int count, std::uint64_t seed) {
   return rows;
 }
 
-}  // namespace heatsoak::truth
+}  // namespace heatsoak::attribution::truth

@@ -11,7 +11,7 @@
 #include "estimation/log_columns.h"
 #include "estimation/measured_run.h"
 
-namespace heatsoak::truth {
+namespace heatsoak::attribution::truth {
 namespace {
 
 /// Removes outliers as the log reader does: samples that differ from their neighbours by more than six standard deviations.
@@ -35,16 +35,16 @@ void leave_out_outliers(std::vector<double>& values) {
     }
     std::ranges::sort(off);
     if (std::abs(all[k] - middle) > 6.0 * 1.4826 * std::max(0.1, off[off.size() / 2])) {
-      values[k] = kUnknown;
+      values[k] = base::kUnknown;
     }
   }
 }
 
 /// Replaces all signals of the motion in each row by those of another row.
-void shuffle_speed(Recording& log, Dice& dice) {
+void shuffle_speed(recording::Recording& log, Dice& dice) {
   for (std::size_t row = log.rows(); row > 1; --row) {
     const auto other = static_cast<std::size_t>(dice.below(static_cast<int>(row)));
-    for (Channel& channel : log.channels) {
+    for (recording::Channel& channel : log.channels) {
       const std::string& key = channel.quantity.key;
       if (key == "speed_rad_per_s" || key == "duty_ratio" || key == "vehicle_speed_m_per_s") {
         std::swap(channel.values[row - 1], channel.values[other]);
@@ -76,7 +76,7 @@ Runs record(const Case& sealed) {
       shuffle_speed(run.log, dice);
     }
     if (!sealed.has_winding_sensor) {
-      std::ranges::fill(run.log.channels.front().values, kUnknown);
+      std::ranges::fill(run.log.channels.front().values, base::kUnknown);
     }
     age_h += sealed.rows / 3600.0;
     return run;
@@ -93,9 +93,9 @@ Runs record(const Case& sealed) {
 
 Calibrated calibrated(const Case& sealed, const MotorMake& make, const std::vector<TrueRun>& runs) {
   Calibrated all{model_before(make, sealed.seed), {}};
-  std::vector<MeasuredRun> rows;
+  std::vector<estimation::MeasuredRun> rows;
   std::ranges::transform(runs, std::back_inserter(rows), measured);
-  all.fit = fit(all.model, rows, {});
+  all.fit = estimation::fit(all.model, rows, {});
   all.model.set_theta(all.fit.theta);
   all.model.prior = {all.fit.theta, all.fit.covariance.inverse()};
   all.usual.error_K = all.fit.free_run_error_K;
@@ -103,15 +103,15 @@ Calibrated calibrated(const Case& sealed, const MotorMake& make, const std::vect
   return all;
 }
 
-Model model_before(const MotorMake& make, std::uint64_t seed) {
+estimation::Model model_before(const MotorMake& make, std::uint64_t seed) {
   Dice dice(seed * 104729 + 5);
   const auto off = [&dice](double value) { return value * dice.uniform(0.8, 1.25); };
-  Model out;
-  Network& network = out.network;
+  estimation::Model out;
+  thermal::Network& network = out.network;
   network.add_node("winding", off(make.copper_capacity_J_per_K));
   network.add_node("stator", off(make.iron_capacity_J_per_K));
   const auto add = [&](const char* name, const char* type, std::vector<std::string> nodes, std::vector<double> parameters) {
-    network.add_effect(name, *find_effect(type), nodes, parameters);
+    network.add_effect(name, *thermal::find_effect(type), nodes, parameters);
   };
   add("copper_loss", "copper_loss", {"winding"}, {make.resistance_25C_ohm, make.copper_per_K});
   add("winding_stator", "conduction", {"winding", "stator"}, {off(make.copper_to_iron_K_per_W)});
@@ -130,22 +130,22 @@ Model model_before(const MotorMake& make, std::uint64_t seed) {
   return out;
 }
 
-MeasuredRun measured(const TrueRun& run) {
-  MeasuredRunOptions options;
-  options.needed = {Signal::current};
-  return measured_runs(run.log, options).runs.front();
+estimation::MeasuredRun measured(const TrueRun& run) {
+  estimation::MeasuredRunOptions options;
+  options.needed = {thermal::Signal::current};
+  return estimation::measured_runs(run.log, options).runs.front();
 }
 
-double rms_error_K(const Model& model, const std::vector<TrueRun>& runs) {
+double rms_error_K(const estimation::Model& model, const std::vector<TrueRun>& runs) {
   double squares_K2 = 0.0;
   double count = 0.0;
   for (const TrueRun& run : runs) {
-    MeasuredRun as_run = measured(run);
-    set_columns(as_run, model.columns);
+    estimation::MeasuredRun as_run = measured(run);
+    estimation::set_columns(as_run, model.columns);
     std::vector<double> start_C(static_cast<std::size_t>(model.network.state_count()), as_run.at.front().ambient_C);
     start_C[0] = run.winding_C.front();
     start_C[1] = run.stator_C.front();
-    const LinearisedRun path = linearise(model.network, model.values_in(as_run), {}, {}, start_C, as_run);
+    const estimation::LinearisedRun path = estimation::linearise(model.network, model.values_in(as_run), {}, {}, start_C, as_run);
     for (Eigen::Index k = 0; k < path.samples(); ++k) {
       const auto row = static_cast<std::size_t>(std::llround(as_run.time_s[static_cast<std::size_t>(k)]));
       squares_K2 += std::pow(path.state_C(0, k) - run.winding_C[row], 2) + std::pow(path.state_C(1, k) - run.stator_C[row], 2);
@@ -155,8 +155,8 @@ double rms_error_K(const Model& model, const std::vector<TrueRun>& runs) {
   return std::sqrt(squares_K2 / count);
 }
 
-DiagnosisInput question(const Case& sealed, const Runs& runs) {
-  DiagnosisInput input;
+diagnosis::DiagnosisInput question(const Case& sealed, const Runs& runs) {
+  diagnosis::DiagnosisInput input;
   Calibrated before{model_before(runs.make, sealed.seed), {}};
   if (!runs.earlier.empty()) {
     before = calibrated(sealed, runs.make, runs.earlier);
@@ -169,21 +169,21 @@ DiagnosisInput question(const Case& sealed, const Runs& runs) {
   return input;
 }
 
-std::vector<MeasuredRun> holdout(const Runs& runs) {
-  std::vector<MeasuredRun> all;
+std::vector<estimation::MeasuredRun> holdout(const Runs& runs) {
+  std::vector<estimation::MeasuredRun> all;
   std::ranges::transform(runs.unseen, std::back_inserter(all), measured);
   return all;
 }
 
 Answer examine(const Case& sealed) {
   const Runs runs = record(sealed);
-  DiagnosisInput input = question(sealed, runs);
+  diagnosis::DiagnosisInput input = question(sealed, runs);
   const auto begin = std::chrono::steady_clock::now();
   Answer answer;
-  settle_turning_rows(input);
-  answer.diagnosis = diagnose(input, {});
+  diagnosis::settle_turning_rows(input);
+  answer.diagnosis = diagnosis::diagnose(input, {});
   answer.seconds_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  answer.score = score_holdout(input, answer.diagnosis, holdout(runs));
+  answer.score = diagnosis::score_holdout(input, answer.diagnosis, holdout(runs));
   const Selection& selection = answer.diagnosis.selection;
   for (const AcceptedTerm& term : selection.terms) {
     const std::string curve =
@@ -198,7 +198,7 @@ Answer examine(const Case& sealed) {
 double floor_K(Case sealed) {
   sealed.missing = {};
   const Runs runs = record(sealed);
-  DiagnosisInput given = question(sealed, runs);
+  diagnosis::DiagnosisInput given = question(sealed, runs);
   SelectionInput input;
   input.model = std::move(given.model);
   input.runs = std::move(given.train);
@@ -209,4 +209,4 @@ double floor_K(Case sealed) {
   return rms_error_K(select_effects(input, rules).before.model, runs.unseen);
 }
 
-}  // namespace heatsoak::truth
+}  // namespace heatsoak::attribution::truth

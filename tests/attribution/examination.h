@@ -10,7 +10,7 @@
 #include "missing_effects.h"
 #include "truth_motor.h"
 
-namespace heatsoak::truth {
+namespace heatsoak::attribution::truth {
 
 /// Ground truth of a case, hidden from the analysed code.
 struct Case {
@@ -35,27 +35,27 @@ struct Runs {
 Runs record(const Case& sealed);
 
 /// Model before a calibration: the copper resistance is right, every other parameter is off by up to 25 %.
-Model model_before(const MotorMake& make, std::uint64_t seed);
+estimation::Model model_before(const MotorMake& make, std::uint64_t seed);
 
 struct Calibrated {
-  Model model;
-  Fit fit;
+  estimation::Model model;
+  estimation::Fit fit;
   UsualErrors usual = {};
 };
 /// Calibrates model_before() with runs of that motor.
 Calibrated calibrated(const Case& sealed, const MotorMake& make, const std::vector<TrueRun>& runs);
 
 /// Converts a run to the log format of the tool.
-MeasuredRun measured(const TrueRun& run);
+estimation::MeasuredRun measured(const TrueRun& run);
 
 /// Input of the diagnosis, without any hint of the missing effect.
-DiagnosisInput question(const Case& sealed, const Runs& runs);
+diagnosis::DiagnosisInput question(const Case& sealed, const Runs& runs);
 /// Runs for scoring only.
-std::vector<MeasuredRun> holdout(const Runs& runs);
+std::vector<estimation::MeasuredRun> holdout(const Runs& runs);
 
 struct Answer {
-  Diagnosis diagnosis;
-  HoldoutScore score;
+  diagnosis::Diagnosis diagnosis;
+  diagnosis::HoldoutScore score;
   std::vector<std::string> named;  ///< ids of catalogue effects, and curves as "node~driver"
   double seconds_s = 0.0;
   double before_K = 0.0;  ///< RMS error on unseen runs against true temperatures, winding and stator together
@@ -68,6 +68,6 @@ Answer examine(const Case& sealed);
 double floor_K(Case sealed);
 
 /// Open-loop RMS error of the model against the true temperatures of the runs.
-double rms_error_K(const Model& model, const std::vector<TrueRun>& runs);
+double rms_error_K(const estimation::Model& model, const std::vector<TrueRun>& runs);
 
-}  // namespace heatsoak::truth
+}  // namespace heatsoak::attribution::truth

@@ -9,7 +9,7 @@
 #include "examination.h"
 #include "scoring.h"
 
-namespace heatsoak::truth {
+namespace heatsoak::attribution::truth {
 namespace {
 
 Case loose(std::uint64_t seed) {
@@ -64,12 +64,12 @@ TEST(ManyParts, AreNoMissingEffect) {
     const Case one = loose(seed);
     const Runs runs = record(one);
     Calibrated found = calibrated(one, runs.training);
-    DiagnosisInput input = question(one, runs);
+    diagnosis::DiagnosisInput input = question(one, runs);
     input.train = holdout(runs);
     input.model = found.model;
     input.usual = found.usual;
-    const Diagnosis diagnosis = diagnose(input, {});
-    EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::nothing_missing) << seed << account(diagnosis);
+    const diagnosis::Diagnosis diagnosis = diagnosis::diagnose(input, {});
+    EXPECT_EQ(diagnosis.verdict, diagnosis::DiagnosisVerdict::nothing_missing) << seed << account(diagnosis);
     EXPECT_THAT(diagnosis.effects, testing::IsEmpty()) << seed;
   }
 }
@@ -79,13 +79,13 @@ TEST(ManyParts, HideNothingThatWholeRunsTell) {
     Case one = loose(seed);
     Calibrated found = calibrated(one, record(one).training);
     one.missing = std::ranges::find(subjects(), "enclosure_warm_up", &Subject::name)->make(1.5);
-    DiagnosisInput input = question(one, record(one));
+    diagnosis::DiagnosisInput input = question(one, record(one));
     input.model = found.model;
     input.usual = found.usual;
-    const Diagnosis diagnosis = diagnose(input, {});
-    EXPECT_NE(diagnosis.verdict, DiagnosisVerdict::nothing_missing) << seed << account(diagnosis);
+    const diagnosis::Diagnosis diagnosis = diagnosis::diagnose(input, {});
+    EXPECT_NE(diagnosis.verdict, diagnosis::DiagnosisVerdict::nothing_missing) << seed << account(diagnosis);
   }
 }
 
 }  // namespace
-}  // namespace heatsoak::truth
+}  // namespace heatsoak::attribution::truth

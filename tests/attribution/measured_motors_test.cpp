@@ -15,48 +15,49 @@
 #include "scoring.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 namespace {
 
 using truth::account;
 
 const std::filesystem::path kReports = kSource / "reports/diagnosis";
 
-Recording read(const std::filesystem::path& log, const std::filesystem::path& map) {
-  RecordingReport report;
-  return read_recording(log, mapping_for(log.string(), map.string()), report);
+recording::Recording read(const std::filesystem::path& log, const std::filesystem::path& map) {
+  recording::RecordingReport report;
+  return recording::read_recording(log, recording::mapping_for(log.string(), map.string()), report);
 }
 
-std::vector<MeasuredRun> runs_of(const ModelOfLogs& model, const std::vector<Recording>& recordings, std::optional<double> ambient_C = {}) {
-  std::vector<MeasuredRun> all;
-  MeasuredRunOptions how = model.how;
+std::vector<estimation::MeasuredRun> runs_of(const diagnosis::ModelOfLogs& model, const std::vector<recording::Recording>& recordings,
+                                             std::optional<double> ambient_C = {}) {
+  std::vector<estimation::MeasuredRun> all;
+  estimation::MeasuredRunOptions how = model.how;
   how.ambient_C = ambient_C;
-  for (const Recording& recording : recordings) {
-    std::ranges::move(measured_runs(recording, how).runs, std::back_inserter(all));
+  for (const recording::Recording& recording : recordings) {
+    std::ranges::move(estimation::measured_runs(recording, how).runs, std::back_inserter(all));
   }
   return all;
 }
 
 /// Diagnosis of some recordings and its score on others.
 struct Diagnosed {
-  ModelOfLogs model;
-  DiagnosisInput input;
-  Diagnosis diagnosis;
-  HoldoutScore score;
+  diagnosis::ModelOfLogs model;
+  diagnosis::DiagnosisInput input;
+  diagnosis::Diagnosis diagnosis;
+  diagnosis::HoldoutScore score;
 };
 
-Diagnosed diagnosed(const Motor& motor, const std::vector<Recording>& train, const std::vector<Recording>& holdout,
-                    std::optional<double> ambient_C = {}) {
-  Diagnosed out{model_of_logs(motor, train), {}, {}, {}};
+Diagnosed diagnosed(const motor::Motor& motor, const std::vector<recording::Recording>& train,
+                    const std::vector<recording::Recording>& holdout, std::optional<double> ambient_C = {}) {
+  Diagnosed out{diagnosis::model_of_logs(motor, train), {}, {}, {}};
   out.input = {out.model.model, runs_of(out.model, train, ambient_C), out.model.usual};
-  out.diagnosis = diagnose(out.input, {});
-  out.score = score_holdout(out.input, out.diagnosis, runs_of(out.model, holdout, ambient_C));
+  out.diagnosis = diagnosis::diagnose(out.input, {});
+  out.score = diagnosis::score_holdout(out.input, out.diagnosis, runs_of(out.model, holdout, ambient_C));
   return out;
 }
 
 /// RMS error of a free-running simulation over all samples of one signal.
-double rms_K(const Model& model, const std::vector<MeasuredRun>& runs, const char* signal) {
-  return open_loop_errors(model, runs, {}).at(signal).rmse_K;
+double rms_K(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs, const char* signal) {
+  return estimation::open_loop_errors(model, runs, {}).at(signal).rmse_K;
 }
 
 /// Skips the test if the recording folder is not available.
@@ -65,25 +66,25 @@ double rms_K(const Model& model, const std::vector<MeasuredRun>& runs, const cha
     GTEST_SKIP() << "the recordings are not at hand (HEATSOAK_MEASURED_DATA)"; \
   }
 
-const FoundEffect* effect_of(const Diagnosis& diagnosis, std::string_view id) {
-  const auto found = std::ranges::find(diagnosis.effects, id, &FoundEffect::id);
+const diagnosis::FoundEffect* effect_of(const diagnosis::Diagnosis& diagnosis, std::string_view id) {
+  const auto found = std::ranges::find(diagnosis.effects, id, &diagnosis::FoundEffect::id);
   return found == diagnosis.effects.end() ? nullptr : &*found;
 }
 
 struct Drone {
-  std::map<std::string, Recording> run;
-  Motor motor;  ///< calibrated with runs 1, 3 and 5
+  std::map<std::string, recording::Recording> run;
+  motor::Motor motor;  ///< calibrated with runs 1, 3 and 5
 };
 
 /// Returns the motor with its initial parameter values multiplied by the factors.
-Motor guessed_otherwise(Motor motor, const std::map<std::string, double>& factor) {
+motor::Motor guessed_otherwise(motor::Motor motor, const std::map<std::string, double>& factor) {
   for (const auto& [key, by] : factor) {
-    ParameterValue& figure = *find_parameter(motor, key);
+    base::ParameterValue& figure = *motor::find_parameter(motor, key);
     figure.value *= by;
     figure.spread->low *= by;
     figure.spread->high *= by;
   }
-  refresh_values(motor);
+  motor::refresh_values(motor);
   return motor;
 }
 
@@ -93,23 +94,25 @@ Drone drone(const std::filesystem::path& folder, bool is_for_forecasts = true, c
     all.run[name] = read(folder / (std::string(name) + ".csv"), kReports / "uav_fan/recordings.map.toml");
     EXPECT_THAT(all.run[name].conditions, testing::IsEmpty());
   }
-  const Motor start = guessed_otherwise(read_motor(kReports / "uav_motor.toml"), factor);
-  all.motor = calibrated_motor(start, calibrate(start, std::vector{all.run["run1"], all.run["run3"], all.run["run5"]}, {},
-                                                {.fit = {}, .written = is_for_forecasts ? WrittenFit::forecast : WrittenFit::innovations}));
+  const motor::Motor start = guessed_otherwise(motor::read_motor(kReports / "uav_motor.toml"), factor);
+  all.motor = calibration::calibrated_motor(
+      start, calibration::calibrate(
+                 start, std::vector{all.run["run1"], all.run["run3"], all.run["run5"]}, {},
+                 {.fit = {}, .written = is_for_forecasts ? calibration::WrittenFit::forecast : calibration::WrittenFit::innovations}));
   return all;
 }
 
 /// Trains with the first part of run 4, among others, and scores its second part.
 Diagnosed diagnosed(Drone& all, double cut) {
-  return diagnosed(all.motor, {all.run["run1"], all.run["run3"], all.run["run5"], part_of(all.run["run4"], 0.0, cut)},
-                   {part_of(all.run["run4"], cut, 1.0), all.run["run2"]});
+  return diagnosed(all.motor, {all.run["run1"], all.run["run3"], all.run["run5"], recording::part_of(all.run["run4"], 0.0, cut)},
+                   {recording::part_of(all.run["run4"], cut, 1.0), all.run["run2"]});
 }
 
 /// Checks the fitted first part of run 4 and the unseen second part.
 void expect_follows_the_fan(Drone& all, const Diagnosed& found) {
-  const Model& after = found.diagnosis.selection.after.model;
-  const std::vector<MeasuredRun> run4 = runs_of(found.model, {all.run["run4"]});
-  const std::vector<MeasuredRun> fitted = runs_of(found.model, {part_of(all.run["run4"], 0.0, 0.6)});
+  const estimation::Model& after = found.diagnosis.selection.after.model;
+  const std::vector<estimation::MeasuredRun> run4 = runs_of(found.model, {all.run["run4"]});
+  const std::vector<estimation::MeasuredRun> fitted = runs_of(found.model, {recording::part_of(all.run["run4"], 0.0, 0.6)});
   for (const char* const signal : {"winding_C", "stator_C"}) {
     EXPECT_LE(rms_K(after, fitted, signal), 3.0) << signal << account(found.diagnosis);
     EXPECT_GT(rms_K(found.input.model, run4, signal), 25.0) << signal;
@@ -123,7 +126,7 @@ TEST(MeasuredMotors, an_undocumented_fan_is_found_in_the_run_that_had_it) {
   Drone all = drone(*folder, false);
   const Diagnosed found = diagnosed(all, 0.6);
   expect_follows_the_fan(all, found);
-  const std::vector<MeasuredRun> run2 = runs_of(found.model, {all.run["run2"]});
+  const std::vector<estimation::MeasuredRun> run2 = runs_of(found.model, {all.run["run2"]});
   for (const char* const signal : {"winding_C", "stator_C"}) {
     EXPECT_LE(rms_K(found.diagnosis.selection.after.model, run2, signal), rms_K(found.input.model, run2, signal)) << signal;
   }
@@ -159,8 +162,8 @@ TEST_P(DroneWithFan, is_named_wherever_its_run_is_cut) {
   SKIP_WITHOUT(folder);
   Drone all = drone(*folder);
   const Diagnosed found = diagnosed(all, GetParam() / 100.0);
-  EXPECT_EQ(found.diagnosis.verdict, DiagnosisVerdict::effect_found) << account(found.diagnosis);
-  const FoundEffect* const fan = effect_of(found.diagnosis, "airflow");
+  EXPECT_EQ(found.diagnosis.verdict, diagnosis::DiagnosisVerdict::effect_found) << account(found.diagnosis);
+  const diagnosis::FoundEffect* const fan = effect_of(found.diagnosis, "airflow");
   ASSERT_TRUE(fan) << account(found.diagnosis);
   EXPECT_EQ(fan->node, "stator");
   EXPECT_THAT(fan->condition, testing::ElementsAre(testing::Pair("run", "run4")));
@@ -171,12 +174,12 @@ INSTANTIATE_TEST_SUITE_P(MeasuredMotors, DroneWithFan, testing::Values(50, 60, 7
 
 /// Two recordings of the outrunner "Mega" with a propeller on a bench, on two days.
 struct PropellerBench {
-  Recording january;
-  Recording march;
-  Motor start = read_motor(kReports / "propeller_bench/start.toml");
+  recording::Recording january;
+  recording::Recording march;
+  motor::Motor start = motor::read_motor(kReports / "propeller_bench/start.toml");
 };
 
-Recording of_bench(const std::filesystem::path& folder, const char* name) {
+recording::Recording of_bench(const std::filesystem::path& folder, const char* name) {
   return read(folder / ("cooling_slopes__Spike-" + std::string(name) + ".csv"), kReports / "propeller_bench/recordings.map.toml");
 }
 
@@ -191,15 +194,15 @@ TEST(MeasuredMotors, a_propeller_cools_while_it_turns_and_what_is_hot_inside_com
   SKIP_WITHOUT(folder);
   const auto [january, march, start] = propeller_bench(*folder);
   const auto [model, input, diagnosis, score] = diagnosed(start, {january}, {march});
-  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::effect_found) << account(diagnosis);
-  const FoundEffect* const propeller = effect_of(diagnosis, "speed_dependent_convection");
+  EXPECT_EQ(diagnosis.verdict, diagnosis::DiagnosisVerdict::effect_found) << account(diagnosis);
+  const diagnosis::FoundEffect* const propeller = effect_of(diagnosis, "speed_dependent_convection");
   ASSERT_TRUE(propeller) << account(diagnosis);
   EXPECT_EQ(propeller->node, "stator");
   EXPECT_GT(propeller->parameters.front().low, 0.0);
   EXPECT_LE(score.after.at("stator_C").rmse_K, 1.0);
-  const MeasuredRun& run = score.runs.front();
-  const auto turns = [](const OperatingPoint<double>& at) { return at.speed_mean_rad_per_s > 10.0; };
-  const Eigen::MatrixXd predicted_C = open_loop_C(diagnosis.selection.after.model, run, {});
+  const estimation::MeasuredRun& run = score.runs.front();
+  const auto turns = [](const thermal::OperatingPoint<double>& at) { return at.speed_mean_rad_per_s > 10.0; };
+  const Eigen::MatrixXd predicted_C = estimation::open_loop_C(diagnosis.selection.after.model, run, {});
   const Eigen::Index stopped = std::ranges::find_if(run.at.rbegin(), run.at.rend(), turns).base() - run.at.begin();
   const double measured_rise_K = run.measured_C.col(0).tail(run.samples() - stopped).maxCoeff() - run.measured_C(stopped, 0);
   EXPECT_GT(measured_rise_K, 4.0);
@@ -211,9 +214,10 @@ TEST(MeasuredMotors, a_calibrated_motor_gets_the_air_of_its_propeller_from_the_o
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
   const auto [january, march, start] = propeller_bench(*folder);
-  const Motor motor = calibrated_motor(start, calibrate(start, std::vector{january}, {}, {.fit = {}, .written = WrittenFit::innovations}));
+  const motor::Motor motor = calibration::calibrated_motor(
+      start, calibration::calibrate(start, std::vector{january}, {}, {.fit = {}, .written = calibration::WrittenFit::innovations}));
   const auto [model, input, diagnosis, score] = diagnosed(motor, {january}, {march});
-  EXPECT_EQ(diagnosis.verdict, DiagnosisVerdict::effect_found) << account(diagnosis);
+  EXPECT_EQ(diagnosis.verdict, diagnosis::DiagnosisVerdict::effect_found) << account(diagnosis);
   EXPECT_TRUE(effect_of(diagnosis, "speed_dependent_convection")) << account(diagnosis);
   EXPECT_LE(score.after.at("stator_C").rmse_K, 1.05 * score.before.at("stator_C").rmse_K);
 }
@@ -223,8 +227,8 @@ TEST(MeasuredMotors, two_recordings_far_from_the_guess_are_followed_before_anyth
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
   const auto [january, march, start] = propeller_bench(*folder);
-  const std::vector<Recording> both{january, march};
-  const Diagnosis diagnosis = diagnosed(start, both, {}).diagnosis;
+  const std::vector<recording::Recording> both{january, march};
+  const diagnosis::Diagnosis diagnosis = diagnosed(start, both, {}).diagnosis;
   EXPECT_GT(diagnosis.before_train.at("stator_C").rmse_K, 40.0);
   EXPECT_LT(diagnosis.refitted_train.at("stator_C").rmse_K, 3.0);
   EXPECT_LT(diagnosis.after_train.at("stator_C").rmse_K, diagnosis.refitted_train.at("stator_C").rmse_K);
@@ -236,11 +240,12 @@ TEST(MeasuredMotors, rejected_laws_do_not_change_the_refitted_parameters) {
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
   const auto [january, march, start] = propeller_bench(*folder);
-  const Motor guess = guessed_otherwise(start, {{"thermal_resistance_winding_stator", 1.31},
-                                                {"thermal_resistance_stator_ambient", 1.70},
-                                                {"thermal_time_constant_winding", 1.91},
-                                                {"thermal_time_constant_stator", 2.64}});
-  const auto [model, input, diagnosis, score] = diagnosed(guess, {january, part_of(march, 0.0, 0.6)}, {part_of(march, 0.6, 1.0)});
+  const motor::Motor guess = guessed_otherwise(start, {{"thermal_resistance_winding_stator", 1.31},
+                                                       {"thermal_resistance_stator_ambient", 1.70},
+                                                       {"thermal_time_constant_winding", 1.91},
+                                                       {"thermal_time_constant_stator", 2.64}});
+  const auto [model, input, diagnosis, score] =
+      diagnosed(guess, {january, recording::part_of(march, 0.0, 0.6)}, {recording::part_of(march, 0.6, 1.0)});
   EXPECT_THAT(diagnosis.selection.refused, testing::Not(testing::IsEmpty()));
   if (diagnosis.effects.empty()) {
     EXPECT_NEAR(diagnosis.after_train.at("stator_C").rmse_K, diagnosis.refitted_train.at("stator_C").rmse_K, 0.01);
@@ -253,9 +258,9 @@ TEST(MeasuredMotors, rejected_laws_do_not_change_the_refitted_parameters) {
 TEST(MeasuredMotors, another_outrunner_of_the_bench_gets_the_air_of_its_propeller) {
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   SKIP_WITHOUT(folder);
-  const Recording all = of_bench(*folder, "P80-1700_2020-02-11_162559");
-  const Motor start = read_motor(kReports / "propeller_bench/start.toml");
-  const auto [model, input, diagnosis, score] = diagnosed(start, {part_of(all, 0.0, 0.7)}, {part_of(all, 0.7, 1.0)});
+  const recording::Recording all = of_bench(*folder, "P80-1700_2020-02-11_162559");
+  const motor::Motor start = motor::read_motor(kReports / "propeller_bench/start.toml");
+  const auto [model, input, diagnosis, score] = diagnosed(start, {recording::part_of(all, 0.0, 0.7)}, {recording::part_of(all, 0.7, 1.0)});
   ASSERT_TRUE(effect_of(diagnosis, "speed_dependent_convection")) << account(diagnosis);
   EXPECT_LE(diagnosis.after_train.at("stator_C").rmse_K, 0.5 * diagnosis.refitted_train.at("stator_C").rmse_K);
   EXPECT_LE(score.after.at("stator_C").rmse_K, 0.5);
@@ -265,23 +270,25 @@ TEST(MeasuredMotors, locked_and_free_runs_of_a_frameless_motor_come_under_one_mo
   const std::optional<std::filesystem::path> folder = measured_data("umich_ri50");
   SKIP_WITHOUT(folder);
   const std::filesystem::path map = kSource / "tests/data/mappings/umich_ri50.map.toml";
-  const Recording stall = read(*folder / "stall_staircase.csv", map);
-  const Recording no_load = read(*folder / "no_load_staircase.csv", map);
-  const Motor start = read_motor(kReports / "../calibration/ri50.toml");
+  const recording::Recording stall = read(*folder / "stall_staircase.csv", map);
+  const recording::Recording no_load = read(*folder / "no_load_staircase.csv", map);
+  const motor::Motor start = motor::read_motor(kReports / "../calibration/ri50.toml");
   constexpr double kAmbient_C = 22.0;
-  const Motor motor = calibrated_motor(start, calibrate(start, std::vector{stall}, {}, {{}, kAmbient_C, WrittenFit::innovations}));
+  const motor::Motor motor = calibration::calibrated_motor(
+      start, calibration::calibrate(start, std::vector{stall}, {}, {{}, kAmbient_C, calibration::WrittenFit::innovations}));
   const auto [model, input, diagnosis, score] =
-      diagnosed(motor, {stall, part_of(no_load, 0.0, 0.6)}, {part_of(no_load, 0.6, 1.0)}, kAmbient_C);
+      diagnosed(motor, {stall, recording::part_of(no_load, 0.0, 0.6)}, {recording::part_of(no_load, 0.6, 1.0)}, kAmbient_C);
   EXPECT_LE(score.after.at("winding_C").rmse_K, 0.4) << account(diagnosis);
   EXPECT_LE(score.after.at("stator_C").rmse_K, 0.2) << account(diagnosis);
   EXPECT_LT(diagnosis.after_train.at("winding_C").rmse_K, 0.7 * diagnosis.before_train.at("winding_C").rmse_K);
   // The data are 37 samples with a resolution of 1 K, so a tiny p-value would be wrong.
-  EXPECT_THAT(diagnosis.effects, testing::Each(testing::Field(&FoundEffect::p_value, testing::Gt(1e-60))));
+  EXPECT_THAT(diagnosis.effects, testing::Each(testing::Field(&diagnosis::FoundEffect::p_value, testing::Gt(1e-60))));
 }
 
 Diagnosed of_traction_motor(const std::filesystem::path& folder, double cut) {
-  const Recording all = read(folder / "profile24_2.5s.csv", kReports / "traction_motor/recording.map.toml");
-  return diagnosed(read_motor(kReports / "traction_motor/start.toml"), {part_of(all, 0.0, cut)}, {part_of(all, cut, 1.0)});
+  const recording::Recording all = read(folder / "profile24_2.5s.csv", kReports / "traction_motor/recording.map.toml");
+  return diagnosed(motor::read_motor(kReports / "traction_motor/start.toml"), {recording::part_of(all, 0.0, cut)},
+                   {recording::part_of(all, cut, 1.0)});
 }
 
 TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_is_predicted_after_two_loads) {
@@ -292,7 +299,7 @@ TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_is_predicted
     EXPECT_GT(score.before.at(signal).rmse_K, 10.0) << signal;
     EXPECT_LE(score.after.at(signal).rmse_K, 3.0) << signal << account(diagnosis);
   }
-  EXPECT_NE(diagnosis.verdict, DiagnosisVerdict::nothing_missing);
+  EXPECT_NE(diagnosis.verdict, diagnosis::DiagnosisVerdict::nothing_missing);
 }
 
 TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_gets_names_once_two_loads_were_seen_for_a_while) {
@@ -314,8 +321,8 @@ TEST(MeasuredMotors, half_a_log_at_one_load_does_not_claim_to_know_another_load)
   for (const char* const signal : {"winding_C", "stator_C"}) {
     EXPECT_LT(score.after.at(signal).rmse_K, score.before.at(signal).rmse_K) << signal;
   }
-  EXPECT_THAT(score.beyond_training, testing::ElementsAre(testing::Field(&BeyondTraining::signal, Signal::current)));
+  EXPECT_THAT(score.beyond_training, testing::ElementsAre(testing::Field(&diagnosis::BeyondTraining::signal, thermal::Signal::current)));
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace heatsoak::truth {
+namespace heatsoak::attribution::truth {
 namespace {
 
 constexpr double kFull_rad_per_s = 500.0;
@@ -363,4 +363,4 @@ const std::vector<Subject>& subjects() { return kSubjects; }
 const std::vector<Outsider>& outsiders() { return kOutsiders; }
 const std::vector<Outsider>& strangers() { return kStrangers; }
 
-}  // namespace heatsoak::truth
+}  // namespace heatsoak::attribution::truth

@@ -7,7 +7,7 @@
 
 #include "truth_motor.h"
 
-namespace heatsoak::truth {
+namespace heatsoak::attribution::truth {
 
 enum class Visibility { visible, faint };  ///< faint: the base parameters or the noise hide the effect, see the note of each
 
@@ -38,4 +38,4 @@ const std::vector<Outsider>& outsiders();
 /// Heat that follows no logged signal: every named signal is wrong.
 const std::vector<Outsider>& strangers();
 
-}  // namespace heatsoak::truth
+}  // namespace heatsoak::attribution::truth

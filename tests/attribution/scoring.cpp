@@ -7,7 +7,7 @@
 #include <cmath>
 #include <ranges>
 
-namespace heatsoak::truth {
+namespace heatsoak::attribution::truth {
 namespace {
 
 /// Returns the id without the node: iron_loss_eddy for "iron_loss_eddy@stator".
@@ -52,18 +52,19 @@ bool names_outsider(const Answer& answer, const Outsider& outsider) {
   };
   // Only the first term counts as the answer; further terms may follow.
   const bool leads = !selection.terms.empty() && selection.terms.front().curve && is_right(*selection.terms.front().curve);
-  return leads && answer.diagnosis.verdict == DiagnosisVerdict::unexplained;
+  return leads && answer.diagnosis.verdict == diagnosis::DiagnosisVerdict::unexplained;
 }
 
 bool gives_a_name(const Answer& answer) {
-  const auto is_named = [](const Unexplained& heat) { return !heat.drivers.empty() && heat.drivers.front() != kTimeDriver; };
-  return std::ranges::any_of(answer.diagnosis.effects, &FoundEffect::is_from_catalogue) ||
+  const auto is_named = [](const diagnosis::Unexplained& heat) { return !heat.drivers.empty() && heat.drivers.front() != kTimeDriver; };
+  return std::ranges::any_of(answer.diagnosis.effects, &diagnosis::FoundEffect::is_from_catalogue) ||
          std::ranges::any_of(answer.diagnosis.unexplained, is_named);
 }
 
 bool leaves_unnamed(const Answer& answer, const Outsider& stranger) {
-  return answer.diagnosis.verdict == DiagnosisVerdict::unexplained && !gives_a_name(answer) &&
-         std::ranges::find(answer.diagnosis.unexplained, stranger.node, &Unexplained::node) != answer.diagnosis.unexplained.end();
+  return answer.diagnosis.verdict == diagnosis::DiagnosisVerdict::unexplained && !gives_a_name(answer) &&
+         std::ranges::find(answer.diagnosis.unexplained, stranger.node, &diagnosis::Unexplained::node) !=
+             answer.diagnosis.unexplained.end();
 }
 
 bool mentions(const Answer& answer, const Subject& subject) {
@@ -77,7 +78,7 @@ bool is_silent(const Answer& answer) { return answer.named.empty(); }
 std::string account(const Answer& answer) {
   const Selection& selection = answer.diagnosis.selection;
   std::string text = fmt::format("{:5.2f} s {:6.3f} -> {:6.3f} K {}", answer.seconds_s, answer.before_K, answer.after_K,
-                                 to_string(answer.diagnosis.verdict));
+                                 diagnosis::to_string(answer.diagnosis.verdict));
   for (std::size_t i = 0; i < answer.named.size(); ++i) {
     const AcceptedTerm& term = selection.terms[i];
     text += fmt::format(" [{} {:.1f} nats, visible {:.2f}{}]", answer.named[i], term.loss_without_nats, term.visibility_ratio,
@@ -93,27 +94,27 @@ std::string account(const Answer& answer) {
       text += fmt::format(" {}:{:.1f}", curve_name(selection, round.scan[i]), round.scan[i].gain_nats);
     }
   }
-  for (const Unexplained& heat : answer.diagnosis.unexplained) {
+  for (const diagnosis::Unexplained& heat : answer.diagnosis.unexplained) {
     text += fmt::format(" | unexplained {}~{} {:.2f} W", heat.node, fmt::join(heat.drivers, "/"), heat.rms_W);
   }
-  const LatentFlux& flux = selection.after.flux;
+  const estimation::LatentFlux& flux = selection.after.flux;
   return text +
          fmt::format(" | unknown {:.2f} W, {:.0f} s of {:.1f} W", fmt::join(flux.rms_W, ", "), flux.time_scale_s, selection.mean_heat_W) +
          fmt::format(" | left {:.2f} W of {:.2f} W", fmt::join(std::views::values(selection.left_W), ", "), selection.material_W);
 }
 
-std::string account(const Diagnosis& diagnosis) {
-  std::string text(to_string(diagnosis.verdict));
-  for (const FoundEffect& effect : diagnosis.effects) {
+std::string account(const diagnosis::Diagnosis& diagnosis) {
+  std::string text(diagnosis::to_string(diagnosis.verdict));
+  for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
     text += fmt::format(" [{}@{} {:.1f} nats, {:.2f} W]", effect.id, effect.node, effect.gain_nats, effect.mean_W);
   }
   for (const ChangedParameter& parameter : diagnosis.changed) {
     text += fmt::format(" | {}: {:.3g} -> {:.3g}", parameter.name, parameter.before, parameter.value);
   }
-  for (const Unexplained& heat : diagnosis.unexplained) {
+  for (const diagnosis::Unexplained& heat : diagnosis.unexplained) {
     text += fmt::format(" | unexplained {}~{} {:.2f} W", heat.node, fmt::join(heat.drivers, "/"), heat.rms_W);
   }
   return text;
 }
 
-}  // namespace heatsoak::truth
+}  // namespace heatsoak::attribution::truth

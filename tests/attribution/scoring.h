@@ -6,7 +6,7 @@
 
 #include "examination.h"
 
-namespace heatsoak::truth {
+namespace heatsoak::attribution::truth {
 
 struct Share {
   int right = 0;
@@ -34,6 +34,6 @@ bool is_silent(const Answer& answer);
 /// Summarises an answer for failure messages: "[iron_loss_eddy 41 nats or windage] …" and the best entries of the ladder and the scan.
 std::string account(const Answer& answer);
 /// Summarises verdict, effects, contradicted parameters and unexplained heat for failure messages.
-std::string account(const Diagnosis& diagnosis);
+std::string account(const diagnosis::Diagnosis& diagnosis);
 
-}  // namespace heatsoak::truth
+}  // namespace heatsoak::attribution::truth

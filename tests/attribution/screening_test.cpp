@@ -13,7 +13,7 @@
 #include "recording/read_recording.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 namespace {
 
 using Intervals = std::vector<std::pair<double, double>>;
@@ -70,7 +70,7 @@ std::map<double, double> cells_of(const std::filesystem::path& log, const std::s
 
 /// Counts a sample as found if it is missing in the run or has no weight. The error of a wrong sample is its distance to a straight line
 /// between its good neighbours.
-void add(const MeasuredRun& run, const Eigen::VectorXd& weights, const std::filesystem::path& log, const nlohmann::json& motor,
+void add(const estimation::MeasuredRun& run, const Eigen::VectorXd& weights, const std::filesystem::path& log, const nlohmann::json& motor,
          Score& score) {
   constexpr double kOff_sd = 5.0;
   for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
@@ -117,8 +117,8 @@ void add(const MeasuredRun& run, const Eigen::VectorXd& weights, const std::file
 }
 
 /// Scores the samples of stuck intervals. Only intervals of at least 18 s in which the file repeats one value count.
-void add_stuck(const MeasuredRun& run, const Eigen::VectorXd& weights, const std::filesystem::path& log, const nlohmann::json& motor,
-               const Eigen::MatrixXd& expected_C, Score& score) {
+void add_stuck(const estimation::MeasuredRun& run, const Eigen::VectorXd& weights, const std::filesystem::path& log,
+               const nlohmann::json& motor, const Eigen::MatrixXd& expected_C, Score& score) {
   constexpr double kOff_sd = 5.0;
   constexpr double kStuck_s = 17.0;
   for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
@@ -156,23 +156,23 @@ TEST(Screening, FindsWrongSamplesAndLeavesGoodOnes) {
     GTEST_SKIP() << "the recordings are not at hand (HEATSOAK_MEASURED_DATA)";
   }
   const nlohmann::json truth = nlohmann::json::parse(std::ifstream(*folder / "truth.json"));
-  const Motor sheet = read_motor(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml");
+  const motor::Motor sheet = motor::read_motor(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml");
   Score single, stuck;
   for (const auto& motor : truth["motors"]) {
-    std::vector<Recording> recordings;
+    std::vector<recording::Recording> recordings;
     std::vector<std::filesystem::path> logs;
     for (const char* const name : {"train_1.csv", "train_2.csv", "train_3.csv", "train_4.csv"}) {
       logs.push_back(*folder / motor["motor"].get<std::string>() / name);
-      RecordingReport report;
-      recordings.push_back(read_recording(logs.back(), mapping_for(logs.back(), {}), report));
+      recording::RecordingReport report;
+      recordings.push_back(recording::read_recording(logs.back(), recording::mapping_for(logs.back(), {}), report));
     }
-    const ModelOfLogs model = model_of_logs(sheet, recordings);
-    std::vector<MeasuredRun> runs;
+    const diagnosis::ModelOfLogs model = diagnosis::model_of_logs(sheet, recordings);
+    std::vector<estimation::MeasuredRun> runs;
     std::vector<std::filesystem::path> log_of_run;
     std::size_t log = 0;
-    for (const Recording& recording : recordings) {
-      const MeasuredRuns of_one = measured_runs(recording, model.how);
-      for (const MeasuredRun& run : of_one.runs) {
+    for (const recording::Recording& recording : recordings) {
+      const estimation::MeasuredRuns of_one = estimation::measured_runs(recording, model.how);
+      for (const estimation::MeasuredRun& run : of_one.runs) {
         runs.push_back(run);
         log_of_run.push_back(logs[log]);
       }
@@ -193,4 +193,4 @@ TEST(Screening, FindsWrongSamplesAndLeavesGoodOnes) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

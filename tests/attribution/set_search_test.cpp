@@ -7,14 +7,14 @@
 #include <cmath>
 #include <random>
 
-namespace heatsoak {
+namespace heatsoak::attribution {
 namespace {
 
 struct Problem {
   Eigen::MatrixXd theta;       ///< matrix, n × t
   Eigen::MatrixXd candidates;  ///< matrix, n × e
   Eigen::VectorXd residual;
-  ThetaPrior prior;
+  estimation::ThetaPrior prior;
 };
 
 /// Linear problem with white noise of variance 1, so no whitening is needed.
@@ -39,10 +39,10 @@ Problem problem(std::uint32_t seed, double size) {
   return out;
 }
 
-Reduced reduced_of(const Problem& of) {
+estimation::Reduced reduced_of(const Problem& of) {
   Eigen::MatrixXd all(of.residual.size(), of.theta.cols() + of.candidates.cols() + 1);
   all << of.theta, of.candidates, of.residual;
-  return reduced({all.transpose() * all, 0.0}, of.prior);
+  return estimation::reduced({all.transpose() * all, 0.0}, of.prior);
 }
 
 /// ln N(residual | mean of θ, 1 + Θ Λ⁻¹ Θᵀ + Z S Zᵀ), with sizes of mean 0 and covariance S.
@@ -62,7 +62,7 @@ TEST(SetSearch, EvidenceOfSizesOfEitherSignIsThatOfTheDenseCovariance) {
   const std::vector<CandidateRule> rules(4, CandidateRule{.has_sign = false, .id = "", .family = ""});
   for (const std::uint32_t seed : {1U, 2U, 3U}) {
     const Problem one = problem(seed, 0.4);
-    const Reduced point = reduced_of(one);
+    const estimation::Reduced point = reduced_of(one);
     for (const std::vector<int>& members : {std::vector<int>{0}, {1, 2}, {0, 1, 3}}) {
       const double gain_nats = set_gain_nats(point, columns_of(members, rules, kSize_sd));
       EXPECT_NEAR(gain_nats, dense_nats(one, members, kSize_sd) - dense_nats(one, {}, kSize_sd), 1e-6);
@@ -160,4 +160,4 @@ TEST(SetSearch, FitsDecideAmongTheBestSets) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::attribution

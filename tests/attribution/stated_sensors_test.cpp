@@ -14,7 +14,7 @@
 #include "motor/write_motor.h"
 #include "scoring.h"
 
-namespace heatsoak::truth {
+namespace heatsoak::attribution::truth {
 namespace {
 
 Case with_late_stator() {
@@ -25,8 +25,8 @@ Case with_late_stator() {
 }
 constexpr double kLag_s = 10.0;
 
-void state(std::vector<MeasuredRun>& runs, const std::vector<heatsoak::SensorFault>& faults) {
-  for (MeasuredRun& run : runs) {
+void state(std::vector<estimation::MeasuredRun>& runs, const std::vector<motor::SensorFault>& faults) {
+  for (estimation::MeasuredRun& run : runs) {
     run.sensors[static_cast<std::size_t>(run.sensor_at("stator"))].faults = faults;
   }
 }
@@ -34,19 +34,19 @@ void state(std::vector<MeasuredRun>& runs, const std::vector<heatsoak::SensorFau
 TEST(StatedSensors, AreNotMissing) {
   const Case one = with_late_stator();
   const Runs runs = record(one);
-  DiagnosisInput input = question(one, runs);
-  const Diagnosis found = diagnose(input, {});
+  diagnosis::DiagnosisInput input = question(one, runs);
+  const diagnosis::Diagnosis found = diagnosis::diagnose(input, {});
   ASSERT_EQ(found.effects.size(), 1U) << account(found);
   EXPECT_EQ(found.effects.front().id, "sensor_lag_stator");
-  std::vector<MeasuredRun> unseen = holdout(runs);
-  const HoldoutScore found_score = score_holdout(input, found, unseen);
-  for (std::vector<MeasuredRun>* const some : {&input.train, &unseen}) {
-    state(*some, {{find_sensor_effect("sensor_lag_stator"), kLag_s}});
+  std::vector<estimation::MeasuredRun> unseen = holdout(runs);
+  const diagnosis::HoldoutScore found_score = diagnosis::score_holdout(input, found, unseen);
+  for (std::vector<estimation::MeasuredRun>* const some : {&input.train, &unseen}) {
+    state(*some, {{motor::find_sensor_effect("sensor_lag_stator"), kLag_s}});
   }
-  const Diagnosis stated = diagnose(input, {});
-  EXPECT_EQ(stated.verdict, DiagnosisVerdict::nothing_missing) << account(stated);
+  const diagnosis::Diagnosis stated = diagnosis::diagnose(input, {});
+  EXPECT_EQ(stated.verdict, diagnosis::DiagnosisVerdict::nothing_missing) << account(stated);
   EXPECT_THAT(stated.effects, testing::IsEmpty()) << account(stated);
-  const HoldoutScore score = score_holdout(input, stated, unseen);
+  const diagnosis::HoldoutScore score = diagnosis::score_holdout(input, stated, unseen);
   for (const auto& [signal, error] : found_score.after) {
     EXPECT_NEAR(score.after.at(signal).rmse_K, error.rmse_K, 0.05) << signal;
   }
@@ -55,10 +55,10 @@ TEST(StatedSensors, AreNotMissing) {
 // If the stated fault is wrong, the difference is found in addition to it.
 TEST(StatedSensors, LeaveRoomForWhatTheyDoNotTell) {
   const Case one = with_late_stator();
-  DiagnosisInput input = question(one, record(one));
-  state(input.train, {{find_sensor_effect("sensor_offset_stator"), 3.0}});
-  const Diagnosis found = diagnose(input, {});
-  const auto effect = [&](std::string_view id) { return std::ranges::find(found.effects, id, &FoundEffect::id); };
+  diagnosis::DiagnosisInput input = question(one, record(one));
+  state(input.train, {{motor::find_sensor_effect("sensor_offset_stator"), 3.0}});
+  const diagnosis::Diagnosis found = diagnosis::diagnose(input, {});
+  const auto effect = [&](std::string_view id) { return std::ranges::find(found.effects, id, &diagnosis::FoundEffect::id); };
   ASSERT_NE(effect("sensor_lag_stator"), found.effects.end()) << account(found);
   EXPECT_NEAR(effect("sensor_lag_stator")->parameters.front().value, kLag_s, 2.0);
   ASSERT_NE(effect("sensor_offset_stator"), found.effects.end()) << account(found);
@@ -68,17 +68,18 @@ TEST(StatedSensors, LeaveRoomForWhatTheyDoNotTell) {
 /// Candidate columns of sensors with stated faults, compared with differences of a model that contains a small amount of each candidate.
 TEST(StatedSensors, CandidatesAreSeenThroughThem) {
   const Case one = with_late_stator();
-  DiagnosisInput input = question(one, record(one));
-  state(input.train, {{find_sensor_effect("sensor_lag_stator"), 40.0}});
-  const MeasuredRun& run = input.train.front();
-  const LinearisedRun here = linearise(input.model, std::vector<double>{30.0, 28.0}, run);
+  diagnosis::DiagnosisInput input = question(one, record(one));
+  state(input.train, {{motor::find_sensor_effect("sensor_lag_stator"), 40.0}});
+  const estimation::MeasuredRun& run = input.train.front();
+  const estimation::LinearisedRun here = estimation::linearise(input.model, std::vector<double>{30.0, 28.0}, run);
   const std::vector<Candidate> all = candidates_for(input.model, input.train).candidates;
   for (const char* const id : {"iron_loss_eddy", "speed_dependent_convection", "sensor_offset_stator"}) {
     const auto candidate = std::ranges::find(all, id, &Candidate::id);
     ASSERT_NE(candidate, all.end()) << id;
-    const Columns column = candidate_columns({*candidate}, input.model, here, run);
+    const estimation::Columns column = candidate_columns({*candidate}, input.model, here, run);
     constexpr double kLittle_share = 1e-3;
-    const LinearisedRun with = linearise(with_candidate(input.model, *candidate, kLittle_share), std::vector<double>{30.0, 28.0}, run);
+    const estimation::LinearisedRun with =
+        estimation::linearise(with_candidate(input.model, *candidate, kLittle_share), std::vector<double>{30.0, 28.0}, run);
     const Eigen::MatrixXd expected = (with.sensor_C - here.sensor_C) / kLittle_share;
     const Eigen::Index sensor = run.sensor_at("stator");
     double worst = 0.0;
@@ -90,7 +91,7 @@ TEST(StatedSensors, CandidatesAreSeenThroughThem) {
 }
 
 /// Writes a data sheet for the examination's motor.
-Motor sheet_of(const MotorMake& make, const std::filesystem::path& file) {
+motor::Motor sheet_of(const MotorMake& make, const std::filesystem::path& file) {
   std::ofstream out(file);
   out << "manufacturer = \"none\"\nname = \"made up\"\ntype = \"brushless\"\n[sources]\ns = \"made up\"\n[conventions]\n"
          "terminal_resistance = \"between_terminals\"\ntorque_constant = \"per_dc_ampere\"\n[figures]\n";
@@ -108,44 +109,44 @@ Motor sheet_of(const MotorMake& make, const std::filesystem::path& file) {
   figure("thermal_time_constant_winding", make.copper_to_iron_K_per_W * make.copper_capacity_J_per_K, "s");
   figure("thermal_time_constant_stator", make.iron_to_air_K_per_W * make.iron_capacity_J_per_K, "s");
   out.close();
-  return read_motor(file);
+  return motor::read_motor(file);
 }
 
 TEST(StatedSensors, AreWrittenWhereTheyWereFoundAndThenNothingIsMissing) {
   const Case one = with_late_stator();
   const Runs runs = record(one);
-  std::vector<Recording> logs;
+  std::vector<recording::Recording> logs;
   for (const TrueRun& run : runs.training) {
     logs.push_back(run.log);
   }
   const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("stated_sensors_{}.toml", getpid());
-  const Motor motor = sheet_of(runs.make, file);
-  NamedLogs named_logs;
+  const motor::Motor motor = sheet_of(runs.make, file);
+  recording::NamedLogs named_logs;
   named_logs.fitted = logs;
-  const DiagnosisAnswer first = run_diagnosis({motor, named_logs});
-  ASSERT_EQ(first.diagnosis.verdict, DiagnosisVerdict::effect_found) << account(first.diagnosis);
-  std::ofstream(file) << to_toml(first.motor);
-  const Motor again = read_motor(file);
+  const diagnosis::DiagnosisAnswer first = diagnosis::run_diagnosis({motor, named_logs});
+  ASSERT_EQ(first.diagnosis.verdict, diagnosis::DiagnosisVerdict::effect_found) << account(first.diagnosis);
+  std::ofstream(file) << motor::to_toml(first.motor);
+  const motor::Motor again = motor::read_motor(file);
   std::filesystem::remove(file);
   ASSERT_EQ(again.sensors.size(), 1U) << account(first.diagnosis);
-  const MotorSensor& sensor = again.sensors.front();
+  const motor::MotorSensor& sensor = again.sensors.front();
   EXPECT_EQ(sensor.name, "sensor_lag_stator");
   EXPECT_NEAR(sensor.size.value, kLag_s, 2.0);
-  EXPECT_EQ(sensor.size.origin, Origin::measured);
+  EXPECT_EQ(sensor.size.origin, base::Origin::measured);
   ASSERT_TRUE(sensor.size.spread);
   EXPECT_LT(sensor.size.spread->low, kLag_s);
   EXPECT_GT(sensor.size.spread->high, kLag_s);
   EXPECT_TRUE(again.notes.empty());
 
-  const DiagnosisAnswer second = run_diagnosis({again, named_logs});
-  EXPECT_EQ(second.diagnosis.verdict, DiagnosisVerdict::nothing_missing) << account(second.diagnosis);
-  EXPECT_THAT(second.findings, testing::Contains(testing::VariantWith<Remark>(
-                                   testing::Field(&Remark::words, testing::HasSubstr("effects.sensor_lag_stator.time_constant is held")))));
+  const diagnosis::DiagnosisAnswer second = diagnosis::run_diagnosis({again, named_logs});
+  EXPECT_EQ(second.diagnosis.verdict, diagnosis::DiagnosisVerdict::nothing_missing) << account(second.diagnosis);
+  EXPECT_THAT(second.findings, testing::Contains(testing::VariantWith<calibration::Remark>(testing::Field(
+                                   &calibration::Remark::words, testing::HasSubstr("effects.sensor_lag_stator.time_constant is held")))));
 
   // Entries that the file already contains keep their names.
-  Motor named = motor;
-  named.sensors.push_back({"sensor_lag_stator", find_sensor_effect("sensor_offset_winding"), {}});
-  const Motor both = extended_motor(named, model_of_logs(motor, logs), first.diagnosis);
+  motor::Motor named = motor;
+  named.sensors.push_back({"sensor_lag_stator", motor::find_sensor_effect("sensor_offset_winding"), {}});
+  const motor::Motor both = diagnosis::extended_motor(named, diagnosis::model_of_logs(motor, logs), first.diagnosis);
   ASSERT_EQ(both.sensors.size(), 2U);
   EXPECT_EQ(both.sensors[0].type->name, "sensor_offset_winding");
   EXPECT_EQ(both.sensors[0].name, "sensor_lag_stator");
@@ -153,4 +154,4 @@ TEST(StatedSensors, AreWrittenWhereTheyWereFoundAndThenNothingIsMissing) {
 }
 
 }  // namespace
-}  // namespace heatsoak::truth
+}  // namespace heatsoak::attribution::truth

@@ -6,7 +6,7 @@
 
 #include "base/unknown.h"
 
-namespace heatsoak::truth {
+namespace heatsoak::attribution::truth {
 namespace {
 
 /// Shares of copper and iron. Parts of one material are so closely coupled that two nodes approximate all eight within 0.1 K.
@@ -136,7 +136,7 @@ class Sensor {
     sensor_C += dice.uniform(0.0, 1.0) < surprise_.outlier_probability ? 8.0 * dice.normal() : 0.0;
     gap_rows_ = gap_rows_ > 0 ? gap_rows_ - 1 : dice.uniform(0.0, 1.0) < surprise_.gap_probability ? 30 : 0;
     const double stepped_C = surprise_.step_K > 0.0 ? std::round(sensor_C / surprise_.step_K) * surprise_.step_K : sensor_C;
-    return gap_rows_ > 0 ? kUnknown : stepped_C;
+    return gap_rows_ > 0 ? base::kUnknown : stepped_C;
   }
 
  private:
@@ -186,7 +186,7 @@ TrueRun run_motor(const MotorMake& make, const Missing& missing, const Surprise&
   run.log.name = name;
   run.log.run_begins = {0};
   const auto channel = [&](const char* key) -> std::size_t {
-    run.log.channels.push_back({*quantity_named(key), {}});
+    run.log.channels.push_back({*recording::quantity_named(key), {}});
     return run.log.channels.size() - 1;
   };
   const std::size_t winding_at = channel("winding_C"), stator_at = channel("stator_C"), ambient_at = channel("ambient_C");
@@ -218,4 +218,4 @@ TrueRun run_motor(const MotorMake& make, const Missing& missing, const Surprise&
   return run;
 }
 
-}  // namespace heatsoak::truth
+}  // namespace heatsoak::attribution::truth

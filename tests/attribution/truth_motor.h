@@ -11,7 +11,7 @@
 
 #include "recording/recording.h"
 
-namespace heatsoak::truth {
+namespace heatsoak::attribution::truth {
 
 /// Copper in the slots and at both ends, iron, sleeve and two end shields, and two lumps that only some effects use.
 enum Part { slot, overhang_front, overhang_back, tooth, yoke, sleeve, shield_front, shield_back, lump_a, lump_b, part_count };
@@ -79,7 +79,7 @@ struct Surprise {
 
 /// True temperatures at the sensors' places, beside the log.
 struct TrueRun {
-  Recording log;
+  recording::Recording log;
   std::vector<double> winding_C, stator_C;
 };
 
@@ -99,4 +99,4 @@ class Dice {
   std::mt19937_64 engine_;
 };
 
-}  // namespace heatsoak::truth
+}  // namespace heatsoak::attribution::truth

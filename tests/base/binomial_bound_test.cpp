@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-namespace heatsoak {
+namespace heatsoak::base {
 namespace {
 
 TEST(BinomialBound, WithoutAHitIsTheClosedForm) {
@@ -46,4 +46,4 @@ TEST(BinomialBound, FewestDrawsAreTheFirstThatSuffice) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::base

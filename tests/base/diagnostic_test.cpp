@@ -4,7 +4,7 @@
 
 #include "base/parameter.h"
 
-namespace heatsoak {
+namespace heatsoak::base {
 namespace {
 
 const std::vector<std::string> kKeys{"torque_constant", "speed_constant", "terminal_resistance", "mass", "length"};
@@ -78,4 +78,4 @@ TEST(Range, is_written_for_people) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::base

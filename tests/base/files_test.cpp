@@ -11,7 +11,7 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::base {
 namespace {
 
 namespace fs = std::filesystem;
@@ -115,4 +115,4 @@ TEST_F(Files, a_stream_stays_away_with_what_cannot_be_written_beside_it) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::base {
 namespace {
 
 TEST(InParallel, RunsEveryJobOnceForAnyNumberOfThreads) {
@@ -91,4 +91,4 @@ TEST(InParallel, AJobThatThrowsDoesNotCutShortTheJobsOfAnother) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::base

@@ -8,7 +8,7 @@
 
 #include "base/random.h"
 
-namespace heatsoak {
+namespace heatsoak::base {
 namespace {
 
 ParameterValue tolerance(double value, double share) {
@@ -160,4 +160,4 @@ TEST(Random, seed_and_stream_decide_all_numbers) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::base

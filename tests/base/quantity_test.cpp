@@ -10,7 +10,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace heatsoak {
+namespace heatsoak::base {
 namespace {
 
 constexpr double kRpm_rad_per_s = 2.0 * std::numbers::pi / 60.0;
@@ -195,4 +195,4 @@ TEST(Significant, says_what_is_no_number) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::base

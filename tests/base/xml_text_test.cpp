@@ -7,7 +7,7 @@
 
 #include "base/random.h"
 
-namespace heatsoak {
+namespace heatsoak::base {
 namespace {
 
 /// Result of parsing a document with Expat: the text of its element and the value of its attribute, or a flag that it is not well-formed.
@@ -61,4 +61,4 @@ TEST(XmlText, what_xml_does_not_allow_is_replaced) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::base

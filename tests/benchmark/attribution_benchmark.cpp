@@ -6,7 +6,7 @@
 #include "examination.h"
 #include "missing_effects.h"
 
-namespace heatsoak::truth {
+namespace heatsoak::attribution::truth {
 namespace {
 
 void diagnose_four_half_hours(benchmark::State& state, const char* missing) {
@@ -17,10 +17,10 @@ void diagnose_four_half_hours(benchmark::State& state, const char* missing) {
     sealed.missing = found->make(1.0);
   }
   const Runs runs = record(sealed);
-  const DiagnosisInput input = question(sealed, runs);
+  const diagnosis::DiagnosisInput input = question(sealed, runs);
   for (auto each : state) {
     (void)each;
-    benchmark::DoNotOptimize(diagnose(input, {}));
+    benchmark::DoNotOptimize(diagnosis::diagnose(input, {}));
   }
   state.counters["candidates"] = static_cast<double>(candidates_for(input.model, input.train).candidates.size());
 }
@@ -31,4 +31,4 @@ BENCHMARK_CAPTURE(diagnose_four_half_hours, one_effect_missing, "iron_loss_eddy"
     ->UseRealTime();
 
 }  // namespace
-}  // namespace heatsoak::truth
+}  // namespace heatsoak::attribution::truth

@@ -7,19 +7,19 @@ namespace heatsoak {
 namespace {
 
 void FiveRunsOfHalfAnHour(benchmark::State& state) {
-  const study::Folder folder;
-  const study::Sheet sheet;
-  const Motor motor = sheet.motor(folder);
-  const TwoNodeTruth truth = study::drawn_truth(sheet, motor, 1);
-  LogMaking making;
+  const calibration::study::Folder folder;
+  const calibration::study::Sheet sheet;
+  const motor::Motor motor = sheet.motor(folder);
+  const estimation::TwoNodeTruth truth = calibration::study::drawn_truth(sheet, motor, 1);
+  estimation::LogMaking making;
   making.winding_is_sensed = state.range(0) == 2;
-  std::vector<Recording> logs;
+  std::vector<recording::Recording> logs;
   for (std::uint64_t run = 0; run < 5; ++run) {
-    logs.push_back(
-        study::read_log(study::write_log(generated_log(truth, making, 1, run), folder.path() / ("run" + std::to_string(run) + ".csv"))));
+    logs.push_back(calibration::study::read_log(calibration::study::write_log(estimation::generated_log(truth, making, 1, run),
+                                                                              folder.path() / ("run" + std::to_string(run) + ".csv"))));
   }
   for (auto _ : state) {
-    benchmark::DoNotOptimize(calibrate(motor, logs, {}, {}));
+    benchmark::DoNotOptimize(calibration::calibrate(motor, logs, {}, {}));
   }
 }
 BENCHMARK(FiveRunsOfHalfAnHour)->ArgName("sensors")->Arg(2)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();

@@ -17,12 +17,12 @@ namespace {
 constexpr int kPieces = 24000;
 constexpr double kPiece_s = 0.1;
 
-const std::vector<Interval>& duty() {
-  static const std::vector<Interval> kDuty = [] {
+const std::vector<thermal::Interval>& duty() {
+  static const std::vector<thermal::Interval> kDuty = [] {
     std::mt19937_64 engine(1);
     std::uniform_real_distribution<double> current_A(0.0, 6.0);
     std::uniform_real_distribution<double> speed_rad_per_s(0.0, 400.0);
-    std::vector<Interval> intervals;
+    std::vector<thermal::Interval> intervals;
     for (int i = 0; i < kPieces; ++i) {
       const double speed = speed_rad_per_s(engine);
       intervals.push_back({kPiece_s, {current_A(engine), speed, speed, 25.0}});
@@ -33,12 +33,12 @@ const std::vector<Interval>& duty() {
 }
 
 /// The ECX FLAT 32 L: R 1.07 Ω, R_th1 3.8 K/W, R_th2 2.8 K/W, 3.2 and 28.6 J/K.
-Network motor() {
-  Network network;
+thermal::Network motor() {
+  thermal::Network network;
   network.add_node("winding", 12.0 / 3.8);
   network.add_node("stator", 80.0 / 2.8);
   const auto add = [&network](const char* name, const char* type, std::vector<std::string> nodes, std::vector<double> parameters) {
-    network.add_effect(name, *find_effect(type), nodes, parameters);
+    network.add_effect(name, *thermal::find_effect(type), nodes, parameters);
   };
   add("copper", "copper_loss", {"winding"}, {1.07, 0.0039});
   add("drag", "no_load_loss", {"stator"}, {0.0082});
@@ -53,10 +53,10 @@ class ExactMap {
  public:
   template <class Visit>
   static Eigen::Vector2d run(const Visit& visit) {
-    const Network network = motor();
+    const thermal::Network network = motor();
     const std::vector<double> values = network.values();
     Eigen::Vector3d state(25.0, 25.0, 1.0);
-    for (const Interval& interval : duty()) {
+    for (const thermal::Interval& interval : duty()) {
       state = piece(network, values, interval) * state;
       visit(state);
     }
@@ -65,7 +65,7 @@ class ExactMap {
 
  private:
   /// Identifies the affine law from three calls of the rate function.
-  static Eigen::Matrix3d piece(const Network& network, const std::vector<double>& values, const Interval& interval) {
+  static Eigen::Matrix3d piece(const thermal::Network& network, const std::vector<double>& values, const thermal::Interval& interval) {
     Eigen::Matrix3d generator = Eigen::Matrix3d::Zero();
     const auto rate = [&](double winding_C, double stator_C) {
       std::array<double, 3> temperature_C{winding_C, stator_C, 0.0};
@@ -91,10 +91,10 @@ const std::vector<Eigen::Vector2d>& exact_C() {
   return kExact;
 }
 
-double error_K(const TransientOptions& options) {
-  const Network network = motor();
+double error_K(const thermal::TransientOptions& options) {
+  const thermal::Network network = motor();
   double worst_K = 0.0;
-  run_transient(network, network.values(), duty(), options, [&](const TransientMoment& moment) {
+  thermal::run_transient(network, network.values(), duty(), options, [&](const thermal::TransientMoment& moment) {
     if (moment.begins_interval && moment.interval > 0) {
       const Eigen::Vector2d& exact = exact_C()[moment.interval - 1];
       worst_K = std::max({worst_K, std::abs(moment.state_C[0] - exact[0]), std::abs(moment.state_C[1] - exact[1])});
@@ -103,18 +103,18 @@ double error_K(const TransientOptions& options) {
   return worst_K;
 }
 
-void through_sundials(benchmark::State& state, OdeMethod method, OdeTolerances tolerances, bool with_limits) {
-  TransientOptions options;
+void through_sundials(benchmark::State& state, ode::OdeMethod method, ode::OdeTolerances tolerances, bool with_limits) {
+  thermal::TransientOptions options;
   options.method = method;
   options.tolerances = tolerances;
   if (with_limits) {
     options.limits = {{0, 155.0}, {1, 120.0}};
   }
-  const Network network = motor();
+  const thermal::Network network = motor();
   const std::vector<double> values = network.values();
   long calls = 0;
   for (auto _ : state) {
-    const TransientResult result = run_transient(network, values, duty(), options);
+    const thermal::TransientResult result = thermal::run_transient(network, values, duty(), options);
     benchmark::DoNotOptimize(result.end_C.data());
     calls = result.derivative_count;
   }
@@ -124,10 +124,10 @@ void through_sundials(benchmark::State& state, OdeMethod method, OdeTolerances t
 }
 
 /// Returns the coarsest power of ten with an error below 1e-3 K.
-OdeTolerances coarsest(OdeMethod method) {
-  OdeTolerances tolerances{1e-2, 1e-2};
+ode::OdeTolerances coarsest(ode::OdeMethod method) {
+  ode::OdeTolerances tolerances{1e-2, 1e-2};
   for (; tolerances.relative > 1e-13; tolerances.relative /= 10.0, tolerances.absolute /= 10.0) {
-    TransientOptions options;
+    thermal::TransientOptions options;
     options.method = method;
     options.tolerances = tolerances;
     if (error_K(options) <= 1e-3) {
@@ -137,15 +137,15 @@ OdeTolerances coarsest(OdeMethod method) {
   return tolerances;
 }
 
-void duty_24000_at_1mK(benchmark::State& state, OdeMethod method) { through_sundials(state, method, coarsest(method), true); }
-void duty_24000_as_used(benchmark::State& state, OdeMethod method) { through_sundials(state, method, {}, true); }
+void duty_24000_at_1mK(benchmark::State& state, ode::OdeMethod method) { through_sundials(state, method, coarsest(method), true); }
+void duty_24000_as_used(benchmark::State& state, ode::OdeMethod method) { through_sundials(state, method, {}, true); }
 
-BENCHMARK_CAPTURE(duty_24000_at_1mK, cvodes_bdf, OdeMethod::cvodes_bdf)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(duty_24000_at_1mK, cvodes_adams, OdeMethod::cvodes_adams)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(duty_24000_at_1mK, arkode_erk, OdeMethod::arkode_erk)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(duty_24000_as_used, cvodes_bdf, OdeMethod::cvodes_bdf)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(duty_24000_as_used, cvodes_adams, OdeMethod::cvodes_adams)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(duty_24000_as_used, arkode_erk, OdeMethod::arkode_erk)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(duty_24000_at_1mK, cvodes_bdf, ode::OdeMethod::cvodes_bdf)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(duty_24000_at_1mK, cvodes_adams, ode::OdeMethod::cvodes_adams)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(duty_24000_at_1mK, arkode_erk, ode::OdeMethod::arkode_erk)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(duty_24000_as_used, cvodes_bdf, ode::OdeMethod::cvodes_bdf)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(duty_24000_as_used, cvodes_adams, ode::OdeMethod::cvodes_adams)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(duty_24000_as_used, arkode_erk, ode::OdeMethod::arkode_erk)->Unit(benchmark::kMillisecond);
 
 void duty_24000_matrix_exponential(benchmark::State& state) {
   for (auto _ : state) {
@@ -158,20 +158,21 @@ BENCHMARK(duty_24000_matrix_exponential)->Unit(benchmark::kMillisecond);
 
 /// Eight samples at once, as in Monte Carlo runs; one of them is compared. The time is for all eight.
 void duty_24000_eight_lanes(benchmark::State& state) {
-  const Network network = motor();
-  std::vector<Lanes> values;
+  const thermal::Network network = motor();
+  std::vector<thermal::Lanes> values;
   for (const double value : network.values()) {
-    values.push_back(Lanes::Constant(value));
+    values.push_back(thermal::Lanes::Constant(value));
   }
   double worst_K = 0.0;
   for (auto _ : state) {
-    EnsembleRun run(network, values, std::vector<Lanes>(2, Lanes::Constant(25.0)));
+    thermal::EnsembleRun run(network, values, std::vector<thermal::Lanes>(2, thermal::Lanes::Constant(25.0)));
     worst_K = 0.0;
     for (std::size_t i = 0; i < duty().size(); ++i) {
-      const OperatingPoint<double>& one = duty()[i].at;
-      const OperatingPoint<Lanes> at{Lanes::Constant(one.current_rms_A), Lanes::Constant(one.speed_mean_rad_per_s),
-                                     Lanes::Constant(one.speed_rms_rad_per_s), Lanes::Constant(one.ambient_C)};
-      run.over(duty()[i].duration_s, at, longest_step_s(network, values, at));
+      const thermal::OperatingPoint<double>& one = duty()[i].at;
+      const thermal::OperatingPoint<thermal::Lanes> at{
+          thermal::Lanes::Constant(one.current_rms_A), thermal::Lanes::Constant(one.speed_mean_rad_per_s),
+          thermal::Lanes::Constant(one.speed_rms_rad_per_s), thermal::Lanes::Constant(one.ambient_C)};
+      run.over(duty()[i].duration_s, at, thermal::longest_step_s(network, values, at));
       worst_K = std::max({worst_K, std::abs(run.state_C()[0][0] - exact_C()[i][0]), std::abs(run.state_C()[1][0] - exact_C()[i][1])});
     }
   }
@@ -180,7 +181,7 @@ void duty_24000_eight_lanes(benchmark::State& state) {
 BENCHMARK(duty_24000_eight_lanes)->Unit(benchmark::kMillisecond);
 
 void rate_of_one(benchmark::State& state) {
-  const Network network = motor();
+  const thermal::Network network = motor();
   const std::vector<double> values = network.values();
   std::array<double, 3> temperature_C{80.0, 50.0, 25.0};
   std::array<double, 2> rate{};

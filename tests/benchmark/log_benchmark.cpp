@@ -61,9 +61,9 @@ const LongLog& long_log() {
 void log_number_table(benchmark::State& state) {
   const LongLog& log = long_log();
   for (auto _ : state) {
-    NumberTable table(log.path(), {});
+    input::NumberTable table(log.path(), {});
     table.choose({0, 1, 2, 3, 4, 5, 6, 7});
-    TableBlock block;
+    input::TableBlock block;
     double sum = 0.0;
     while (table.next(block)) {
       sum += block.columns[1].back();
@@ -80,7 +80,7 @@ void log_libcsv(benchmark::State& state) {
                                          "current_A", "speed_rad_per_s", "torque_Nm", "bus_V"};
   for (auto _ : state) {
     double sum = 0.0;
-    read_csv(log.path(), columns, {}, [&](const CsvRow& row) { sum += row.values[1]; });
+    input::read_csv(log.path(), columns, {}, [&](const input::CsvRow& row) { sum += row.values[1]; });
     benchmark::DoNotOptimize(sum);
   }
   state.SetBytesProcessed(state.iterations() * log.bytes());
@@ -90,8 +90,8 @@ BENCHMARK(log_libcsv)->Unit(benchmark::kMillisecond);
 void log_read_recording(benchmark::State& state) {
   const LongLog& log = long_log();
   for (auto _ : state) {
-    RecordingReport report;
-    benchmark::DoNotOptimize(read_recording(log.path(), {}, report));
+    recording::RecordingReport report;
+    benchmark::DoNotOptimize(recording::read_recording(log.path(), {}, report));
   }
   state.SetBytesProcessed(state.iterations() * log.bytes());
 }
@@ -101,10 +101,10 @@ BENCHMARK(log_read_recording)->Unit(benchmark::kMillisecond);
 void log_inspect(benchmark::State& state) {
   const LongLog& log = long_log();
   for (auto _ : state) {
-    RecordingReport report;
-    RecordingStream stream(log.path(), {}, report);
-    Assessment assessment;
-    for (Recording part; stream.next(part);) {
+    recording::RecordingReport report;
+    recording::RecordingStream stream(log.path(), {}, report);
+    recording::Assessment assessment;
+    for (recording::Recording part; stream.next(part);) {
       assessment.add(part);
     }
     benchmark::DoNotOptimize(assessment.conclude(report));

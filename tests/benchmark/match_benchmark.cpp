@@ -19,16 +19,16 @@ namespace {
 constexpr double kLength_s = 2400.0;
 
 /// Division A with overtime; stoppages are lengthened until the game has the required duration.
-MatchInputs forty_minutes(MatchValues& values) {
-  const Duty duty = read_duty(kSource / "duty_profiles/division_a_match.toml");
-  MatchInputs inputs = dynamic_cast<const MatchDuty&>(*duty.shape_data).inputs();
+duty::MatchInputs forty_minutes(duty::MatchValues& values) {
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/division_a_match.toml");
+  duty::MatchInputs inputs = dynamic_cast<const duty::MatchDuty&>(*duty.shape_data).inputs();
   inputs.overtime = true;
   values = inputs.nominal();
   double length_s = 0.0;
   for (values.stop_mean_s = 1.0; length_s < kLength_s; values.stop_mean_s += 0.1) {
-    Random random(1, 0);
+    base::Random random(1, 0);
     length_s = 0.0;
-    for (const MatchPhase& span : generate_game(inputs.division, inputs.overtime, values, random)) {
+    for (const duty::MatchPhase& span : duty::generate_game(inputs.division, inputs.overtime, values, random)) {
       length_s += span.duration_s;
     }
   }
@@ -43,11 +43,11 @@ double resident_MB() {
 }
 
 void match_40_minutes_generated(benchmark::State& state) {
-  MatchValues values;
-  const MatchInputs inputs = forty_minutes(values);
-  MatchLoad load;
+  duty::MatchValues values;
+  const duty::MatchInputs inputs = forty_minutes(values);
+  duty::MatchLoad load;
   for (auto _ : state) {
-    load = play_match(inputs, values, twente(), 1, Planner::jerk_limited);
+    load = duty::play_match(inputs, values, twente(), 1, duty::Planner::jerk_limited);
   }
   state.counters["length_s"] = load.duration_s;
   state.counters["resident_MB"] = resident_MB();
@@ -55,15 +55,15 @@ void match_40_minutes_generated(benchmark::State& state) {
 BENCHMARK(match_40_minutes_generated)->Unit(benchmark::kMillisecond);
 
 void match_40_minutes_closed_loop(benchmark::State& state) {
-  MatchValues values;
-  const MatchInputs inputs = forty_minutes(values);
-  const Motor motor = read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
-  const GuardedCore core(twente(), motor, GuardUse::off, {});
-  MatchRunOptions options;
-  options.drive = real_drive(twente(), 1);
-  MatchRun run;
+  duty::MatchValues values;
+  const duty::MatchInputs inputs = forty_minutes(values);
+  const motor::Motor motor = motor::read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
+  const simulate::GuardedCore core(twente(), motor, simulate::GuardUse::off, {});
+  simulate::MatchRunOptions options;
+  options.drive = simulate::real_drive(twente(), 1);
+  simulate::MatchRun run;
   for (auto _ : state) {
-    run = run_match(play_game(inputs, twente(), 1), twente(), motor, core.config(), options);
+    run = simulate::run_match(simulate::play_game(inputs, twente(), 1), twente(), motor, core.config(), options);
   }
   state.counters["length_s"] = run.score.time_s;
   state.counters["resident_MB"] = resident_MB();
@@ -73,14 +73,14 @@ BENCHMARK(match_40_minutes_closed_loop)->Unit(benchmark::kMillisecond);
 constexpr double kLoop_s = 60.0;
 
 /// A target every 1.5 s, so that most plans are interrupted, as in play.
-std::vector<ScheduledCommand> restless() {
-  std::vector<ScheduledCommand> script;
+std::vector<duty::ScheduledCommand> restless() {
+  std::vector<duty::ScheduledCommand> script;
   for (int i = 0; 1.5 * i < kLoop_s; ++i) {
-    MotionCommand command;
+    duty::MotionCommand command;
     command.x_m = 2.0 * std::sin(1.7 * i);
     command.y_m = 1.5 * std::cos(2.9 * i);
     command.yaw_rad = std::sin(0.6 * i);
-    script.push_back({1.5 * i, Phase::running, command});
+    script.push_back({1.5 * i, duty::Phase::running, command});
   }
   return script;
 }
@@ -88,18 +88,18 @@ std::vector<ScheduledCommand> restless() {
 /// Inputs that one run of the loop passed to the core and to the plant.
 struct Record {
   std::vector<robot_core::Input> inputs;
-  std::vector<std::array<MotorCommand, kMostWheels>> commands;
+  std::vector<std::array<robot::MotorCommand, robot::kMostWheels>> commands;
 };
 
 /// Processor time of this program: on a busy machine the time on the wall says little.
 double processor_s() { return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC); }
 
-double drive_loop(const Robot& robot, const Motor& motor, const robot_core::Config& config, Record* record) {
-  SimulatedRobot simulated(robot, motor, 25.0);
-  CoreDrive drive(config, simulated, real_drive(robot, 1));
-  const std::unique_ptr<Follower> plan = ideal_tracking(robot, 1.0, Planner::jerk_limited);
+double drive_loop(const robot::Robot& robot, const motor::Motor& motor, const robot_core::Config& config, Record* record) {
+  simulate::SimulatedRobot simulated(robot, motor, 25.0);
+  simulate::CoreDrive drive(config, simulated, simulate::real_drive(robot, 1));
+  const std::unique_ptr<duty::Follower> plan = duty::ideal_tracking(robot, 1.0, duty::Planner::jerk_limited);
   const double start_s = processor_s();
-  drive_script(simulated, drive, *plan, restless(), kLoop_s, [&](const LoopMoment& moment) {
+  simulate::drive_script(simulated, drive, *plan, restless(), kLoop_s, [&](const simulate::LoopMoment& moment) {
     if (record != nullptr) {
       record->inputs.push_back(moment.drive->input());
       record->commands.push_back(moment.drive->commands());
@@ -118,13 +118,13 @@ double replay_core_s(const robot_core::Config& config, const Record& record) {
   return processor_s() - start_s;
 }
 
-double replay_plant_s(const Robot& robot, const Motor& motor, const Record& record, bool with_sensors) {
-  SimulatedRobot simulated(robot, motor, 25.0);
-  Sensing sensing(sensing_of(robot), simulated, SimulatedRobot::kPeriod_s, 1);
+double replay_plant_s(const robot::Robot& robot, const motor::Motor& motor, const Record& record, bool with_sensors) {
+  simulate::SimulatedRobot simulated(robot, motor, 25.0);
+  simulate::Sensing sensing(simulate::sensing_of(robot), simulated, simulate::SimulatedRobot::kPeriod_s, 1);
   robot_core::Input input;
   const double start_s = processor_s();
-  for (const std::array<MotorCommand, kMostWheels>& command : record.commands) {
-    const PlantOutput& out = simulated.advance(command, {});
+  for (const std::array<robot::MotorCommand, robot::kMostWheels>& command : record.commands) {
+    const robot::PlantOutput& out = simulated.advance(command, {});
     if (with_sensors) {
       sensing.follow(simulated, out);
       sensing.sample(simulated, 25.0, input);
@@ -147,11 +147,11 @@ double shortest_ns(double steps, Run&& run) {
 /// Uses one CPU core. The parts are measured by replaying the same run, because clocks inside the loop would cost as much as the parts. The
 /// counter `rest` covers planner, radio and the loop itself.
 void closed_loop_1kHz(benchmark::State& state) {
-  const Robot robot = twente();
-  const Motor motor = ecx_32();
-  const MotorGuard guard = make_guard(motor, robot, 25.0, 0);
-  const GuardedCore guarded(robot, motor, GuardUse::shadow, guard);
-  const GuardedCore bare(robot, motor, GuardUse::off, {});
+  const robot::Robot robot = twente();
+  const motor::Motor motor = ecx_32();
+  const simulate::MotorGuard guard = simulate::make_guard(motor, robot, 25.0, 0);
+  const simulate::GuardedCore guarded(robot, motor, simulate::GuardUse::shadow, guard);
+  const simulate::GuardedCore bare(robot, motor, simulate::GuardUse::off, {});
   double whole_s = std::numeric_limits<double>::infinity();
   for (auto _ : state) {
     // Other programs only add time, so the shortest run counts, as for the parts.

@@ -10,26 +10,26 @@
 #include "motor/write_motor.h"
 #include "study.h"
 
-namespace heatsoak::study {
+namespace heatsoak::calibration::study {
 namespace {
 
 class Again : public testing::Test {
  protected:
   /// Returns logs of 20 minutes for a motor that is a few per cent off its data sheet.
-  std::vector<Recording> logs(int first) {
-    LogMaking making;
+  std::vector<recording::Recording> logs(int first) {
+    estimation::LogMaking making;
     making.duration_s = 1200.0;
-    std::vector<Recording> all;
+    std::vector<recording::Recording> all;
     for (int run = first; run < first + 2; ++run) {
-      all.push_back(read_log(write_log(generated_log(truth_, making, 11, static_cast<std::uint64_t>(run)),
+      all.push_back(read_log(write_log(estimation::generated_log(truth_, making, 11, static_cast<std::uint64_t>(run)),
                                        folder_.path() / ("run_" + std::to_string(run) + ".csv"))));
     }
     return all;
   }
-  Motor rewritten(const Motor& motor, const Calibration& calibration) {
+  motor::Motor rewritten(const motor::Motor& motor, const Calibration& calibration) {
     const auto file = folder_.path() / "again.toml";
-    std::ofstream(file) << to_toml(calibrated_motor(motor, calibration));
-    return read_motor(file);
+    std::ofstream(file) << motor::to_toml(calibrated_motor(motor, calibration));
+    return motor::read_motor(file);
   }
   static double half_width(const Calibration& calibration, std::string_view name) {
     const auto found = std::ranges::find(calibration.parameters, name, &CalibratedParameter::name);
@@ -38,13 +38,13 @@ class Again : public testing::Test {
 
   Folder folder_;
   Sheet sheet_{.truth = {}, .resistance_spread = ", tolerance = \"10 %\""};
-  Motor motor_ = sheet_.motor(folder_);
-  TwoNodeTruth truth_ = drawn_truth(sheet_, motor_, 3);
+  motor::Motor motor_ = sheet_.motor(folder_);
+  estimation::TwoNodeTruth truth_ = drawn_truth(sheet_, motor_, 3);
 };
 
 TEST_F(Again, CommonScaleIsNotLearnedByRepetition) {
   const Calibration first = calibrate(motor_, logs(0), {}, {});
-  Motor motor = rewritten(motor_, first);
+  motor::Motor motor = rewritten(motor_, first);
   const Calibration second = calibrate(motor, logs(2), {}, {});
   motor = rewritten(motor, second);
   const Calibration third = calibrate(motor, logs(4), {}, {});
@@ -65,26 +65,26 @@ TEST_F(Again, CommonScaleIsNotLearnedByRepetition) {
 
 /// Runs are compared by content, because a run may have another name or clock, and names may repeat.
 TEST_F(Again, RunsThatTheFileKnowsAreRefused) {
-  const std::vector<Recording> known = logs(0);
-  Motor motor = rewritten(motor_, calibrate(motor_, known, {}, {}));
-  const auto is_refused = [&motor](const Recording& recording) {
+  const std::vector<recording::Recording> known = logs(0);
+  motor::Motor motor = rewritten(motor_, calibrate(motor_, known, {}, {}));
+  const auto is_refused = [&motor](const recording::Recording& recording) {
     try {
       refuse_runs_of_the_file(motor, {&recording, 1}, {});
       return false;
-    } catch (const Failure& failure) {
-      EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    } catch (const base::Failure& failure) {
+      EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
       EXPECT_THAT(failure.what(), testing::HasSubstr("would count twice"));
       return true;
     }
   };
   const auto file = [this](const char* name) { return folder_.path() / name; };
   EXPECT_TRUE(is_refused(known[0]));
-  EXPECT_TRUE(is_refused(part_of(known[0], 0.4, 0.6)));
+  EXPECT_TRUE(is_refused(recording::part_of(known[0], 0.4, 0.6)));
   EXPECT_TRUE(is_refused(read_log(write_log(known[0], file("copy.csv")))));
-  Recording later = known[0];
+  recording::Recording later = known[0];
   std::ranges::for_each(later.time_s, [](double& time_s) { time_s += 3600.0; });
   EXPECT_TRUE(is_refused(read_log(write_log(later, file("later.csv")))));
-  const std::vector<Recording> others = logs(2);
+  const std::vector<recording::Recording> others = logs(2);
   EXPECT_FALSE(is_refused(read_log(write_log(others[0], file("run_0.csv")))));
   // Runs of earlier fits are still known after another fit. Files that list only names are compared by name.
   motor = rewritten(motor, calibrate(motor, others, {}, {}));
@@ -95,11 +95,11 @@ TEST_F(Again, RunsThatTheFileKnowsAreRefused) {
 }
 
 TEST_F(Again, PartsOfALogThatDoNotOverlapAreTwoRuns) {
-  const Recording log = logs(0).front();
-  const Motor motor = rewritten(motor_, calibrate(motor_, std::vector{part_of(log, 0.0, 0.5)}, {}, {}));
-  EXPECT_TRUE(was_fitted_to(*motor.fit, part_of(log, 0.4, 0.6)));
-  EXPECT_FALSE(was_fitted_to(*motor.fit, part_of(log, 0.5, 1.0)));
+  const recording::Recording log = logs(0).front();
+  const motor::Motor motor = rewritten(motor_, calibrate(motor_, std::vector{recording::part_of(log, 0.0, 0.5)}, {}, {}));
+  EXPECT_TRUE(was_fitted_to(*motor.fit, recording::part_of(log, 0.4, 0.6)));
+  EXPECT_FALSE(was_fitted_to(*motor.fit, recording::part_of(log, 0.5, 1.0)));
 }
 
 }  // namespace
-}  // namespace heatsoak::study
+}  // namespace heatsoak::calibration::study

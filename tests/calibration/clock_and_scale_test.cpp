@@ -7,7 +7,7 @@
 #include "recording/clock_offset.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 using ::testing::ElementsAre;
@@ -18,8 +18,8 @@ using ::testing::IsEmpty;
 TEST(Screening, CoarseSensorAtRestKeepsItsNeighbouringSteps) {
   for (const double step_K : {1.0, -1.0}) {
     for (const int steps : {1, 2}) {
-      const Read result = read_text(changed({}, [=](int row, std::vector<double>& cells) {
-        cells[ambient] = 21.0 + (row % 500 == 250 ? step_K : row % 700 == 350 ? steps * step_K : 0.0);
+      const recording::Read result = recording::read_text(recording::changed({}, [=](int row, std::vector<double>& cells) {
+        cells[recording::ambient] = 21.0 + (row % 500 == 250 ? step_K : row % 700 == 350 ? steps * step_K : 0.0);
       }));
       EXPECT_TRUE(result.report.left_out.empty()) << step_K << " K";
       EXPECT_EQ(result.quality.channels[2].samples, 1800U);
@@ -28,18 +28,18 @@ TEST(Screening, CoarseSensorAtRestKeepsItsNeighbouringSteps) {
 }
 
 TEST(Screening, SingleWildCurrentIsLeftOutByLine) {
-  const Read result =
-      read_text(changed({}, [](int row, std::vector<double>& cells) { cells[current] = row == 700 ? 1e9 : cells[current]; }));
-  EXPECT_THAT(lines_of(result.report.find("current_A", LeftOutReason::outlier)), ElementsAre(702));
+  const recording::Read result = recording::read_text(recording::changed(
+      {}, [](int row, std::vector<double>& cells) { cells[recording::current] = row == 700 ? 1e9 : cells[recording::current]; }));
+  EXPECT_THAT(recording::lines_of(result.report.find("current_A", recording::LeftOutReason::outlier)), ElementsAre(702));
   EXPECT_TRUE(std::isnan(result.recording.find("current_A")->values[700]));
   EXPECT_THAT(result.quality.suspicions, IsEmpty());
 }
 
-SyntheticLog unsteady(double delay_s) {
-  SyntheticLog log;
+recording::SyntheticLog unsteady(double delay_s) {
+  recording::SyntheticLog log;
   log.delay_s = delay_s;
   log.current_A = [](double time_s) {
-    Random random(static_cast<std::uint64_t>(std::max(time_s, 0.0) / 20.0), 5);
+    base::Random random(static_cast<std::uint64_t>(std::max(time_s, 0.0) / 20.0), 5);
     return random.uniform() < 0.4 ? 0.0 : 6.0 * random.uniform();
   };
   return log;
@@ -47,7 +47,7 @@ SyntheticLog unsteady(double delay_s) {
 
 TEST(ClockOffsets, TemperatureBeforeItsHeatSpoils) {
   for (const auto& [delay_s, remedy] : {std::pair(-1.0, "inputs = \"previous_interval\""), std::pair(-4.0, "clock_offset = \"-")}) {
-    const Read result = read_text(unsteady(delay_s).csv());
+    const recording::Read result = recording::read_text(unsteady(delay_s).csv());
     EXPECT_THAT(result.quality.blocking, ElementsAre(testing::AllOf(HasSubstr("winding_C responds"), HasSubstr(remedy)))) << delay_s;
     EXPECT_THAT(result.quality.suspicions, result.quality.blocking);
   }
@@ -55,7 +55,7 @@ TEST(ClockOffsets, TemperatureBeforeItsHeatSpoils) {
 
 TEST(ClockOffsets, TemperatureAfterItsHeatIsSaidByTheAdmission) {
   for (const double delay_s : {0.0, 3.0}) {
-    const Read result = read_text(unsteady(delay_s).csv());
+    const recording::Read result = recording::read_text(unsteady(delay_s).csv());
     EXPECT_THAT(result.quality.suspicions, IsEmpty()) << "sensors lag";
     const Admission admission = admit(shipped_motor("maxon_ec45_flat_70w_24v"), std::vector{result.recording}, {}, false);
     if (delay_s > 0.0) {
@@ -70,21 +70,21 @@ TEST(ClockOffsets, TemperatureAfterItsHeatIsSaidByTheAdmission) {
 
 /// Without a second temperature, the heat that leaves the winding is confounded with an offset.
 TEST(ClockOffsets, WindingAloneIsNotJudged) {
-  ClockOffset offset{.temperature = "winding_C",
-                     .heat_input = "current_A",
-                     .delay_s = -3.0,
-                     .delay_uncertainty_s = 0.1,
-                     .misfit_ratio = 50.0,
-                     .why_not = {}};
-  EXPECT_EQ(early_answer(offset, 1.0), "");
+  recording::ClockOffset offset{.temperature = "winding_C",
+                                .heat_input = "current_A",
+                                .delay_s = -3.0,
+                                .delay_uncertainty_s = 0.1,
+                                .misfit_ratio = 50.0,
+                                .why_not = {}};
+  EXPECT_EQ(recording::early_answer(offset, 1.0), "");
   offset.explains_flow = true;
-  EXPECT_NE(early_answer(offset, 1.0), "");
-  EXPECT_EQ(late_answer(offset, 1.0), "");
+  EXPECT_NE(recording::early_answer(offset, 1.0), "");
+  EXPECT_EQ(recording::late_answer(offset, 1.0), "");
   offset.misfit_ratio = 2.0;
-  EXPECT_EQ(early_answer(offset, 1.0), "") << "little better than no delay: another heat makes that";
+  EXPECT_EQ(recording::early_answer(offset, 1.0), "") << "little better than no delay: another heat makes that";
   offset.misfit_ratio = 50.0;
   offset.delay_s = -0.25;
-  EXPECT_EQ(early_answer(offset, 1.0), "") << "less than a sample tells";
+  EXPECT_EQ(recording::early_answer(offset, 1.0), "") << "less than a sample tells";
 }
 
 /// The motor turns for minutes without load. The iron heats the winding, which is never the hottest node and does not follow the current.
@@ -99,17 +99,17 @@ TEST(ClockOffsets, WindingThatFollowsTheIronIsNotJudged) {
     winding_C += (0.6 * current_A * current_A - flow_W) / 7.0;
     stator_C += ((row / 120) % 4 == 1 ? 6.0 : 0.5) / 50.0 + (flow_W - (stator_C - 22.0) / 3.5) / 50.0;
   }
-  const Read result = read_text(text);
+  const recording::Read result = recording::read_text(text);
   EXPECT_THAT(result.quality.suspicions, IsEmpty());
-  for (const ClockOffset& offset : result.quality.clock_offsets) {
+  for (const recording::ClockOffset& offset : result.quality.clock_offsets) {
     EXPECT_EQ(offset.explains_flow, offset.temperature == "stator_C");
   }
-  EXPECT_TRUE(std::ranges::any_of(read_text(unsteady(0.0).csv()).quality.clock_offsets, &ClockOffset::explains_flow));
+  EXPECT_TRUE(std::ranges::any_of(recording::read_text(unsteady(0.0).csv()).quality.clock_offsets, &recording::ClockOffset::explains_flow));
 }
 
 /// Log of a cool-down from `from_s` on, after heating for `heated_s`. Motor temperatures may be in Fahrenheit; the air is in Celsius.
 std::string cooling(double heated_s, int from_s, bool is_fahrenheit) {
-  SyntheticLog log;
+  recording::SyntheticLog log;
   log.rows = from_s + 1800;
   log.current_A = [heated_s](double time_s) { return time_s < heated_s ? 8.0 : 0.0; };
   const auto rows_C = log.temperatures_C();
@@ -125,10 +125,11 @@ std::string cooling(double heated_s, int from_s, bool is_fahrenheit) {
 TEST(Suspicion, FahrenheitByWhereACoolingMotorComesToRest) {
   for (const auto& [heated_s, from_s] :
        {std::pair(300.0, 310), std::pair(1500.0, 1500), std::pair(1500.0, 1000), std::pair(1500.0, 1600)}) {
-    EXPECT_THAT(read_text(cooling(heated_s, from_s, true)).quality.blocking, ElementsAre(HasSubstr("degrees Fahrenheit"))) << from_s;
-    EXPECT_THAT(read_text(cooling(heated_s, from_s, false)).quality.suspicions, IsEmpty()) << from_s;
+    EXPECT_THAT(recording::read_text(cooling(heated_s, from_s, true)).quality.blocking, ElementsAre(HasSubstr("degrees Fahrenheit")))
+        << from_s;
+    EXPECT_THAT(recording::read_text(cooling(heated_s, from_s, false)).quality.suspicions, IsEmpty()) << from_s;
   }
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

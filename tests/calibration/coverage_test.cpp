@@ -7,12 +7,12 @@
 #include "base/parallel.h"
 #include "study.h"
 
-namespace heatsoak::study {
+namespace heatsoak::calibration::study {
 namespace {
 
 std::vector<CaseResult> cases(const Case& like, std::size_t count) {
   std::vector<CaseResult> results(count);
-  in_parallel(count, 0, [&](std::size_t i) {
+  base::in_parallel(count, 0, [&](std::size_t i) {
     Case one = like;
     one.seed = 5000 + i;
     results[i] = calibrate_case({}, one);
@@ -67,7 +67,7 @@ TEST(Calibration, FastLogsOfSmallMotorsAreTakenFinely) {
   like.making.flux_rms_W = 0.0;
   like.runs = 2;
   std::vector<int> is_held(kCases);
-  in_parallel(kCases, 0, [&](std::size_t i) {
+  base::in_parallel(kCases, 0, [&](std::size_t i) {
     Case one = like;
     one.seed = 7000 + i;
     const CaseResult result = calibrate_case(small, one);
@@ -96,4 +96,4 @@ TEST(Calibration, UnknownHeatDoesNotFoolIt) {
 }
 
 }  // namespace
-}  // namespace heatsoak::study
+}  // namespace heatsoak::calibration::study

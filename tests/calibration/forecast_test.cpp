@@ -12,26 +12,27 @@
 #include "motor/write_motor.h"
 #include "study.h"
 
-namespace heatsoak::study {
+namespace heatsoak::calibration::study {
 namespace {
 
-LogMaking long_enough() {
-  LogMaking making;
+estimation::LogMaking long_enough() {
+  estimation::LogMaking making;
   making.duration_s = 1200.0;
   return making;
 }
 
 /// Writes logs of one motor to files and reads them.
-std::vector<Recording> logs_of(const TwoNodeTruth& truth, const LogMaking& making, const Folder& folder, int first, int count) {
-  std::vector<Recording> all;
+std::vector<recording::Recording> logs_of(const estimation::TwoNodeTruth& truth, const estimation::LogMaking& making, const Folder& folder,
+                                          int first, int count) {
+  std::vector<recording::Recording> all;
   for (int run = first; run < first + count; ++run) {
     const auto file = folder.path() / ("run_" + std::to_string(run) + ".csv");
-    all.push_back(read_log(write_log(generated_log(truth, making, 17, static_cast<std::uint64_t>(run)), file)));
+    all.push_back(read_log(write_log(estimation::generated_log(truth, making, 17, static_cast<std::uint64_t>(run)), file)));
   }
   return all;
 }
 
-std::vector<MeasuredRun> runs_of(const ForecastSetup& setup, const std::vector<Recording>& logs) {
+std::vector<estimation::MeasuredRun> runs_of(const ForecastSetup& setup, const std::vector<recording::Recording>& logs) {
   std::vector<std::string> notes;
   return forecast_runs(setup, logs, std::nullopt, notes);
 }
@@ -39,12 +40,12 @@ std::vector<MeasuredRun> runs_of(const ForecastSetup& setup, const std::vector<R
 /// White noise has as many independent samples as samples. For x(k+1) = a·x(k) + noise the share is (1 − a)/(1 + a).
 TEST(IndependentSamples, AreThoseOfKnownProcesses) {
   constexpr int kSamples = 20'000;
-  Random random(4, 1);
+  base::Random random(4, 1);
   for (const double kept : {0.0, 0.5, 0.9}) {
     Eigen::VectorXd error_K(kSamples);
     double now_K = 0.0;
     for (double& each : error_K) {
-      now_K = kept * now_K + standard_normal(random);
+      now_K = kept * now_K + estimation::standard_normal(random);
       each = now_K;
     }
     const double expected = kSamples * (1.0 - kept) / (1.0 + kept);
@@ -58,15 +59,15 @@ TEST(IndependentSamples, AreThoseOfKnownProcesses) {
 TEST(ForecastModel, SlopesAreDifferences) {
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = ", tolerance = \"5 %\""};
-  const std::vector<Recording> logs = logs_of(sheet.truth, long_enough(), folder, 0, 1);
+  const std::vector<recording::Recording> logs = logs_of(sheet.truth, long_enough(), folder, 0, 1);
   ForecastSetup setup = forecast_setup(sheet.motor(folder), logs);
-  const MeasuredRun run = runs_of(setup, logs).front();
+  const estimation::MeasuredRun run = runs_of(setup, logs).front();
   const ForecastModel base = setup.model();
   for (const Extension& extension : extensions_for(setup, base, base.start(), std::vector{run})) {
     const ForecastModel model = with_extension(setup, extension).model();
     Eigen::VectorXd theta = model.start();
     const std::vector<double> start_C(static_cast<std::size_t>(model.network().state_count()), 27.0);
-    const LinearisedRun here = model.along(run, theta, 0.02, start_C);
+    const estimation::LinearisedRun here = model.along(run, theta, 0.02, start_C);
     constexpr double kStep = 1e-4;
     for (Eigen::Index i = 0; i <= model.count(); ++i) {
       const auto moved = [&](double by) {
@@ -87,17 +88,17 @@ TEST(ForecastModel, SlopesAreDifferences) {
 TEST(Forecast, KeepsANetworkThatIsRight) {
   const Folder folder;
   const Sheet sheet;
-  const Motor motor = sheet.motor(folder);
-  const TwoNodeTruth truth = drawn_truth(sheet, motor, 5);
-  const std::vector<Recording> logs = logs_of(truth, long_enough(), folder, 0, 4);
+  const motor::Motor motor = sheet.motor(folder);
+  const estimation::TwoNodeTruth truth = drawn_truth(sheet, motor, 5);
+  const std::vector<recording::Recording> logs = logs_of(truth, long_enough(), folder, 0, 4);
   const ForecastSetup setup = forecast_setup(motor, logs);
-  const std::vector<MeasuredRun> runs = runs_of(setup, logs);
+  const std::vector<estimation::MeasuredRun> runs = runs_of(setup, logs);
   const Forecast found = forecast_of(setup, runs, {}, 0);
   EXPECT_THAT(found.accepted, testing::IsEmpty());
   EXPECT_EQ(found.pieces.size(), 4U);
   EXPECT_NE(found.source, ForecastSource::file);
   const ForecastModel model = found.model();
-  for (const MeasuredRun& run : runs_of(setup, logs_of(truth, long_enough(), folder, 10, 2))) {
+  for (const estimation::MeasuredRun& run : runs_of(setup, logs_of(truth, long_enough(), folder, 10, 2))) {
     const PredictedRun predicted = predict(model, found.fit.theta, found.fit.covariance, found.band, run);
     for (const PredictedSignal& each : predicted.signals) {
       // 0.06 W of unknown heat at each node with a time constant of 180 s changes it by some tenths of a kelvin.
@@ -108,9 +109,9 @@ TEST(Forecast, KeepsANetworkThatIsRight) {
 }
 
 /// Logs of a motor whose contact conductance rises by 1 % per K, hot enough to make it visible.
-std::vector<Recording> logs_of_better_contact(TwoNodeTruth truth, const Folder& folder, int first, int count) {
+std::vector<recording::Recording> logs_of_better_contact(estimation::TwoNodeTruth truth, const Folder& folder, int first, int count) {
   truth.contact_change_per_K = 0.01;
-  LogMaking making = long_enough();
+  estimation::LogMaking making = long_enough();
   making.largest_current_A = 13.0;
   making.flux_rms_W = 0.02;
   return logs_of(truth, making, folder, first, count);
@@ -121,8 +122,8 @@ std::vector<Recording> logs_of_better_contact(TwoNodeTruth truth, const Folder& 
 TEST(Forecast, ExtendsANetworkThatIsWrong) {
   const Folder folder;
   const Sheet sheet;
-  const Motor motor = sheet.motor(folder);
-  const std::vector<Recording> logs = logs_of_better_contact(sheet.truth, folder, 0, 4);
+  const motor::Motor motor = sheet.motor(folder);
+  const std::vector<recording::Recording> logs = logs_of_better_contact(sheet.truth, folder, 0, 4);
   const ForecastSetup setup = forecast_setup(motor, logs);
   const Forecast found = forecast_of(setup, runs_of(setup, logs), {}, 0);
   ASSERT_FALSE(found.accepted.empty());
@@ -132,7 +133,7 @@ TEST(Forecast, ExtendsANetworkThatIsWrong) {
   const ForecastModel base = setup.model();
   const ForecastRules ordinary{.is_tempered = false, .has_heat_factors = false};
   const ForecastFit plain = fit_forecast(base, runs_of(setup, logs), {}, base.start(), ordinary);
-  for (const MeasuredRun& run : runs_of(setup, logs_of_better_contact(sheet.truth, folder, 10, 2))) {
+  for (const estimation::MeasuredRun& run : runs_of(setup, logs_of_better_contact(sheet.truth, folder, 10, 2))) {
     const auto winding_K = [&](const ForecastModel& by, const ForecastFit& fit) {
       return predict(by, fit.theta, fit.covariance, found.band, run).signals.front().rmse_K;
     };
@@ -144,10 +145,10 @@ TEST(Forecast, ExtendsANetworkThatIsWrong) {
 TEST(ForecastFit, TemperedLikelihoodLeavesThePriorItsSay) {
   const Folder folder;
   const Sheet sheet;
-  const std::vector<Recording> logs = logs_of(sheet.truth, long_enough(), folder, 0, 1);
+  const std::vector<recording::Recording> logs = logs_of(sheet.truth, long_enough(), folder, 0, 1);
   const ForecastSetup setup = forecast_setup(sheet.motor(folder), logs);
   const ForecastModel model = setup.model();
-  const std::vector<MeasuredRun> runs = runs_of(setup, logs);
+  const std::vector<estimation::MeasuredRun> runs = runs_of(setup, logs);
   const ForecastFit fit = fit_forecast(model, runs, {}, model.start(), {});
   EXPECT_GT(fit.weight, 0.0);
   EXPECT_LT(fit.weight, 0.5) << "errors of slow unknown heat are correlated";
@@ -161,18 +162,20 @@ TEST(ForecastFit, TemperedLikelihoodLeavesThePriorItsSay) {
 TEST(Prediction, TakesATorqueForACurrent) {
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
-  const Motor motor = sheet.motor(folder);
-  Recording with_current = generated_log(sheet.truth, long_enough(), 3, 0);
+  const motor::Motor motor = sheet.motor(folder);
+  recording::Recording with_current = estimation::generated_log(sheet.truth, long_enough(), 3, 0);
   const std::size_t rows = with_current.rows();
-  with_current.channels.push_back({*quantity_named("speed_rad_per_s"), std::vector<double>(rows, 100.0)});
-  Recording with_torque = with_current;
+  with_current.channels.push_back({*recording::quantity_named("speed_rad_per_s"), std::vector<double>(rows, 100.0)});
+  recording::Recording with_torque = with_current;
   std::vector<double> torque_Nm;
   for (const double current_A : with_current.find("current_A")->values) {
     torque_Nm.push_back(0.034 * (current_A - 0.2));
   }
-  std::erase_if(with_torque.channels, [](const Channel& each) { return each.quantity.key == "current_A"; });
-  with_torque.channels.push_back({*quantity_named("torque_Nm"), std::move(torque_Nm)});
-  const auto predicted = [&](const Recording& log) { return predict(motor, std::vector{log}, PredictionOptions{}).runs.front(); };
+  std::erase_if(with_torque.channels, [](const recording::Channel& each) { return each.quantity.key == "current_A"; });
+  with_torque.channels.push_back({*recording::quantity_named("torque_Nm"), std::move(torque_Nm)});
+  const auto predicted = [&](const recording::Recording& log) {
+    return predict(motor, std::vector{log}, PredictionOptions{}).runs.front();
+  };
   const PredictedRun by_current = predicted(with_current);
   const PredictedRun by_torque = predicted(with_torque);
   ASSERT_EQ(by_current.time_s, by_torque.time_s);
@@ -185,11 +188,11 @@ TEST(Prediction, TakesATorqueForACurrent) {
 TEST(Prediction, OfAConstantPowerEndsWhereTheResistancesSay) {
   const Folder folder;
   const Sheet sheet;
-  const Motor motor = sheet.motor(folder);
+  const motor::Motor motor = sheet.motor(folder);
   constexpr double kPower_W = 4.0;
-  Recording log = generated_log(sheet.truth, {.duration_s = 7200.0, .period_s = 2.0, .ambient_swing_K = 0.0}, 3, 0);
-  std::erase_if(log.channels, [](const Channel& each) { return each.quantity.key == "current_A"; });
-  log.channels.push_back({*quantity_named("power_in_W"), std::vector<double>(log.rows(), kPower_W)});
+  recording::Recording log = estimation::generated_log(sheet.truth, {.duration_s = 7200.0, .period_s = 2.0, .ambient_swing_K = 0.0}, 3, 0);
+  std::erase_if(log.channels, [](const recording::Channel& each) { return each.quantity.key == "current_A"; });
+  log.channels.push_back({*recording::quantity_named("power_in_W"), std::vector<double>(log.rows(), kPower_W)});
   const PredictedRun run = predict(motor, std::vector{log}, PredictionOptions{}).runs.front();
   const double stator_C = 25.0 + kPower_W * sheet.truth.stator_ambient_K_per_W;
   EXPECT_NEAR(run.signals[1].predicted_C.back(), stator_C, 0.1);
@@ -199,10 +202,10 @@ TEST(Prediction, OfAConstantPowerEndsWhereTheResistancesSay) {
 /// The band of a data sheet covers the tolerances of its parameters. It must grow with them.
 TEST(Prediction, BandWidensWithTheToleranceOfTheFile) {
   const Folder folder;
-  const std::vector<Recording> logs = logs_of({}, long_enough(), folder, 0, 1);
+  const std::vector<recording::Recording> logs = logs_of({}, long_enough(), folder, 0, 1);
   double width_K = 0.0;
   for (const char* spread : {", tolerance = \"10 %\"", ", tolerance = \"40 %\""}) {
-    const Motor motor = Sheet{.truth = {}, .resistance_spread = {}, .thermal_spread = spread}.motor(folder);
+    const motor::Motor motor = Sheet{.truth = {}, .resistance_spread = {}, .thermal_spread = spread}.motor(folder);
     const PredictedSignal winding = predict(motor, logs, PredictionOptions{}).runs.front().signals.front();
     const double here_K = winding.high_C.back() - winding.low_C.back();
     EXPECT_GT(here_K, 1.5 * width_K);
@@ -213,16 +216,16 @@ TEST(Prediction, BandWidensWithTheToleranceOfTheFile) {
 TEST(Prediction, OfAWrittenFileIsThatOfTheCalibration) {
   const Folder folder;
   const Sheet sheet;
-  const Motor motor = sheet.motor(folder);
-  const std::vector<Recording> logs = logs_of_better_contact(sheet.truth, folder, 0, 4);
-  const std::vector<Recording> others = logs_of_better_contact(sheet.truth, folder, 10, 1);
+  const motor::Motor motor = sheet.motor(folder);
+  const std::vector<recording::Recording> logs = logs_of_better_contact(sheet.truth, folder, 0, 4);
+  const std::vector<recording::Recording> others = logs_of_better_contact(sheet.truth, folder, 10, 1);
   const Calibration found = calibrate(motor, logs, others, {.fit = {}, .written = WrittenFit::forecast});
   ASSERT_TRUE(found.is_forecast_written);
   const auto file = folder.path() / "written.toml";
-  std::ofstream(file) << to_toml(calibrated_motor(motor, found));
-  const Motor read = read_motor(file);
+  std::ofstream(file) << motor::to_toml(calibrated_motor(motor, found));
+  const motor::Motor read = motor::read_motor(file);
   ASSERT_TRUE(read.fit && read.fit->band);
-  EXPECT_EQ(data_quality(read), "measured");
+  EXPECT_EQ(motor::data_quality(read), "measured");
   const PredictedRun of_file = predict(read, others, PredictionOptions{}).runs.front();
   const PredictedRun& at_once = found.holdout_after.front();
   for (std::size_t s = 0; s < of_file.signals.size(); ++s) {
@@ -233,7 +236,7 @@ TEST(Prediction, OfAWrittenFileIsThatOfTheCalibration) {
   }
   // The written file must give the same result as the library.
   const ForecastModel model = found.forecast->model();
-  const MeasuredRun run = runs_of(found.forecast->setup, others).front();
+  const estimation::MeasuredRun run = runs_of(found.forecast->setup, others).front();
   const PredictedRun direct = predict(model, found.forecast->fit.theta, found.forecast->fit.covariance, found.forecast->band, run);
   EXPECT_NEAR(direct.signals.front().rmse_K, of_file.signals.front().rmse_K, 0.05);
 }
@@ -242,19 +245,19 @@ TEST(Prediction, OfAWrittenFileIsThatOfTheCalibration) {
 TEST(ForecastBand, WidensTheDrawsOfACalibratedMotor) {
   const Folder folder;
   const Sheet sheet;
-  Motor motor = sheet.motor(folder);
+  motor::Motor motor = sheet.motor(folder);
   motor.fit.emplace();
   motor.fit->parameters = {"thermal_resistance_winding_stator"};
-  motor.fit->correlation = Correlation(std::size_t{1});
-  motor.fit->band = ForecastBand{{0.03, 0.0}, 100.0, 0.04, 2.0};
-  Random random(5, 0);
+  motor.fit->correlation = motor::Correlation(std::size_t{1});
+  motor.fit->band = motor::ForecastBand{{0.03, 0.0}, 100.0, 0.04, 2.0};
+  base::Random random(5, 0);
   constexpr int kDraws = 4000;
   double squares = 0.0;
   for (int i = 0; i < kDraws; ++i) {
-    squares += std::pow(std::log(draw_sample(motor, random).values.terminal_resistance_ohm / sheet.truth.resistance_25C_ohm), 2);
+    squares += std::pow(std::log(motor::draw_sample(motor, random).values.terminal_resistance_ohm / sheet.truth.resistance_25C_ohm), 2);
   }
   EXPECT_NEAR(std::sqrt(squares / kDraws), 2.0 * 0.05, 0.005);
 }
 
 }  // namespace
-}  // namespace heatsoak::study
+}  // namespace heatsoak::calibration::study

@@ -7,7 +7,7 @@
 #include "estimation/linearised_run.h"
 #include "runs_for_tests.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 using Complex = std::complex<double>;
@@ -18,7 +18,7 @@ using Unknowns = std::array<S, 6>;
 
 /// Returns the sensors' values at the end of the run, by fourth-order Runge-Kutta steps of a hundredth of an interval.
 template <class S>
-std::array<S, 2> at_end(const Unknowns<S>& u, const TwoNodeTruth& truth, const MeasuredRun& run) {
+std::array<S, 2> at_end(const Unknowns<S>& u, const estimation::TwoNodeTruth& truth, const estimation::MeasuredRun& run) {
   S w = u[4];
   S s = u[5];
   for (std::size_t k = 0; k < run.at.size(); ++k) {
@@ -44,29 +44,29 @@ std::array<S, 2> at_end(const Unknowns<S>& u, const TwoNodeTruth& truth, const M
 
 class Gradient : public testing::Test {
  protected:
-  Gradient() : run_(generated_run(truth_, making(), 3, 0)), model_(two_node_model(truth_, 1.0)) {
-    for (const FreeParameter& parameter : model_.free) {
+  Gradient() : run_(estimation::generated_run(truth_, making(), 3, 0)), model_(estimation::two_node_model(truth_, 1.0)) {
+    for (const estimation::FreeParameter& parameter : model_.free) {
       wanted_.push_back(parameter.place);
     }
   }
-  static LogMaking making() {
-    LogMaking making;
+  static estimation::LogMaking making() {
+    estimation::LogMaking making;
     making.duration_s = 240.0;
     return making;
   }
-  [[nodiscard]] LinearisedRun linearised(const std::vector<double>& values, const std::vector<double>& start_C) const {
-    return linearise(model_.network, values, wanted_, model_.flux_nodes, start_C, run_);
+  [[nodiscard]] estimation::LinearisedRun linearised(const std::vector<double>& values, const std::vector<double>& start_C) const {
+    return estimation::linearise(model_.network, values, wanted_, model_.flux_nodes, start_C, run_);
   }
 
-  const TwoNodeTruth truth_;
-  const MeasuredRun run_;
-  const Model model_;
+  const estimation::TwoNodeTruth truth_;
+  const estimation::MeasuredRun run_;
+  const estimation::Model model_;
   const std::vector<double> start_C_{31.0, 27.0};
   std::vector<int> wanted_;
 };
 
 TEST_F(Gradient, AgreesWithTheComplexStepThroughOtherEquations) {
-  const LinearisedRun found = linearised(model_.values, start_C_);
+  const estimation::LinearisedRun found = linearised(model_.values, start_C_);
   const Eigen::Index last = (found.samples() - 1) * 2;
   const Unknowns<double> here{truth_.winding_J_per_K,
                               truth_.winding_stator_K_per_W,
@@ -92,8 +92,9 @@ TEST_F(Gradient, AgreesWithTheComplexStepThroughOtherEquations) {
 }
 
 TEST_F(Gradient, AgreesWithDifferencesOfItsOwnPrediction) {
-  const LinearisedRun found = linearised(model_.values, start_C_);
-  const auto close = [&](const Columns& columns, Eigen::Index column, const LinearisedRun& up, const LinearisedRun& down, double apart) {
+  const estimation::LinearisedRun found = linearised(model_.values, start_C_);
+  const auto close = [&](const estimation::Columns& columns, Eigen::Index column, const estimation::LinearisedRun& up,
+                         const estimation::LinearisedRun& down, double apart) {
     double worst = 0.0;
     for (Eigen::Index k = 0; k < found.samples(); ++k) {
       for (Eigen::Index sensor = 0; sensor < 2; ++sensor) {
@@ -125,4 +126,4 @@ TEST_F(Gradient, AgreesWithDifferencesOfItsOwnPrediction) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

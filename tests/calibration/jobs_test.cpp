@@ -7,7 +7,7 @@
 #include "calibration/prediction_job.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 using testing::Contains;
@@ -17,9 +17,9 @@ using testing::VariantWith;
 TEST(Jobs, AFittedRunIsRefusedAndItsPredictionSaysSo) {
   const std::string bench = (kSource / "reports/soak/bench.csv").string();
   const std::string match = (kSource / "reports/soak/match_1.csv").string();
-  CalibrationJob job{read_motor(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml"), read_named_logs({bench}, {}, {}), {}};
-  const Motor calibrated = run_calibration(job).motor;
-  const PredictionAnswer both = run_prediction({calibrated, read_named_logs({}, {bench, match}, {})});
+  CalibrationJob job{motor::read_motor(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml"), recording::read_named_logs({bench}, {}, {}), {}};
+  const motor::Motor calibrated = run_calibration(job).motor;
+  const PredictionAnswer both = run_prediction({calibrated, recording::read_named_logs({}, {bench, match}, {})});
   EXPECT_EQ(both.prediction.runs.size(), 2U);
   EXPECT_THAT(both.warnings, Contains(VariantWith<FittedRun>(Field(&FittedRun::recording, "bench"))));
   EXPECT_THAT(both.warnings, Not(Contains(VariantWith<FittedRun>(Field(&FittedRun::recording, "match_1")))));
@@ -27,10 +27,10 @@ TEST(Jobs, AFittedRunIsRefusedAndItsPredictionSaysSo) {
   try {
     run_calibration(job);
     FAIL();
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
   }
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

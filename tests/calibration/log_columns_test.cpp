@@ -8,7 +8,7 @@
 #include "motor/write_motor.h"
 #include "study.h"
 
-namespace heatsoak::study {
+namespace heatsoak::calibration::study {
 namespace {
 
 /// Returns a curve of heat into the stator: 0 W where the column is 0, `most_W` where it is 1.
@@ -28,8 +28,8 @@ std::string curve_of(const std::string& column, double most_W) {
 
 constexpr double kHalfStep_K = 0.02;
 
-Recording steady_log(double stator_C, double ambient_C, double fan_ratio, double pump_ratio) {
-  Recording log;
+recording::Recording steady_log(double stator_C, double ambient_C, double fan_ratio, double pump_ratio) {
+  recording::Recording log;
   log.name = "steady";
   log.file = "steady.csv";
   log.run_begins = {0};
@@ -40,7 +40,8 @@ Recording steady_log(double stator_C, double ambient_C, double fan_ratio, double
     log.line.push_back(row + 2);
   }
   for (const auto& [key, value] : cells) {
-    Channel& channel = log.channels.emplace_back(quantity_named(key).value(), std::vector<double>(log.time_s.size(), value));
+    recording::Channel& channel =
+        log.channels.emplace_back(recording::quantity_named(key).value(), std::vector<double>(log.time_s.size(), value));
     // A converter between two steps: a reading that never changes counts as stuck.
     for (std::size_t row = 0; key.ends_with("_C") && row < channel.values.size(); ++row) {
       channel.values[row] += row % 2 == 0 ? kHalfStep_K : -kHalfStep_K;
@@ -51,14 +52,14 @@ Recording steady_log(double stator_C, double ambient_C, double fan_ratio, double
 
 TEST(LogColumns, two_curves_read_their_own_columns) {
   const Folder folder;
-  const Motor plain = Sheet{}.motor(folder);
+  const motor::Motor plain = Sheet{}.motor(folder);
   const std::filesystem::path file = folder.path() / "two_curves.toml";
-  std::ofstream(file) << to_toml(plain) << curve_of("pump_ratio", 3.0) << curve_of("fan_ratio", 6.0);
-  const Motor motor = read_motor(file);
+  std::ofstream(file) << motor::to_toml(plain) << curve_of("pump_ratio", 3.0) << curve_of("fan_ratio", 6.0);
+  const motor::Motor motor = motor::read_motor(file);
   constexpr double kAmbient_C = 20.0;
   const double rise_K = motor.nominal.thermal_resistance_stator_ambient_K_per_W * (6.0 * 0.5 + 3.0 / 3.0);
   const auto error_K = [&](double fan_ratio, double pump_ratio) {
-    const std::vector<Recording> logs{steady_log(kAmbient_C + rise_K, kAmbient_C, fan_ratio, pump_ratio)};
+    const std::vector<recording::Recording> logs{steady_log(kAmbient_C + rise_K, kAmbient_C, fan_ratio, pump_ratio)};
     const Prediction found = predict(motor, logs, {});
     double most_K = 0.0;
     for (const PredictedSignal& signal : found.runs.at(0).signals) {
@@ -71,4 +72,4 @@ TEST(LogColumns, two_curves_read_their_own_columns) {
 }
 
 }  // namespace
-}  // namespace heatsoak::study
+}  // namespace heatsoak::calibration::study

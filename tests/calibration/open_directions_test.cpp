@@ -11,7 +11,7 @@
 #include "motor/write_motor.h"
 #include "study.h"
 
-namespace heatsoak::study {
+namespace heatsoak::calibration::study {
 namespace {
 
 using testing::AnyOf;
@@ -58,13 +58,13 @@ TEST(OpenDirections, WindingCapacityWhereOnlyTheStatorIsSensed) {
 TEST(OtherMotor, IsSuspectedFromTheVoltageAtItsTerminals) {
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = ", tolerance = \"5 %\""};
-  const Motor motor = sheet.motor(folder);
+  const motor::Motor motor = sheet.motor(folder);
   for (const double ratio : {1.0, 0.7}) {
-    TwoNodeTruth truth = sheet.truth;
+    estimation::TwoNodeTruth truth = sheet.truth;
     truth.resistance_25C_ohm *= ratio;
-    LogMaking making;
+    estimation::LogMaking making;
     making.duration_s = 1200.0;
-    Recording log = generated_log(truth, making, 5, 0);
+    recording::Recording log = estimation::generated_log(truth, making, 5, 0);
     std::vector<double> speed_rad_per_s, motor_V;
     const std::vector<double>& current_A = log.find("current_A")->values;
     const std::vector<double>& winding_C = log.find("winding_C")->values;
@@ -73,30 +73,30 @@ TEST(OtherMotor, IsSuspectedFromTheVoltageAtItsTerminals) {
       const double hot_ratio = 1.0 + truth.temperature_coefficient_per_K * (winding_C[row] - 25.0);
       motor_V.push_back(truth.resistance_25C_ohm * hot_ratio * current_A[row] + 0.034 * speed_rad_per_s.back());
     }
-    log.channels.push_back({*quantity_named("speed_rad_per_s"), std::move(speed_rad_per_s)});
-    log.channels.push_back({*quantity_named("motor_V"), std::move(motor_V)});
-    const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "log.csv"))};
+    log.channels.push_back({*recording::quantity_named("speed_rad_per_s"), std::move(speed_rad_per_s)});
+    log.channels.push_back({*recording::quantity_named("motor_V"), std::move(motor_V)});
+    const std::vector<recording::Recording> logs{read_log(write_log(log, folder.path() / "log.csv"))};
     const Calibration found = calibrate(motor, logs, {}, {});
     EXPECT_EQ(has_finding<ResistanceDiffers>(found.findings), ratio < 1.0);
   }
 }
 
 /// Log of a motor that turns whenever current flows, which heats its stator by `drag_W`.
-Recording log_of(const TwoNodeTruth& truth, double hot_C, double duration_s, double drag_W,
-                 const std::function<double(double time_s)>& current_A) {
-  LogMaking making;
+recording::Recording log_of(const estimation::TwoNodeTruth& truth, double hot_C, double duration_s, double drag_W,
+                            const std::function<double(double time_s)>& current_A) {
+  estimation::LogMaking making;
   making.duration_s = duration_s;
-  Recording log = generated_log(truth, making, 7, 0);
+  recording::Recording log = estimation::generated_log(truth, making, 7, 0);
   double winding_C = 25.0 + hot_C;
   double stator_C = 25.0 + 0.8 * hot_C;
-  Random random(7, 9);
+  base::Random random(7, 9);
   for (std::size_t row = 0; row < log.rows(); ++row) {
     const double flows_A = current_A(log.time_s[row]);
-    for (Channel& channel : log.channels) {
+    for (recording::Channel& channel : log.channels) {
       if (channel.quantity.key == "winding_C") {
-        channel.values[row] = winding_C + 0.1 * standard_normal(random);
+        channel.values[row] = winding_C + 0.1 * estimation::standard_normal(random);
       } else if (channel.quantity.key == "stator_C") {
-        channel.values[row] = stator_C + 0.1 * standard_normal(random);
+        channel.values[row] = stator_C + 0.1 * estimation::standard_normal(random);
       } else if (channel.quantity.key == "ambient_C") {
         channel.values[row] = 25.0;
       } else if (channel.quantity.key == "current_A") {
@@ -115,19 +115,19 @@ Recording log_of(const TwoNodeTruth& truth, double hot_C, double duration_s, dou
   return log;
 }
 
-Recording cool_down(const TwoNodeTruth& truth, double hot_C = 65.0, double duration_s = 1500.0) {
+recording::Recording cool_down(const estimation::TwoNodeTruth& truth, double hot_C = 65.0, double duration_s = 1500.0) {
   return log_of(truth, hot_C, duration_s, 0.0, [](double) { return 0.0; });
 }
 
-void add_speed(Recording& log, double speed_rad_per_s) {
-  log.channels.push_back({*quantity_named("speed_rad_per_s"), std::vector<double>(log.rows(), speed_rad_per_s)});
+void add_speed(recording::Recording& log, double speed_rad_per_s) {
+  log.channels.push_back({*recording::quantity_named("speed_rad_per_s"), std::vector<double>(log.rows(), speed_rad_per_s)});
 }
 
 TEST(OpenDirections, CoolingDeterminesTimeConstantsButNoHeat) {
   const Folder folder;
-  TwoNodeTruth truth;
+  estimation::TwoNodeTruth truth;
   truth.stator_J_per_K *= 1.1;
-  const std::vector<Recording> logs{read_log(write_log(cool_down(truth), folder.path() / "cooling.csv"))};
+  const std::vector<recording::Recording> logs{read_log(write_log(cool_down(truth), folder.path() / "cooling.csv"))};
   const Calibration result = calibrate(Sheet{}.motor(folder), logs, {}, {});
   EXPECT_THAT(result.open,
               Contains(Field(&OpenDirection::why, HasSubstr("a cool-down determines time constants, but no heat capacity or resistance"))));
@@ -141,9 +141,9 @@ TEST(OpenDirections, CoolingDeterminesTimeConstantsButNoHeat) {
 TEST(OpenDirections, CoolingGivesNoHeatHoweverWellItDeterminesTimeConstants) {
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = ", tolerance = \"10 %\"", .no_load_current_A = 0.2};
-  Recording log = cool_down({}, 40.0, 900.0);
+  recording::Recording log = cool_down({}, 40.0, 900.0);
   add_speed(log, 0.0);
-  const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "cooling.csv"))};
+  const std::vector<recording::Recording> logs{read_log(write_log(log, folder.path() / "cooling.csv"))};
   const Calibration result = calibrate(sheet.motor(folder), logs, {}, {});
   EXPECT_TRUE(figure(result, "thermal_time_constant_winding").is_identifiable);
   for (const char* const in_watts : {"thermal_resistance_winding_stator", "thermal_resistance_stator_ambient", "winding_heat_capacity",
@@ -158,9 +158,9 @@ TEST(OpenDirections, UnidentifiableParameterHasAReasonAndAnExperiment) {
   // One minute of heating.
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = {}, .thermal_spread = ", tolerance = \"60 %\"", .no_load_current_A = 0.2};
-  Recording log = log_of({}, 0.0, 60.0, 0.0, [](double) { return 4.0; });
+  recording::Recording log = log_of({}, 0.0, 60.0, 0.0, [](double) { return 4.0; });
   add_speed(log, 0.0);
-  const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "short.csv"))};
+  const std::vector<recording::Recording> logs{read_log(write_log(log, folder.path() / "short.csv"))};
   const Calibration result = calibrate(sheet.motor(folder), logs, {}, {});
   ASSERT_FALSE(figure(result, "thermal_resistance_stator_ambient").is_identifiable);
   EXPECT_THAT(result.open, Contains(Field(&OpenDirection::what, AnyOf(HasSubstr("thermal_resistance_stator_ambient"),
@@ -170,7 +170,7 @@ TEST(OpenDirections, UnidentifiableParameterHasAReasonAndAnExperiment) {
 }
 
 /// Half an hour with two currents and rests; `drag_W` heats the stator while current flows.
-Recording two_currents(double drag_W) {
+recording::Recording two_currents(double drag_W) {
   return log_of({}, 0.0, 2400.0, drag_W, [](double time_s) {
     const double within_s = std::fmod(time_s, 1200.0);
     return within_s < 300.0 ? 4.0 : within_s < 700.0 ? 2.5 : 0.0;
@@ -184,12 +184,12 @@ TEST_P(UnloggedSpeed, WidensTheStatorsIntervalsUntilTheyHoldTheTruth) {
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
   const double most_W = sheet.no_load_current_A * 24.0;
-  const TwoNodeTruth truth;
-  const Recording silent = two_currents(GetParam() * most_W);
-  Recording still = silent;
+  const estimation::TwoNodeTruth truth;
+  const recording::Recording silent = two_currents(GetParam() * most_W);
+  recording::Recording still = silent;
   add_speed(still, 0.0);
-  const auto calibrated = [&](const Recording& log) {
-    const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "log.csv"))};
+  const auto calibrated = [&](const recording::Recording& log) {
+    const std::vector<recording::Recording> logs{read_log(write_log(log, folder.path() / "log.csv"))};
     return calibrate(sheet.motor(folder), logs, {}, {});
   };
   const Calibration unlogged = calibrated(silent);
@@ -214,14 +214,14 @@ INSTANTIATE_TEST_SUITE_P(StillAndTurning, UnloggedSpeed, testing::Values(0.0, 0.
 TEST(HeldOutLog, MayLackTheSpeedThatTheFittedOnesHave) {
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
-  Recording still = two_currents(0.0);
+  recording::Recording still = two_currents(0.0);
   add_speed(still, 0.0);
-  const Recording silent = two_currents(0.5 * sheet.no_load_current_A * 24.0);
-  Recording said_to_stand = silent;
+  const recording::Recording silent = two_currents(0.5 * sheet.no_load_current_A * 24.0);
+  recording::Recording said_to_stand = silent;
   add_speed(said_to_stand, 0.0);
-  const auto calibrated = [&](const Recording& fitted, const Recording& held_out) {
-    const std::vector<Recording> logs{read_log(write_log(fitted, folder.path() / "log.csv"))};
-    const std::vector<Recording> others{read_log(write_log(held_out, folder.path() / "held_out.csv"))};
+  const auto calibrated = [&](const recording::Recording& fitted, const recording::Recording& held_out) {
+    const std::vector<recording::Recording> logs{read_log(write_log(fitted, folder.path() / "log.csv"))};
+    const std::vector<recording::Recording> others{read_log(write_log(held_out, folder.path() / "held_out.csv"))};
     return calibrate(sheet.motor(folder), logs, others, {});
   };
   const auto stator_K = [](const Calibration& found) {
@@ -243,7 +243,7 @@ TEST(InputPower, LeavesTheNoLoadLossAtTheStator) {
   const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
   constexpr double kConstant_Nm_per_A = 0.034;
   constexpr double kTurning_rad_per_s = 3.6 / (kConstant_Nm_per_A * 0.2);
-  Recording log = two_currents(3.6);
+  recording::Recording log = two_currents(3.6);
   std::vector<double> power_W, torque_Nm, speed_rad_per_s;
   for (std::size_t row = 0; row < log.rows(); ++row) {
     const double flows_A = log.find("current_A")->values[row];
@@ -253,11 +253,11 @@ TEST(InputPower, LeavesTheNoLoadLossAtTheStator) {
     power_W.push_back(flows_A * flows_A * sheet.truth.resistance_25C_ohm * (1.0 + sheet.truth.temperature_coefficient_per_K * hot_K) +
                       kConstant_Nm_per_A * flows_A * speed_rad_per_s.back());
   }
-  std::erase_if(log.channels, [](const Channel& channel) { return channel.quantity.key == "current_A"; });
-  log.channels.push_back({*quantity_named("power_in_W"), std::move(power_W)});
-  log.channels.push_back({*quantity_named("torque_Nm"), std::move(torque_Nm)});
-  log.channels.push_back({*quantity_named("speed_rad_per_s"), std::move(speed_rad_per_s)});
-  const std::vector<Recording> logs{read_log(write_log(log, folder.path() / "power.csv"))};
+  std::erase_if(log.channels, [](const recording::Channel& channel) { return channel.quantity.key == "current_A"; });
+  log.channels.push_back({*recording::quantity_named("power_in_W"), std::move(power_W)});
+  log.channels.push_back({*recording::quantity_named("torque_Nm"), std::move(torque_Nm)});
+  log.channels.push_back({*recording::quantity_named("speed_rad_per_s"), std::move(speed_rad_per_s)});
+  const std::vector<recording::Recording> logs{read_log(write_log(log, folder.path() / "power.csv"))};
   const Calibration found = calibrate(sheet.motor(folder), logs, {}, {});
   EXPECT_THAT(remarks_in(found.findings), Contains(HasSubstr("the part due to no_load_current is assumed to arise at the stator")));
   const auto is_near = [&](const char* name, double truth) {
@@ -269,9 +269,9 @@ TEST(InputPower, LeavesTheNoLoadLossAtTheStator) {
   is_near("thermal_resistance_winding_stator", sheet.truth.winding_stator_K_per_W);
   is_near("winding_heat_capacity", sheet.truth.winding_J_per_K);
   EXPECT_NEAR(figure(found, "no_load_current").value, 0.2, 0.005);
-  Motor guessed = sheet.motor(folder);
-  guessed.parameters.find("no_load_current")->second.origin = Origin::estimated;
-  for (const Motor& motor : {guessed, Sheet{}.motor(folder)}) {
+  motor::Motor guessed = sheet.motor(folder);
+  guessed.parameters.find("no_load_current")->second.origin = base::Origin::estimated;
+  for (const motor::Motor& motor : {guessed, Sheet{}.motor(folder)}) {
     EXPECT_THAT(remarks_in(calibrate(motor, logs, {}, {}).findings), Contains(HasSubstr("all of it is assumed to arise at the winding")));
   }
 }
@@ -297,8 +297,8 @@ TEST(OpenDirections, WhereNothingIsLearnedTheAnswerIsThatAndTheExperiment) {
   try {
     calibrate_case({.truth = {}, .resistance_spread = {}, .thermal_spread = ", tolerance = \"1 %\""}, one);
     FAIL() << "learned something";
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::cannot_answer);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::cannot_answer);
     EXPECT_THAT(failure.what(), HasSubstr("no parameter of this motor is identifiable"));
     EXPECT_THAT(failure.what(), HasSubstr("experiment"));
   }
@@ -308,7 +308,7 @@ TEST(OpenDirections, WhereNothingIsLearnedTheAnswerIsThatAndTheExperiment) {
 TEST(Identifiability, LearningNeedsLessThanAFactorOfTwo) {
   CalibratedValue value;
   value.prior_sd = 0.7;
-  value.origin = Origin::datasheet;
+  value.origin = base::Origin::datasheet;
   EXPECT_TRUE(is_learned(0.36, value));
   EXPECT_FALSE(is_identifiable(0.36, value));
   EXPECT_TRUE(is_identifiable(0.34, value));
@@ -337,13 +337,13 @@ TEST(Profile, IsTheCurvatureWhereThatHoldsAndLopsidedWhereItDoesNot) {
 
 TEST(CalibratedMotor, IsReadBackAsItWasWritten) {
   const Folder folder;
-  const Motor motor = Sheet{.truth = {}, .resistance_spread = ", tolerance = \"10 %\""}.motor(folder);
+  const motor::Motor motor = Sheet{.truth = {}, .resistance_spread = ", tolerance = \"10 %\""}.motor(folder);
   CaseResult result = calibrate_case({.truth = {}, .resistance_spread = ", tolerance = \"10 %\""}, short_case());
   result.calibration.fit.free_run_error_K = 0.45;
-  const Motor written = calibrated_motor(motor, result.calibration);
+  const motor::Motor written = calibrated_motor(motor, result.calibration);
   const std::filesystem::path file = folder.path() / "model.toml";
-  std::ofstream(file) << to_toml(written);
-  const Motor read = read_motor(file);
+  std::ofstream(file) << motor::to_toml(written);
+  const motor::Motor read = motor::read_motor(file);
   ASSERT_TRUE(read.fit);
   EXPECT_EQ(read.fit->parameters, written.fit->parameters);
   EXPECT_EQ(read.fit->free_run_error_K, 0.45);
@@ -355,14 +355,14 @@ TEST(CalibratedMotor, IsReadBackAsItWasWritten) {
     EXPECT_NEAR(read.parameters.at(key).value, each.value, 1e-5 * std::abs(each.value)) << key;
   }
   // Samples drawn from the file must have the correlations of the fit.
-  Random random(3, 0);
+  base::Random random(3, 0);
   double product = 0.0;
   double squares_a = 0.0;
   double squares_b = 0.0;
   const double mean_a = std::log(written.nominal.thermal_resistance_stator_ambient_K_per_W);
   const double mean_b = std::log(written.nominal.thermal_resistance_winding_stator_K_per_W);
   for (int i = 0; i < 4000; ++i) {
-    const MotorValues values = draw_sample(read, random).values;
+    const motor::MotorValues values = motor::draw_sample(read, random).values;
     const double a = std::log(values.thermal_resistance_stator_ambient_K_per_W) - mean_a;
     const double b = std::log(values.thermal_resistance_winding_stator_K_per_W) - mean_b;
     product += a * b;
@@ -380,11 +380,11 @@ TEST(CalibratedMotor, IsReadBackAsItWasWritten) {
 TEST(CalibratedMotor, IsTheSameWhateverTheNumberOfThreads) {
   Case one = short_case();
   const Folder folder;
-  const Motor motor = Sheet{}.motor(folder);
-  const std::string with_one = to_toml(calibrated_motor(motor, calibrate_case({}, one).calibration));
+  const motor::Motor motor = Sheet{}.motor(folder);
+  const std::string with_one = motor::to_toml(calibrated_motor(motor, calibrate_case({}, one).calibration));
   one.threads = 5;
-  EXPECT_EQ(to_toml(calibrated_motor(motor, calibrate_case({}, one).calibration)), with_one);
+  EXPECT_EQ(motor::to_toml(calibrated_motor(motor, calibrate_case({}, one).calibration)), with_one);
 }
 
 }  // namespace
-}  // namespace heatsoak::study
+}  // namespace heatsoak::calibration::study

@@ -8,7 +8,7 @@
 #include "recording/read_recording.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,12 +26,12 @@ class Recordings : public testing::Test {
       GTEST_SKIP() << "the recordings are not at hand (HEATSOAK_MEASURED_DATA)";
     }
   }
-  static std::vector<Recording> read(const std::string& folder, const std::vector<std::string>& files, const fs::path& map) {
-    std::vector<Recording> all;
+  static std::vector<recording::Recording> read(const std::string& folder, const std::vector<std::string>& files, const fs::path& map) {
+    std::vector<recording::Recording> all;
     for (const std::string& file : files) {
       const fs::path log = *measured_data() / folder / file;
-      RecordingReport report;
-      all.push_back(read_recording(log, read_mapping(map, log), report));
+      recording::RecordingReport report;
+      all.push_back(recording::read_recording(log, recording::read_mapping(map, log), report));
     }
     return all;
   }
@@ -42,7 +42,7 @@ class Recordings : public testing::Test {
     return *std::ranges::find(errors, signal, &ErrorBeforeAfter::signal);
   }
   /// Root of the mean square over the signals.
-  static double total_K(const std::vector<ErrorBeforeAfter>& errors, SignalError ErrorBeforeAfter::*when) {
+  static double total_K(const std::vector<ErrorBeforeAfter>& errors, estimation::SignalError ErrorBeforeAfter::*when) {
     double squares = 0.0;
     for (const ErrorBeforeAfter& each : errors) {
       squares += (each.*when).rmse_K * (each.*when).rmse_K;
@@ -53,9 +53,9 @@ class Recordings : public testing::Test {
 
 TEST_F(Recordings, DroneMotorNearStandstill) {
   const fs::path map = kMappings / "tasrv_uav_motor.map.toml";
-  const Calibration found =
-      calibrate(read_motor(kReports / "diagnosis/uav_motor.toml"), read("tasrv_uav_motor", {"run1.csv", "run3.csv", "run5.csv"}, map),
-                read("tasrv_uav_motor", {"run2.csv"}, map), {.fit = {}, .written = WrittenFit::innovations});
+  const Calibration found = calibrate(motor::read_motor(kReports / "diagnosis/uav_motor.toml"),
+                                      read("tasrv_uav_motor", {"run1.csv", "run3.csv", "run5.csv"}, map),
+                                      read("tasrv_uav_motor", {"run2.csv"}, map), {.fit = {}, .written = WrittenFit::innovations});
   // 600 W raise the winding by 1.1 K/s in the first half minute of run 5, before much heat reaches the stator: about 520 J/K.
   const CalibratedParameter& winding = figure(found, "winding_heat_capacity");
   EXPECT_TRUE(winding.is_identifiable);
@@ -75,8 +75,8 @@ TEST_F(Recordings, DroneMotorNearStandstill) {
 TEST_F(Recordings, DroneMotorIsForecastTo2K) {
   const fs::path map = kMappings / "tasrv_uav_motor.map.toml";
   const Calibration found =
-      calibrate(read_motor(kReports / "diagnosis/uav_motor.toml"), read("tasrv_uav_motor", {"run1.csv", "run3.csv", "run5.csv"}, map),
-                read("tasrv_uav_motor", {"run2.csv"}, map), {});
+      calibrate(motor::read_motor(kReports / "diagnosis/uav_motor.toml"),
+                read("tasrv_uav_motor", {"run1.csv", "run3.csv", "run5.csv"}, map), read("tasrv_uav_motor", {"run2.csv"}, map), {});
   ASSERT_TRUE(found.is_forecast_written);
   double contact_W_per_K = 1.0 / figure(found, "thermal_resistance_winding_stator").value;
   for (const CalibratedParameter& each : found.parameters) {
@@ -93,7 +93,7 @@ TEST_F(Recordings, StallStaircase) {
   CalibrationOptions options;
   options.ambient_C = 22.0;
   const Calibration found =
-      calibrate(read_motor(kReports / "calibration/ri50.toml"), read("umich_ri50", {"stall_staircase.csv"}, map), {}, options);
+      calibrate(motor::read_motor(kReports / "calibration/ri50.toml"), read("umich_ri50", {"stall_staircase.csv"}, map), {}, options);
   // 8 A through 0.52 ohm raise the winding by 5.3 K/s: 6.3 J/K, or at most about 8 J/K including the heat that reaches the stator.
   const CalibratedParameter& winding = figure(found, "winding_heat_capacity");
   EXPECT_LT(winding.low, 6.6);
@@ -108,7 +108,7 @@ TEST_F(Recordings, StallStaircase) {
 TEST_F(Recordings, CoolDowns) {
   const fs::path map = kReports / "calibration/ksu_cool_down.map.toml";
   const Calibration found =
-      calibrate(read_motor(kReports / "calibration/p80.toml"),
+      calibrate(motor::read_motor(kReports / "calibration/p80.toml"),
                 read("ksu_propeller_bench",
                      {"cooling_slopes__Spike-P80-1700_2020-02-11_162559.csv", "cooling_slopes__Spike-P80-1700_2020-03-09_185035.csv"}, map),
                 {}, {});
@@ -128,7 +128,7 @@ TEST_F(Recordings, CoolDowns) {
 
 TEST_F(Recordings, TractionMotorHourByHour) {
   const fs::path folder = kReports / "calibration";
-  const Calibration found = calibrate(read_motor(folder / "lea_pmsm_52kw.toml"),
+  const Calibration found = calibrate(motor::read_motor(folder / "lea_pmsm_52kw.toml"),
                                       read("paderborn_pmsm", {"profile24_2.5s.csv"}, folder / "paderborn_first_hour.map.toml"),
                                       read("paderborn_pmsm", {"profile24_2.5s.csv"}, folder / "paderborn_second_hour.map.toml"), {});
   EXPECT_LT(total_K(found.fit_error, &ErrorBeforeAfter::after), 2.0);
@@ -141,4 +141,4 @@ TEST_F(Recordings, TractionMotorHourByHour) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -11,15 +11,15 @@
 #include "study.h"
 #include "synthetic_log.h"
 
-namespace heatsoak::study {
+namespace heatsoak::calibration::study {
 namespace {
 
 constexpr double kLag_s = 25.0;
 constexpr double kOffset_K = 4.0;
 
 /// Adds a probe in glue (lag) and a converter offset, in ten small steps per row.
-void spoil(Recording& log) {
-  for (Channel& channel : log.channels) {
+void spoil(recording::Recording& log) {
+  for (recording::Channel& channel : log.channels) {
     if (channel.quantity.key != "stator_C") {
       continue;
     }
@@ -39,25 +39,25 @@ void spoil(Recording& log) {
   }
 }
 
-std::vector<MotorSensor> stated() {
-  ParameterValue lag, offset;
+std::vector<motor::MotorSensor> stated() {
+  base::ParameterValue lag, offset;
   lag.value = kLag_s;
   offset.value = kOffset_K;
-  return {{"glued_on", find_sensor_effect("sensor_lag_stator"), lag},
-          {"sensor_offset_stator", find_sensor_effect("sensor_offset_stator"), offset}};
+  return {{"glued_on", motor::find_sensor_effect("sensor_lag_stator"), lag},
+          {"sensor_offset_stator", motor::find_sensor_effect("sensor_offset_stator"), offset}};
 }
 
 class StatedSensors : public testing::Test {
  protected:
   StatedSensors() {
-    LogMaking making;
+    estimation::LogMaking making;
     making.duration_s = 1800.0;
     making.noise_K = 0.02;
     making.resolution_K = 0.0;
     making.flux_rms_W = 0.0;
     making.outlier_share = 0.0;
     for (int run = 0; run < 3; ++run) {
-      logs_.push_back(generated_log(truth_, making, 7, static_cast<std::uint64_t>(run)));
+      logs_.push_back(estimation::generated_log(truth_, making, 7, static_cast<std::uint64_t>(run)));
       logs_.back().name += std::to_string(run);
       spoil(logs_.back());
     }
@@ -74,9 +74,9 @@ class StatedSensors : public testing::Test {
   }
 
   Folder folder_;
-  const TwoNodeTruth truth_;
-  Motor motor_ = Sheet().motor(folder_);
-  std::vector<Recording> logs_;
+  const estimation::TwoNodeTruth truth_;
+  motor::Motor motor_ = Sheet().motor(folder_);
+  std::vector<recording::Recording> logs_;
 };
 
 TEST_F(StatedSensors, FitFindsTheMotorBehindThem) {
@@ -91,14 +91,14 @@ TEST_F(StatedSensors, FitFindsTheMotorBehindThem) {
   }
   EXPECT_THAT(remarks_in(seeing.findings), testing::Contains(testing::HasSubstr("effects.glued_on.time_constant is held at 25 s")));
   EXPECT_THAT(remarks_in(seeing.findings), testing::Contains(testing::HasSubstr("effects.sensor_offset_stator.offset is held at 4 K")));
-  const Motor written = calibrated_motor(motor_, seeing);
+  const motor::Motor written = calibrated_motor(motor_, seeing);
   ASSERT_EQ(written.sensors.size(), 2U);
   EXPECT_EQ(written.sensors.front().size.value, kLag_s);
 }
 
 TEST_F(StatedSensors, OfWhichNoLogSpeaksAreSaidToCountForNothing) {
-  for (Recording& log : logs_) {
-    std::erase_if(log.channels, [](const Channel& channel) { return channel.quantity.key == "stator_C"; });
+  for (recording::Recording& log : logs_) {
+    std::erase_if(log.channels, [](const recording::Channel& channel) { return channel.quantity.key == "stator_C"; });
   }
   const Calibration before = calibrate(motor_, logs_, {}, {});
   motor_.sensors = stated();
@@ -111,24 +111,24 @@ TEST_F(StatedSensors, OfWhichNoLogSpeaksAreSaidToCountForNothing) {
 /// Derivatives of displayed temperatures with respect to start temperatures and parameters, compared with differences.
 TEST_F(StatedSensors, SlopesAreThoseOfWhatIsShown) {
   motor_.sensors = stated();
-  MeasuredRunOptions how = how_to_read(motor_, HeatInput::current);
-  how.needed = {Signal::current};
-  const MeasuredRun run = measured_runs(logs_.front(), how).runs.front();
-  const Model model = two_node_model(truth_, 1.0);
+  estimation::MeasuredRunOptions how = how_to_read(motor_, HeatInput::current);
+  how.needed = {thermal::Signal::current};
+  const estimation::MeasuredRun run = estimation::measured_runs(logs_.front(), how).runs.front();
+  const estimation::Model model = estimation::two_node_model(truth_, 1.0);
   std::vector<int> wanted;
-  for (const FreeParameter& parameter : model.free) {
+  for (const estimation::FreeParameter& parameter : model.free) {
     wanted.push_back(parameter.place);
   }
   const auto at = [&](const std::vector<double>& values, const std::vector<double>& start_C) {
-    return linearise(model.network, values, wanted, model.flux_nodes, start_C, run);
+    return estimation::linearise(model.network, values, wanted, model.flux_nodes, start_C, run);
   };
   const std::vector<double> start_C{31.0, 27.0};
-  const LinearisedRun here = at(model.values, start_C);
+  const estimation::LinearisedRun here = at(model.values, start_C);
   const Eigen::Index stator = run.sensor_at("stator");
   EXPECT_NEAR(here.sensor_C(0, stator), 27.0 + kOffset_K, 1e-12);
   EXPECT_GT((here.sensor_C.col(stator).transpose() - here.state_C.row(1)).array().abs().maxCoeff(), kOffset_K + 0.3);
-  const auto expect_slopes = [&](const Columns& columns, Eigen::Index column, const LinearisedRun& up, const LinearisedRun& down,
-                                 double apart) {
+  const auto expect_slopes = [&](const estimation::Columns& columns, Eigen::Index column, const estimation::LinearisedRun& up,
+                                 const estimation::LinearisedRun& down, double apart) {
     const Eigen::MatrixXd expected = (up.sensor_C - down.sensor_C) / apart;
     double worst = 0.0;
     for (Eigen::Index row = 0; row < columns.rows(); ++row) {
@@ -150,8 +150,8 @@ TEST_F(StatedSensors, SlopesAreThoseOfWhatIsShown) {
     expect_slopes(here.by_start, node, at(model.values, up), at(model.values, down), 2e-3);
   }
   // The simulation starts at the stator temperature that the sensor's first sample implies, and displays the faulty sensor's value.
-  EXPECT_NEAR(start_of(model.network, run).state_C[1], run.measured_C(0, stator) - kOffset_K, 1e-12);
-  const Eigen::MatrixXd off_K = run.measured_C - open_loop_C(model.network, model.values, run);
+  EXPECT_NEAR(estimation::start_of(model.network, run).state_C[1], run.measured_C(0, stator) - kOffset_K, 1e-12);
+  const Eigen::MatrixXd off_K = run.measured_C - estimation::open_loop_C(model.network, model.values, run);
   for (const double each_K : off_K.col(stator)) {
     EXPECT_FALSE(std::abs(each_K) > 0.3) << each_K;
   }
@@ -159,17 +159,17 @@ TEST_F(StatedSensors, SlopesAreThoseOfWhatIsShown) {
 
 // A lag looks like a clock offset. A fault that the file states needs no note.
 TEST_F(StatedSensors, LateAnswerThatIsStatedIsNoNews) {
-  const SyntheticLog late{.delay_s = 6.0};
+  const recording::SyntheticLog late{.delay_s = 6.0};
   const auto file = folder_.path() / "late.csv";
   std::ofstream(file) << late.csv();
-  const std::vector<Recording> logs{read_log(file)};
+  const std::vector<recording::Recording> logs{read_log(file)};
   const auto is_late = testing::Contains(testing::HasSubstr("late"));
   EXPECT_THAT(admit(motor_, logs, {}, true, 22.0).notes, is_late);
-  ParameterValue lag;
+  base::ParameterValue lag;
   lag.value = 6.0;
-  motor_.sensors = {{"glued_on", find_sensor_effect("sensor_lag_winding"), lag}};
+  motor_.sensors = {{"glued_on", motor::find_sensor_effect("sensor_lag_winding"), lag}};
   EXPECT_THAT(admit(motor_, logs, {}, true, 22.0).notes, testing::Not(is_late));
 }
 
 }  // namespace
-}  // namespace heatsoak::study
+}  // namespace heatsoak::calibration::study

@@ -10,10 +10,10 @@
 
 #include "recording/read_recording.h"
 
-namespace heatsoak::study {
+namespace heatsoak::calibration::study {
 namespace {
 
-double truth_of(const std::string& name, const TwoNodeTruth& truth) {
+double truth_of(const std::string& name, const estimation::TwoNodeTruth& truth) {
   if (name == "thermal_resistance_winding_stator") {
     return truth.winding_stator_K_per_W;
   }
@@ -47,7 +47,7 @@ Folder::~Folder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
-Motor Sheet::motor(const Folder& folder) const {
+motor::Motor Sheet::motor(const Folder& folder) const {
   const auto file = folder.path() / "made_up.toml";
   std::ofstream out(file);
   const auto figure = [&](const char* key, double value, const char* unit, const std::string& spread,
@@ -68,14 +68,14 @@ Motor Sheet::motor(const Folder& folder) const {
   figure("thermal_time_constant_winding", truth.winding_J_per_K * truth.winding_stator_K_per_W, "s", thermal_spread);
   figure("thermal_time_constant_stator", truth.stator_J_per_K * truth.stator_ambient_K_per_W, "s", thermal_spread);
   out.close();
-  return read_motor(file);
+  return motor::read_motor(file);
 }
 
-TwoNodeTruth drawn_truth(const Sheet& sheet, const Motor& motor, std::uint64_t seed) {
-  Random random(seed, 1000);
-  TwoNodeTruth truth = sheet.truth;
+estimation::TwoNodeTruth drawn_truth(const Sheet& sheet, const motor::Motor& motor, std::uint64_t seed) {
+  base::Random random(seed, 1000);
+  estimation::TwoNodeTruth truth = sheet.truth;
   const auto factor = [&](std::string_view key) {
-    return std::exp(prior_sd_of(motor.parameters.find(key)->second) * standard_normal(random));
+    return std::exp(prior_sd_of(motor.parameters.find(key)->second) * estimation::standard_normal(random));
   };
   const double across_ratio = factor("thermal_resistance_winding_stator");
   const double out_ratio = factor("thermal_resistance_stator_ambient");
@@ -84,21 +84,21 @@ TwoNodeTruth drawn_truth(const Sheet& sheet, const Motor& motor, std::uint64_t s
   truth.winding_J_per_K *= factor("thermal_time_constant_winding") / across_ratio;
   truth.stator_J_per_K *= factor("thermal_time_constant_stator") / out_ratio;
   if (!sheet.resistance_spread.empty()) {
-    const Spread& spread = *motor.parameters.find("terminal_resistance")->second.spread;
-    truth.resistance_25C_ohm *= std::exp(0.25 * std::log(spread.high / spread.low) * standard_normal(random));
+    const base::Spread& spread = *motor.parameters.find("terminal_resistance")->second.spread;
+    truth.resistance_25C_ohm *= std::exp(0.25 * std::log(spread.high / spread.low) * estimation::standard_normal(random));
   }
   return truth;
 }
 
-std::filesystem::path write_log(const Recording& log, const std::filesystem::path& file) {
+std::filesystem::path write_log(const recording::Recording& log, const std::filesystem::path& file) {
   std::ofstream out(file);
   out << "time_s";
-  for (const Channel& channel : log.channels) {
+  for (const recording::Channel& channel : log.channels) {
     out << ',' << channel.quantity.key;
   }
   for (std::size_t row = 0; row < log.rows(); ++row) {
     out << fmt::format("\n{:g}", log.time_s[row]);
-    for (const Channel& channel : log.channels) {
+    for (const recording::Channel& channel : log.channels) {
       out << ',' << (std::isnan(channel.values[row]) ? "" : fmt::format("{:.8g}", channel.values[row]));
     }
   }
@@ -106,15 +106,15 @@ std::filesystem::path write_log(const Recording& log, const std::filesystem::pat
   return file;
 }
 
-Recording read_log(const std::filesystem::path& file) {
-  RecordingReport report;
-  return read_recording(file, mapping_for(file, {}), report);
+recording::Recording read_log(const std::filesystem::path& file) {
+  recording::RecordingReport report;
+  return recording::read_recording(file, recording::mapping_for(file, {}), report);
 }
 
 struct Prepared {
-  Motor motor;
-  TwoNodeTruth truth;
-  std::vector<Recording> logs;
+  motor::Motor motor;
+  estimation::TwoNodeTruth truth;
+  std::vector<recording::Recording> logs;
 };
 
 /// Reads files one after the other, because the parser of units is not thread-safe.
@@ -125,7 +125,7 @@ Prepared prepare(const Sheet& sheet, const Case& one) {
   Prepared all{sheet.motor(folder), {}, {}};
   all.truth = drawn_truth(sheet, all.motor, one.seed);
   for (int run = 0; run < one.runs; ++run) {
-    const Recording made = generated_log(all.truth, one.making, one.seed, static_cast<std::uint64_t>(run));
+    const recording::Recording made = estimation::generated_log(all.truth, one.making, one.seed, static_cast<std::uint64_t>(run));
     all.logs.push_back(read_log(write_log(made, folder.path() / fmt::format("run_{}.csv", run + 1))));
   }
   return all;
@@ -146,4 +146,4 @@ CaseResult calibrate_case(const Sheet& sheet, const Case& one) {
   return result;
 }
 
-}  // namespace heatsoak::study
+}  // namespace heatsoak::calibration::study

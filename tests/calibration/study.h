@@ -9,7 +9,7 @@
 #include "calibration/calibrate.h"
 #include "runs_for_tests.h"
 
-namespace heatsoak::study {
+namespace heatsoak::calibration::study {
 
 /// Temporary folder, deleted by the destructor.
 class Folder {
@@ -26,23 +26,23 @@ class Folder {
 
 /// Data sheet of a motor. The true parameters of a case are drawn around it.
 struct Sheet {
-  TwoNodeTruth truth;
+  estimation::TwoNodeTruth truth;
   std::string resistance_spread;  ///< for example ", tolerance = \"5 %\"", which makes the resistance a free parameter
   std::string resistance_origin = "datasheet";
   std::string thermal_spread = ", tolerance = \"25 %\"";
   double no_load_current_A = 0.0;  ///< the true motor has no loss at speed, and most logs have no speed
-  [[nodiscard]] Motor motor(const Folder& folder) const;
+  [[nodiscard]] motor::Motor motor(const Folder& folder) const;
 };
 
 /// Draws the true values of the data sheet's four thermal parameters from their prior.
-TwoNodeTruth drawn_truth(const Sheet& sheet, const Motor& motor, std::uint64_t seed);
+estimation::TwoNodeTruth drawn_truth(const Sheet& sheet, const motor::Motor& motor, std::uint64_t seed);
 
 /// Writes the log as a CSV file in a logger's format.
-std::filesystem::path write_log(const Recording& log, const std::filesystem::path& file);
-Recording read_log(const std::filesystem::path& file);
+std::filesystem::path write_log(const recording::Recording& log, const std::filesystem::path& file);
+recording::Recording read_log(const std::filesystem::path& file);
 
 struct Case {
-  LogMaking making;
+  estimation::LogMaking making;
   int runs = 4;
   std::uint64_t seed = 1;
   int threads = 1;
@@ -66,4 +66,4 @@ struct CaseResult {
 };
 CaseResult calibrate_case(const Sheet& sheet, const Case& one);
 
-}  // namespace heatsoak::study
+}  // namespace heatsoak::calibration::study

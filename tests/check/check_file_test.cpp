@@ -10,7 +10,7 @@
 #include "check/run_checks.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::check {
 namespace {
 
 namespace fs = std::filesystem;
@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-const DataFolders kShipped{kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource};
+const input::DataFolders kShipped{kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource};
 
 const std::string kHead =
     "[[check]]\nname = \"paper\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"maxon_ecx_flat_42m_24v\"\n";
@@ -29,13 +29,13 @@ class CheckFiles : public testing::Test {
   ~CheckFiles() override { fs::remove_all(folder_); }
 
   [[nodiscard]] CheckFile read(const std::string& text) const {
-    write_file(folder_ / "a.check.toml", text);
+    base::write_file(folder_ / "a.check.toml", text);
     return read_check_file(folder_ / "a.check.toml", kShipped);
   }
   [[nodiscard]] std::string message_of(const std::string& text) const {
     try {
       static_cast<void>(read(text));
-    } catch (const Failure& failure) {
+    } catch (const base::Failure& failure) {
       return failure.what();
     }
     return "nothing was wrong";
@@ -155,7 +155,7 @@ TEST_F(CheckFiles, PathsBeginAtTheFile) {
 }
 
 TEST_F(CheckFiles, BrokenMotorFileIsReportedOnceAtItsOwnLine) {
-  write_file(folder_ / "bad.toml", "manufacturer = \"x\"\n");
+  base::write_file(folder_ / "bad.toml", "manufacturer = \"x\"\n");
   const std::string check = "[[check]]\nname = \"{}\"\nmotor = \"./bad.toml\"\n[check.limits]\nlint_problems = \"at most 0\"\n";
   const std::string said = message_of(fmt::format(fmt::runtime(check), "a") + fmt::format(fmt::runtime(check), "b"));
   EXPECT_THAT(said, HasSubstr("bad.toml:1:1: error: "));
@@ -182,7 +182,7 @@ TEST_F(CheckFiles, ForecastErrorNeedsTheAirOfALogWithoutIt) {
   for (int second = 0; second < 300; ++second) {
     log += fmt::format("{},{},{},{}\n", second, second % 20 < 10 ? 3.0 : 0.5, 100.0, 25.0 + 0.05 * second);
   }
-  write_file(folder_ / "no_air.csv", log);
+  base::write_file(folder_ / "no_air.csv", log);
   const std::string check = "[[check]]\nname = \"x\"\nmotor = \"maxon_ecx_flat_42m_24v\"\nlogs = [\"no_air.csv\"]\n";
   const std::string limits = "[check.limits]\nforecast_error = \"at most 500 K\"\n";
   const Outcome without = outcomes(check + limits).front();
@@ -390,8 +390,8 @@ TEST_F(CheckFiles, SensorOfACommittedHeaderIsReadFromDerate) {
            " }\n[check.limits]\nderating_excess = \"at most 0 A\"\n";
   };
   const CheckFile file = read(text("thermistor = \"stator\", thermistor_accuracy = \"1.5 K\", thermistor_lag = \"3 s\""));
-  EXPECT_EQ(sensor_flags(*file.checks.front().derate.sensor), "--thermistor stator --thermistor-accuracy 1.5K --thermistor-lag 3s");
-  EXPECT_EQ(sensor_flags(*read(text("winding_resistance = true")).checks.front().derate.sensor),
+  EXPECT_EQ(derate::sensor_flags(*file.checks.front().derate.sensor), "--thermistor stator --thermistor-accuracy 1.5K --thermistor-lag 3s");
+  EXPECT_EQ(derate::sensor_flags(*read(text("winding_resistance = true")).checks.front().derate.sensor),
             "--winding-resistance --resistance-accuracy 10K --voltage-error 0.02V --current-error 0.01A");
   EXPECT_THAT(message_of(text("thermistor = \"rotor\"")), HasSubstr("stator"));
   EXPECT_THAT(message_of(text("thermistor_accuracy = \"2 K\"")), HasSubstr("thermistor_accuracy: is not a key"));
@@ -419,8 +419,8 @@ TEST_F(CheckFiles, UpdateDoesNotPassAMotorAboveItsLimit) {
 
 TEST_F(CheckFiles, LimitWithAnEscapeIsNotRewritten) {
   std::vector<Outcome> found = outcomes(kHead + "samples = \"80\"\n[check.limits]\nwinding_peak_p95 = \"at most 30\\u0020degC\"\n");
-  EXPECT_THROW(with_new_limits(read_file(folder_ / "a.check.toml", 100000), found, 0.05), Failure);
+  EXPECT_THROW(with_new_limits(base::read_file(folder_ / "a.check.toml", 100000), found, 0.05), base::Failure);
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::check

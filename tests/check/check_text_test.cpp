@@ -9,7 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace heatsoak {
+namespace heatsoak::check {
 namespace {
 
 using testing::HasSubstr;
@@ -123,4 +123,4 @@ TEST_F(Outcomes, AreAMarkdownTable) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::check

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace heatsoak {
+namespace heatsoak::check {
 namespace {
 
 using testing::HasSubstr;
@@ -79,4 +79,4 @@ TEST(UpdatedLimit, IsKeptByTheValueItWasMadeFrom) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::check

@@ -65,8 +65,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 /// Formats a diagnostic like a line of stderr.
 std::string line_of(const json& diagnostic) {
-  return to_string(
-      Diagnostic{{diagnostic.at("file"), diagnostic.at("line"), diagnostic.at("column")}, diagnostic.at("key"), diagnostic.at("message")});
+  return base::to_string(base::Diagnostic{
+      {diagnostic.at("file"), diagnostic.at("line"), diagnostic.at("column")}, diagnostic.at("key"), diagnostic.at("message")});
 }
 
 std::vector<std::string> lines_of(const json& error) {

@@ -16,23 +16,23 @@ namespace heatsoak {
 namespace {
 
 namespace fs = std::filesystem;
-const std::vector<DriveRow>& driven_rows() {
-  static const std::vector<DriveRow> rows = [] {
-    TestDrive drive;
+const std::vector<friction::DriveRow>& driven_rows() {
+  static const std::vector<friction::DriveRow> rows = [] {
+    friction::TestDrive drive;
     for (int i = 0; i < 12; ++i) {
       drive.headings_rad.push_back(0.1 + i * std::numbers::pi / 6.0);
     }
     drive.speeds_m_per_s = {0.5, 1.0};
-    const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
-    const Motor motor = read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
-    return DriveOnPlant(make_plant(robot, motor.nominal, 0.001), drive, 3).rows();
+    const robot::Robot robot = robot::read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+    const motor::Motor motor = motor::read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
+    return friction::DriveOnPlant(robot::make_plant(robot, motor.nominal, 0.001), drive, 3).rows();
   }();
   return rows;
 }
 
 struct BadDrive {
   std::string name;
-  std::function<void(std::vector<DriveRow>&)> spoil;
+  std::function<void(std::vector<friction::DriveRow>&)> spoil;
   int friction_exit = 0;
   std::string friction_says;
   int inspect_exit = 0;
@@ -42,8 +42,8 @@ struct BadDrive {
 void PrintTo(const BadDrive& drive, std::ostream* out) { *out << drive.name; }
 
 template <class Change>
-std::function<void(std::vector<DriveRow>&)> of_each(Change change) {
-  return [change](std::vector<DriveRow>& rows) { std::ranges::for_each(rows, change); };
+std::function<void(std::vector<friction::DriveRow>&)> of_each(Change change) {
+  return [change](std::vector<friction::DriveRow>& rows) { std::ranges::for_each(rows, change); };
 }
 
 class BadDrives : public testing::TestWithParam<BadDrive> {};
@@ -52,9 +52,9 @@ TEST_P(BadDrives, are_reported) {
   const BadDrive& bad = GetParam();
   const TemporaryFolder folder;
   const fs::path log = folder.path() / "drive.csv";
-  std::vector<DriveRow> rows = driven_rows();
+  std::vector<friction::DriveRow> rows = driven_rows();
   bad.spoil(rows);
-  write(log, csv_of(rows, 4));
+  write(log, friction::csv_of(rows, 4));
   const ProgramRun friction = run({"friction", "--robot", "roboteam_twente_v2024", log.string()});
   EXPECT_EQ(friction.exit_code, bad.friction_exit) << friction.err;
   EXPECT_THAT(friction.out + friction.err, testing::HasSubstr(bad.friction_says));
@@ -69,52 +69,56 @@ TEST_P(BadDrives, are_reported) {
 INSTANTIATE_TEST_SUITE_P(
     One, BadDrives,
     testing::Values(
-        BadDrive{"percent", of_each([](DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each *= 100.0; }); }), 2,
+        BadDrive{"percent",
+                 of_each([](friction::DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each *= 100.0; }); }), 2,
                  "wheel_pwm_ratio_1 reaches", 0, "is it in percent"},
-        BadDrive{"millivolts", of_each([](DriveRow& row) { row.battery_V *= 1000.0; }), 2, "is it in millivolts?", 0,
+        BadDrive{"millivolts", of_each([](friction::DriveRow& row) { row.battery_V *= 1000.0; }), 2, "is it in millivolts?", 0,
                  "is it in millivolts?"},
-        BadDrive{"degrees", of_each([](DriveRow& row) {
+        BadDrive{"degrees", of_each([](friction::DriveRow& row) {
                    row.command_heading_rad *= 180.0 / std::numbers::pi;
                    row.yaw_rad *= 180.0 / std::numbers::pi;
                  }),
                  2, "off the direction that follows from the wheels' speeds", 0, "heading_field_rad spans"},
-        BadDrive{"revolutions_per_minute", of_each([](DriveRow& row) {
+        BadDrive{"revolutions_per_minute", of_each([](friction::DriveRow& row) {
                    std::ranges::for_each(row.wheel_speed_rad_per_s, [](double& each) { each *= 30.0 / std::numbers::pi; });
                  }),
                  2, "times the motor's back-EMF"},
-        BadDrive{"other_sign", of_each([](DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each = -each; }); }), 2,
+        BadDrive{"other_sign",
+                 of_each([](friction::DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each = -each; }); }), 2,
                  "have the wrong sign?"},
-        BadDrive{"other_sign_of_one_wheel", of_each([](DriveRow& row) { row.pwm_ratio[1] = -row.pwm_ratio[1]; }), 2,
+        BadDrive{"other_sign_of_one_wheel", of_each([](friction::DriveRow& row) { row.pwm_ratio[1] = -row.pwm_ratio[1]; }), 2,
                  "voltage of wheel 2 falls as it turns faster"},
-        BadDrive{"dead_modulation", of_each([](DriveRow& row) { row.pwm_ratio[0] = 0.0; }), 2, "wheel 1 turns with hardly any voltage"},
-        BadDrive{"modulations_swapped", of_each([](DriveRow& row) { std::swap(row.pwm_ratio[0], row.pwm_ratio[1]); }), 2, "of wheel 1"},
-        BadDrive{"battery_doubled", of_each([](DriveRow& row) { row.battery_V *= 2.0; }), 2, "times the motor's back-EMF"},
-        BadDrive{"other_order", of_each([](DriveRow& row) {
+        BadDrive{"dead_modulation", of_each([](friction::DriveRow& row) { row.pwm_ratio[0] = 0.0; }), 2,
+                 "wheel 1 turns with hardly any voltage"},
+        BadDrive{"modulations_swapped", of_each([](friction::DriveRow& row) { std::swap(row.pwm_ratio[0], row.pwm_ratio[1]); }), 2,
+                 "of wheel 1"},
+        BadDrive{"battery_doubled", of_each([](friction::DriveRow& row) { row.battery_V *= 2.0; }), 2, "times the motor's back-EMF"},
+        BadDrive{"other_order", of_each([](friction::DriveRow& row) {
                    std::swap(row.wheel_speed_rad_per_s[0], row.wheel_speed_rad_per_s[1]);
                    std::swap(row.pwm_ratio[0], row.pwm_ratio[1]);
                  }),
                  2, "do their order or signs differ from the robot's file"},
-        BadDrive{"milliseconds", of_each([](DriveRow& row) { row.time_s *= 1e3; }), 2, "is the time in milliseconds?", 0,
+        BadDrive{"milliseconds", of_each([](friction::DriveRow& row) { row.time_s *= 1e3; }), 2, "is the time in milliseconds?", 0,
                  "is the time in milliseconds?"},
-        BadDrive{"microseconds", of_each([](DriveRow& row) { row.time_s *= 1e6; }), 2, "days at 10000 s per row", 0,
+        BadDrive{"microseconds", of_each([](friction::DriveRow& row) { row.time_s *= 1e6; }), 2, "days at 10000 s per row", 0,
                  "days at 10000 s per row"},
-        BadDrive{"unsorted", [](std::vector<DriveRow>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase", 2,
+        BadDrive{"unsorted", [](std::vector<friction::DriveRow>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase", 2,
                  "time does not increase"},
-        BadDrive{"too_short", [](std::vector<DriveRow>& rows) { rows.resize(8); }, 3, "in no interval do the wheels turn steadily", 3,
-                 "it has 8 rows; at least 20 are needed"},
-        BadDrive{"no_number", of_each([](DriveRow& row) {
+        BadDrive{"too_short", [](std::vector<friction::DriveRow>& rows) { rows.resize(8); }, 3,
+                 "in no interval do the wheels turn steadily", 3, "it has 8 rows; at least 20 are needed"},
+        BadDrive{"no_number", of_each([](friction::DriveRow& row) {
                    row.battery_V = row.command_heading_rad = row.yaw_rad = std::nan("");
                    row.wheel_speed_rad_per_s.fill(std::nan(""));
                    row.pwm_ratio.fill(std::nan(""));
                  }),
                  3, "no quantity except the time contains a number", 3, "no quantity except the time contains a number"},
-        BadDrive{"standing", of_each([](DriveRow& row) {
+        BadDrive{"standing", of_each([](friction::DriveRow& row) {
                    row.wheel_speed_rad_per_s.fill(0.0);
                    row.pwm_ratio.fill(0.0);
                  }),
                  3, "in no interval do the wheels turn steadily", 3, "no wheel changes its speed beyond the noise"},
-        BadDrive{"one_heading", [](std::vector<DriveRow>& rows) { rows.resize(rows.size() / 24); }, 3, "nothing is identifiable", 0,
-                 ": usable for wheel models."}),
+        BadDrive{"one_heading", [](std::vector<friction::DriveRow>& rows) { rows.resize(rows.size() / 24); }, 3, "nothing is identifiable",
+                 0, ": usable for wheel models."}),
     [](const auto& each) { return each.param.name; });
 
 /// Rows of a run, cell by cell: time, winding, stator, ambient, current.
@@ -129,7 +133,7 @@ struct BadRun {
 void PrintTo(const BadRun& each, std::ostream* out) { *out << each.name; }
 
 std::string run_text(const std::function<void(std::vector<Cells>&)>& spoil) {
-  const SyntheticLog log;
+  const recording::SyntheticLog log;
   std::vector<Cells> rows;
   for (const auto& [winding_C, stator_C] : log.temperatures_C()) {
     const double time_s = static_cast<double>(rows.size()) * log.period_s;

@@ -408,7 +408,7 @@ TEST(Friction, of_one_roll_out_has_no_intervals_and_is_not_called_given) {
   for (int wheel = 1; wheel <= 4; ++wheel) {
     text += fmt::format(",wheel_speed_rad_per_s_{0},wheel_pwm_ratio_{0}", wheel);
   }
-  const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+  const robot::Robot robot = robot::read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
   for (int row = 0; row < 300; ++row) {
     const double free_m_per_s = (1.8 + kDrag_m_per_s2 / kRate_per_s) * std::exp(-kRate_per_s * 0.01 * row) - kDrag_m_per_s2 / kRate_per_s;
     text += fmt::format("\n{:.2f},24,{}", 0.01 * row, kHeading_rad);

@@ -74,19 +74,19 @@ struct Generated {
     EXPECT_EQ(done.exit_code, 0) << done.err;
     answer = done.exit_code == 0 ? done.json() : nlohmann::json();
     text = done.err;
-    const Motor motor = read_motor(motor_file);
-    DerateOptions derate_options;
+    const motor::Motor motor = motor::read_motor(motor_file);
+    derate::DerateOptions derate_options;
     derate_options.guarantee.samples = kSamples;
-    const Derating derating = derate(motor, twente(), derate_options);
+    const derate::Derating derating = derate::derate(motor, twente(), derate_options);
     guard.emplace(derating);
-    config = make_core_config(twente(), motor, {}, derating, *guard);
+    config = firmware::make_core_config(twente(), motor, {}, derating, *guard);
   }
 
   TemporaryFolder folder;
   fs::path core = folder.path() / "core";
   nlohmann::json answer;
   std::string text;
-  std::optional<HostGuard> guard;
+  std::optional<firmware::HostGuard> guard;
   robot_core::Config config;
 };
 
@@ -248,7 +248,8 @@ TEST(GeneratedCore, EachValueOfTheConfigurationHasItsOrigin) {
       header,
       AllOf(HasSubstr(fmt::format(".check_sum = 0x{:08X}U", plain_core().config.check_sum)), HasSubstr("robot file: body.yaw_inertia"),
             HasSubstr("CRC-64/XZ " + plain_core().answer["input_hash"]["value"].get<std::string>()), HasSubstr("heatsoak 0."),
-            HasSubstr(fmt::format(".limp_current_A = {},  // smallest current", float_literal(plain_core().config.limp_current_A)))));
+            HasSubstr(
+                fmt::format(".limp_current_A = {},  // smallest current", firmware::float_literal(plain_core().config.limp_current_A)))));
   std::istringstream lines(header);
   bool is_first_wheel = true;
   for (std::string line; std::getline(lines, line);) {
@@ -407,16 +408,16 @@ TEST(GenerateCore, SaysWhatIsWrongAndLeavesNothing) {
   EXPECT_THAT(other.err, HasSubstr("expected core"));
 }
 
-TEST(GenerateCore, InputHashIsThePublishedOne) { EXPECT_EQ(input_hash("123456789"), "995dc9bbdf1939fa"); }
+TEST(GenerateCore, InputHashIsThePublishedOne) { EXPECT_EQ(derate::input_hash("123456789"), "995dc9bbdf1939fa"); }
 
 TEST(GenerateCore, LiteralsReadBackAsTheSameNumber) {
-  EXPECT_EQ(float_literal(0.01F), "0.01F");
-  EXPECT_EQ(float_literal(-3.0F), "-3.0F");
+  EXPECT_EQ(firmware::float_literal(0.01F), "0.01F");
+  EXPECT_EQ(firmware::float_literal(-3.0F), "-3.0F");
   std::mt19937 engine(3);
   for (int i = 0; i < 100'000; ++i) {
     const auto value = std::bit_cast<float>(static_cast<std::uint32_t>(engine()));
     if (std::isfinite(value)) {
-      EXPECT_EQ(std::strtof(float_literal(value).c_str(), nullptr), value);
+      EXPECT_EQ(std::strtof(firmware::float_literal(value).c_str(), nullptr), value);
     }
   }
 }

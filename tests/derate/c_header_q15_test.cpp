@@ -14,7 +14,7 @@
 #include "derate/integer_form/quantised_table.h"
 #include "exported_motor.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 using testing::HasSubstr;
@@ -265,8 +265,8 @@ exponent = { value = "0.25", origin = "estimated", derivation = "a test" }
   try {
     static_cast<void>(exported("c_header_q15", derating));
     FAIL() << "no failure";
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
     EXPECT_THAT(failure.what(), HasSubstr("air (natural_convection)"));
   }
 }
@@ -283,4 +283,4 @@ TEST(Q15Lines, RoundingIsBounded) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -19,7 +19,7 @@
 #include "guarded_motor.h"
 #include "robot/motor_drive.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 using testing::HasSubstr;
@@ -106,11 +106,11 @@ class CHeader : public testing::TestWithParam<const char*> {
   /// Builds the header for the motor with effects instead of the bare one.
   void build(const std::string& lines) { build_header(header_text(lines)); }
   /// Builds the header for the bare motor in another robot.
-  void build_for(const Robot& robot) {
+  void build_for(const robot::Robot& robot) {
     Derating derating = guarded_ecx_32();
-    const Network network = datasheet_network(ecx_32(), nominal_sample(ecx_32()));
+    const thermal::Network network = motor::datasheet_network(ecx_32(), motor::nominal_sample(ecx_32()));
     derating.observer = Observer(network, ecx_32().nominal, robot, 1.5);
-    derating.heating_current_ratio = heating_factor(robot);
+    derating.heating_current_ratio = robot::heating_factor(robot);
     build_header(std::ranges::find(all_exporters(), "c_header", &ExporterType::name)->write(derating));
   }
   void build_header(const std::string& header) {
@@ -156,7 +156,7 @@ TEST_P(CHeader, has_the_bits_of_the_observer_and_the_table) {
   const Derating derating = guarded_ecx_32();
   ObserverRun<float> run(derating.observer, 0.01F, 31.0F);
   // Reference observer without a safety factor on heat.
-  const Network network = datasheet_network(ecx_32(), nominal_sample(ecx_32()));
+  const thermal::Network network = motor::datasheet_network(ecx_32(), motor::nominal_sample(ecx_32()));
   const Observer nominal_observer(network, ecx_32().nominal, twente(), 1.0);
   ObserverRun<float> nominal(nominal_observer, 0.01F, 31.0F);
   std::ostringstream lines;
@@ -209,7 +209,7 @@ TEST_P(CHeader, separates_the_guarded_from_the_nominal_temperature) {
 TEST_P(CHeader, converts_the_current_of_field_oriented_control_by_torque_and_never_below_its_heat) {
   constexpr double kIq_A = 5.0;
   constexpr int kTurn = 3600;
-  const MotorValues motor = ecx_32().nominal;
+  const motor::MotorValues motor = ecx_32().nominal;
   double copper_W = 0.0;
   double torque_per_emf = 0.0;
   for (int i = 0; i < kTurn; ++i) {
@@ -236,7 +236,7 @@ TEST_P(CHeader, converts_the_current_of_field_oriented_control_by_torque_and_nev
     const double counted_W = by_iq_K * capacity_J_per_K / 0.01;
     EXPECT_GE(counted_W, 0.999 * copper_W) << robot;
     EXPECT_LE(counted_W, 1.1 * copper_W) << robot;
-    if (shipped_robot(robot).drive.commutation == Commutation::sinusoidal) {
+    if (shipped_robot(robot).drive.commutation == robot::Commutation::sinusoidal) {
       EXPECT_NEAR(counted_W, copper_W, 1e-3 * copper_W) << robot;
     }
   }
@@ -390,7 +390,7 @@ TEST(CHeaderText, SaysInItsFirstLinesWhichSpreadsItAssumed) {
   Derating derating = guarded_ecx_32();
   const auto text = [&] { return std::ranges::find(all_exporters(), "c_header", &ExporterType::name)->write(derating); };
   EXPECT_THAT(text(), testing::Not(HasSubstr("DEFAULT TOLERANCES")));
-  derating.default_spreads = {{"effects.a */ b.loss", Origin::estimated, 2.0, {Spread::Kind::range, 1.0, 3.0, true}}};
+  derating.default_spreads = {{"effects.a */ b.loss", base::Origin::estimated, 2.0, {base::Spread::Kind::range, 1.0, 3.0, true}}};
   EXPECT_LT(text().find("DEFAULT TOLERANCES"), 300U);
   EXPECT_THAT(text(), HasSubstr("effects.a * / b.loss -50 to +50 % (estimated)"));
 }
@@ -416,4 +416,4 @@ TEST(CHeaderText, ACommentEndsWhereItShould) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -11,7 +11,7 @@
 #include "derate/export_text.h"
 #include "exported_motor.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 constexpr const char* kUse = R"(
@@ -105,4 +105,4 @@ TEST_P(CleanHeader, KeepsMisraRulesButTheNamedAdvisoryOnes) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

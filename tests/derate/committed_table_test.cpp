@@ -12,15 +12,15 @@
 #include "derate/header_text.h"
 #include "guarded_motor.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-Derating derating_with(const Motor& motor, double heat_safety_factor, double approach_s = 0.5) {
+Derating derating_with(const motor::Motor& motor, double heat_safety_factor, double approach_s = 0.5) {
   const GuardedMotor guarded(motor, rules_for(motor, approach_s), heat_safety_factor);
-  Derating derating = heatsoak::derating_of(guarded);
+  Derating derating = derate::derating_of(guarded);
   derating.motor_id = motor.id;
   derating.robot_id = "a robot";
   derating.guarantee = {};
@@ -38,13 +38,13 @@ class Committed : public testing::TestWithParam<const char*> {
   ~Committed() override { fs::remove(file_); }
 
   [[nodiscard]] CommittedTable read(const std::string& content) const {
-    write_file(file_, content);
+    base::write_file(file_, content);
     return read_committed_table(file_);
   }
   [[nodiscard]] std::string message_of(const std::string& content) const {
     try {
       static_cast<void>(read(content));
-    } catch (const Failure& failure) {
+    } catch (const base::Failure& failure) {
       return failure.what();
     }
     return "nothing was wrong";
@@ -210,4 +210,4 @@ TEST_F(Tampered, WhatIsNoTableIsRefused) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

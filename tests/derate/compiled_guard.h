@@ -17,7 +17,7 @@
 #include "derate/export_text.h"
 #include "derate/exporter.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Guard of a motor whose laws depend on current, speed and air only.
 class CompiledGuard {
@@ -203,4 +203,4 @@ class SensedGuard {
                 CompiledGuard::Output*) = guard_.function<void(void*, const void*, float, CompiledGuard::Output*)>("sensed_step");
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

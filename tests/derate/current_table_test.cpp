@@ -10,11 +10,11 @@
 #include "thermal/steady_state.h"
 #include "thermal/transient.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
-using states::stator;
-using states::winding;
+using motor::states::stator;
+using motor::states::winding;
 
 struct Peaks {
   float winding_C = -1e9F;
@@ -41,7 +41,7 @@ Peaks drive(const GuardedMotor& guarded, unsigned seed, float period_s) {
 
 TEST(CurrentTable, ObserverNeverPassesItsLimit) {
   for (const char* id : {"maxon_ecx_flat_32l_48v", "maxon_ec45_flat_70w_24v", "maxon_dcx19s_24v"}) {
-    const Motor motor = shipped_motor(id);
+    const motor::Motor motor = shipped_motor(id);
     for (const double reserve : {1.0, 1.7}) {
       for (const double approach_s : {0.1, 0.5, 5.0}) {
         const GuardedMotor guarded(motor, rules_for(motor, approach_s), reserve);
@@ -55,7 +55,7 @@ TEST(CurrentTable, ObserverNeverPassesItsLimit) {
 
 // Also close to the air temperature, where the table's axis is short.
 TEST(CurrentTable, StatorWithALimitKeepsItAndUsesIt) {
-  const Motor motor = ecx_32();
+  const motor::Motor motor = ecx_32();
   for (const double limit_C : {65.0, 73.0, 80.0}) {
     BarrierRules rules = rules_for(motor);
     rules.limits.stator_C = limit_C;
@@ -77,7 +77,7 @@ TEST(CurrentTable, StatorWithALimitKeepsItAndUsesIt) {
 // Reference without the table: the network's steady state at the current that is allowed permanently.
 TEST(CurrentTable, LastingCurrentHoldsTheWindingAtItsLimit) {
   for (const double speed_share : {0.0, 0.5}) {
-    const Motor motor = ecx_32();
+    const motor::Motor motor = ecx_32();
     const GuardedMotor guarded(motor, rules_for(motor), 1.0);
     ObserverRun<float> run(guarded.observer, 0.01F, 40.0F);
     const auto speed_rad_per_s = static_cast<float>(speed_share * guarded.rules.most_speed_rad_per_s);
@@ -86,18 +86,18 @@ TEST(CurrentTable, LastingCurrentHoldsTheWindingAtItsLimit) {
       allowed_A = guarded.table.allowed_A(speed_rad_per_s, run.hottest_body_C(), run.state_C()[winding]);
       run.step(std::array<float, observed::kSignalCount>{allowed_A, speed_rad_per_s, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
     }
-    OperatingPoint<double> at;
+    thermal::OperatingPoint<double> at;
     at.current_rms_A = allowed_A;
     at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = speed_rad_per_s;
     at.ambient_C = 40.0;
-    const std::optional<SteadyState> rest = steady_state(guarded.network, at);
+    const std::optional<thermal::SteadyState> rest = thermal::steady_state(guarded.network, at);
     ASSERT_TRUE(rest);
     EXPECT_NEAR(rest->temperature_C[winding], 155.0, 0.3);
   }
 }
 
 TEST(CurrentTable, AllowsNoMoreThanTheBarrierBetweenItsPoints) {
-  const Motor motor = shipped_motor("maxon_ec45_flat_70w_24v");
+  const motor::Motor motor = shipped_motor("maxon_ec45_flat_70w_24v");
   const GuardedMotor guarded(motor, rules_for(motor), 1.3);
   std::mt19937_64 engine(3);
   std::uniform_real_distribution<double> uniform;
@@ -113,7 +113,7 @@ TEST(CurrentTable, AllowsNoMoreThanTheBarrierBetweenItsPoints) {
 }
 
 TEST(CurrentTable, GivesNothingWhereItKnowsNothing) {
-  const Motor motor = ecx_32();
+  const motor::Motor motor = ecx_32();
   const GuardedMotor guarded(motor, rules_for(motor), 1.0);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_GT(guarded.table.allowed_A(0.0, 40.0, 40.0), 10.0);
@@ -129,25 +129,25 @@ TEST(CurrentTable, GivesNothingWhereItKnowsNothing) {
 // In single precision a step of the stator is smaller than the last digit of its temperature. Without compensated rounding it would stand
 // still.
 TEST(Observer, FollowsTheReferenceInSinglePrecision) {
-  const Motor motor = ecx_32();
-  const Network network = datasheet_network(motor, nominal_sample(motor));
+  const motor::Motor motor = ecx_32();
+  const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
   const Observer observer(network, motor.nominal, twente(), 1.0);
   constexpr float kPeriod_s = 1e-3F;
   ObserverRun<float> run(observer, kPeriod_s, 25.0F);
-  std::vector<Interval> intervals;
+  std::vector<thermal::Interval> intervals;
   double worst_K = 0.0;
   std::mt19937_64 engine(8);
   for (int piece = 0; piece < 60; ++piece) {
     const auto current_A = static_cast<float>(piece % 3) * 1.7F;
     const auto speed_rad_per_s = static_cast<float>(engine() % 300);
-    OperatingPoint<double> at;
+    thermal::OperatingPoint<double> at;
     at.current_rms_A = current_A;
     at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = speed_rad_per_s;
     intervals.push_back({20.0, at});
     for (int i = 0; i < 20'000; ++i) {
       run.step(std::array<float, observed::kSignalCount>{current_A, speed_rad_per_s, 25.0F, 0.0F, 25.0F, 0.0F, 0.0F});
     }
-    const TransientResult reference = run_transient(network, network.values(), intervals, {});
+    const thermal::TransientResult reference = thermal::run_transient(network, network.values(), intervals, {});
     for (std::size_t node = 0; node < 2; ++node) {
       worst_K = std::max(worst_K, std::abs(static_cast<double>(run.state_C()[node]) - reference.end_C[node]));
     }
@@ -156,11 +156,11 @@ TEST(Observer, FollowsTheReferenceInSinglePrecision) {
 }
 
 TEST(Observer, ReserveMultipliesHeatAndNothingElse) {
-  const Motor motor = ecx_32();
-  const Network network = datasheet_network(motor, nominal_sample(motor));
+  const motor::Motor motor = ecx_32();
+  const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
   const auto rate = [&](double reserve, double current_A, double winding_C) {
     const Observer observer(network, motor.nominal, twente(), reserve);
-    FormulaRun<double> run(observer.formula(), observer.rate_steps());
+    thermal::FormulaRun<double> run(observer.formula(), observer.rate_steps());
     const std::array<double, observed::kSignalCount + 2> inputs{current_A, 0.0, 25.0, 0.0, 25.0, 0.0, 0.0, winding_C, 25.0};
     std::array<double, 2> rates{};
     run.run(inputs, rates);
@@ -171,4 +171,4 @@ TEST(Observer, ReserveMultipliesHeatAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

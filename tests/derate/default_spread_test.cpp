@@ -7,7 +7,7 @@
 #include "guarded_motor.h"
 #include "input/data_folders.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 using testing::IsEmpty;
@@ -21,10 +21,10 @@ DerateOptions few_samples() {
 
 /// Removes all spreads that temperatures depend on (seed 0), or a random half of them. Other spreads stay, because each consumes a random
 /// number and removing it would change the remaining draws.
-Motor stripped(Motor motor, unsigned seed) {
+motor::Motor stripped(motor::Motor motor, unsigned seed) {
   std::mt19937 engine(seed);
   for (auto& [key, figure] : motor.parameters) {
-    if (needs_spread(key) && (seed == 0 || engine() % 2 == 0)) {
+    if (motor::needs_spread(key) && (seed == 0 || engine() % 2 == 0)) {
       figure.spread.reset();
     }
   }
@@ -37,8 +37,8 @@ TEST(DerateWithoutSpreads, DrawsMotorsThatGetNoLessHot) {
   constexpr double kPeriod_s = 0.05;
   GuaranteeOptions options;
   options.samples = 200;
-  for (const std::string& id : ids_in(kSource / "motor_db")) {
-    const Motor honest = shipped_motor(id);
+  for (const std::string& id : input::ids_in(kSource / "motor_db")) {
+    const motor::Motor honest = shipped_motor(id);
     const GuardedMotor guarded(honest, rules_for(honest), 1.2);
     std::vector<UsePlayed> uses;
     for (const LoadPattern& use : hardest_patterns(guarded.observer, guarded.rules)) {
@@ -48,14 +48,14 @@ TEST(DerateWithoutSpreads, DrawsMotorsThatGetNoLessHot) {
     }
     const Guarantee with = check(honest, guarded.rules.limits, uses, options, 0);
     for (const unsigned seed : {0U, 1U, 2U}) {
-      const Guarantee without = check(with_default_spreads(stripped(honest, seed)), guarded.rules.limits, uses, options, 0);
+      const Guarantee without = check(motor::with_default_spreads(stripped(honest, seed)), guarded.rules.limits, uses, options, 0);
       EXPECT_GE(without.winding_p95_C, with.winding_p95_C) << id << ", " << seed;
     }
   }
 }
 
 TEST(DerateWithoutSpreads, AllowsNoMoreThanTheHonestFile) {
-  const Motor honest = ecx_32();
+  const motor::Motor honest = ecx_32();
   const Derating with = derate(honest, twente(), few_samples());
   const Derating without = derate(stripped(honest, 0), twente(), few_samples());
   EXPECT_THAT(with.default_spreads, IsEmpty());
@@ -71,15 +71,15 @@ TEST(DerateWithoutSpreads, AllowsNoMoreThanTheHonestFile) {
 }
 
 TEST(DerateWithoutSpreads, TakesAZeroToleranceForAMissingOne) {
-  Motor exact = ecx_32();
+  motor::Motor exact = ecx_32();
   for (auto& [key, figure] : exact.parameters) {
-    if (needs_spread(key)) {
-      figure.spread = Spread{Spread::Kind::tolerance, figure.value, figure.value, true};
+    if (motor::needs_spread(key)) {
+      figure.spread = base::Spread{base::Spread::Kind::tolerance, figure.value, figure.value, true};
     }
   }
-  Motor missing = ecx_32();
+  motor::Motor missing = ecx_32();
   for (auto& [key, figure] : missing.parameters) {
-    if (needs_spread(key)) {
+    if (motor::needs_spread(key)) {
       figure.spread.reset();
     }
   }
@@ -90,11 +90,11 @@ TEST(DerateWithoutSpreads, TakesAZeroToleranceForAMissingOne) {
 }
 
 TEST(DerateWithoutSpreads, TakesATinyToleranceForAMissingOne) {
-  Motor tiny = ecx_32();
-  Motor missing = ecx_32();
+  motor::Motor tiny = ecx_32();
+  motor::Motor missing = ecx_32();
   for (auto& [key, figure] : tiny.parameters) {
-    if (needs_spread(key)) {
-      figure.spread = Spread{Spread::Kind::tolerance, figure.value * (1.0 - 1e-5), figure.value * (1.0 + 1e-5), true};
+    if (motor::needs_spread(key)) {
+      figure.spread = base::Spread{base::Spread::Kind::tolerance, figure.value * (1.0 - 1e-5), figure.value * (1.0 + 1e-5), true};
       missing.parameters.at(key).spread.reset();
     }
   }
@@ -102,9 +102,9 @@ TEST(DerateWithoutSpreads, TakesATinyToleranceForAMissingOne) {
 }
 
 TEST(Derate, KeepsALimitThatIsARangeAtItsLowerEnd) {
-  Motor wide = ecx_32();
-  ParameterValue& limit = wide.parameters.at("winding_limit");
-  limit.spread = Spread{Spread::Kind::range, 135.0, 165.0, false};
+  motor::Motor wide = ecx_32();
+  base::ParameterValue& limit = wide.parameters.at("winding_limit");
+  limit.spread = base::Spread{base::Spread::Kind::range, 135.0, 165.0, false};
   EXPECT_EQ(barrier_rules(wide, twente(), {}).limits.winding_C, 135.0);
   EXPECT_EQ(barrier_rules(ecx_32(), twente(), {}).limits.winding_C, 155.0);
 }
@@ -115,8 +115,8 @@ TEST(Derate, RefusesALimitBelowTheAir) {
   try {
     static_cast<void>(derate(ecx_32(), twente(), hot));
     ADD_FAILURE() << "was accepted";
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
     EXPECT_THAT(failure.what(), testing::HasSubstr("the winding limit of 155.0 °C is not above the hottest air of 155.0 °C"));
   }
 }
@@ -124,12 +124,12 @@ TEST(Derate, RefusesALimitBelowTheAir) {
 TEST(DerateWithoutSpreads, CountsAnEffectWithoutOneToo) {
   // Cooling with an estimated value and no range.
   const auto with_plate = [](const char* range) {
-    Motor motor = ecx_32();
-    const auto type = std::ranges::find(all_effects(), "conduction", &EffectType::name);
-    ParameterValue resistance;
+    motor::Motor motor = ecx_32();
+    const auto type = std::ranges::find(thermal::all_effects(), "conduction", &thermal::EffectType::name);
+    base::ParameterValue resistance;
     resistance.value = 6.0;
     if (*range != 0) {
-      resistance.spread = Spread{Spread::Kind::tolerance, 5.9, 6.1, true};
+      resistance.spread = base::Spread{base::Spread::Kind::tolerance, 5.9, 6.1, true};
     }
     motor.effects.push_back({"plate", &*type, {"stator", "ambient"}, {resistance}});
     return motor;
@@ -142,4 +142,4 @@ TEST(DerateWithoutSpreads, CountsAnEffectWithoutOneToo) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

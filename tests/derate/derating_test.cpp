@@ -12,7 +12,7 @@
 #include "guarded_motor.h"
 #include "thermal/transient.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 using testing::ElementsAre;
@@ -20,8 +20,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// Ten minutes of random driving, limited by the firmware, as inputs of a network.
-std::vector<Interval> random_driving(const Derating& derating, unsigned seed) {
-  std::vector<Interval> intervals;
+std::vector<thermal::Interval> random_driving(const Derating& derating, unsigned seed) {
+  std::vector<thermal::Interval> intervals;
   RandomLoad driver(seed);
   ObserverRun<float> run(derating.observer, 0.01F, 40.0F);
   for (int i = 0; i < 6000; ++i) {
@@ -36,7 +36,7 @@ std::vector<Interval> random_driving(const Derating& derating, unsigned seed) {
       run.step(std::array<float, observed::kSignalCount>{current_A, static_cast<float>(speed_rad_per_s), 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
       current2_A2 += static_cast<double>(current_A) * static_cast<double>(current_A) / kPeriods;
     }
-    OperatingPoint<double> at;
+    thermal::OperatingPoint<double> at;
     at.current_rms_A = std::sqrt(current2_A2);
     at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = speed_rad_per_s;
     at.ambient_C = 40.0;
@@ -51,7 +51,7 @@ TEST(MotorVerdicts, CountIsThatOfACheckOfAllMotorsAndUses) {
   const std::string iron =
       "[effects.iron]\ntype = \"iron_loss_eddy\"\nloss = { value = \"2 W\", origin = \"estimated\", derivation = \"a test\" }\n"
       "exponent = { value = \"2\", origin = \"estimated\", derivation = \"a test\" }\n";
-  for (const Motor& motor : {ecx_32(), ecx_32_with(iron)}) {
+  for (const motor::Motor& motor : {ecx_32(), ecx_32_with(iron)}) {
     const BarrierRules rules = rules_for(motor);
     const GuaranteeOptions options{.samples = 48};
     MotorVerdicts verdicts(motor, rules.limits, options, 0);
@@ -73,23 +73,24 @@ TEST(MotorVerdicts, CountIsThatOfACheckOfAllMotorsAndUses) {
 }
 
 TEST(Derate, DrawnMotorsKeepTheirLimitInDrivingThatTheSearchNeverSaw) {
-  const Motor motor = ecx_32();
+  const motor::Motor motor = ecx_32();
   const Derating derating = derate(motor, twente(), {});
   EXPECT_LE(derating.guarantee.over, 20) << "of 400";
   int over = 0;
   constexpr int kMotors = 60;
   for (int i = 0; i < kMotors; ++i) {
-    Random random(4711, static_cast<std::uint64_t>(i));
-    const Network real = datasheet_network(motor, draw_sample(motor, random));
-    const TransientResult result = run_transient(real, real.values(), random_driving(derating, static_cast<unsigned>(i)), {});
-    over += result.peak_C[states::winding] > motor.nominal.winding_limit_C ? 1 : 0;
+    base::Random random(4711, static_cast<std::uint64_t>(i));
+    const thermal::Network real = motor::datasheet_network(motor, motor::draw_sample(motor, random));
+    const thermal::TransientResult result =
+        thermal::run_transient(real, real.values(), random_driving(derating, static_cast<unsigned>(i)), {});
+    over += result.peak_C[motor::states::winding] > motor.nominal.winding_limit_C ? 1 : 0;
   }
   // Five in a hundred of 60 would be three. Nine or more have a probability of 1/400.
   EXPECT_LE(over, 8);
 }
 
 TEST(Derate, NominalParametersAloneAreNotEnough) {
-  const Motor motor = ecx_32();
+  const motor::Motor motor = ecx_32();
   const Derating derating = derate(motor, twente(), {});
   EXPECT_GT(derating.observer.heat_safety_factor(), 1.2);
   const GuardedMotor bare(motor, derating.rules, 1.0);
@@ -120,8 +121,8 @@ TEST(Derate, SameSeedSameBytesOnAnyNumberOfThreads) {
 }
 
 TEST(Derate, EffectThatWasFoundActsInObserverAndTable) {
-  const Motor plain = ecx_32();
-  const Motor soaked = ecx_32_with(R"([effects.chassis]
+  const motor::Motor plain = ecx_32();
+  const motor::Motor soaked = ecx_32_with(R"([effects.chassis]
 type = "third_node"
 heat_capacity = { value = "60 J/K", origin = "estimated", derivation = "a test" }
 conductance = { value = "0.3 W/K", origin = "estimated", derivation = "a test" }
@@ -132,7 +133,7 @@ leak_ratio = { value = "0.2", origin = "estimated", derivation = "a test" }
   EXPECT_EQ(bare.observer.state_count(), 2U);
   EXPECT_THAT(std::vector<std::string>(with_chassis.observer.state_names().begin(), with_chassis.observer.state_names().end()),
               ElementsAre("winding", "stator", "chassis"));
-  const Motor lossy = ecx_32_with(R"([effects.eddy]
+  const motor::Motor lossy = ecx_32_with(R"([effects.eddy]
 type = "iron_loss_eddy"
 loss = { value = "8 W", origin = "estimated", derivation = "a test" }
 exponent = { value = "2", origin = "estimated", derivation = "a test" }
@@ -153,17 +154,17 @@ exponent = { value = "2", origin = "estimated", derivation = "a test" }
 }
 
 TEST(Derate, FirmwareIsAskedForWhatALawLooksAt) {
-  const Motor plain = ecx_32();
-  const Motor blown = ecx_32_with(R"([effects.drive_wind]
+  const motor::Motor plain = ecx_32();
+  const motor::Motor blown = ecx_32_with(R"([effects.drive_wind]
 type = "vehicle_airflow"
 conductance = { value = "0.2 W/K", origin = "estimated", derivation = "a test" }
 exponent = { value = "0.5", origin = "estimated", derivation = "a test" }
 )");
-  const Network network = datasheet_network(blown, nominal_sample(blown));
+  const thermal::Network network = motor::datasheet_network(blown, motor::nominal_sample(blown));
   const Observer observer(network, blown.nominal, twente(), 1.0);
   EXPECT_TRUE(observer.uses(observed::vehicle_speed));
   EXPECT_FALSE(observer.uses(observed::age));
-  const Network bare = datasheet_network(plain, nominal_sample(plain));
+  const thermal::Network bare = motor::datasheet_network(plain, motor::nominal_sample(plain));
   EXPECT_FALSE(Observer(bare, plain.nominal, twente(), 1.0).uses(observed::vehicle_speed));
   // The table must not rely on cooling by air flow that nobody guarantees.
   const GuardedMotor with_wind(blown, rules_for(blown), 1.0);
@@ -175,7 +176,7 @@ exponent = { value = "0.5", origin = "estimated", derivation = "a test" }
 // Effects that appear only when braking, with a hot neighbour or with an aged contact must have their own cases.
 TEST(Derate, UsesCoverEveryCaseThatALawDistinguishes) {
   const auto cases_of = [](const std::string& lines) {
-    const Motor motor = lines.empty() ? ecx_32() : ecx_32_with(lines);
+    const motor::Motor motor = lines.empty() ? ecx_32() : ecx_32_with(lines);
     const GuardedMotor guarded(motor, rules_for(motor), 1.0);
     return hot_cases(guarded.observer, guarded.rules);
   };
@@ -210,12 +211,12 @@ value_7 = { value = "0 W", origin = "estimated", derivation = "a test" }
 // A safety factor for driving alone would let a braking motor exceed its limit.
 TEST(Derate, BrakingThatHeatsNeedsMoreOfAReserve) {
   const std::string range = R"(range = ["0.1", "0.8"])";
-  const Motor braking = ecx_32_with(fmt::format(R"([effects.brake]
+  const motor::Motor braking = ecx_32_with(fmt::format(R"([effects.brake]
 type = "braking_heat"
 heated = "winding"
 share = {{ value = "0.3", origin = "estimated", derivation = "a test", {} }}
 )",
-                                                range));
+                                                       range));
   const Derating derating = derate(braking, twente(), {});
   const auto braked = std::ranges::find_if(
       derating.uses, [](const UsePlayed& each) { return each.use.hot_case.current_sign < 0.0 && each.use.speed_share > 0.5; });
@@ -223,15 +224,15 @@ share = {{ value = "0.3", origin = "estimated", derivation = "a test", {} }}
   int over = 0;
   constexpr int kMotors = 60;
   for (int i = 0; i < kMotors; ++i) {
-    Random random(99, static_cast<std::uint64_t>(i));
-    const Network real = datasheet_network(braking, draw_sample(braking, random));
-    over += run_transient(real, real.values(), braked->intervals, {}).peak_C[states::winding] > 155.0 ? 1 : 0;
+    base::Random random(99, static_cast<std::uint64_t>(i));
+    const thermal::Network real = motor::datasheet_network(braking, motor::draw_sample(braking, random));
+    over += thermal::run_transient(real, real.values(), braked->intervals, {}).peak_C[motor::states::winding] > 155.0 ? 1 : 0;
   }
   EXPECT_LE(over, 8);
 }
 
 TEST(Derate, SaysBeyondWhichSpeedNoTableHelps) {
-  const Motor windy = ecx_32_with(R"([effects.fan]
+  const motor::Motor windy = ecx_32_with(R"([effects.fan]
 type = "windage"
 loss = { value = "70 W", origin = "estimated", derivation = "a test" }
 )");
@@ -255,23 +256,23 @@ last_knot = { value = "155 degC", origin = "estimated", derivation = "a test" }
   try {
     derate(ecx_32_with(law), twente(), {});
     FAIL() << "no failure";
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::limit_exceeded) << failure.what();
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::limit_exceeded) << failure.what();
   }
 }
 
 TEST(Derate, SaysWhereNoCurrentIsLittleEnough) {
   DerateOptions hot;
   hot.hottest_ambient_C = 154.0;
-  Motor motor = ecx_32_with(R"([effects.standby]
+  motor::Motor motor = ecx_32_with(R"([effects.standby]
 type = "constant_heat"
 power = { value = "20 W", origin = "estimated", derivation = "a test" }
 )");
   try {
     derate(motor, twente(), hot);
     FAIL() << "no failure";
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::limit_exceeded) << failure.what();
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::limit_exceeded) << failure.what();
     EXPECT_THAT(failure.what(), HasSubstr("155"));
   }
 }
@@ -279,8 +280,8 @@ power = { value = "20 W", origin = "estimated", derivation = "a test" }
 TEST(Derate, RefusesAPeriodThatIsTooLongForTheMotor) {
   DerateOptions slow;
   slow.period_s = 0.4;
-  EXPECT_THROW(derate(ecx_32(), twente(), slow), Failure);
+  EXPECT_THROW(derate(ecx_32(), twente(), slow), base::Failure);
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

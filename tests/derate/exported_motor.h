@@ -7,7 +7,7 @@
 #include "derate/exporter.h"
 #include "guarded_motor.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// The paper's motor, derated as `derate` does it.
 inline const Derating& ecx_derating() {
@@ -20,7 +20,7 @@ inline const Derating& ecx_derating() {
 }
 
 /// Derates another motor without a search, with a given safety factor.
-inline Derating derating_of(const Motor& motor) {
+inline Derating derating_of(const motor::Motor& motor) {
   const GuardedMotor guarded(motor, rules_for(motor), 1.5);
   Derating derating = ecx_derating();
   derating.observer = guarded.observer;
@@ -28,7 +28,7 @@ inline Derating derating_of(const Motor& motor) {
   derating.table = guarded.table;
   derating.reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s;
   derating.effects.clear();
-  for (const EffectInPlace& effect : guarded.network.effects()) {
+  for (const thermal::EffectInPlace& effect : guarded.network.effects()) {
     derating.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation), ""});
   }
   return derating;
@@ -54,4 +54,4 @@ inline std::string compiled(const std::string& form, const Derating& derating = 
   throw std::out_of_range(form);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

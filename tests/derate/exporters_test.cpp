@@ -19,7 +19,7 @@
 #include "thermal/transient.h"
 #include "unpacked.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 using testing::HasSubstr;
@@ -27,8 +27,8 @@ using testing::HasSubstr;
 std::string refusal(std::string_view name, const Derating& derating) {
   try {
     static_cast<void>(exported(name, derating));
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
     return failure.what();
   }
   return "accepted";
@@ -54,7 +54,7 @@ class EveryExporter : public testing::TestWithParam<const char*> {};
 TEST_P(EveryExporter, SaysWhereItComesFromAndHowSureItIs) {
   const std::string text = readable(exported(GetParam()));
   EXPECT_EQ(exported(GetParam()), exported(GetParam()));
-  EXPECT_THAT(text, HasSubstr(fmt::format("heatsoak {}", program_version())));
+  EXPECT_THAT(text, HasSubstr(fmt::format("heatsoak {}", base::program_version())));
   EXPECT_THAT(text, HasSubstr(ecx_derating().provenance.input_hash));
   EXPECT_THAT(text, HasSubstr("155"));
   EXPECT_THAT(text, HasSubstr("0.95"));
@@ -193,28 +193,29 @@ Limit odrive_limit() {
 }
 
 /// Returns the hottest winding temperature in the hottest air: the controller's full current alternates with none, at changing speeds.
-double hottest_C(const Network& network, const Limit& limit, unsigned seed) {
+double hottest_C(const thermal::Network& network, const Limit& limit, unsigned seed) {
   RandomLoad driver(seed);
   std::vector<double> state_C(2, 40.0);
   double hottest_C = 0.0;
   constexpr double kStep_s = 0.5;
   for (int i = 0; i < 3000; ++i) {
     const RandomLoad::Wish wish = driver.after(kStep_s);
-    OperatingPoint<double> at;
-    at.current_rms_A = kDcPerIq_ratio * std::abs(wish.current_share) * limit(state_C[states::stator]);
+    thermal::OperatingPoint<double> at;
+    at.current_rms_A = kDcPerIq_ratio * std::abs(wish.current_share) * limit(state_C[motor::states::stator]);
     at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = wish.speed_share * ecx_derating().rules.most_speed_rad_per_s;
     at.ambient_C = 40.0;
-    TransientOptions options;
+    thermal::TransientOptions options;
     options.start_C = state_C;
-    const TransientResult result = run_transient(network, network.values(), std::vector<Interval>{{kStep_s, at}}, options);
+    const thermal::TransientResult result =
+        thermal::run_transient(network, network.values(), std::vector<thermal::Interval>{{kStep_s, at}}, options);
     state_C = result.end_C;
-    hottest_C = std::max(hottest_C, result.peak_C[states::winding]);
+    hottest_C = std::max(hottest_C, result.peak_C[motor::states::winding]);
   }
   return hottest_C;
 }
 
 TEST(RampExporters, ControllerStaysBelowTheTableAndKeepsTheWindingBelowItsLimit) {
-  const Motor motor = ecx_32();
+  const motor::Motor motor = ecx_32();
   for (const Limit& limit : {moteus_limit(), odrive_limit()}) {
     double sum_A = 0.0;
     for (double sensor_C = 20.0; sensor_C < 170.0; sensor_C += 0.5) {
@@ -222,15 +223,15 @@ TEST(RampExporters, ControllerStaysBelowTheTableAndKeepsTheWindingBelowItsLimit)
       sum_A += limit(sensor_C);
     }
     EXPECT_GT(sum_A, 0.0);
-    const Network nominal = datasheet_network(motor, nominal_sample(motor));
+    const thermal::Network nominal = motor::datasheet_network(motor, motor::nominal_sample(motor));
     for (unsigned seed = 0; seed < 3; ++seed) {
       EXPECT_LT(hottest_C(nominal, limit, seed), 155.0);
     }
-    const Motor spread = with_default_spreads(motor);
+    const motor::Motor spread = motor::with_default_spreads(motor);
     int over = 0;
     for (unsigned i = 0; i < 40; ++i) {
-      Random random(99, i);
-      over += hottest_C(datasheet_network(spread, draw_sample(spread, random)), limit, i) > 155.0 ? 1 : 0;
+      base::Random random(99, i);
+      over += hottest_C(motor::datasheet_network(spread, motor::draw_sample(spread, random)), limit, i) > 155.0 ? 1 : 0;
     }
     // Five in a hundred of 40 are two. Seven or more have a probability of 1/200.
     EXPECT_LE(over, 6);
@@ -393,4 +394,4 @@ TEST(MujocoExporter, HeldCurrentAtStandstillReachesTheObserversTemperature) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

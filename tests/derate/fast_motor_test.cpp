@@ -9,29 +9,29 @@
 #include "guarded_motor.h"
 #include "thermal/transient.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
-using states::winding;
+using motor::states::winding;
 
 /// Returns the no-load speed at the command's limit.
-double fastest_driven_rad_per_s(const Motor& motor, const Robot& robot) {
+double fastest_driven_rad_per_s(const motor::Motor& motor, const robot::Robot& robot) {
   return std::min(robot.battery.full_V.value(), robot.drive.voltage_limit_V) / motor.nominal.torque_constant_Nm_per_A;
 }
 
 struct FastMotor {
-  FastMotor(const Motor& of, const Robot& in)
+  FastMotor(const motor::Motor& of, const robot::Robot& in)
       : motor(of),
         robot(in),
         rules(barrier_rules(motor, robot, {})),
-        network(datasheet_network(motor, nominal_sample(motor))),
+        network(motor::datasheet_network(motor, motor::nominal_sample(motor))),
         observer(network, motor.nominal, robot, 1.5),
         table(current_table(observer, rules)) {}
 
-  Motor motor;
-  Robot robot;
+  motor::Motor motor;
+  robot::Robot robot;
   BarrierRules rules;
-  Network network;
+  thermal::Network network;
   Observer observer;
   CurrentTable table;
 };
@@ -75,7 +75,7 @@ TEST(FastMotor, HasACurrentThatFallsToNoneWithoutAJump) {
 
 TEST(FastMotor, IsAllowedNoMoreThanTheBarrierWhereTheCurrentFalls) {
   // Heat in the winding that grows with the speed squared is the hardest case for linear interpolation.
-  const Motor lossy = ecx_32_with(R"([effects.eddy]
+  const motor::Motor lossy = ecx_32_with(R"([effects.eddy]
 type = "ac_copper_loss"
 share = { value = "0.2", origin = "estimated", derivation = "a test" }
 )");
@@ -99,7 +99,7 @@ TEST(FastMotor, KeepsItsLimitInTheNetworkWhereverItIsPushed) {
   ObserverRun<float> run(nominal, 0.01F, 40.0F);
   std::mt19937_64 engine(11);
   std::uniform_real_distribution<double> uniform;
-  std::vector<Interval> intervals;
+  std::vector<thermal::Interval> intervals;
   float most_C = 0.0F;
   for (int piece = 0; piece < 900; ++piece) {
     const auto speed_rad_per_s = static_cast<float>(std::lerp(0.7, 1.0, uniform(engine)) * table.no_current_speed_rad_per_s);
@@ -116,8 +116,8 @@ TEST(FastMotor, KeepsItsLimitInTheNetworkWhereverItIsPushed) {
   }
   EXPECT_LE(most_C, 155.01F);
   EXPECT_GT(most_C, 120.0F) << "nothing was tested";
-  EXPECT_LE(run_transient(fast.network, fast.network.values(), intervals, {}).peak_C[winding], 155.5);
+  EXPECT_LE(thermal::run_transient(fast.network, fast.network.values(), intervals, {}).peak_C[winding], 155.5);
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

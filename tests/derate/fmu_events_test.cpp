@@ -13,7 +13,7 @@
 #include "robot/motor_drive.h"
 #include "thermal/transient.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 using testing::HasSubstr;
@@ -55,19 +55,19 @@ void start(FmuUnit& unit, bool has_event_mode) {
 
 /// The motor by CVODES with tight tolerances: `heat_s` at the overload, then `rest_s` without current.
 std::vector<double> reference_C(double heat_s, double rest_s) {
-  const Network network = datasheet_network(ecx_32(), nominal_sample(ecx_32()));
-  std::vector<Interval> intervals;
+  const thermal::Network network = motor::datasheet_network(ecx_32(), motor::nominal_sample(ecx_32()));
+  std::vector<thermal::Interval> intervals;
   for (const auto& [duration_s, current_A] : {std::pair(heat_s, kOverload_A), std::pair(rest_s, 0.0)}) {
     if (duration_s > 0.0) {
       const std::array<double, observed::kSignalCount> signals{current_A, 200.0, kAmbient_C, 0.0, kAmbient_C, 0.0, 0.0};
       intervals.push_back({duration_s, operating_point<double>(ecx_32().nominal, twente(), signals)});
     }
   }
-  TransientOptions options;
-  options.method = OdeMethod::cvodes_bdf;
+  thermal::TransientOptions options;
+  options.method = ode::OdeMethod::cvodes_bdf;
   options.tolerances = {.relative = 1e-10, .absolute = 1e-10};
   options.start_C.assign(static_cast<std::size_t>(network.state_count()), 25.0);
-  return run_transient(network, network.values(), intervals, options).end_C;
+  return thermal::run_transient(network, network.values(), intervals, options).end_C;
 }
 
 constexpr double kLimit_C = 155.0;
@@ -81,8 +81,8 @@ TEST(FmuEvents, MotorStopsWhereALimitIsCrossedToAMillisecond) {
   EXPECT_EQ(up.status, 0);
   EXPECT_TRUE(up.is_event);
   EXPECT_TRUE(up.is_early);
-  EXPECT_LT(reference_C(up.last_s - kMillisecond_s, 0.0)[states::winding], kLimit_C);
-  EXPECT_GT(reference_C(up.last_s + kMillisecond_s, 0.0)[states::winding], kLimit_C);
+  EXPECT_LT(reference_C(up.last_s - kMillisecond_s, 0.0)[motor::states::winding], kLimit_C);
+  EXPECT_GT(reference_C(up.last_s + kMillisecond_s, 0.0)[motor::states::winding], kLimit_C);
   EXPECT_EQ(unit.get("time_s"), up.last_s);
   EXPECT_FALSE(unit.get_boolean("over_limit")) << "a discrete output changes in event mode only";
   double next_s = 0.0;
@@ -101,8 +101,8 @@ TEST(FmuEvents, MotorStopsWhereALimitIsCrossedToAMillisecond) {
   EXPECT_TRUE(down.is_early);
   const double rest_s = down.last_s - hotter.last_s;
   EXPECT_GT(rest_s, kMillisecond_s);
-  EXPECT_GT(reference_C(hotter.last_s, rest_s - kMillisecond_s)[states::winding], kLimit_C);
-  EXPECT_LT(reference_C(hotter.last_s, rest_s + kMillisecond_s)[states::winding], kLimit_C);
+  EXPECT_GT(reference_C(hotter.last_s, rest_s - kMillisecond_s)[motor::states::winding], kLimit_C);
+  EXPECT_LT(reference_C(hotter.last_s, rest_s + kMillisecond_s)[motor::states::winding], kLimit_C);
   EXPECT_EQ(unit.enter_event_mode(), 0);
   end_event(unit, &next_s);
   EXPECT_FALSE(unit.get_boolean("over_limit"));
@@ -143,8 +143,8 @@ TEST_P(WithoutEvents, MotorGivesTheTimeOfTheCrossing) {
   EXPECT_EQ(unit.step(0.0, 200.0), 0);
   EXPECT_TRUE(unit.get_boolean("over_limit"));
   const double crossing_s = unit.get("limit_crossing_s");
-  EXPECT_LT(reference_C(crossing_s - kMillisecond_s, 0.0)[states::winding], kLimit_C);
-  EXPECT_GT(reference_C(crossing_s + kMillisecond_s, 0.0)[states::winding], kLimit_C);
+  EXPECT_LT(reference_C(crossing_s - kMillisecond_s, 0.0)[motor::states::winding], kLimit_C);
+  EXPECT_GT(reference_C(crossing_s + kMillisecond_s, 0.0)[motor::states::winding], kLimit_C);
 }
 
 TEST_P(WithoutEvents, GuardSaysThatItLimits) {
@@ -325,4 +325,4 @@ TEST(FmuEvents, DescriptionAnnouncesThem) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

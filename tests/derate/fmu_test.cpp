@@ -13,7 +13,7 @@
 #include "robot/motor_drive.h"
 #include "thermal/transient.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,14 +39,15 @@ struct Moment {
 };
 
 /// Demands of a generated match, limited by voltage and motor controller.
-std::vector<Moment> random_match(const Motor& motor, std::uint64_t seed) {
-  const Robot robot = twente();
-  const WheelDemand wheel = draw_demands(read_duty(kSource / "duty_profiles/division_a_match.toml"), robot, seed, 1, 1).front();
+std::vector<Moment> random_match(const motor::Motor& motor, std::uint64_t seed) {
+  const robot::Robot robot = twente();
+  const duty::WheelDemand wheel =
+      select::draw_demands(duty::read_duty(kSource / "duty_profiles/division_a_match.toml"), robot, seed, 1, 1).front();
   std::vector<Moment> moments;
   constexpr double kLongest_s = 240.0;
   double sum_s = 0.0;
-  for (const LoadBin& bin : wheel.bins) {
-    const DrivePoint point = drive_point(motor.nominal, robot, {bin.torque_rms_Nm, bin.speed_rms_rad_per_s});
+  for (const duty::LoadBin& bin : wheel.bins) {
+    const robot::DrivePoint point = robot::drive_point(motor.nominal, robot, {bin.torque_rms_Nm, bin.speed_rms_rad_per_s});
     const double sign = bin.torque_along_motion_Nm < 0.0 ? -1.0 : 1.0;
     moments.push_back(
         {bin.duration_s, sign * point.current_A, point.motor_speed_rad_per_s, bin.speed_mean_rad_per_s * robot.wheels.radius_m});
@@ -72,10 +73,10 @@ class Fmu : public testing::TestWithParam<int> {
 };
 
 /// Returns the largest difference to CVODES over a match, in K.
-double difference_K(FmuUnit& unit, const Motor& motor, const std::vector<Moment>& match, const std::vector<std::string>& outputs) {
+double difference_K(FmuUnit& unit, const motor::Motor& motor, const std::vector<Moment>& match, const std::vector<std::string>& outputs) {
   constexpr double kAir_C = 31.0;
   constexpr double kStart_C = 44.0;
-  const Network network = datasheet_network(motor, nominal_sample(motor));
+  const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
   std::vector<double> state_C(static_cast<std::size_t>(network.state_count()), kStart_C);
   for (const std::string& output : outputs) {
     EXPECT_EQ(unit.set(output.substr(0, output.size() - 2) + "_start_C", kStart_C), 0);
@@ -95,10 +96,11 @@ double difference_K(FmuUnit& unit, const Motor& motor, const std::vector<Moment>
     now_s += moment.duration_s;
     const std::array<double, observed::kSignalCount> signals{
         moment.current_A, moment.speed_rad_per_s, kAir_C, moment.vehicle_speed_m_per_s, kAir_C, 0.0, 0.0};
-    TransientOptions options;
+    thermal::TransientOptions options;
     options.start_C = state_C;
-    state_C = run_transient(network, network.values(),
-                            std::vector<Interval>{{moment.duration_s, operating_point<double>(motor.nominal, twente(), signals)}}, options)
+    state_C = thermal::run_transient(
+                  network, network.values(),
+                  std::vector<thermal::Interval>{{moment.duration_s, operating_point<double>(motor.nominal, twente(), signals)}}, options)
                   .end_C;
     for (std::size_t node = 0; node < outputs.size(); ++node) {
       most_K = std::max(most_K, std::abs(unit.get(outputs[node]) - state_C[node]));
@@ -117,7 +119,7 @@ TEST_P(Fmu, MotorFollowsTheIntegratorOverRandomMatches) {
 }
 
 TEST_P(Fmu, MotorWithEffectsFollowsTheIntegratorToo) {
-  const Motor motor = ecx_32_with(kChassis);
+  const motor::Motor motor = ecx_32_with(kChassis);
   const Derating derating = derating_of(motor);
   FmuUnit unit(compiled(form("motor"), derating), GetParam());
   std::vector<std::string> outputs;
@@ -218,9 +220,9 @@ TEST_P(Fmu, GuardIsTheOneOfTheFirmware) {
         static_cast<float>(current_A), static_cast<float>(speed_rad_per_s), 40.0F, 0.0F, 40.0F, 0.0F, 0.0F};
     observer.step(input_signals);
     observer.step(input_signals);
-    ASSERT_NEAR(unit.get("guarded_winding_C"), observer.state_C()[states::winding], 1e-3) << i;
-    const double table_A =
-        ecx_derating().table.allowed_A(static_cast<float>(speed_rad_per_s), observer.hottest_body_C(), observer.state_C()[states::winding]);
+    ASSERT_NEAR(unit.get("guarded_winding_C"), observer.state_C()[motor::states::winding], 1e-3) << i;
+    const double table_A = ecx_derating().table.allowed_A(static_cast<float>(speed_rad_per_s), observer.hottest_body_C(),
+                                                          observer.state_C()[motor::states::winding]);
     ASSERT_LE(unit.get("allowed_current_A"), table_A + 1e-3) << i;
     ASSERT_GE(unit.get("allowed_current_A"), 0.95 * table_A - 0.05) << i;
   }
@@ -364,8 +366,8 @@ TEST_P(Fmu, RefusesAnEffectThatNoSimulationCanFeed) {
   try {
     static_cast<void>(exported(form("motor"), with_column));
     ADD_FAILURE() << "was accepted";
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
     EXPECT_THAT(failure.what(), HasSubstr(form("motor") + " cannot express fan (tabulated)"));
     EXPECT_THAT(failure.what(), HasSubstr("fan_current_A"));
   }
@@ -379,7 +381,7 @@ TEST_P(Fmu, SaysWhyACompilerMadeNothing) {
           static_cast<void>(each.write_compiled(ecx_derating(), compiler));
         }
       }
-    } catch (const Failure& failure) {
+    } catch (const base::Failure& failure) {
       return std::string(failure.what());
     }
     return std::string("accepted");
@@ -391,4 +393,4 @@ TEST_P(Fmu, SaysWhyACompilerMadeNothing) {
 INSTANTIATE_TEST_SUITE_P(Versions, Fmu, testing::Values(2, 3));
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

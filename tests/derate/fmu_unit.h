@@ -20,7 +20,7 @@
 
 #include "unpacked.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 using Attributes = std::map<std::string, std::string>;
 
@@ -241,4 +241,4 @@ class FmuUnit {
   void* instance_ = nullptr;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -15,15 +15,15 @@
 #include "motor/datasheet_network.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Returns the paper's motor with effects appended to its data sheet, as a diagnosis writes them.
-inline Motor ecx_32_with(const std::string& lines) {
+inline motor::Motor ecx_32_with(const std::string& lines) {
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_guarded_{}.toml", static_cast<int>(getpid()));
   std::ifstream sheet(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
   std::ofstream(file) << sheet.rdbuf() << "\n" << lines;
-  Motor motor = read_motor(file);
+  motor::Motor motor = motor::read_motor(file);
   std::filesystem::remove(file);
   return motor;
 }
@@ -38,23 +38,23 @@ inline std::string hump(const std::string& lines, double most_W) {
   return law;
 }
 
-inline BarrierRules rules_for(const Motor& motor, double approach_s = 0.5) {
+inline BarrierRules rules_for(const motor::Motor& motor, double approach_s = 0.5) {
   DerateOptions options;
   options.approach_s = approach_s;
   return barrier_rules(motor, twente(), options);
 }
 
 struct GuardedMotor {
-  GuardedMotor(const Motor& of, const BarrierRules& with, double heat_safety_factor)
+  GuardedMotor(const motor::Motor& of, const BarrierRules& with, double heat_safety_factor)
       : motor(of),
         rules(with),
-        network(datasheet_network(motor, nominal_sample(motor))),
+        network(motor::datasheet_network(motor, motor::nominal_sample(motor))),
         observer(network, motor.nominal, twente(), heat_safety_factor),
         table(current_table(observer, rules)) {}
 
-  Motor motor;
+  motor::Motor motor;
   BarrierRules rules;
-  Network network;
+  thermal::Network network;
   Observer observer;
   CurrentTable table;
 };
@@ -104,4 +104,4 @@ inline Derating derating_of(const GuardedMotor& guarded) {
           .reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

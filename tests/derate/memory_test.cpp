@@ -11,7 +11,7 @@
 #include "exported_motor.h"
 #include "thermal/transient.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 constexpr float kUnknown_s = std::numeric_limits<float>::quiet_NaN();
@@ -64,14 +64,15 @@ TEST_F(Memory, ATwoSecondResetChangesNothingThatTwoSecondsWouldNot) {
 // Reference: the solver on the same network without current. The guard must never be colder and not much warmer.
 TEST_F(Memory, CoolsAsTheNetworkDoesAndNoFaster) {
   const ModelGuard motor = driven(12'000);
-  const Network network = datasheet_network(ecx_32(), nominal_sample(ecx_32()));
+  const thermal::Network network = motor::datasheet_network(ecx_32(), motor::nominal_sample(ecx_32()));
   const std::vector<float> before_C = motor.temperatures_C(2);
   for (const double elapsed_s : {0.5, 2.0, 10.0, 45.0, 120.0, 600.0, 3600.0, 1e6}) {
-    OperatingPoint<double> at;
+    thermal::OperatingPoint<double> at;
     at.ambient_C = 40.0;
-    TransientOptions options;
+    thermal::TransientOptions options;
     options.start_C = {before_C[0], before_C[1]};
-    const TransientResult exact = run_transient(network, network.values(), std::vector<Interval>{{std::min(elapsed_s, 1e4), at}}, options);
+    const thermal::TransientResult exact =
+        thermal::run_transient(network, network.values(), std::vector<thermal::Interval>{{std::min(elapsed_s, 1e4), at}}, options);
     ModelGuard after(guard());
     after.restore(motor.saved(2), static_cast<float>(elapsed_s), 0.0F, 20.0F);
     const std::vector<float> found_C = after.temperatures_C(2);
@@ -210,4 +211,4 @@ TEST_F(Memory, TheDocumentsTableIsWhatTheHeaderDoes) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

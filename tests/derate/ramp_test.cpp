@@ -9,7 +9,7 @@
 #include "base/diagnostic.h"
 #include "exported_motor.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 using testing::HasSubstr;
@@ -79,8 +79,8 @@ TEST(Ramp, RefusesByName) {
   const auto message = [](const Derating& derating, RampSignal signal) -> std::string {
     try {
       static_cast<void>(ramp_for("moteus", derating, signal));
-    } catch (const Failure& failure) {
-      EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    } catch (const base::Failure& failure) {
+      EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
       return failure.what();
     }
     return "accepted";
@@ -101,4 +101,4 @@ TEST(Ramp, RefusesByName) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

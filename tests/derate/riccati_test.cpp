@@ -8,7 +8,7 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 LinearObserver scalar(double transition, double process_K2, double sensor_K2) {
@@ -63,8 +63,8 @@ TEST(Riccati, RefusesAnUnstableStateThatTheSensorDoesNotSee) {
   observer.output = Eigen::RowVector2d(0.0, 1.0);
   observer.process_noise = Eigen::MatrixXd::Identity(2, 2);
   observer.sensor_sd_K = 1.0;
-  EXPECT_THROW(steady_covariance(observer), Failure);
+  EXPECT_THROW(steady_covariance(observer), base::Failure);
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

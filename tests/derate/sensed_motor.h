@@ -10,7 +10,7 @@
 #include "guarded_motor.h"
 #include "robot/motor_drive.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Options with few motors for the search. Other motors then check the guarantee.
 inline DerateOptions quick_options(const SensorOptions& sensor) {
@@ -24,22 +24,23 @@ inline const Derating& thermistor_derating() {
   return derating;
 }
 inline Derating resistance_derating() {
-  return derate(ecx_32(), twente(), quick_options({.kind = SensorKind::winding_resistance, .node = states::winding, .accuracy_K = 10.0}));
+  return derate(ecx_32(), twente(),
+                quick_options({.kind = SensorKind::winding_resistance, .node = motor::states::winding, .accuracy_K = 10.0}));
 }
 
 /// Euler steps of the true network. Its time constants are hundreds of times the period.
 class Plant {
  public:
-  Plant(const Motor& motor, const MotorSample& sample, double start_C)
+  Plant(const motor::Motor& motor, const motor::MotorSample& sample, double start_C)
       : nominal_(motor.nominal),
-        network_(datasheet_network(motor, sample)),
+        network_(motor::datasheet_network(motor, sample)),
         values_(network_.values()),
         true_C_(network_.node_count(), start_C),
         rate_(network_.state_count()) {}
 
   void step(double current_A, double speed_rad_per_s, double ambient_C, double period_s) {
     const Signals signals{current_A, speed_rad_per_s, ambient_C, 0.0, ambient_C, 0.0, 0.0};
-    const OperatingPoint<double> at = operating_point<double>(nominal_, robot_, signals);
+    const thermal::OperatingPoint<double> at = operating_point<double>(nominal_, robot_, signals);
     network_.rate_K_per_s<double>(at, values_, true_C_, rate_);
     for (std::size_t node = 0; node < rate_.size(); ++node) {
       true_C_[node] += period_s * rate_[node];
@@ -48,9 +49,9 @@ class Plant {
   [[nodiscard]] double true_C(int node) const { return true_C_[static_cast<std::size_t>(node)]; }
 
  private:
-  Robot robot_ = twente();
-  MotorValues nominal_;
-  Network network_;
+  robot::Robot robot_ = twente();
+  motor::MotorValues nominal_;
+  thermal::Network network_;
   std::vector<double> values_;
   std::vector<double> true_C_;
   std::vector<double> rate_;
@@ -86,9 +87,9 @@ inline SensedRun run_sensed(const CompiledGuard& guard, const Derating& derating
     const double current_A = wish.current_share * allowed_A;
     const double speed_rad_per_s = wish.speed_share * derating.rules.most_speed_rad_per_s;
     plant.step(current_A, speed_rad_per_s, ambient_C, period_s);
-    run.winding_peak_C = std::max(run.winding_peak_C, plant.true_C(states::winding));
+    run.winding_peak_C = std::max(run.winding_peak_C, plant.true_C(motor::states::winding));
     CompiledGuard::Input in{static_cast<float>(current_A), static_cast<float>(speed_rad_per_s), static_cast<float>(ambient_C)};
-    const CompiledGuard::Output out = sensed.step(in, sensor(i * period_s, plant.true_C(states::stator), ambient_C));
+    const CompiledGuard::Output out = sensed.step(in, sensor(i * period_s, plant.true_C(motor::states::stator), ambient_C));
     in.current_A = std::clamp(in.current_A, -static_cast<float>(capped_A), static_cast<float>(capped_A));
     capped_A = model.step(in).allowed_A;
     run.most_excess_A = std::max(run.most_excess_A, out.allowed_A - capped_A);
@@ -101,4 +102,4 @@ inline SensedRun run_sensed(const CompiledGuard& guard, const Derating& derating
   return run;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -8,7 +8,7 @@
 
 #include "sensed_motor.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 struct Attack {
@@ -62,7 +62,7 @@ TEST_F(LyingSensor, GainsNoMoreThanStatedAndSparesTheNominalMotor) {
   ASSERT_TRUE(guard());
   for (const Attack& attack : attacks()) {
     for (const bool is_all : {true, false}) {
-      Plant plant(ecx_32(), nominal_sample(ecx_32()), 40.0);
+      Plant plant(ecx_32(), motor::nominal_sample(ecx_32()), 40.0);
       const SensedRun run = run_sensed(guard(), derating, plant, attack.sensor, 120'000, 11, is_all);
       EXPECT_LE(run.most_excess_A, derating.sensor->most_gain_A + 1e-4) << attack.name;
       EXPECT_LE(run.winding_peak_C, derating.rules.limits.winding_C + 0.1) << attack.name;
@@ -78,8 +78,8 @@ TEST_F(LyingSensor, GainsNoMoreThanStatedAndSparesTheNominalMotor) {
 TEST_F(LyingSensor, OfDrawnMotorsGainsNoMoreThanStated) {
   const Derating& derating = thermistor_derating();
   for (int i = 0; i < 12; ++i) {
-    Random random(31, static_cast<std::uint64_t>(i));
-    const MotorSample sample = draw_sample(ecx_32(), random);
+    base::Random random(31, static_cast<std::uint64_t>(i));
+    const motor::MotorSample sample = motor::draw_sample(ecx_32(), random);
     for (const Attack& attack : attacks()) {
       Plant plant(ecx_32(), sample, 40.0);
       const SensedRun run = run_sensed(guard(), derating, plant, attack.sensor, 20'000, static_cast<unsigned>(i), i % 2 == 0);
@@ -129,12 +129,12 @@ TEST_F(LyingSensor, AJumpIsNotUsedAndOneThatLastsEndsTheSensor) {
 TEST_F(LyingSensor, ACorrectSensorInAColdRoomIsKept) {
   SensedGuard sensed(guard());
   sensed.start(15.0F);
-  Plant plant(ecx_32(), nominal_sample(ecx_32()), 15.0);
+  Plant plant(ecx_32(), motor::nominal_sample(ecx_32()), 15.0);
   for (int i = 0; i < 100'000; ++i) {
     const double current_A = i / 20'000 % 2 == 0 ? 0.0 : 2.0;
     plant.step(current_A, 100.0, 15.0, 0.01);
     const CompiledGuard::Output out =
-        sensed.step({static_cast<float>(current_A), 100.0F, 40.0F}, static_cast<float>(plant.true_C(states::stator)));
+        sensed.step({static_cast<float>(current_A), 100.0F, 40.0F}, static_cast<float>(plant.true_C(motor::states::stator)));
     ASSERT_EQ(out.sensor, CompiledGuard::used) << i;
   }
 }
@@ -175,4 +175,4 @@ TEST_F(LyingSensor, ACorruptStateCountsAsAtItsLimit) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -10,7 +10,7 @@
 #include "derate/sensed/kalman_design.h"
 #include "sensed_motor.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 SensorGain gain_of(const SensorOptions& options) {
@@ -21,16 +21,16 @@ TEST(SensorGain, FollowsTheAccuracy) {
   double last = 1.0;
   for (const double accuracy_K : {0.01, 0.5, 2.0, 8.0, 1000.0}) {
     const SensorGain gain = gain_of({.accuracy_K = accuracy_K});
-    EXPECT_GT(gain.gain[states::stator], 0.0);
-    EXPECT_LT(gain.gain[states::stator], last) << accuracy_K;
-    last = gain.gain[states::stator];
+    EXPECT_GT(gain.gain[motor::states::stator], 0.0);
+    EXPECT_LT(gain.gain[motor::states::stator], last) << accuracy_K;
+    last = gain.gain[motor::states::stator];
   }
   EXPECT_LT(last, 1e-5);
 }
 
 TEST(SensorGain, CorrectsTheSensedNodeAndTheSensorItself) {
-  const SensorGain at_winding = gain_of({.node = states::winding});
-  EXPECT_GT(at_winding.gain[states::winding], at_winding.gain[states::stator]);
+  const SensorGain at_winding = gain_of({.node = motor::states::winding});
+  EXPECT_GT(at_winding.gain[motor::states::winding], at_winding.gain[motor::states::stator]);
   const SensorGain lagging = gain_of({.lag_s = 5.0});
   EXPECT_GT(lagging.lag_gain_ratio, 0.0);
   EXPECT_EQ(gain_of({}).lag_gain_ratio, 0.0);
@@ -54,9 +54,9 @@ TEST(SensorPlan, ThermistorLowersTheSafetyFactor) {
 
 TEST(SensorPlan, RefusesWhatIsNoSensor) {
   const Derating& derating = thermistor_derating();
-  EXPECT_THROW(plan_sensor(ecx_32(), twente(), derating, {.accuracy_K = 0.0}), Failure);
-  EXPECT_THROW(plan_sensor(ecx_32(), twente(), derating, {.accuracy_K = std::nan("")}), Failure);
-  EXPECT_THROW(plan_sensor(ecx_32(), twente(), derating, {.node = 7}), Failure);
+  EXPECT_THROW(plan_sensor(ecx_32(), twente(), derating, {.accuracy_K = 0.0}), base::Failure);
+  EXPECT_THROW(plan_sensor(ecx_32(), twente(), derating, {.accuracy_K = std::nan("")}), base::Failure);
+  EXPECT_THROW(plan_sensor(ecx_32(), twente(), derating, {.node = 7}), base::Failure);
 }
 
 // Motors and sensor errors that the search has not used, with the generated code and another integrator.
@@ -68,8 +68,8 @@ TEST(SensorPlan, DrawnMotorsKeepTheirLimitWithACorrectSensor) {
   int over = 0;
   int dropped = 0;
   for (int i = 0; i < kMotors; ++i) {
-    Random random(90210, static_cast<std::uint64_t>(i));
-    const MotorSample sample = draw_sample(ecx_32(), random);
+    base::Random random(90210, static_cast<std::uint64_t>(i));
+    const motor::MotorSample sample = motor::draw_sample(ecx_32(), random);
     const double offset_K = 1.5 * (2.0 * random.uniform() - 1.0);
     Plant plant(ecx_32(), sample, 40.0);
     const SensedRun run = run_sensed(
@@ -86,4 +86,4 @@ TEST(SensorPlan, DrawnMotorsKeepTheirLimitWithACorrectSensor) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Throws std::runtime_error on an unknown name, so that a script with a wrong name fails.
 class SmallLisp {
@@ -175,4 +175,4 @@ class SmallLisp {
   Node loop_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -8,7 +8,7 @@
 #include "derate/barrier.h"
 #include "guarded_motor.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 constexpr const char* kLossy = R"([effects.eddy]
@@ -23,7 +23,7 @@ conductance = { value = "0.1 W/K", origin = "estimated", derivation = "a test" }
 /// Motors of the database: one has losses that depend on the speed, another has a stator limit.
 struct Case {
   std::string name;
-  Motor motor;
+  motor::Motor motor;
   BarrierRules rules;
 };
 
@@ -65,7 +65,7 @@ class Places {
 TEST(TableBound, HoldsOnPointsThatTheTableHasNotSeen) {
   for (const Case& each : cases()) {
     for (const double goal : {0.01, 0.05}) {
-      const Network network = datasheet_network(each.motor, nominal_sample(each.motor));
+      const thermal::Network network = motor::datasheet_network(each.motor, motor::nominal_sample(each.motor));
       const Observer observer(network, each.motor.nominal, twente(), 1.6);
       const CurrentTable table = current_table(observer, each.rules, {.shortfall_ratio = goal});
       Barrier barrier(observer, each.rules);
@@ -147,9 +147,9 @@ TEST(TableBound, AxisThatDoesNotMatterHasOnePlace) {
 }
 
 TEST(TableBound, SizeAndErrorAreTradedAsAsked) {
-  const Motor motor = ecx_32_with(kLossy);
+  const motor::Motor motor = ecx_32_with(kLossy);
   const BarrierRules rules = rules_for(ecx_32());
-  const Network network = datasheet_network(motor, nominal_sample(motor));
+  const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
   const Observer observer(network, motor.nominal, twente(), 1.6);
   const CurrentTable fine = current_table(observer, rules, {.shortfall_ratio = 0.01});
   const CurrentTable coarse = current_table(observer, rules, {.shortfall_ratio = 0.1});
@@ -192,7 +192,7 @@ int places_of_straight_currents(Barrier& barrier, double stator_C, double least_
 TEST(TableBound, SquaresNeedFewerPlacesThanCurrents) {
   constexpr double kGoal = 0.01;
   for (const char* const id : {"maxon_ecx_flat_32l_48v", "maxon_ecx_flat_42m_24v", "maxon_ec45_flat_70w_24v"}) {
-    const Motor motor = shipped_motor(id);
+    const motor::Motor motor = shipped_motor(id);
     const BarrierRules rules = rules_for(motor);
     const GuardedMotor guarded(motor, rules, 1.6);
     Barrier barrier(guarded.observer, rules);
@@ -202,4 +202,4 @@ TEST(TableBound, SquaresNeedFewerPlacesThanCurrents) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

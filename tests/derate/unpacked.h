@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 inline std::map<std::string, std::string> unpacked(const std::string& bytes) {
   std::map<std::string, std::string> files;
@@ -39,4 +39,4 @@ inline std::string readable(const std::string& exported) {
   return text;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

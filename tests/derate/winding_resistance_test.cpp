@@ -7,10 +7,10 @@
 #include "derate/sensed/sensor_plan.h"
 #include "sensed_motor.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
-const SensorOptions kResistance{.kind = SensorKind::winding_resistance, .node = states::winding, .accuracy_K = 10.0};
+const SensorOptions kResistance{.kind = SensorKind::winding_resistance, .node = motor::states::winding, .accuracy_K = 10.0};
 
 /// Uses the thermistor's plan with resistance readings, because this file tests only how the readings are made.
 const CompiledGuard& guard() {
@@ -84,8 +84,8 @@ TEST(WindingResistance, StaysWithinItsAccuracyForDrawnMotorsAndErrors) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   int shown = 0;
   for (int i = 0; i < 100'000; ++i) {
-    Random random(7, static_cast<std::uint64_t>(i % 500));
-    const MotorSample sample = draw_sample(ecx_32(), random);
+    base::Random random(7, static_cast<std::uint64_t>(i % 500));
+    const motor::MotorSample sample = motor::draw_sample(ecx_32(), random);
     const Terminals terminals{.resistance_25C_ohm = sample.values.terminal_resistance_ohm,
                               .torque_constant_Nm_per_A = sample.values.torque_constant_Nm_per_A * (0.95 + 0.05 * uniform(engine)),
                               .voltage_error_V = 0.02 * uniform(engine),
@@ -131,4 +131,4 @@ TEST(WindingResistance, HelpsAtRestAndIsTheGuardWithoutASensorAtSpeed) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

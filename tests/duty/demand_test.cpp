@@ -9,7 +9,7 @@
 
 #include "base/random.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 const DemandGatherer::Grid kGrid{};
@@ -88,7 +88,7 @@ TEST(DemandGatherer, a_separate_segment_ends_the_bin_before_it) {
 
 // For any range of loads the number of points is bounded. The points cover the whole time and never have less load than the input.
 TEST(DemandGatherer, loads_without_bound_make_no_points_without_bound) {
-  Random random(5, 0);
+  base::Random random(5, 0);
   DemandGatherer gatherer("wheel", 1e9, kGrid);
   std::vector<LoadPoint> given;
   for (int i = 0; i < 200'000; ++i) {
@@ -113,4 +113,4 @@ TEST(DemandGatherer, loads_without_bound_make_no_points_without_bound) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

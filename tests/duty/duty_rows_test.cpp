@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 using testing::ElementsAre;
@@ -40,4 +40,4 @@ TEST(DutyRows, of_a_current_name_a_current) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

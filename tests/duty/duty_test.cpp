@@ -9,7 +9,7 @@
 #include <fstream>
 #include <numeric>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 using testing::HasSubstr;
@@ -29,7 +29,7 @@ class DutyTest : public testing::Test {
   std::string problem(const std::string& shape, const std::string& lines) {
     try {
       read(shape, lines);
-    } catch (const Failure& failure) {
+    } catch (const base::Failure& failure) {
       return failure.what();
     }
     return "";
@@ -222,4 +222,4 @@ TEST_F(DutyTest, a_recording_too_long_for_the_memory_is_refused) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

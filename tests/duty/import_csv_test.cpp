@@ -13,7 +13,7 @@
 #include "ssl_log_writer.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 using testing::AllOf;
@@ -233,7 +233,7 @@ TEST(ImportCsv, SaysThatARobotIsSeenTooSeldom) {
       text += fmt::format("{:.4f},blue,7,{:.4f},1.5,0\n", i / rate_Hz, std::sin(i / rate_Hz));
     }
     const TemporaryFile file("game.csv", text);
-    return demand_of_game(file.path(), "blue 7", read_robot(kSource / "robot_core/robots/tigers_v2020.toml"), 0.01).sentences;
+    return demand_of_game(file.path(), "blue 7", robot::read_robot(kSource / "robot_core/robots/tigers_v2020.toml"), 0.01).sentences;
   };
   EXPECT_THAT(
       said_at(3.0),
@@ -257,11 +257,11 @@ TEST(ImportCsv, AJumpOfTheClockIsNoPause) {
     text += std::to_string(time_s) + ",blue,7," + std::to_string(0.5 * std::sin(0.02 * i)) + ",1.5,0\n";
   }
   const TemporaryFile file("game.csv", text);
-  const GameDemand demand = demand_of_game(file.path(), "blue 7", read_robot(kSource / "robot_core/robots/tigers_v2020.toml"), 0.01);
+  const GameDemand demand = demand_of_game(file.path(), "blue 7", robot::read_robot(kSource / "robot_core/robots/tigers_v2020.toml"), 0.01);
   ASSERT_FALSE(demand.wheels.empty());
   EXPECT_NEAR(demand.wheels.front().duration_s(), 20.0 + 120.0, 0.1);
   EXPECT_THAT(demand.sentences, Contains(HasSubstr("jumps ahead by more than 3600 s 1 times")));
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -12,7 +12,7 @@
 #include "import_failure.h"
 #include "ssl_log_writer.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 using namespace testing_logs;
@@ -59,7 +59,7 @@ TEST(ImportDamage, KeepsWhatCameBeforeTheEndOfATruncatedLog) {
   for (std::size_t size = log.bytes().size(); size-- > 0;) {
     std::filesystem::resize_file(file.path(), size);
     if (size < 16) {
-      EXPECT_THROW((void)import_game(file.path()), Failure) << size;
+      EXPECT_THROW((void)import_game(file.path()), base::Failure) << size;
       continue;
     }
     const RecordedGame game = import_game(file.path());
@@ -87,8 +87,8 @@ TEST(ImportDamage, KeepsWhatCameBeforeTheEndOfATruncatedPackedLog) {
       EXPECT_THAT(sentences(game.report), Contains(HasSubstr("before the end of its data"))) << size;
       EXPECT_GE(game.report.messages, most_messages);
       most_messages = game.report.messages;
-    } catch (const Failure& failure) {
-      ASSERT_EQ(failure.code(), ExitCode::bad_input);
+    } catch (const base::Failure& failure) {
+      ASSERT_EQ(failure.code(), base::ExitCode::bad_input);
     }
   }
   EXPECT_GT(most_messages, 100U);
@@ -98,7 +98,7 @@ TEST(ImportDamage, SurvivesFlippedBitsAnywhere) {
   const std::string plain = small_log().bytes();
   const std::string packed = gzip(plain);
   const TemporaryFile file("flipped.log");
-  Random random(2024, 1);
+  base::Random random(2024, 1);
   std::uint64_t kept = 0;
   for (int i = 0; i < 2000; ++i) {
     std::string bytes = i % 4 == 3 ? packed : plain;
@@ -113,8 +113,8 @@ TEST(ImportDamage, SurvivesFlippedBitsAnywhere) {
       const RecordedGame game = import_game(file.path());
       expect_sane(game);
       kept += i % 4 == 3 ? 0 : game.report.messages;
-    } catch (const Failure& failure) {
-      ASSERT_EQ(failure.code(), ExitCode::bad_input);
+    } catch (const base::Failure& failure) {
+      ASSERT_EQ(failure.code(), base::ExitCode::bad_input);
     }
   }
   EXPECT_GT(static_cast<double>(kept), 0.95 * 1500.0 * 110.0) << "a flipped bit must not cost more than its message";
@@ -146,7 +146,7 @@ TEST(ImportDamage, PassesOverDamageAndSaysWhere) {
 TEST(ImportDamage, FindsNoMoreMessagesInRubbish) {
   std::string bytes = small_log().bytes();
   const std::size_t end = bytes.size();
-  Random random(5, 5);
+  base::Random random(5, 5);
   for (int i = 0; i < 100'000; ++i) {
     bytes += static_cast<char>(random.uniform() * 256.0);
   }
@@ -172,16 +172,16 @@ TEST(ImportDamage, SaysWhatAForeignFileIs) {
 }
 
 TEST(ImportDamage, SaysWhichFilesAndFormatsThereAre) {
-  EXPECT_THROW((void)import_game("/nowhere/game.log"), Failure);
-  EXPECT_THROW((void)import_game("/tmp"), Failure);
+  EXPECT_THROW((void)import_game("/nowhere/game.log"), base::Failure);
+  EXPECT_THROW((void)import_game("/tmp"), base::Failure);
   const TemporaryFile file("game.log", small_log().bytes());
   try {
     (void)import_game(file.path(), {.format = "ssl_lag"});
     FAIL();
-  } catch (const Failure& failure) {
+  } catch (const base::Failure& failure) {
     EXPECT_THAT(failure.what(), HasSubstr("there is no log format 'ssl_lag'; did you mean 'ssl_log'?"));
   }
-  EXPECT_THROW((void)import_game(file.path(), {.format = "csv"}), Failure);
+  EXPECT_THROW((void)import_game(file.path(), {.format = "csv"}), base::Failure);
 }
 
 long peak_memory_kB() {
@@ -243,7 +243,7 @@ TEST(ImportHuge, EndsOnAPackedNothingOfManyGigabytes) {
       const RecordedGame game = import_game(file.path());
       EXPECT_THAT(sentences(game.report), Contains(HasSubstr("no usable message in the")));
       EXPECT_EQ(game.tracks.empty(), begin.size() == 16);
-    } catch (const Failure& failure) {
+    } catch (const base::Failure& failure) {
       EXPECT_TRUE(begin.empty()) << failure.what();
     }
     EXPECT_LT(peak_memory_kB() - before_kB, kMostMemory_kB);
@@ -251,4 +251,4 @@ TEST(ImportHuge, EndsOnAPackedNothingOfManyGigabytes) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -7,17 +7,17 @@
 #include "duty/recorded_game.h"
 #include "ssl_log_writer.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 inline std::string failure_of(const std::string& bytes, const std::string& name = "game.log") {
   const testing_logs::TemporaryFile file(name, bytes);
   try {
     (void)import_game(file.path());
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
     return failure.what();
   }
   return "no failure";
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

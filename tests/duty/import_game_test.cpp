@@ -12,7 +12,7 @@
 #include "ssl_log_writer.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 using namespace testing_logs;
@@ -36,7 +36,7 @@ constexpr Sine kYaw{0.5, 0.8};
 /// Two cameras over the halves of the field overlap in the middle and differ by 8 mm; noise of 1 mm.
 std::string recording() {
   LogWriter log;
-  Random random(11, 0);
+  base::Random random(11, 0);
   const auto noise_m = [&] { return 1e-3 * 3.46 * (random.uniform() - 0.5); };
   const Message geometry = Message().message(2, camera_at(0, -1.5, 0.0)).message(2, camera_at(1, 1.5, 0.0));
   log.add(0.0, 3, referee(0.0, 1, 2));
@@ -65,23 +65,24 @@ std::string recording() {
 // ∫M²dt of every wheel determines the heat of its motor.
 TEST(ImportGame, a_damaged_recording_gives_the_wheels_work) {
   const TemporaryFile file("game.log.gz", recording());
-  const Robot robot = read_robot(kSource / "robot_core/robots/tigers_v2020.toml");
+  const robot::Robot robot = robot::read_robot(kSource / "robot_core/robots/tigers_v2020.toml");
   const GameDemand game = demand_of_game(file.path(), "yellow 3", robot, 0.05);
   ASSERT_EQ(game.wheels.size(), 4U);
   const double seen_until_s = game.wheels[0].duration_s();
   EXPECT_GT(seen_until_s, 0.9 * kLength_s);
   EXPECT_LT(seen_until_s, kLength_s);
-  MotorValues no_rotor;
+  motor::MotorValues no_rotor;
   no_rotor.rotor_inertia_kg_m2 = 0.0;
-  const BodyConfig body = make_body(robot, no_rotor);
-  PerWheel expected_Nm2_s{};
+  const robot::BodyConfig body = robot::make_body(robot, no_rotor);
+  robot::PerWheel expected_Nm2_s{};
   for (double time_s = 0.0; time_s < seen_until_s; time_s += 1e-3) {
     if (time_s > 30.0 && time_s < 32.0) {
       continue;
     }
-    const WheelDemands wheels = inverse_dynamics(body, local_motion(body, {kX.at(time_s, 0), kY.at(time_s, 0), kYaw.at(time_s, 0)},
-                                                                    {kX.at(time_s, 1), kY.at(time_s, 1), kYaw.at(time_s, 1)},
-                                                                    {kX.at(time_s, 2), kY.at(time_s, 2), kYaw.at(time_s, 2)}));
+    const robot::WheelDemands wheels =
+        robot::inverse_dynamics(body, robot::local_motion(body, {kX.at(time_s, 0), kY.at(time_s, 0), kYaw.at(time_s, 0)},
+                                                          {kX.at(time_s, 1), kY.at(time_s, 1), kYaw.at(time_s, 1)},
+                                                          {kX.at(time_s, 2), kY.at(time_s, 2), kYaw.at(time_s, 2)}));
     for (std::size_t i = 0; i < 4; ++i) {
       expected_Nm2_s[i] += 1e-3 * wheels.torque_Nm[i] * wheels.torque_Nm[i];
     }
@@ -104,4 +105,4 @@ TEST(ImportGame, a_damaged_recording_gives_the_wheels_work) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

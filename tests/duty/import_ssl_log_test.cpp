@@ -7,7 +7,7 @@
 #include "duty/recorded_game.h"
 #include "ssl_log_writer.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 using namespace testing_logs;
@@ -186,4 +186,4 @@ TEST(ImportSslLog, UnwrapsTheTurn) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -8,7 +8,7 @@
 #include "duty/recorded_game.h"
 #include "ssl_log_writer.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 using namespace testing_logs;
@@ -40,7 +40,7 @@ TEST(ImportTracks, JoinsCamerasByConfidenceAndDistance) {
 
 TEST(ImportTracks, HandsOverFromCameraToCameraWithoutAStep) {
   LogWriter log;
-  Random random(1, 2);
+  base::Random random(1, 2);
   for (int i = 0; i < 1500; ++i) {
     const double time_s = i * kFrame_s;
     const double x_m = -1.0 + 0.1 * time_s;
@@ -187,4 +187,4 @@ TEST(ImportTracks, ReconcilesCamerasWhoseClocksDiffer) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

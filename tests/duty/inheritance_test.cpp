@@ -11,7 +11,7 @@
 #include "duty/match/match_duty.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 namespace fs = std::filesystem;
@@ -34,7 +34,7 @@ class Inheritance : public testing::Test {
   std::string refusal(const fs::path& file) {
     try {
       read_duty(file);
-    } catch (const Failure& failure) {
+    } catch (const base::Failure& failure) {
       return failure.what();
     }
     return "";
@@ -90,4 +90,4 @@ TEST_F(Inheritance, division_b_differs_from_division_a_by_field_and_distance) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -10,7 +10,7 @@
 #include "base/diagnostic.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 /// A folder for a table with its description.
@@ -65,10 +65,10 @@ TEST_F(WrittenDuty, quotes_texts_of_the_original) {
 TEST(MakeDuty, refuses_seed_and_planner_for_a_prescribed_load) {
   DutyJob job{.robot = twente(), .duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml")};
   job.seed = 1;
-  EXPECT_THROW(make_duty(job), Failure);
+  EXPECT_THROW(make_duty(job), base::Failure);
   job.seed.reset();
   job.planner = Planner::bang_bang;
-  EXPECT_THROW(make_duty(job), Failure);
+  EXPECT_THROW(make_duty(job), base::Failure);
 }
 
 TEST(MakeDuty, plays_the_match_of_its_seed_in_every_role) {
@@ -80,4 +80,4 @@ TEST(MakeDuty, plays_the_match_of_its_seed_in_every_role) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -9,7 +9,7 @@
 #include "duty/match/match_duty.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 const MatchInputs& division_a() {
@@ -17,7 +17,7 @@ const MatchInputs& division_a() {
   return dynamic_cast<const MatchDuty&>(*kDuty.shape_data).inputs();
 }
 
-Robot twente() { return read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml"); }
+robot::Robot twente() { return robot::read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml"); }
 
 double clock_s(const std::vector<MatchPhase>& game) {
   return std::accumulate(game.begin(), game.end(), 0.0, [](double sum_s, const MatchPhase& span) {
@@ -27,7 +27,7 @@ double clock_s(const std::vector<MatchPhase>& game) {
 
 TEST(Game, the_clock_runs_for_two_halves_exactly) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    Random random(seed, 0);
+    base::Random random(seed, 0);
     const std::vector<MatchPhase> game = generate_game(Division::a, false, division_a().nominal(), random);
     EXPECT_NEAR(clock_s(game), 600.0, 1e-9);
     for (const MatchPhase& span : game) {
@@ -40,7 +40,7 @@ TEST(Game, the_clock_runs_for_two_halves_exactly) {
 }
 
 TEST(Game, overtime_adds_two_short_halves) {
-  Random random(1, 0);
+  base::Random random(1, 0);
   EXPECT_NEAR(clock_s(generate_game(Division::b, true, division_a().nominal(), random)), 900.0, 1e-9);
 }
 
@@ -48,7 +48,7 @@ TEST(Game, a_division_b_free_kick_may_wait_ten_seconds_and_a_division_a_one_five
   for (const auto& [division, most_s] : {std::pair(Division::a, 5.0), std::pair(Division::b, 10.0)}) {
     double longest_s = 0.0;
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
-      Random random(seed, 0);
+      base::Random random(seed, 0);
       for (const MatchPhase& span : generate_game(division, false, division_a().nominal(), random)) {
         longest_s = span.phase == Phase::free_kick ? std::max(longest_s, span.duration_s) : longest_s;
       }
@@ -71,7 +71,7 @@ constexpr int kGames = 4000;
 Counted many_games(Division division, const MatchValues& values, bool overtime = false) {
   Counted counted;
   for (std::uint64_t seed = 0; seed < kGames; ++seed) {
-    Random random(seed, 0);
+    base::Random random(seed, 0);
     for (const MatchPhase& span : generate_game(division, overtime, values, random)) {
       counted.time_s[static_cast<std::size_t>(span.phase)] += span.duration_s;
       ++counted.spans[static_cast<std::size_t>(span.phase)];
@@ -124,7 +124,7 @@ struct CommandInPhase {
 /// Commands of one game for a robot that drives at 1.2 m/s.
 std::vector<CommandInPhase> commands(const MatchInputs& inputs, const MatchValues& values, std::uint64_t seed) {
   constexpr double kSpeed_m_per_s = 1.2;
-  Random random(seed, 0);
+  base::Random random(seed, 0);
   const std::vector<MatchPhase> game = generate_game(inputs.division, inputs.overtime, values, random);
   Behaviour behaviour(inputs, values, random);
   std::vector<CommandInPhase> all;
@@ -271,9 +271,9 @@ TEST(Match, duels_push_at_a_stand) {
 
 // In a duel the robot pushes with the given share of the largest force that the ground transmits in that direction, without turning.
 TEST(Match, a_duel_pushes_with_its_share_of_the_grip) {
-  MotorValues no_rotor;
+  motor::MotorValues no_rotor;
   no_rotor.rotor_inertia_kg_m2 = 0.0;
-  const BodyConfig body = make_body(twente(), no_rotor);
+  const robot::BodyConfig body = robot::make_body(twente(), no_rotor);
   const std::size_t input = static_cast<std::size_t>(
       std::ranges::find(match_input_specs(), "duel_push_share", [](const MatchInputSpec& each) { return each.spec.key; }) -
       match_input_specs().begin());
@@ -288,9 +288,9 @@ TEST(Match, a_duel_pushes_with_its_share_of_the_grip) {
         return;
       }
       ++duels;
-      const Wrench push = wrench_of_rolling_forces(body.kinematics, now.wheels->rolling_force_N);
+      const robot::Wrench push = robot::wrench_of_rolling_forces(body.kinematics, now.wheels->rolling_force_N);
       const double direction_rad = std::atan2(push.y_N, push.x_N);
-      const double most_N = largest_push_N(body, direction_rad, body.weight.center_of_gravity_height_m);
+      const double most_N = robot::largest_push_N(body, direction_rad, body.weight.center_of_gravity_height_m);
       EXPECT_NEAR(std::hypot(push.x_N, push.y_N), share * most_N, 1e-6 * most_N);
       EXPECT_NEAR(push.yaw_Nm, 0.0, 1e-6);
       EXPECT_NEAR(std::hypot(now.wheels->untransmitted.x_N, now.wheels->untransmitted.y_N), 0.0, 1e-6);
@@ -328,7 +328,7 @@ TEST(Match, bins_conserve_the_heat_of_every_motor) {
 }
 
 TEST(Match, same_seed_same_demand_and_another_seed_another) {
-  const Robot robot = twente();
+  const robot::Robot robot = twente();
   const auto rms = [&](std::uint64_t seed) {
     std::vector<double> all;
     const MatchLoad load = play_match(division_a(), division_a().nominal(), robot, seed, Planner::jerk_limited);
@@ -380,7 +380,7 @@ TEST(Match, the_script_is_the_game) {
 
 // Draws are different games with different inputs, each reproducible.
 TEST(Match, draws_spread_the_demand) {
-  const Robot robot = twente();
+  const robot::Robot robot = twente();
   const MatchDuty duty(division_a());
   ASSERT_TRUE(duty.has_unknowns());
   const auto rms_Nm = [](const WheelDemand& wheel) {
@@ -434,19 +434,19 @@ TEST(Match, a_keeper_works_less_than_an_attacker) {
 }
 
 TEST(Match, a_robot_without_values_for_motion_is_refused_by_name) {
-  Robot robot = twente();
+  robot::Robot robot = twente();
   robot.body.yaw_inertia_kg_m2.reset();
-  EXPECT_THROW(play_match(division_a(), division_a().nominal(), robot, 1, Planner::jerk_limited), Failure);
+  EXPECT_THROW(play_match(division_a(), division_a().nominal(), robot, 1, Planner::jerk_limited), base::Failure);
 }
 
 TEST(Match, limits_that_the_planner_cannot_hold_are_said_in_words) {
-  Robot robot = twente();
+  robot::Robot robot = twente();
   robot.limits.jerk_m_per_s3 = 1e12;
   try {
     (void)play_match(division_a(), division_a().nominal(), robot, 1, Planner::jerk_limited);
     FAIL() << "played";
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::numerics_failed);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::numerics_failed);
     EXPECT_NE(std::string_view(failure.what()).find("limits and distances are too many orders of magnitude apart"), std::string_view::npos)
         << failure.what();
     EXPECT_NE(std::string_view(failure.what()).find("[limits]"), std::string_view::npos);
@@ -454,4 +454,4 @@ TEST(Match, limits_that_the_planner_cannot_hold_are_said_in_words) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -7,12 +7,12 @@
 #include "base/random.h"
 #include "duty/motion.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-double normal(Random& random) { return std::sqrt(-2.0 * std::log(random.uniform())) * std::cos(2.0 * kPi * random.uniform()); }
+double normal(base::Random& random) { return std::sqrt(-2.0 * std::log(random.uniform())) * std::cos(2.0 * kPi * random.uniform()); }
 
 /// A coordinate that follows one target velocity after another with limited acceleration and jerk; one state per millisecond.
 class LimitedMotion {
@@ -23,7 +23,7 @@ class LimitedMotion {
     double acceleration = 0.0;
   };
   LimitedMotion(double duration_s, double play_share, double most_rate, double most_acceleration, double most_jerk, std::uint64_t seed) {
-    Random random(seed, 11);
+    base::Random random(seed, 11);
     State now;
     double goal = 0.0;
     double goal_until_s = 0.0;
@@ -71,7 +71,7 @@ Game game(double play_share, double most_acceleration_m_per_s2, double most_jerk
 
 /// Simulated vision: noise of 2 mm and 10 mrad, 5 % of the frames lost, 0.5 % wrong by up to 100 mm and 0.5 rad.
 RobotTrack seen(const Game& g, double rate_Hz, double noise_share = 1.0) {
-  Random random(7, 7);
+  base::Random random(7, 7);
   RobotTrack track{{Team::yellow, 3}, {{}}};
   for (double time_s = 0.0; time_s < g.duration_s; time_s += 1.0 / rate_Hz) {
     const double stamp_s = std::round(time_s * 1000.0) / 1000.0;
@@ -193,7 +193,7 @@ TEST(Smoothing, SaysWhenTheFrameRateLimitsTheBandwidth) {
 }
 
 TEST(Smoothing, SeesNoAccelerationOfARobotThatStands) {
-  Random random(3, 3);
+  base::Random random(3, 3);
   RobotTrack track{{Team::blue, 1}, {{}}};
   for (int i = 0; i < 7500; ++i) {
     track.segments[0].push_back({i / 75.0, 0.002 * normal(random), 0.002 * normal(random), 0.01 * normal(random)});
@@ -258,4 +258,4 @@ TEST(Smoothing, TakesTracksTooShortToSmooth) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace heatsoak::testing_logs {
+namespace heatsoak::duty::testing_logs {
 
 /// Time between two pictures of a camera.
 inline constexpr double kFrame_s = 1.0 / 75.0;
@@ -190,4 +190,4 @@ inline std::string gzip(std::string bytes) {
   return packed;
 }
 
-}  // namespace heatsoak::testing_logs
+}  // namespace heatsoak::duty::testing_logs

@@ -10,15 +10,15 @@
 #include "estimation/smoothed_path.h"
 #include "runs_for_tests.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 MeasuredRun run_of(std::uint64_t seed, int samples) {
-  Random random(seed, 0);
+  base::Random random(seed, 0);
   MeasuredRun run;
   run.name = "random";
   run.sensors = {{"winding_C", "winding", 0.15, 0.0}, {"stator_C", "stator", 0.1, 0.0}};
-  run.signals = {Signal::current};
+  run.signals = {thermal::Signal::current};
   run.measured_C.resize(samples, 2);
   for (int k = 0; k < samples; ++k) {
     run.time_s.push_back(k);
@@ -114,12 +114,12 @@ TEST(Design, SmoothedPathFollowsUnknownHeat) {
   const Model model = two_node_model({}, 1.0);
   MeasuredRun run = run_of(6, 300);
   Model truth = model;
-  truth.network.add_effect("lamp", *find_effect("constant_heat"), std::vector<std::string>{"stator"}, std::vector<double>{2.0});
+  truth.network.add_effect("lamp", *thermal::find_effect("constant_heat"), std::vector<std::string>{"stator"}, std::vector<double>{2.0});
   truth.values = truth.network.values();
   truth.free.clear();
   truth.prior = {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
   const LinearisedRun real = linearise(truth, std::vector<double>{25.0, 26.0}, run);
-  Random random(9, 0);
+  base::Random random(9, 0);
   for (Eigen::Index k = 0; k < run.samples(); ++k) {
     for (Eigen::Index sensor = 0; sensor < 2; ++sensor) {
       run.measured_C(k, sensor) = real.sensor_C(k, sensor) + 0.2 * (random.uniform() - 0.5);
@@ -147,4 +147,4 @@ TEST(FluxGrid, AscentEndsWhereNoNeighbourIsHigher) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -12,7 +12,7 @@
 #include "estimation/log_columns.h"
 #include "estimation/turning_rows.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 struct LogRow {
@@ -21,8 +21,8 @@ struct LogRow {
   double winding_C = 30.0;
 };
 
-Recording recording_of(const std::vector<LogRow>& rows) {
-  Recording log;
+recording::Recording recording_of(const std::vector<LogRow>& rows) {
+  recording::Recording log;
   log.name = "log";
   log.file = "log.csv";
   log.run_begins = {0};
@@ -32,8 +32,8 @@ Recording recording_of(const std::vector<LogRow>& rows) {
     current_A.push_back(row.current_A);
     winding_C.push_back(row.winding_C + 0.1 * static_cast<double>(winding_C.size() % 3));
   }
-  log.channels.push_back({*quantity_named("current_A"), current_A});
-  log.channels.push_back({*quantity_named("winding_C"), winding_C});
+  log.channels.push_back({*recording::quantity_named("current_A"), current_A});
+  log.channels.push_back({*recording::quantity_named("winding_C"), winding_C});
   return log;
 }
 
@@ -47,7 +47,7 @@ std::vector<LogRow> rows_of_a_step() {
 }
 
 MeasuredRuns runs_of(const std::vector<LogRow>& rows, double longest_step_s = 2.0) {
-  return measured_runs(recording_of(rows), {.longest_step_s = longest_step_s, .needed = {Signal::current}, .ambient_C = 25.0});
+  return measured_runs(recording_of(rows), {.longest_step_s = longest_step_s, .needed = {thermal::Signal::current}, .ambient_C = 25.0});
 }
 
 /// Returns ∫ I² dt.
@@ -99,34 +99,34 @@ TEST(MeasuredRun, bursts_of_one_row_are_within_the_uncertainty_of_a_lost_row_bet
 TEST(MeasuredRun, a_mean_over_the_time_before_its_row_speaks_of_the_end_of_a_gap) {
   std::vector<LogRow> rows = rows_of_a_step();
   rows.erase(rows.begin() + 12);  // 6 A on both sides; to_interval_values() moves the value of 13 s to the row at 11 s
-  Recording log = recording_of(rows);
-  log.inputs = InputConvention::previous_interval;
+  recording::Recording log = recording_of(rows);
+  log.inputs = recording::InputConvention::previous_interval;
   log.channels[0].values[11] = 3.0;
-  const MeasuredRun run = measured_runs(log, {.needed = {Signal::current}, .ambient_C = 25.0}).runs.at(0);
+  const MeasuredRun run = measured_runs(log, {.needed = {thermal::Signal::current}, .ambient_C = 25.0}).runs.at(0);
   ASSERT_EQ(run.unknown_inputs.size(), 1U);
   EXPECT_EQ(run.unknown_inputs[0].interval, 11);
   EXPECT_DOUBLE_EQ(2.0 * std::pow(run.at[11].current_rms_A, 2), 9.0 + 0.5 * (36.0 + 9.0)) << "3 A in its last second";
 }
 
 TEST(MeasuredRun, rows_that_came_when_something_changed_lack_none) {
-  Recording log = recording_of(rows_of_a_step());
+  recording::Recording log = recording_of(rows_of_a_step());
   double time_s = 0.0;
   for (std::size_t row = 0; row < log.rows(); ++row) {
     log.time_s[row] = time_s;
     time_s += 1.0 + static_cast<double>(row * row % 7) / 3.0;
   }
-  const MeasuredRuns all = measured_runs(log, {.needed = {Signal::current}, .ambient_C = 25.0});
+  const MeasuredRuns all = measured_runs(log, {.needed = {thermal::Signal::current}, .ambient_C = 25.0});
   ASSERT_EQ(all.runs.size(), 1U);
   EXPECT_THAT(all.runs[0].unknown_inputs, testing::IsEmpty());
   EXPECT_EQ(all.runs[0].at[9].current_rms_A, 2.0);
 }
 
 TEST(MeasuredRun, a_speed_is_unlogged_in_the_rows_that_lack_it_and_where_something_drives) {
-  Recording log = recording_of(rows_of_a_step());
+  recording::Recording log = recording_of(rows_of_a_step());
   std::vector<double> speed_rad_per_s(log.rows(), 100.0);
   std::fill(speed_rad_per_s.begin() + 5, speed_rad_per_s.begin() + 15, std::nan(""));
-  log.channels.push_back({*quantity_named("speed_rad_per_s"), speed_rad_per_s});
-  MeasuredRunOptions how{.needed = {Signal::current}, .ambient_C = 25.0};
+  log.channels.push_back({*recording::quantity_named("speed_rad_per_s"), speed_rad_per_s});
+  MeasuredRunOptions how{.needed = {thermal::Signal::current}, .ambient_C = 25.0};
   const MeasuredRun driven = measured_runs(log, how).runs.at(0);
   EXPECT_EQ(driven.at[4].unlogged_speed_share, 0.0);
   EXPECT_EQ(driven.at[5].unlogged_speed_share, 1.0);
@@ -160,10 +160,11 @@ TEST(MeasuredRun, a_row_in_which_the_motor_turns_round_has_more_speed_than_its_m
     short_of_it_rad += std::abs(turned_rad);
     short_of_it_rad2_per_s += turned_rad * turned_rad;
   }
-  Recording log = recording_of(rows);
-  log.channels.push_back({*quantity_named("speed_rad_per_s"), mean_rad_per_s});
+  recording::Recording log = recording_of(rows);
+  log.channels.push_back({*recording::quantity_named("speed_rad_per_s"), mean_rad_per_s});
   const MeasuredRun held =
-      measured_runs(log, {.longest_step_s = 2.0, .needed = {Signal::current, Signal::speed}, .ambient_C = 25.0}).runs.front();
+      measured_runs(log, {.longest_step_s = 2.0, .needed = {thermal::Signal::current, thermal::Signal::speed}, .ambient_C = 25.0})
+          .runs.front();
   EXPECT_TRUE(may_turn_within_rows(held));
   const MeasuredRun run = turning_within_rows(held);
   double seen_rad = 0.0, seen_rad2_per_s = 0.0, turned_rad = 0.0;
@@ -184,13 +185,13 @@ TEST(MeasuredRun, a_row_in_which_the_motor_turns_round_has_more_speed_than_its_m
 }
 
 TEST(MeasuredRun, current_replaces_an_unlogged_torque) {
-  Recording log = recording_of(rows_of_a_step());
-  log.channels.push_back({*quantity_named("speed_rad_per_s"), std::vector<double>(log.rows(), -100.0)});
-  MeasuredRunOptions how{.needed = {Signal::current}, .ambient_C = 25.0};
-  EXPECT_FALSE(measured_runs(log, how).runs.at(0).has(Signal::shaft_power));
+  recording::Recording log = recording_of(rows_of_a_step());
+  log.channels.push_back({*recording::quantity_named("speed_rad_per_s"), std::vector<double>(log.rows(), -100.0)});
+  MeasuredRunOptions how{.needed = {thermal::Signal::current}, .ambient_C = 25.0};
+  EXPECT_FALSE(measured_runs(log, how).runs.at(0).has(thermal::Signal::shaft_power));
   how.torque = {.per_current_Nm_per_A = 0.03, .drag_Nm = 0.002};
   const MeasuredRun driven = measured_runs(log, how).runs.at(0);
-  EXPECT_TRUE(driven.has(Signal::shaft_power));
+  EXPECT_TRUE(driven.has(thermal::Signal::shaft_power));
   // 0.03 N m/A · 2 A · 100 rad/s = 6 W, minus 0.2 W of drag. The current is unsigned, so turning backwards does not mean braking.
   EXPECT_NEAR(driven.at[0].shaft_power_W, 5.8, 1e-9);
   // A signed current brakes if its sign is opposite to the speed's.
@@ -200,7 +201,7 @@ TEST(MeasuredRun, current_replaces_an_unlogged_torque) {
   const MeasuredRun signed_run = measured_runs(log, how).runs.at(0);
   EXPECT_NEAR(signed_run.at[0].shaft_power_W, 5.8, 1e-9);
   EXPECT_NEAR(signed_run.at[15].shaft_power_W, -6.2, 1e-9);
-  log.channels.push_back({*quantity_named("torque_Nm"), std::vector<double>(log.rows(), 0.01)});
+  log.channels.push_back({*recording::quantity_named("torque_Nm"), std::vector<double>(log.rows(), 0.01)});
   EXPECT_NEAR(measured_runs(log, how).runs.at(0).at[0].shaft_power_W, -1.0, 1e-9);
 }
 
@@ -212,8 +213,8 @@ TEST(MeasuredRun, reports_why_no_segment_remains) {
   try {
     runs_of(rows);
     FAIL();
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::cannot_answer);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::cannot_answer);
     EXPECT_THAT(failure.what(), testing::HasSubstr("12 of 20 rows have no current_A"));
   }
 }
@@ -242,12 +243,12 @@ TEST(MeasuredRun, rows_that_lack_a_speed_alone_stay_rows_and_keep_their_current)
   for (int k = 0; k < 40; ++k) {
     rows.push_back({static_cast<double>(k), 2.0 + k % 3});
   }
-  Recording log = recording_of(rows);
+  recording::Recording log = recording_of(rows);
   std::vector<double> speed_rad_per_s(log.rows(), 100.0);
   std::fill(speed_rad_per_s.begin() + 20, speed_rad_per_s.end(), 300.0);
   std::fill(speed_rad_per_s.begin() + 18, speed_rad_per_s.begin() + 21, std::nan(""));
-  log.channels.push_back({*quantity_named("speed_rad_per_s"), speed_rad_per_s});
-  const MeasuredRun run = measured_runs(log, {.needed = {Signal::current, Signal::speed}, .ambient_C = 25.0}).runs.at(0);
+  log.channels.push_back({*recording::quantity_named("speed_rad_per_s"), speed_rad_per_s});
+  const MeasuredRun run = measured_runs(log, {.needed = {thermal::Signal::current, thermal::Signal::speed}, .ambient_C = 25.0}).runs.at(0);
   EXPECT_EQ(run.samples(), 40);
   for (std::size_t k = 18; k < 21; ++k) {
     EXPECT_EQ(run.at[k].current_rms_A, 2.0 + static_cast<double>(k % 3));
@@ -268,9 +269,9 @@ TEST(MeasuredRun, a_pause_of_ten_seconds_ends_no_run_unless_the_temperature_jump
       rows.push_back({static_cast<double>(k), k < 30 ? 2.0 : 6.0});
     }
   }
-  Recording log = recording_of(rows);
+  recording::Recording log = recording_of(rows);
   log.run_begins = {0, 26};  // the split that the reader makes
-  const MeasuredRunOptions how{.needed = {Signal::current}, .ambient_C = 25.0};
+  const MeasuredRunOptions how{.needed = {thermal::Signal::current}, .ambient_C = 25.0};
   const MeasuredRuns one = measured_runs(log, how);
   ASSERT_EQ(one.runs.size(), 1U);
   ASSERT_EQ(one.runs[0].unknown_inputs.size(), 1U);
@@ -285,15 +286,15 @@ TEST(MeasuredRun, a_pause_of_ten_seconds_ends_no_run_unless_the_temperature_jump
 // uncertainties.
 TEST(MeasuredRun, motion_and_current_have_separate_uncertainties) {
   std::vector<LogRow> rows = rows_of_a_step();
-  Recording log = recording_of(rows);
+  recording::Recording log = recording_of(rows);
   std::vector<double> speed_rad_per_s(log.rows(), 300.0);
   std::fill(speed_rad_per_s.begin() + 10, speed_rad_per_s.end(), 0.0);
-  log.channels.push_back({*quantity_named("speed_rad_per_s"), speed_rad_per_s});
-  for (Channel& channel : log.channels) {
+  log.channels.push_back({*recording::quantity_named("speed_rad_per_s"), speed_rad_per_s});
+  for (recording::Channel& channel : log.channels) {
     channel.values.erase(channel.values.begin() + 10);
   }
   log.time_s.erase(log.time_s.begin() + 10);
-  const MeasuredRun run = measured_runs(log, {.needed = {Signal::current, Signal::speed}, .ambient_C = 25.0}).runs.at(0);
+  const MeasuredRun run = measured_runs(log, {.needed = {thermal::Signal::current, thermal::Signal::speed}, .ambient_C = 25.0}).runs.at(0);
   ASSERT_EQ(run.unknown_inputs.size(), 2U);
   EXPECT_EQ(run.unknown_inputs[0].interval, 9);
   EXPECT_EQ(run.unknown_inputs[1].interval, 9);
@@ -309,7 +310,7 @@ TEST(MeasuredRun, says_how_short_a_log_is) {
   try {
     runs_of(rows);
     FAIL();
-  } catch (const Failure& failure) {
+  } catch (const base::Failure& failure) {
     EXPECT_THAT(failure.what(), testing::HasSubstr("its 14 s make fewer than 9 intervals of 2 s"));
   }
 }
@@ -344,13 +345,13 @@ TEST(MeasuredRun, merging_keeps_heat_and_uncertainty) {
 }
 
 TEST(MeasuredRun, brings_columns_of_the_log_into_the_operating_points) {
-  Recording log = recording_of(rows_of_a_step());
-  log.channels.push_back({*quantity_named("thrust_N"), {}});
+  recording::Recording log = recording_of(rows_of_a_step());
+  log.channels.push_back({*recording::quantity_named("thrust_N"), {}});
   for (int k = 0; k < 20; ++k) {
     log.channels.back().values.push_back(k < 15 ? k : std::nan(""));
     log.channels.front().values[static_cast<std::size_t>(k)] *= k < 5 ? -1.0 : 1.0;
   }
-  MeasuredRunOptions options{.longest_step_s = 2.0, .needed = {Signal::current}, .columns = {"thrust_N"}, .ambient_C = 25.0};
+  MeasuredRunOptions options{.longest_step_s = 2.0, .needed = {thermal::Signal::current}, .columns = {"thrust_N"}, .ambient_C = 25.0};
   MeasuredRun run = measured_runs(log, options).runs.at(0);
   ASSERT_EQ(run.columns.size(), 2U) << "a current of both signs is one";
   for (std::size_t k = 0; k < run.at.size(); ++k) {
@@ -359,9 +360,9 @@ TEST(MeasuredRun, brings_columns_of_the_log_into_the_operating_points) {
     EXPECT_EQ(run.at[k].first_column, begin_s < 15.0 ? 0.5 * (begin_s + end_s - 1.0) : run.at[k - 1].first_column) << begin_s;
   }
   EXPECT_GT(thinned(run, 1000).at.at(0).first_column, 5.0);
-  const OperatingPoint<double> before = run.at.front();
+  const thermal::OperatingPoint<double> before = run.at.front();
   set_columns(run, std::vector<std::string>{"current_A", "nobody_logs_this", "thrust_N"});
-  const OperatingPoint<double>& first = run.at.front();
+  const thermal::OperatingPoint<double>& first = run.at.front();
   EXPECT_EQ(first.first_column, -2.0);
   EXPECT_EQ(first.second_column_share, 0.0);
   EXPECT_EQ(first.third_column, before.first_column);
@@ -375,7 +376,7 @@ TEST(MeasuredRun, a_gap_of_a_column_is_filled_from_its_nearer_side) {
   run.columns["fan_ratio"] = Eigen::Map<const Eigen::VectorXd>(std::array{unknown, 1.0, unknown, unknown, 3.0, unknown}.data(), 6);
   set_columns(run, std::vector<std::string>{"fan_ratio"});
   std::vector<double> column;
-  std::ranges::transform(run.at, std::back_inserter(column), &OperatingPoint<double>::first_column);
+  std::ranges::transform(run.at, std::back_inserter(column), &thermal::OperatingPoint<double>::first_column);
   EXPECT_THAT(column, testing::ElementsAre(1.0, 1.0, 1.0, 3.0, 3.0, 3.0));
 }
 
@@ -395,4 +396,4 @@ TEST(MeasuredRun, a_column_that_one_run_lacks_is_used_for_none) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -7,7 +7,7 @@
 #include "base/diagnostic.h"
 #include "runs_for_tests.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 /// One hour with a current that heats the model's winding beyond any real temperature.
@@ -15,10 +15,10 @@ MeasuredRun hour_at(double current_A) {
   MeasuredRun run;
   run.name = "hour";
   run.sensors = {{"winding_C", "winding", 0.15, 0.0}, {"stator_C", "stator", 0.1, 0.0}};
-  run.signals = {Signal::current};
+  run.signals = {thermal::Signal::current};
   constexpr int kSamples = 360;
   run.measured_C.setConstant(kSamples, 2, 25.0);
-  OperatingPoint<double> at;
+  thermal::OperatingPoint<double> at;
   at.current_rms_A = current_A;
   for (int k = 0; k < kSamples; ++k) {
     run.time_s.push_back(10.0 * k);
@@ -36,11 +36,11 @@ TEST(Posterior, a_model_that_runs_away_is_a_failure_and_of_a_trial_no_explanatio
   options.merged = {1};
   const std::vector<std::vector<double>> start_C{{25.0, 25.0}};
   EXPECT_TRUE(std::isfinite(try_posterior_of(model, {hour_at(0.5)}, start_C, options).evidence_nats));
-  EXPECT_THROW(posterior_of(model, {hour_at(1e3)}, start_C, options), Failure);
+  EXPECT_THROW(posterior_of(model, {hour_at(1e3)}, start_C, options), base::Failure);
   const Posterior none = try_posterior_of(model, {hour_at(1e3)}, start_C, options);
   EXPECT_TRUE(std::isinf(none.evidence_nats) && none.evidence_nats < 0.0);
   EXPECT_EQ(none.flux.rms_W, options.flux.rms_W);
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -12,7 +12,7 @@
 #include "estimation/measured_run.h"
 #include "estimation/model.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 
 struct TwoNodeTruth {
   double winding_J_per_K = 18.0;
@@ -41,10 +41,10 @@ struct LogMaking {
   double ambient_swing_K = 0.5;
 };
 
-inline double standard_normal(Random& random) { return boost::math::quantile(boost::math::normal(), random.uniform()); }
+inline double standard_normal(base::Random& random) { return boost::math::quantile(boost::math::normal(), random.uniform()); }
 
 /// Returns the current of a robot: bursts and rests of some seconds, grouped into minutes of high and low load.
-inline std::vector<double> robot_current_A(Random& random, int rows, double largest_A) {
+inline std::vector<double> robot_current_A(base::Random& random, int rows, double largest_A) {
   std::vector<double> current_A;
   double level_ratio = 0.5;
   while (static_cast<int>(current_A.size()) < rows) {
@@ -62,7 +62,7 @@ inline std::vector<double> robot_current_A(Random& random, int rows, double larg
 }
 
 /// Removes rows at random, like rows that were lost in transmission.
-inline void lose_rows(Recording& log, double share, Random random) {
+inline void lose_rows(recording::Recording& log, double share, base::Random random) {
   std::vector<bool> is_lost(log.rows());
   for (std::size_t row = 1; row < is_lost.size(); ++row) {
     is_lost[row] = random.uniform() < share;
@@ -72,14 +72,14 @@ inline void lose_rows(Recording& log, double share, Random random) {
     std::erase_if(values, [&](double) { return is_lost[row++]; });
   };
   thin_out(log.time_s);
-  for (Channel& channel : log.channels) {
+  for (recording::Channel& channel : log.channels) {
     thin_out(channel.values);
   }
 }
 
 /// Simulates a log by Heun's method with steps of 1/20 of a row. The unknown heat changes with every step.
-inline Recording generated_log(const TwoNodeTruth& truth, const LogMaking& making, std::uint64_t seed, std::uint64_t stream) {
-  Random random(seed, stream);
+inline recording::Recording generated_log(const TwoNodeTruth& truth, const LogMaking& making, std::uint64_t seed, std::uint64_t stream) {
+  base::Random random(seed, stream);
   const int rows = static_cast<int>(making.duration_s / making.period_s);
   const std::vector<double> load_A = robot_current_A(random, (rows - 1) / making.rows_per_load + 1, making.largest_current_A);
   std::vector<double> current_A;
@@ -127,12 +127,14 @@ inline Recording generated_log(const TwoNodeTruth& truth, const LogMaking& makin
       stator_flux_W = kept_ratio * stator_flux_W + kick_W * standard_normal(random);
     }
   }
-  Recording log;
+  recording::Recording log;
   log.name = "generated";
   log.file = "generated.csv";
   log.time_s = std::move(time_s);
   log.run_begins = {0};
-  const auto add = [&](const char* key, std::vector<double> values) { log.channels.push_back({*quantity_named(key), std::move(values)}); };
+  const auto add = [&](const char* key, std::vector<double> values) {
+    log.channels.push_back({*recording::quantity_named(key), std::move(values)});
+  };
   add("current_A", current_A);
   add("ambient_C", std::move(ambient_C));
   if (making.winding_is_sensed) {
@@ -140,22 +142,22 @@ inline Recording generated_log(const TwoNodeTruth& truth, const LogMaking& makin
   }
   add("stator_C", std::move(shown_stator_C));
   if (making.lost_row_share > 0.0) {
-    lose_rows(log, making.lost_row_share, Random(seed, stream + 1000));
+    lose_rows(log, making.lost_row_share, base::Random(seed, stream + 1000));
   }
   return log;
 }
 
 inline MeasuredRun generated_run(const TwoNodeTruth& truth, const LogMaking& making, std::uint64_t seed, std::uint64_t stream) {
-  const Recording log = generated_log(truth, making, seed, stream);
-  return measured_runs(log, {.longest_step_s = 2.0, .needed = {Signal::current}}).runs.front();
+  const recording::Recording log = generated_log(truth, making, seed, stream);
+  return measured_runs(log, {.longest_step_s = 2.0, .needed = {thermal::Signal::current}}).runs.front();
 }
 
-inline Network two_node_network(const TwoNodeTruth& truth) {
-  Network network;
+inline thermal::Network two_node_network(const TwoNodeTruth& truth) {
+  thermal::Network network;
   network.add_node("winding", truth.winding_J_per_K);
   network.add_node("stator", truth.stator_J_per_K);
   const auto add = [&](const char* name, const char* type, std::vector<std::string> nodes, std::vector<double> parameters) {
-    network.add_effect(name, *find_effect(type), nodes, parameters);
+    network.add_effect(name, *thermal::find_effect(type), nodes, parameters);
   };
   add("copper_loss", "copper_loss", {"winding"}, {truth.resistance_25C_ohm, truth.temperature_coefficient_per_K});
   add("winding_stator", "conduction", {"winding", "stator"}, {truth.winding_stator_K_per_W});
@@ -172,10 +174,10 @@ inline Model two_node_model(const TwoNodeTruth& start, double prior_sd) {
   for (const char* name :
        {"winding.heat_capacity", "winding_stator.thermal_resistance", "stator.heat_capacity", "stator_ambient.thermal_resistance"}) {
     const auto parameters = model.network.parameters();
-    const auto place = std::ranges::find(parameters, name, &NetworkParameter::name) - parameters.begin();
+    const auto place = std::ranges::find(parameters, name, &thermal::NetworkParameter::name) - parameters.begin();
     model.set_free({.place = static_cast<int>(place), .by_log = true, .scale = 1.0, .low = 1e-3, .high = 1e6}, prior_sd);
   }
   return model;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

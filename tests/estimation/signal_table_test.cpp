@@ -10,35 +10,35 @@
 #include "recording/quantities.h"
 #include "thermal/operating_point.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
-std::vector<Signal> every_signal() {
-  std::vector<Signal> all;
-  for (std::size_t i = 0; i < kSignalCount; ++i) {
-    all.push_back(static_cast<Signal>(i));
+std::vector<thermal::Signal> every_signal() {
+  std::vector<thermal::Signal> all;
+  for (std::size_t i = 0; i < thermal::kSignalCount; ++i) {
+    all.push_back(static_cast<thermal::Signal>(i));
   }
   return all;
 }
 
 TEST(SignalTable, EverySignalHasOneLogColumnThatLogsKnow) {
-  for (const Signal signal : every_signal()) {
+  for (const thermal::Signal signal : every_signal()) {
     std::vector<std::string> columns;
-    for (const OperatingQuantity<double>& each : kQuantities<double>) {
+    for (const thermal::OperatingQuantity<double>& each : thermal::kQuantities<double>) {
       if (each.signal == signal && !each.column.empty()) {
         columns.emplace_back(each.column);
       }
     }
     ASSERT_EQ(columns.size(), 1U) << static_cast<int>(signal);
-    EXPECT_FALSE(quantity_of(signal).lacking.empty()) << columns.front();
-    EXPECT_TRUE(quantity_named(columns.front())) << columns.front();
+    EXPECT_FALSE(thermal::quantity_of(signal).lacking.empty()) << columns.front();
+    EXPECT_TRUE(recording::quantity_named(columns.front())) << columns.front();
   }
 }
 
 TEST(SignalTable, ColumnsThatAreReadDirectlyHaveTheUnitOfTheLog) {
-  for (const OperatingQuantity<double>& each : kQuantities<double>) {
-    if (each.from != FromColumn::computed) {
-      EXPECT_EQ(quantity_named(each.column).value().unit, each.unit) << each.name;
+  for (const thermal::OperatingQuantity<double>& each : thermal::kQuantities<double>) {
+    if (each.from != thermal::FromColumn::computed) {
+      EXPECT_EQ(recording::quantity_named(each.column).value().unit, each.unit) << each.name;
     }
   }
 }
@@ -46,23 +46,23 @@ TEST(SignalTable, ColumnsThatAreReadDirectlyHaveTheUnitOfTheLog) {
 TEST(SignalTable, NamesAreUniqueAndInputSignalsComplete) {
   std::set<std::string_view> names;
   std::size_t rows = 0;
-  for (const OperatingQuantity<double>& each : kQuantities<double>) {
+  for (const thermal::OperatingQuantity<double>& each : thermal::kQuantities<double>) {
     names.insert(each.name);
     ++rows;
-    EXPECT_EQ(quantity_row(each.name), rows - 1);
+    EXPECT_EQ(thermal::quantity_row(each.name), rows - 1);
     if (each.is_driver) {
       EXPECT_TRUE(each.signal) << each.name;
       EXPECT_FALSE(each.meaning.empty()) << each.name;
     }
   }
   EXPECT_EQ(names.size(), rows);
-  EXPECT_EQ(quantity_row("no such quantity"), kQuantityCount);
+  EXPECT_EQ(thermal::quantity_row("no such quantity"), thermal::kQuantityCount);
 }
 
 TEST(SignalTable, EachMemberHasItsOwnRow) {
-  OperatingPoint<double> at;
-  for_each_quantity([](double& value) { value = 0.0; }, at);
-  for (const OperatingQuantity<double>& each : kQuantities<double>) {
+  thermal::OperatingPoint<double> at;
+  thermal::for_each_quantity([](double& value) { value = 0.0; }, at);
+  for (const thermal::OperatingQuantity<double>& each : thermal::kQuantities<double>) {
     EXPECT_EQ(at.*each.value, 0.0) << each.name << " is a second row of its member";
     at.*each.value = 1.0;
   }
@@ -70,22 +70,22 @@ TEST(SignalTable, EachMemberHasItsOwnRow) {
 
 /// A log with this column alone: the signal is there, and the row has its value.
 TEST(SignalTable, ColumnsThatAreReadDirectlyReachTheOperatingPoint) {
-  for (const OperatingQuantity<double>& each : kQuantities<double>) {
-    if (each.from == FromColumn::computed) {
+  for (const thermal::OperatingQuantity<double>& each : thermal::kQuantities<double>) {
+    if (each.from == thermal::FromColumn::computed) {
       continue;
     }
-    Recording log;
+    recording::Recording log;
     log.name = "log";
     log.time_s = {0.0, 1.0};
     log.run_begins = {0};
-    log.channels.push_back({*quantity_named(each.column), {-3.0, 4.0}});
+    log.channels.push_back({*recording::quantity_named(each.column), {-3.0, 4.0}});
     EXPECT_THAT(signals_of(log), testing::Contains(each.signal.value())) << each.name;
     const MeasuredRunOptions options{.ambient_C = 25.0};
     const LogRows rows(log, options);
-    EXPECT_EQ(rows.at(0).*each.value, each.from == FromColumn::magnitude ? 3.0 : -3.0) << each.name;
+    EXPECT_EQ(rows.at(0).*each.value, each.from == thermal::FromColumn::magnitude ? 3.0 : -3.0) << each.name;
     EXPECT_EQ(rows.at(1).*each.value, 4.0) << each.name;
   }
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

@@ -9,25 +9,25 @@
 #include "estimation/evidence.h"
 #include "runs_for_tests.h"
 
-namespace heatsoak {
+namespace heatsoak::estimation {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Returns a run of random numbers, which is sufficient to test linear algebra.
 MeasuredRun random_run(std::uint64_t seed, int samples) {
-  Random random(seed, 0);
+  base::Random random(seed, 0);
   MeasuredRun run;
   run.name = "random";
   run.sensors = {{"winding_C", "winding", 0.15, 0.0}, {"stator_C", "stator", 0.1, 0.0}};
-  run.signals = {Signal::current};
+  run.signals = {thermal::Signal::current};
   run.measured_C.resize(samples, 2);
   double time_s = 0.0;
   for (int k = 0; k < samples; ++k) {
     run.time_s.push_back(time_s);
     time_s += 0.5 + 1.5 * random.uniform();
     if (k + 1 < samples) {
-      OperatingPoint<double> at;
+      thermal::OperatingPoint<double> at;
       at.current_rms_A = (k / 20) % 3 * 4.0 * random.uniform();
       run.at.push_back(at);
       if (k % 17 == 11) {
@@ -169,7 +169,7 @@ TEST(Whitening, products_of_columns_are_those_of_generalised_least_squares_with_
 /// Random stable network with the given numbers of nodes, unknown heats and sensors, whose impulse response decays within some steps.
 LinearisedRun random_linearised_run(Eigen::Index states, Eigen::Index fluxes, int sensors) {
   constexpr Eigen::Index kSamples = 40;
-  Random random(11, 0);
+  base::Random random(11, 0);
   LinearisedRun run;
   run.states = states;
   run.fluxes = fluxes;
@@ -380,4 +380,4 @@ TEST(Evidence, many_runs_say_what_one_long_least_squares_says) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::estimation

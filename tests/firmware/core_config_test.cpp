@@ -14,7 +14,7 @@
 #include "robot/inverse_dynamics.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
 using testing::HasSubstr;
@@ -23,8 +23,8 @@ robot_core::Config twente_config() { return make_core_config(twente(), ecx_32().
 
 TEST(CoreConfig, OfEveryShippedRobotStartsTheCore) {
   for (const char* const id : {"roboteam_twente_v2024", "roboteam_twente_v2025", "tigers_v2020"}) {
-    const Robot robot = shipped_robot(id);
-    const Motor motor = shipped_motor(robot.drive.motor);
+    const robot::Robot robot = shipped_robot(id);
+    const motor::Motor motor = shipped_motor(robot.drive.motor);
     const robot_core::Config config = make_core_config(robot, motor.nominal, with_tolerance({}, motor));
     robot_core::State state;
     EXPECT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F})) << id;
@@ -49,8 +49,8 @@ TEST(CoreConfig, HandCalculationOfTheMotor) {
 }
 
 TEST(CoreConfig, DriverWithACurrentLimitKeepsIt) {
-  const Robot robot = shipped_robot("tigers_v2020");
-  const Motor motor = shipped_motor(robot.drive.motor);
+  const robot::Robot robot = shipped_robot("tigers_v2020");
+  const motor::Motor motor = shipped_motor(robot.drive.motor);
   const robot_core::Config config = make_core_config(robot, motor.nominal, with_tolerance({}, motor));
   EXPECT_FLOAT_EQ(config.current_limit_A, 8.16F);
   EXPECT_FLOAT_EQ(config.gear_efficiency, 0.72F);
@@ -59,9 +59,9 @@ TEST(CoreConfig, DriverWithACurrentLimitKeepsIt) {
 }
 
 TEST(CoreConfig, RangeCountsByItsLowerEnd) {
-  Motor motor = ecx_32();
-  ParameterValue& resistance = *find_parameter(motor, "terminal_resistance");
-  resistance.spread = Spread{.kind = Spread::Kind::range, .low = 0.8, .high = 1.3};
+  motor::Motor motor = ecx_32();
+  base::ParameterValue& resistance = *motor::find_parameter(motor, "terminal_resistance");
+  resistance.spread = base::Spread{.kind = base::Spread::Kind::range, .low = 0.8, .high = 1.3};
   EXPECT_NEAR(with_tolerance({}, motor).lowest_resistance_ratio, 0.8 / 1.07, 1e-12);
   // A resistance without a stated tolerance gets the default for its origin, and the lower end of that range counts.
   resistance.spread.reset();
@@ -70,17 +70,17 @@ TEST(CoreConfig, RangeCountsByItsLowerEnd) {
 
 /// The core's feed-forward must equal the voltage that the plant's inverse dynamics needs for a steady drive.
 TEST(CoreConfig, FeedForwardIsWhatThePlantNeeds) {
-  Robot robot = twente();
+  robot::Robot robot = twente();
   robot.friction.heading.double_angle_Nm.reset();  // the core's friction law has no such term
   robot.friction.heading.double_angle_phase_rad.clear();
-  const MotorValues motor = ecx_32().nominal;
+  const motor::MotorValues motor = ecx_32().nominal;
   const robot_core::Config config = make_core_config(robot, motor, {});
-  const BodyConfig body = make_body(robot, motor);
-  const DriveConstants drive = drive_constants(robot, motor);
-  BodyMotion motion;
+  const robot::BodyConfig body = robot::make_body(robot, motor);
+  const robot::DriveConstants drive = robot::drive_constants(robot, motor);
+  robot::BodyMotion motion;
   motion.velocity = {1.2, 0.3, 0.0};
   motion.acceleration = {1.0, -0.5, 3.0};
-  const WheelDemands wheels = inverse_dynamics(body, motion);
+  const robot::WheelDemands wheels = robot::inverse_dynamics(body, motion);
   for (int i = 0; i < 4; ++i) {
     const robot_core::WheelConfig& wheel = config.wheel[i];
     const double rim_m_per_s = wheel.rolling_x_share * 1.2 + wheel.rolling_y_share * 0.3;
@@ -93,24 +93,24 @@ TEST(CoreConfig, FeedForwardIsWhatThePlantNeeds) {
                              std::copysign(wheel.sign_V, sine) +
                              config.resistance_ohm / (config.torque_constant_Nm_per_A * config.gear_ratio * config.gear_efficiency) *
                                  (config.wheel_radius_m * force_N + config.wheel_inertia_kg_m2 * per_s2);
-    EXPECT_NEAR(planned_V, steady_voltage_V(drive, wheels.torque_Nm[i], wheels.speed_rad_per_s[i]), 0.01) << i;
+    EXPECT_NEAR(planned_V, robot::steady_voltage_V(drive, wheels.torque_Nm[i], wheels.speed_rad_per_s[i]), 0.01) << i;
   }
 }
 
 TEST(CoreConfig, NamesEveryMissingParameter) {
-  Robot robot = twente();
+  robot::Robot robot = twente();
   robot.body.yaw_inertia_kg_m2.reset();
   robot.traction.coefficient_ratio.reset();
   robot.battery.full_V.reset();
-  MotorValues motor = ecx_32().nominal;
+  motor::MotorValues motor = ecx_32().nominal;
   motor.rotor_inertia_kg_m2 = {};
   try {
     make_core_config(robot, motor, {});
     FAIL() << "no failure";
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
     std::string keys;
-    for (const Diagnostic& each : failure.diagnostics()) {
+    for (const base::Diagnostic& each : failure.diagnostics()) {
       keys += each.key + " ";
     }
     for (const char* const key : {"body.yaw_inertia", "traction.coefficient", "battery.full_voltage", "figures.rotor_inertia"}) {
@@ -120,8 +120,8 @@ TEST(CoreConfig, NamesEveryMissingParameter) {
 }
 
 TEST(CoreConfig, RobotWithoutFrictionIsDrivenWithoutItsFeedForward) {
-  Robot robot = twente();
-  for (const RobotParameterSpec& each : robot_parameter_specs()) {
+  robot::Robot robot = twente();
+  for (const robot::RobotParameterSpec& each : robot::robot_parameter_specs()) {
     if (each.table.starts_with("friction")) {
       each.value.of(robot).reset();
     }
@@ -135,16 +135,16 @@ TEST(CoreConfig, RobotWithoutFrictionIsDrivenWithoutItsFeedForward) {
 }
 
 TEST(CoreConfig, RefusesAPeriodThatItsWheelLoopCannotUse) {
-  EXPECT_THROW(make_core_config(twente(), ecx_32().nominal, {.period_s = 0.02}), Failure);
+  EXPECT_THROW(make_core_config(twente(), ecx_32().nominal, {.period_s = 0.02}), base::Failure);
 }
 
 /// Shared derating with few samples, because these tests do not check the share of motors that keep their limit.
-const Derating& derating() {
-  static const Derating made = [] {
-    DerateOptions options;
+const derate::Derating& derating() {
+  static const derate::Derating made = [] {
+    derate::DerateOptions options;
     options.guarantee.confidence = 0.9;
     options.guarantee.samples = 32;
-    return derate(ecx_32(), twente(), options);
+    return derate::derate(ecx_32(), twente(), options);
   }();
   return made;
 }
@@ -168,31 +168,31 @@ TEST(GuardedCoreConfig, GuardPeriodIsAWholeNumberOfControlPeriods) {
     try {
       make_core_config(twente(), ecx_32(), {.period_s = period_s}, derating(), guard);
       ADD_FAILURE() << "no failure";
-    } catch (const Failure& failure) {
-      EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    } catch (const base::Failure& failure) {
+      EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
       EXPECT_THAT(failure.message(), HasSubstr("whole number"));
     }
   }
 }
 
 /// Returns the highest temperature of the observer's winding if the current is held for hours at that speed.
-double held_C(const HotCase& around, double current_A, double speed_rad_per_s) {
-  ObserverRun<double> run(derating().observer, derating().options.period_s, derating().rules.hottest_ambient_C);
-  const Signals signals = around.signals(derating().rules, current_A, speed_rad_per_s);
+double held_C(const derate::HotCase& around, double current_A, double speed_rad_per_s) {
+  derate::ObserverRun<double> run(derating().observer, derating().options.period_s, derating().rules.hottest_ambient_C);
+  const derate::Signals signals = around.signals(derating().rules, current_A, speed_rad_per_s);
   double most_C = 0.0;
   for (int i = 0; i < 200'000; ++i) {
     run.step(signals);
-    most_C = std::max(most_C, run.state_C()[states::winding]);
+    most_C = std::max(most_C, run.state_C()[motor::states::winding]);
   }
   return most_C;
 }
 
 // For a wheel with unknown speed the limp current must be safe at all speeds.
 TEST(GuardedCoreConfig, LimpCurrentIsBorneForGoodAtEverySpeedInEveryHotCase) {
-  const double limp_A = limp_current_A(derating());
-  const BarrierRules& rules = derating().rules;
+  const double limp_A = derate::limp_current_A(derating());
+  const derate::BarrierRules& rules = derating().rules;
   double hottest_C = 0.0;
-  for (const HotCase& around : hot_cases(derating().observer, rules)) {
+  for (const derate::HotCase& around : derate::hot_cases(derating().observer, rules)) {
     for (const double share : {0.0, 0.25, 0.5, 0.75, 0.98}) {
       hottest_C = std::max(hottest_C, held_C(around, limp_A, share * rules.most_speed_rad_per_s));
     }
@@ -205,12 +205,12 @@ TEST(GuardedCoreConfig, LimpCurrentIsBorneForGoodAtEverySpeedInEveryHotCase) {
 // Without effects the observer's heating is copper loss alone: I²·R(155 °C)·factor/C_w, C_w = 12 s/3.8 K/W.
 TEST(GuardedCoreConfig, BrakingReserveIsTheHeatOfOneStop) {
   const double hot_ohm = 1.07 * (1.0 + 0.0039 * (155.0 - 25.0));
-  const BodyConfig body = make_body(twente(), ecx_32().nominal);
+  const robot::BodyConfig body = robot::make_body(twente(), ecx_32().nominal);
   double most_A = 0.0;
   for (int h = 0; h < 360; ++h) {
-    const BodyAcceleration braking{2.0 * std::cos(h * 0.0174533), 2.0 * std::sin(h * 0.0174533), 0.0};
-    const PerWheel force_N = rolling_forces_N(body.kinematics, wrench_of_acceleration(body, 0.0, braking));
-    const PerWheel per_s2 = wheel_speeds_rad_per_s(body.kinematics, {braking.x_m_per_s2, braking.y_m_per_s2, 0.0});
+    const robot::BodyAcceleration braking{2.0 * std::cos(h * 0.0174533), 2.0 * std::sin(h * 0.0174533), 0.0};
+    const robot::PerWheel force_N = robot::rolling_forces_N(body.kinematics, robot::wrench_of_acceleration(body, 0.0, braking));
+    const robot::PerWheel per_s2 = robot::wheel_speeds_rad_per_s(body.kinematics, {braking.x_m_per_s2, braking.y_m_per_s2, 0.0});
     for (int i = 0; i < 4; ++i) {
       most_A = std::max(most_A, std::abs(force_N[i] * 0.028 + body.wheel_inertia_kg_m2 * per_s2[i]) / 0.0328);
     }
@@ -223,15 +223,15 @@ TEST(GuardedCoreConfig, BrakingReserveIsTheHeatOfOneStop) {
 // A robot whose full stop overheats the motor would get a core that never drives.
 TEST(GuardedCoreConfig, RefusesARobotThatOneStopOverheats) {
   const HostGuard guard(derating());
-  Robot robot = twente();
+  robot::Robot robot = twente();
   robot.mass_kg = 40.0;
   EXPECT_GT(braking_reserve_K(robot, ecx_32().nominal, derating()), 155.0 - 40.0);
   EXPECT_NO_THROW(require_driving_current(twente(), ecx_32(), derating(), make_core_config(twente(), ecx_32(), {}, derating(), guard)));
   try {
     require_driving_current(robot, ecx_32(), derating(), make_core_config(robot, ecx_32(), {}, derating(), guard));
     ADD_FAILURE() << "no failure";
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
     EXPECT_THAT(failure.message(), HasSubstr("maxon_ecx_flat_32l_48v"));
     EXPECT_THAT(failure.message(), HasSubstr("one full stop from 2 m/s"));
     EXPECT_THAT(failure.message(), HasSubstr("limits.braking"));
@@ -239,14 +239,14 @@ TEST(GuardedCoreConfig, RefusesARobotThatOneStopOverheats) {
 }
 
 TEST(LimpCurrent, IsTheLeastOfTheHeldUses) {
-  Derating made = derating();
+  derate::Derating made = derating();
   made.uses = {{.use = {.speed_share = 0.3}, .intervals = {}, .time_s = {1.0, 2.0}, .current_A = {9.0, 4.0}},
                {.use = {.speed_share = 0.6}, .intervals = {}, .time_s = {1.0, 2.0}, .current_A = {8.0, 3.0}},
                {.use = {.speed_share = 0.6, .on_s = 2.0}, .intervals = {}, .time_s = {1.0}, .current_A = {1.0}}};
-  EXPECT_EQ(limp_current_A(made), 3.0);
+  EXPECT_EQ(derate::limp_current_A(made), 3.0);
   made.uses.clear();
-  EXPECT_EQ(limp_current_A(made), 0.0);
+  EXPECT_EQ(derate::limp_current_A(made), 0.0);
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

@@ -10,7 +10,7 @@
 #include "robot/plant.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
 constexpr double kPeriod_s = 0.001;
@@ -24,9 +24,9 @@ constexpr Case kCases[] = {{"roboteam_twente_v2024", "maxon_ecx_flat_32l_48v"}, 
 /// The wheels of a robot on blocks: each drives its own inertia against the drag of motor and bearing.
 class Blocks {
  public:
-  Blocks(const Robot& robot, const MotorValues& motor, double inertia_share)
-      : drive_(drive_constants(robot, motor)),
-        inertia_kg_m2_(inertia_share * make_body(robot, motor).wheel_inertia_kg_m2),
+  Blocks(const robot::Robot& robot, const motor::MotorValues& motor, double inertia_share)
+      : drive_(robot::drive_constants(robot, motor)),
+        inertia_kg_m2_(inertia_share * robot::make_body(robot, motor).wheel_inertia_kg_m2),
         drag_Nm_(drive_.drag_torque_Nm * drive_.gear_ratio + robot.friction.wheel_torque_Nm.value()),
         battery_V_(robot.battery.nominal_V) {}
 
@@ -65,7 +65,7 @@ class Blocks {
     return mean_rad_per_s;
   }
 
-  DriveConstants drive_;
+  robot::DriveConstants drive_;
   double inertia_kg_m2_;
   double drag_Nm_;
   double battery_V_;
@@ -79,8 +79,8 @@ class Blocks {
 // On blocks the loop gain is many times higher than on the ground. Oscillating wheels would heat the motors and wear the gears.
 TEST(CoreLoop, DoesNotShakeOnBlocks) {
   for (const Case& each : kCases) {
-    const Robot robot = shipped_robot(each.robot);
-    const MotorValues motor = shipped_motor(each.motor).nominal;
+    const robot::Robot robot = shipped_robot(each.robot);
+    const motor::MotorValues motor = shipped_motor(each.motor).nominal;
     const robot_core::Config config = make_core_config(robot, motor, {});
     for (const double inertia_share : {0.75, 1.0}) {
       for (const double heading_rad : {0.0, 0.7, 1.57, 2.6}) {
@@ -99,13 +99,13 @@ TEST(CoreLoop, DoesNotShakeOnBlocks) {
             most[i] = std::max(most[i], blocks.speed_rad_per_s(i));
           }
         }
-        PerWheel mean_rad_per_s{};
+        robot::PerWheel mean_rad_per_s{};
         for (std::size_t i = 0; i < 4; ++i) {
           EXPECT_LT(most[i] - least[i], 0.5) << each.robot << ", wheel " << i << ", " << heading_rad;
           mean_rad_per_s[i] = 0.5 * (most[i] + least[i]);
         }
         // The yaw rate is not checked, because a gyro measures none on blocks.
-        const BodyVelocity shown = body_velocity(make_kinematics(robot), mean_rad_per_s);
+        const robot::BodyVelocity shown = robot::body_velocity(robot::make_kinematics(robot), mean_rad_per_s);
         EXPECT_NEAR(shown.x_m_per_s, std::cos(heading_rad), 0.01) << each.robot << ", " << heading_rad;
         EXPECT_NEAR(shown.y_m_per_s, std::sin(heading_rad), 0.01) << each.robot << ", " << heading_rad;
       }
@@ -116,14 +116,14 @@ TEST(CoreLoop, DoesNotShakeOnBlocks) {
 // Acceleration to 1 m/s and cruise: the feed-forward drives the robot, the loop corrects the rest.
 TEST(CoreLoop, ReachesItsSpeedOnTheGround) {
   for (const Case& each : kCases) {
-    const Robot robot = shipped_robot(each.robot);
-    const MotorValues motor = shipped_motor(each.motor).nominal;
+    const robot::Robot robot = shipped_robot(each.robot);
+    const motor::MotorValues motor = shipped_motor(each.motor).nominal;
     const robot_core::Config config = make_core_config(robot, motor, {});
-    const PlantConfig plant = make_plant(robot, motor, kPeriod_s);
+    const robot::PlantConfig plant = robot::make_plant(robot, motor, kPeriod_s);
     for (const double heading_rad : {0.0, 0.7, 1.57}) {
-      PlantState at = plant_at_rest(plant);
-      PlantInput command_V;
-      PlantOutput measured;
+      robot::PlantState at = robot::plant_at_rest(plant);
+      robot::PlantInput command_V;
+      robot::PlantOutput measured;
       measured.battery_V = robot.battery.full_V.value();
       robot_core::State state;
       ASSERT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
@@ -146,9 +146,9 @@ TEST(CoreLoop, ReachesItsSpeedOnTheGround) {
         input.command.velocity = {static_cast<float>(asked_m_per_s * x), static_cast<float>(asked_m_per_s * y), 0.0F};
         input.command.acceleration = {static_cast<float>(asked_m_per_s2 * x), static_cast<float>(asked_m_per_s2 * y), 0.0F};
         const robot_core::Output out = robot_core::step(config, state, input);
-        measured = step(plant, at, command_V);
+        measured = robot::step(plant, at, command_V);
         for (std::size_t i = 0; i < 4; ++i) {
-          command_V.command[i] = {out.is_open[i] ? MotorCommand::Kind::open : MotorCommand::Kind::voltage,
+          command_V.command[i] = {out.is_open[i] ? robot::MotorCommand::Kind::open : robot::MotorCommand::Kind::voltage,
                                   double{out.pwm_ratio[i]} * measured.battery_V};
         }
         if (k >= 2500) {
@@ -162,4 +162,4 @@ TEST(CoreLoop, ReachesItsSpeedOnTheGround) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

@@ -12,7 +12,7 @@
 #include "firmware/core_diagram.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
 using robot_core::BlockText;
@@ -110,4 +110,4 @@ TEST(BlockDiagram, DrawingOfTheReportsIsThatOfTheTables) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

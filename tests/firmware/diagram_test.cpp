@@ -15,7 +15,7 @@
 #include "firmware/core_diagram.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
 using robot_core::Block;
@@ -399,8 +399,8 @@ TEST(BlockDiagram, WhatBlocksKeepForEachOtherIsInTheTable) {
   }
   std::size_t shared = 0;
   for (const std::string& name : unique_state_members()) {
-    const bool is_struct = std::ranges::any_of(
-        robot_core::kSignals, [&](const SignalText& each) { return std::string_view(each.name).starts_with(name + "."); });
+    const bool is_struct = std::ranges::any_of(robot_core::kSignals,
+                                               [&](const SignalText& each) { return std::string_view(each.name).starts_with(name + "."); });
     if (is_struct || name == "steps") {
       continue;  // drawn by its members; step() itself counts the steps
     }
@@ -498,4 +498,4 @@ TEST(BlockDiagram, RatesAreThoseOfTheCore) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

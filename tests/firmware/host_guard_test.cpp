@@ -22,12 +22,14 @@
 #include "derate/exporter.h"
 #include "derate/guarded_motor.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
-using Record = std::array<float, observed::kSignalCount>;
+using Record = std::array<float, derate::observed::kSignalCount>;
 
-Derating derating_of(const Motor& motor) { return derating_of(GuardedMotor(motor, rules_for(ecx_32()), 1.5)); }
+derate::Derating derating_of(const motor::Motor& motor) {
+  return derate::derating_of(derate::GuardedMotor(motor, derate::rules_for(ecx_32()), 1.5));
+}
 
 /// Laws with exponential, power and square root over every signal, and a third node.
 constexpr const char* kManyLaws = R"([effects.knee]
@@ -90,12 +92,12 @@ heat_capacity = { value = "60 J/K", origin = "estimated", derivation = "a test" 
 /// Simulates a robot: drifting signals, currents close to the allowed one, and occasionally a faulty sensor for a while.
 class Play {
  public:
-  explicit Play(const Derating& derating) : rules_(derating.rules), reachable_rad_per_s_(derating.reachable_speed_rad_per_s) {}
+  explicit Play(const derate::Derating& derating) : rules_(derating.rules), reachable_rad_per_s_(derating.reachable_speed_rad_per_s) {}
 
   Record next(float allowed_A) {
     if (left_-- <= 0) {
       left_ = static_cast<int>(200.0 * uniform());
-      broken_ = uniform() < 0.25 ? static_cast<int>(uniform() * observed::kSignalCount) : -1;
+      broken_ = uniform() < 0.25 ? static_cast<int>(uniform() * derate::observed::kSignalCount) : -1;
       share_ = uniform() < 0.6 ? 1.0 : uniform();
       sign_ = uniform() < 0.3 ? -1.0 : 1.0;
       signals_ = {0.0F,
@@ -107,8 +109,8 @@ class Play {
                   static_cast<float>(9000.0 * uniform())};
     }
     Record record = signals_;
-    record[observed::current] = static_cast<float>(sign_ * share_ * (0.9 + 0.2 * uniform()) * std::max(allowed_A, 0.2F));
-    record[observed::speed] *= static_cast<float>(0.95 + 0.1 * uniform());
+    record[derate::observed::current] = static_cast<float>(sign_ * share_ * (0.9 + 0.2 * uniform()) * std::max(allowed_A, 0.2F));
+    record[derate::observed::speed] *= static_cast<float>(0.95 + 0.1 * uniform());
     if (broken_ >= 0) {
       static constexpr std::array<float, 7> kBroken{std::numeric_limits<float>::quiet_NaN(),
                                                     std::numeric_limits<float>::infinity(),
@@ -126,7 +128,7 @@ class Play {
   double uniform() { return std::uniform_real_distribution<double>()(engine_); }
 
   std::mt19937_64 engine_{20};
-  BarrierRules rules_;
+  derate::BarrierRules rules_;
   double reachable_rad_per_s_;
   Record signals_{};
   int left_ = 0;
@@ -141,11 +143,11 @@ struct Row {
 };
 
 /// Returns a program that reads records in single precision and answers each with the bits of Row.
-std::string program(const Derating& derating) {
+std::string program(const derate::Derating& derating) {
   std::string fields;
-  for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
-    if (derating.observer.uses(static_cast<observed::Signal>(i))) {
-      fields += fmt::format("    in.{} = record[{}];\n", observed::signals()[i].name, i);
+  for (std::size_t i = 0; i < derate::observed::kSignalCount; ++i) {
+    if (derating.observer.uses(static_cast<derate::observed::Signal>(i))) {
+      fields += fmt::format("    in.{} = record[{}];\n", derate::observed::signals()[i].name, i);
     }
   }
   return fmt::format(R"(#include "guard.h"
@@ -169,14 +171,14 @@ int main(void) {{
   return 0;
 }}
 )",
-                     observed::kSignalCount, fields, derating.observer.state_count());
+                     derate::observed::kSignalCount, fields, derating.observer.state_count());
 }
 
 /// Returns the answers of the compiled header.
-std::vector<Row> by_header(const Derating& derating, const std::vector<Record>& records) {
+std::vector<Row> by_header(const derate::Derating& derating, const std::vector<Record>& records) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / ("heatsoak_host_guard_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
-  const auto header = std::ranges::find(all_exporters(), "c_header", &ExporterType::name);
+  const auto header = std::ranges::find(derate::all_exporters(), "c_header", &derate::ExporterType::name);
   std::ofstream(folder / "guard.h") << header->write(derating);
   std::ofstream(folder / "main.c") << program(derating);
   std::ofstream(folder / "asked", std::ios::binary)
@@ -223,7 +225,7 @@ std::vector<Row> by_host(const HostGuard& guard, Play play, std::size_t steps, s
 }
 
 /// Checks that the bits agree and that the records cover the intended situations.
-void expect_same_bits(const Derating& derating, const std::string& text) {
+void expect_same_bits(const derate::Derating& derating, const std::string& text) {
   constexpr std::size_t kSteps = 100'000;
   const HostGuard guard(derating);
   std::vector<Record> records;
@@ -258,19 +260,20 @@ class HostGuardBits : public testing::Test {
 TEST_F(HostGuardBits, EqualThoseOfTheHeaderOfADataSheetMotor) { expect_same_bits(derating_of(ecx_32()), "data sheet"); }
 
 TEST_F(HostGuardBits, EqualThoseOfTheHeaderOfAMotorWithManyLaws) {
-  const Derating derating = derating_of(ecx_32_with(kManyLaws));
-  for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
-    EXPECT_TRUE(derating.observer.uses(static_cast<observed::Signal>(i))) << observed::signals()[i].name;
+  const derate::Derating derating = derating_of(derate::ecx_32_with(kManyLaws));
+  for (std::size_t i = 0; i < derate::observed::kSignalCount; ++i) {
+    EXPECT_TRUE(derating.observer.uses(static_cast<derate::observed::Signal>(i))) << derate::observed::signals()[i].name;
   }
-  const auto makes = [&](Operation operation) {
-    return std::ranges::any_of(derating.observer.formula().steps(), [&](const Formula::Step& step) { return step.operation == operation; });
+  const auto makes = [&](thermal::Operation operation) {
+    return std::ranges::any_of(derating.observer.formula().steps(),
+                               [&](const thermal::Formula::Step& step) { return step.operation == operation; });
   };
-  EXPECT_TRUE(makes(Operation::exponential) && makes(Operation::power) && makes(Operation::square_root));
+  EXPECT_TRUE(makes(thermal::Operation::exponential) && makes(thermal::Operation::power) && makes(thermal::Operation::square_root));
   expect_same_bits(derating, "many laws");
 }
 
 TEST(HostGuard, ReadsItsTableAsTheDeratingDoes) {
-  const Derating derating = derating_of(ecx_32());
+  const derate::Derating derating = derating_of(ecx_32());
   const HostGuard guard(derating);
   std::mt19937_64 engine(3);
   std::uniform_real_distribution<float> uniform;
@@ -285,7 +288,7 @@ TEST(HostGuard, ReadsItsTableAsTheDeratingDoes) {
 
 // Each thread uses a copy, which must stay valid without the original.
 TEST(HostGuard, CopyStandsOnItsOwn) {
-  const Derating derating = derating_of(ecx_32());
+  const derate::Derating derating = derating_of(ecx_32());
   auto original = std::make_unique<HostGuard>(derating);
   const HostGuard copy(*original);
   HostGuard assigned(derating);
@@ -312,18 +315,18 @@ TEST(HostGuard, RefusesMoreNodesThanTheCoreTakes) {
               "leak_ratio = { value = \"0.5\", origin = \"estimated\", derivation = \"a test\" }\n"
               "heat_capacity = { value = \"60 J/K\", origin = \"estimated\", derivation = \"a test\" }\n";
   }
-  Derating derating = derating_of(ecx_32());
-  const Motor motor = ecx_32_with(bodies);
-  const Network network = datasheet_network(motor, nominal_sample(motor));
-  derating.observer = Observer(network, motor.nominal, twente(), 1.5);
+  derate::Derating derating = derating_of(ecx_32());
+  const motor::Motor motor = derate::ecx_32_with(bodies);
+  const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
+  derating.observer = derate::Observer(network, motor.nominal, twente(), 1.5);
   try {
     const HostGuard guard(derating);
     FAIL() << "no failure";
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
     EXPECT_NE(failure.message().find("8 nodes"), std::string::npos) << failure.message();
   }
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

@@ -11,7 +11,7 @@
 #include "derate/guarded_motor.h"
 #include "firmware/host_guard.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
 constexpr int kSearched = 33;
@@ -26,7 +26,7 @@ class Uniform {
 };
 
 /// Returns random inputs of the observer's formula: signals, then temperatures.
-std::vector<float> random_place(const Observer& observer, const BarrierRules& rules, Uniform& uniform) {
+std::vector<float> random_place(const derate::Observer& observer, const derate::BarrierRules& rules, Uniform& uniform) {
   std::vector<float> place;
   for (const auto& [low, high] : std::initializer_list<std::pair<double, double>>{{-rules.most_current_A, rules.most_current_A},
                                                                                   {-rules.most_speed_rad_per_s, rules.most_speed_rad_per_s},
@@ -44,8 +44,8 @@ std::vector<float> random_place(const Observer& observer, const BarrierRules& ru
 }
 
 /// Returns the highest rate of each node over the values.
-std::vector<float> hottest(FormulaRun<float>& run, std::vector<float> place, observed::Signal signal, const std::vector<double>& values,
-                           std::size_t nodes) {
+std::vector<float> hottest(thermal::FormulaRun<float>& run, std::vector<float> place, derate::observed::Signal signal,
+                           const std::vector<double>& values, std::size_t nodes) {
   std::vector<float> most(nodes, -std::numeric_limits<float>::infinity());
   std::vector<float> rate(nodes);
   for (const double value : values) {
@@ -56,18 +56,18 @@ std::vector<float> hottest(FormulaRun<float>& run, std::vector<float> place, obs
   return most;
 }
 
-void expect_as_hot(const Observer& observer, const BarrierRules& rules, const std::string& text) {
-  FormulaRun<float> run(observer.formula(), observer.rate_steps());
+void expect_as_hot(const derate::Observer& observer, const derate::BarrierRules& rules, const std::string& text) {
+  thermal::FormulaRun<float> run(observer.formula(), observer.rate_steps());
   Uniform uniform(5);
-  for (const observed::Signal signal : {observed::current, observed::speed}) {
-    const double most = signal == observed::current ? rules.most_current_A : rules.most_speed_rad_per_s;
-    const std::vector<double> few = values_if_unknown(observer, rules, signal);
+  for (const derate::observed::Signal signal : {derate::observed::current, derate::observed::speed}) {
+    const double most = signal == derate::observed::current ? rules.most_current_A : rules.most_speed_rad_per_s;
+    const std::vector<double> few = derate::values_if_unknown(observer, rules, signal);
     for (int i = 0; i < 4000; ++i) {
       const std::vector<float> place = random_place(observer, rules, uniform);
       const std::vector<float> found = hottest(run, place, signal, few, observer.state_count());
-      const std::vector<float> searched = hottest(run, place, signal, evenly(-most, most, kSearched), observer.state_count());
+      const std::vector<float> searched = hottest(run, place, signal, derate::evenly(-most, most, kSearched), observer.state_count());
       for (std::size_t node = 0; node < found.size(); ++node) {
-        ASSERT_GE(found[node], searched[node]) << text << ", " << observed::signals()[signal].name << ", node " << node;
+        ASSERT_GE(found[node], searched[node]) << text << ", " << derate::observed::signals()[signal].name << ", node " << node;
       }
     }
   }
@@ -78,35 +78,36 @@ TEST(UnknownSignal, HeatsEveryShippedMotorAsMuchAsAnyValueOfALongSearch) {
     if (entry.path().extension() != ".toml") {
       continue;
     }
-    const Motor motor = read_motor(entry.path());
-    const Network network = datasheet_network(motor, nominal_sample(motor));
-    expect_as_hot(Observer(network, motor.nominal, twente(), 1.5), rules_for(motor), entry.path().stem().string());
+    const motor::Motor motor = motor::read_motor(entry.path());
+    const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
+    expect_as_hot(derate::Observer(network, motor.nominal, twente(), 1.5), derate::rules_for(motor), entry.path().stem().string());
   }
 }
 
 TEST(UnknownSignal, HeatsAsMuchIfTheHottestSpeedDependsOnTheTemperature) {
-  const Motor motor = ecx_32_with(hump("driver = \"speed\"\nhot = \"stator\"\n"
+  const motor::Motor motor =
+      derate::ecx_32_with(derate::hump("driver = \"speed\"\nhot = \"stator\"\n"
                                        "first_knot = { value = \"0 rad/s\", origin = \"estimated\", derivation = \"a test\" }\n"
                                        "last_knot = { value = \"400 rad/s\", origin = \"estimated\", derivation = \"a test\" }\n",
                                        1.0) +
-                                  "[effects.fan]\ntype = \"speed_dependent_convection\"\n"
-                                  "conductance = { value = \"0.04 W/K\", origin = \"estimated\", derivation = \"a test\" }\n"
-                                  "exponent = { value = \"0.5\", origin = \"estimated\", derivation = \"a test\" }\n");
-  const Network network = datasheet_network(motor, nominal_sample(motor));
-  const Observer observer(network, motor.nominal, twente(), 1.5);
-  EXPECT_GT(values_if_unknown(observer, rules_for(motor), observed::speed).size(), 2U);
-  expect_as_hot(observer, rules_for(motor), "hump");
+                          "[effects.fan]\ntype = \"speed_dependent_convection\"\n"
+                          "conductance = { value = \"0.04 W/K\", origin = \"estimated\", derivation = \"a test\" }\n"
+                          "exponent = { value = \"0.5\", origin = \"estimated\", derivation = \"a test\" }\n");
+  const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
+  const derate::Observer observer(network, motor.nominal, twente(), 1.5);
+  EXPECT_GT(derate::values_if_unknown(observer, derate::rules_for(motor), derate::observed::speed).size(), 2U);
+  expect_as_hot(observer, derate::rules_for(motor), "hump");
 }
 
 // The drive core's own search: never a higher current than with all values.
 TEST(UnknownSignal, GuardAllowsNoMoreCurrentThanWithALongSearch) {
-  const GuardedMotor guarded(ecx_32(), rules_for(ecx_32()), 1.5);
-  const HostGuard guard(derating_of(guarded));
+  const derate::GuardedMotor guarded(ecx_32(), derate::rules_for(ecx_32()), 1.5);
+  const HostGuard guard(derate::derating_of(guarded));
   EXPECT_EQ(guard.model().plausible_range[robot_core::guard_speed_rad_per_s].possible_count, 1);
   robot_core::GuardModel searching = guard.model();
   std::vector<float> currents;
   std::vector<float> speeds;
-  for (const double share : evenly(-1.0, 1.0, kSearched)) {
+  for (const double share : derate::evenly(-1.0, 1.0, kSearched)) {
     currents.push_back(static_cast<float>(share * guarded.rules.most_current_A));
     speeds.push_back(static_cast<float>(share * guarded.rules.most_speed_rad_per_s));
   }
@@ -136,4 +137,4 @@ TEST(UnknownSignal, GuardAllowsNoMoreCurrentThanWithALongSearch) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

@@ -14,7 +14,7 @@
 #include "firmware/friction_voltage.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::firmware {
 namespace {
 
 struct WheelCase {
@@ -26,9 +26,9 @@ constexpr WheelCase kWheelCases[] = {{"roboteam_twente_v2024", "maxon_ecx_flat_3
                                      {"tigers_v2020", "nanotec_df45l024048_a2"}};
 
 WheelLoopPlant plant_of(const WheelCase& each) {
-  const Robot robot = shipped_robot(each.robot);
-  const Motor motor = shipped_motor(each.motor);
-  return wheel_loop_plant(make_body_with_known_friction(robot, motor.nominal), drive_constants(robot, motor.nominal));
+  const robot::Robot robot = shipped_robot(each.robot);
+  const motor::Motor motor = shipped_motor(each.motor);
+  return wheel_loop_plant(make_body_with_known_friction(robot, motor.nominal), robot::drive_constants(robot, motor.nominal));
 }
 
 /// One wheel with the given inertia under PI control, exact for a voltage that is held over a period. The controller gets the mean speed of
@@ -156,8 +156,8 @@ TEST(WheelLoop, RefusesAPeriodThatIsTooLongAndNamesTheLongest) {
     try {
       wheel_loop_gains(plant, 1.001 * longest_s);
       ADD_FAILURE() << "no failure";
-    } catch (const Failure& failure) {
-      EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    } catch (const base::Failure& failure) {
+      EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
       char text[32];
       std::snprintf(text, sizeof text, "at most %.3g ms", 1e3 * longest_s);
       EXPECT_NE(failure.message().find(text), std::string::npos) << failure.message();
@@ -167,10 +167,10 @@ TEST(WheelLoop, RefusesAPeriodThatIsTooLongAndNamesTheLongest) {
 
 // Hand calculation for four wheels at right angles: Σt_x² = 2, so m·r²/2 in either direction.
 TEST(WheelLoop, MassBehindAWheelOfASquareRobot) {
-  Robot robot = twente();
+  robot::Robot robot = twente();
   robot.wheels.axis_rad = {-0.25 * std::numbers::pi, 0.25 * std::numbers::pi, 0.75 * std::numbers::pi, -0.75 * std::numbers::pi};
-  const MotorValues motor = ecx_32().nominal;
-  const WheelLoopPlant plant = wheel_loop_plant(make_body_with_known_friction(robot, motor), drive_constants(robot, motor));
+  const motor::MotorValues motor = ecx_32().nominal;
+  const WheelLoopPlant plant = wheel_loop_plant(make_body_with_known_friction(robot, motor), robot::drive_constants(robot, motor));
   EXPECT_NEAR(plant.hardest_body_inertia_kg_m2, 2.632 * 0.028 * 0.028 / 2.0, 1e-9);
   EXPECT_NEAR(plant.wheel_inertia_kg_m2, 220e-7 + 9.47e-7, 1e-12);
   EXPECT_NEAR(plant.loaded_inertia_kg_m2, plant.wheel_inertia_kg_m2 + 2.632 * 0.028 * 0.028 / 4.0, 1e-9);
@@ -178,4 +178,4 @@ TEST(WheelLoop, MassBehindAWheelOfASquareRobot) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::firmware

@@ -10,7 +10,7 @@
 
 #include "test_drive.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
@@ -24,7 +24,7 @@ struct Truth {
 };
 
 struct Case {
-  PlantConfig plant;
+  robot::PlantConfig plant;
   Truth truth;
 };
 
@@ -44,7 +44,7 @@ double friction_V(const Truth& truth, std::size_t wheel, double heading_rad) {
 Case any_case(std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> any(0.0, 1.0);
-  Robot robot;
+  robot::Robot robot;
   robot.mass_kg = 2.6;
   robot.wheels.radius_m = 0.028;
   robot.wheels.contact_radius_m = 0.08;
@@ -71,13 +71,13 @@ Case any_case(std::uint64_t seed) {
     robot.friction.heading.wheels.push_back(
         {0.015 + 0.02 * any(engine), -0.008 + 0.024 * any(engine), -robot.wheels.axis_rad[i] + 8.0 * kDegree_rad * (any(engine) - 0.5)});
   }
-  MotorValues motor;
+  motor::MotorValues motor;
   motor.terminal_resistance_ohm = 0.85;
   motor.torque_constant_Nm_per_A = 0.033;
   motor.no_load_current_A = 0.2;
   motor.temperature_coefficient_per_K = 0.0;
   motor.rotor_inertia_kg_m2 = 7.2e-6;
-  Case made{make_plant(robot, motor, 0.001), {}};
+  Case made{robot::make_plant(robot, motor, 0.001), {}};
   made.plant.body.friction.smoothing_rad_per_s = 0.05;
   // Steady state by hand: V = R·(T/K_t) + K_t·ω with T = 6.6 mN m of the motor + friction + damping·ω, R = 0.9 Ω.
   const double per_torque = 0.9 / 0.033;
@@ -305,7 +305,7 @@ TEST(FrictionFit, predicts_headings_that_were_not_fitted) {
   const Case known = any_case(8);
   const SteadyParts steady = parts_of(known, usual_drive(), 8);
   const auto none = [](const SteadyPart& part) {
-    PerWheel voltage_V = part.wheel_speed_rad_per_s;
+    robot::PerWheel voltage_V = part.wheel_speed_rad_per_s;
     std::ranges::for_each(voltage_V, [](double& each) { each *= 0.033; });
     return voltage_V;
   };
@@ -351,13 +351,13 @@ TEST(FrictionFit, of_a_third_harmonic_is_reported_and_covered) {
 /// wheel's direction. The prediction must still be as good as the law permits.
 TEST(FrictionFit, of_another_law_is_reported_and_still_predicts) {
   Case known = any_case(9);
-  HeadingFriction& friction = known.plant.body.friction.heading;
+  robot::HeadingFriction& friction = known.plant.body.friction.heading;
   friction.constant_Nm.fill(0.030);
   friction.sine_Nm.fill(0.0);
   friction.phase_offset.fill({});
   friction.double_angle_Nm = 0.014;
-  friction.double_angle_phase = {Direction::of(56.5 * kDegree_rad), Direction::of(116.7 * kDegree_rad), Direction::of(59.6 * kDegree_rad),
-                                 Direction::of(112.4 * kDegree_rad)};
+  friction.double_angle_phase = {robot::Direction::of(56.5 * kDegree_rad), robot::Direction::of(116.7 * kDegree_rad),
+                                 robot::Direction::of(59.6 * kDegree_rad), robot::Direction::of(112.4 * kDegree_rad)};
   const SteadyParts steady = parts_of(known, usual_drive(), 9);
   const FrictionFit fit = fit_friction(steady.parts, known.plant.body.kinematics, {});
   EXPECT_TRUE(std::ranges::any_of(fit.wheels, &WheelFriction::phase_is_bounded));
@@ -372,4 +372,4 @@ TEST(FrictionFit, of_another_law_is_reported_and_still_predicts) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

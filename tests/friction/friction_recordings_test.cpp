@@ -10,7 +10,7 @@
 #include "recording/read_recording.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 std::filesystem::path data_or_skip(const std::string& folder) {
@@ -18,27 +18,28 @@ std::filesystem::path data_or_skip(const std::string& folder) {
   return found.value_or("");
 }
 
-FrictionLog log_in_file(const std::filesystem::path& file, const std::string& mapping, const Robot& robot, const FrictionLogNeeds& needs,
-                        FrictionFindings& findings) {
-  RecordingReport report;
-  return friction_log(read_recording(file, mapping_for(file, kSource / "tests/data/mappings" / mapping), report), robot, needs, findings);
+FrictionLog log_in_file(const std::filesystem::path& file, const std::string& mapping, const robot::Robot& robot,
+                        const FrictionLogNeeds& needs, FrictionFindings& findings) {
+  recording::RecordingReport report;
+  return friction_log(recording::read_recording(file, recording::mapping_for(file, kSource / "tests/data/mappings" / mapping), report),
+                      robot, needs, findings);
 }
 
-const Robot& robotino() {
-  static const Robot robot = read_robot(kSource / "tests/data/robots/festo_robotino.toml");
+const robot::Robot& robotino() {
+  static const robot::Robot robot = robot::read_robot(kSource / "tests/data/robots/festo_robotino.toml");
   return robot;
 }
 
 /// The measured friction torque at the wheel includes the motor's drag; 5.95 Ω, 51.4 mN m/A.
-DriveConstants robotino_drive() {
+robot::DriveConstants robotino_drive() {
   return {.resistance_ohm = 5.95, .torque_constant_Nm_per_A = 0.0514, .drag_torque_Nm = 0.0, .gear_ratio = 16.0};
 }
 
 /// Back-EMF from the data sheet, without friction.
-PerWheel back_emf_V(const SteadyPart& part) {
-  PerWheel voltage_V{};
+robot::PerWheel back_emf_V(const SteadyPart& part) {
+  robot::PerWheel voltage_V{};
   for (int i = 0; i < 3; ++i) {
-    voltage_V[i] = steady_voltage_V(robotino_drive(), 0.0, part.wheel_speed_rad_per_s[i]);
+    voltage_V[i] = robot::steady_voltage_V(robotino_drive(), 0.0, part.wheel_speed_rad_per_s[i]);
   }
   return voltage_V;
 }
@@ -49,7 +50,7 @@ SteadyParts robotino_parts(const std::filesystem::path& surface, int first, int 
     const std::filesystem::path file = surface / fmt::format("exp{:02}.csv", n);
     logs.push_back(log_in_file(file, "robotino_omni.map.toml", robotino(), {.voltage = true, .drive = robotino_drive()}, findings));
   }
-  return find_steady_parts(logs, make_kinematics(robotino()));
+  return find_steady_parts(logs, robot::make_kinematics(robotino()));
 }
 
 void print(const std::string& name, const SteadyParts& steady, const FrictionFit& fit, const HeldOutError& error) {
@@ -77,7 +78,7 @@ TEST(FrictionOfRecordings, robotino_on_two_surfaces) {
     EXPECT_GE(steady.legs, 65);
     FitSettings settings;
     settings.known_damping_V_s_per_rad = 0.0514 * 16.0;
-    const Kinematics kinematics = make_kinematics(robotino());
+    const robot::Kinematics kinematics = robot::make_kinematics(robotino());
     const FrictionFit fit = fit_friction(steady.parts, kinematics, settings);
     const HeldOutError error = error_on_held_out_headings(steady.parts, kinematics, settings, back_emf_V);
     print(surface, steady, fit, error);
@@ -103,7 +104,7 @@ TEST(FrictionOfRecordings, robotino_on_carpet_at_three_speeds) {
   }
   FrictionFindings findings;
   const SteadyParts steady = robotino_parts(folder / "green_surface", 0, 216, findings);
-  const Kinematics kinematics = make_kinematics(robotino());
+  const robot::Kinematics kinematics = robot::make_kinematics(robotino());
   const FrictionFit fit = fit_friction(steady.parts, kinematics, {});
   const HeldOutError error = error_on_held_out_headings(steady.parts, kinematics, {}, back_emf_V);
   print("green_surface", steady, fit, error);
@@ -126,7 +127,7 @@ TEST(FrictionOfRecordings, a_team_wheel_motors_voltage_over_speed) {
   if (folder.empty()) {
     GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
   }
-  Robot robot = robotino();
+  robot::Robot robot = robotino();
   robot.wheels.axis_rad = {-0.5, 0.5, 2.4, -2.4};
   robot.drive.gear_ratio = 1.0;
   robot.battery.nominal_V = 24.0;
@@ -135,8 +136,8 @@ TEST(FrictionOfRecordings, a_team_wheel_motors_voltage_over_speed) {
   for (const char* file : {"Model1_pos.csv", "Model2_neg.csv"}) {
     logs.push_back(log_in_file(folder / file, "ateam_wheel_motor.map.toml", robot, {}, findings));
   }
-  const SteadyParts steady = find_steady_parts(logs, make_kinematics(robot));
-  const FrictionFit fit = fit_friction(steady.parts, make_kinematics(robot), {});
+  const SteadyParts steady = find_steady_parts(logs, robot::make_kinematics(robot));
+  const FrictionFit fit = fit_friction(steady.parts, robot::make_kinematics(robot), {});
   std::cout << steady.parts.size() << " parts\n";
   for (std::size_t i = 0; i < 4; ++i) {
     double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
@@ -167,4 +168,4 @@ TEST(FrictionOfRecordings, a_team_wheel_motors_voltage_over_speed) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

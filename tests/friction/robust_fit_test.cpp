@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 TEST(RobustLocation, a_fifth_of_nonsense_moves_it_by_less_than_a_tenth_of_the_noise) {
@@ -103,4 +103,4 @@ TEST(RobustFit, reports_which_columns_are_collinear) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

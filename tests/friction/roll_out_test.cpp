@@ -9,30 +9,30 @@
 #include "robot/plant.h"
 #include "robot/robots_for_tests.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
-PlantConfig rolling_robot() {
-  Robot robot = bare_robot();
+robot::PlantConfig rolling_robot() {
+  robot::Robot robot = robot::bare_robot();
   robot.friction.wheel_torque_Nm = 0.012;
   robot.friction.wheel_damping_Nm_s_per_rad = 4e-4;
-  MotorValues motor;
+  motor::MotorValues motor;
   motor.terminal_resistance_ohm = 0.85;
   motor.torque_constant_Nm_per_A = 0.033;
   motor.no_load_current_A = 0.2;  // drag of 6.6 mN m
   motor.temperature_coefficient_per_K = 0.0;
   motor.rotor_inertia_kg_m2 = 7.2e-6;
-  return make_plant(robot, motor, 0.001);
+  return robot::make_plant(robot, motor, 0.001);
 }
 
 /// Simulates a roll-out to standstill; a fifth of the rows is lost or wrong.
-FrictionLog rolled(const PlantConfig& plant, const BodyVelocity& from, std::uint64_t seed) {
+FrictionLog rolled(const robot::PlantConfig& plant, const robot::BodyVelocity& from, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> any(0.0, 1.0);
-  PlantState state = plant_at_rest(plant);
+  robot::PlantState state = robot::plant_at_rest(plant);
   state.velocity = from;
-  state.wheel_speed_rad_per_s = wheel_speeds_rad_per_s(plant.body.kinematics, from);
+  state.wheel_speed_rad_per_s = robot::wheel_speeds_rad_per_s(plant.body.kinematics, from);
   FrictionLog log;
   log.run_begins = {0};
   for (int row = 0; row < 200; ++row) {
@@ -43,14 +43,14 @@ FrictionLog rolled(const PlantConfig& plant, const BodyVelocity& from, std::uint
       log.wheel_speed_rad_per_s[i].push_back(fate < 0.1 ? std::nan("") : fate < 0.2 ? 200.0 * any(engine) : speed);
     }
     for (int n = 0; n < 10; ++n) {
-      step(plant, state, {});  // open motors
+      robot::step(plant, state, {});  // open motors
     }
   }
   return log;
 }
 
 TEST(RollOut, of_the_plant_gives_its_damping_and_friction) {
-  const PlantConfig plant = rolling_robot();
+  const robot::PlantConfig plant = rolling_robot();
   std::vector<FrictionLog> logs;
   for (int n = 0; n < 8; ++n) {
     const double heading_rad = 0.2 + n * std::numbers::pi / 4.0;
@@ -72,7 +72,7 @@ TEST(RollOut, of_the_plant_gives_its_damping_and_friction) {
 
 /// Closed-form solution of J·dω/dt = −τ − D·ω:  ω = (ω_0 + τ/D)·exp(−D·t/J) − τ/D.
 TEST(RollOut, of_lifted_wheels_gives_each_its_own) {
-  const PlantConfig plant = rolling_robot();
+  const robot::PlantConfig plant = rolling_robot();
   const double inertia_kg_m2 = plant.body.wheel_inertia_kg_m2;
   const std::array<double, 4> damping{3e-5, 5e-5, 8e-5, 2e-5};
   const std::array<double, 4> torque{2e-3, 3e-3, 2.5e-3, 4e-3};
@@ -102,7 +102,7 @@ TEST(RollOut, of_lifted_wheels_gives_each_its_own) {
 }
 
 TEST(RollOut, a_robot_that_is_driven_all_the_time_does_not_roll_out) {
-  const PlantConfig plant = rolling_robot();
+  const robot::PlantConfig plant = rolling_robot();
   FrictionLog log = rolled(plant, {2.0, 0.0, 0.0}, 1);
   for (std::size_t i = 0; i < 4; ++i) {
     log.voltage_V[i].assign(log.rows(), 3.0);
@@ -111,4 +111,4 @@ TEST(RollOut, a_robot_that_is_driven_all_the_time_does_not_roll_out) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

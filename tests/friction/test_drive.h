@@ -15,7 +15,7 @@
 #include "friction/friction_log.h"
 #include "robot/plant.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 
 struct TestDrive {
   std::vector<double> headings_rad;
@@ -30,8 +30,8 @@ struct TestDrive {
 /// A row in the logger's format; the heading is that of the command on the field.
 struct DriveRow {
   double time_s = 0.0;
-  PerWheel wheel_speed_rad_per_s{};
-  PerWheel pwm_ratio{};
+  robot::PerWheel wheel_speed_rad_per_s{};
+  robot::PerWheel pwm_ratio{};
   double battery_V = 0.0;
   double command_heading_rad = 0.0;
   double yaw_rad = 0.0;
@@ -39,8 +39,8 @@ struct DriveRow {
 
 class DriveOnPlant {
  public:
-  DriveOnPlant(const PlantConfig& plant, const TestDrive& drive, std::uint64_t seed)
-      : plant_(plant), drive_(drive), state_(plant_at_rest(plant)), engine_(seed) {
+  DriveOnPlant(const robot::PlantConfig& plant, const TestDrive& drive, std::uint64_t seed)
+      : plant_(plant), drive_(drive), state_(robot::plant_at_rest(plant)), engine_(seed) {
     state_.pose.yaw_rad = drive.yaw_rad;
   }
 
@@ -101,29 +101,29 @@ class DriveOnPlant {
   }
 
   /// Converts a velocity on the field to the robot's frame; the yaw is constant.
-  [[nodiscard]] BodyVelocity on_field(double x_m_per_s, double y_m_per_s) const {
-    return to_local(BodyVelocity{x_m_per_s, y_m_per_s, 4.0 * (drive_.yaw_rad - state_.pose.yaw_rad)}, state_.pose.yaw_rad);
+  [[nodiscard]] robot::BodyVelocity on_field(double x_m_per_s, double y_m_per_s) const {
+    return robot::to_local(robot::BodyVelocity{x_m_per_s, y_m_per_s, 4.0 * (drive_.yaw_rad - state_.pose.yaw_rad)}, state_.pose.yaw_rad);
   }
 
   /// Simulates one row: a PI controller for each wheel's speed every millisecond, whose output is the modulation of the measured battery.
   /// The row contains the last modulation and the encoder counts.
-  void follow(const BodyVelocity& local, double command_heading_rad) {
-    const PerWheel wanted_rad_per_s = wheel_speeds_rad_per_s(plant_.body.kinematics, local);
+  void follow(const robot::BodyVelocity& local, double command_heading_rad) {
+    const robot::PerWheel wanted_rad_per_s = robot::wheel_speeds_rad_per_s(plant_.body.kinematics, local);
     DriveRow row{.time_s = time_s_, .command_heading_rad = command_heading_rad};
     row.battery_V = 0.01 * std::round((battery_V_ + 0.05 * normal_(engine_)) / 0.01);
     row.yaw_rad = state_.pose.yaw_rad + 0.005 * normal_(engine_);
-    PlantInput input;
-    input.external = to_local(push_, state_.pose.yaw_rad);
-    PerWheel angle_rad{};
+    robot::PlantInput input;
+    input.external = robot::to_local(push_, state_.pose.yaw_rad);
+    robot::PerWheel angle_rad{};
     for (double t_s = 0.0; t_s < kPeriod_s - 1e-9; t_s += plant_.period_s) {
       for (int i = 0; i < plant_.body.kinematics.wheel_count; ++i) {
         const double error_rad_per_s = wanted_rad_per_s[i] - state_.wheel_speed_rad_per_s[i] + 0.05 * normal_(engine_);
         integral_rad_[i] = std::clamp(integral_rad_[i] + error_rad_per_s * plant_.period_s, -2.0, 2.0);
         const double wanted_V = 0.03 * wanted_rad_per_s[i] + 0.3 * error_rad_per_s + 2.0 * integral_rad_[i];
         row.pwm_ratio[i] = std::round(1000.0 * std::clamp(wanted_V / row.battery_V, -0.95, 0.95)) / 1000.0;
-        input.command[i] = {MotorCommand::Kind::voltage, row.pwm_ratio[i] * battery_V_};
+        input.command[i] = {robot::MotorCommand::Kind::voltage, row.pwm_ratio[i] * battery_V_};
       }
-      battery_V_ = step(plant_, state_, input).battery_V;
+      battery_V_ = robot::step(plant_, state_, input).battery_V;
       for (int i = 0; i < plant_.body.kinematics.wheel_count; ++i) {
         angle_rad[i] += state_.wheel_speed_rad_per_s[i] * plant_.period_s;
       }
@@ -168,13 +168,13 @@ class DriveOnPlant {
 
   static constexpr double kCounts_per_rad = 8192.0 / (2.0 * std::numbers::pi);
 
-  PlantConfig plant_;
+  robot::PlantConfig plant_;
   TestDrive drive_;
-  PlantState state_;
+  robot::PlantState state_;
   std::mt19937_64 engine_;
   std::normal_distribution<double> normal_;
-  Wrench push_;
-  PerWheel integral_rad_{};
+  robot::Wrench push_;
+  robot::PerWheel integral_rad_{};
   double battery_V_ = 24.0;
   double time_s_ = 0.0;
   std::vector<DriveRow> rows_;
@@ -211,4 +211,4 @@ inline FrictionLog log_of(const std::vector<DriveRow>& rows, int wheel_count) {
   return log;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::friction

@@ -12,7 +12,7 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::input {
 namespace {
 
 using testing::ElementsAre;
@@ -40,9 +40,9 @@ class CsvTest : public testing::Test {
     std::vector<std::string> result;
     try {
       read(content);
-    } catch (const Failure& failure) {
-      EXPECT_EQ(failure.code(), ExitCode::bad_input);
-      for (const Diagnostic& each : failure.diagnostics()) {
+    } catch (const base::Failure& failure) {
+      EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
+      for (const base::Diagnostic& each : failure.diagnostics()) {
         result.push_back(std::to_string(each.at.line) + ":" + std::to_string(each.at.column) + " " + each.key + ": " + each.message);
       }
     }
@@ -160,4 +160,4 @@ TEST_F(CsvTest, memory_does_not_grow_with_the_file) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::input

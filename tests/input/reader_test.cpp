@@ -9,7 +9,7 @@
 
 #include "base/files.h"
 
-namespace heatsoak {
+namespace heatsoak::input {
 namespace {
 
 using testing::ElementsAre;
@@ -29,7 +29,7 @@ class ReaderTest : public testing::Test {
   /// Returns "line:column key" for every problem.
   [[nodiscard]] std::vector<std::string> places() const {
     std::vector<std::string> result;
-    for (const Diagnostic& each : diagnostics_.list()) {
+    for (const base::Diagnostic& each : diagnostics_.list()) {
       result.push_back(std::to_string(each.at.line) + ":" + std::to_string(each.at.column) + " " + each.key);
     }
     return result;
@@ -38,11 +38,11 @@ class ReaderTest : public testing::Test {
 
   std::filesystem::path file_ = std::filesystem::temp_directory_path() / ("heatsoak_reader_" + std::to_string(::getpid()) + ".toml");
   Value root_;
-  Diagnostics diagnostics_;
+  base::Diagnostics diagnostics_;
 };
 
-const ParameterSpec kResistance{"resistance", "ohm", Range::positive(), "of the test"};
-const ParameterSpec kTemperature{"temperature", "degC", Range::between(-40.0, 100.0), "of the test"};
+const base::ParameterSpec kResistance{"resistance", "ohm", base::Range::positive(), "of the test"};
+const base::ParameterSpec kTemperature{"temperature", "degC", base::Range::between(-40.0, 100.0), "of the test"};
 
 TEST_F(ReaderTest, converts_a_quantity) {
   EXPECT_DOUBLE_EQ(read("resistance = \"608 mohm\"").quantity(kResistance, Need::required).value(), 0.608);
@@ -102,14 +102,14 @@ TEST_F(ReaderTest, a_wrong_quantity_of_a_list_is_reported_at_its_place) {
   EXPECT_THAT(places(), ElementsAre("1:24 resistance[1]", "1:27 resistance[2]", "1:34 resistance[3]"));
 }
 
-ParameterValue parameter_of(std::optional<ParameterValue> figure) { return figure.value_or(ParameterValue{}); }
+base::ParameterValue parameter_of(std::optional<base::ParameterValue> figure) { return figure.value_or(base::ParameterValue{}); }
 
 TEST_F(ReaderTest, a_tolerance_is_a_share_and_of_a_temperature_a_difference) {
   Reader top = read(
       "resistance = { value = \"2 ohm\", origin = \"datasheet\", source = \"s\", tolerance = \"10 %\" }\n"
       "temperature = { value = \"20 degC\", origin = \"datasheet\", source = [\"s\", \"t\"], tolerance = \"3 K\" }\n");
-  const ParameterValue resistance = parameter_of(top.parameter(kResistance, Need::required));
-  const ParameterValue temperature = parameter_of(top.parameter(kTemperature, Need::required));
+  const base::ParameterValue resistance = parameter_of(top.parameter(kResistance, Need::required));
+  const base::ParameterValue temperature = parameter_of(top.parameter(kTemperature, Need::required));
   ASSERT_TRUE(diagnostics_.empty()) << message();
   EXPECT_DOUBLE_EQ(resistance.spread->low, 1.8);
   EXPECT_DOUBLE_EQ(resistance.spread->high, 2.2);
@@ -119,7 +119,7 @@ TEST_F(ReaderTest, a_tolerance_is_a_share_and_of_a_temperature_a_difference) {
 }
 
 TEST_F(ReaderTest, a_range_has_units_of_its_own) {
-  const ParameterValue figure = parameter_of(
+  const base::ParameterValue figure = parameter_of(
       read("resistance = { value = \"2 ohm\", origin = \"measured\", source = \"s\", range = [\"1900 mohm\", \"0.0025 kohm\"] }")
           .parameter(kResistance, Need::required));
   ASSERT_TRUE(diagnostics_.empty()) << message();
@@ -128,7 +128,7 @@ TEST_F(ReaderTest, a_range_has_units_of_its_own) {
 }
 
 TEST_F(ReaderTest, other_sources_of_a_value_have_units_too) {
-  const ParameterValue figure = parameter_of(
+  const base::ParameterValue figure = parameter_of(
       read(R"(resistance = { value = "2 ohm", origin = "measured", source = "s", confirmed_by = { a = "2100 mohm", b = "1.9 ohm" } })")
           .parameter(kResistance, Need::required));
   ASSERT_TRUE(diagnostics_.empty()) << message();
@@ -151,23 +151,23 @@ TEST_F(ReaderTest, problems_come_sorted_by_place) {
   try {
     diagnostics_.throw_if_any();
     FAIL() << "nothing thrown";
-  } catch (const Failure& failure) {
+  } catch (const base::Failure& failure) {
     std::vector<std::string> keys;
-    for (const Diagnostic& each : failure.diagnostics()) {
+    for (const base::Diagnostic& each : failure.diagnostics()) {
       keys.push_back(each.key);
     }
     EXPECT_THAT(keys, ElementsAre("a", "b", "resistance"));
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
   }
 }
 
 TEST_F(ReaderTest, nothing_is_left_of_a_file_that_cannot_be_written) {
-  EXPECT_THROW(write_file("/proc/no_such_place/x", "text"), Failure);
-  write_file(file_, "first");
-  write_file(file_, "second");
-  EXPECT_EQ(read_file(file_, 100), "second");
-  EXPECT_THROW(read_file(file_, 5), Failure);
+  EXPECT_THROW(base::write_file("/proc/no_such_place/x", "text"), base::Failure);
+  base::write_file(file_, "first");
+  base::write_file(file_, "second");
+  EXPECT_EQ(base::read_file(file_, 100), "second");
+  EXPECT_THROW(base::read_file(file_, 5), base::Failure);
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::input

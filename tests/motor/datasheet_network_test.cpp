@@ -6,7 +6,7 @@
 
 #include "thermal/steady_state.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 namespace {
 
 /// A motor with values that are convenient for hand calculation.
@@ -23,19 +23,19 @@ Motor simple_motor() {
   return motor;
 }
 
-double value_of(const Network& network, std::string_view name) {
-  for (const NetworkParameter& parameter : network.parameters()) {
+double value_of(const thermal::Network& network, std::string_view name) {
+  for (const thermal::NetworkParameter& parameter : network.parameters()) {
     if (parameter.name == name) {
       return parameter.value;
     }
   }
   ADD_FAILURE() << "no parameter " << name;
-  return kUnknown;
+  return base::kUnknown;
 }
 
 TEST(DatasheetNetwork, heat_capacity_is_time_constant_over_resistance) {
   const Motor motor = simple_motor();
-  const Network network = datasheet_network(motor, nominal_sample(motor));
+  const thermal::Network network = datasheet_network(motor, nominal_sample(motor));
   EXPECT_DOUBLE_EQ(value_of(network, "winding.heat_capacity"), 3.0);  // 12 s / 4 K/W
   EXPECT_DOUBLE_EQ(value_of(network, "stator.heat_capacity"), 40.0);  // 80 s / 2 K/W
 }
@@ -48,7 +48,7 @@ TEST(DatasheetNetwork, drag_torque_is_torque_constant_times_no_load_current) {
 // (45 − 25)/2 = 10 W to ambient. Rates: −2.1 W / 3 J/K and 0.5 W / 40 J/K.
 TEST(DatasheetNetwork, rate_computed_by_hand) {
   const Motor motor = simple_motor();
-  const Network network = datasheet_network(motor, nominal_sample(motor));
+  const thermal::Network network = datasheet_network(motor, nominal_sample(motor));
   std::array<double, 3> temperature_C{75.0, 45.0, 0.0};
   std::array<double, 2> rate{};
   network.rate_K_per_s<double>({3.0, 500.0, 520.0, 25.0}, network.values(), temperature_C, rate);
@@ -59,7 +59,7 @@ TEST(DatasheetNetwork, rate_computed_by_hand) {
 // Time constants of a data sheet describe one element while the other is held constant. They are not the eigenvalues of the network.
 TEST(DatasheetNetwork, time_constants_are_those_of_one_element) {
   const Motor motor = simple_motor();
-  const Network network = datasheet_network(motor, nominal_sample(motor));
+  const thermal::Network network = datasheet_network(motor, nominal_sample(motor));
   std::array<double, 3> temperature_C{26.0, 25.0, 0.0};
   std::array<double, 2> rate{};
   network.rate_K_per_s<double>({0.0, 0.0, 0.0, 25.0}, network.values(), temperature_C, rate);
@@ -71,8 +71,8 @@ TEST(DatasheetNetwork, time_constants_are_those_of_one_element) {
 
 TEST(DatasheetNetwork, rests_where_the_paper_says) {
   const Motor motor = simple_motor();
-  const Network network = datasheet_network(motor, nominal_sample(motor));
-  const std::optional<SteadyState> rest = steady_state(network, {4.0, 0.0, 0.0, 30.0});
+  const thermal::Network network = datasheet_network(motor, nominal_sample(motor));
+  const std::optional<thermal::SteadyState> rest = thermal::steady_state(network, {4.0, 0.0, 0.0, 30.0});
   // R_TA = 0.5·1.02 = 0.51 Ω; 6 K/W · 0.51 Ω · 16 A² = 48.96 K; over 1 − 0.004/1.02 · 48.96 = 0.808: 60.594… K
   ASSERT_TRUE(rest.has_value());
   EXPECT_NEAR(rest->temperature_C[0], 30.0 + 48.96 / 0.808, 1e-9);
@@ -81,10 +81,10 @@ TEST(DatasheetNetwork, rests_where_the_paper_says) {
 
 TEST(DatasheetNetwork, an_effect_of_the_file_is_added) {
   Motor motor = simple_motor();
-  ParameterValue resistance;
+  base::ParameterValue resistance;
   resistance.value = 5.0;
-  motor.effects.push_back({"flange", find_effect("conduction"), {"winding", "ambient"}, {resistance}});
-  const Network network = datasheet_network(motor, nominal_sample(motor));
+  motor.effects.push_back({"flange", thermal::find_effect("conduction"), {"winding", "ambient"}, {resistance}});
+  const thermal::Network network = datasheet_network(motor, nominal_sample(motor));
   EXPECT_EQ(value_of(network, "flange.thermal_resistance"), 5.0);
   std::array<double, 3> temperature_C{75.0, 75.0, 0.0};
   std::array<double, 2> rate{};
@@ -97,10 +97,10 @@ TEST(DatasheetNetwork, takes_the_values_of_the_sample) {
   MotorSample sample = nominal_sample(motor);
   sample.values.terminal_resistance_ohm = 0.7;
   sample.values.thermal_time_constant_winding_s = 20.0;
-  const Network network = datasheet_network(motor, sample);
+  const thermal::Network network = datasheet_network(motor, sample);
   EXPECT_EQ(value_of(network, "copper_loss.terminal_resistance"), 0.7);
   EXPECT_DOUBLE_EQ(value_of(network, "winding.heat_capacity"), 5.0);
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

@@ -13,7 +13,7 @@
 #include "motor/lint.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 namespace {
 
 using testing::AllOf;
@@ -23,7 +23,7 @@ using testing::SizeIs;
 
 std::vector<Motor> all_shipped() {
   std::vector<Motor> motors;
-  for (const std::string& id : ids_in(kSource / "motor_db")) {
+  for (const std::string& id : input::ids_in(kSource / "motor_db")) {
     motors.push_back(shipped_motor(id));
   }
   return motors;
@@ -37,8 +37,8 @@ const DefaultSpread* find(const std::vector<DefaultSpread>& all, std::string_vie
 std::string message_of_refusal(const Motor& motor) {
   try {
     require_sound(motor);
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
     return failure.what();
   }
   return {};
@@ -89,7 +89,8 @@ TEST(DefaultSpread, WorseOriginsGetNoNarrowerOnes) {
   }
   std::vector<DefaultSpread> before;
   // An origin "measured" without an interval counts as no measurement.
-  for (const Origin origin : {Origin::datasheet, Origin::third_party, Origin::derived, Origin::estimated, Origin::measured}) {
+  for (const base::Origin origin :
+       {base::Origin::datasheet, base::Origin::third_party, base::Origin::derived, base::Origin::estimated, base::Origin::measured}) {
     for (auto& [key, figure] : motor.parameters) {
       figure.origin = origin;
     }
@@ -114,33 +115,34 @@ TEST(DefaultSpread, OfEverythingThatTemperaturesDependOn) {
 TEST(DefaultSpread, AZeroToleranceCountsAsMissingAndIsRefused) {
   for (const std::string_view key : {"thermal_resistance_stator_ambient", "terminal_resistance", "no_load_current"}) {
     Motor motor = ecx_32();
-    ParameterValue& figure = motor.parameters.at(key);
-    figure.spread = Spread{Spread::Kind::tolerance, figure.value, figure.value, true};
+    base::ParameterValue& figure = motor.parameters.at(key);
+    figure.spread = base::Spread{base::Spread::Kind::tolerance, figure.value, figure.value, true};
     ASSERT_THAT(default_spreads(motor), SizeIs(1)) << key;
     EXPECT_LT(with_default_spreads(motor).parameters.at(key).spread->low, figure.value);
     EXPECT_THAT(message_of_refusal(motor), AllOf(HasSubstr(".toml:"), HasSubstr("exact_values"), HasSubstr(key), HasSubstr("state that")));
   }
 }
 
-Spread of_percent(const ParameterValue& figure, double below_percent, double above_percent) {
-  return {Spread::Kind::range, figure.value * (1.0 - 0.01 * below_percent), figure.value * (1.0 + 0.01 * above_percent), true};
+base::Spread of_percent(const base::ParameterValue& figure, double below_percent, double above_percent) {
+  return {base::Spread::Kind::range, figure.value * (1.0 - 0.01 * below_percent), figure.value * (1.0 + 0.01 * above_percent), true};
 }
 
 // A file states 0.001 % to avoid a larger spread, on both sides or on the side that makes motors hot.
 TEST(DefaultSpread, ANarrowerSpreadThanItsOriginSupportsIsRefusedAndNotUsed) {
   for (const std::string_view key : {"thermal_resistance_stator_ambient", "terminal_resistance", "no_load_current"}) {
-    for (const Origin origin : {Origin::datasheet, Origin::third_party, Origin::derived, Origin::measured, Origin::estimated}) {
+    for (const base::Origin origin :
+         {base::Origin::datasheet, base::Origin::third_party, base::Origin::derived, base::Origin::measured, base::Origin::estimated}) {
       Motor missing = ecx_32();
       missing.parameters.at(key).origin = origin;
       missing.parameters.at(key).spread.reset();
-      const Spread usual = *with_default_spreads(missing).parameters.at(key).spread;
+      const base::Spread usual = *with_default_spreads(missing).parameters.at(key).spread;
       for (const auto& [below_percent, above_percent] : {std::pair(1e-3, 1e-3), std::pair(40.0, 0.01), std::pair(0.5, 100.0)}) {
         Motor motor = missing;
-        ParameterValue& figure = motor.parameters.at(key);
+        base::ParameterValue& figure = motor.parameters.at(key);
         figure.spread = of_percent(figure, below_percent, above_percent);
         EXPECT_THAT(message_of_refusal(motor),
                     AllOf(HasSubstr(".toml:"), HasSubstr("narrow_values"), HasSubstr(key), HasSubstr("state that")))
-            << to_string(origin) << " " << below_percent;
+            << base::to_string(origin) << " " << below_percent;
         EXPECT_EQ(with_default_spreads(motor).parameters.at(key).spread->low, usual.low);
         EXPECT_EQ(with_default_spreads(motor).parameters.at(key).spread->high, usual.high);
       }
@@ -150,8 +152,8 @@ TEST(DefaultSpread, ANarrowerSpreadThanItsOriginSupportsIsRefusedAndNotUsed) {
 
 TEST(DefaultSpread, AFitThatIsSurerThanItsSensorsIsWidenedAndNotRefused) {
   Motor motor = ecx_32();
-  ParameterValue& figure = motor.parameters.at("thermal_resistance_stator_ambient");
-  figure.origin = Origin::measured;
+  base::ParameterValue& figure = motor.parameters.at("thermal_resistance_stator_ambient");
+  figure.origin = base::Origin::measured;
   figure.spread = of_percent(figure, 0.02, 3.0);
   EXPECT_THAT(message_of_refusal(motor), HasSubstr("narrow_values")) << "the file records no fit";
   motor.fit.emplace().parameters = {"thermal_resistance_stator_ambient"};
@@ -166,8 +168,8 @@ TEST(DefaultSpread, AFitThatIsSurerThanItsSensorsIsWidenedAndNotRefused) {
 
 TEST(DefaultSpread, AFileThatACalibrationWroteGetsNoNoteAboutIt) {
   Motor motor = ecx_32();
-  ParameterValue& figure = motor.parameters.at("thermal_resistance_stator_ambient");
-  figure.origin = Origin::measured;
+  base::ParameterValue& figure = motor.parameters.at("thermal_resistance_stator_ambient");
+  figure.origin = base::Origin::measured;
   figure.spread = of_percent(figure, 0.02, 3.0);
   const auto notes = [&] {
     const std::vector<LintFinding> all = lint(motor);
@@ -195,24 +197,24 @@ TEST(DefaultSpread, ContradictionsAreRefusedWithTheirPlace) {
 
 TEST(DefaultSpread, ParametersOfEffectsStayWithinTheirDeclaration) {
   Motor motor = ecx_32();
-  const auto add = [&motor](const EffectType& type) {
+  const auto add = [&motor](const thermal::EffectType& type) {
     MotorEffect effect{std::string(type.name), &type, {}, {}};
-    for (const ParameterSpec& spec : type.parameters) {
-      ParameterValue figure;
+    for (const base::ParameterSpec& spec : type.parameters) {
+      base::ParameterValue figure;
       figure.value = std::isfinite(spec.range.high) ? spec.range.high : std::max(1.0, spec.range.low);
       effect.parameters.push_back(figure);
     }
     motor.effects.push_back(effect);
   };
-  for (const EffectType& type : all_effects()) {
+  for (const thermal::EffectType& type : thermal::all_effects()) {
     add(type);
   }
   const Motor filled = with_default_spreads(motor);
   std::size_t drawn = 0;
   for (const MotorEffect& effect : filled.effects) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      const ParameterSpec& spec = effect.type->parameters[i];
-      const std::optional<Spread>& spread = effect.parameters[i].spread;
+      const base::ParameterSpec& spec = effect.type->parameters[i];
+      const std::optional<base::Spread>& spread = effect.parameters[i].spread;
       EXPECT_FALSE(spread && !spec.choices.empty()) << effect.name << "." << spec.key;
       if (spread) {
         ++drawn;
@@ -228,4 +230,4 @@ TEST(DefaultSpread, ParametersOfEffectsStayWithinTheirDeclaration) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

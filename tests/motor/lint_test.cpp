@@ -13,7 +13,7 @@
 
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 namespace {
 
 using testing::Contains;
@@ -376,10 +376,10 @@ TEST(Lint, asks_every_value_for_a_source_and_every_built_one_for_a_spread) {
 
 TEST(Lint, asks_the_values_of_an_effect_for_a_source) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
-  ParameterValue figure;
+  base::ParameterValue figure;
   figure.value = 40.0;
   figure.printed = "40 K/W";
-  motor.effects.push_back({"flange", find_effect("conduction"), {"winding", "ambient"}, {figure}});
+  motor.effects.push_back({"flange", thermal::find_effect("conduction"), {"winding", "ambient"}, {figure}});
 
   EXPECT_THAT(said_by("sources", motor), HasSubstr("flange.thermal_resistance of 40 K/W names no source"));
 }
@@ -409,11 +409,11 @@ TEST(Lint, warns_of_thermal_values_that_no_known_sheet_has) {
 TEST(Lint, judges_the_nominal_point_without_the_effects_of_the_file) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
   const NominalPointHeat sheet = nominal_point_heat(motor).value();
-  ParameterValue figure;
+  base::ParameterValue figure;
   figure.value = 2.0;
   figure.printed = "2 K/W";
   figure.derivation = "a heat sink";
-  motor.effects.push_back({"flange", find_effect("conduction"), {"winding", "ambient"}, {figure}});
+  motor.effects.push_back({"flange", thermal::find_effect("conduction"), {"winding", "ambient"}, {figure}});
 
   EXPECT_EQ(nominal_point_heat(motor)->limit_current_A, sheet.limit_current_A);
   EXPECT_THAT(errors(motor), ElementsAre());
@@ -436,4 +436,4 @@ TEST(Lint, name_plate_of_the_type_is_only_noted) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

@@ -14,7 +14,7 @@
 #include "motor/datasheet_network.h"
 #include "motor/write_motor.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 namespace {
 
 /// Returns a motor with the given conventions, 0.5 ohm ± 10 % and 30 mN m/A ± 7 %.
@@ -57,7 +57,7 @@ TEST(MotorConventions, phase_values_are_two_in_series) {
   const Motor motor = motor_with("phase_to_star", "per_dc_ampere");
   EXPECT_DOUBLE_EQ(motor.nominal.terminal_resistance_ohm, 1.0);
   EXPECT_DOUBLE_EQ(motor.nominal.terminal_inductance_H.value(), 0.4e-3);
-  const ParameterValue& figure = motor.parameters.at("terminal_resistance");
+  const base::ParameterValue& figure = motor.parameters.at("terminal_resistance");
   EXPECT_DOUBLE_EQ(figure.spread->low, 0.9);
   EXPECT_DOUBLE_EQ(figure.spread->high, 1.1);
 }
@@ -78,7 +78,7 @@ TEST(MotorSample, without_spread_is_the_value_and_with_spread_within_it) {
   double lowest_ohm = 1.0;
   double highest_ohm = 0.0;
   for (std::uint64_t stream = 0; stream < 2000; ++stream) {
-    Random random(3, stream);
+    base::Random random(3, stream);
     const MotorSample sample = draw_sample(motor, random);
     lowest_ohm = std::min(lowest_ohm, sample.values.terminal_resistance_ohm);
     highest_ohm = std::max(highest_ohm, sample.values.terminal_resistance_ohm);
@@ -104,7 +104,7 @@ thermal_resistance = { value = "40 K/W", origin = "estimated", derivation = "gue
   ASSERT_EQ(motor.effects.size(), 1U);
   EXPECT_EQ(motor.effects[0].nodes, (std::vector<std::string>{"winding", "ambient"}));
   EXPECT_EQ(nominal_sample(motor).effect_parameters[0][0], 40.0);
-  Random random(1, 1);
+  base::Random random(1, 1);
   const double first = draw_sample(motor, random).effect_parameters[0][0];
   const double second = draw_sample(motor, random).effect_parameters[0][0];
   EXPECT_NE(first, second);
@@ -135,7 +135,7 @@ heat_capacity = { value = "300 J/K", origin = "measured", source = "sheet" }
   ASSERT_EQ(motor.effects.size(), 3U);
   EXPECT_EQ(motor.effects[0].name, "chassis");
   EXPECT_EQ(motor.effects[0].nodes, (std::vector<std::string>{"stator", "chassis", "ambient"}));
-  const Network network = datasheet_network(motor, nominal_sample(motor));
+  const thermal::Network network = datasheet_network(motor, nominal_sample(motor));
   EXPECT_EQ(network.state_count(), 4);
   for (const char* node : {"winding", "stator", "chassis", "b_mount"}) {
     EXPECT_GE(network.find_node(node), 0) << node;
@@ -177,7 +177,7 @@ TEST(MotorEffects, a_curve_over_a_column_of_a_log_names_it) {
   ASSERT_EQ(motor.effects.size(), 2U);
   EXPECT_EQ(motor.effects[1].column, "fan_ratio");
   EXPECT_NE(to_toml(motor).find("column = \"fan_ratio\"\n"), std::string::npos);
-  EXPECT_THROW(with(curve_over_column("a", "")), Failure) << "which column";
+  EXPECT_THROW(with(curve_over_column("a", "")), base::Failure) << "which column";
 }
 
 TEST(MotorEffects, curves_over_several_columns_have_a_place_each) {
@@ -188,7 +188,7 @@ TEST(MotorEffects, curves_over_several_columns_have_a_place_each) {
   std::ranges::sort(places);
   EXPECT_THAT(places, testing::ElementsAre(0U, 1U, 2U));
   EXPECT_EQ(to_toml(motor).find("column_2"), std::string::npos) << "the file names columns, not places";
-  EXPECT_THROW(motor_with("between_terminals", "per_dc_ampere", over("c") + over("a") + over("b") + over("d")), Failure);
+  EXPECT_THROW(motor_with("between_terminals", "per_dc_ampere", over("c") + over("a") + over("b") + over("d")), base::Failure);
 }
 
 const std::string kSensors = R"([effects.sensor_lag_stator]
@@ -210,8 +210,8 @@ TEST(MotorSensors, move_no_temperature_of_the_motor) {
   ASSERT_NE(find_parameter(motor, "effects.second_probe.offset"), nullptr);
   EXPECT_EQ(find_parameter(motor, "effects.second_probe.offset")->value, -1.5);
   EXPECT_EQ(datasheet_network(motor, nominal_sample(motor)).values(), datasheet_network(bare, nominal_sample(bare)).values());
-  Random one(1, 1);
-  Random other(1, 1);
+  base::Random one(1, 1);
+  base::Random other(1, 1);
   EXPECT_EQ(draw_sample(motor, one).values.terminal_resistance_ohm, draw_sample(bare, other).values.terminal_resistance_ohm);
   EXPECT_EQ(data_quality(motor), "datasheet");
 }
@@ -239,22 +239,22 @@ TEST(MotorSensors, sources_that_they_name_must_be_there) {
   EXPECT_THROW(motor_with("between_terminals", "per_dc_ampere", R"([effects.sensor_offset_stator]
 offset = { value = "1 K", origin = "measured", source = "nobody" }
 )"),
-               Failure);
+               base::Failure);
 }
 
 TEST(DataQuality, is_that_of_the_worst_thermal_value) {
   Motor motor = motor_with("between_terminals", "per_dc_ampere");
   EXPECT_EQ(data_quality(motor), "datasheet");
-  motor.parameters.at("terminal_resistance").origin = Origin::measured;
+  motor.parameters.at("terminal_resistance").origin = base::Origin::measured;
   EXPECT_EQ(data_quality(motor), "datasheet");
-  motor.parameters.at("terminal_resistance").origin = Origin::third_party;
+  motor.parameters.at("terminal_resistance").origin = base::Origin::third_party;
   EXPECT_EQ(data_quality(motor), "mixed");
-  motor.parameters.at("thermal_time_constant_stator").origin = Origin::estimated;
+  motor.parameters.at("thermal_time_constant_stator").origin = base::Origin::estimated;
   EXPECT_EQ(data_quality(motor), "estimated");
-  motor.parameters.at("thermal_time_constant_stator").origin = Origin::datasheet;
-  motor.parameters.at("winding_limit").origin = Origin::estimated;
+  motor.parameters.at("thermal_time_constant_stator").origin = base::Origin::datasheet;
+  motor.parameters.at("winding_limit").origin = base::Origin::estimated;
   EXPECT_EQ(data_quality(motor), "estimated");
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

@@ -6,7 +6,7 @@
 #include "motor/datasheet_network.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 namespace {
 
 // With cycles far shorter than the winding's time constant the ripple vanishes: mean and peak approach the RMS result.
@@ -37,4 +37,4 @@ TEST(OnOffLoad, runaway_is_over_the_limit) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

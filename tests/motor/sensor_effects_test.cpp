@@ -6,7 +6,7 @@
 
 #include "motor/sensor_effect.h"
 
-namespace heatsoak {
+namespace heatsoak::motor {
 namespace {
 
 Eigen::VectorXd vector(const std::vector<double>& values) {
@@ -138,4 +138,4 @@ TEST(SensorLag, FollowsItsDifferentialEquation) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::motor

@@ -16,7 +16,7 @@
 #include "base/diagnostic.h"
 #include "support/allocation_counter.h"
 
-namespace heatsoak {
+namespace heatsoak::ode {
 namespace {
 
 using State = std::span<const double>;
@@ -281,12 +281,12 @@ TEST_P(IntegratorTest, stop_may_be_rounding_away_from_the_current_time) {
 TEST_P(IntegratorTest, stop_before_the_current_time_is_a_bug_of_the_caller) {
   TestSystem system(1, run_as_clock);
   Integrator integrator(system, method(), {});
-  EXPECT_THROW(integrator.step(1.0), Failure);  // no start() yet
+  EXPECT_THROW(integrator.step(1.0), base::Failure);  // no start() yet
   integrator.start(1.0, std::array{0.0});
 
-  EXPECT_THROW(integrator.advance(0.9), Failure);
-  EXPECT_THROW(integrator.advance(std::numeric_limits<double>::quiet_NaN()), Failure);
-  EXPECT_THROW(integrator.start(1.0, std::array{0.0, 0.0}), Failure);
+  EXPECT_THROW(integrator.advance(0.9), base::Failure);
+  EXPECT_THROW(integrator.advance(std::numeric_limits<double>::quiet_NaN()), base::Failure);
+  EXPECT_THROW(integrator.start(1.0, std::array{0.0, 0.0}), base::Failure);
 }
 
 // --- events -----------------------------------------------------------------------------------------------
@@ -443,8 +443,8 @@ TEST_P(IntegratorTest, exception_of_the_system_arrives_as_thrown) {
       EXPECT_STREQ(thrown.what(), "no such winding");
       EXPECT_EQ(thrown.payload, 42);
     }
-    EXPECT_EQ(thrown_count, 1);                      // SUNDIALS may retry, but must not call the system again
-    EXPECT_THROW(integrator.advance(1.0), Failure);  // requires a new start()
+    EXPECT_EQ(thrown_count, 1);                            // SUNDIALS may retry, but must not call the system again
+    EXPECT_THROW(integrator.advance(1.0), base::Failure);  // requires a new start()
 
     armed = false;
     integrator.start(0.0, std::array{0.0});
@@ -461,8 +461,8 @@ std::string failure_of(Integrator& integrator, double stop_s) {
   try {
     integrator.advance(stop_s);
     ADD_FAILURE() << "no failure up to " << integrator.time_s() << " s";
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::numerics_failed);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::numerics_failed);
     message = failure.message();
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
@@ -608,4 +608,4 @@ INSTANTIATE_TEST_SUITE_P(methods, IntegratorTest, testing::Values(OdeMethod::cvo
                          });
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::ode

@@ -30,9 +30,9 @@ class CheckAnswer : public testing::Test {
   }
 
   void add(std::size_t check, std::string_view threshold, double limit, double value, bool is_evaluated, std::string reason) {
-    Outcome outcome;
+    check::Outcome outcome;
     outcome.check = &checks_.at(check);
-    outcome.limit = {find_threshold(threshold), limit, "", "", {"/repository/robot.toml", 10, 5}};
+    outcome.limit = {check::find_threshold(threshold), limit, "", "", {"/repository/robot.toml", 10, 5}};
     outcome.measured = {value, 0.0, ""};
     outcome.is_evaluated = is_evaluated;
     outcome.passed = reason.empty();
@@ -40,8 +40,8 @@ class CheckAnswer : public testing::Test {
     outcomes_.push_back(std::move(outcome));
   }
 
-  std::array<Check, 2> checks_;
-  std::vector<Outcome> outcomes_;
+  std::array<check::Check, 2> checks_;
+  std::vector<check::Outcome> outcomes_;
 };
 
 TEST_F(CheckAnswer, fits_the_terminal) {

@@ -16,13 +16,13 @@ using testing::Not;
 
 // The user of a calibrated file cannot state better intervals than the calibration.
 TEST(DefaultSpreadsText, AdviceForAFitAsksForNoChangeOfTheFile) {
-  Motor motor = read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
-  ParameterValue& fitted = motor.parameters.at("thermal_resistance_stator_ambient");
-  fitted.origin = Origin::measured;
-  fitted.spread = Spread{Spread::Kind::range, 0.999 * fitted.value, 1.001 * fitted.value, true};
-  ParameterValue& stated = motor.parameters.at("terminal_resistance");
+  motor::Motor motor = motor::read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
+  base::ParameterValue& fitted = motor.parameters.at("thermal_resistance_stator_ambient");
+  fitted.origin = base::Origin::measured;
+  fitted.spread = base::Spread{base::Spread::Kind::range, 0.999 * fitted.value, 1.001 * fitted.value, true};
+  base::ParameterValue& stated = motor.parameters.at("terminal_resistance");
   stated.spread.reset();
-  motor.fit = MotorFit{};
+  motor.fit = motor::MotorFit{};
   motor.fit->parameters = {"thermal_resistance_stator_ambient"};
   const std::string text = default_spreads_text({&motor, 1});
   const std::string of_file = text.substr(0, text.find('\n'));

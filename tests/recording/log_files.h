@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 class LogFile {
  public:
@@ -41,4 +41,4 @@ class LogFile {
   std::filesystem::path path_;
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -13,7 +13,7 @@
 #include "recording/read_recording.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 using ::testing::AllOf;
@@ -37,8 +37,8 @@ Recording read(const std::string& log, const std::string& mapping) {
 std::string failure_of(const std::string& log, const std::string& mapping) {
   try {
     read(log, mapping);
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
     return failure.what();
   }
   return "nothing";
@@ -143,7 +143,7 @@ TEST(Mapping, FilesNameTheirMotorAndConditions) {
   EXPECT_EQ(read_mapping(map, file.path()).conditions.at("fan"), "on");
   EXPECT_EQ(read_mapping(map, "run5.csv").conditions.at("fan"), "off");
   EXPECT_EQ(read_mapping(map, "run5.csv").motor, "a");
-  EXPECT_THROW(read_mapping(map, "other.csv"), Failure);
+  EXPECT_THROW(read_mapping(map, "other.csv"), base::Failure);
 }
 
 TEST(Mapping, two_files_of_one_name_may_not_contradict_each_other) {
@@ -215,4 +215,4 @@ TEST(Mapping, ColumnsAndExpressionsAreCheckedAgainstTheLog) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -10,7 +10,7 @@
 #include "recording/read_recording.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 namespace fs = std::filesystem;
@@ -148,4 +148,4 @@ TEST_F(MeasuredLogs, EveryFileOfTheOmniRobot) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -10,7 +10,7 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 namespace fs = std::filesystem;
@@ -51,8 +51,8 @@ TEST_F(NamedLogsTest, PartsOfOneLogKeepItsNameAndShareTheTime) {
   EXPECT_NEAR(parts.held_out[0].time_s.front(), 60.0, 1.0);
   EXPECT_EQ(parts.readings.size(), 2U);
   EXPECT_TRUE(parts.fitted[0].blocking_of_whole);
-  EXPECT_THROW(read_named_logs({log("monday") + "@70-20%"}, {}, {}), Failure);
+  EXPECT_THROW(read_named_logs({log("monday") + "@70-20%"}, {}, {}), base::Failure);
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -10,7 +10,7 @@
 #include "read_log.h"
 #include "recording/noise.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 using ::testing::ElementsAre;
@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(Synthetic, Resolution, testing::Values(0.0, 0.1, 0.25, 
 
 /// Second differences of white noise have six times its variance; a slope contributes nothing.
 TEST(Noise, WhiteNoiseOnASlope) {
-  Random random(3, 0);
+  base::Random random(3, 0);
   std::vector<double> values;
   for (int i = 0; i < 20000; ++i) {
     double normal = -6.0;
@@ -61,7 +61,7 @@ TEST(Noise, WhiteNoiseOnASlope) {
 
 /// A fifth of the samples has random values. The encoder's resolution must still be found.
 TEST(Noise, ResolutionAmongBadSamples) {
-  Random random(4, 0);
+  base::Random random(4, 0);
   std::vector<double> values;
   for (int i = 0; i < 5000; ++i) {
     values.push_back(random.uniform() < 0.2 ? 400.0 * random.uniform() - 200.0 : 0.0767 * std::round(200.0 * random.uniform()));
@@ -133,7 +133,7 @@ TEST(ClockOffsets, AMinuteIsFoundWhereTheCurrentDoesNotRepeatItself) {
     SyntheticLog log;
     log.delay_s = delay_s;
     log.current_A = [](double t) {
-      Random random(static_cast<std::uint64_t>(t / 20.0), 5);
+      base::Random random(static_cast<std::uint64_t>(t / 20.0), 5);
       return random.uniform() < 0.4 ? 0.0 : 6.0 * random.uniform();
     };
     const ClockOffset offset = read_text(log.csv()).quality.clock_offsets[0];
@@ -274,7 +274,7 @@ TEST(Suspicions, NoneWhereTheIronIsHeated) {
     std::vector<std::pair<double, double>> rows_C;
     double winding_C = 22.0;
     double stator_C = 22.0;
-    Random random(5, 0);
+    base::Random random(5, 0);
     for (std::size_t row = 0; row < 600; ++row) {
       rows_C.emplace_back(winding_C + 0.1 * random.uniform(), stator_C + 0.1 * random.uniform());
       for (int i = 0; i < 100; ++i) {
@@ -351,8 +351,8 @@ std::vector<std::string> lacks_of(const std::string& text) {
     try {
       require_thermal(result.recording, result.quality);
       ADD_FAILURE() << "did not refuse";
-    } catch (const Failure& failure) {
-      EXPECT_EQ(failure.code(), ExitCode::cannot_answer);
+    } catch (const base::Failure& failure) {
+      EXPECT_EQ(failure.code(), base::ExitCode::cannot_answer);
     }
   }
   return result.quality.thermal.lacks;
@@ -428,4 +428,4 @@ TEST(Suspicion, MinutesByRowsThatNoMotorFollows) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

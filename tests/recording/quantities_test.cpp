@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 std::string unit_of(const char* key) {
@@ -44,4 +44,4 @@ TEST(Quantities, TableIsSoundAndItsNamesEndInTheirUnits) {
 TEST(Quantities, NearestNameIsSuggested) { EXPECT_EQ(nearest_quantity("windng_C"), "; did you mean 'winding_C'?"); }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

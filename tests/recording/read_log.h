@@ -11,7 +11,7 @@
 #include "recording/read_recording.h"
 #include "synthetic_log.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 struct Read {
   Recording recording;
@@ -60,4 +60,4 @@ inline std::vector<int> lines_of(const LeftOut* entry) {
   return lines;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

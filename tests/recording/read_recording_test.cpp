@@ -14,7 +14,7 @@
 #include "recording/quality.h"
 #include "recording/write_recording.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 using ::testing::ElementsAre;
@@ -30,7 +30,7 @@ std::string failure_of(const std::string& text, const Mapping& mapping = {}) {
   RecordingReport report;
   try {
     read(text, report, mapping);
-  } catch (const Failure& failure) {
+  } catch (const base::Failure& failure) {
     return failure.what();
   }
   return "nothing";
@@ -154,13 +154,13 @@ TEST(ReadRecording, ExitCodesTellWhatIsWrong) {
     RecordingReport report;
     try {
       read(text, report);
-    } catch (const Failure& failure) {
+    } catch (const base::Failure& failure) {
       return failure.code();
     }
-    return ExitCode::done;
+    return base::ExitCode::done;
   };
-  EXPECT_EQ(code_of("time_s,winding_C\n5,20\n4,20\n3,20\n"), ExitCode::bad_input);
-  EXPECT_EQ(code_of("time_s,winding_C\n0,\n1,nan\n"), ExitCode::cannot_answer);
+  EXPECT_EQ(code_of("time_s,winding_C\n5,20\n4,20\n3,20\n"), base::ExitCode::bad_input);
+  EXPECT_EQ(code_of("time_s,winding_C\n0,\n1,nan\n"), base::ExitCode::cannot_answer);
 }
 
 /// Any damaged log must give a consistent recording or a Failure with the reason.
@@ -172,7 +172,7 @@ TEST(ReadRecording, DamagedLogsNeverCrash) {
   const std::string_view wrong_bytes = ",;\"\n\r #\0-+.eEnN9\xff\xef"sv;
   int failures = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    Random random(seed, 0);
+    base::Random random(seed, 0);
     std::string damaged = sound;
     const int hits = 1 + static_cast<int>(random.uniform() * 30.0);
     for (int hit = 0; hit < hits; ++hit) {
@@ -197,9 +197,9 @@ TEST(ReadRecording, DamagedLogsNeverCrash) {
       }
       EXPECT_EQ(std::ranges::adjacent_find(recording.time_s, std::greater_equal<>()), recording.time_s.end());
       assess(recording, report);
-    } catch (const Failure& failure) {
+    } catch (const base::Failure& failure) {
       ++failures;
-      EXPECT_NE(failure.code(), ExitCode::bug);
+      EXPECT_NE(failure.code(), base::ExitCode::bug);
       EXPECT_NE(std::string(failure.what()), "");
     }
   }
@@ -221,4 +221,4 @@ TEST(ReadRecording, CanonicalFormReadsBackTheSame) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

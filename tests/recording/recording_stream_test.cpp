@@ -14,7 +14,7 @@
 #include "recording/quality.h"
 #include "recording/read_recording.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 namespace {
 
 constexpr int kRows = 230'000;
@@ -29,7 +29,7 @@ struct Row {
 /// Uniform noise of ±0.05 K on a temperature that rises and falls, and a current with a pattern of some seconds.
 std::string log_text(const std::function<void(int, Row&)>& change) {
   std::string text = "time_s,winding_C,current_A\n";
-  Random random(7, 0);
+  base::Random random(7, 0);
   for (int i = 0; i < kRows; ++i) {
     const double t = kPeriod_s * i;
     Row row{t, 60.0 + 30.0 * std::sin(t / 300.0) + 0.1 * (random.uniform() - 0.5), 5.0 * std::sin(t)};
@@ -147,7 +147,7 @@ TEST(RecordingStream, SortedBackwardsIsRefused) {
   try {
     parts_of(file, report);
     FAIL() << "was read";
-  } catch (const Failure& failure) {
+  } catch (const base::Failure& failure) {
     EXPECT_THAT(failure.what(), testing::HasSubstr(":3:1: error: time_s: time does not increase"));
   }
 }
@@ -220,4 +220,4 @@ TEST(Thinned, KeepsEveryNth) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

@@ -10,7 +10,7 @@
 
 #include "base/random.h"
 
-namespace heatsoak {
+namespace heatsoak::recording {
 
 struct SyntheticLog {
   double period_s = 1.0;
@@ -24,7 +24,7 @@ struct SyntheticLog {
   /// Returns winding and stator temperatures per row.
   [[nodiscard]] std::vector<std::pair<double, double>> temperatures_C() const {
     constexpr double kStep_s = 0.01;
-    Random random(seed, 0);
+    base::Random random(seed, 0);
     std::vector<std::pair<double, double>> rows_C;
     double winding_C = 22.0;
     double stator_C = 22.0;
@@ -52,7 +52,7 @@ struct SyntheticLog {
   }
 
  private:
-  [[nodiscard]] double seen(double true_C, Random& random) const {
+  [[nodiscard]] double seen(double true_C, base::Random& random) const {
     // The sum of twelve uniform numbers is approximately normal.
     double normal = -6.0;
     for (int i = 0; i < 12; ++i) {
@@ -63,4 +63,4 @@ struct SyntheticLog {
   }
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::recording

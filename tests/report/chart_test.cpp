@@ -21,7 +21,7 @@
 #include "base/diagnostic.h"
 #include "base/files.h"
 
-namespace heatsoak {
+namespace heatsoak::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -199,7 +199,7 @@ class ChartTest : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   [[nodiscard]] std::string svg(const Chart& chart) const {
-    write_file(folder_ / "chart.svg", draw_svg(chart));
+    base::write_file(folder_ / "chart.svg", draw_svg(chart));
     std::ifstream in(folder_ / "chart.svg");
     return {std::istreambuf_iterator<char>(in), {}};
   }
@@ -443,11 +443,11 @@ TEST_F(ChartTest, DrawsWhereThereIsLittleToShow) {
   EXPECT_EQ(lines(elements, blue, 2).size(), 1U + 2U);  // plus one dot and two names in the legend
 }
 
-void expect_failure(const Chart& chart, const fs::path& path, ExitCode code, const std::string& words) {
+void expect_failure(const Chart& chart, const fs::path& path, base::ExitCode code, const std::string& words) {
   try {
-    write_file(path, draw_svg(chart));
+    base::write_file(path, draw_svg(chart));
     FAIL() << "wrote " << path;
-  } catch (const Failure& failure) {
+  } catch (const base::Failure& failure) {
     EXPECT_EQ(failure.code(), code);
     EXPECT_NE(std::string(failure.what()).find(words), std::string::npos) << failure.what();
   }
@@ -455,9 +455,9 @@ void expect_failure(const Chart& chart, const fs::path& path, ExitCode code, con
 
 TEST_F(ChartTest, UnwritablePathIsReportedAndLeavesNothing) {
   const fs::path missing = folder_ / "missing" / "chart.svg";
-  expect_failure(warm_up(), missing, ExitCode::bad_input, missing.string() + ": error: cannot be written: No such file");
+  expect_failure(warm_up(), missing, base::ExitCode::bad_input, missing.string() + ": error: cannot be written: No such file");
   fs::create_directories(folder_ / "taken" / "inside");
-  expect_failure(warm_up(), folder_ / "taken", ExitCode::bad_input, "Is a directory");
+  expect_failure(warm_up(), folder_ / "taken", base::ExitCode::bad_input, "Is a directory");
   EXPECT_EQ(files(), 1);
 }
 
@@ -469,7 +469,7 @@ TEST_F(ChartTest, BrokenLibraryIsABugAndKeepsTheOldPicture) {
   const char* usual = std::getenv("HEATSOAK_PLUGINS");
   const std::string before = usual != nullptr ? usual : "";
   setenv("HEATSOAK_PLUGINS", plugins.c_str(), 1);
-  expect_failure(Chart{}, folder_ / "chart.svg", ExitCode::bug, "heatsoak_charts.so");
+  expect_failure(Chart{}, folder_ / "chart.svg", base::ExitCode::bug, "heatsoak_charts.so");
   setenv("HEATSOAK_PLUGINS", before.c_str(), 1);  // an empty value counts as not set
   EXPECT_EQ(fs::file_size(folder_ / "chart.svg"), old.size());
   EXPECT_EQ(files(), 2);
@@ -478,9 +478,9 @@ TEST_F(ChartTest, BrokenLibraryIsABugAndKeepsTheOldPicture) {
 TEST_F(ChartTest, ColumnsOfDifferentLengthAreABug) {
   Chart chart = warm_up();
   chart.panels[0].curves[1].y.pop_back();
-  expect_failure(chart, folder_ / "chart.svg", ExitCode::bug, "maxon_ec_45_flat_70w");
+  expect_failure(chart, folder_ / "chart.svg", base::ExitCode::bug, "maxon_ec_45_flat_70w");
   EXPECT_EQ(files(), 0);
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::report

@@ -8,7 +8,7 @@
 #include "robots_for_tests.h"
 #include "support/allocation_counter.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 TEST(Allocation, no_step_takes_memory) {
@@ -32,4 +32,4 @@ TEST(Allocation, no_step_takes_memory) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -8,7 +8,7 @@
 
 #include "base/random.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 const std::filesystem::path kRobots = std::filesystem::path(HEATSOAK_SOURCE_DIR) / "robot_core/robots";
@@ -40,7 +40,7 @@ TEST(AssumedFriction, ranges_include_the_measured_robots) {
     EXPECT_FALSE(has_friction(assumed));
     for (const RobotParameterSpec& each : robot_parameter_specs()) {
       if (each.table == "friction" && each.value.in(stated)) {
-        const Spread& range = assumed.parameters.at("friction." + std::string(each.spec.key)).spread.value();
+        const base::Spread& range = assumed.parameters.at("friction." + std::string(each.spec.key)).spread.value();
         EXPECT_GE(*each.value.in(stated), range.low) << id << " " << each.spec.key;
         EXPECT_LE(*each.value.in(stated), range.high) << id << " " << each.spec.key;
       }
@@ -50,8 +50,8 @@ TEST(AssumedFriction, ranges_include_the_measured_robots) {
 
 TEST(AssumedFriction, draws_stay_in_their_ranges) {
   const Robot assumed = with_assumed_friction(without_friction(read_robot(kRobots / "tigers_v2020.toml")));
-  const Spread drag = assumed.parameters.at("friction.roller_drag").spread.value();
-  Random random(1, 0);
+  const base::Spread drag = assumed.parameters.at("friction.roller_drag").spread.value();
+  base::Random random(1, 0);
   double least = 1.0;
   double most = 0.0;
   for (int i = 0; i < 200; ++i) {
@@ -65,4 +65,4 @@ TEST(AssumedFriction, draws_stay_in_their_ranges) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

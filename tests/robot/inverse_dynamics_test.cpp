@@ -10,7 +10,7 @@
 #include "robot/plant.h"
 #include "robots_for_tests.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 constexpr double kWeight_N = 2.5 * kGravity_m_per_s2;
@@ -229,7 +229,7 @@ TEST(InverseDynamics, push_at_standstill_is_a_stall) {
 /// TIGERs measured 2.65 N in translation and 0.097 N m in rotation. Both include the drag of the motors.
 TEST(Friction, of_tigers_is_what_they_measured) {
   const Robot robot = shipped_robot("tigers_v2020");
-  const MotorValues motor = shipped_motor("nanotec_df45l024048_a2").nominal;
+  const motor::MotorValues motor = shipped_motor("nanotec_df45l024048_a2").nominal;
   BodyConfig body = make_body(robot, motor);
   body.rolling_efficiency = 1.0;
   body.friction.wheel_torque_Nm += motor.torque_constant_Nm_per_A * motor.no_load_current_A;
@@ -253,9 +253,9 @@ TEST(Friction, of_tigers_is_what_they_measured) {
 /// Curve of Twente's firmware for wheel 1, with θ_f measured from left to ahead: 1.23 V + 0.46 V·sin(2θ_f − 0.987).
 TEST(Friction, of_twente_is_their_curve) {
   const Robot robot = shipped_robot("roboteam_twente_v2024");
-  const MotorValues motor = shipped_motor("maxon_ecx_flat_32l_48v").nominal;
+  const motor::MotorValues motor = shipped_motor("maxon_ecx_flat_32l_48v").nominal;
   // The team divides its voltages by the winding's resistance without the motor controller's.
-  const DriveConstants drive{motor.terminal_resistance_ohm, motor.torque_constant_Nm_per_A, drag_torque_Nm(motor)};
+  const DriveConstants drive{motor.terminal_resistance_ohm, motor.torque_constant_Nm_per_A, motor::drag_torque_Nm(motor)};
   BodyConfig body = make_body(robot, motor);
   EXPECT_EQ(body.traction.roller_drag_ratio, 0.0);
   body.friction.wheel_damping_Nm_s_per_rad = 0.0;
@@ -365,9 +365,9 @@ TEST(InverseDynamics, names_every_missing_value) {
   try {
     make_body(robot, bare_motor());
     FAIL();
-  } catch (const Failure& failure) {
+  } catch (const base::Failure& failure) {
     EXPECT_EQ(failure.diagnostics().size(), 2U);
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
   }
 }
 
@@ -396,4 +396,4 @@ TEST(LargestPush, is_where_the_first_force_is_left_untransmitted) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -8,7 +8,7 @@
 
 #include "robots_for_tests.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
@@ -155,10 +155,10 @@ TEST(Kinematics, frames_turn_with_the_yaw) {
 TEST(Kinematics, robots_that_cannot_be_driven_are_refused) {
   Robot five = bare_robot();
   five.wheels.axis_rad.push_back(0.0);
-  EXPECT_THROW(make_kinematics(five), Failure);
+  EXPECT_THROW(make_kinematics(five), base::Failure);
   Robot parallel = bare_robot();
   parallel.wheels.axis_rad = {0.3, 0.3, 0.3};
-  EXPECT_THROW(make_kinematics(parallel), Failure);
+  EXPECT_THROW(make_kinematics(parallel), base::Failure);
 }
 
 // Two pairs of axles with an angle ε between them: ahead the wheels roll at about ε/2 per unit of speed, to the left at 1.
@@ -169,7 +169,7 @@ TEST(Kinematics, axles_that_are_next_to_parallel_are_refused) {
     return make_kinematics(robot);
   };
   for (const double angle_deg : {0.0, 1e-9, 1e-7, 1e-3, 0.03}) {
-    EXPECT_THROW((void)with_angle(angle_deg * kDeg), Failure) << angle_deg;
+    EXPECT_THROW((void)with_angle(angle_deg * kDeg), base::Failure) << angle_deg;
   }
   for (const double radius_m : {0.02, 0.08, 1.5}) {
     robot.wheels.contact_radius_m = radius_m;
@@ -182,4 +182,4 @@ TEST(Kinematics, axles_that_are_next_to_parallel_are_refused) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

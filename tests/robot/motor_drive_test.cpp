@@ -9,12 +9,12 @@
 #include "motor/datasheet_network.h"
 #include "thermal/network.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 /// Motor with K_t = 0.03 N m/A, R = 0.5 Ω, drag 0.006 N m.
-MotorValues motor() {
-  MotorValues values;
+motor::MotorValues motor() {
+  motor::MotorValues values;
   values.terminal_resistance_ohm = 0.5;
   values.torque_constant_Nm_per_A = 0.03;
   values.no_load_current_A = 0.2;
@@ -191,7 +191,7 @@ TEST(Motor, power_at_the_terminals_is_loss_and_shaft) {
 // --- operating point --------------------------------------------------------------------------------------
 
 TEST(OperatingPoint, has_no_signs) {
-  const OperatingPoint<double> at = operating_point(drive_point(motor(), robot(), {-0.09, -100.0}), motor(), robot(), 31.0);
+  const thermal::OperatingPoint<double> at = operating_point(drive_point(motor(), robot(), {-0.09, -100.0}), motor(), robot(), 31.0);
   EXPECT_NEAR(at.current_rms_A, 3.2, 1e-13);
   EXPECT_EQ(at.speed_mean_rad_per_s, 100.0);
   EXPECT_EQ(at.speed_rms_rad_per_s, 100.0);
@@ -202,7 +202,7 @@ TEST(OperatingPoint, has_no_signs) {
 TEST(OperatingPoint, has_powers_voltage_and_the_vehicle_of_a_driving_wheel) {
   Robot wheeled = robot();
   wheeled.wheels.radius_m = 0.03;
-  const OperatingPoint<double> at = operating_point(drive_point(motor(), wheeled, {0.09, 100.0}), motor(), wheeled, 25.0);
+  const thermal::OperatingPoint<double> at = operating_point(drive_point(motor(), wheeled, {0.09, 100.0}), motor(), wheeled, 25.0);
   EXPECT_NEAR(at.shaft_power_W, 9.0, 1e-12);
   EXPECT_NEAR(at.input_power_W, 14.72, 1e-12);
   EXPECT_EQ(at.bus_V, 24.0);
@@ -214,7 +214,7 @@ TEST(OperatingPoint, has_powers_voltage_and_the_vehicle_of_a_driving_wheel) {
 
 // Braking, turning backwards: I = (0.09 − 0.006)/0.03 = 2.8 A, −9 W at the shaft, 2.8·0.5 − 3 = −1.6 V, −4.48 W, which is regenerated.
 TEST(OperatingPoint, has_negative_powers_where_the_motor_brakes) {
-  const OperatingPoint<double> at = operating_point(drive_point(motor(), robot(), {0.09, -100.0}), motor(), robot(), 25.0);
+  const thermal::OperatingPoint<double> at = operating_point(drive_point(motor(), robot(), {0.09, -100.0}), motor(), robot(), 25.0);
   EXPECT_NEAR(at.shaft_power_W, -9.0, 1e-12);
   EXPECT_NEAR(at.input_power_W, -4.48, 1e-12);
   EXPECT_NEAR(at.modulation_ratio, 1.6 / 24.0, 1e-13);
@@ -226,7 +226,7 @@ TEST(OperatingPoint, has_the_wheels_speed_behind_a_gear_and_never_more_modulatio
   Robot geared = robot();
   geared.drive.gear_ratio = 4.0;
   geared.wheels.radius_m = 0.03;
-  const OperatingPoint<double> at = operating_point(drive_point(motor(), geared, {0.1, 50.0}), motor(), geared, 25.0);
+  const thermal::OperatingPoint<double> at = operating_point(drive_point(motor(), geared, {0.1, 50.0}), motor(), geared, 25.0);
   EXPECT_NEAR(at.vehicle_speed_m_per_s, 1.5, 1e-13);
   EXPECT_EQ(at.velocity_rad_per_s, 200.0);
   EXPECT_EQ(operating_point(drive_point(motor(), geared, {9.0, 100.0}), motor(), geared, 25.0).modulation_ratio, 1.0);
@@ -250,4 +250,4 @@ TEST(OperatingPoint, sinusoidal_commutation_heats_0_912_of_block) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -8,7 +8,7 @@
 #include "robot/inverse_dynamics.h"
 #include "robots_for_tests.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 PlantConfig bare_plant(double period_s = 0.001) { return make_plant(bare_robot(), bare_motor(), period_s); }
@@ -49,7 +49,7 @@ struct Balance {
 };
 
 /// Simulates one second of lively(). The input is held over each coarse step, so that a finer period has the same input.
-Balance balance_of_a_second(const Robot& robot, const MotorValues& motor, int steps_per_hold) {
+Balance balance_of_a_second(const Robot& robot, const motor::MotorValues& motor, int steps_per_hold) {
   constexpr double kHold_s = 0.002;
   PlantConfig plant = make_plant(robot, motor, kHold_s / steps_per_hold);
   plant.motor.torque_constant_fall_per_K = 0.001;
@@ -273,11 +273,11 @@ TEST(Plant, an_empty_battery_gives_nothing) {
 TEST(Plant, a_robot_that_falls_over_is_refused) {
   Robot robot = bare_robot();
   robot.wheels.axis_rad = {-0.2, 0.0, 0.2};
-  EXPECT_THROW(make_plant(robot, bare_motor(), 0.001), Failure);
+  EXPECT_THROW(make_plant(robot, bare_motor(), 0.001), base::Failure);
   robot.wheels.axis_rad = {-2.0, 0.0, 2.0};
   EXPECT_NO_THROW(make_plant(robot, bare_motor(), 0.001));
   robot.body.center_of_gravity_x_m = -0.05;
-  EXPECT_THROW(make_plant(robot, bare_motor(), 0.001), Failure);
+  EXPECT_THROW(make_plant(robot, bare_motor(), 0.001), base::Failure);
   robot = bare_robot();
   robot.body.center_of_gravity_x_m = 0.03;  // one wheel of four may lift off, three carry the load
   EXPECT_NO_THROW(make_plant(robot, bare_motor(), 0.001));
@@ -351,7 +351,7 @@ TEST(Plant, mirrored_commands_have_the_mirrored_path) {
 TEST(Plant, follows_the_inverse_dynamics) {
   Robot robot = lossy_robot();
   robot.traction.slip_speed_m_per_s = 0.005;
-  const MotorValues motor = bare_motor();
+  const motor::MotorValues motor = bare_motor();
   const PlantConfig plant = make_plant(robot, motor, 0.00025);
   const BodyConfig& body = plant.body;
   PlantState state = plant_at_rest(plant);
@@ -404,9 +404,9 @@ TEST(Robots, that_are_shipped_can_be_simulated_and_drawn) {
     const Robot robot = read_robot(entry.path());
     EXPECT_GT(robot.limits.speed_m_per_s.value(), 1.0);
     EXPECT_GT(robot.limits.yaw_acceleration_rad_per_s2.value(), 1.0);
-    const MotorValues motor =
+    const motor::MotorValues motor =
         shipped_motor(robot.drive.motor).nominal.rotor_inertia_kg_m2 ? shipped_motor(robot.drive.motor).nominal : lossy_motor();
-    Random random(1, 2);
+    base::Random random(1, 2);
     const Robot drawn = draw_sample(robot, random);
     EXPECT_NE(drawn.body.yaw_inertia_kg_m2.value(), robot.body.yaw_inertia_kg_m2.value());
     const PlantConfig plant = make_plant(drawn, motor, 0.001);
@@ -424,4 +424,4 @@ TEST(Robots, that_are_shipped_can_be_simulated_and_drawn) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -10,7 +10,7 @@
 #include "robot/robot_lint.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 const std::filesystem::path kRobotFiles = kSource / "robot_core/robots";
@@ -26,8 +26,8 @@ std::vector<std::string> findings_with(const std::string& pattern, const std::st
   const std::string changed = std::regex_replace(text, std::regex(pattern), by, std::regex_constants::format_first_only);
   EXPECT_NE(changed, text) << pattern;
   std::vector<std::string> found;
-  for (const LintFinding& each : lint(parse_robot(changed, "robot.toml"), std::vector<std::string>{"maxon_ecx_flat_32l_48v"})) {
-    found.push_back(each.check + " " + std::string(to_string(each.level)));
+  for (const motor::LintFinding& each : lint(parse_robot(changed, "robot.toml"), std::vector<std::string>{"maxon_ecx_flat_32l_48v"})) {
+    found.push_back(each.check + " " + std::string(motor::to_string(each.level)));
   }
   return found;
 }
@@ -75,4 +75,4 @@ TEST(RobotPlausibility, robots_of_the_project_pass) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

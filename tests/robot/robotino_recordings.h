@@ -10,7 +10,7 @@
 #include "../support/measured_data.h"
 #include "robot/kinematics.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 /// Means over the steady part of one run.
 struct SteadyRun {
@@ -90,4 +90,4 @@ inline std::vector<SteadyRun> steady_runs(const std::filesystem::path& surface, 
   return runs;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

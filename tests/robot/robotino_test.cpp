@@ -13,15 +13,15 @@
 #include "robotino_recordings.h"
 #include "robots_for_tests.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 namespace {
 
 constexpr double kGear = 16.0;
 constexpr double kTorque_Nm_per_A = 0.0514 * kGear;  // at the wheel
 constexpr double kStanding_rad_per_s = 0.5;          // below this motor speed the gear holds the wheel
 
-MotorValues robotino_motor() {
-  MotorValues motor;
+motor::MotorValues robotino_motor() {
+  motor::MotorValues motor;
   motor.terminal_resistance_ohm = 5.95;
   motor.torque_constant_Nm_per_A = 0.0514;
   motor.no_load_current_A = 0.0;  // included in the wheel's friction
@@ -360,4 +360,4 @@ TEST_F(Robotino, opposite_headings_tell_the_spread) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

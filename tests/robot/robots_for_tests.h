@@ -10,7 +10,7 @@
 #include "robot/robot.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::robot {
 
 /// Four wheels at right angles to each other without friction. Each test adds the losses that it needs.
 inline Robot bare_robot() {
@@ -53,8 +53,8 @@ inline Robot lossy_robot() {
   return robot;
 }
 
-inline MotorValues bare_motor() {
-  MotorValues motor;
+inline motor::MotorValues bare_motor() {
+  motor::MotorValues motor;
   motor.terminal_resistance_ohm = 0.6;
   motor.torque_constant_Nm_per_A = 0.035;
   motor.no_load_current_A = 0.0;
@@ -63,12 +63,12 @@ inline MotorValues bare_motor() {
   return motor;
 }
 
-inline MotorValues lossy_motor() {
-  MotorValues motor = bare_motor();
+inline motor::MotorValues lossy_motor() {
+  motor::MotorValues motor = bare_motor();
   motor.no_load_current_A = 0.2;
   return motor;
 }
 
 inline double magnitude(const Wrench& wrench) { return std::abs(wrench.x_N) + std::abs(wrench.y_N) + std::abs(wrench.yaw_Nm) / 0.08; }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::robot

@@ -12,7 +12,7 @@
 #include "support/shipped.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 namespace {
 
 const ChangeEffect& of(const std::vector<ChangeEffect>& all, ChangedQuantity quantity) {
@@ -21,15 +21,15 @@ const ChangeEffect& of(const std::vector<ChangeEffect>& all, ChangedQuantity qua
 
 class Changes : public testing::Test {
  protected:
-  Robot robot_ = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
-  Motor motor_ = read_motor(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml");
+  robot::Robot robot_ = robot::read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+  motor::Motor motor_ = motor::read_motor(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml");
 };
 
 // Copper loss at steady state is proportional to the square of the torque. A gear of 1.25 reduces it, and its temperature rise, to 0.64.
 // A cycle of 4 s on and 6 s off becomes 4 s and 9 s. At most, the rise falls to 10/13 times the ratio of the resistances at 67 and 80 °C,
 // 0.957, that is by 0.264. The ripple of the winding does not fall.
 TEST_F(Changes, gear_and_pauses_act_on_a_fixed_load) {
-  const Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/paper_intermittent.toml");
   const std::vector<ChangeEffect> all = effects_of_changes(robot_, duty, motor_, {}, 1, 0);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_GT(of(all, ChangedQuantity::gear_ratio).saved_K, 0.3 * 55.0);
@@ -39,9 +39,9 @@ TEST_F(Changes, gear_and_pauses_act_on_a_fixed_load) {
 }
 
 TEST_F(Changes, another_motor_is_named_only_if_it_passes) {
-  const Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
-  const Motor own = read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
-  const std::vector<Motor> others{own, motor_, read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml")};
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/paper_intermittent.toml");
+  const motor::Motor own = motor::read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
+  const std::vector<motor::Motor> others{own, motor_, motor::read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml")};
   const std::vector<ChangeEffect> all = effects_of_changes(robot_, duty, own, others, 1, 0);
   const ChangeEffect& other = of(all, ChangedQuantity::motor);
   EXPECT_EQ(other.other_motor, "maxon_ecx_flat_42m_24v") << "it has the largest margin";
@@ -53,15 +53,15 @@ TEST_F(Changes, another_motor_is_named_only_if_it_passes) {
 
 // At a tenth of the battery's voltage the speed cannot be reached. A higher gear ratio would need even more voltage.
 TEST_F(Changes, a_motor_that_lacks_voltage_gets_a_lower_gear) {
-  const Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
-  Robot weak = robot_;
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/paper_intermittent.toml");
+  robot::Robot weak = robot_;
   weak.battery.nominal_V = 0.1 * robot_.battery.nominal_V;
   const std::vector<ChangeEffect> all = effects_of_changes(weak, duty, motor_, {}, 1, 0);
   EXPECT_LT(of(all, ChangedQuantity::gear_ratio).factor, 1.0);
 }
 
 TEST_F(Changes, a_match_heats_less_with_less_mass_jerk_and_wheel) {
-  const Duty duty = read_duty(kSource / "duty_profiles/division_b_match.toml");
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/division_b_match.toml");
   const std::vector<ChangeEffect> all = effects_of_changes(robot_, duty, motor_, {}, 1, 0);
   EXPECT_EQ(all.size(), 8U);
   for (const ChangedQuantity each :
@@ -80,10 +80,10 @@ TEST_F(Changes, a_match_heats_less_with_less_mass_jerk_and_wheel) {
 }
 
 /// Counts how often a match is played.
-class CountedMatch final : public DutyShape {
+class CountedMatch final : public duty::DutyShape {
  public:
-  explicit CountedMatch(std::shared_ptr<const DutyShape> match) : match_(std::move(match)) {}
-  [[nodiscard]] std::vector<WheelDemand> demand(const Robot& robot, std::uint64_t seed) const override {
+  explicit CountedMatch(std::shared_ptr<const duty::DutyShape> match) : match_(std::move(match)) {}
+  [[nodiscard]] std::vector<duty::WheelDemand> demand(const robot::Robot& robot, std::uint64_t seed) const override {
     ++played;
     return match_->demand(robot, seed);
   }
@@ -92,15 +92,15 @@ class CountedMatch final : public DutyShape {
   mutable std::atomic<int> played = 0;
 
  private:
-  std::shared_ptr<const DutyShape> match_;
+  std::shared_ptr<const duty::DutyShape> match_;
 };
 
 // Games take most of the time. Six changes act on the wheels' loads: acceleration, jerk, speed, yaw acceleration, mass and wheel radius.
 TEST_F(Changes, games_are_played_again_only_for_changes_of_the_loads) {
-  Duty duty = read_duty(kSource / "duty_profiles/division_b_match.toml");
+  duty::Duty duty = duty::read_duty(kSource / "duty_profiles/division_b_match.toml");
   const auto counted = std::make_shared<CountedMatch>(duty.shape_data);
   duty.shape_data = counted;
-  const Motor other = read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
+  const motor::Motor other = motor::read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
   const std::vector<ChangeEffect> all = effects_of_changes(robot_, duty, motor_, std::span(&other, 1), 1, 0);
   EXPECT_EQ(all.size(), 9U);
   EXPECT_EQ(counted->played, kChangeGames * (1 + 6));
@@ -108,19 +108,19 @@ TEST_F(Changes, games_are_played_again_only_for_changes_of_the_loads) {
 
 // Only a motor that can still have the largest margin is evaluated in all games; the result is that of all motors in all games.
 TEST_F(Changes, the_best_other_motor_is_that_of_a_full_search) {
-  const Duty duty = read_duty(kSource / "duty_profiles/division_b_match.toml");
-  std::vector<Motor> others;
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/division_b_match.toml");
+  std::vector<motor::Motor> others;
   for (const std::string_view id :
        {"maxon_ecx_flat_42m_24v", "nanotec_df45l024048_a2", "maxon_ecx_flat_32l_48v", "maxon_ecx_flat_42m_48v"}) {
-    others.push_back(read_motor(kSource / "motor_db" / (std::string(id) + ".toml")));
+    others.push_back(motor::read_motor(kSource / "motor_db" / (std::string(id) + ".toml")));
   }
   std::string best;
   double most_K = -1e9;
-  for (const Motor& each : others) {
+  for (const motor::Motor& each : others) {
     double margin_K = 1e9;
     bool passes = true;
     for (int game = 0; game < kChangeGames; ++game) {
-      const std::vector<WheelDemand> wheels = duty.demand(robot_, 1 + static_cast<std::uint64_t>(game));
+      const std::vector<duty::WheelDemand> wheels = duty.demand(robot_, 1 + static_cast<std::uint64_t>(game));
       const MotorEvaluation result = evaluate(robot_, duty, wheels, std::span(&each, 1), {.samples = 0}).front();
       margin_K = std::min(margin_K, nearest_margin_K(result));
       passes = passes && result.verdict == Verdict::pass;
@@ -134,4 +134,4 @@ TEST_F(Changes, the_best_other_motor_is_that_of_a_full_search) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::select

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <random>
 
-namespace heatsoak {
+namespace heatsoak::select {
 namespace {
 
 /// Motor with K_t = 0.03 N m/A, R = 0.5 Ω, drag 0.006 N m.
-MotorValues motor() {
-  MotorValues values;
+motor::MotorValues motor() {
+  motor::MotorValues values;
   values.terminal_resistance_ohm = 0.5;
   values.torque_constant_Nm_per_A = 0.03;
   values.no_load_current_A = 0.2;
@@ -18,8 +18,8 @@ MotorValues motor() {
   return values;
 }
 
-Robot robot() {
-  Robot made;
+robot::Robot robot() {
+  robot::Robot made;
   made.battery.nominal_V = 24.0;
   made.wheels.radius_m = 0.028;
   made.drive.gear_ratio = 2.0;
@@ -35,10 +35,10 @@ struct Means {
 };
 
 /// Time means over the moments, with each moment as a separate point.
-Means means_of_moments(const std::vector<WheelLoad>& loads) {
+Means means_of_moments(const std::vector<robot::WheelLoad>& loads) {
   Means means;
-  for (const WheelLoad& load : loads) {
-    const OperatingPoint<double> at = operating_point(drive_point(motor(), robot(), load), motor(), robot(), 25.0);
+  for (const robot::WheelLoad& load : loads) {
+    const thermal::OperatingPoint<double> at = robot::operating_point(robot::drive_point(motor(), robot(), load), motor(), robot(), 25.0);
     const auto share = 1.0 / static_cast<double>(loads.size());
     means.shaft_W += share * at.shaft_power_W;
     means.input_W += share * at.input_power_W;
@@ -54,18 +54,18 @@ TEST(OperatingPointOfABin, has_the_means_of_its_moments) {
   std::mt19937_64 engine(1200);
   for (const double direction : {1.0, -1.0}) {
     for (int i = 0; i < 50; ++i) {
-      std::vector<WheelLoad> loads;
-      DemandGatherer gatherer("wheel", 1.0, {});
+      std::vector<robot::WheelLoad> loads;
+      duty::DemandGatherer gatherer("wheel", 1.0, {});
       for (int k = 0; k < 100; ++k) {
         const double drawn_rad_per_s = std::uniform_real_distribution(-150.0, 150.0)(engine);
-        const double speed_rad_per_s = std::copysign(std::max(std::abs(drawn_rad_per_s), kStandstill_rad_per_s), drawn_rad_per_s);
+        const double speed_rad_per_s = std::copysign(std::max(std::abs(drawn_rad_per_s), duty::kStandstill_rad_per_s), drawn_rad_per_s);
         const double torque_Nm = direction * std::copysign(std::uniform_real_distribution(0.0, 0.1)(engine), speed_rad_per_s);
         loads.push_back({torque_Nm, speed_rad_per_s});
         gatherer.add(0.01, torque_Nm, speed_rad_per_s);
       }
-      const WheelDemand demand = gatherer.finish();
+      const duty::WheelDemand demand = gatherer.finish();
       ASSERT_EQ(demand.bins.size(), 1U);
-      const OperatingPoint<double> at = operating_point(motor(), robot(), DutyKind::torque, demand.bins[0], {25.0, 1.0});
+      const thermal::OperatingPoint<double> at = operating_point(motor(), robot(), duty::DutyKind::torque, demand.bins[0], {25.0, 1.0});
       const Means expected = means_of_moments(loads);
       EXPECT_NEAR(at.shaft_power_W, expected.shaft_W, 1e-9);
       EXPECT_NEAR(at.input_power_W, expected.input_W, 1e-9);
@@ -78,8 +78,8 @@ TEST(OperatingPointOfABin, has_the_means_of_its_moments) {
 }
 
 TEST(OperatingPointOfABin, asked_for_more_than_the_supply_gives_the_shaft_gets_less) {
-  const LoadBin bin = constant_bin(1.0, 0.8, 300.0, 0.0);  // 15 A would need 25.5 V, of which 18 V are back-EMF
-  const OperatingPoint<double> at = operating_point(motor(), robot(), DutyKind::torque, bin, {25.0, 1.0});
+  const duty::LoadBin bin = duty::constant_bin(1.0, 0.8, 300.0, 0.0);  // 15 A would need 25.5 V, of which 18 V are back-EMF
+  const thermal::OperatingPoint<double> at = operating_point(motor(), robot(), duty::DutyKind::torque, bin, {25.0, 1.0});
   EXPECT_GT(at.shaft_power_W, 0.0);
   EXPECT_LT(at.shaft_power_W, 240.0);
   EXPECT_NEAR(at.modulation_ratio, 1.0, 1e-12);
@@ -89,11 +89,11 @@ TEST(OperatingPointOfABin, asked_for_more_than_the_supply_gives_the_shaft_gets_l
 }
 
 TEST(OperatingPointOfABin, of_a_given_current_has_the_power_that_the_current_makes) {
-  const LoadBin bin = constant_bin(1.0, 0.0, 50.0, 4.0);
-  const OperatingPoint<double> at = operating_point(motor(), robot(), DutyKind::current, bin, {25.0, 1.0});
+  const duty::LoadBin bin = duty::constant_bin(1.0, 0.0, 50.0, 4.0);
+  const thermal::OperatingPoint<double> at = operating_point(motor(), robot(), duty::DutyKind::current, bin, {25.0, 1.0});
   EXPECT_NEAR(at.shaft_power_W, (0.03 * 4.0 - 0.006) * 100.0, 1e-12);
   EXPECT_NEAR(at.input_power_W, 4.0 * (4.0 * 0.5 + 0.03 * 100.0), 1e-12);
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::select

@@ -14,7 +14,7 @@
 #include "select/load_simulation.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 namespace {
 
 constexpr const char* kBase = "maxon_ecx_flat_42m_24v";
@@ -29,7 +29,7 @@ class MotorFile {
   MotorFile(const MotorFile&) = delete;
   MotorFile& operator=(const MotorFile&) = delete;
   ~MotorFile() { std::filesystem::remove(path_); }
-  [[nodiscard]] Motor read() const { return read_motor(path_); }
+  [[nodiscard]] motor::Motor read() const { return motor::read_motor(path_); }
 
  private:
   /// Returns a unique name, because tests run in parallel and one test reads several files.
@@ -66,17 +66,17 @@ struct ClosedForm {
 class EffectsOfAFile : public testing::Test {
  protected:
   EffectsOfAFile()
-      : robot_(read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml")),
-        duty_(read_duty(kSource / "duty_profiles/paper_intermittent.toml")) {
+      : robot_(robot::read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml")),
+        duty_(duty::read_duty(kSource / "duty_profiles/paper_intermittent.toml")) {
     give(duty_, {{300.0, 0.08, 60.0, 0.0}, {300.0, 0.0, 0.0, 0.0}, {200.0, 0.05, 40.0, 0.0}});
   }
-  [[nodiscard]] Trace trace(const Motor& motor) const {
+  [[nodiscard]] Trace trace(const motor::Motor& motor) const {
     return simulate_load({.robot = robot_, .motor = motor, .duty = duty_, .every_s = 5.0}).trace;
   }
-  [[nodiscard]] MotorEvaluation evaluation(const Motor& motor, int samples) const {
+  [[nodiscard]] MotorEvaluation evaluation(const motor::Motor& motor, int samples) const {
     EvaluateOptions options;
     options.samples = samples;
-    const std::vector<Motor> one{motor};
+    const std::vector<motor::Motor> one{motor};
     return evaluate(robot_, duty_, duty_.demand(robot_, 1), one, options).front();
   }
   static double booked_W(const Trace& trace, std::string_view effect, std::string_view node) {
@@ -87,8 +87,8 @@ class EffectsOfAFile : public testing::Test {
     return all_W;
   }
 
-  Robot robot_;
-  Duty duty_;
+  robot::Robot robot_;
+  duty::Duty duty_;
 };
 
 TEST_F(EffectsOfAFile, balance_closes_with_a_node_of_an_effects_own) {
@@ -138,14 +138,14 @@ TEST_F(EffectsOfAFile, evaluate_shows_them_in_the_nominal_run_and_in_the_samples
 }
 
 /// Sets a nearly zero spread. Without any spread the default would apply.
-void make_certain(ParameterValue& figure) {
-  figure.spread = Spread{Spread::Kind::range, figure.value - 1e-9 * std::abs(figure.value), figure.value, figure.value > 0.0};
+void make_certain(base::ParameterValue& figure) {
+  figure.spread = base::Spread{base::Spread::Kind::range, figure.value - 1e-9 * std::abs(figure.value), figure.value, figure.value > 0.0};
 }
 
 /// Samples with nearly zero spread must equal the nominal run. The ensemble supports additional nodes and all quantities.
 TEST_F(EffectsOfAFile, samples_agree_with_the_reference_where_nothing_is_uncertain) {
   std::string everything;
-  for (const EffectType& type : all_effects()) {
+  for (const thermal::EffectType& type : thermal::all_effects()) {
     if (!type.candidacy.size_parameter) {
       continue;
     }
@@ -156,18 +156,18 @@ TEST_F(EffectsOfAFile, samples_agree_with_the_reference_where_nothing_is_uncerta
       everything += estimated(std::string(type.parameters[i].key), std::to_string(values[i]) + " " + std::string(type.parameters[i].unit));
     }
   }
-  Motor motor = MotorFile(everything).read();
+  motor::Motor motor = MotorFile(everything).read();
   for (auto& [key, figure] : motor.parameters) {
     make_certain(figure);
   }
-  for (MotorEffect& effect : motor.effects) {
+  for (motor::MotorEffect& effect : motor.effects) {
     std::ranges::for_each(effect.parameters, make_certain);
   }
   duty_.ambient_C.spread.reset();
   duty_.load.spread.reset();
   EvaluateOptions options;
   options.samples = 8;
-  const std::vector<Motor> one{motor};
+  const std::vector<motor::Motor> one{motor};
   const MotorEvaluation result = evaluate_as_stated(robot_, duty_, duty_.demand(robot_, 1), one, options).front();
   EXPECT_NEAR(result.winding_peak_C.p50, result.winding_peak_C.nominal, 2e-3);
   EXPECT_NEAR(result.stator_peak_C.p50, result.stator_peak_C.nominal, 2e-3);
@@ -178,47 +178,47 @@ std::string under_a_condition(const std::string& name, const std::string& type, 
 }
 
 TEST_F(EffectsOfAFile, cooling_under_a_condition_counts_only_where_the_condition_is_declared) {
-  const Motor plain = MotorFile("").read();
-  const Motor fan = MotorFile(under_a_condition("fan", "airflow", estimated("conductance", "1 W/K"))).read();
+  const motor::Motor plain = MotorFile("").read();
+  const motor::Motor fan = MotorFile(under_a_condition("fan", "airflow", estimated("conductance", "1 W/K"))).read();
   EXPECT_EQ(evaluation(fan, 0).winding_peak_C.nominal, evaluation(plain, 0).winding_peak_C.nominal);
   EXPECT_EQ(booked_W(trace(fan), "fan", "stator"), 0.0);
-  const Motor declared = under(fan, {{"cooling", "fan"}});
+  const motor::Motor declared = motor::under(fan, {{"cooling", "fan"}});
   EXPECT_LT(evaluation(declared, 0).winding_peak_C.nominal, evaluation(plain, 0).winding_peak_C.nominal - 1.0);
   EXPECT_LT(booked_W(trace(declared), "fan", "stator"), 0.0);
 }
 
 TEST_F(EffectsOfAFile, heat_under_a_condition_counts_unless_the_condition_is_declared_otherwise) {
-  const Motor plain = MotorFile("").read();
-  const Motor lamp = MotorFile(under_a_condition("lamp", "constant_heat", estimated("power", "3 W"))).read();
+  const motor::Motor plain = MotorFile("").read();
+  const motor::Motor lamp = MotorFile(under_a_condition("lamp", "constant_heat", estimated("power", "3 W"))).read();
   EXPECT_GT(evaluation(lamp, 0).winding_peak_C.nominal, evaluation(plain, 0).winding_peak_C.nominal + 1.0);
   EXPECT_NEAR(booked_W(trace(lamp), "lamp", "stator"), 3.0, 1e-9);
-  const Motor without = under(lamp, {{"cooling", "still air"}});
+  const motor::Motor without = motor::under(lamp, {{"cooling", "still air"}});
   EXPECT_EQ(evaluation(without, 0).winding_peak_C.nominal, evaluation(plain, 0).winding_peak_C.nominal);
 }
 
 TEST_F(EffectsOfAFile, a_condition_that_no_effect_has_is_an_error_that_says_what_there_is) {
-  const Motor fan = MotorFile(under_a_condition("fan", "airflow", estimated("conductance", "1 W/K"))).read();
+  const motor::Motor fan = MotorFile(under_a_condition("fan", "airflow", estimated("conductance", "1 W/K"))).read();
   try {
-    under(fan, {{"colour", "red"}});
+    motor::under(fan, {{"colour", "red"}});
     FAIL();
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
     EXPECT_NE(std::string(failure.what()).find("cooling=fan"), std::string::npos) << failure.what();
   }
 }
 
 // A glued-on probe follows the stator with its time constant. The temperatures and the verdict must not depend on it.
 TEST_F(EffectsOfAFile, a_late_sensor_shows_the_response_of_first_order) {
-  Motor motor = MotorFile("\n[effects.sensor_lag_stator]\n" + estimated("time_constant", "20 s") +
-                          "\n[effects.cold_probe]\ntype = \"sensor_offset_stator\"\n" + estimated("offset", "-2 K"))
-                    .read();
-  Motor bare = MotorFile("").read();
+  motor::Motor motor = MotorFile("\n[effects.sensor_lag_stator]\n" + estimated("time_constant", "20 s") +
+                                 "\n[effects.cold_probe]\ntype = \"sensor_offset_stator\"\n" + estimated("offset", "-2 K"))
+                           .read();
+  motor::Motor bare = MotorFile("").read();
   EXPECT_EQ(evaluation(motor, 20).stator_peak_C.p95, evaluation(bare, 20).stator_peak_C.p95);
   motor.nominal.temperature_coefficient_per_K = bare.nominal.temperature_coefficient_per_K = 0.0;
   give(duty_, {{200.0, 0.14, 0.0, 0.0}});
   const Trace shown = trace(motor);
   EXPECT_EQ(shown.shown_at, (std::vector<std::string>{"stator"}));
-  const MotorValues& values = motor.nominal;
+  const motor::MotorValues& values = motor.nominal;
   const double winding_per_s = 1.0 / values.thermal_time_constant_winding_s;
   const double stator_J_per_K = values.thermal_time_constant_stator_s / values.thermal_resistance_stator_ambient_K_per_W;
   const double across_per_s = 1.0 / (values.thermal_resistance_winding_stator_K_per_W * stator_J_per_K);
@@ -242,4 +242,4 @@ TEST_F(EffectsOfAFile, a_late_sensor_shows_the_response_of_first_order) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::select

@@ -17,28 +17,28 @@
 #include "support/source_folder.h"
 #include "thermal/steady_state.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 namespace {
 
-Motor motor_of_file(const std::string& id) { return read_motor(kSource / "motor_db" / (id + ".toml")); }
-Robot robot_of_file(const std::string& id) { return read_robot(kSource / "robot_core/robots" / (id + ".toml")); }
-Duty duty_of_file(const std::string& id) { return read_duty(kSource / "duty_profiles" / (id + ".toml")); }
+motor::Motor motor_of_file(const std::string& id) { return motor::read_motor(kSource / "motor_db" / (id + ".toml")); }
+robot::Robot robot_of_file(const std::string& id) { return robot::read_robot(kSource / "robot_core/robots" / (id + ".toml")); }
+duty::Duty duty_of_file(const std::string& id) { return duty::read_duty(kSource / "duty_profiles" / (id + ".toml")); }
 
 constexpr double kResistance_ohm = 0.5;
 constexpr double kAlpha_per_K = 0.0039;
 constexpr double kInner_K_per_W = 4.0;
 constexpr double kOuter_K_per_W = 2.0;
 
-void set_figure(Motor& motor, std::string_view key, double MotorValues::*value, const ParameterValue& figure) {
+void set_figure(motor::Motor& motor, std::string_view key, double motor::MotorValues::*value, const base::ParameterValue& figure) {
   motor.parameters[key] = figure;
   motor.nominal.*value = figure.value;
 }
 
 /// A motor that heats up within a minute or two, without drag.
-Motor simple_motor() {
-  Motor motor;
+motor::Motor simple_motor() {
+  motor::Motor motor;
   motor.id = "simple";
-  MotorValues& values = motor.nominal;
+  motor::MotorValues& values = motor.nominal;
   values.terminal_resistance_ohm = kResistance_ohm;
   values.torque_constant_Nm_per_A = 0.03;
   values.no_load_current_A = 0.0;
@@ -51,30 +51,32 @@ Motor simple_motor() {
   return motor;
 }
 
-Robot simple_robot() {
-  Robot robot;
+robot::Robot simple_robot() {
+  robot::Robot robot;
   robot.id = "simple";
   robot.wheels.radius_m = 0.03;
   robot.battery.nominal_V = 24.0;
   return robot;
 }
 
-Duty constant_current(double current_A, double duration_s = 600.0) {
-  Duty duty;
-  duty.kind = DutyKind::current;
+duty::Duty constant_current(double current_A, double duration_s = 600.0) {
+  duty::Duty duty;
+  duty.kind = duty::DutyKind::current;
   duty.ambient_C.value = 25.0;
   duty.load.value = 1.0;
   give(duty, {{duration_s, 0.0, 0.0, current_A}});
   return duty;
 }
 
-MotorEvaluation evaluate_one(const Motor& motor, const Robot& robot, const Duty& duty, const EvaluateOptions& options = {.samples = 0}) {
+MotorEvaluation evaluate_one(const motor::Motor& motor, const robot::Robot& robot, const duty::Duty& duty,
+                             const EvaluateOptions& options = {.samples = 0}) {
   return evaluate(robot, duty, duty.demand(robot, options.seed), std::span(&motor, 1), options).front();
 }
 
 /// Winding temperature by the closed form, (9) and (12), for a constant current.
 double rest_C(double resistance_ohm, double current_A) {
-  return on_off_steady_state({resistance_ohm, kAlpha_per_K, kInner_K_per_W, kOuter_K_per_W}, {current_A, 1.0, 0.0, 25.0}).winding_C;
+  return thermal::on_off_steady_state({resistance_ohm, kAlpha_per_K, kInner_K_per_W, kOuter_K_per_W}, {current_A, 1.0, 0.0, 25.0})
+      .winding_C;
 }
 
 double quantile_of(std::vector<double> values, double share) {
@@ -97,7 +99,7 @@ TEST(Evaluate, a_long_constant_current_peaks_at_the_closed_form) {
 }
 
 TEST(Evaluate, rms_current_is_that_of_the_whole_duty) {
-  Duty duty = constant_current(5.0, 4.0);
+  duty::Duty duty = constant_current(5.0, 4.0);
   give(duty, {{4.0, 0.0, 0.0, 5.0}, {12.0, 0.0, 0.0, 0.0}});
   EXPECT_NEAR(evaluate_one(simple_motor(), simple_robot(), duty).current_rms_A, 2.5, 1e-14);
 }
@@ -105,10 +107,10 @@ TEST(Evaluate, rms_current_is_that_of_the_whole_duty) {
 // Sinusoidal commutation makes 9/π² of the heat of block commutation, so its RMS current is 3/π. A limited current heats by its limited
 // value.
 TEST(Evaluate, rms_current_is_the_one_that_heats) {
-  Robot robot = simple_robot();
-  robot.drive.commutation = Commutation::sinusoidal;
+  robot::Robot robot = simple_robot();
+  robot.drive.commutation = robot::Commutation::sinusoidal;
   EXPECT_NEAR(evaluate_one(simple_motor(), robot, constant_current(5.0)).current_rms_A, 15.0 / std::numbers::pi, 1e-13);
-  robot.drive.commutation = Commutation::block;
+  robot.drive.commutation = robot::Commutation::block;
   robot.drive.current_limit_A = 4.0;
   EXPECT_NEAR(evaluate_one(simple_motor(), robot, constant_current(5.0)).current_rms_A, 4.0, 1e-14);
 }
@@ -124,7 +126,7 @@ TEST(Evaluate, too_hot_fails_and_says_when) {
 }
 
 TEST(Evaluate, stator_limit_is_a_limit_too) {
-  Motor motor = simple_motor();
+  motor::Motor motor = simple_motor();
   motor.nominal.stator_limit_C = 40.0;
   const MotorEvaluation result = evaluate_one(motor, simple_robot(), constant_current(5.0));
   EXPECT_EQ(result.verdict, Verdict::fail);
@@ -135,12 +137,12 @@ TEST(Evaluate, runaway_is_destroyed) {
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), constant_current(20.0));
   EXPECT_TRUE(result.destroyed);
   EXPECT_EQ(result.verdict, Verdict::fail);
-  EXPECT_EQ(result.winding_peak_C.nominal, kDestroyed_C) << "where the calculation ends, as for samples";
+  EXPECT_EQ(result.winding_peak_C.nominal, thermal::kDestroyed_C) << "where the calculation ends, as for samples";
 }
 
 TEST(Evaluate, infeasible_by_voltage) {
-  Duty duty = constant_current(5.0);
-  duty.kind = DutyKind::torque;
+  duty::Duty duty = constant_current(5.0);
+  duty.kind = duty::DutyKind::torque;
   give(duty, {{1.0, 0.06, 790.0, 0.0}});  // 23.7 V of back-EMF leave 0.3 V, which drive 0.6 A of the demanded 2 A
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty);
   EXPECT_EQ(result.verdict, Verdict::infeasible);
@@ -151,7 +153,7 @@ TEST(Evaluate, infeasible_by_voltage) {
 
 // At 780 rad/s the back-EMF is 23.4 V. The remaining voltage drives 1.2 A through 0.5 Ω; braking allows 95 A.
 TEST(Evaluate, a_current_that_brakes_is_helped_by_the_back_emf) {
-  Duty duty = constant_current(0.0);
+  duty::Duty duty = constant_current(0.0);
   give(duty, {{600.0, 0.0, 780.0, -3.0}});
   const MotorEvaluation brakes = evaluate_one(simple_motor(), simple_robot(), duty);
   EXPECT_EQ(brakes.least_torque_share, 1.0);
@@ -163,7 +165,7 @@ TEST(Evaluate, a_current_that_brakes_is_helped_by_the_back_emf) {
 
 // At 1000 rad/s the back-EMF would be 30 V, so no current flows in either direction.
 TEST(Evaluate, a_speed_out_of_reach_takes_no_current) {
-  Duty duty = constant_current(0.0);
+  duty::Duty duty = constant_current(0.0);
   give(duty, {{600.0, 0.0, 1000.0, 5.0}});
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty);
   EXPECT_EQ(result.verdict, Verdict::infeasible);
@@ -172,7 +174,7 @@ TEST(Evaluate, a_speed_out_of_reach_takes_no_current) {
 }
 
 TEST(Evaluate, infeasible_by_current) {
-  Robot robot = simple_robot();
+  robot::Robot robot = simple_robot();
   robot.drive.current_limit_A = 4.0;
   const MotorEvaluation result = evaluate_one(simple_motor(), robot, constant_current(5.0));
   EXPECT_EQ(result.verdict, Verdict::infeasible);
@@ -183,11 +185,11 @@ TEST(Evaluate, infeasible_by_current) {
 // The motor controller gives 5.1 A for a nominal demand of 5 A with a tolerance of ±10 %. In 40 % of the truncated normal distribution the
 // demand is more than 2 % higher.
 TEST(Evaluate, samples_that_cannot_deliver_make_a_motor_marginal) {
-  Duty duty = constant_current(5.0);
-  duty.load.spread = Spread{Spread::Kind::tolerance, 0.9, 1.1, true};
-  Robot robot = simple_robot();
+  duty::Duty duty = constant_current(5.0);
+  duty.load.spread = base::Spread{base::Spread::Kind::tolerance, 0.9, 1.1, true};
+  robot::Robot robot = simple_robot();
   robot.drive.current_limit_A = 5.1;
-  Motor motor = simple_motor();
+  motor::Motor motor = simple_motor();
   motor.nominal.winding_limit_C = 390.0;
   const MotorEvaluation result = evaluate_one(motor, robot, duty, {.samples = 4000});
   EXPECT_EQ(result.verdict, Verdict::marginal);
@@ -201,7 +203,7 @@ TEST(Evaluate, samples_that_cannot_deliver_make_a_motor_marginal) {
 
 // The voltage suffices for the cold winding. The hot winding needs 5 A · 0.5 Ω · 1.35… instead of 2.5 V.
 TEST(Evaluate, infeasible_where_the_voltage_suffices_only_cold) {
-  Duty duty = constant_current(5.0);
+  duty::Duty duty = constant_current(5.0);
   give(duty, {{600.0, 0.0, 21.4 / 0.03, 5.0}});  // 21.4 V + 2.5 V = 23.9 V
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty);
   // Only 2.6 V remain for the hot winding. Its steady state satisfies ΔT = 6 K/W · (2.6 V)²/R(T).
@@ -224,14 +226,14 @@ TEST(Evaluate, infeasible_where_the_voltage_suffices_only_cold) {
 // --- margin -----------------------------------------------------------------------------------------------
 
 /// Peak with all currents of the duty scaled by the factor.
-double peak_of_scaled_C(const Motor& motor, const Robot& robot, const Duty& duty, double factor) {
-  const MotorSample sample = nominal_sample(motor);
-  const Network network = datasheet_network(motor, sample);
-  std::vector<Interval> scaled = intervals(sample.values, robot, duty.kind, duty.demand(robot, 1).front(), nominal_sample(duty));
-  for (Interval& interval : scaled) {
+double peak_of_scaled_C(const motor::Motor& motor, const robot::Robot& robot, const duty::Duty& duty, double factor) {
+  const motor::MotorSample sample = motor::nominal_sample(motor);
+  const thermal::Network network = motor::datasheet_network(motor, sample);
+  std::vector<thermal::Interval> scaled = intervals(sample.values, robot, duty.kind, duty.demand(robot, 1).front(), nominal_sample(duty));
+  for (thermal::Interval& interval : scaled) {
     interval.at.current_rms_A *= factor;
   }
-  return run_transient(network, network.values(), scaled, {}).peak_C[0];
+  return thermal::run_transient(network, network.values(), scaled, {}).peak_C[0];
 }
 
 TEST(Margin, of_a_constant_current_is_that_of_the_closed_form) {
@@ -243,10 +245,10 @@ TEST(Margin, of_a_constant_current_is_that_of_the_closed_form) {
 }
 
 TEST(Margin, scaling_the_current_by_it_lands_on_the_limit) {
-  const Robot robot = robot_of_file("roboteam_twente_v2024");
-  const Duty duty = duty_of_file("paper_intermittent");
+  const robot::Robot robot = robot_of_file("roboteam_twente_v2024");
+  const duty::Duty duty = duty_of_file("paper_intermittent");
   for (const char* id : {"maxon_ecx_flat_32l_48v", "maxon_ecx_flat_42m_24v", "nanotec_df45l024048_a2"}) {
-    const Motor motor = motor_of_file(id);
+    const motor::Motor motor = motor_of_file(id);
     const MotorEvaluation result = evaluate_one(motor, robot, duty);
     ASSERT_TRUE(result.margin_A.has_value()) << id;
     EXPECT_NEAR(peak_of_scaled_C(motor, robot, duty, 1.0 + *result.margin_A / result.current_rms_A), result.winding_limit_C, 0.02) << id;
@@ -264,7 +266,7 @@ TEST(Margin, of_a_small_current_reaches_as_far_as_that_of_a_large_one) {
 }
 
 TEST(Margin, ends_where_the_driver_does) {
-  Robot robot = simple_robot();
+  robot::Robot robot = simple_robot();
   robot.drive.current_limit_A = 4.0;
   EXPECT_NEAR(*evaluate_one(simple_motor(), robot, constant_current(3.0)).margin_A, 1.0, 0.03);
   robot.drive.current_limit_A = 400.0;
@@ -274,9 +276,9 @@ TEST(Margin, ends_where_the_driver_does) {
 }
 
 TEST(Margin, there_is_none_where_drag_alone_is_too_much) {
-  Motor motor = simple_motor();
+  motor::Motor motor = simple_motor();
   motor.nominal.no_load_current_A = 10.0;
-  Duty duty = constant_current(5.0);
+  duty::Duty duty = constant_current(5.0);
   give(duty, {{600.0, 0.0, 300.0, 5.0}});  // 0.3 N m · 300 rad/s = 90 W across 2 K/W
   EXPECT_FALSE(evaluate_one(motor, simple_robot(), duty).margin_A.has_value());
 }
@@ -284,11 +286,11 @@ TEST(Margin, there_is_none_where_drag_alone_is_too_much) {
 // --- uncertainty ------------------------------------------------------------------------------------------
 
 TEST(Samples, same_seed_same_bits_for_any_number_of_threads) {
-  const Robot robot = robot_of_file("roboteam_twente_v2024");
-  Duty duty = duty_of_file("paper_intermittent");
+  const robot::Robot robot = robot_of_file("roboteam_twente_v2024");
+  duty::Duty duty = duty_of_file("paper_intermittent");
   shorten(duty, 60);
-  const std::vector<Motor> motors{motor_of_file("maxon_ecx_flat_32l_48v"), motor_of_file("maxon_ecx_flat_42m_24v"),
-                                  motor_of_file("nanotec_df45l024048_a2")};
+  const std::vector<motor::Motor> motors{motor_of_file("maxon_ecx_flat_32l_48v"), motor_of_file("maxon_ecx_flat_42m_24v"),
+                                         motor_of_file("nanotec_df45l024048_a2")};
   EvaluateOptions options{.samples = 61, .seed = 7, .threads = 1, .with_curves = true, .with_bands = true};
   const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
   const std::vector<MotorEvaluation> one = evaluate(robot, duty, duty.demand(robot, options.seed), motors, options);
@@ -313,9 +315,9 @@ TEST(Samples, same_seed_same_bits_for_any_number_of_threads) {
 }
 
 TEST(Samples, another_seed_is_another_draw) {
-  const Motor motor = motor_of_file("maxon_ecx_flat_32l_48v");
-  const Robot robot = robot_of_file("roboteam_twente_v2024");
-  Duty duty = duty_of_file("paper_intermittent");
+  const motor::Motor motor = motor_of_file("maxon_ecx_flat_32l_48v");
+  const robot::Robot robot = robot_of_file("roboteam_twente_v2024");
+  duty::Duty duty = duty_of_file("paper_intermittent");
   shorten(duty, 20);
   const MotorEvaluation one = evaluate_one(motor, robot, duty, {.samples = 40, .seed = 1});
   const MotorEvaluation two = evaluate_one(motor, robot, duty, {.samples = 40, .seed = 2});
@@ -330,18 +332,18 @@ TEST(Samples, without_any_spread_all_are_the_nominal_one) {
   EXPECT_EQ(result.probability_over_limit, 0.0);
 }
 
-ParameterValue resistance_within_10_percent() {
-  ParameterValue figure;
+base::ParameterValue resistance_within_10_percent() {
+  base::ParameterValue figure;
   figure.value = kResistance_ohm;
-  figure.origin = Origin::measured;
-  figure.spread = Spread{Spread::Kind::tolerance, 0.9 * kResistance_ohm, 1.1 * kResistance_ohm, true};
+  figure.origin = base::Origin::measured;
+  figure.spread = base::Spread{base::Spread::Kind::tolerance, 0.9 * kResistance_ohm, 1.1 * kResistance_ohm, true};
   return figure;
 }
 
 // Independent reference: the standard library's normal distribution, truncated at the tolerance by rejection, with the closed form.
 TEST(Samples, spread_of_the_resistance_alone_is_that_of_an_independent_monte_carlo) {
-  Motor motor = simple_motor();
-  set_figure(motor, "terminal_resistance", &MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
+  motor::Motor motor = simple_motor();
+  set_figure(motor, "terminal_resistance", &motor::MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
   const MotorEvaluation result = evaluate_one(motor, simple_robot(), constant_current(7.0), {.samples = 4000, .seed = 11});
   std::mt19937_64 engine(12);
   std::normal_distribution<double> share(0.0, 0.05);
@@ -366,13 +368,13 @@ TEST(Samples, spread_of_the_resistance_alone_is_that_of_an_independent_monte_car
 }
 
 TEST(Samples, median_of_symmetric_spreads_is_near_the_nominal_peak) {
-  Motor motor = simple_motor();
-  set_figure(motor, "terminal_resistance", &MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
-  ParameterValue inner;
+  motor::Motor motor = simple_motor();
+  set_figure(motor, "terminal_resistance", &motor::MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
+  base::ParameterValue inner;
   inner.value = kInner_K_per_W;
-  inner.origin = Origin::measured;
-  inner.spread = Spread{Spread::Kind::tolerance, 0.9 * kInner_K_per_W, 1.1 * kInner_K_per_W, true};
-  set_figure(motor, "thermal_resistance_winding_stator", &MotorValues::thermal_resistance_winding_stator_K_per_W, inner);
+  inner.origin = base::Origin::measured;
+  inner.spread = base::Spread{base::Spread::Kind::tolerance, 0.9 * kInner_K_per_W, 1.1 * kInner_K_per_W, true};
+  set_figure(motor, "thermal_resistance_winding_stator", &motor::MotorValues::thermal_resistance_winding_stator_K_per_W, inner);
   const MotorEvaluation result = evaluate_one(motor, simple_robot(), constant_current(5.0), {.samples = 2000, .seed = 5});
   EXPECT_NEAR(result.winding_peak_C.p50, result.winding_peak_C.nominal, 0.01 * (result.winding_peak_C.nominal - 25.0));
   EXPECT_LT(result.winding_peak_C.p05, result.winding_peak_C.nominal - 3.0);
@@ -381,11 +383,11 @@ TEST(Samples, median_of_symmetric_spreads_is_near_the_nominal_peak) {
 
 // In half of the draws the limit is uniform between 105 and 155 °C, so it is below 130 °C in a quarter of all draws.
 TEST(Samples, a_limit_that_may_be_lower_makes_a_pass_marginal) {
-  Motor motor = simple_motor();
-  ParameterValue limit;
+  motor::Motor motor = simple_motor();
+  base::ParameterValue limit;
   limit.value = 155.0;
-  limit.spread = Spread{Spread::Kind::range, 105.0, 165.0, false};
-  set_figure(motor, "winding_limit", &MotorValues::winding_limit_C, limit);
+  limit.spread = base::Spread{base::Spread::Kind::range, 105.0, 165.0, false};
+  set_figure(motor, "winding_limit", &motor::MotorValues::winding_limit_C, limit);
   const double current_A = std::sqrt(105.0 / (1.0 + 0.0039 * 105.0) / 3.0);  // has its steady state at 130 °C
   const MotorEvaluation result = evaluate_one(motor, simple_robot(), constant_current(current_A), {.samples = 2000, .seed = 3});
   EXPECT_EQ(result.verdict, Verdict::marginal);
@@ -394,8 +396,8 @@ TEST(Samples, a_limit_that_may_be_lower_makes_a_pass_marginal) {
 }
 
 TEST(Samples, ambient_of_the_duty_moves_the_peak_with_it) {
-  Duty duty = constant_current(5.0);
-  duty.ambient_C.spread = Spread{Spread::Kind::range, 15.0, 35.0, false};
+  duty::Duty duty = constant_current(5.0);
+  duty.ambient_C.spread = base::Spread{base::Spread::Kind::range, 15.0, 35.0, false};
   const MotorEvaluation result = evaluate_one(simple_motor(), simple_robot(), duty, {.samples = 2000, .seed = 3});
   // T_W = T_A + c·(1+α(T_A−25))/(1−α·c) with c = 75 K: 1 + α·75/(1−α·75) = 1.4134 K per K. The 5th percentile of 15 … 35 °C is 16 °C.
   EXPECT_NEAR(result.winding_peak_C.p05, result.winding_peak_C.nominal - 9.0 * 1.4134, 1.0);
@@ -417,8 +419,8 @@ TEST(PaperCase, ecx_flat_32l_peaks_at_162_C_and_fails_by_its_winding) {
 }
 
 TEST(PaperCase, the_larger_motors_pass) {
-  const Robot robot = robot_of_file("roboteam_twente_v2024");
-  const Duty duty = duty_of_file("paper_intermittent");
+  const robot::Robot robot = robot_of_file("roboteam_twente_v2024");
+  const duty::Duty duty = duty_of_file("paper_intermittent");
   for (const char* id : {"maxon_ecx_flat_42m_24v", "nanotec_df45l024048_a2"}) {
     const MotorEvaluation result = evaluate_one(motor_of_file(id), robot, duty);
     EXPECT_EQ(result.verdict, Verdict::pass) << id;
@@ -427,14 +429,14 @@ TEST(PaperCase, the_larger_motors_pass) {
 }
 
 TEST(Ranking, best_first) {
-  std::vector<Motor> motors;
+  std::vector<motor::Motor> motors;
   for (const auto& file : std::filesystem::directory_iterator(kSource / "motor_db")) {
     if (file.path().extension() == ".toml") {
-      motors.push_back(read_motor(file.path()));
+      motors.push_back(motor::read_motor(file.path()));
     }
   }
-  const Robot robot = robot_of_file("roboteam_twente_v2024");
-  const Duty duty = duty_of_file("paper_intermittent");
+  const robot::Robot robot = robot_of_file("roboteam_twente_v2024");
+  const duty::Duty duty = duty_of_file("paper_intermittent");
   const std::vector<MotorEvaluation> all = evaluate(robot, duty, duty.demand(robot, 1), motors, {.samples = 0});
   ASSERT_EQ(all.size(), motors.size());
   for (std::size_t i = 1; i < all.size(); ++i) {
@@ -446,10 +448,10 @@ TEST(Ranking, best_first) {
 }
 
 TEST(Progress, counts_up_to_all_of_the_work) {
-  const Motor motor = simple_motor();
+  const motor::Motor motor = simple_motor();
   std::size_t before = 0;
   std::size_t all = 0;
-  const Duty duty = constant_current(5.0);
+  const duty::Duty duty = constant_current(5.0);
   evaluate(simple_robot(), duty, duty.demand(simple_robot(), 1), std::span(&motor, 1), {.samples = 50},
            [&](std::size_t done, std::size_t total) {
              EXPECT_EQ(done, before + 1);
@@ -463,7 +465,7 @@ TEST(Progress, counts_up_to_all_of_the_work) {
 // --- curves -----------------------------------------------------------------------------------------------
 
 TEST(Curves, enclose_the_nominal_run_and_reach_its_peak) {
-  const Motor motor = motor_of_file("maxon_ecx_flat_32l_48v");
+  const motor::Motor motor = motor_of_file("maxon_ecx_flat_32l_48v");
   const MotorEvaluation result = evaluate_one(motor, robot_of_file("roboteam_twente_v2024"), duty_of_file("paper_intermittent"),
                                               {.samples = 100, .seed = 1, .with_curves = true, .with_bands = true});
   EXPECT_NEAR(*std::ranges::max_element(result.curves.winding_C), result.winding_peak_C.nominal, 1e-3);
@@ -475,16 +477,16 @@ TEST(Curves, enclose_the_nominal_run_and_reach_its_peak) {
   EXPECT_NEAR(*std::ranges::max_element(result.curves.winding_p95_C), result.winding_peak_C.p95, 8.0);
 }
 
-std::vector<WheelDemand> steady_wheels(double torque_Nm, double duration_s) {
-  WheelDemand idle{.wheel = "idle", .bins = {constant_bin(duration_s, 0.0, 0.0, 0.0)}, .points = {}};
-  WheelDemand busy{.wheel = "busy", .bins = {constant_bin(duration_s, torque_Nm, 0.0, 0.0)}, .points = {}};
+std::vector<duty::WheelDemand> steady_wheels(double torque_Nm, double duration_s) {
+  duty::WheelDemand idle{.wheel = "idle", .bins = {duty::constant_bin(duration_s, 0.0, 0.0, 0.0)}, .points = {}};
+  duty::WheelDemand busy{.wheel = "busy", .bins = {duty::constant_bin(duration_s, torque_Nm, 0.0, 0.0)}, .points = {}};
   return {idle, busy};
 }
 
 // The steady state with I = U/(R·(1 + α·ΔT) + R_driver) is found by bisection, independent of the program's method.
 TEST(Evaluate, resistance_of_the_driver_takes_its_share_of_the_voltage) {
-  const Motor motor = simple_motor();
-  Robot robot = simple_robot();
+  const motor::Motor motor = simple_motor();
+  robot::Robot robot = simple_robot();
   robot.battery.nominal_V = 1.5;
   robot.drive.driver_resistance_ohm = 0.3;
   double low_K = 0.0;
@@ -495,33 +497,33 @@ TEST(Evaluate, resistance_of_the_driver_takes_its_share_of_the_voltage) {
     const double current_A = 1.5 / (resistance_ohm + 0.3);
     (current_A * current_A * resistance_ohm * (kInner_K_per_W + kOuter_K_per_W) > rise_K ? low_K : high_K) = rise_K;
   }
-  const Duty duty = constant_current(5.0);
+  const duty::Duty duty = constant_current(5.0);
   const MotorEvaluation result = evaluate(robot, duty, duty.demand(robot, 1), std::span(&motor, 1), {.samples = 0}).front();
   EXPECT_NEAR(result.winding_peak_C.nominal, 25.0 + low_K, 0.01);
 }
 
 TEST(Evaluate, declared_range_of_the_driver_s_resistance_is_propagated) {
-  const Motor motor = simple_motor();
-  Robot robot = simple_robot();
+  const motor::Motor motor = simple_motor();
+  robot::Robot robot = simple_robot();
   robot.battery.nominal_V = 1.5;
   robot.drive.driver_resistance_ohm = 0.3;
   const auto spread_K = [&] {
-    const Duty duty = constant_current(5.0);
+    const duty::Duty duty = constant_current(5.0);
     const MotorEvaluation result = evaluate(robot, duty, duty.demand(robot, 1), std::span(&motor, 1), {.samples = 200}).front();
     return result.winding_peak_C.p95 - result.winding_peak_C.p05;
   };
   EXPECT_NEAR(spread_K(), 0.0, 1e-9);
-  ParameterValue figure;
+  base::ParameterValue figure;
   figure.value = 0.3;
-  figure.spread = Spread{Spread::Kind::range, 0.1, 0.6, false};
+  figure.spread = base::Spread{base::Spread::Kind::range, 0.1, 0.6, false};
   robot.parameters["drive.driver_resistance"] = figure;
   EXPECT_GT(spread_K(), 5.0);
 }
 
 TEST(Evaluate, nearer_limit_decides_margins) {
-  Motor motor = simple_motor();
-  const Robot robot = simple_robot();
-  const Duty duty = constant_current(3.0, 2000.0);
+  motor::Motor motor = simple_motor();
+  const robot::Robot robot = simple_robot();
+  const duty::Duty duty = constant_current(3.0, 2000.0);
   const MotorEvaluation without = evaluate(robot, duty, duty.demand(robot, 1), std::span(&motor, 1), {.samples = 0}).front();
   EXPECT_FALSE(without.stator_margin_K.has_value());
   EXPECT_EQ(nearest_margin_K(without), without.margin_K);
@@ -530,7 +532,7 @@ TEST(Evaluate, nearer_limit_decides_margins) {
   EXPECT_NEAR(nearest_margin_K(with), 5.0, 1e-6);
   EXPECT_LT(*with.margin_A, *without.margin_A);
   // This additional current brings the stator to its limit.
-  const Duty more = constant_current(3.0 + *with.margin_A, 2000.0);
+  const duty::Duty more = constant_current(3.0 + *with.margin_A, 2000.0);
   const MotorEvaluation at_limit = evaluate(robot, more, more.demand(robot, 1), std::span(&motor, 1), {.samples = 0}).front();
   EXPECT_NEAR(at_limit.stator_peak_C.nominal, *motor.nominal.stator_limit_C, 0.05);
 }
@@ -574,16 +576,16 @@ TEST(Spread, draws_that_are_all_alike_do_not_rule_the_others_out) {
 
 // Blocks of samples use the draws in turn. Without other spread every peak has a closed form.
 TEST(Evaluate, draws_of_a_duty_are_shared_by_the_samples) {
-  const Motor motor = simple_motor();
-  const Robot robot = simple_robot();
-  Duty duty = constant_current(1.0);
-  duty.kind = DutyKind::torque;
+  const motor::Motor motor = simple_motor();
+  const robot::Robot robot = simple_robot();
+  duty::Duty duty = constant_current(1.0);
+  duty.kind = duty::DutyKind::torque;
   const std::vector<double> torques_Nm{0.03, 0.06, 0.09, 0.12};  // currents of 1 A to 4 A
-  std::vector<WheelDemand> draws;
+  std::vector<duty::WheelDemand> draws;
   for (const double torque_Nm : torques_Nm) {
     draws.push_back(steady_wheels(torque_Nm, 400.0).back());
   }
-  const std::vector<WheelDemand> nominal = steady_wheels(0.03, 600.0);
+  const std::vector<duty::WheelDemand> nominal = steady_wheels(0.03, 600.0);
   EvaluateOptions options{.samples = 4 * 8 * 3, .with_curves = true, .with_bands = true};
   options.draws = draws;
   const MotorEvaluation result = evaluate(robot, duty, nominal, std::span(&motor, 1), options).front();
@@ -607,27 +609,27 @@ TEST(Evaluate, draws_of_a_duty_are_shared_by_the_samples) {
 
 /// Returns motors whose limit is below the given peak in a share of the samples. The share is either near the 5 % of a verdict or far from
 /// it.
-Motor limited_between(double low_C, double high_C) {
-  Motor motor = simple_motor();
-  ParameterValue limit;
+motor::Motor limited_between(double low_C, double high_C) {
+  motor::Motor motor = simple_motor();
+  base::ParameterValue limit;
   limit.value = 155.0;
-  limit.spread = Spread{Spread::Kind::range, low_C, high_C, false};
-  set_figure(motor, "winding_limit", &MotorValues::winding_limit_C, limit);
+  limit.spread = base::Spread{base::Spread::Kind::range, low_C, high_C, false};
+  set_figure(motor, "winding_limit", &motor::MotorValues::winding_limit_C, limit);
   return motor;
 }
 
 TEST(UntilDecided, takes_more_samples_only_near_a_threshold) {
-  const Duty duty = constant_current(std::sqrt(105.0 / (1.0 + 0.0039 * 105.0) / 3.0), 60.0);
-  Motor near = limited_between(105.0, 165.0);
+  const duty::Duty duty = constant_current(std::sqrt(105.0 / (1.0 + 0.0039 * 105.0) / 3.0), 60.0);
+  motor::Motor near = limited_between(105.0, 165.0);
   near.id = "near";
   const double peak_C = evaluate_one(near, simple_robot(), duty).winding_peak_C.nominal;
   // Half of the draws are uniform between the lower end and the nominal limit, so 6.5 % of all draws are below the peak.
   near = limited_between(peak_C - 0.13 / 0.87 * (155.0 - peak_C), 165.0);
   near.id = "near";
-  Motor far = simple_motor();
+  motor::Motor far = simple_motor();
   far.id = "far";
-  const std::vector<Motor> motors{near, far};
-  std::vector<WheelDemand> draws;
+  const std::vector<motor::Motor> motors{near, far};
+  std::vector<duty::WheelDemand> draws;
   const std::vector<MotorEvaluation> results = evaluate_until_decided(simple_robot(), duty, duty.demand(simple_robot(), 1), motors,
                                                                       {.samples = first_samples(duty)}, most_samples(duty), draws);
   const auto of = [&](std::string_view id) { return *std::ranges::find(results, id, &MotorEvaluation::motor_id); };
@@ -644,14 +646,14 @@ TEST(UntilDecided, takes_more_samples_only_near_a_threshold) {
 }
 
 /// A load of the wheel that is drawn: a share of the draws is far above the motor's limit, all others far below.
-class DrawnLoad final : public DutyShape {
+class DrawnLoad final : public duty::DutyShape {
  public:
   explicit DrawnLoad(double heavy_share) : heavy_share_(heavy_share) {}
-  [[nodiscard]] std::vector<WheelDemand> demand(const Robot& /*robot*/, std::uint64_t /*seed*/) const override {
+  [[nodiscard]] std::vector<duty::WheelDemand> demand(const robot::Robot& /*robot*/, std::uint64_t /*seed*/) const override {
     return steady_wheels(kLight_Nm, 400.0);
   }
   [[nodiscard]] bool has_unknowns() const override { return true; }
-  [[nodiscard]] WheelDemand draw(const Robot& /*robot*/, std::uint64_t /*seed*/, std::uint64_t draw) const override {
+  [[nodiscard]] duty::WheelDemand draw(const robot::Robot& /*robot*/, std::uint64_t /*seed*/, std::uint64_t draw) const override {
     const double before = std::floor(heavy_share_ * static_cast<double>(draw));
     const bool is_heavy = std::floor(heavy_share_ * static_cast<double>(draw + 1)) > before;
     return steady_wheels(is_heavy ? kHeavy_Nm : kLight_Nm, 400.0).back();
@@ -664,11 +666,11 @@ class DrawnLoad final : public DutyShape {
 };
 
 MotorEvaluation until_decided(double heavy_share) {
-  Duty duty = constant_current(1.0);
-  duty.kind = DutyKind::torque;
+  duty::Duty duty = constant_current(1.0);
+  duty.kind = duty::DutyKind::torque;
   duty.shape_data = std::make_shared<DrawnLoad>(heavy_share);
-  const Motor motor = simple_motor();
-  std::vector<WheelDemand> draws;
+  const motor::Motor motor = simple_motor();
+  std::vector<duty::WheelDemand> draws;
   const MotorEvaluation result = evaluate_until_decided(simple_robot(), duty, duty.demand(simple_robot(), 1), std::span(&motor, 1),
                                                         {.samples = first_samples(duty)}, most_samples(duty), draws)
                                      .front();
@@ -692,20 +694,20 @@ TEST(UntilDecided, plays_more_games_only_if_few_of_them_decide) {
 }
 
 TEST(UntilDecided, as_many_games_are_played_as_are_asked_for) {
-  const Duty duty = duty_of_file("division_b_match");
+  const duty::Duty duty = duty_of_file("division_b_match");
   EXPECT_EQ(draw_count(duty, 4074), 510);
   EXPECT_EQ(draw_count(duty, most_samples_at_all(true)), most_samples_at_all(true) / 8);
 }
 
 TEST(Evaluate, draws_are_the_same_for_every_number_of_threads) {
-  const Duty duty = duty_of_file("division_b_match");
-  const Robot robot = robot_of_file("roboteam_twente_v2024");
+  const duty::Duty duty = duty_of_file("division_b_match");
+  const robot::Robot robot = robot_of_file("roboteam_twente_v2024");
   EXPECT_EQ(draw_count(duty, 0), 0);
   EXPECT_EQ(draw_count(duty, 9), 2);
   EXPECT_EQ(draw_count(constant_current(1.0), 500), 0);
   const auto torques = [&](int threads) {
     std::vector<double> all_Nm;
-    for (const WheelDemand& wheel : draw_demands(duty, robot, 5, 3, threads)) {
+    for (const duty::WheelDemand& wheel : draw_demands(duty, robot, 5, 3, threads)) {
       all_Nm.push_back(wheel.bins.at(100).torque_rms_Nm);
       all_Nm.push_back(wheel.duration_s());
     }
@@ -715,4 +717,4 @@ TEST(Evaluate, draws_are_the_same_for_every_number_of_threads) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::select

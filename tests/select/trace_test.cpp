@@ -10,16 +10,16 @@
 #include "select/load_simulation.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::select {
 namespace {
 
 class PaperTrace : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    motor_ = new Motor(read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml"));
-    Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
+    motor_ = new motor::Motor(motor::read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml"));
+    duty::Duty duty = duty::read_duty(kSource / "duty_profiles/paper_intermittent.toml");
     shorten(duty, 40);
-    const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+    const robot::Robot robot = robot::read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
     trace_ = new Trace(simulate_load({.robot = robot, .motor = *motor_, .duty = duty, .every_s = 0.1}).trace);
   }
   static void TearDownTestSuite() {
@@ -27,11 +27,11 @@ class PaperTrace : public testing::Test {
     delete motor_;
   }
   static const Trace& trace() { return *trace_; }
-  static const Motor& motor() { return *motor_; }
+  static const motor::Motor& motor() { return *motor_; }
 
  private:
   static inline const Trace* trace_ = nullptr;
-  static inline const Motor* motor_ = nullptr;
+  static inline const motor::Motor* motor_ = nullptr;
 };
 
 TEST_F(PaperTrace, what_is_booked_is_what_is_stored) {
@@ -65,12 +65,12 @@ TEST_F(PaperTrace, power_into_the_terminals_is_heat_and_work) {
 
 // If the hot winding limits the current, the columns must contain the actual current.
 TEST(TraceInVoltageLimit, columns_agree_with_the_account_and_with_the_driver) {
-  const Motor motor = read_motor(kSource / "motor_db/maxon_ec45_flat_30w_12v_200142.toml");
-  Duty duty = read_duty(kSource / "duty_profiles/paper_intermittent.toml");
+  const motor::Motor motor = motor::read_motor(kSource / "motor_db/maxon_ec45_flat_30w_12v_200142.toml");
+  duty::Duty duty = duty::read_duty(kSource / "duty_profiles/paper_intermittent.toml");
   shorten(duty, 40);
-  const Robot robot = read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+  const robot::Robot robot = robot::read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
   const Trace trace = simulate_load({.robot = robot, .motor = motor, .duty = duty, .every_s = 0.02}).trace;
-  const MotorValues& values = motor.nominal;
+  const motor::MotorValues& values = motor.nominal;
   double copper_J = 0.0;
   double most_V = 0.0;
   for (std::size_t i = 0; i + 1 < trace.rows.size(); ++i) {
@@ -101,4 +101,4 @@ TEST_F(PaperTrace, csv_has_a_row_for_each_and_a_header) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::select

@@ -14,32 +14,32 @@
 #include "simulate/match_trace.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 namespace {
 
 /// Twente's robot with three wheels at equal angles, and with roller drag instead of the measured curve of four wheels.
-Robot three_wheels() {
-  Robot robot = twente();
+robot::Robot three_wheels() {
+  robot::Robot robot = twente();
   robot.wheels.axis_rad = {-std::numbers::pi / 3.0, std::numbers::pi / 3.0, std::numbers::pi};
   robot.friction.heading.constant_Nm.reset();
   return robot;
 }
 
-ScheduledCommand go(double time_s, double x_m, double y_m, double yaw_rad) {
-  return {time_s, Phase::running, {.duration_s = 0.0, .stand = false, .x_m = x_m, .y_m = y_m, .yaw_rad = yaw_rad}};
+duty::ScheduledCommand go(double time_s, double x_m, double y_m, double yaw_rad) {
+  return {time_s, duty::Phase::running, {.duration_s = 0.0, .stand = false, .x_m = x_m, .y_m = y_m, .yaw_rad = yaw_rad}};
 }
 
-ScheduledCommand push(double time_s, double direction_rad, double share) {
-  MotionCommand command;
+duty::ScheduledCommand push(double time_s, double direction_rad, double share) {
+  duty::MotionCommand command;
   command.stand = true;
   command.duel = true;
   command.push_direction_rad = direction_rad;
   command.push_share = share;
-  return {time_s, Phase::running, command};
+  return {time_s, duty::Phase::running, command};
 }
 
 /// Commands: drive away, return before arrival, turn, and a duel from 5 s on.
-std::vector<ScheduledCommand> lively() {
+std::vector<duty::ScheduledCommand> lively() {
   return {go(0.0, 1.5, 0.5, 0.5), go(1.1, -0.5, 0.2, 2.0), go(3.0, 0.3, 0.3, 2.5), push(5.0, 2.6, 0.6)};
 }
 constexpr double kLively_s = 7.0;
@@ -52,12 +52,13 @@ struct Driven {
   double peak_of_rows_C = 0.0;
 };
 
-Driven drive(const Robot& robot, const Motor& motor, const std::vector<ScheduledCommand>& script, double end_s,
-             Planner planner = Planner::jerk_limited, const LoopObserver& observer = {}, const DriveOptions& options = ideal_drive()) {
+Driven drive(const robot::Robot& robot, const motor::Motor& motor, const std::vector<duty::ScheduledCommand>& script, double end_s,
+             duty::Planner planner = duty::Planner::jerk_limited, const LoopObserver& observer = {},
+             const DriveOptions& options = ideal_drive()) {
   constexpr double kAmbient_C = 25.0;
   SimulatedRobot simulated(robot, motor, kAmbient_C);
-  CoreDrive core(make_core_config(robot, motor.nominal, {}), simulated, options);
-  const auto plan = ideal_tracking(robot, 1.0, planner);
+  CoreDrive core(firmware::make_core_config(robot, motor.nominal, {}), simulated, options);
+  const auto plan = duty::ideal_tracking(robot, 1.0, planner);
   const int wheels = simulated.wheel_count();
   Driven driven;
   DriveScorer scorer;
@@ -66,7 +67,7 @@ Driven drive(const Robot& robot, const Motor& motor, const std::vector<Scheduled
   MatchRows coarse_rows(2.0, kAmbient_C, {}, [&](const MatchRow& row) {
     driven.peak_of_rows_C = std::max(driven.peak_of_rows_C, *std::ranges::max_element(row.winding_peak_C));
   });
-  const MotorValues& values = motor.nominal;
+  const motor::MotorValues& values = motor.nominal;
   drive_script(simulated, core, *plan, script, end_s, [&](const LoopMoment& moment) {
     scorer.take(moment);
     rows.take(moment);
@@ -92,7 +93,7 @@ Driven drive(const Robot& robot, const Motor& motor, const std::vector<Scheduled
 TEST(ClosedLoop, what_the_battery_gives_is_heat_and_motion) {
   for (const auto& [robot, motor] : {std::pair(twente(), ecx_32()), std::pair(three_wheels(), ecx_32()),
                                      std::pair(shipped_robot("tigers_v2020"), shipped_motor("nanotec_df45l024048_a2"))}) {
-    for (const Planner planner : {Planner::jerk_limited, Planner::bang_bang}) {
+    for (const duty::Planner planner : {duty::Planner::jerk_limited, duty::Planner::bang_bang}) {
       JumpEnergy jumps(robot, motor);
       const auto see = [&](const LoopMoment& moment) { jumps.take(*moment.out); };
       const EnergyAccount energy = drive(robot, motor, lively(), kLively_s, planner, see).score.energy;
@@ -119,15 +120,15 @@ double last_cell(const std::string& header, const std::string& rows, const std::
 
 // The lag must act in each period. A row of a tenth of a second would be too coarse for a fast winding.
 TEST(ClosedLoop, a_late_sensor_shows_in_columns_of_its_own) {
-  Motor motor = ecx_32();
+  motor::Motor motor = ecx_32();
   const std::string bare = csv_header(4, additions_of(motor));
   EXPECT_EQ(bare.find("shown"), std::string::npos);
-  ParameterValue lag;
+  base::ParameterValue lag;
   lag.value = 1.5;
-  motor.sensors.push_back({"late", find_sensor_effect("sensor_lag_winding"), lag});
+  motor.sensors.push_back({"late", motor::find_sensor_effect("sensor_lag_winding"), lag});
   std::vector<double> sensor_C{25.0};  // value after each period
   std::vector<double> true_C{25.0};
-  const Driven driven = drive(twente(), motor, lively(), kLively_s, Planner::jerk_limited, [&](const LoopMoment& moment) {
+  const Driven driven = drive(twente(), motor, lively(), kLively_s, duty::Planner::jerk_limited, [&](const LoopMoment& moment) {
     true_C.push_back(moment.robot->winding_C(2));
     const double mean_C = 0.5 * (true_C.back() + true_C[true_C.size() - 2]);
     sensor_C.push_back(sensor_C.back() + SimulatedRobot::kPeriod_s / 1.5 * (mean_C - sensor_C.back()));
@@ -142,16 +143,16 @@ TEST(ClosedLoop, a_late_sensor_shows_in_columns_of_its_own) {
 
 // Reference: a mount of 4 J/K with 0.8 W/K to the stator and 0.4 W/K to the air, driven by the stator's temperature alone.
 TEST(ClosedLoop, a_body_of_the_motors_file_has_its_temperature_in_the_trace) {
-  Motor motor = ecx_32();
+  motor::Motor motor = ecx_32();
   EXPECT_EQ(csv_header(4, additions_of(motor)).find("mount"), std::string::npos);
-  std::vector<ParameterValue> figures(3);
+  std::vector<base::ParameterValue> figures(3);
   figures[0].value = 0.8;
   figures[1].value = 0.5;
   figures[2].value = 4.0;
-  motor.effects.push_back({"mount", find_effect("third_node"), {"stator", "mount", "ambient"}, figures});
+  motor.effects.push_back({"mount", thermal::find_effect("third_node"), {"stator", "mount", "ambient"}, figures});
   std::vector<double> mount_C{25.0};  // value after each period
   double stator_C = 25.0;
-  const Driven driven = drive(twente(), motor, lively(), kLively_s, Planner::jerk_limited, [&](const LoopMoment& moment) {
+  const Driven driven = drive(twente(), motor, lively(), kLively_s, duty::Planner::jerk_limited, [&](const LoopMoment& moment) {
     const double mean_C = 0.5 * (stator_C + moment.robot->stator_C(2));
     stator_C = moment.robot->stator_C(2);
     const double heat_W = 0.8 * (mean_C - mount_C.back()) - 0.4 * (mount_C.back() - 25.0);
@@ -176,24 +177,25 @@ TEST(ClosedLoop, the_motors_losses_warm_windings_and_stators) {
 // Without temperature coefficient, drag and rotor inertia, the currents must match the inverse dynamics of the executed motion. That motion
 // is the plan plus corrections.
 TEST(ClosedLoop, heats_as_the_inverse_dynamics_says) {
-  Robot robot = twente();
-  Motor motor = ecx_32();
+  robot::Robot robot = twente();
+  motor::Motor motor = ecx_32();
   motor.nominal.temperature_coefficient_per_K = 0.0;
   motor.nominal.no_load_current_A = 1e-6;
   motor.nominal.rotor_inertia_kg_m2 = 0.0;
-  const BodyConfig body = make_body(robot, motor.nominal);
+  const robot::BodyConfig body = robot::make_body(robot, motor.nominal);
   double expected_J = 0.0;
-  BodyVelocity before;
-  const Driven driven =
-      drive(robot, motor, {go(0.0, 1.5, 0.7, 1.0), go(2.5, 0.0, 0.0, 0.0)}, 5.0, Planner::jerk_limited, [&](const LoopMoment& moment) {
-        const BodyVelocity now = moment.robot->velocity_global();
-        const BodyVelocity mean{0.5 * (before.x_m_per_s + now.x_m_per_s), 0.5 * (before.y_m_per_s + now.y_m_per_s),
-                                0.5 * (before.yaw_rad_per_s + now.yaw_rad_per_s)};
-        const BodyAcceleration acceleration{(now.x_m_per_s - before.x_m_per_s) / SimulatedRobot::kPeriod_s,
-                                            (now.y_m_per_s - before.y_m_per_s) / SimulatedRobot::kPeriod_s,
-                                            (now.yaw_rad_per_s - before.yaw_rad_per_s) / SimulatedRobot::kPeriod_s};
+  robot::BodyVelocity before;
+  const Driven driven = drive(
+      robot, motor, {go(0.0, 1.5, 0.7, 1.0), go(2.5, 0.0, 0.0, 0.0)}, 5.0, duty::Planner::jerk_limited, [&](const LoopMoment& moment) {
+        const robot::BodyVelocity now = moment.robot->velocity_global();
+        const robot::BodyVelocity mean{0.5 * (before.x_m_per_s + now.x_m_per_s), 0.5 * (before.y_m_per_s + now.y_m_per_s),
+                                       0.5 * (before.yaw_rad_per_s + now.yaw_rad_per_s)};
+        const robot::BodyAcceleration acceleration{(now.x_m_per_s - before.x_m_per_s) / SimulatedRobot::kPeriod_s,
+                                                   (now.y_m_per_s - before.y_m_per_s) / SimulatedRobot::kPeriod_s,
+                                                   (now.yaw_rad_per_s - before.yaw_rad_per_s) / SimulatedRobot::kPeriod_s};
         before = now;
-        const WheelDemands wheels = inverse_dynamics(body, local_motion(body, moment.robot->state().pose, mean, acceleration));
+        const robot::WheelDemands wheels =
+            robot::inverse_dynamics(body, robot::local_motion(body, moment.robot->state().pose, mean, acceleration));
         for (const double torque_Nm : wheels.torque_Nm) {
           const double current_A = torque_Nm / motor.nominal.torque_constant_Nm_per_A;
           expected_J += motor.nominal.terminal_resistance_ohm * current_A * current_A * SimulatedRobot::kPeriod_s;
@@ -204,24 +206,24 @@ TEST(ClosedLoop, heats_as_the_inverse_dynamics_says) {
 }
 
 TEST(ClosedLoop, a_duel_pushes_at_stall) {
-  const Robot robot = twente();
-  const Motor motor = ecx_32();
-  const BodyConfig body = make_body(robot, motor.nominal);
+  const robot::Robot robot = twente();
+  const motor::Motor motor = ecx_32();
+  const robot::BodyConfig body = robot::make_body(robot, motor.nominal);
   constexpr double kShare = 0.5;  // closer to the limit, creep distributes the forces among the wheels instead of the least Σf²
-  BodyMotion stall;
+  robot::BodyMotion stall;
   stall.external_height_m = body.weight.center_of_gravity_height_m;
-  const double asked_N = kShare * largest_push_N(body, 0.0, stall.external_height_m);
-  PerWheel current_A{};
-  PerWheel drag_Nm{};
+  const double asked_N = kShare * robot::largest_push_N(body, 0.0, stall.external_height_m);
+  robot::PerWheel current_A{};
+  robot::PerWheel drag_Nm{};
   double force_N = 0.0;
   double fastest_rad_per_s = 0.0;
   constexpr double kFrom_s = 2.0;
   constexpr double kEnd_s = 3.0;
   const double share = SimulatedRobot::kPeriod_s / (kEnd_s - kFrom_s);
-  drive(robot, motor, {push(0.0, 0.0, kShare)}, kEnd_s, Planner::jerk_limited, [&](const LoopMoment& moment) {
+  drive(robot, motor, {push(0.0, 0.0, kShare)}, kEnd_s, duty::Planner::jerk_limited, [&](const LoopMoment& moment) {
     ASSERT_TRUE(moment.pushes);
     if (moment.time_s > kFrom_s) {
-      force_N += share * wrench_of_rolling_forces(body.kinematics, moment.out->rolling_force_N).x_N;
+      force_N += share * robot::wrench_of_rolling_forces(body.kinematics, moment.out->rolling_force_N).x_N;
       for (int i = 0; i < 4; ++i) {
         current_A[i] += share * moment.out->current_A[i];
         drag_Nm[i] += share * (moment.out->current_A[i] * motor.nominal.torque_constant_Nm_per_A - moment.out->motor_torque_Nm[i] +
@@ -234,7 +236,7 @@ TEST(ClosedLoop, a_duel_pushes_at_stall) {
   EXPECT_GT(force_N, 0.7 * asked_N);
   EXPECT_LT(force_N, 1.05 * asked_N);
   stall.external = {-force_N, 0.0, 0.0};
-  const WheelDemands expected = inverse_dynamics(body, stall);
+  const robot::WheelDemands expected = robot::inverse_dynamics(body, stall);
   for (int i = 0; i < 4; ++i) {
     const double expected_A = (expected.torque_Nm[i] + drag_Nm[i]) / motor.nominal.torque_constant_Nm_per_A;
     EXPECT_NEAR(current_A[i], expected_A, 0.1 * std::abs(expected_A)) << i;
@@ -245,7 +247,7 @@ TEST(ClosedLoop, a_duel_pushes_at_stall) {
 
 // At 1.2 m/s², because two of three wheels carry the whole acceleration. At Twente's own 2 m/s² the core's traction limit would act.
 TEST(ClosedLoop, three_wheels_follow_as_well) {
-  Robot robot = three_wheels();
+  robot::Robot robot = three_wheels();
   robot.limits.acceleration_m_per_s2 = robot.limits.braking_m_per_s2 = 1.2;
   const DriveScore score = drive(robot, ecx_32(), {go(0.0, 1.0, 0.6, 1.0)}, 4.0).score;
   EXPECT_LT(score.tracking_most_m, 0.02);
@@ -256,7 +258,7 @@ TEST(ClosedLoop, three_wheels_follow_as_well) {
 TEST(ClosedLoop, is_repeatable) {
   const Driven once = drive(twente(), ecx_32(), lively(), kLively_s);
   EXPECT_EQ(once.csv, drive(twente(), ecx_32(), lively(), kLively_s).csv);
-  EXPECT_NE(once.csv, drive(twente(), ecx_32(), lively(), kLively_s, Planner::bang_bang).csv);
+  EXPECT_NE(once.csv, drive(twente(), ecx_32(), lively(), kLively_s, duty::Planner::bang_bang).csv);
 }
 
 // Rows are means over their time span, so their heat equals the total.
@@ -281,4 +283,4 @@ TEST(ClosedLoop, rows_hold_the_heat) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

@@ -14,15 +14,15 @@
 #include "support/allocation_counter.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 namespace {
 
 using robot_core::Reason;
 
-ScheduledCommand drive_to(double time_s, double x_m, double y_m, double yaw_rad) {
-  return {time_s, Phase::running, {.duration_s = 0.0, .stand = false, .x_m = x_m, .y_m = y_m, .yaw_rad = yaw_rad}};
+duty::ScheduledCommand drive_to(double time_s, double x_m, double y_m, double yaw_rad) {
+  return {time_s, duty::Phase::running, {.duration_s = 0.0, .stand = false, .x_m = x_m, .y_m = y_m, .yaw_rad = yaw_rad}};
 }
-std::vector<ScheduledCommand> there_and_back() { return {drive_to(0.0, 1.2, 0.5, 0.8), drive_to(2.5, 0.0, 0.0, 0.0)}; }
+std::vector<duty::ScheduledCommand> there_and_back() { return {drive_to(0.0, 1.2, 0.5, 0.8), drive_to(2.5, 0.0, 0.0, 0.0)}; }
 constexpr double kThereAndBack_s = 5.0;
 
 struct CoreDriven {
@@ -30,11 +30,11 @@ struct CoreDriven {
   std::string csv;
 };
 
-CoreDriven drive(const Robot& robot, const Motor& motor, const robot_core::Config& core, const DriveOptions& options, double start_C = 25.0,
-                 const LoopObserver& observer = {}) {
+CoreDriven drive(const robot::Robot& robot, const motor::Motor& motor, const robot_core::Config& core, const DriveOptions& options,
+                 double start_C = 25.0, const LoopObserver& observer = {}) {
   SimulatedRobot simulated(robot, motor, 25.0, start_C);
   CoreDrive core_drive(core, simulated, options);
-  const std::unique_ptr<Follower> plan = ideal_tracking(robot, 1.0, Planner::jerk_limited);
+  const std::unique_ptr<duty::Follower> plan = duty::ideal_tracking(robot, 1.0, duty::Planner::jerk_limited);
   CoreDriven driven;
   DriveScorer scorer;
   MatchRows rows(0.01, 25.0, {}, [&](const MatchRow& row) { append_csv(driven.csv, row, simulated.wheel_count(), 25.0, {}); });
@@ -49,18 +49,21 @@ CoreDriven drive(const Robot& robot, const Motor& motor, const robot_core::Confi
   return driven;
 }
 
-robot_core::Config core_of(const Robot& robot, const Motor& motor) { return make_core_config(robot, motor.nominal, {}); }
+robot_core::Config core_of(const robot::Robot& robot, const motor::Motor& motor) {
+  return firmware::make_core_config(robot, motor.nominal, {});
+}
 
 // de/dt = (v_command − v) − k·e limits the position error e to the largest velocity error divided by the gain k. With exact sensors slip
 // dominates this error, because encoders do not measure creep of the wheels.
 TEST(CoreDrive, follows_the_plan_with_exact_sensors) {
-  const Robot robot = twente();
+  const robot::Robot robot = twente();
   const robot_core::Config core = core_of(robot, ecx_32());
   double error_m_per_s = 0.0;
   double slip_m_per_s = 0.0;
   const auto see = [&](const LoopMoment& moment) {
-    const BodyVelocity& now = moment.robot->state().velocity;
-    const BodyVelocity rolled = body_velocity(moment.robot->plant().body.kinematics, moment.robot->state().wheel_speed_rad_per_s);
+    const robot::BodyVelocity& now = moment.robot->state().velocity;
+    const robot::BodyVelocity rolled =
+        robot::body_velocity(moment.robot->plant().body.kinematics, moment.robot->state().wheel_speed_rad_per_s);
     const robot_core::Vector3& asked = moment.drive->input().command.velocity;
     slip_m_per_s = std::max(slip_m_per_s, std::hypot(rolled.x_m_per_s - now.x_m_per_s, rolled.y_m_per_s - now.y_m_per_s));
     error_m_per_s =
@@ -166,8 +169,8 @@ TEST(CoreDrive, asks_for_no_memory) {
   }
   SimulatedRobot simulated(twente(), ecx_32(), 25.0);
   CoreDrive core_drive(core_of(twente(), ecx_32()), simulated, real_drive(twente(), 1));
-  const std::unique_ptr<Follower> plan = ideal_tracking(twente(), 1.0, Planner::jerk_limited);
-  const std::vector<ScheduledCommand> script = there_and_back();
+  const std::unique_ptr<duty::Follower> plan = duty::ideal_tracking(twente(), 1.0, duty::Planner::jerk_limited);
+  const std::vector<duty::ScheduledCommand> script = there_and_back();
   DriveScorer scorer;
   const LoopObserver observer = [&](const LoopMoment& moment) { scorer.take(moment); };
   const long before = allocation_count();
@@ -177,7 +180,7 @@ TEST(CoreDrive, asks_for_no_memory) {
 
 // Shadow mode changes only the guard's counters. Active mode limits hot motors and keeps them within their limit.
 TEST(GuardedCore, shadow_counts_and_on_limits) {
-  const Motor motor = ecx_32();
+  const motor::Motor motor = ecx_32();
   const MotorGuard guard = make_guard(motor, twente(), 25.0, 2);
   ASSERT_TRUE(guard.guard) << guard.why_none;
   const double hot_C = motor.nominal.winding_limit_C - 10.0;
@@ -200,10 +203,10 @@ TEST(GuardedCore, shadow_counts_and_on_limits) {
 
 // Winding and stator are so poorly coupled that iron loss alone exceeds the limit. derate() refuses, and the core drives without guard.
 TEST(GuardedCore, a_motor_that_cannot_be_guarded_says_why) {
-  Motor motor = ecx_32();
-  ParameterValue& figure = motor.parameters.at("winding_limit");
+  motor::Motor motor = ecx_32();
+  base::ParameterValue& figure = motor.parameters.at("winding_limit");
   figure.value = 41.0;
-  refresh_values(motor);
+  motor::refresh_values(motor);
   const MotorGuard guard = make_guard(motor, twente(), 25.0, 2);
   EXPECT_FALSE(guard.guard);
   EXPECT_FALSE(guard.why_none.empty());
@@ -211,8 +214,8 @@ TEST(GuardedCore, a_motor_that_cannot_be_guarded_says_why) {
   EXPECT_EQ(core.config().guard, nullptr);
 }
 
-Motor with_light_rotor() {
-  Motor motor = shipped_motor("maxon_eci40_100w_48v_488607");
+motor::Motor with_light_rotor() {
+  motor::Motor motor = shipped_motor("maxon_eci40_100w_48v_488607");
   *motor.nominal.rotor_inertia_kg_m2 *= 1e-3;
   motor.nominal.terminal_resistance_ohm *= 0.1;
   return motor;
@@ -222,17 +225,17 @@ TEST(GuardedCore, error_names_the_motor) {
   try {
     GuardedCore(twente(), with_light_rotor(), GuardUse::off, {});
     ADD_FAILURE() << "no failure";
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
     EXPECT_NE(failure.message().find("maxon_eci40_100w_48v_488607"), std::string::npos) << failure.message();
     EXPECT_NE(failure.message().find("--period"), std::string::npos) << failure.message();
   }
 }
 
 TEST(GameDrives, motor_that_cannot_be_driven_says_why_and_the_others_are_driven) {
-  Duty duty = read_duty(kSource / "duty_profiles" / "division_a_match.toml");
-  const auto& match = dynamic_cast<const MatchDuty&>(*duty.shape_data);
-  const std::vector<Motor> motors{with_light_rotor(), ecx_32()};
+  duty::Duty duty = duty::read_duty(kSource / "duty_profiles" / "division_a_match.toml");
+  const auto& match = dynamic_cast<const duty::MatchDuty&>(*duty.shape_data);
+  const std::vector<motor::Motor> motors{with_light_rotor(), ecx_32()};
   const GameDriveOptions options{.games = 1, .guard = GuardUse::off};
   const std::vector<GameDrives> drives = drive_games(twente(), match.inputs(), motors, options);
   ASSERT_EQ(drives.size(), 2U);
@@ -243,9 +246,9 @@ TEST(GameDrives, motor_that_cannot_be_driven_says_why_and_the_others_are_driven)
 }
 
 TEST(GameDrives, do_not_depend_on_threads) {
-  const Duty duty = read_duty(kSource / "duty_profiles/division_b_match.toml");
-  const MatchInputs& inputs = dynamic_cast<const MatchDuty&>(*duty.shape_data).inputs();
-  std::vector<Motor> motors{ecx_32(), shipped_motor("nanotec_df45l024048_a2")};
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/division_b_match.toml");
+  const duty::MatchInputs& inputs = dynamic_cast<const duty::MatchDuty&>(*duty.shape_data).inputs();
+  std::vector<motor::Motor> motors{ecx_32(), shipped_motor("nanotec_df45l024048_a2")};
   motors.push_back(ecx_32());
   motors.back().nominal.rotor_inertia_kg_m2 = {};
   GameDriveOptions options;
@@ -272,4 +275,4 @@ TEST(GameDrives, do_not_depend_on_threads) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

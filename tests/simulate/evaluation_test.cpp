@@ -9,25 +9,25 @@
 #include "robot/assumed_friction.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 namespace {
 
-Duty shipped_duty(const std::string& id) { return read_duty(kSource / "duty_profiles" / (id + ".toml")); }
+duty::Duty shipped_duty(const std::string& id) { return duty::read_duty(kSource / "duty_profiles" / (id + ".toml")); }
 
-EvaluationJob nominal_job(const std::string& duty, std::vector<Motor> motors) {
+EvaluationJob nominal_job(const std::string& duty, std::vector<motor::Motor> motors) {
   return {.robot = twente(), .duty = shipped_duty(duty), .motors = std::move(motors), .samples = 0};
 }
 
 TEST(Evaluation, closed_loop_needs_a_match) {
   EvaluationJob job = nominal_job("paper_intermittent", {ecx_32()});
   job.closed_loop.emplace();
-  EXPECT_THROW(run_evaluation(job), Failure);
+  EXPECT_THROW(run_evaluation(job), base::Failure);
 }
 
 TEST(Evaluation, refuses_more_samples_than_possible) {
   EvaluationJob job = nominal_job("division_a_match", {ecx_32()});
   job.samples = 1'000'000;
-  EXPECT_THROW(run_evaluation(job), Failure);
+  EXPECT_THROW(run_evaluation(job), base::Failure);
 }
 
 TEST(Evaluation, ranks_and_results_have_the_same_order) {
@@ -41,7 +41,7 @@ TEST(Evaluation, ranks_and_results_have_the_same_order) {
   }
   EXPECT_LE(answer.ranks[0].verdict, answer.ranks[1].verdict);
   EXPECT_EQ(answer.worst_verdict(), answer.ranks[1].verdict);
-  EXPECT_TRUE(answer.robot.friction.is_assumed || has_friction(answer.robot));
+  EXPECT_TRUE(answer.robot.friction.is_assumed || robot::has_friction(answer.robot));
 }
 
 TEST(Evaluation, reads_the_data_base_only_to_search_changes) {
@@ -49,12 +49,12 @@ TEST(Evaluation, reads_the_data_base_only_to_search_changes) {
   EvaluationJob job = nominal_job("paper_intermittent", {shipped_motor("maxon_ec45_flat_70w_24v"), ecx_32()});
   job.database = [&reads] {
     ++reads;
-    return std::vector<Motor>{shipped_motor("maxon_ecx_flat_42m_48v")};
+    return std::vector<motor::Motor>{shipped_motor("maxon_ecx_flat_42m_48v")};
   };
   const EvaluationAnswer answer = run_evaluation(job);
-  const auto own = std::ranges::find(answer.results, twente().drive.motor, &MotorEvaluation::motor_id);
+  const auto own = std::ranges::find(answer.results, twente().drive.motor, &select::MotorEvaluation::motor_id);
   ASSERT_NE(own, answer.results.end());
-  EXPECT_EQ(answer.changes.has_value(), own->verdict != Verdict::pass);
+  EXPECT_EQ(answer.changes.has_value(), own->verdict != select::Verdict::pass);
   EXPECT_EQ(reads, answer.changes ? 1 : 0);
   job.suggests = true;
   reads = 0;
@@ -65,4 +65,4 @@ TEST(Evaluation, reads_the_data_base_only_to_search_changes) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

@@ -12,7 +12,7 @@
 #include "simulate/match_run.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 namespace {
 
 constexpr double kBangBang = std::numeric_limits<double>::infinity();
@@ -20,7 +20,7 @@ constexpr double kBangBang = std::numeric_limits<double>::infinity();
 // A very high jerk must match bang-bang, which other code plans. The control rate is 1 kHz because the two would differ at 100 Hz: the
 // first command has no acceleration and is held.
 TEST(PlannerStudy, much_jerk_is_bang_bang) {
-  Robot robot = twente();
+  robot::Robot robot = twente();
   robot.drive.control_rate_Hz = 1000.0;
   const std::vector<StudyCase> cases{{2.0, 10000.0}, {2.0, kBangBang}};
   const std::vector<StudyResult> results = study_planners(robot, ecx_32(), cases, ideal_drive(), 2);
@@ -45,9 +45,9 @@ TEST(PlannerStudy, below_the_grip_nothing_slides_and_beyond_it_the_jerk_limit_he
 
 // The first wheel that slides carries less than its share of the load. μ·g is therefore unreachable, and grip grows with μ.
 TEST(PlannerStudy, grip_is_that_of_the_first_wheel) {
-  Robot robot = twente();
+  robot::Robot robot = twente();
   const double grip = grip_m_per_s2(robot);
-  EXPECT_LT(grip, robot.traction.coefficient_ratio.value() * kGravity_m_per_s2);
+  EXPECT_LT(grip, robot.traction.coefficient_ratio.value() * robot::kGravity_m_per_s2);
   robot.body.center_of_gravity_height_m = 0.0;
   const double flat = grip_m_per_s2(robot);
   EXPECT_GT(flat, grip);  // no load transfer away from the pushing wheels
@@ -57,7 +57,7 @@ TEST(PlannerStudy, grip_is_that_of_the_first_wheel) {
 
 // Twente uses two thirds of its grip, the TIGERs use all of it.
 TEST(JerkSweep, has_no_acceleration_twice) {
-  const Robot tigers = read_robot(kSource / "robot_core/robots/tigers_v2020.toml");
+  const robot::Robot tigers = robot::read_robot(kSource / "robot_core/robots/tigers_v2020.toml");
   for (const auto& [robot, count] : {std::pair{twente(), 3U}, std::pair{tigers, 2U}}) {
     std::vector<double> accelerations_m_per_s2;
     for (const StudyCase& each : jerk_sweep(robot)) {
@@ -72,18 +72,18 @@ TEST(JerkSweep, has_no_acceleration_twice) {
 }
 
 TEST(MatchRun, both_planners_drive_the_same_game) {
-  const Duty duty = read_duty(kSource / "duty_profiles/division_a_match.toml");
-  MatchInputs inputs = dynamic_cast<const MatchDuty&>(*duty.shape_data).inputs();
-  const Robot robot = twente();
-  const Motor motor = ecx_32();
-  const MatchLoad ideal = play_match(inputs, inputs.nominal(), robot, 2, Planner::jerk_limited);
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/division_a_match.toml");
+  duty::MatchInputs inputs = dynamic_cast<const duty::MatchDuty&>(*duty.shape_data).inputs();
+  const robot::Robot robot = twente();
+  const motor::Motor motor = ecx_32();
+  const duty::MatchLoad ideal = duty::play_match(inputs, inputs.nominal(), robot, 2, duty::Planner::jerk_limited);
   const Game game = play_game(inputs, robot, 2);
-  const robot_core::Config core = make_core_config(robot, motor.nominal, {});
+  const robot_core::Config core = firmware::make_core_config(robot, motor.nominal, {});
   MatchRunOptions options;
   options.drive = real_drive(robot, 1);
   JumpEnergy jerk_jumps(robot, motor);
   const MatchRun jerk = run_match(game, robot, motor, core, options, [&](const LoopMoment& moment) { jerk_jumps.take(*moment.out); });
-  options.planner = Planner::bang_bang;
+  options.planner = duty::Planner::bang_bang;
   JumpEnergy bang_jumps(robot, motor);
   const MatchRun bang = run_match(game, robot, motor, core, options, [&](const LoopMoment& moment) { bang_jumps.take(*moment.out); });
   double phases_J = 0.0;
@@ -106,4 +106,4 @@ TEST(MatchRun, both_planners_drive_the_same_game) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

@@ -11,7 +11,7 @@
 #include "simulate/radio.h"
 #include "support/shipped.h"
 
-namespace heatsoak {
+namespace heatsoak::simulate {
 namespace {
 
 constexpr double kPeriod_s = SimulatedRobot::kPeriod_s;
@@ -41,7 +41,7 @@ SensingConfig silent() {
 }
 
 TEST(Noise, is_normal_to_the_fourth_moment) {
-  Random random(7, 0);
+  base::Random random(7, 0);
   constexpr int kDraws = 400'000;
   double sum = 0.0, square = 0.0, fourth = 0.0, largest = 0.0;
   for (int i = 0; i < kDraws; ++i) {
@@ -61,22 +61,22 @@ TEST(Noise, is_normal_to_the_fourth_moment) {
 // deviation q·√(f·(1 − f)) and resolution q = 2π/(N·T). Averaged over all speeds, ∫f·(1 − f)df = 1/6 gives q/√6.
 TEST(Sensing, encoder_noise_is_that_of_quantisation) {
   for (const double gear_ratio : {1.0, 3.0}) {
-    Robot robot = twente();
+    robot::Robot robot = twente();
     robot.drive.gear_ratio = gear_ratio;
     SimulatedRobot simulated(robot, ecx_32(), 25.0);
     SensingConfig config = silent();
     config.encoder_turn_count = 8192.0;
     Sensing sensing(config, simulated, kPeriod_s, 3);
-    std::array<MotorCommand, kMostWheels> command{};
+    std::array<robot::MotorCommand, robot::kMostWheels> command{};
     std::vector<double> errors_rad_per_s;
-    PerWheel before = simulated.state().wheel_speed_rad_per_s;
+    robot::PerWheel before = simulated.state().wheel_speed_rad_per_s;
     for (int i = 0; i < 4000; ++i) {
-      command.fill({MotorCommand::Kind::voltage, 2.0 + 0.002 * i});
-      const PlantOutput& out = simulated.advance(command, {});
+      command.fill({robot::MotorCommand::Kind::voltage, 2.0 + 0.002 * i});
+      const robot::PlantOutput& out = simulated.advance(command, {});
       sensing.follow(simulated, out);
       robot_core::Input input;
       sensing.sample(simulated, 25.0, input);
-      const PerWheel& now = simulated.state().wheel_speed_rad_per_s;
+      const robot::PerWheel& now = simulated.state().wheel_speed_rad_per_s;
       for (int wheel = 0; wheel < 4; ++wheel) {
         errors_rad_per_s.push_back(static_cast<double>(input.wheel_speed_rad_per_s[wheel]) - 0.5 * (before[wheel] + now[wheel]));
       }
@@ -93,10 +93,10 @@ TEST(Sensing, encoder_noise_is_that_of_quantisation) {
 TEST(Sensing, ideal_sensors_show_the_truth) {
   SimulatedRobot simulated(twente(), ecx_32(), 31.0, 47.0);
   Sensing sensing(ideal_sensing(), simulated, kPeriod_s, 3);
-  const std::array<MotorCommand, kMostWheels> command{
-      {{MotorCommand::Kind::voltage, 2.0}, {MotorCommand::Kind::voltage, 4.0}, {MotorCommand::Kind::voltage, -1.0}}};
+  const std::array<robot::MotorCommand, robot::kMostWheels> command{
+      {{robot::MotorCommand::Kind::voltage, 2.0}, {robot::MotorCommand::Kind::voltage, 4.0}, {robot::MotorCommand::Kind::voltage, -1.0}}};
   for (int i = 0; i < 50; ++i) {
-    const PlantOutput& out = simulated.advance(command, {});
+    const robot::PlantOutput& out = simulated.advance(command, {});
     sensing.follow(simulated, out);
     robot_core::Input input;
     sensing.sample(simulated, 31.0, input);
@@ -171,12 +171,12 @@ TEST(Sensing, defaults_are_plausible_and_ranges_are_kept) {
   }
   SensingConfig config;
   config.encoder_turn_count = -1.0;
-  config.gyro_noise_rad_per_s = kUnknown;
+  config.gyro_noise_rad_per_s = base::kUnknown;
   try {
     require_declared_ranges(config, sensing_numbers());
     FAIL();
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), ExitCode::bad_input);
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
     EXPECT_EQ(failure.diagnostics().size(), 2U);
   }
 }
@@ -184,7 +184,7 @@ TEST(Sensing, defaults_are_plausible_and_ranges_are_kept) {
 TEST(PacketLoss, has_its_share_and_its_bursts) {
   for (const auto& [share, burst_count] : {std::pair(0.01, 2.0), std::pair(0.2, 1.5), std::pair(0.3, 10.0)}) {
     PacketLoss loss(share, burst_count);
-    Random random(11, 0);
+    base::Random random(11, 0);
     constexpr int kPackets = 1'000'000;
     int lost = 0, bursts = 0;
     bool arrived = true;
@@ -203,18 +203,18 @@ TEST(PacketLoss, has_its_share_and_its_bursts) {
 }
 
 /// A plan with constant velocity and yaw rate.
-class Even final : public Follower {
+class Even final : public duty::Follower {
  public:
-  void take(const MotionCommand& command) override { static_cast<void>(command); }
+  void take(const duty::MotionCommand& command) override { static_cast<void>(command); }
   void advance(double step_s) override { time_s_ += step_s; }
-  [[nodiscard]] Pose pose() const override {
+  [[nodiscard]] robot::Pose pose() const override {
     return {velocity.x_m_per_s * time_s_, velocity.y_m_per_s * time_s_, velocity.yaw_rad_per_s * time_s_};
   }
-  [[nodiscard]] BodyVelocity velocity_global() const override { return velocity; }
-  [[nodiscard]] BodyAcceleration acceleration_global() const override { return {}; }
+  [[nodiscard]] robot::BodyVelocity velocity_global() const override { return velocity; }
+  [[nodiscard]] robot::BodyAcceleration acceleration_global() const override { return {}; }
   [[nodiscard]] bool at_rest() const override { return false; }
 
-  BodyVelocity velocity{1.0, 0.5, 2.0};
+  robot::BodyVelocity velocity{1.0, 0.5, 2.0};
 
  private:
   double time_s_ = 0.0;
@@ -227,23 +227,24 @@ TEST(OffBoard, commands_the_plan_and_corrects_the_distance) {
   EXPECT_EQ(config.packet_rate_Hz, 60.0);
   EXPECT_EQ(radio_of(shipped_robot("tigers_v2020")).packet_rate_Hz, 100.0);
   config.loss_share = config.vision_noise_m = config.vision_noise_rad = 0.0;
-  const Pose behind{0.02, -0.01, 0.05};
+  const robot::Pose behind{0.02, -0.01, 0.05};
   for (const double push_N : {0.0, 3.0}) {
     OffBoard off_board(config, 1);
     Even plan;
     const double x_m_per_s = push_N > 0.0 ? config.push_speed_m_per_s : config.position_gain_per_s * behind.x_m;
     int received = 0;
     for (int i = 0; i < 1000; ++i, plan.advance(kPeriod_s)) {
-      const Pose planned = plan.pose();
-      const Pose truth{planned.x_m - behind.x_m, planned.y_m - behind.y_m, planned.yaw_rad - behind.yaw_rad};
+      const robot::Pose planned = plan.pose();
+      const robot::Pose truth{planned.x_m - behind.x_m, planned.y_m - behind.y_m, planned.yaw_rad - behind.yaw_rad};
       const robot_core::Command* const command = off_board.advance(i * kPeriod_s, plan, truth, {push_N, 0.0, 0.0});
       if (command == nullptr || i < 100) {
         continue;
       }
       ++received;
-      const BodyVelocity expected = to_local(
-          BodyVelocity{1.0 + x_m_per_s, 0.5 + config.position_gain_per_s * behind.y_m, 2.0 + config.heading_gain_per_s * behind.yaw_rad},
-          truth.yaw_rad);
+      const robot::BodyVelocity expected =
+          robot::to_local(robot::BodyVelocity{1.0 + x_m_per_s, 0.5 + config.position_gain_per_s * behind.y_m,
+                                              2.0 + config.heading_gain_per_s * behind.yaw_rad},
+                          truth.yaw_rad);
       EXPECT_NEAR(static_cast<double>(command->velocity.x), expected.x_m_per_s, 1e-4);
       EXPECT_NEAR(static_cast<double>(command->velocity.y), expected.y_m_per_s, 1e-4);
       EXPECT_NEAR(static_cast<double>(command->velocity.yaw), expected.yaw_rad_per_s, 1e-4);
@@ -256,4 +257,4 @@ TEST(OffBoard, commands_the_plan_and_corrects_the_distance) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::simulate

@@ -5,7 +5,7 @@
 #include "thermal/ensemble.h"
 #include "two_node.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 const TwoNode kPlainMotor;
@@ -56,9 +56,9 @@ TEST(Allocation, none_in_the_rate_of_lanes_and_in_the_ensemble_run) {
 }
 
 /// No allocation from the second interval on, with limits and with the ledger.
-class TransientAllocation : public testing::TestWithParam<std::tuple<OdeMethod, bool>> {};
+class TransientAllocation : public testing::TestWithParam<std::tuple<ode::OdeMethod, bool>> {};
 INSTANTIATE_TEST_SUITE_P(Methods, TransientAllocation,
-                         testing::Combine(testing::Values(OdeMethod::cvodes_adams, OdeMethod::arkode_erk), testing::Bool()));
+                         testing::Combine(testing::Values(ode::OdeMethod::cvodes_adams, ode::OdeMethod::arkode_erk), testing::Bool()));
 
 TEST_P(TransientAllocation, none_after_the_first_interval) {
   const Network network = kPlainMotor.network();
@@ -81,4 +81,4 @@ TEST_P(TransientAllocation, none_after_the_first_interval) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -2,7 +2,7 @@
 #include "one_effect.h"
 #include "thermal/linearised.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 /// The last bit of an exponent of some hundreds changes a power by 1e-13.
@@ -33,7 +33,7 @@ struct State {
 State random_state(Chance& chance, const EffectType& type) {
   State state{random_point(chance), random_temperatures(chance, type), type.example.parameters};
   for (std::size_t p = 0; p < state.parameters.size(); ++p) {
-    const ParameterSpec& spec = type.parameters[p];
+    const base::ParameterSpec& spec = type.parameters[p];
     if (!spec.choices.empty()) {
       state.parameters[p] = chance.below(static_cast<int>(spec.choices.size()));
     } else {
@@ -179,4 +179,4 @@ TEST(Linearise, agrees_with_differences_of_the_rate_with_every_effect_in_place) 
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -3,7 +3,7 @@
 
 #include "one_effect.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 OperatingPoint<double> without_sources(OperatingPoint<double> at) {
@@ -130,8 +130,8 @@ class Tabulated : public testing::Test {
 
   static const EffectType& type() { return *find_effect("tabulated"); }
   static std::size_t choice(Place place, std::string_view name) {
-    const std::span<const Choice> choices = type().parameters[place].choices;
-    return static_cast<std::size_t>(std::ranges::find(choices, name, &Choice::name) - choices.begin());
+    const std::span<const base::Choice> choices = type().parameters[place].choices;
+    return static_cast<std::size_t>(std::ranges::find(choices, name, &base::Choice::name) - choices.begin());
   }
   static std::vector<double> parameters(std::string_view driver_name, std::string_view form_name, double first, double last) {
     std::vector<double> all{static_cast<double>(choice(driver, driver_name)), static_cast<double>(choice(form, form_name)), first, last};
@@ -197,8 +197,8 @@ TEST_F(Tabulated, needs_the_signals_that_it_depends_on) {
   before.velocity_rad_per_s = before.acceleration_rad_per_s2 = before.shaft_power_W = before.input_power_W = 2.2;
   before.modulation_ratio = before.bus_V = before.vehicle_speed_m_per_s = before.age_h = 2.2;
   before.neighbour_share = 1.0, before.neighbour_C = 62.2;
-  for (const Choice& signal : type().parameters[driver].choices) {
-    for (const Choice& shape : type().parameters[form].choices) {
+  for (const base::Choice& signal : type().parameters[driver].choices) {
+    for (const base::Choice& shape : type().parameters[form].choices) {
       std::vector<double> curve = parameters(signal.name, shape.name, -50.0, 60.0);
       for (std::size_t knot = 0; knot < kCurve.size(); ++knot) {
         curve[value + knot] = 1.0 + static_cast<double>(knot);
@@ -274,8 +274,8 @@ TEST_F(Tabulated, is_at_its_hottest_where_a_column_is_not_known) {
 
 TEST_F(Tabulated, takes_the_units_of_what_was_chosen) {
   const std::vector<double> curve = parameters("temperature", "per_difference", 40.0, 100.0);
-  EXPECT_EQ(unit_of(type().parameters, first_knot, curve), "degC");
-  EXPECT_EQ(unit_of(type().parameters, value, curve), "W/K");
+  EXPECT_EQ(base::unit_of(type().parameters, first_knot, curve), "degC");
+  EXPECT_EQ(base::unit_of(type().parameters, value, curve), "W/K");
   Network network;
   network.add_node("stator", 80.0);
   network.add_effect("curve", type(), std::vector<std::string>{"stator", "ambient", "stator", "ambient"}, curve);
@@ -287,4 +287,4 @@ TEST_F(Tabulated, takes_the_units_of_what_was_chosen) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -9,7 +9,7 @@
 
 #include "one_effect.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 using testing::IsEmpty;
@@ -37,7 +37,7 @@ TEST_P(EveryEffect, is_reported_in_words) {
   for (const std::string_view text : {type().summary, type().equation, type().reference, type().typical, type().confounded_with}) {
     EXPECT_THAT(text, Not(IsEmpty()));
   }
-  for (const ParameterSpec& spec : type().parameters) {
+  for (const base::ParameterSpec& spec : type().parameters) {
     EXPECT_THAT(spec.meaning, Not(IsEmpty())) << spec.key;
   }
   // Words spelt like an effect's name must be one.
@@ -51,13 +51,13 @@ TEST_P(EveryEffect, is_reported_in_words) {
 TEST_P(EveryEffect, lanes_have_the_bits_of_the_law_for_one) {
   Chance chance(800);
   for (int i = 0; i < 200; ++i) {
-    std::array<std::vector<double>, kLanes> parameters;
-    std::array<std::vector<double>, kLanes> temperature_C;
-    std::array<OperatingPoint<double>, kLanes> at;
+    std::array<std::vector<double>, base::kLanes> parameters;
+    std::array<std::vector<double>, base::kLanes> temperature_C;
+    std::array<OperatingPoint<double>, base::kLanes> at;
     std::vector<Lanes> lane_parameters(type().parameters.size());
     std::vector<Lanes> lane_temperature_C(type().nodes.size());
     OperatingPoint<Lanes> lane_at;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
       const auto l = static_cast<Eigen::Index>(lane);
       parameters[lane] = random_parameters(chance, type());
       temperature_C[lane] = random_temperatures(chance, type());
@@ -74,7 +74,7 @@ TEST_P(EveryEffect, lanes_have_the_bits_of_the_law_for_one) {
       for_each_quantity([l](Lanes& to, const double& from) { to[l] = from; }, lane_at, at[lane]);
     }
     const std::vector<Lanes> side_by_side = heat_W(type(), lane_at, lane_parameters, lane_temperature_C);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
       const std::vector<double> alone = heat_W(type(), at[lane], parameters[lane], temperature_C[lane]);
       for (std::size_t node = 0; node < alone.size(); ++node) {
         EXPECT_EQ(std::bit_cast<std::uint64_t>(alone[node]),
@@ -91,7 +91,7 @@ TEST_P(EveryEffect, heat_is_finite_at_the_ends_of_every_range) {
   for (std::size_t corner = 0; corner < (std::size_t{1} << parameters); ++corner) {
     std::vector<double> values;
     for (std::size_t p = 0; p < parameters; ++p) {
-      const Range& range = type().parameters[p].range;
+      const base::Range& range = type().parameters[p].range;
       values.push_back((corner >> p & 1U) != 0U ? high_of(range) : low_of(range));
     }
     for (const double size : {0.0, 1.0, 1e4}) {
@@ -327,4 +327,4 @@ TEST_P(EveryCandidate, of_typical_size_books_watts) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -7,17 +7,17 @@
 
 #include "two_node.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 /// Eight motors in parallel, each with its own duty: durations are shared, operating points are not.
 struct Eight {
-  std::array<TwoNode, kLanes> motors;
-  std::array<std::vector<Interval>, kLanes> duties;
+  std::array<TwoNode, base::kLanes> motors;
+  std::array<std::vector<Interval>, base::kLanes> duties;
 
   [[nodiscard]] std::vector<Lanes> parameters() const {
     std::vector<Lanes> side_by_side;
-    for (int lane = 0; lane < kLanes; ++lane) {
+    for (int lane = 0; lane < base::kLanes; ++lane) {
       const std::vector<double> values = motors[static_cast<std::size_t>(lane)].network().values();
       side_by_side.resize(values.size());
       for (std::size_t i = 0; i < values.size(); ++i) {
@@ -29,7 +29,7 @@ struct Eight {
 
   [[nodiscard]] OperatingPoint<Lanes> point(std::size_t piece) const {
     OperatingPoint<Lanes> at;
-    for (int lane = 0; lane < kLanes; ++lane) {
+    for (int lane = 0; lane < base::kLanes; ++lane) {
       const OperatingPoint<double>& one = duties[static_cast<std::size_t>(lane)][piece].at;
       at.current_rms_A[lane] = one.current_rms_A;
       at.speed_mean_rad_per_s[lane] = one.speed_mean_rad_per_s;
@@ -75,7 +75,7 @@ Eight random_eight(Chance& chance) {
 double worst_peak_error_K(const Eight& eight, Node node) {
   const Eight::Outcome outcome = eight.run();
   double worst_K = 0.0;
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+  for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
     const TransientResult reference = eight.reference(lane);
     worst_K = std::max(worst_K, std::abs(outcome.peak_C[node][static_cast<int>(lane)] - std::min(reference.peak_C[node], kDestroyed_C)));
   }
@@ -90,7 +90,7 @@ TEST(Ensemble, peaks_of_an_on_off_duty_are_those_of_the_reference) {
   double stator_K = 0.0;
   for (int block = 0; block < 10; ++block) {
     Eight eight = random_eight(chance);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
       const OperatingPoint<double> on = chance.point(eight.motors[lane]);
       OperatingPoint<double> off;
       off.ambient_C = on.ambient_C;
@@ -116,7 +116,7 @@ TEST(Ensemble, peaks_of_a_random_duty_of_2000_pieces_are_those_of_the_reference)
     Eight eight = random_eight(chance);
     for (int piece = 0; piece < 2000; ++piece) {
       const double duration_s = chance.by_ratio(0.02, 5.0);
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
         OperatingPoint<double> at = chance.point(eight.motors[lane]);
         at.ambient_C = 25.0;
         eight.duties[lane].push_back({duration_s, at});
@@ -137,11 +137,11 @@ TEST(Ensemble, end_is_the_two_exponentials) {
   for (int block = 0; block < 30; ++block) {
     Eight eight = random_eight(chance);
     const double duration_s = chance.by_ratio(0.1, 2000.0);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
       eight.duties[lane].push_back({duration_s, chance.point(eight.motors[lane])});
     }
     const Eight::Outcome outcome = eight.run();
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
       const double ambient_C = eight.duties[lane][0].at.ambient_C;
       const TwoNode::Pair expected = eight.motors[lane].after(eight.duties[lane], {ambient_C, ambient_C});
       for (const std::size_t node : {0U, 1U}) {
@@ -156,7 +156,7 @@ TEST(Ensemble, end_is_the_two_exponentials) {
 TEST(Ensemble, error_has_order_four_in_the_step) {
   Chance chance(703);
   Eight eight = random_eight(chance);
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+  for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
     eight.motors[lane].winding_stator_K_per_W = 4.0;
     eight.motors[lane].winding_J_per_K = 2.0 + 0.5 * static_cast<double>(lane);
     OperatingPoint<double> at = chance.point(eight.motors[lane]);
@@ -167,7 +167,7 @@ TEST(Ensemble, error_has_order_four_in_the_step) {
   for (const double step_s : {2.0, 1.0, 0.5, 0.25}) {
     const Eight::Outcome outcome = eight.run(step_s);
     Lanes error;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
       const double ambient_C = eight.duties[lane][0].at.ambient_C;
       error[static_cast<int>(lane)] =
           std::abs(outcome.end_C[winding][static_cast<int>(lane)] -
@@ -176,7 +176,7 @@ TEST(Ensemble, error_has_order_four_in_the_step) {
     error_K.push_back(error);
   }
   for (std::size_t i = 2; i < error_K.size(); ++i) {
-    for (int lane = 0; lane < kLanes; ++lane) {
+    for (int lane = 0; lane < base::kLanes; ++lane) {
       EXPECT_NEAR(std::log2(error_K[i - 1][lane] / error_K[i][lane]), 4.0, 0.3) << "halving " << i << " lane " << lane;
     }
   }
@@ -187,16 +187,16 @@ TEST(Ensemble, a_sample_has_the_same_bits_in_every_lane_whatever_its_neighbours)
   Eight eight = random_eight(chance);
   for (int piece = 0; piece < 100; ++piece) {
     const double duration_s = chance.by_ratio(0.02, 5.0);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
       eight.duties[lane].push_back({duration_s, chance.point(eight.motors[lane])});
     }
   }
   const double step_s = 0.1;
   const Eight::Outcome first = eight.run(step_s);
-  for (std::size_t place = 1; place < kLanes; ++place) {
+  for (std::size_t place = 1; place < base::kLanes; ++place) {
     Eight other = random_eight(chance);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      other.duties[lane] = eight.duties[(lane + 3) % kLanes];
+    for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
+      other.duties[lane] = eight.duties[(lane + 3) % base::kLanes];
     }
     other.motors[place] = eight.motors[0];
     other.duties[place] = eight.duties[0];
@@ -213,7 +213,7 @@ TEST(Ensemble, a_sample_has_the_same_bits_in_every_lane_whatever_its_neighbours)
 TEST(Ensemble, a_runaway_lane_stops_at_the_end_of_the_scale_and_leaves_its_neighbours_alone) {
   Chance chance(705);
   Eight eight = random_eight(chance);
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+  for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
     eight.duties[lane].push_back({2000.0, chance.point(eight.motors[lane])});
   }
   eight.motors[3].temperature_coefficient_per_K = 0.004;
@@ -221,7 +221,7 @@ TEST(Ensemble, a_runaway_lane_stops_at_the_end_of_the_scale_and_leaves_its_neigh
   const Eight::Outcome outcome = eight.run();
   EXPECT_EQ(outcome.end_C[winding][3], kDestroyed_C);
   EXPECT_EQ(outcome.peak_C[winding][3], kDestroyed_C);
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+  for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
     if (lane != 3) {
       const double ambient_C = eight.duties[lane][0].at.ambient_C;
       const TwoNode::Pair expected = eight.motors[lane].after(eight.duties[lane], {ambient_C, ambient_C});
@@ -234,12 +234,12 @@ TEST(Ensemble, longest_step_is_stable_for_every_lane) {
   Chance chance(706);
   for (int i = 0; i < 100; ++i) {
     Eight eight = random_eight(chance);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
       eight.duties[lane].push_back({1.0, chance.point(eight.motors[lane])});
     }
     const std::vector<Lanes> values = eight.parameters();
     const double step_s = longest_step_s(eight.motors[0].network(), values, eight.point(0));
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
       const auto [slow, fast] = eight.motors[lane].eigenvalues_per_s(eight.duties[lane][0].at);
       EXPECT_LE(step_s * static_cast<double>(std::max(std::abs(slow), std::abs(fast))), 0.25 * (1.0 + 1e-9));
     }
@@ -247,4 +247,4 @@ TEST(Ensemble, longest_step_is_stable_for_every_lane) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

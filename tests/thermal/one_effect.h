@@ -12,7 +12,7 @@
 #include "thermal/law.h"
 #include "two_node.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 /// Returns the heat per role; parameters and temperatures have the declared order.
 template <class S>
@@ -35,10 +35,10 @@ std::vector<S> heat_W(const EffectType& type, const OperatingPoint<S>& at, const
   return heat;
 }
 
-inline double low_of(const Range& range) { return std::isfinite(range.low) ? range.low + (range.low_is_open ? 1e-6 : 0.0) : -1e6; }
-inline double high_of(const Range& range) { return std::isfinite(range.high) ? range.high - (range.high_is_open ? 1e-6 : 0.0) : 1e6; }
+inline double low_of(const base::Range& range) { return std::isfinite(range.low) ? range.low + (range.low_is_open ? 1e-6 : 0.0) : -1e6; }
+inline double high_of(const base::Range& range) { return std::isfinite(range.high) ? range.high - (range.high_is_open ? 1e-6 : 0.0) : 1e6; }
 
-inline double random_in(Chance& chance, const Range& range) {
+inline double random_in(Chance& chance, const base::Range& range) {
   const double low = low_of(range);
   const double high = high_of(range);
   return low > 0.0 && high / low > 100.0 ? chance.by_ratio(low, high) : chance.between(low, high);
@@ -46,7 +46,7 @@ inline double random_in(Chance& chance, const Range& range) {
 
 inline std::vector<double> random_parameters(Chance& chance, const EffectType& type) {
   std::vector<double> parameters;
-  for (const ParameterSpec& spec : type.parameters) {
+  for (const base::ParameterSpec& spec : type.parameters) {
     parameters.push_back(spec.choices.empty() ? random_in(chance, spec.range) : chance.below(static_cast<int>(spec.choices.size())));
   }
   return parameters;
@@ -124,4 +124,4 @@ inline std::string name_of_effect(const testing::TestParamInfo<std::size_t>& eff
   return std::string(all_effects()[effect.param].name);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

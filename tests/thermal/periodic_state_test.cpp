@@ -7,7 +7,7 @@
 
 #include "two_node.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 /// The repeating cycle in closed form: the map of a cycle is affine.
@@ -200,4 +200,4 @@ TEST(PeriodicState, destroyed_over_many_cycles_is_a_runaway_too) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -4,7 +4,7 @@
 
 #include "two_node.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 TwoNodeMotor closed_form_motor(const TwoNode& motor) {
@@ -183,4 +183,4 @@ TEST(OnOffSteadyState, is_the_mean_of_the_integrated_model_for_short_cycles_with
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -9,7 +9,7 @@
 #include "base/random.h"
 #include "thermal/transient.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 const std::vector<std::string> kWinding{"winding"};
@@ -30,7 +30,7 @@ Network example_network() {
   return network;
 }
 
-std::vector<Interval> drive(Random& random, int rows) {
+std::vector<Interval> drive(base::Random& random, int rows) {
   std::vector<Interval> intervals;
   for (int i = 0; i < rows; ++i) {
     OperatingPoint<double> at;
@@ -72,7 +72,7 @@ Chained chain(TangentRun& run, const std::vector<double>& start_C, std::size_t p
 
 TEST(TangentRun, agrees_with_differences_of_sundials_runs) {
   const Network network = example_network();
-  Random random(7, 0);
+  base::Random random(7, 0);
   const std::vector<Interval> intervals = drive(random, 120);
   const std::vector<double> parameters = network.values();
   const std::vector<double> start_C{60.0, 35.0};
@@ -127,8 +127,8 @@ TEST(TangentRun, says_when_the_network_is_too_fast) {
   parameters[0] = 1e-9;
   TangentRun run(network, parameters, {});
   const std::vector<double> start_C{25.0, 25.0};
-  EXPECT_THROW(run.over(start_C, 1.0, {}), Failure);
+  EXPECT_THROW(run.over(start_C, 1.0, {}), base::Failure);
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

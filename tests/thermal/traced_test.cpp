@@ -5,7 +5,7 @@
 
 #include "one_effect.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 class EveryLaw : public EveryEffect {};
@@ -108,4 +108,4 @@ TEST(Formula, NetworkSeparatesGeneratedFromTransferredHeat) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

@@ -9,7 +9,7 @@
 #include "thermal/steady_state.h"
 #include "two_node.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 namespace {
 
 enum Effect { copper, drag, inner, outer };
@@ -38,7 +38,7 @@ std::vector<Interval> random_duty(Chance& chance, const TwoNode& motor, int piec
   return intervals;
 }
 
-class EveryMethod : public testing::TestWithParam<OdeMethod> {
+class EveryMethod : public testing::TestWithParam<ode::OdeMethod> {
  protected:
   static TransientOptions tight(double tolerance) {
     TransientOptions options;
@@ -48,10 +48,11 @@ class EveryMethod : public testing::TestWithParam<OdeMethod> {
   }
 };
 
-std::string method_name(const testing::TestParamInfo<OdeMethod>& info) {
-  return info.param == OdeMethod::cvodes_bdf ? "bdf" : info.param == OdeMethod::cvodes_adams ? "adams" : "erk";
+std::string method_name(const testing::TestParamInfo<ode::OdeMethod>& info) {
+  return info.param == ode::OdeMethod::cvodes_bdf ? "bdf" : info.param == ode::OdeMethod::cvodes_adams ? "adams" : "erk";
 }
-INSTANTIATE_TEST_SUITE_P(Transient, EveryMethod, testing::Values(OdeMethod::cvodes_bdf, OdeMethod::cvodes_adams, OdeMethod::arkode_erk),
+INSTANTIATE_TEST_SUITE_P(Transient, EveryMethod,
+                         testing::Values(ode::OdeMethod::cvodes_bdf, ode::OdeMethod::cvodes_adams, ode::OdeMethod::arkode_erk),
                          method_name);
 
 // --- against the two exponentials -------------------------------------------------------------------------
@@ -547,4 +548,4 @@ TEST(Transient, same_input_same_bits) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

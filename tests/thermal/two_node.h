@@ -11,7 +11,7 @@
 #include "thermal/network.h"
 #include "thermal/transient.h"
 
-namespace heatsoak {
+namespace heatsoak::thermal {
 
 enum Node { winding, stator, ambient };
 
@@ -154,4 +154,4 @@ inline std::vector<Interval> on_off(double current_A, double on_s, double off_s,
   return intervals;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::thermal

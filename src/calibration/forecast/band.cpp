@@ -8,7 +8,7 @@
 
 #include "calibration/forecast/forecast_setup.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 constexpr Eigen::Index kSlots = 20;
@@ -16,7 +16,7 @@ constexpr Eigen::Index kSamples = 30;
 constexpr double kUsual_share = 0.03;
 
 /// Sensor response in K to 1 W into a flux node during one time slot of the run: per flux node, rows × slots.
-std::vector<Eigen::MatrixXd> responses_K_per_W(const LinearisedRun& path, const MeasuredRun& run) {
+std::vector<Eigen::MatrixXd> responses_K_per_W(const estimation::LinearisedRun& path, const estimation::MeasuredRun& run) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Index x = path.states;
   const Eigen::Index rows = path.residual_K.size();
@@ -51,7 +51,7 @@ Eigen::MatrixXd slot_correlation(double slot_s, double time_scale_s) {
   return all;
 }
 
-double duration_s(const MeasuredRun& run) { return run.time_s.back() - run.time_s.front(); }
+double duration_s(const estimation::MeasuredRun& run) { return run.time_s.back() - run.time_s.front(); }
 
 /// Contributions to the covariance of a piece's errors, for a subset of its rows.
 struct Sampled {
@@ -63,8 +63,8 @@ struct Sampled {
   double slot_s = 0.0;
 };
 
-Sampled sampled(const ForecastModel& model, const MeasuredRun& run, const PredictedPiece& piece) {
-  const LinearisedRun& path = piece.path;
+Sampled sampled(const ForecastModel& model, const estimation::MeasuredRun& run, const PredictedPiece& piece) {
+  const estimation::LinearisedRun& path = piece.path;
   std::vector<Eigen::Index> known;
   for (Eigen::Index row = 0; row < path.residual_K.size(); ++row) {
     if (!std::isnan(path.residual_K[row])) {
@@ -79,7 +79,7 @@ Sampled sampled(const ForecastModel& model, const MeasuredRun& run, const Predic
     rows.push_back(known[i]);
   }
   Sampled out;
-  const Columns by_theta = path.by_parameter(rows, Eigen::seq(0, path.by_parameter.cols() - 2));
+  const estimation::Columns by_theta = path.by_parameter(rows, Eigen::seq(0, path.by_parameter.cols() - 2));
   out.error_K = path.residual_K(rows);
   out.of_parameters_K2 = by_theta * piece.covariance * by_theta.transpose();
   out.by_heat_K = path.by_parameter(rows, path.by_parameter.cols() - 1);
@@ -146,8 +146,8 @@ Coordinates most_probable(const std::vector<Sampled>& pieces, const KnownBefore&
 
 }  // namespace
 
-Eigen::VectorXd forecast_sd_K(const LinearisedRun& path, const MeasuredRun& run, const Eigen::MatrixXd& covariance,
-                              const Eigen::MatrixXd& start_K2, double heat_W, const ForecastBand& band) {
+Eigen::VectorXd forecast_sd_K(const estimation::LinearisedRun& path, const estimation::MeasuredRun& run, const Eigen::MatrixXd& covariance,
+                              const Eigen::MatrixXd& start_K2, double heat_W, const motor::ForecastBand& band) {
   const Eigen::Index rows = path.residual_K.size();
   const Eigen::Index count = path.by_parameter.cols() - 1;
   const auto by_theta = path.by_parameter.leftCols(count);
@@ -167,22 +167,22 @@ Eigen::VectorXd forecast_sd_K(const LinearisedRun& path, const MeasuredRun& run,
   return band.width_ratio * variance_K2.cwiseMax(0.0).cwiseSqrt();
 }
 
-ForecastBand usual_band(double duration_s) { return {{kUsual_share, kUsual_share}, duration_s / 3.0, kUsual_share, 1.0}; }
+motor::ForecastBand usual_band(double duration_s) { return {{kUsual_share, kUsual_share}, duration_s / 3.0, kUsual_share, 1.0}; }
 
-ForecastBand fit_band(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const PredictedPiece> pieces,
-                      std::size_t left_out) {
+motor::ForecastBand fit_band(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs,
+                             std::span<const PredictedPiece> pieces, std::size_t left_out) {
   double longest_s = 0.0;
-  for (const MeasuredRun& run : runs) {
+  for (const estimation::MeasuredRun& run : runs) {
     longest_s = std::max(longest_s, duration_s(run));
   }
   const KnownBefore before{{std::log(kUsual_share), std::log(kUsual_share), std::log(longest_s / 3.0), std::log(kUsual_share)}};
   std::vector<Sampled> all;
   std::ranges::transform(pieces, std::back_inserter(all), [&](const PredictedPiece& each) { return sampled(model, runs[each.run], each); });
   const Coordinates at = most_probable(all, before);
-  ForecastBand band{{std::exp(at[0]), std::exp(at[1])}, std::exp(at[2]), std::exp(at[3]), 1.0};
+  motor::ForecastBand band{{std::exp(at[0]), std::exp(at[1])}, std::exp(at[2]), std::exp(at[3]), 1.0};
   double ratio = 0.0;
   for (const PredictedPiece& piece : pieces) {
-    const MeasuredRun& run = runs[piece.run];
+    const estimation::MeasuredRun& run = runs[piece.run];
     const double heat_W = rms_heat_W(model.network(), piece.values, run, piece.path.state_C);
     const Eigen::VectorXd sd_K =
         forecast_sd_K(piece.path, run, piece.covariance, Eigen::MatrixXd::Zero(piece.path.states, piece.path.states), heat_W, band);
@@ -205,4 +205,4 @@ ForecastBand fit_band(const ForecastModel& model, std::span<const MeasuredRun> r
   return band;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

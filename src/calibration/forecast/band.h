@@ -7,22 +7,22 @@
 #include "calibration/forecast/pieces.h"
 #include "motor/fit_table.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 /// Half width of the two-sided 90 % interval of a normal distribution, in standard deviations.
 inline constexpr double kBand_sd = 1.645;
 
 /// Returns the standard deviation in K of each row (sample · sensors + sensor) of a forecast along `path`, sensor noise included.
 /// `covariance` is that of θ, `start_K2` that of the start temperatures; `heat_W` is the RMS heat of the run.
-Eigen::VectorXd forecast_sd_K(const LinearisedRun& path, const MeasuredRun& run, const Eigen::MatrixXd& covariance,
-                              const Eigen::MatrixXd& start_K2, double heat_W, const ForecastBand& band);
+Eigen::VectorXd forecast_sd_K(const estimation::LinearisedRun& path, const estimation::MeasuredRun& run, const Eigen::MatrixXd& covariance,
+                              const Eigen::MatrixXd& start_K2, double heat_W, const motor::ForecastBand& band);
 
 /// Returns the default band, for use without left-out pieces. Its time scale is a third of `duration_s`.
-ForecastBand usual_band(double duration_s);
+motor::ForecastBand usual_band(double duration_s);
 
 /// Fits the band to the errors of the left-out pieces: the most probable parameters of the band, then a factor so that it contains 90 % of
 /// the errors. Student's distribution with `left_out` (at least 1) degrees of freedom accounts for the small number of pieces.
-ForecastBand fit_band(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const PredictedPiece> pieces,
-                      std::size_t left_out);
+motor::ForecastBand fit_band(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs,
+                             std::span<const PredictedPiece> pieces, std::size_t left_out);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 constexpr std::size_t kRefitted = 4;
@@ -29,7 +29,7 @@ struct Candidate {
 
 class Search {
  public:
-  Search(ForecastSetup setup, std::span<const MeasuredRun> runs, int threads) : runs_(runs), threads_(threads) {
+  Search(ForecastSetup setup, std::span<const estimation::MeasuredRun> runs, int threads) : runs_(runs), threads_(threads) {
     base_setup_ = std::move(setup);
     out_.setup = base_setup_;
     model_.emplace(out_.setup.model());
@@ -65,7 +65,7 @@ class Search {
   [[nodiscard]] ForecastFit best_of_starts(std::span<const Eigen::VectorXd> hints) const {
     std::vector<Eigen::VectorXd> starts{model_->start()};
     starts.insert(starts.end(), hints.begin(), hints.end());
-    Random random(1, 0);
+    base::Random random(1, 0);
     Eigen::VectorXd perturbed = model_->start();
     for (double& each : perturbed) {
       each += std::log(kPerturbed_ratio) * (2.0 * random.uniform() - 1.0);
@@ -100,7 +100,7 @@ class Search {
     double least_nats = 0.0;
     double count = 0.0;
     for (const Piece& piece : out_.pieces) {
-      for (const Sensor& sensor : runs_[piece.run].sensors) {
+      for (const estimation::Sensor& sensor : runs_[piece.run].sensors) {
         least_nats += 0.5 * std::log(2.0 * sensor.noise_K * sensor.noise_K);
         count += 1.0;
       }
@@ -144,7 +144,7 @@ class Search {
     const auto after = rival_score(out_.source, score, runs_).rmse_K;
     return std::ranges::any_of(before, [&](const auto& each) {
       const auto same = std::ranges::find(after, each.first, [](const auto& other) { return other.first; });
-      return same != after.end() && same->second < each.second - kMatters_K;
+      return same != after.end() && same->second < each.second - estimation::kMatters_K;
     });
   }
 
@@ -153,7 +153,7 @@ class Search {
     std::vector<Candidate> candidates(all.size());
     ForecastRules rules{
         .rounds = 1, .steps = kScreeningSteps, .held_error_K = out_.fit.error_K, .held_weight = out_.fit.weight, .threads = 1};
-    in_parallel(all.size(), threads_, [&](std::size_t i) {
+    base::in_parallel(all.size(), threads_, [&](std::size_t i) {
       Candidate& each = candidates[i];
       each.extension = &all[i];
       each.setup = with_extension(out_.setup, all[i]);
@@ -219,7 +219,7 @@ class Search {
     out_.band.width_ratio = out_.pieces.empty() ? std::max(1.0, out_.band.width_ratio) : out_.band.width_ratio;
   }
 
-  std::span<const MeasuredRun> runs_;
+  std::span<const estimation::MeasuredRun> runs_;
   int threads_;
   std::optional<ForecastModel> model_, base_;
   ForecastSetup base_setup_;
@@ -229,11 +229,11 @@ class Search {
 
 }  // namespace
 
-RivalScore rival_score(ForecastSource source, const PieceScore& score, std::span<const MeasuredRun> runs) {
+RivalScore rival_score(ForecastSource source, const PieceScore& score, std::span<const estimation::MeasuredRun> runs) {
   RivalScore rival{source, score.score_nats, {}};
   std::map<std::string, std::pair<double, double>> sums;
   for (const PredictedPiece& piece : score.pieces) {
-    const MeasuredRun& run = runs[piece.run];
+    const estimation::MeasuredRun& run = runs[piece.run];
     for (Eigen::Index row = 0; row < piece.path.residual_K.size(); ++row) {
       if (const double error_K = piece.path.residual_K[row]; !std::isnan(error_K)) {
         auto& [squares_K2, count] = sums[run.sensors[static_cast<std::size_t>(row % piece.path.sensors())].signal];
@@ -248,8 +248,9 @@ RivalScore rival_score(ForecastSource source, const PieceScore& score, std::span
   return rival;
 }
 
-Forecast forecast_of(ForecastSetup setup, std::span<const MeasuredRun> runs, std::span<const Eigen::VectorXd> hints, int threads) {
+Forecast forecast_of(ForecastSetup setup, std::span<const estimation::MeasuredRun> runs, std::span<const Eigen::VectorXd> hints,
+                     int threads) {
   return Search(std::move(setup), runs, threads).run(hints);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -7,7 +7,7 @@
 #include "calibration/forecast/band.h"
 #include "calibration/forecast/forecast_setup.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 /// Origin of a forecast's parameters. `ordinary` is the simple alternative: least squares of free runs without extensions. `innovations`
 /// explains the response within seconds; Forecast::source is never that.
@@ -32,18 +32,19 @@ struct Forecast {
   std::vector<AcceptedExtension> accepted;
   std::vector<Piece> pieces;       ///< left-out pieces; fewer than kLeastPieces select no network
   std::vector<RivalScore> rivals;  ///< empty if there are too few pieces
-  ForecastBand band;
+  motor::ForecastBand band;
 
   [[nodiscard]] ForecastModel model() const { return setup.model(); }
 };
 
 /// Summarises the prediction of the left-out pieces.
-RivalScore rival_score(ForecastSource source, const PieceScore& score, std::span<const MeasuredRun> runs);
+RivalScore rival_score(ForecastSource source, const PieceScore& score, std::span<const estimation::MeasuredRun> runs);
 
 /// Decrease of the score per parameter from which one model counts as better: 5 % of the RMS error.
 inline constexpr double kLeastGain_nats = 0.05;
 
 /// Finds the best forecast model. `hints` are additional starting points in θ of the setup's model. Deterministic.
-Forecast forecast_of(ForecastSetup setup, std::span<const MeasuredRun> runs, std::span<const Eigen::VectorXd> hints, int threads);
+Forecast forecast_of(ForecastSetup setup, std::span<const estimation::MeasuredRun> runs, std::span<const Eigen::VectorXd> hints,
+                     int threads);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

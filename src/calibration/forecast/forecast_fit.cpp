@@ -8,14 +8,14 @@
 #include "base/diagnostic.h"
 #include "base/parallel.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Normal equations of one run. Unknowns: θ, heat factor, start temperature of every node without a sensor.
 struct RunTerm {
-  LinearisedRun path;
+  estimation::LinearisedRun path;
   Eigen::MatrixXd normal;  ///< normal matrix of these unknowns, without priors and weight
   Eigen::VectorXd right;
   double squares_K2 = 0.0;
@@ -26,11 +26,12 @@ bool counts(const RowMask& mask, Eigen::Index row) { return mask.empty() || mask
 
 class Fitting {
  public:
-  Fitting(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const RowMask> masks, const ForecastRules& rules)
+  Fitting(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, std::span<const RowMask> masks,
+          const ForecastRules& rules)
       : model_(model), runs_(runs), rules_(rules), masks_(masks.begin(), masks.end()) {
     masks_.resize(runs.size());
     with_heat_ = rules.has_heat_factors && runs.size() > 1;
-    for (const MeasuredRun& run : runs) {
+    for (const estimation::MeasuredRun& run : runs) {
       std::vector<int> unseen;
       for (int node = 0; node < model.network().state_count(); ++node) {
         if (run.sensor_at(model.network().node_name(node)) < 0) {
@@ -57,8 +58,8 @@ class Fitting {
     theta_ = model_.within_bounds(theta);
     heat_log_.setZero(static_cast<Eigen::Index>(runs_.size()));
     starts_.clear();
-    for (const MeasuredRun& run : runs_) {
-      starts_.push_back(start_of(model_.network(), run));
+    for (const estimation::MeasuredRun& run : runs_) {
+      starts_.push_back(estimation::start_of(model_.network(), run));
     }
   }
 
@@ -109,9 +110,9 @@ class Fitting {
   bool assemble() {
     std::vector<RunTerm> terms(runs_.size());
     try {
-      in_parallel(runs_.size(), rules_.threads, [&](std::size_t r) { terms[r] = term(r); });
-    } catch (const Failure& failure) {
-      if (failure.code() != ExitCode::numerics_failed) {
+      base::in_parallel(runs_.size(), rules_.threads, [&](std::size_t r) { terms[r] = term(r); });
+    } catch (const base::Failure& failure) {
+      if (failure.code() != base::ExitCode::numerics_failed) {
         throw;
       }
       return false;
@@ -271,21 +272,21 @@ class Fitting {
   }
 
   const ForecastModel& model_;
-  std::span<const MeasuredRun> runs_;
+  std::span<const estimation::MeasuredRun> runs_;
   const ForecastRules& rules_;
   std::vector<RowMask> masks_;
   bool with_heat_ = false;
   std::vector<std::vector<int>> unseen_;
   Eigen::VectorXd theta_;
   Eigen::VectorXd heat_log_;
-  std::vector<RunStart> starts_;
+  std::vector<estimation::RunStart> starts_;
   std::vector<RunTerm> terms_;
   ForecastFit out_;
 };
 
 }  // namespace
 
-ForecastFit fit_forecast(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const RowMask> masks,
+ForecastFit fit_forecast(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, std::span<const RowMask> masks,
                          const Eigen::VectorXd& theta, const ForecastRules& rules) {
   return Fitting(model, runs, masks, rules).fit(theta);
 }
@@ -311,4 +312,4 @@ double independent_samples(const Eigen::VectorXd& error_K) {
   return static_cast<double>(count) / std::max(1.0, sum);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -8,7 +8,7 @@
 #include "calibration/forecast/forecast_model.h"
 #include "estimation/open_loop.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 /// Rows of a run that a fit uses: nonzero if row (sample · sensors + sensor) counts. Empty: all rows.
 using RowMask = std::vector<char>;
@@ -27,8 +27,8 @@ struct ForecastRules {
 
 struct ForecastFit {
   Eigen::VectorXd theta;
-  Eigen::VectorXd heat_log;      ///< logarithm of the heat factor, per run
-  std::vector<RunStart> starts;  ///< per run
+  Eigen::VectorXd heat_log;                  ///< logarithm of the heat factor, per run
+  std::vector<estimation::RunStart> starts;  ///< per run
   // The following values are those of the tempered cost at θ, for ordinary fits too.
   Eigen::MatrixXd covariance;               ///< of θ: inverse curvature of the cost, with heat factors and starts free
   double error_K = 0.0;                     ///< RMS error of the rows that count, at least the sensors' noise
@@ -38,10 +38,10 @@ struct ForecastFit {
 };
 
 /// Fits the model, starting at `theta`. `masks` has one entry per run, or none. The cost is infinite if the simulation fails at `theta`.
-ForecastFit fit_forecast(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const RowMask> masks,
+ForecastFit fit_forecast(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, std::span<const RowMask> masks,
                          const Eigen::VectorXd& theta, const ForecastRules& rules);
 
 /// Returns the number of independent samples. The correlation is computed about zero, not about the mean of the errors. NaN are skipped.
 double independent_samples(const Eigen::VectorXd& error_K);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

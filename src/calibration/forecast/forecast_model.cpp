@@ -9,7 +9,7 @@
 #include "estimation/spans.h"
 #include "motor/sensor_effect.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 /// Effects whose heat is proportional to their first parameter.
@@ -18,19 +18,19 @@ constexpr std::array<std::string_view, 4> kHeatEffects{"copper_loss", "no_load_l
 /// Lower bound of a fault's size as a share of its prior median. The declared lower bound may be 0, which has no logarithm.
 constexpr double kLeast_share = 0.02;
 
-const EffectInPlace* effect_named(const Network& network, std::string_view name) {
-  const auto found = std::ranges::find(network.effects(), name, &EffectInPlace::name);
+const thermal::EffectInPlace* effect_named(const thermal::Network& network, std::string_view name) {
+  const auto found = std::ranges::find(network.effects(), name, &thermal::EffectInPlace::name);
   return found == network.effects().end() ? nullptr : &*found;
 }
 
 }  // namespace
 
-ForecastModel::ForecastModel(MotorModel model, const Motor& motor, std::vector<FreeFault> faults)
+ForecastModel::ForecastModel(MotorModel model, const motor::Motor& motor, std::vector<FreeFault> faults)
     : motor_(std::move(model)), faults_(std::move(faults)) {
   find_ties();
   find_heat();
   find_conditions(motor);
-  for (const FreeParameter& free : motor_.model.free) {
+  for (const estimation::FreeParameter& free : motor_.model.free) {
     wanted_.push_back(free.place);
   }
   std::ranges::transform(ties_, std::back_inserter(wanted_), &Tie::place);
@@ -48,8 +48,8 @@ ForecastModel::ForecastModel(MotorModel model, const Motor& motor, std::vector<F
 }
 
 void ForecastModel::find_ties() {
-  const EffectInPlace* const implicit = effect_named(network(), kImplicitPowerLoss);
-  for (const EffectInPlace& effect : network().effects()) {
+  const thermal::EffectInPlace* const implicit = effect_named(network(), kImplicitPowerLoss);
+  for (const thermal::EffectInPlace& effect : network().effects()) {
     // Only one other effect may take a share of the input power; with more, all shares stay as in the file.
     if (implicit && &effect != implicit && effect.type == implicit->type) {
       ties_.push_back({implicit->parameter_index.front(), effect.parameter_index.front()});
@@ -58,18 +58,18 @@ void ForecastModel::find_ties() {
 }
 
 void ForecastModel::find_heat() {
-  for (const EffectInPlace& effect : network().effects()) {
+  for (const thermal::EffectInPlace& effect : network().effects()) {
     if (std::ranges::find(kHeatEffects, effect.type->name) != kHeatEffects.end()) {
       heat_places_.push_back(effect.parameter_index.front());
     }
   }
 }
 
-void ForecastModel::find_conditions(const Motor& motor) {
-  for (const MotorEffect& effect : motor.effects) {
+void ForecastModel::find_conditions(const motor::Motor& motor) {
+  for (const motor::MotorEffect& effect : motor.effects) {
     const std::optional<int> size = effect.type->candidacy.size_parameter;
     // An effect is not in the network if its condition holds in no recording.
-    const EffectInPlace* const in_place = effect_named(network(), effect.name);
+    const thermal::EffectInPlace* const in_place = effect_named(network(), effect.name);
     if (!effect.condition.empty() && size && in_place) {
       conditional_.push_back({in_place->parameter_index[static_cast<std::size_t>(*size)], effect.condition});
     }
@@ -83,20 +83,21 @@ Eigen::VectorXd ForecastModel::start() const {
 }
 
 Eigen::VectorXd ForecastModel::within_bounds(Eigen::VectorXd theta) const {
-  const Model& model = motor_.model;
+  const estimation::Model& model = motor_.model;
   for (Eigen::Index i = 0; i < model.free_count(); ++i) {
-    const FreeParameter& free = model.free[static_cast<std::size_t>(i)];
+    const estimation::FreeParameter& free = model.free[static_cast<std::size_t>(i)];
     theta[i] = std::clamp(theta[i], model.theta_of(i, free.low), model.theta_of(i, free.high));
   }
   for (std::size_t i = 0; i < faults_.size(); ++i) {
-    const Range& range = faults_[i].type->size.range;
+    const base::Range& range = faults_[i].type->size.range;
     double& own = theta[model.free_count() + static_cast<Eigen::Index>(i)];
     own = std::clamp(own, std::log(std::max(range.low, kLeast_share * faults_[i].size)), std::log(range.high));
   }
   return theta;
 }
 
-std::vector<double> ForecastModel::values_in(const MeasuredRun& run, const Eigen::VectorXd& theta, double log_heat_ratio) const {
+std::vector<double> ForecastModel::values_in(const estimation::MeasuredRun& run, const Eigen::VectorXd& theta,
+                                             double log_heat_ratio) const {
   std::vector<double> values = motor_.model.values_at(theta.head(motor_.model.free_count()));
   const auto at = [&](int place) -> double& { return values[static_cast<std::size_t>(place)]; };
   for (const Tie& tie : ties_) {
@@ -111,15 +112,15 @@ std::vector<double> ForecastModel::values_in(const MeasuredRun& run, const Eigen
   return values;
 }
 
-LinearisedRun ForecastModel::along(const MeasuredRun& run, const Eigen::VectorXd& theta, double log_heat_ratio,
-                                   std::span<const double> start_C) const {
-  const Model& model = motor_.model;
+estimation::LinearisedRun ForecastModel::along(const estimation::MeasuredRun& run, const Eigen::VectorXd& theta, double log_heat_ratio,
+                                               std::span<const double> start_C) const {
+  const estimation::Model& model = motor_.model;
   const Eigen::Index inner = model.free_count();
   const std::vector<double> values = values_in(run, theta, log_heat_ratio);
-  LinearisedRun out = linearise(network(), values, wanted_, model.flux_nodes, start_C, run);
-  const Columns by_value = std::move(out.by_parameter);
+  estimation::LinearisedRun out = estimation::linearise(network(), values, wanted_, model.flux_nodes, start_C, run);
+  const estimation::Columns by_value = std::move(out.by_parameter);
   out.by_parameter.setZero(by_value.rows(), count() + 1);
-  out.by_parameter.leftCols(inner) = by_theta(model, theta.head(inner), by_value.leftCols(inner));
+  out.by_parameter.leftCols(inner) = estimation::by_theta(model, theta.head(inner), by_value.leftCols(inner));
   const auto position = [&](int place) { return std::ranges::find(wanted_.begin(), wanted_.begin() + inner, place) - wanted_.begin(); };
   // These columns are multiplied by exp(log_heat_ratio) below.
   for (std::size_t i = 0; i < ties_.size(); ++i) {
@@ -142,21 +143,23 @@ LinearisedRun ForecastModel::along(const MeasuredRun& run, const Eigen::VectorXd
   }
   for (std::size_t i = 0; i < faults_.size(); ++i) {
     const Eigen::Index own = inner + static_cast<Eigen::Index>(i);
-    const SensorFault fault{faults_[i].type, std::exp(theta[own])};
+    const motor::SensorFault fault{faults_[i].type, std::exp(theta[own])};
     for (Eigen::Index sensor = 0; sensor < out.sensors(); ++sensor) {
       if (run.sensors[static_cast<std::size_t>(sensor)].signal == fault.type->signal) {
-        const std::vector<double> by_size = fault.type->law.by_size(run.time_s, fault.size, as_span(out.sensor_C.col(sensor)));
-        add_fault(fault, sensor, run, out);
-        out.by_parameter(Eigen::seq(sensor, out.residual_K.size() - 1, out.sensors()), own) = fault.size * as_vector(by_size);
+        const std::vector<double> by_size = fault.type->law.by_size(run.time_s, fault.size, estimation::as_span(out.sensor_C.col(sensor)));
+        estimation::add_fault(fault, sensor, run, out);
+        out.by_parameter(Eigen::seq(sensor, out.residual_K.size() - 1, out.sensors()), own) = fault.size * estimation::as_vector(by_size);
       }
     }
   }
   return out;
 }
 
-DecidedStart ForecastModel::decided_start(const MeasuredRun& run, const Eigen::VectorXd& theta) const {
-  const RunFrom from = [&](std::span<const double> start_C, const MeasuredRun& part) { return along(part, theta, 0.0, start_C); };
-  return heatsoak::decided_start(network(), start_of(network(), run), run, from);
+estimation::DecidedStart ForecastModel::decided_start(const estimation::MeasuredRun& run, const Eigen::VectorXd& theta) const {
+  const estimation::RunFrom from = [&](std::span<const double> start_C, const estimation::MeasuredRun& part) {
+    return along(part, theta, 0.0, start_C);
+  };
+  return estimation::decided_start(network(), estimation::start_of(network(), run), run, from);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

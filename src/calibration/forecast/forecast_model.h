@@ -12,14 +12,14 @@
 #include "estimation/measured_run.h"
 #include "estimation/open_loop.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 /// Prior standard deviation of the logarithm of a run's heat factor (about 5 %).
 inline constexpr double kHeatFactor_sd = 0.05;
 
 /// Sensor fault whose size is fitted as a logarithm.
 struct FreeFault {
-  const SensorEffectType* type = nullptr;
+  const motor::SensorEffectType* type = nullptr;
   double size = 0.0;      ///< prior median, in the unit of the type's size
   double prior_sd = 1.0;  ///< of the logarithm of the size
 };
@@ -28,25 +28,26 @@ struct FreeFault {
 class ForecastModel {
  public:
   /// `model` must be built from `motor`.
-  ForecastModel(MotorModel model, const Motor& motor, std::vector<FreeFault> faults);
+  ForecastModel(MotorModel model, const motor::Motor& motor, std::vector<FreeFault> faults);
 
   [[nodiscard]] const MotorModel& motor() const { return motor_; }
-  [[nodiscard]] const Network& network() const { return motor_.model.network; }
+  [[nodiscard]] const thermal::Network& network() const { return motor_.model.network; }
   [[nodiscard]] std::span<const FreeFault> faults() const { return faults_; }
   [[nodiscard]] Eigen::Index count() const { return prior_.mean.size(); }
-  [[nodiscard]] const Prior& prior() const { return prior_; }
+  [[nodiscard]] const estimation::Prior& prior() const { return prior_; }
   /// θ at the values of the file.
   [[nodiscard]] Eigen::VectorXd start() const;
   /// Clamps θ to the bounds of all parameters.
   [[nodiscard]] Eigen::VectorXd within_bounds(Eigen::VectorXd theta) const;
   /// Returns the network's parameters for a run. All heat that the inputs generate is multiplied by exp(log_heat_ratio).
-  [[nodiscard]] std::vector<double> values_in(const MeasuredRun& run, const Eigen::VectorXd& theta, double log_heat_ratio) const;
+  [[nodiscard]] std::vector<double> values_in(const estimation::MeasuredRun& run, const Eigen::VectorXd& theta,
+                                              double log_heat_ratio) const;
   /// Simulates the run from start temperatures (°C) of all state nodes. The columns of by_parameter are θ, then log_heat_ratio. Throws
   /// Failure (numerics_failed) if the temperatures diverge.
-  [[nodiscard]] LinearisedRun along(const MeasuredRun& run, const Eigen::VectorXd& theta, double log_heat_ratio,
-                                    std::span<const double> start_C) const;
+  [[nodiscard]] estimation::LinearisedRun along(const estimation::MeasuredRun& run, const Eigen::VectorXd& theta, double log_heat_ratio,
+                                                std::span<const double> start_C) const;
   /// Start temperatures estimated from the beginning of the run (open_loop.h).
-  [[nodiscard]] DecidedStart decided_start(const MeasuredRun& run, const Eigen::VectorXd& theta) const;
+  [[nodiscard]] estimation::DecidedStart decided_start(const estimation::MeasuredRun& run, const Eigen::VectorXd& theta) const;
 
  private:
   /// Parameter `place` is 1 minus parameter `of`.
@@ -61,15 +62,15 @@ class ForecastModel {
   };
   void find_ties();
   void find_heat();
-  void find_conditions(const Motor& motor);
+  void find_conditions(const motor::Motor& motor);
 
   MotorModel motor_;
   std::vector<FreeFault> faults_;
-  Prior prior_;
+  estimation::Prior prior_;
   std::vector<Tie> ties_;
   std::vector<Conditional> conditional_;
   std::vector<int> heat_places_;  ///< parameters to which the heat of the inputs is proportional
   std::vector<int> wanted_;       ///< indices of the free parameters, then of the ties, then heat_places_
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

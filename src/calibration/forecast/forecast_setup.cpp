@@ -9,7 +9,7 @@
 #include "calibration/unlogged_speed.h"
 #include "thermal/reference_point.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 /// Prior standard deviations of logarithms. kContact_sd corresponds to 0.5 for the whole conductance, of which half varies.
@@ -22,36 +22,38 @@ constexpr double kRemainder_sd = 0.1;
 /// Linearised radiation coefficient 4·σ·T³ at 320 K.
 constexpr double kRadiation_W_per_m2_K = 7.432;
 
-bool all_have(std::span<const Recording> recordings, Signal signal) {
-  return std::ranges::all_of(recordings, [&](const Recording& each) {
-    const std::vector<Signal> signals = signals_of(each);
+bool all_have(std::span<const recording::Recording> recordings, thermal::Signal signal) {
+  return std::ranges::all_of(recordings, [&](const recording::Recording& each) {
+    const std::vector<thermal::Signal> signals = estimation::signals_of(each);
     return std::ranges::find(signals, signal) != signals.end();
   });
 }
 
-ParameterValue held(double value) {
-  ParameterValue parameter;
+base::ParameterValue held(double value) {
+  base::ParameterValue parameter;
   parameter.value = value;
   parameter.derivation = "held by the fit";
   return parameter;
 }
 
 /// Free parameter with prior standard deviation `sd` of its logarithm. The range follows from prior_sd_of() for the origin "estimated".
-ParameterValue free_parameter(double value, double sd) {
-  ParameterValue parameter = held(value);
+base::ParameterValue free_parameter(double value, double sd) {
+  base::ParameterValue parameter = held(value);
   parameter.derivation = "start of the fit";
-  parameter.spread = Spread{Spread::Kind::range, value * std::exp(-sd), value * std::exp(sd), true};
+  parameter.spread = base::Spread{base::Spread::Kind::range, value * std::exp(-sd), value * std::exp(sd), true};
   return parameter;
 }
 
-MotorEffect effect(std::string name, std::string_view type, std::vector<std::string> nodes, std::vector<ParameterValue> parameters) {
-  return {std::move(name), find_effect(type), std::move(nodes), std::move(parameters), {}, {}};
+motor::MotorEffect effect(std::string name, std::string_view type, std::vector<std::string> nodes,
+                          std::vector<base::ParameterValue> parameters) {
+  return {std::move(name), thermal::find_effect(type), std::move(nodes), std::move(parameters), {}, {}};
 }
 
 /// Lists the possible extensions.
 class Listing {
  public:
-  Listing(const ForecastSetup& setup, const ForecastModel& model, const Eigen::VectorXd& theta, std::span<const MeasuredRun> runs)
+  Listing(const ForecastSetup& setup, const ForecastModel& model, const Eigen::VectorXd& theta,
+          std::span<const estimation::MeasuredRun> runs)
       : setup_(setup), model_(model), runs_(runs), values_(model.values_in(runs.front(), theta, 0.0)) {}
 
   std::vector<Extension> list() {
@@ -70,17 +72,17 @@ class Listing {
  private:
   [[nodiscard]] double value(std::string_view parameter) const {
     const auto all = model_.network().parameters();
-    return values_[static_cast<std::size_t>(std::ranges::find(all, parameter, &NetworkParameter::name) - all.begin())];
+    return values_[static_cast<std::size_t>(std::ranges::find(all, parameter, &thermal::NetworkParameter::name) - all.begin())];
   }
   [[nodiscard]] bool has(std::string_view effect) const {
-    return std::ranges::find(setup_.motor.effects, effect, &MotorEffect::name) != setup_.motor.effects.end();
+    return std::ranges::find(setup_.motor.effects, effect, &motor::MotorEffect::name) != setup_.motor.effects.end();
   }
-  void add(MotorEffect effect) {
+  void add(motor::MotorEffect effect) {
     if (has(effect.name)) {
       return;
     }
-    const auto free =
-        static_cast<int>(std::ranges::count_if(effect.parameters, [](const ParameterValue& each) { return each.spread.has_value(); }));
+    const auto free = static_cast<int>(
+        std::ranges::count_if(effect.parameters, [](const base::ParameterValue& each) { return each.spread.has_value(); }));
     const std::string name = effect.name == "contact_law"
                                  ? fmt::format("contact_law_of_{}{}{}", effect.parameters[1].spread ? "mean" : "",
                                                effect.parameters[1].spread && effect.parameters[2].spread ? "_and_" : "",
@@ -105,11 +107,12 @@ class Listing {
 
   void lag(std::string_view name) {
     constexpr double kUsual_s = 3.0;
-    const SensorEffectType* const type = find_sensor_effect(name);
-    const bool is_stated = std::ranges::any_of(setup_.motor.sensors, [&](const MotorSensor& each) { return each.type == type; }) ||
+    const motor::SensorEffectType* const type = motor::find_sensor_effect(name);
+    const bool is_stated = std::ranges::any_of(setup_.motor.sensors, [&](const motor::MotorSensor& each) { return each.type == type; }) ||
                            std::ranges::any_of(setup_.faults, [&](const FreeFault& each) { return each.type == type; });
-    const bool is_shown = std::ranges::any_of(
-        runs_, [&](const MeasuredRun& run) { return std::ranges::find(run.sensors, type->signal, &Sensor::signal) != run.sensors.end(); });
+    const bool is_shown = std::ranges::any_of(runs_, [&](const estimation::MeasuredRun& run) {
+      return std::ranges::find(run.sensors, type->signal, &estimation::Sensor::signal) != run.sensors.end();
+    });
     if (!is_stated && is_shown) {
       all_.push_back({std::string(name), {}, {{type, kUsual_s, kLoose_sd}}, 1, {}});
     }
@@ -147,8 +150,8 @@ class Listing {
     double squares = 0.0;
     double time_s = 0.0;
     double heat_W = 0.0;
-    for (const MeasuredRun& run : runs_) {
-      if (!run.has(Signal::speed)) {
+    for (const estimation::MeasuredRun& run : runs_) {
+      if (!run.has(thermal::Signal::speed)) {
         return;
       }
       const Eigen::MatrixXd state_C = Eigen::MatrixXd::Constant(model_.network().state_count(), run.samples(), run.at.front().ambient_C);
@@ -159,7 +162,7 @@ class Listing {
         time_s += duration_s;
       }
     }
-    const double ratio = std::sqrt(squares / time_s) / kReferenceSpeed_rad_per_s;
+    const double ratio = std::sqrt(squares / time_s) / thermal::kReferenceSpeed_rad_per_s;
     if (!(ratio > 0.01) || !(heat_W > 0.0) || setup_.heat != HeatInput::current) {
       return;
     }
@@ -173,7 +176,7 @@ class Listing {
 
   const ForecastSetup& setup_;
   const ForecastModel& model_;
-  std::span<const MeasuredRun> runs_;
+  std::span<const estimation::MeasuredRun> runs_;
   std::vector<double> values_;
   std::vector<Extension> all_;
 };
@@ -188,9 +191,9 @@ ForecastModel ForecastSetup::model() const {
   return {std::move(all), motor, faults};
 }
 
-ForecastSetup forecast_setup(const Motor& motor, std::span<const Recording> recordings) {
+ForecastSetup forecast_setup(const motor::Motor& motor, std::span<const recording::Recording> recordings) {
   ForecastSetup setup{.motor = motor, .heat = heat_input_of(motor, recordings, true)};
-  setup.has_speed = all_have(recordings, Signal::speed);
+  setup.has_speed = all_have(recordings, thermal::Signal::speed);
   if (setup.heat == HeatInput::power_balance && !has_remaining_loss(motor)) {
     setup.motor.effects.push_back(effect("remaining_loss", "remaining_loss", {"winding", "stator"},
                                          {free_parameter(1.0, kRemainder_sd), free_parameter(0.5, kWindingShare_sd)}));
@@ -199,7 +202,7 @@ ForecastSetup forecast_setup(const Motor& motor, std::span<const Recording> reco
 }
 
 std::vector<Extension> extensions_for(const ForecastSetup& setup, const ForecastModel& model, const Eigen::VectorXd& theta,
-                                      std::span<const MeasuredRun> runs) {
+                                      std::span<const estimation::MeasuredRun> runs) {
   return Listing(setup, model, theta, runs).list();
 }
 
@@ -211,8 +214,8 @@ ForecastSetup with_extension(ForecastSetup setup, const Extension& extension) {
 
 Eigen::VectorXd carried_over(const ForecastModel& from, const Eigen::VectorXd& theta, const ForecastModel& to, const Extension& added) {
   Eigen::VectorXd out = to.start();
-  const Model& old = from.motor().model;
-  const Model& now = to.motor().model;
+  const estimation::Model& old = from.motor().model;
+  const estimation::Model& now = to.motor().model;
   for (Eigen::Index i = 0; i < now.free_count(); ++i) {
     for (Eigen::Index j = 0; j < old.free_count(); ++j) {
       out[i] = now.name(i) == old.name(j) ? theta[j] : out[i];
@@ -231,7 +234,8 @@ Eigen::VectorXd carried_over(const ForecastModel& from, const Eigen::VectorXd& t
   return to.within_bounds(std::move(out));
 }
 
-double rms_heat_W(const Network& network, std::span<const double> values, const MeasuredRun& run, const Eigen::MatrixXd& state_C) {
+double rms_heat_W(const thermal::Network& network, std::span<const double> values, const estimation::MeasuredRun& run,
+                  const Eigen::MatrixXd& state_C) {
   const auto nodes = static_cast<std::size_t>(network.node_count());
   const auto states = static_cast<std::size_t>(network.state_count());
   std::vector<double> heat_W(network.effects().size() * nodes);
@@ -257,4 +261,4 @@ double rms_heat_W(const Network& network, std::span<const double> values, const 
   return std::sqrt(squares_W2_s / time_s);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

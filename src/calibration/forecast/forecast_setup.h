@@ -8,10 +8,10 @@
 #include "calibration/forecast/forecast_model.h"
 #include "motor/motor.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 struct ForecastSetup {
-  Motor motor;
+  motor::Motor motor;
   HeatInput heat = HeatInput::current;
   bool has_speed = true;               ///< all logs have a speed
   bool opens_loss_at_speed = false;    ///< fits the loss at a speed that was not logged
@@ -21,12 +21,12 @@ struct ForecastSetup {
 };
 
 /// Returns the setup for these logs. Adds remaining_loss to a motor without one if all logs have the power balance.
-ForecastSetup forecast_setup(const Motor& motor, std::span<const Recording> recordings);
+ForecastSetup forecast_setup(const motor::Motor& motor, std::span<const recording::Recording> recordings);
 
 /// Extension of the network, accepted only if it improves the prediction of left-out pieces. It is not a diagnosis.
 struct Extension {
   std::string name;
-  std::vector<MotorEffect> effects;
+  std::vector<motor::MotorEffect> effects;
   std::vector<FreeFault> faults;
   int free_count = 0;
   /// Factors on fitted parameters (by name) that keep the initial behaviour of the extended network close to that before.
@@ -35,7 +35,7 @@ struct Extension {
 
 /// Returns the extensions that are observable with the signals of these runs. Their initial sizes follow from the fitted `theta`.
 std::vector<Extension> extensions_for(const ForecastSetup& setup, const ForecastModel& model, const Eigen::VectorXd& theta,
-                                      std::span<const MeasuredRun> runs);
+                                      std::span<const estimation::MeasuredRun> runs);
 ForecastSetup with_extension(ForecastSetup setup, const Extension& extension);
 
 /// Converts θ of model `from` to the coordinates of model `to`, matched by name. Parameters that only `to` has start at its own values;
@@ -43,6 +43,7 @@ ForecastSetup with_extension(ForecastSetup setup, const Extension& extension);
 Eigen::VectorXd carried_over(const ForecastModel& from, const Eigen::VectorXd& theta, const ForecastModel& to, const Extension& added = {});
 
 /// Returns the RMS over the run, in W, of the heat that the network generates or dissipates to ambient, whichever is larger.
-double rms_heat_W(const Network& network, std::span<const double> values, const MeasuredRun& run, const Eigen::MatrixXd& state_C);
+double rms_heat_W(const thermal::Network& network, std::span<const double> values, const estimation::MeasuredRun& run,
+                  const Eigen::MatrixXd& state_C);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

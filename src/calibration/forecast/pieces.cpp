@@ -7,14 +7,14 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 constexpr std::size_t kBlocks = 4;
 constexpr double kExcited_share = 0.25;
 
 /// Index of the winding's sensor, or 0 if there is none.
-Eigen::Index watched_sensor(const MeasuredRun& run) { return std::max<Eigen::Index>(0, run.sensor_at("winding")); }
+Eigen::Index watched_sensor(const estimation::MeasuredRun& run) { return std::max<Eigen::Index>(0, run.sensor_at("winding")); }
 
 /// Range of the predicted readings of samples [from, to). Predicted readings have no missing samples.
 std::pair<double, double> range_of(const Eigen::MatrixXd& sensor_C, Eigen::Index sensor, Eigen::Index from, Eigen::Index to) {
@@ -22,7 +22,7 @@ std::pair<double, double> range_of(const Eigen::MatrixXd& sensor_C, Eigen::Index
   return {part.minCoeff(), part.maxCoeff()};
 }
 
-Piece block_of(const MeasuredRun& run, Eigen::Index from, Eigen::Index to) {
+Piece block_of(const estimation::MeasuredRun& run, Eigen::Index from, Eigen::Index to) {
   const auto sensors = static_cast<Eigen::Index>(run.sensors.size());
   Piece piece;
   piece.seen.assign(static_cast<std::size_t>(run.samples() * sensors), 1);
@@ -42,18 +42,19 @@ ForecastFit unfitted(const ForecastModel& model, const Eigen::VectorXd& theta) {
   return fit;
 }
 
-ForecastFit fitted_without(const ForecastModel& model, std::span<const MeasuredRun> runs, const Piece& piece, const Eigen::VectorXd& theta,
-                           const ForecastRules& rules) {
+ForecastFit fitted_without(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, const Piece& piece,
+                           const Eigen::VectorXd& theta, const ForecastRules& rules) {
   ForecastFit fit = piece.seen.empty() ? fit_forecast(model, runs_without(runs, piece), {}, theta, rules)
                                        : fit_forecast(model, runs, std::vector<RowMask>{piece.seen}, theta, rules);
   if (!std::isfinite(fit.cost_nats)) {
-    throw Failure(ExitCode::numerics_failed, "the model cannot be simulated over the other pieces");
+    throw base::Failure(base::ExitCode::numerics_failed, "the model cannot be simulated over the other pieces");
   }
   return fit;
 }
 
-PredictedPiece predicted(const ForecastModel& model, std::span<const MeasuredRun> runs, const Piece& piece, const ForecastFit& fit) {
-  const MeasuredRun& run = runs[piece.run];
+PredictedPiece predicted(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, const Piece& piece,
+                         const ForecastFit& fit) {
+  const estimation::MeasuredRun& run = runs[piece.run];
   PredictedPiece out{piece.run, {}, {}, {}};
   const bool is_block = !piece.seen.empty();
   const Eigen::VectorXd start_C =
@@ -71,7 +72,7 @@ PredictedPiece predicted(const ForecastModel& model, std::span<const MeasuredRun
 
 }  // namespace
 
-std::vector<Piece> pieces_of(const ForecastModel& model, const ForecastFit& base, std::span<const MeasuredRun> runs) {
+std::vector<Piece> pieces_of(const ForecastModel& model, const ForecastFit& base, std::span<const estimation::MeasuredRun> runs) {
   std::vector<Eigen::MatrixXd> sensor_C;
   double low_C = std::numeric_limits<double>::infinity();
   double high_C = -low_C;
@@ -99,7 +100,7 @@ std::vector<Piece> pieces_of(const ForecastModel& model, const ForecastFit& base
     }
     return pieces;
   }
-  const MeasuredRun& run = runs.front();
+  const estimation::MeasuredRun& run = runs.front();
   for (std::size_t b = 0; b < kBlocks; ++b) {
     const auto edge = [&](std::size_t block) { return static_cast<Eigen::Index>(block * run.time_s.size() / kBlocks); };
     add(0, edge(b), edge(b + 1), block_of(run, edge(b), edge(b + 1)));
@@ -107,8 +108,8 @@ std::vector<Piece> pieces_of(const ForecastModel& model, const ForecastFit& base
   return pieces;
 }
 
-std::vector<MeasuredRun> runs_without(std::span<const MeasuredRun> runs, const Piece& piece) {
-  std::vector<MeasuredRun> others(runs.begin(), runs.end());
+std::vector<estimation::MeasuredRun> runs_without(std::span<const estimation::MeasuredRun> runs, const Piece& piece) {
+  std::vector<estimation::MeasuredRun> others(runs.begin(), runs.end());
   if (piece.seen.empty()) {
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(piece.run));
     return others;
@@ -122,28 +123,28 @@ std::vector<MeasuredRun> runs_without(std::span<const MeasuredRun> runs, const P
   return others;
 }
 
-PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const Piece> pieces,
+PieceScore score_pieces(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, std::span<const Piece> pieces,
                         const Eigen::VectorXd& theta, const ForecastRules* rules) {
   return score_pieces(model, runs, pieces, [&](const Piece& piece) {
     return rules ? fitted_without(model, runs, piece, theta, *rules) : unfitted(model, theta);
   });
 }
 
-PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const Piece> pieces,
+PieceScore score_pieces(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, std::span<const Piece> pieces,
                         const FitWithout& fit_without) {
   PieceScore score;
   double count = 0.0;
   for (const Piece& piece : pieces) {
     try {
       score.pieces.push_back(predicted(model, runs, piece, fit_without(piece)));
-    } catch (const Failure& failure) {
-      if (failure.code() != ExitCode::numerics_failed && failure.code() != ExitCode::cannot_answer) {
+    } catch (const base::Failure& failure) {
+      if (failure.code() != base::ExitCode::numerics_failed && failure.code() != base::ExitCode::cannot_answer) {
         throw;
       }
       score.score_nats = std::numeric_limits<double>::infinity();
       return score;
     }
-    const LinearisedRun& path = score.pieces.back().path;
+    const estimation::LinearisedRun& path = score.pieces.back().path;
     for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
       double squares_K2 = 0.0;
       double rows = 0.0;
@@ -160,4 +161,4 @@ PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun>
   return score;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

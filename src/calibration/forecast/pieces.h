@@ -7,7 +7,7 @@
 
 #include "calibration/forecast/forecast_fit.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 /// Left-out piece: a run, or a block of a single run. The fit uses the rest.
 struct Piece {
@@ -18,7 +18,7 @@ struct Piece {
 
 /// Returns the pieces: all runs, or four blocks of a single run. A piece counts only if the predicted winding temperature varies in it by
 /// at least a quarter of its range over all runs.
-std::vector<Piece> pieces_of(const ForecastModel& model, const ForecastFit& base, std::span<const MeasuredRun> runs);
+std::vector<Piece> pieces_of(const ForecastModel& model, const ForecastFit& base, std::span<const estimation::MeasuredRun> runs);
 /// Smallest number of pieces that can select a network, and that can compare fits of the same network.
 inline constexpr std::size_t kLeastPieces = 3;
 inline constexpr std::size_t kLeastToCompare = 2;
@@ -26,9 +26,9 @@ inline constexpr std::size_t kLeastToCompare = 2;
 /// Prediction of a piece by a fit that did not use it.
 struct PredictedPiece {
   std::size_t run = 0;
-  LinearisedRun path;          ///< with logarithm 0 of the heat factor; residual_K is NaN in rows that are not scored
-  Eigen::MatrixXd covariance;  ///< of θ
-  std::vector<double> values;  ///< the network's parameters
+  estimation::LinearisedRun path;  ///< with logarithm 0 of the heat factor; residual_K is NaN in rows that are not scored
+  Eigen::MatrixXd covariance;      ///< of θ
+  std::vector<double> values;      ///< the network's parameters
 };
 
 struct PieceScore {
@@ -41,13 +41,13 @@ struct PieceScore {
 using FitWithout = std::function<ForecastFit(const Piece& piece)>;
 
 /// Scores the prediction of each piece. The score is infinite if a fit or a simulation fails.
-PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const Piece> pieces,
+PieceScore score_pieces(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, std::span<const Piece> pieces,
                         const FitWithout& fit_without);
 /// Fits the forecast model without each piece, starting at `theta`. If `rules` is null, nothing is fitted and the parameters are `theta`.
-PieceScore score_pieces(const ForecastModel& model, std::span<const MeasuredRun> runs, std::span<const Piece> pieces,
+PieceScore score_pieces(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, std::span<const Piece> pieces,
                         const Eigen::VectorXd& theta, const ForecastRules* rules);
 
 /// Returns the runs without the piece: without its run, or with its samples not measured.
-std::vector<MeasuredRun> runs_without(std::span<const MeasuredRun> runs, const Piece& piece);
+std::vector<estimation::MeasuredRun> runs_without(std::span<const estimation::MeasuredRun> runs, const Piece& piece);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

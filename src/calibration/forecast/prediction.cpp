@@ -15,10 +15,11 @@
 #include "motor/conditions.h"
 #include "motor/datasheet_network.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
-PredictedSignal signal_of(const MeasuredRun& run, const LinearisedRun& path, const Eigen::VectorXd& sd_K, Eigen::Index sensor) {
+PredictedSignal signal_of(const estimation::MeasuredRun& run, const estimation::LinearisedRun& path, const Eigen::VectorXd& sd_K,
+                          Eigen::Index sensor) {
   PredictedSignal out;
   out.signal = run.sensors[static_cast<std::size_t>(sensor)].signal;
   double squares_K2 = 0.0;
@@ -46,40 +47,40 @@ PredictedSignal signal_of(const MeasuredRun& run, const LinearisedRun& path, con
   return out;
 }
 
-bool has_speed(const Recording& recording) {
-  const std::vector<Signal> signals = signals_of(recording);
-  return std::ranges::find(signals, Signal::speed) != signals.end();
+bool has_speed(const recording::Recording& recording) {
+  const std::vector<thermal::Signal> signals = estimation::signals_of(recording);
+  return std::ranges::find(signals, thermal::Signal::speed) != signals.end();
 }
 
-double longest_s(std::span<const MeasuredRun> runs) {
+double longest_s(std::span<const estimation::MeasuredRun> runs) {
   double longest_s = 0.0;
-  for (const MeasuredRun& run : runs) {
+  for (const estimation::MeasuredRun& run : runs) {
     longest_s = std::max(longest_s, run.time_s.back() - run.time_s.front());
   }
   return longest_s;
 }
 
 /// Returns the motor under the conditions that a recording states. The recording's name is its condition "run".
-Motor as_in(const Recording& recording, const Motor& motor) {
+motor::Motor as_in(const recording::Recording& recording, const motor::Motor& motor) {
   std::map<std::string, std::string> stated = recording.conditions;
   stated.emplace("run", recording.name);
   std::map<std::string, std::string> of_motor;
-  for (const MotorEffect& effect : motor.effects) {
+  for (const motor::MotorEffect& effect : motor.effects) {
     for (const auto& [key, value] : effect.condition) {
       if (const auto found = stated.find(key); found != stated.end()) {
         of_motor.insert(*found);
       }
     }
   }
-  return of_motor.empty() ? motor : under(motor, of_motor);
+  return of_motor.empty() ? motor : motor::under(motor, of_motor);
 }
 
-void predict_one(const Motor& motor, const Recording& recording, const PredictionOptions& options, Prediction& all) {
-  const std::span<const Recording> own(&recording, 1);
+void predict_one(const motor::Motor& motor, const recording::Recording& recording, const PredictionOptions& options, Prediction& all) {
+  const std::span<const recording::Recording> own(&recording, 1);
   ForecastSetup setup = forecast_setup(motor, own);
-  std::vector<MeasuredRun> runs = forecast_runs(setup, own, options.ambient_C, all.notes);
+  std::vector<estimation::MeasuredRun> runs = forecast_runs(setup, own, options.ambient_C, all.notes);
   if (options.turns_within_rows) {
-    std::ranges::transform(runs, runs.begin(), turning_within_rows);
+    std::ranges::transform(runs, runs.begin(), estimation::turning_within_rows);
   }
   const double most_loss_W = setup.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
   if (most_loss_W > 0.0 && std::ranges::any_of(runs, turns_unseen)) {
@@ -87,23 +88,24 @@ void predict_one(const Motor& motor, const Recording& recording, const Predictio
     all.notes.push_back(
         fmt::format("the band of {} is wider, because its log has a current but no speed: the loss at speed may be anything up to {} W; if "
                     "the motor stood still, add speed_rad_per_s = 0",
-                    recording.name, significant(most_loss_W, 2)));
+                    recording.name, base::significant(most_loss_W, 2)));
   }
   const ForecastModel model = setup.model();
   const Eigen::MatrixXd& precision = model.prior().precision;
   const Eigen::MatrixXd covariance = precision.ldlt().solve(Eigen::MatrixXd::Identity(precision.rows(), precision.cols()));
-  const ForecastBand band = motor.fit && motor.fit->band ? *motor.fit->band : usual_band(longest_s(runs));
-  for (const MeasuredRun& run : runs) {
+  const motor::ForecastBand band = motor.fit && motor.fit->band ? *motor.fit->band : usual_band(longest_s(runs));
+  for (const estimation::MeasuredRun& run : runs) {
     all.runs.push_back(predict(model, model.start(), covariance, band, run));
   }
 }
 
 }  // namespace
 
-PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance, const ForecastBand& band,
-                     const MeasuredRun& run) {
-  DecidedStart start = model.decided_start(run, theta);
-  const LinearisedRun path = model.along(run, theta, 0.0, {start.state_C.data(), static_cast<std::size_t>(start.state_C.size())});
+PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance,
+                     const motor::ForecastBand& band, const estimation::MeasuredRun& run) {
+  estimation::DecidedStart start = model.decided_start(run, theta);
+  const estimation::LinearisedRun path =
+      model.along(run, theta, 0.0, {start.state_C.data(), static_cast<std::size_t>(start.state_C.size())});
   const double heat_W = rms_heat_W(model.network(), model.values_in(run, theta, 0.0), run, path.state_C);
   const Eigen::VectorXd sd_K = forecast_sd_K(path, run, covariance, start.covariance_K2, heat_W, band);
   PredictedRun out{run.name, run.time_s, {}};
@@ -113,32 +115,32 @@ PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, c
   return out;
 }
 
-std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const Recording> recordings, std::optional<double> ambient_C,
-                                       std::vector<std::string>& notes) {
-  MeasuredRunOptions how = how_to_read(setup.motor, setup.heat);
+std::vector<estimation::MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const recording::Recording> recordings,
+                                                   std::optional<double> ambient_C, std::vector<std::string>& notes) {
+  estimation::MeasuredRunOptions how = how_to_read(setup.motor, setup.heat);
   how.needed = setup.model().motor().needed;
   how.ambient_C = ambient_C;
-  std::vector<MeasuredRun> all;
-  for (const Recording& recording : recordings) {
-    MeasuredRunOptions here = how;
+  std::vector<estimation::MeasuredRun> all;
+  for (const recording::Recording& recording : recordings) {
+    estimation::MeasuredRunOptions here = how;
     // If a log has a speed column, only rows with a speed are used.
-    std::erase(here.needed, Signal::speed);
+    std::erase(here.needed, thermal::Signal::speed);
     if (setup.heat != HeatInput::input_power && has_speed(recording)) {
-      here.needed.push_back(Signal::speed);
+      here.needed.push_back(thermal::Signal::speed);
     }
-    MeasuredRuns found = measured_runs(recording, here);
+    estimation::MeasuredRuns found = estimation::measured_runs(recording, here);
     std::ranges::move(found.runs, std::back_inserter(all));
     std::ranges::move(found.notes, std::back_inserter(notes));
   }
   return all;
 }
 
-Prediction predict(const Motor& motor, std::span<const Recording> recordings, const PredictionOptions& options) {
+Prediction predict(const motor::Motor& motor, std::span<const recording::Recording> recordings, const PredictionOptions& options) {
   Prediction all;
-  if (std::string lacking = columns_lacking(how_to_read(motor, HeatInput::current).columns, recordings); !lacking.empty()) {
+  if (std::string lacking = estimation::columns_lacking(how_to_read(motor, HeatInput::current).columns, recordings); !lacking.empty()) {
     all.notes.push_back(std::move(lacking));
   }
-  for (const Recording& recording : recordings) {
+  for (const recording::Recording& recording : recordings) {
     predict_one(as_in(recording, motor), recording, options, all);
   }
   if (!motor.fit || !motor.fit->band) {
@@ -150,4 +152,4 @@ Prediction predict(const Motor& motor, std::span<const Recording> recordings, co
   return all;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

@@ -10,7 +10,7 @@
 #include "calibration/forecast/forecast_setup.h"
 #include "recording/recording.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 
 /// Prediction of one sensor in one run; all vectors have one value per sample.
 struct PredictedSignal {
@@ -37,12 +37,12 @@ struct Prediction {
 };
 
 /// Predicts a run from its first temperatures and measured inputs. `covariance` is that of θ.
-PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance, const ForecastBand& band,
-                     const MeasuredRun& run);
+PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance,
+                     const motor::ForecastBand& band, const estimation::MeasuredRun& run);
 
 /// Reads the runs of the recordings with the signals that the setup's model needs. Appends to `notes`. Throws Failure as measured_runs().
-std::vector<MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const Recording> recordings, std::optional<double> ambient_C,
-                                       std::vector<std::string>& notes);
+std::vector<estimation::MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const recording::Recording> recordings,
+                                                   std::optional<double> ambient_C, std::vector<std::string>& notes);
 
 struct PredictionOptions {
   std::optional<double> ambient_C = {};  ///< for logs without an ambient temperature
@@ -52,6 +52,6 @@ struct PredictionOptions {
 /// Predicts each recording separately with the heat input that it has: power balance, current, torque or input power. Without a fit in the
 /// motor file, the parameters have their prior uncertainty. Throws Failure: bad_input if a log has no heat input or no temperature,
 /// numerics_failed if the temperatures diverge.
-Prediction predict(const Motor& motor, std::span<const Recording> recordings, const PredictionOptions& options);
+Prediction predict(const motor::Motor& motor, std::span<const recording::Recording> recordings, const PredictionOptions& options);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration

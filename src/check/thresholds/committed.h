@@ -6,25 +6,25 @@
 #include "check/computations.h"
 #include "derate/committed_table.h"
 
-namespace heatsoak::thresholds {
+namespace heatsoak::check::thresholds {
 
-inline TableComparison compared(const Check& check, Computations& computations) {
-  const CommittedTable committed = read_committed_table(check.table);  // first: a missing file needs no minute of work
+inline derate::TableComparison compared(const Check& check, Computations& computations) {
+  const derate::CommittedTable committed = derate::read_committed_table(check.table);  // first: a missing file needs no minute of work
   if (!committed.motor_id.empty() && committed.motor_id != check.motor->id) {
-    throw Failure(ExitCode::limit_exceeded, fmt::format("{}: the table is of another motor, {}; expected one of {}", check.table.string(),
-                                                        committed.motor_id, check.motor->id));
+    throw base::Failure(base::ExitCode::limit_exceeded, fmt::format("{}: the table is of another motor, {}; expected one of {}",
+                                                                    check.table.string(), committed.motor_id, check.motor->id));
   }
-  if (const std::string problem = sensor_difference(committed, check.derate.sensor); !problem.empty()) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("{}: {}; 'derate' takes them as keys without \"--\", \"_\" for \"-\"", check.table.string(), problem));
+  if (const std::string problem = derate::sensor_difference(committed, check.derate.sensor); !problem.empty()) {
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("{}: {}; 'derate' takes them as keys without \"--\", \"_\" for \"-\"", check.table.string(), problem));
   }
-  return compare(committed, computations.derating(check, check.derate));
+  return derate::compare(committed, computations.derating(check, check.derate));
 }
 
-inline std::string place_text(const TablePlace& place) {
+inline std::string place_text(const derate::TablePlace& place) {
   return place.difference_A == 0.0 ? std::string()
                                    : fmt::format("at {:.0f} rad/s, stator {:.0f} °C, winding {:.0f} °C: {:.3f} A, a fresh table {:.3f} A",
                                                  place.speed_rad_per_s, place.stator_C, place.winding_C, place.committed_A, place.fresh_A);
 }
 
-}  // namespace heatsoak::thresholds
+}  // namespace heatsoak::check::thresholds

@@ -3,18 +3,18 @@
 #include "check/computations.h"
 #include "firmware/core_files.h"
 
-namespace heatsoak::thresholds {
+namespace heatsoak::check::thresholds {
 namespace {
 
 Measured measure(const Check& check, Computations& computations) {
-  CoreOptions core;
-  DerateOptions options = check.derate;
-  options.period_s = guard_period_s(core.period_s);
+  firmware::CoreOptions core;
+  derate::DerateOptions options = check.derate;
+  options.period_s = firmware::guard_period_s(core.period_s);
   options.sensor.reset();  // the drive core has none
-  const Derating& derating = computations.derating(check, options);
-  const CoreFolder folder = core_files(*check.robot, *check.motor, core, derating, "heatsoak 0.0.0");
+  const derate::Derating& derating = computations.derating(check, options);
+  const firmware::CoreFolder folder = firmware::core_files(*check.robot, *check.motor, core, derating, "heatsoak 0.0.0");
   double size_byte = 0.0;
-  for (const CoreFile& file : folder.files) {
+  for (const firmware::CoreFile& file : folder.files) {
     size_byte += static_cast<double>(file.content.size());
   }
   return {size_byte, 0.0, fmt::format("{} files, guard table of {} bytes", folder.files.size(), derating.table.size_bytes())};
@@ -25,7 +25,7 @@ Measured measure(const Check& check, Computations& computations) {
 ThresholdType core_size() {
   return {.name = {},
           .unit = "byte",
-          .range = Range::between(0.0, 1e9),
+          .range = base::Range::between(0.0, 1e9),
           .meaning = "size of the drive core that `generate core` writes for robot and motor: all its source files together, not compiled",
           .example = "at most 400 kbyte",
           .needs = {Setting::robot, Setting::motor},
@@ -33,4 +33,4 @@ ThresholdType core_size() {
           .measure = measure};
 }
 
-}  // namespace heatsoak::thresholds
+}  // namespace heatsoak::check::thresholds

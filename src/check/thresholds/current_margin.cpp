@@ -2,13 +2,14 @@
 
 #include "check/computations.h"
 
-namespace heatsoak::thresholds {
+namespace heatsoak::check::thresholds {
 namespace {
 
 Measured measure(const Check& check, Computations& computations) {
-  const MotorEvaluation& result = computations.feasible_evaluation(check);
+  const select::MotorEvaluation& result = computations.feasible_evaluation(check);
   if (!result.margin_A) {
-    throw Failure(ExitCode::cannot_answer, "no factor on the load brings the motor to its limit, so there is no margin to compare");
+    throw base::Failure(base::ExitCode::cannot_answer,
+                        "no factor on the load brings the motor to its limit, so there is no margin to compare");
   }
   return {*result.margin_A, 0.0, fmt::format("the duty takes {:.2f} A rms, nominal motor", result.current_rms_A)};
 }
@@ -19,7 +20,7 @@ ThresholdType current_margin() {
   return {.name = {},
           .unit = "A",
           .direction = Bound::at_least,
-          .range = Range::between(-1e3, 1e3),
+          .range = base::Range::between(-1e3, 1e3),
           .meaning =
               "rms current that the nominal motor can take in addition at the same speeds until winding or stator reaches its limit, as "
               "far as voltage and driver allow it; negative if the limit is exceeded",
@@ -32,4 +33,4 @@ ThresholdType current_margin() {
           .measure = measure};
 }
 
-}  // namespace heatsoak::thresholds
+}  // namespace heatsoak::check::thresholds

@@ -1,15 +1,16 @@
 #include "check/thresholds/committed.h"
 
-namespace heatsoak::thresholds {
+namespace heatsoak::check::thresholds {
 namespace {
 
 Measured measure(const Check& check, Computations& computations) {
-  const TableComparison found = compared(check, computations);
+  const derate::TableComparison found = compared(check, computations);
   if (found.differing_line > 0) {
-    throw Failure(ExitCode::limit_exceeded,
-                  fmt::format("{}:{}: the observer differs from that of a fresh header, so the table has another meaning: \"{}\", fresh "
-                              "\"{}\"; generate the header again with `heatsoak derate`",
-                              check.table.string(), found.differing_line, found.differing_text, found.differing_fresh_text));
+    throw base::Failure(
+        base::ExitCode::limit_exceeded,
+        fmt::format("{}:{}: the observer differs from that of a fresh header, so the table has another meaning: \"{}\", fresh "
+                    "\"{}\"; generate the header again with `heatsoak derate`",
+                    check.table.string(), found.differing_line, found.differing_text, found.differing_fresh_text));
   }
   std::string detail = place_text(found.excess);
   if (found.lost.difference_A > 0.0) {
@@ -23,7 +24,7 @@ Measured measure(const Check& check, Computations& computations) {
 ThresholdType derating_excess() {
   return {.name = {},
           .unit = "A",
-          .range = Range::between(0.0, 1e3),
+          .range = base::Range::between(0.0, 1e3),
           .least_size_ratio = 1.0,
           .meaning =
               "largest excess of the current that the committed 'table' allows over that of a fresh `derate` of the same robot, motor and "
@@ -36,4 +37,4 @@ ThresholdType derating_excess() {
           .measure = measure};
 }
 
-}  // namespace heatsoak::thresholds
+}  // namespace heatsoak::check::thresholds

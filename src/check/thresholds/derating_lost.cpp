@@ -1,11 +1,11 @@
 #include "check/thresholds/committed.h"
 
-namespace heatsoak::thresholds {
+namespace heatsoak::check::thresholds {
 
 ThresholdType derating_lost() {
   return {.name = {},
           .unit = "A",
-          .range = Range::between(0.0, 1e3),
+          .range = base::Range::between(0.0, 1e3),
           .meaning =
               "largest deficit of the current that the committed 'table' allows below that of a fresh `derate` of the same robot, motor "
               "and options, over all speeds and temperatures: safe, but unused current",
@@ -13,9 +13,9 @@ ThresholdType derating_lost() {
           .needs = {Setting::robot, Setting::motor, Setting::table},
           .takes = {Setting::conditions, Setting::derate},
           .measure = [](const Check& check, Computations& computations) -> Measured {
-            const TablePlace lost = compared(check, computations).lost;
+            const derate::TablePlace lost = compared(check, computations).lost;
             return {lost.difference_A, 0.0, place_text(lost)};
           }};
 }
 
-}  // namespace heatsoak::thresholds
+}  // namespace heatsoak::check::thresholds

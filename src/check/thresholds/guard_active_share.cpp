@@ -2,7 +2,7 @@
 
 #include "check/computations.h"
 
-namespace heatsoak::thresholds {
+namespace heatsoak::check::thresholds {
 namespace {
 
 Measured measure(const Check& check, Computations& computations) {
@@ -18,7 +18,7 @@ ThresholdType guard_active_share() {
   return {.name = {},
           .unit = "",
           .is_share = true,
-          .range = Range::between(0.0, 1.0),
+          .range = base::Range::between(0.0, 1.0),
           .meaning =
               "share of a match in which the motor's thermal guard would limit any wheel: one game of 'seed', driven by the drive core in "
               "a closed loop with real sensing, the guard in shadow mode. \"at most 0 %\": the guard never engages",
@@ -29,4 +29,4 @@ ThresholdType guard_active_share() {
           .measure = measure};
 }
 
-}  // namespace heatsoak::thresholds
+}  // namespace heatsoak::check::thresholds

@@ -2,7 +2,7 @@
 
 #include "check/computations.h"
 
-namespace heatsoak::thresholds {
+namespace heatsoak::check::thresholds {
 namespace {
 
 Measured measure(const Check& check, Computations& computations) {
@@ -16,7 +16,7 @@ Measured measure(const Check& check, Computations& computations) {
 ThresholdType guard_missing_charge() {
   return {.name = {},
           .unit = "A s",
-          .range = Range::between(0.0, 1e6),
+          .range = base::Range::between(0.0, 1e6),
           .meaning =
               "integral over time of the current that the thermal guard would take away in a match, all wheels together; the same drive as "
               "for guard_active_share",
@@ -26,4 +26,4 @@ ThresholdType guard_missing_charge() {
           .measure = measure};
 }
 
-}  // namespace heatsoak::thresholds
+}  // namespace heatsoak::check::thresholds

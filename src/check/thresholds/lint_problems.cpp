@@ -7,32 +7,32 @@
 #include "motor/lint.h"
 #include "robot/robot_lint.h"
 
-namespace heatsoak::thresholds {
+namespace heatsoak::check::thresholds {
 namespace {
 
-bool is_problem(const LintFinding& finding) { return finding.level != LintFinding::Level::note; }
+bool is_problem(const motor::LintFinding& finding) { return finding.level != motor::LintFinding::Level::note; }
 
 /// The check's own things, or the files that it names, as what their keys say they are.
-std::vector<LintFinding> findings_of(const Check& check) {
-  std::vector<LintFinding> all;
-  const auto take = [&all](std::vector<LintFinding> findings) { std::ranges::move(findings, std::back_inserter(all)); };
+std::vector<motor::LintFinding> findings_of(const Check& check) {
+  std::vector<motor::LintFinding> all;
+  const auto take = [&all](std::vector<motor::LintFinding> findings) { std::ranges::move(findings, std::back_inserter(all)); };
   // A robot's motor may lie anywhere, so that it is known is for `heatsoak lint` to say.
-  const auto of_robot = [&take](const Robot& robot) { take(lint(robot, std::vector{robot.drive.motor})); };
+  const auto of_robot = [&take](const robot::Robot& robot) { take(robot::lint(robot, std::vector{robot.drive.motor})); };
   for (const std::filesystem::path& file : check.files) {
-    switch (file_kind(file)) {
-      case FileKind::robot:
-        of_robot(read_robot(file));
+    switch (duty::file_kind(file)) {
+      case duty::FileKind::robot:
+        of_robot(robot::read_robot(file));
         break;
-      case FileKind::duty:
-        read_duty(file);
+      case duty::FileKind::duty:
+        duty::read_duty(file);
         break;
-      case FileKind::motor:
-        take(lint(read_motor(file)));
+      case duty::FileKind::motor:
+        take(motor::lint(motor::read_motor(file)));
     }
   }
   if (check.files.empty()) {
     if (check.motor) {
-      take(lint(*check.motor));
+      take(motor::lint(*check.motor));
     }
     if (check.robot) {
       of_robot(*check.robot);
@@ -42,7 +42,7 @@ std::vector<LintFinding> findings_of(const Check& check) {
 }
 
 Measured measure(const Check& check, Computations& /*computations*/) {
-  const std::vector<LintFinding> all = findings_of(check);
+  const std::vector<motor::LintFinding> all = findings_of(check);
   const auto count = std::ranges::count_if(all, is_problem);
   const auto first = std::ranges::find_if(all, is_problem);
   return {static_cast<double>(count), 0.0,
@@ -57,7 +57,7 @@ ThresholdType lint_problems() {
   return {.name = {},
           .unit = "",
           .is_whole = true,
-          .range = Range::between(0.0, 1e4),
+          .range = base::Range::between(0.0, 1e4),
           .room = Room::none,
           .meaning = "number of errors and warnings of `lint`, without notes, for 'files' or for the check's own motor, robot and duty",
           .example = "at most 0",
@@ -66,4 +66,4 @@ ThresholdType lint_problems() {
           .measure = measure};
 }
 
-}  // namespace heatsoak::thresholds
+}  // namespace heatsoak::check::thresholds

@@ -7,28 +7,28 @@
 
 #include "check/computations.h"
 
-namespace heatsoak::thresholds {
+namespace heatsoak::check::thresholds {
 
 /// No winding of this world is outside; 70 K, meant as a rise, is.
-inline constexpr Range kPlausible_C = Range::between(-60.0, 1000.0);
+inline constexpr base::Range kPlausible_C = base::Range::between(-60.0, 1000.0);
 
 /// Returns the motor's own limit as the loosest one; nothing without a motor or if its file gives no such limit.
 template <class Member>
-std::optional<LoosestLimit> own_limit(const Check& check, Member MotorValues::*limit_C, const char* what) {
+std::optional<LoosestLimit> own_limit(const Check& check, Member motor::MotorValues::*limit_C, const char* what) {
   const std::optional<double> own_C = check.motor ? std::optional<double>(check.motor->nominal.*limit_C) : std::nullopt;
   return own_C ? std::optional<LoosestLimit>({*own_C, what}) : std::nullopt;
 }
 
 /// The upper end of the 95 % interval of a peak's 95th percentile, with the air as the origin of its rise. Throws Failure where the samples
 /// are too few to have one.
-inline Measured measured_peak(const Check& check, Computations& computations, Spread95 MotorEvaluation::*peak,
-                              std::optional<Interval95> MotorEvaluation::*interval) {
-  const MotorEvaluation& result = computations.feasible_evaluation(check);
-  const Spread95& peak_C = result.*peak;
-  const std::optional<Interval95>& bounds_C = result.*interval;
+inline Measured measured_peak(const Check& check, Computations& computations, select::Spread95 select::MotorEvaluation::*peak,
+                              std::optional<select::Interval95> select::MotorEvaluation::*interval) {
+  const select::MotorEvaluation& result = computations.feasible_evaluation(check);
+  const select::Spread95& peak_C = result.*peak;
+  const std::optional<select::Interval95>& bounds_C = result.*interval;
   if (!bounds_C || !std::isfinite(bounds_C->high)) {
-    throw Failure(
-        ExitCode::bad_input,
+    throw base::Failure(
+        base::ExitCode::bad_input,
         fmt::format("a bound of the 95th percentile needs 72 samples or more, or 160 if the duty is drawn at random; the check has {}",
                     check.samples));
   }
@@ -38,4 +38,4 @@ inline Measured measured_peak(const Check& check, Computations& computations, Sp
                   peak_C.p95, bounds_C->high, peak_C.nominal, peak_C.p50, check.samples, result.wheel)};
 }
 
-}  // namespace heatsoak::thresholds
+}  // namespace heatsoak::check::thresholds

@@ -6,28 +6,28 @@
 #include "base/quantity.h"
 #include "check/computations.h"
 
-namespace heatsoak::thresholds {
+namespace heatsoak::check::thresholds {
 namespace {
 
 constexpr double kConfidence = 0.95;
 
 /// How many samples could keep the limit.
 std::string what_would_do(const Check& check, double over_share, double limit_share, int draws) {
-  const std::optional<long> needed = draws_needed(over_share, limit_share, kConfidence);
+  const std::optional<long> needed = base::draws_needed(over_share, limit_share, kConfidence);
   if (!needed) {
     return "no number of samples can meet the limit with this share";
   }
   const bool is_drawn = draws != check.samples;
   const long per_draw = is_drawn ? (check.samples + draws - 1) / draws : 1;
-  return fmt::format("{} samples or more could meet {} % with this share", *needed * per_draw, significant(100.0 * limit_share, 3));
+  return fmt::format("{} samples or more could meet {} % with this share", *needed * per_draw, base::significant(100.0 * limit_share, 3));
 }
 
 Measured measure(const Check& check, Computations& computations) {
-  const MotorEvaluation& result = computations.feasible_evaluation(check);
+  const select::MotorEvaluation& result = computations.feasible_evaluation(check);
   const int draws = Computations::independent_draws(check);
   const bool is_drawn = draws != check.samples;
   const double share = result.probability_over_limit;
-  double bound = upper_bound_share(share * draws, draws, kConfidence);
+  double bound = base::upper_bound_share(share * draws, draws, kConfidence);
   std::string detail = fmt::format("{} of {} samples over, bound of {:.0f} % confidence", std::lround(share * check.samples), check.samples,
                                    100.0 * kConfidence);
   if (is_drawn) {
@@ -49,7 +49,7 @@ ThresholdType probability_over_limit() {
   return {.name = {},
           .unit = "",
           .is_share = true,
-          .range = Range::between(0.0, 1.0),
+          .range = base::Range::between(0.0, 1.0),
           .meaning =
               "probability that winding or stator exceeds its limit: the exact upper confidence bound (Clopper and Pearson, 95 %, "
               "one-sided) of the share of samples that do, so that few samples cannot meet a tight limit. If the duty is drawn at random, "
@@ -61,4 +61,4 @@ ThresholdType probability_over_limit() {
           .measure = measure};
 }
 
-}  // namespace heatsoak::thresholds
+}  // namespace heatsoak::check::thresholds

@@ -5,16 +5,16 @@
 
 #include "check/computations.h"
 
-namespace heatsoak::thresholds {
+namespace heatsoak::check::thresholds {
 namespace {
 
 Measured measure(const Check& check, Computations& computations) {
-  const MotorEvaluation& own = computations.feasible_evaluation(check);
-  const auto order = [](const MotorEvaluation& each) { return std::tuple(each.verdict, -nearest_margin_K(each)); };
+  const select::MotorEvaluation& own = computations.feasible_evaluation(check);
+  const auto order = [](const select::MotorEvaluation& each) { return std::tuple(each.verdict, -select::nearest_margin_K(each)); };
   std::string better;
   int place = 1;
-  for (const Motor& motor : check.against) {
-    const MotorEvaluation& other = computations.evaluation(check, motor);
+  for (const motor::Motor& motor : check.against) {
+    const select::MotorEvaluation& other = computations.evaluation(check, motor);
     if (order(other) < order(own)) {
       ++place;
       better += fmt::format("{}{}", better.empty() ? "" : ", ", other.motor_id);
@@ -30,7 +30,7 @@ ThresholdType rank() {
   return {.name = {},
           .unit = "",
           .is_whole = true,
-          .range = Range::between(1.0, 1e4),
+          .range = base::Range::between(1.0, 1e4),
           .room = Room::none,
           .meaning =
               "rank of the motor among itself and those of 'against', in the order of `evaluate`: verdict, then the nominal margin to "
@@ -47,4 +47,4 @@ ThresholdType rank() {
           .measure = measure};
 }
 
-}  // namespace heatsoak::thresholds
+}  // namespace heatsoak::check::thresholds

@@ -6,7 +6,7 @@
 #include "check/computations.h"
 #include "select/trace.h"
 
-namespace heatsoak::thresholds {
+namespace heatsoak::check::thresholds {
 namespace {
 
 /// Time in which a straight line from `from_C` to `to_C` is above the temperature.
@@ -21,16 +21,16 @@ double above_s(double from_C, double to_C, double limit_C, double duration_s) {
 }
 
 Measured measure(const Check& check, Computations& computations) {
-  const MotorEvaluation& result = computations.feasible_evaluation(check);
-  const std::vector<WheelDemand>& wheels = computations.demand(check);
-  const WheelDemand& hottest = *std::ranges::find(wheels, result.wheel, &WheelDemand::wheel);
+  const select::MotorEvaluation& result = computations.feasible_evaluation(check);
+  const std::vector<duty::WheelDemand>& wheels = computations.demand(check);
+  const duty::WheelDemand& hottest = *std::ranges::find(wheels, result.wheel, &duty::WheelDemand::wheel);
   constexpr double kEvery_s = 1.0;
   const double limit_C = check.temperature_C.value();
-  const Trace trace = run_trace(*check.robot, *check.duty, hottest, *check.motor, kEvery_s);
+  const select::Trace trace = select::run_trace(*check.robot, *check.duty, hottest, *check.motor, kEvery_s);
   double sum_s = 0.0;
   for (std::size_t i = 1; i < trace.rows.size(); ++i) {
-    const TraceRow& before = trace.rows[i - 1];
-    const TraceRow& row = trace.rows[i];
+    const select::TraceRow& before = trace.rows[i - 1];
+    const select::TraceRow& row = trace.rows[i];
     sum_s += above_s(before.winding_C, row.winding_C, limit_C, row.time_s - before.time_s);
   }
   return {sum_s, 0.0,
@@ -45,11 +45,11 @@ std::optional<LoosestLimit> duration(const Check& check) {
   }
   try {
     double longest_s = 0.0;
-    for (const WheelDemand& each : check.duty->demand(*check.robot, check.seed)) {
+    for (const duty::WheelDemand& each : check.duty->demand(*check.robot, check.seed)) {
       longest_s = std::max(longest_s, each.duration_s());
     }
     return LoosestLimit{longest_s, "the duration of the duty", true};
-  } catch (const Failure&) {
+  } catch (const base::Failure&) {
     return std::nullopt;  // the evaluation reports it
   }
 }
@@ -59,7 +59,7 @@ std::optional<LoosestLimit> duration(const Check& check) {
 ThresholdType time_above() {
   return {.name = {},
           .unit = "s",
-          .range = Range::between(0.0, 1e7),
+          .range = base::Range::between(0.0, 1e7),
           .meaning = "time in which the winding of the hottest wheel is above 'temperature', of the nominal motor over the whole duty",
           .example = "at most 60 s",
           .needs = {Setting::robot, Setting::duty, Setting::motor, Setting::temperature},
@@ -68,4 +68,4 @@ ThresholdType time_above() {
           .measure = measure};
 }
 
-}  // namespace heatsoak::thresholds
+}  // namespace heatsoak::check::thresholds

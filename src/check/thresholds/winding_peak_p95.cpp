@@ -1,23 +1,25 @@
 #include "check/thresholds/peak.h"
 
-namespace heatsoak::thresholds {
+namespace heatsoak::check::thresholds {
 
 ThresholdType winding_peak_p95() {
-  return {.name = {},
-          .unit = "degC",
-          .range = kPlausible_C,
-          .meaning =
-              "95th percentile over the samples of the winding's highest temperature, of the wheel whose winding gets hottest: its upper "
-              "confidence bound (97.5 %, one-sided) by order statistics, or by bootstrap over the draws if the duty is drawn at random; 72 "
-              "samples or more, 160 for such a duty",
-          .example = "at most 120 degC",
-          .needs = {Setting::robot, Setting::duty, Setting::motor},
-          .takes = {Setting::samples, Setting::seed, Setting::conditions},
-          .loosest = [](const Check& check) { return own_limit(check, &MotorValues::winding_limit_C, "the motor's own winding limit"); },
-          .measure =
-              [](const Check& check, Computations& computations) {
-                return measured_peak(check, computations, &MotorEvaluation::winding_peak_C, &MotorEvaluation::winding_p95_interval_C);
-              }};
+  return {
+      .name = {},
+      .unit = "degC",
+      .range = kPlausible_C,
+      .meaning =
+          "95th percentile over the samples of the winding's highest temperature, of the wheel whose winding gets hottest: its upper "
+          "confidence bound (97.5 %, one-sided) by order statistics, or by bootstrap over the draws if the duty is drawn at random; 72 "
+          "samples or more, 160 for such a duty",
+      .example = "at most 120 degC",
+      .needs = {Setting::robot, Setting::duty, Setting::motor},
+      .takes = {Setting::samples, Setting::seed, Setting::conditions},
+      .loosest = [](const Check& check) { return own_limit(check, &motor::MotorValues::winding_limit_C, "the motor's own winding limit"); },
+      .measure =
+          [](const Check& check, Computations& computations) {
+            return measured_peak(check, computations, &select::MotorEvaluation::winding_peak_C,
+                                 &select::MotorEvaluation::winding_p95_interval_C);
+          }};
 }
 
-}  // namespace heatsoak::thresholds
+}  // namespace heatsoak::check::thresholds

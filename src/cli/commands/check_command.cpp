@@ -13,11 +13,11 @@
 #include "cli/quantity_option.h"
 #include "present/check.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 struct Options {
-  CheckJob job;
+  check::CheckJob job;
   std::string junit;
 };
 
@@ -28,12 +28,12 @@ std::string environment(const char* name) {
 
 /// For GitHub Actions: adds an annotation for each violated limit and a table on the page of the run. If the page cannot be written, the
 /// command only warns.
-void write_github(const std::vector<Outcome>& outcomes, Session& session) {
+void write_github(const std::vector<check::Outcome>& outcomes, Session& session) {
   if (environment("GITHUB_ACTIONS") == "true") {
-    session.say(annotations(outcomes, environment("GITHUB_WORKSPACE")));
+    session.say(check::annotations(outcomes, environment("GITHUB_WORKSPACE")));
   }
   if (const std::string page = environment("GITHUB_STEP_SUMMARY"); !page.empty()) {
-    session.complete_with([page, text = summary_markdown(outcomes, program_version())] {
+    session.complete_with([page, text = check::summary_markdown(outcomes, base::program_version())] {
       std::ofstream file(page, std::ios::app | std::ios::binary);
       if (!(file << text).flush()) {
         fmt::print(stderr, "warning: the summary of the run is missing: {} cannot be written\n", page);
@@ -42,20 +42,20 @@ void write_github(const std::vector<Outcome>& outcomes, Session& session) {
   }
 }
 
-ExitCode run(const Options& options, Session& session) {
-  const CheckAnswer answer = run_check_job(options.job, session.folders(), progress_bar);
-  for (const RewrittenFile& each : answer.rewritten) {
+base::ExitCode run(const Options& options, Session& session) {
+  const check::CheckAnswer answer = check::run_check_job(options.job, session.folders(), progress_bar);
+  for (const check::RewrittenFile& each : answer.rewritten) {
     session.rewrite(each.path, each.text);
   }
   if (!options.junit.empty()) {
-    session.write(options.junit, junit_xml(answer.outcomes, program_version()));
+    session.write(options.junit, check::junit_xml(answer.outcomes, base::program_version()));
   }
   present::Document document = present::check_document(answer.outcomes, options.job.updates);
   document.add_file(options.junit);
   session.show(document);
   write_github(answer.outcomes, session);
   session.answer(present::check_json(answer.outcomes, options.job.files));
-  return answer.passed() ? ExitCode::done : ExitCode::limit_exceeded;
+  return answer.passed() ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ Command check_command() {
   return {.name = {},
           .summary = "Compares what is computed with limits of your own, for CI; exit 1 if one does not hold or cannot be evaluated",
           .example = "heatsoak check reports/check/twente.check.toml --junit check.xml",
-          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+          .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<Options>();
             app.add_option("files", options->job.files, "check files (`heatsoak list thresholds` shows what can have a limit)")
                 ->required()
@@ -74,7 +74,7 @@ Command check_command() {
                 "--update", options->job.updates,
                 "rewrite the limits in the files to the present values with some room; limits that cannot be evaluated stay unchanged");
             add_quantity(app, "--margin", options->job.margin_share,
-                         {"margin", "", Range::between(0.0, 10.0),
+                         {"margin", "", base::Range::between(0.0, 10.0),
                           "of --update: room as a share of the value, or of the rise over the air for a temperature; 5 % unless given"})
                 ->type_name("SHARE");
             app.add_option("--threads", options->job.threads, "0: all cores; the result does not depend on it")
@@ -86,4 +86,4 @@ Command check_command() {
           }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

@@ -10,7 +10,7 @@
 #include "cli/help_page.h"
 #include "derate/exporter.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 /// Returns the kind of value of an option or of a word without option. The shell asks the program for the names each time the user
@@ -28,8 +28,8 @@ std::vector<HelpPage> pages_with_formats(std::vector<HelpPage> pages) {
   for (HelpPage& page : pages) {
     for (HelpOption& option : page.options) {
       if (page.verb == "derate" && option.names.back() == "--to") {
-        std::ranges::transform(all_exporters(), std::back_inserter(option.choices),
-                               [](const ExporterType& each) { return std::string(each.name); });
+        std::ranges::transform(derate::all_exporters(), std::back_inserter(option.choices),
+                               [](const derate::ExporterType& each) { return std::string(each.name); });
       }
     }
   }
@@ -157,15 +157,15 @@ Command completion() {
   return {.name = {},
           .summary = "Prints a completion script for bash, zsh or fish",
           .example = "source <(heatsoak completion bash)",
-          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+          .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto shell = std::make_shared<std::string>("bash");
             app.add_option("shell", *shell, "bash, zsh or fish")->check(CLI::IsMember({"bash", "zsh", "fish"}));
             return [shell, &app, &session] {
               const std::vector<HelpPage> pages = pages_with_formats(help_pages(*app.get_parent()));
               session.say(*shell == "zsh" ? zsh_script(pages) : *shell == "fish" ? fish_script(pages) : bash_script(pages));
-              return ExitCode::done;
+              return base::ExitCode::done;
             };
           }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

@@ -15,7 +15,7 @@
 #include "duty/named_files.h"
 #include "present/derating.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 struct Options {
@@ -28,60 +28,61 @@ struct Options {
   SensorFlags sensor;
 };
 
-const ExporterType& exporter_named(const std::string& name) {
+const derate::ExporterType& exporter_named(const std::string& name) {
   std::vector<std::string> names;
   std::string expected;
-  for (const ExporterType& each : all_exporters()) {
+  for (const derate::ExporterType& each : derate::all_exporters()) {
     if (each.name == name) {
       return each;
     }
     names.emplace_back(each.name);
     expected += fmt::format("{}{}", expected.empty() ? "" : ", ", each.name);
   }
-  throw Failure(ExitCode::bad_input, fmt::format("--to {}: expected one of {}{}", name, expected, did_you_mean(name, names)));
+  throw base::Failure(base::ExitCode::bad_input,
+                      fmt::format("--to {}: expected one of {}{}", name, expected, base::did_you_mean(name, names)));
 }
 
-ExitCode run(const Options& options, Session& session) {
-  const ExporterType& exporter = exporter_named(options.to);
-  DerateOptions derate_options = options.guard.derate;
+base::ExitCode run(const Options& options, Session& session) {
+  const derate::ExporterType& exporter = exporter_named(options.to);
+  derate::DerateOptions derate_options = options.guard.derate;
   derate_options.sensor = sensor_options(options.sensor);
   if (derate_options.sensor && exporter.name != "c_header" && exporter.name != "json") {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("--to {} does not support a sensor: expected --to c_header or json, or no sensor", exporter.name));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("--to {} does not support a sensor: expected --to c_header or json, or no sensor", exporter.name));
   }
   if (options.out.empty() && options.committed.empty()) {
-    throw Failure(ExitCode::bad_input, "expected --out FILE to write, or --check FILE to compare with");
+    throw base::Failure(base::ExitCode::bad_input, "expected --out FILE to write, or --check FILE to compare with");
   }
   if (options.out == "-") {
-    throw Failure(ExitCode::bad_input, "--out -: expected a file; /dev/stdout stands for the terminal");
+    throw base::Failure(base::ExitCode::bad_input, "--out -: expected a file; /dev/stdout stands for the terminal");
   }
   if (!options.compiler.empty() && exporter.write_compiled == nullptr) {
-    throw Failure(
-        ExitCode::bad_input,
+    throw base::Failure(
+        base::ExitCode::bad_input,
         fmt::format("--compiler: {} has no binary; expected --to fmi2_motor, fmi2_guard, fmi3_motor or fmi3_guard", exporter.name));
   }
   check_derate_options(options.guard.derate);
-  NamedFiles named(session.folders());
-  const std::optional<Robot> robot = named.robot(options.robot);
-  DeratingJob job{.robot = {}, .motor = guarded_motor(options.guard, named), .options = derate_options};
+  duty::NamedFiles named(session.folders());
+  const std::optional<robot::Robot> robot = named.robot(options.robot);
+  derate::DeratingJob job{.robot = {}, .motor = guarded_motor(options.guard, named), .options = derate_options};
   job.robot = *robot;
   job.exporter = options.out.empty() ? nullptr : &exporter;
   job.compiler = options.compiler;
   job.committed = options.committed;
-  const DeratingAnswer answer = run_derating(job, progress_bar("searching the safety factor on heat"));
+  const derate::DeratingAnswer answer = derate::run_derating(job, progress_bar("searching the safety factor on heat"));
   present::Document document = present::derating_document(answer.derating, job.motor);
   if (!options.out.empty()) {
     session.write(options.out, answer.text);
     document.add_file(options.out);
   }
-  present::Json json = derating_json(answer.derating);
+  present::Json json = derate::derating_json(answer.derating);
   if (answer.check) {
     present::add_table_check(document, answer.derating, *answer.check);
     json["check"] = present::table_check_json(*answer.check);
   }
   session.show(document);
   session.answer(json);
-  return answer.holds() ? ExitCode::done : ExitCode::limit_exceeded;
+  return answer.holds() ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
 
 }  // namespace
@@ -91,7 +92,7 @@ Command derate_command() {
           .summary =
               "Writes how much current the firmware may allow: observer and derating table, checked on motors of every declared tolerance",
           .example = "heatsoak derate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --to c_header --out motor_guard.h",
-          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+          .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<Options>();
             add_motor_options(app, options->guard);
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
@@ -105,7 +106,7 @@ Command derate_command() {
                    "a C header or CSV table that was written earlier, with the same options: exit 1 if it allows more than a fresh one")
                 ->type_name("FILE");
             add_quantity(app, "--period", options->guard.derate.period_s,
-                         {"period", "s", Range::between(1e-3, 1.0), "between two calls of the firmware; 10 ms unless given"});
+                         {"period", "s", base::Range::between(1e-3, 1.0), "between two calls of the firmware; 10 ms unless given"});
             add_derate_options(app, options->guard.derate);
             add_sensor_options(app, options->sensor);
             session.add_data_option(app);
@@ -114,4 +115,4 @@ Command derate_command() {
           }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

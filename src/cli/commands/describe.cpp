@@ -15,7 +15,7 @@
 #include "present/description_json.h"
 #include "robot/robot.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 /// Head that every duty file has in addition to its shape.
@@ -31,33 +31,33 @@ struct Description {
   Json json;
 };
 
-Description description_of(const Motor& motor) { return {present::motor_description(motor), present::motor_json(motor)}; }
-Description description_of(const Robot& robot) { return {present::robot_description(robot), present::robot_json(robot)}; }
-Description description_of(const Duty& duty) { return {present::duty_description(duty), present::duty_file_json(duty)}; }
+Description description_of(const motor::Motor& motor) { return {present::motor_description(motor), present::motor_json(motor)}; }
+Description description_of(const robot::Robot& robot) { return {present::robot_description(robot), present::robot_json(robot)}; }
+Description description_of(const duty::Duty& duty) { return {present::duty_description(duty), present::duty_file_json(duty)}; }
 
 constexpr std::string_view kCore = "robot_core";
 
 Description describe_file(const std::filesystem::path& file) {
-  switch (file_kind(file)) {
-    case FileKind::duty:
-      return description_of(read_duty(file));
-    case FileKind::robot:
-      return description_of(read_robot(file));
-    case FileKind::motor:
+  switch (duty::file_kind(file)) {
+    case duty::FileKind::duty:
+      return description_of(duty::read_duty(file));
+    case duty::FileKind::robot:
+      return description_of(robot::read_robot(file));
+    case duty::FileKind::motor:
       break;
   }
-  return description_of(read_motor(file));
+  return description_of(motor::read_motor(file));
 }
 
 /// Names are unique across kinds. A path is described by the content of its file.
-Description describe(const std::string& name, const DataFolders& folders) {
+Description describe(const std::string& name, const input::DataFolders& folders) {
   if (name.ends_with(".toml")) {
     return describe_file(name);
   }
-  if (const EffectType* effect = find_effect(name)) {
+  if (const thermal::EffectType* effect = thermal::find_effect(name)) {
     return {present::effect_description(*effect), present::network_effect_json(*effect)};
   }
-  for (const ShapeType& shape : all_shapes()) {
+  for (const duty::ShapeType& shape : duty::all_shapes()) {
     if (shape.name == name) {
       const std::string file = kDutyHead + std::string(shape.example);
       return {present::shape_description(shape, file), present::shape_json(shape, file)};
@@ -67,7 +67,7 @@ Description describe(const std::string& name, const DataFolders& folders) {
     return {present::core_description(), present::core_json()};
   }
   std::vector<std::string> known{std::string(kCore)};
-  for (const ShapeType& shape : all_shapes()) {
+  for (const duty::ShapeType& shape : duty::all_shapes()) {
     known.emplace_back(shape.name);
   }
   for (const std::vector<Topic>& topics : {all_topics(), threshold_topics(), {verdict_topic()}}) {
@@ -79,29 +79,30 @@ Description describe(const std::string& name, const DataFolders& folders) {
     }
   }
   const auto has = [&](const std::filesystem::path& folder) {
-    const std::vector<std::string> ids = ids_in(folder);
+    const std::vector<std::string> ids = input::ids_in(folder);
     known.insert(known.end(), ids.begin(), ids.end());
     return std::ranges::find(ids, name) != ids.end();
   };
   if (has(folders.motors)) {
-    return description_of(read_motor(folders.motors / (name + ".toml")));
+    return description_of(motor::read_motor(folders.motors / (name + ".toml")));
   }
   if (has(folders.robots)) {
-    return description_of(read_robot(folders.robots / (name + ".toml")));
+    return description_of(robot::read_robot(folders.robots / (name + ".toml")));
   }
   if (has(folders.duties)) {
-    return description_of(read_duty(folders.duties / (name + ".toml")));
+    return description_of(duty::read_duty(folders.duties / (name + ".toml")));
   }
-  for (const EffectType& effect : all_effects()) {
+  for (const thermal::EffectType& effect : thermal::all_effects()) {
     known.emplace_back(effect.name);
   }
   if (name == "motors" || name == "robots" || name == "duties" || name == "effects") {
-    throw Failure(
-        ExitCode::bad_input,
+    throw base::Failure(
+        base::ExitCode::bad_input,
         fmt::format("'{0}' is not one name: `heatsoak list {0}` lists the names, `heatsoak describe NAME` describes one of them", name));
   }
-  throw Failure(ExitCode::bad_input, fmt::format("there is no '{}' among motors, robots, duties, shapes, effects, thresholds and verdict{}",
-                                                 name, did_you_mean(name, known)));
+  throw base::Failure(base::ExitCode::bad_input,
+                      fmt::format("there is no '{}' among motors, robots, duties, shapes, effects, thresholds and verdict{}", name,
+                                  base::did_you_mean(name, known)));
 }
 
 }  // namespace
@@ -110,7 +111,7 @@ Command describe() {
   return {.name = {},
           .summary = "Describes a motor, robot, duty, duty shape, effect, threshold or verdict: values with origin, equations, sources",
           .example = "heatsoak describe maxon_ecx_flat_32l_48v",
-          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+          .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto name = std::make_shared<std::string>();
             const auto diagram = std::make_shared<std::string>();
             app.add_option("name", *name, "id, as `heatsoak list` shows it, a motor, robot or duty file, or robot_core")->required();
@@ -123,19 +124,19 @@ Command describe() {
               Description description = describe(*name, session.folders());
               if (!diagram->empty()) {
                 if (*name != kCore) {
-                  throw Failure(ExitCode::bad_input,
-                                fmt::format("--diagram: '{}' has no block diagram; expected `heatsoak describe {}`", *name, kCore));
+                  throw base::Failure(base::ExitCode::bad_input,
+                                      fmt::format("--diagram: '{}' has no block diagram; expected `heatsoak describe {}`", *name, kCore));
                 }
-                session.write(*diagram, core_diagram_svg());
+                session.write(*diagram, firmware::core_diagram_svg());
                 description.document.add_file(*diagram);
               }
               session.show(description.document);
               Json json{{"schema", "heatsoak.describe/1"}};
               json.update(description.json);
               session.answer(json);
-              return ExitCode::done;
+              return base::ExitCode::done;
             };
           }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

@@ -17,7 +17,7 @@
 #include "duty/named_files.h"
 #include "present/duty.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 struct Options {
@@ -38,14 +38,14 @@ bool is_given(const Options& options, std::string_view option) { return std::ran
 void refuse(const Options& options, std::initializer_list<std::string_view> unused, const std::string& why) {
   for (const std::string_view option : unused) {
     if (is_given(options, option)) {
-      throw Failure(ExitCode::bad_input, fmt::format("{} {}", option, why));
+      throw base::Failure(base::ExitCode::bad_input, fmt::format("{} {}", option, why));
     }
   }
 }
 
-ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const Options& options, Session& session) {
   if (options.duty.empty() == options.log.empty()) {
-    throw Failure(ExitCode::bad_input, "expected one of --duty and --import (`heatsoak duty --help` shows examples)");
+    throw base::Failure(base::ExitCode::bad_input, "expected one of --duty and --import (`heatsoak duty --help` shows examples)");
   }
   if (options.duty.empty()) {
     refuse(options, {"--seed", "--planner"}, "is for matches; --import reads a recorded game");
@@ -55,35 +55,35 @@ ExitCode run(const Options& options, Session& session) {
   if (options.out.empty()) {
     refuse(options, {"--every"}, "is for the rows of a table; expected --out FILE.csv with it");
   }
-  NamedFiles named(session.folders());
-  const std::optional<Robot> robot = named.robot(options.robot);
-  const std::optional<Duty> duty = options.log.empty() ? named.duty(options.duty) : std::nullopt;
+  duty::NamedFiles named(session.folders());
+  const std::optional<robot::Robot> robot = named.robot(options.robot);
+  const std::optional<duty::Duty> duty = options.log.empty() ? named.duty(options.duty) : std::nullopt;
   named.throw_if_any();
-  DutyJob job{.robot = *robot, .duty = duty, .log = options.log, .player = options.player, .every_s = options.every_s};
+  duty::DutyJob job{.robot = *robot, .duty = duty, .log = options.log, .player = options.player, .every_s = options.every_s};
   if (is_given(options, "--seed")) {
     job.seed = options.seed;
   }
   if (is_given(options, "--planner")) {
-    job.planner = options.planner == "bang_bang" ? Planner::bang_bang : Planner::jerk_limited;
+    job.planner = options.planner == "bang_bang" ? duty::Planner::bang_bang : duty::Planner::jerk_limited;
   }
-  StreamedFile* table = nullptr;
+  base::StreamedFile* table = nullptr;
   if (!options.out.empty()) {
     job.put_table = [&](std::string_view text) {
       table = table != nullptr ? table : &session.stream(options.out);
       table->write(text);
     };
   }
-  const DutyAnswer answer = make_duty(job);
+  const duty::DutyAnswer answer = duty::make_duty(job);
   present::Document document = present::duty_document(answer);
   if (!options.out.empty()) {
     std::filesystem::path description = options.out;
     description.replace_extension(".toml");
-    session.write(description, duty_file(answer, options.out));
+    session.write(description, duty::duty_file(answer, options.out));
     present::add_duty_files(document, options.out, description.string());
   }
   session.show(document);
   session.answer(present::duty_json(answer));
-  return ExitCode::done;
+  return base::ExitCode::done;
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ Command duty_command() {
   return {.name = {},
           .summary = "Generates a duty (a match with its phases and where heat comes from), or turns a recorded game into one",
           .example = "heatsoak duty --duty division_a_match --robot roboteam_twente_v2024 --seed 1 --out match.csv",
-          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+          .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<Options>();
             app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->type_name("D");
             app.add_option("--import", options->log,
@@ -102,7 +102,7 @@ Command duty_command() {
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
             add_table(app, options->out, "torque and speed of every wheel, and FILE.toml beside it to evaluate");
             add_quantity(app, "--every", options->every_s,
-                         {"every", "s", Range::between(1e-3, 10.0), "time between two rows; 0.01 s unless given"});
+                         {"every", "s", base::Range::between(1e-3, 10.0), "time between two rows; 0.01 s unless given"});
             add_seed(app, options->seed, "of a match; same seed, same game");
             app.add_option("--planner", options->planner, "of a match")
                 ->check(CLI::IsMember({"jerk_limited", "bang_bang"}))
@@ -119,4 +119,4 @@ Command duty_command() {
           }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

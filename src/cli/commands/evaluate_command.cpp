@@ -19,7 +19,7 @@
 #include "select/candidates.h"
 #include "simulate/evaluation.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 /// Values of --fail-on in the order of Verdict, without pass. Exit code 1 from the given verdict on.
@@ -32,9 +32,9 @@ struct Options {
   std::string model;
   std::string plot;
   std::map<std::string, std::string> conditions;
-  EvaluationJob job;  ///< its files are read by run()
+  simulate::EvaluationJob job;  ///< its files are read by run()
   bool is_closed_loop = false;
-  ClosedLoopJob closed_loop;
+  simulate::ClosedLoopJob closed_loop;
   std::string guard = "shadow";
   std::string fail_on = "fail";
 };
@@ -51,49 +51,50 @@ std::vector<std::string> listed_motors(const Options& options) {
   std::vector<std::string> names = CLI::detail::split(*options.motors, ',');
   std::ranges::for_each(names, [](std::string& name) { CLI::detail::trim(name); });
   if (options.motors->ends_with(',') || std::ranges::any_of(names, &std::string::empty)) {
-    throw Failure(ExitCode::bad_input, fmt::format("--motors {}: a name is missing before or after a comma; expected one motor or several, "
-                                                   "such as a,b, or all",
-                                                   *options.motors));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("--motors {}: a name is missing before or after a comma; expected one motor or several, "
+                                    "such as a,b, or all",
+                                    *options.motors));
   }
   return names;
 }
 
-EvaluationJob job_of(const Options& options, const DataFolders& folders) {
+simulate::EvaluationJob job_of(const Options& options, const input::DataFolders& folders) {
   if (!options.is_closed_loop && options.guard != Options{}.guard) {
-    throw Failure(ExitCode::bad_input, "--guard is for --closed-loop; expected both or none");
+    throw base::Failure(base::ExitCode::bad_input, "--guard is for --closed-loop; expected both or none");
   }
-  NamedFiles named(folders);
-  const std::optional<Robot> robot = named.robot(options.robot);
-  const std::optional<Duty> duty = named.duty(options.duty);
-  EvaluationJob job = options.job;
-  job.motors = named_candidates({listed_motors(options), options.model, options.conditions}, named);
+  duty::NamedFiles named(folders);
+  const std::optional<robot::Robot> robot = named.robot(options.robot);
+  const std::optional<duty::Duty> duty = named.duty(options.duty);
+  simulate::EvaluationJob job = options.job;
+  job.motors = select::named_candidates({listed_motors(options), options.model, options.conditions}, named);
   named.throw_if_any();
   if (job.motors.empty()) {
-    throw Failure(ExitCode::bad_input, fmt::format("there is no motor file in {}", folders.motors.string()));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("there is no motor file in {}", folders.motors.string()));
   }
   job.robot = *robot;
   job.duty = *duty;
   job.conditions = options.conditions;
-  job.database = [folders, conditions = options.conditions] { return motors_of_database(folders, conditions); };
+  job.database = [folders, conditions = options.conditions] { return select::motors_of_database(folders, conditions); };
   job.with_bands = !options.plot.empty();
   if (options.is_closed_loop) {
     job.closed_loop = options.closed_loop;
-    job.closed_loop->guard = options.guard == "off" ? GuardUse::off : GuardUse::shadow;
+    job.closed_loop->guard = options.guard == "off" ? simulate::GuardUse::off : simulate::GuardUse::shadow;
   }
   return job;
 }
 
-ExitCode run(const Options& options, Session& session) {
-  const EvaluationAnswer answer = run_evaluation(job_of(options, session.folders()), progress_bar);
+base::ExitCode run(const Options& options, Session& session) {
+  const simulate::EvaluationAnswer answer = simulate::run_evaluation(job_of(options, session.folders()), progress_bar);
   present::Document document = present::evaluation_document(answer);
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_picture(present::verdict_chart(answer.results, answer.robot, answer.duty), options.plot));
+    session.write(options.plot, report::draw_picture(present::verdict_chart(answer.results, answer.robot, answer.duty), options.plot));
     document.add_file(options.plot);
   }
   session.show(document);
   session.answer(present::evaluation_json(answer));
-  const Verdict least_bad = static_cast<Verdict>(std::ranges::find(kFailOn, options.fail_on) - kFailOn.begin() + 1);
-  return answer.worst_verdict() >= least_bad ? ExitCode::limit_exceeded : ExitCode::done;
+  const select::Verdict least_bad = static_cast<select::Verdict>(std::ranges::find(kFailOn, options.fail_on) - kFailOn.begin() + 1);
+  return answer.worst_verdict() >= least_bad ? base::ExitCode::limit_exceeded : base::ExitCode::done;
 }
 
 }  // namespace
@@ -105,7 +106,7 @@ Command evaluate_command() {
       .example =
           "heatsoak evaluate --robot roboteam_twente_v2024 --duty division_a_match --motors "
           "maxon_ecx_flat_42m_24v,nanotec_df45l024048_a2 --plot verdict.svg",
-      .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+      .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
         const auto options = std::make_shared<Options>();
         app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
         app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
@@ -149,4 +150,4 @@ Command evaluate_command() {
       }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

@@ -14,7 +14,7 @@
 #include "firmware/staged_folder.h"
 #include "present/core_folder.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 struct Options {
@@ -22,23 +22,24 @@ struct Options {
   GuardOptions guard;
   std::string robot;
   std::string out;
-  CoreOptions core;
+  firmware::CoreOptions core;
   bool force = false;
 };
 
-ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const Options& options, Session& session) {
   check_derate_options(options.guard.derate);
-  check_target_folder(options.out, options.force);
-  NamedFiles named(session.folders());
-  const std::optional<Robot> robot = named.robot(options.robot);
-  const Motor motor = guarded_motor(options.guard, named);
-  const GeneratedCore core = generate_core(*robot, motor, options.core, options.guard.derate, fmt::format("heatsoak {}", program_version()),
-                                           progress_bar("searching the safety factor on heat"));
-  const auto staged = std::make_shared<StagedFolder>(options.out, core.folder.files, options.force);
+  firmware::check_target_folder(options.out, options.force);
+  duty::NamedFiles named(session.folders());
+  const std::optional<robot::Robot> robot = named.robot(options.robot);
+  const motor::Motor motor = guarded_motor(options.guard, named);
+  const firmware::GeneratedCore core =
+      firmware::generate_core(*robot, motor, options.core, options.guard.derate, fmt::format("heatsoak {}", base::program_version()),
+                              progress_bar("searching the safety factor on heat"));
+  const auto staged = std::make_shared<firmware::StagedFolder>(options.out, core.folder.files, options.force);
   session.complete_with([staged] { staged->commit(); });
   session.show(present::core_folder_document(core.folder, core.derating, options.core, options.out));
   session.answer(present::core_folder_json(core.folder, core.derating, motor, options.core, options.out));
-  return ExitCode::done;
+  return base::ExitCode::done;
 }
 
 }  // namespace
@@ -47,7 +48,7 @@ Command generate_command() {
   return {.name = {},
           .summary = "Writes the drive core with configuration and thermal guard of a robot as source files, ready to compile",
           .example = "heatsoak generate core --robot roboteam_twente_v2024 --motor maxon_ecx_flat_32l_48v --out drive_core",
-          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+          .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<Options>();
             app.add_option("what", options->what, "core: the drive core")->required()->check([](const std::string& word) {
               return word == "core" ? "" : fmt::format("'{}' is not known; expected core", word);
@@ -57,7 +58,7 @@ Command generate_command() {
             app.add_option("--out", options->out, "folder to write, new or empty")->required()->type_name("DIR");
             app.add_flag("--force", options->force, "replace the generated files in a folder that is not empty, keep all others");
             add_quantity(app, "--period", options->core.period_s,
-                         {"period", "s", Range::between(1e-4, 0.1), "between two control steps; 1 ms unless given"});
+                         {"period", "s", base::Range::between(1e-4, 0.1), "between two control steps; 1 ms unless given"});
             add_derate_options(app, options->guard.derate);
             session.add_data_option(app);
             session.add_answer_options(app);
@@ -65,4 +66,4 @@ Command generate_command() {
           }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

@@ -8,14 +8,16 @@
 #include "duty/lint_files.h"
 #include "present/lint.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
-ExitCode run(const std::vector<std::string>& names, Session& session) {
-  const FilesLint lint = lint_files(names, session.folders());
+base::ExitCode run(const std::vector<std::string>& names, Session& session) {
+  const duty::FilesLint lint = duty::lint_files(names, session.folders());
   session.show(present::lint_document(lint));
   session.answer(present::lint_json(lint));
-  return lint.count(LintFinding::Level::error) + lint.count(LintFinding::Level::warning) == 0 ? ExitCode::done : ExitCode::limit_exceeded;
+  return lint.count(motor::LintFinding::Level::error) + lint.count(motor::LintFinding::Level::warning) == 0
+             ? base::ExitCode::done
+             : base::ExitCode::limit_exceeded;
 }
 
 }  // namespace
@@ -28,7 +30,7 @@ Command lint_command() {
           "is a "
           "warning or an error",
       .example = "heatsoak lint maxon_ec45_flat_70w_24v roboteam_twente_v2024 division_a_match",
-      .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+      .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
         const auto files = std::make_shared<std::vector<std::string>>();
         app.add_option("files", *files, "TOML files, folders of them, or ids of motors, robots and duties")->required()->type_name("FILE");
         session.add_data_option(app);
@@ -37,4 +39,4 @@ Command lint_command() {
       }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

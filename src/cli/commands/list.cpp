@@ -22,14 +22,14 @@
 #include "robot/robot.h"
 #include "thermal/effect.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 /// Throws if the folder has no files: that indicates a wrong --db.
 std::vector<std::string> some_ids_in(const std::filesystem::path& folder) {
-  std::vector<std::string> ids = ids_in(folder);
+  std::vector<std::string> ids = input::ids_in(folder);
   if (ids.empty()) {
-    throw Failure(ExitCode::bad_input, fmt::format("there is no .toml file in {}", folder.string()));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("there is no .toml file in {}", folder.string()));
   }
   return ids;
 }
@@ -42,28 +42,28 @@ std::string first_sentence(std::string_view text) {
   return std::string(text.substr(0, end == std::string_view::npos ? end : end + 1));
 }
 
-Rows motors(const DataFolders& folders) {
+Rows motors(const input::DataFolders& folders) {
   Rows result;
   for (const std::string& id : some_ids_in(folders.motors)) {
-    const Motor motor = read_motor(folders.motors / (id + ".toml"));
-    result.push_back({id, fmt::format("{} {} ({} thermal data)", motor.manufacturer, motor.name, data_quality(motor))});
+    const motor::Motor motor = motor::read_motor(folders.motors / (id + ".toml"));
+    result.push_back({id, fmt::format("{} {} ({} thermal data)", motor.manufacturer, motor.name, motor::data_quality(motor))});
   }
   return result;
 }
 
-Rows robots(const DataFolders& folders) {
+Rows robots(const input::DataFolders& folders) {
   Rows result;
   for (const std::string& id : some_ids_in(folders.robots)) {
-    const Robot robot = read_robot(folders.robots / (id + ".toml"));
+    const robot::Robot robot = robot::read_robot(folders.robots / (id + ".toml"));
     result.push_back({id, fmt::format("{}, drives with {}", robot.name, robot.drive.motor)});
   }
   return result;
 }
 
-Rows duties(const DataFolders& folders) {
+Rows duties(const input::DataFolders& folders) {
   Rows result;
   for (const std::string& id : some_ids_in(folders.duties)) {
-    result.push_back({id, read_duty(folders.duties / (id + ".toml")).summary});
+    result.push_back({id, duty::read_duty(folders.duties / (id + ".toml")).summary});
   }
   return result;
 }
@@ -76,26 +76,26 @@ Rows rows_of(const std::vector<Topic>& topics) {
   return result;
 }
 
-Rows effects(const DataFolders& /*folders*/) {
+Rows effects(const input::DataFolders& /*folders*/) {
   Rows result;
-  for (const EffectType& effect : all_effects()) {
+  for (const thermal::EffectType& effect : thermal::all_effects()) {
     result.push_back({std::string(effect.name), first_sentence(effect.summary)});
   }
   std::ranges::move(rows_of(all_topics()), std::back_inserter(result));
   return result;
 }
 
-Rows thresholds(const DataFolders& /*folders*/) { return rows_of(threshold_topics()); }
+Rows thresholds(const input::DataFolders& /*folders*/) { return rows_of(threshold_topics()); }
 
-Rows formats(const DataFolders& /*folders*/) {
+Rows formats(const input::DataFolders& /*folders*/) {
   Rows result;
-  for (const ShapeType& shape : all_shapes()) {
+  for (const duty::ShapeType& shape : duty::all_shapes()) {
     result.push_back({std::string(shape.name), fmt::format("duty: {}", shape.summary)});
   }
-  for (const LogType& log : all_logs()) {
+  for (const duty::LogType& log : duty::all_logs()) {
     result.push_back({std::string(log.name), fmt::format("recorded game: {}; duty --import LOG", log.summary)});
   }
-  for (const ExporterType& exporter : all_exporters()) {
+  for (const derate::ExporterType& exporter : derate::all_exporters()) {
     result.push_back({std::string(exporter.name), fmt::format("derating: {}; derate --to {}", exporter.summary, exporter.name)});
   }
   result.push_back({"svg", "picture: --plot FILE.svg"});
@@ -111,12 +111,12 @@ Rows formats(const DataFolders& /*folders*/) {
 }
 
 /// Returns everything that `describe` explains.
-Rows topics(const DataFolders& folders) {
+Rows topics(const input::DataFolders& folders) {
   Rows result;
   for (const auto& rows : {motors, robots, duties, effects, thresholds}) {
     std::ranges::move(rows(folders), std::back_inserter(result));
   }
-  for (const ShapeType& shape : all_shapes()) {
+  for (const duty::ShapeType& shape : duty::all_shapes()) {
     result.push_back({std::string(shape.name), fmt::format("duty shape: {}", shape.summary)});
   }
   result.push_back({"verdict", verdict_topic().summary});
@@ -126,7 +126,7 @@ Rows topics(const DataFolders& folders) {
 
 struct Kind {
   std::string_view name;
-  Rows (*rows)(const DataFolders& folders);
+  Rows (*rows)(const input::DataFolders& folders);
 };
 constexpr std::array<Kind, 7> kKinds{{{"motors", motors},
                                       {"robots", robots},
@@ -142,16 +142,16 @@ std::vector<std::string> kind_names() {
   return names;
 }
 
-ExitCode run(const std::string& what, Session& session) {
+base::ExitCode run(const std::string& what, Session& session) {
   if (what.empty()) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("the kind of names to list is missing\nexpected one of {}\n`heatsoak list motors` lists the motors",
-                              fmt::join(kind_names(), ", ")));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("the kind of names to list is missing\nexpected one of {}\n`heatsoak list motors` lists the motors",
+                                    fmt::join(kind_names(), ", ")));
   }
   const std::vector<present::NamedThing> all = std::ranges::find(kKinds, what, &Kind::name)->rows(session.folders());
   session.show(present::list_document(all));
   session.answer(present::list_json(what, all));
-  return ExitCode::done;
+  return base::ExitCode::done;
 }
 
 }  // namespace
@@ -161,7 +161,7 @@ Command list() {
       .name = {},
       .summary = "Lists what there is: motors, robots, duties, effects, formats, thresholds of checks, or topics of describe",
       .example = "heatsoak list motors",
-      .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+      .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
         const auto what = std::make_shared<std::string>();
         app.add_option("kind", *what, "kind of names; topics: all that `heatsoak describe` explains")->check(CLI::IsMember(kind_names()));
         session.add_data_option(app);
@@ -170,4 +170,4 @@ Command list() {
       }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

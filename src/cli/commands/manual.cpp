@@ -8,7 +8,7 @@
 #include "cli/command.h"
 #include "cli/help_page.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 struct Options {
@@ -16,7 +16,7 @@ struct Options {
   std::string folder;
 };
 
-ExitCode run(const Options& options, const CLI::App& program, Session& session) {
+base::ExitCode run(const Options& options, const CLI::App& program, Session& session) {
   const std::vector<HelpPage> pages = help_pages(program);
   const std::filesystem::path folder = options.folder;
   session.make_folder(folder);
@@ -26,9 +26,9 @@ ExitCode run(const Options& options, const CLI::App& program, Session& session) 
     session.write(folder / (is_man ? fmt::format("heatsoak-{}.1", page.verb) : page.verb + ".md"),
                   is_man ? man_page_of(page) : markdown_of(page));
   }
-  session.show(present::short_answer(fmt::format("{} in {}", counted(pages.size() + 1, "page"), folder.string())));
+  session.show(present::short_answer(fmt::format("{} in {}", base::counted(pages.size() + 1, "page"), folder.string())));
   session.answer({{"schema", "heatsoak.manual/1"}, {"pages", pages.size() + 1}, {"folder", folder.string()}});
-  return ExitCode::done;
+  return base::ExitCode::done;
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ Command manual() {
   return {.name = {},
           .summary = "Writes the help of every verb as man pages or as Markdown",
           .example = "heatsoak manual --to man --out man1",
-          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+          .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<Options>();
             app.add_option("--to", options->format, "format of the pages")
                 ->required()
@@ -49,4 +49,4 @@ Command manual() {
           }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

@@ -10,7 +10,7 @@
 #include "cli/command.h"
 #include "present/document.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 struct Options {
@@ -31,10 +31,10 @@ std::string quoted(const std::string& word) {
   return result + "'";
 }
 
-ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const Options& options, Session& session) {
   std::error_code unreadable;
   if (std::filesystem::exists(options.file, unreadable)) {
-    throw Failure(ExitCode::bad_input, fmt::format("{} exists; give the new file another name", options.file));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("{} exists; give the new file another name", options.file));
   }
   const auto texts = embedded::file_templates();
   const auto found =
@@ -43,7 +43,7 @@ ExitCode run(const Options& options, Session& session) {
   session.show(
       present::short_answer(fmt::format("{}: replace every \"?\", then run `heatsoak lint {}`", options.file, quoted(options.file))));
   session.answer({{"schema", "heatsoak.new/1"}, {"kind", options.kind}, {"file", options.file}});
-  return ExitCode::done;
+  return base::ExitCode::done;
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ Command new_command() {
   return {.name = {},
           .summary = "Writes a commented motor or robot file to fill in",
           .example = "heatsoak new motor my_motor.toml",
-          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+          .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<Options>();
             app.add_option("kind", options->kind, "motor or robot")->required()->check(CLI::IsMember({"motor", "robot"}));
             app.add_option("file", options->file, "name of the new file, which is the id")->required()->check([](const std::string& file) {
@@ -64,4 +64,4 @@ Command new_command() {
           }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

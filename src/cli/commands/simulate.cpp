@@ -20,7 +20,7 @@
 #include "present/verdict_chart.h"
 #include "simulate/planner_study.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 struct Options {
@@ -46,87 +46,89 @@ void show(present::Document document, const Options& options, Session& session) 
 }
 
 /// Simulates a prescribed load of one wheel.
-ExitCode run_load(const Options& options, LoadJob job, Session& session) {
+base::ExitCode run_load(const Options& options, select::LoadJob job, Session& session) {
   if (options.planner != "jerk_limited") {
-    throw Failure(ExitCode::bad_input, fmt::format("--planner is for matches; {} is {}", job.duty.id, job.duty.shape));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("--planner is for matches; {} is {}", job.duty.id, job.duty.shape));
   }
   const Options usual;
   if (options.guard != usual.guard || options.sensing != usual.sensing) {
-    throw Failure(ExitCode::bad_input,
-                  fmt::format("--guard and --sensing are for matches, which the drive core drives; {} is {}", job.duty.id, job.duty.shape));
+    throw base::Failure(
+        base::ExitCode::bad_input,
+        fmt::format("--guard and --sensing are for matches, which the drive core drives; {} is {}", job.duty.id, job.duty.shape));
   }
   job.seed = options.seed;
   job.every_s = options.every_s;
   job.with_curves = !options.plot.empty();
-  const LoadSimulation simulation = simulate_load(job);
+  const select::LoadSimulation simulation = select::simulate_load(job);
   if (!options.out.empty()) {
-    session.write(options.out, to_csv(simulation.trace));
+    session.write(options.out, select::to_csv(simulation.trace));
   }
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_picture(present::verdict_chart({simulation.result}, simulation.robot, simulation.duty), options.plot));
+    session.write(options.plot,
+                  report::draw_picture(present::verdict_chart({simulation.result}, simulation.robot, simulation.duty), options.plot));
   }
   show(present::load_simulation_document(simulation), options, session);
   session.answer(present::load_simulation_json(simulation));
-  return simulation.result.verdict == Verdict::pass ? ExitCode::done : ExitCode::limit_exceeded;
+  return simulation.result.verdict == select::Verdict::pass ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
 
-ExitCode run_match(const Options& options, MatchJob job, Session& session) {
+base::ExitCode run_match(const Options& options, simulate::MatchJob job, Session& session) {
   job.planners.clear();
   if (options.planner != "bang_bang") {
-    job.planners.push_back(Planner::jerk_limited);
+    job.planners.push_back(duty::Planner::jerk_limited);
   }
   if (options.planner != "jerk_limited") {
-    job.planners.push_back(Planner::bang_bang);
+    job.planners.push_back(duty::Planner::bang_bang);
   }
   job.seed = options.seed;
-  job.guard = static_cast<GuardUse>(std::ranges::find(kGuardUses, options.guard) - std::begin(kGuardUses));
+  job.guard = static_cast<simulate::GuardUse>(std::ranges::find(simulate::kGuardUses, options.guard) - std::begin(simulate::kGuardUses));
   job.is_sensing_ideal = options.sensing == "ideal";
   job.with_table = !options.out.empty();
   job.every_s = options.every_s;
   job.with_rows = !options.plot.empty();
-  MatchSimulation match = simulate_match(job, progress_bar);
+  simulate::MatchSimulation match = simulate::simulate_match(job, progress_bar);
   if (job.with_table) {
     session.write(options.out, std::move(match.runs.front().csv));
   }
   if (job.with_rows) {
-    session.write(options.plot, draw_picture(present::match_chart(match), options.plot));
+    session.write(options.plot, report::draw_picture(present::match_chart(match), options.plot));
   }
   show(present::match_document(match), options, session);
   session.answer(present::match_json(match));
-  return match.verdict == Verdict::pass ? ExitCode::done : ExitCode::limit_exceeded;
+  return match.verdict == select::Verdict::pass ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
 
-ExitCode run_sweep(const Options& options, const Robot& robot, const Motor& motor, Session& session) {
+base::ExitCode run_sweep(const Options& options, const robot::Robot& robot, const motor::Motor& motor, Session& session) {
   if (!options.out.empty()) {
-    throw Failure(ExitCode::bad_input, "--jerk-sweep has no signals to write; expected --plot or --json in place of --out");
+    throw base::Failure(base::ExitCode::bad_input, "--jerk-sweep has no signals to write; expected --plot or --json in place of --out");
   }
-  const JerkSweep sweep = sweep_jerk(robot, motor, options.sensing == "ideal", options.seed, progress_bar("driving"));
+  const simulate::JerkSweep sweep = simulate::sweep_jerk(robot, motor, options.sensing == "ideal", options.seed, progress_bar("driving"));
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_picture(present::jerk_sweep_chart(sweep), options.plot));
+    session.write(options.plot, report::draw_picture(present::jerk_sweep_chart(sweep), options.plot));
   }
   show(present::jerk_sweep_document(sweep), options, session);
   session.answer(present::jerk_sweep_json(sweep));
-  return ExitCode::done;
+  return base::ExitCode::done;
 }
 
-ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const Options& options, Session& session) {
   if (options.duty.empty() != options.jerk_sweep) {
-    throw Failure(ExitCode::bad_input, "expected one of --duty and --jerk-sweep (`heatsoak simulate --help` shows examples)");
+    throw base::Failure(base::ExitCode::bad_input, "expected one of --duty and --jerk-sweep (`heatsoak simulate --help` shows examples)");
   }
   if (options.motor.empty() == options.model.empty()) {
-    throw Failure(ExitCode::bad_input, "expected one of --motor M and --model FILE");
+    throw base::Failure(base::ExitCode::bad_input, "expected one of --motor M and --model FILE");
   }
-  NamedFiles named(session.folders());
-  const std::optional<Robot> robot = named.robot(options.robot);
-  const std::optional<Motor> as_named = named.motor(options.model.empty() ? options.motor : options.model);
-  const std::optional<Duty> duty = options.jerk_sweep ? std::nullopt : named.duty(options.duty);
+  duty::NamedFiles named(session.folders());
+  const std::optional<robot::Robot> robot = named.robot(options.robot);
+  const std::optional<motor::Motor> as_named = named.motor(options.model.empty() ? options.motor : options.model);
+  const std::optional<duty::Duty> duty = options.jerk_sweep ? std::nullopt : named.duty(options.duty);
   named.throw_if_any();
-  const Motor motor = under(*as_named, options.conditions);
+  const motor::Motor motor = motor::under(*as_named, options.conditions);
   if (!duty) {
     return run_sweep(options, *robot, motor, session);
   }
-  return is_match(*duty) ? run_match(options, {.robot = *robot, .motor = motor, .duty = *duty}, session)
-                         : run_load(options, {.robot = *robot, .motor = motor, .duty = *duty}, session);
+  return duty::is_match(*duty) ? run_match(options, {.robot = *robot, .motor = motor, .duty = *duty}, session)
+                               : run_load(options, {.robot = *robot, .motor = motor, .duty = *duty}, session);
 }
 
 }  // namespace
@@ -139,7 +141,7 @@ Command simulate() {
               "--plot trace.svg\n"
               "  heatsoak simulate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --duty division_a_match --planner both\n"
               "  heatsoak simulate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --jerk-sweep --plot sweep.svg",
-          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+          .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<Options>();
             app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->type_name("M");
             app.add_option("--model", options->model, "a calibrated motor (`heatsoak calibrate --out FILE`) in its place")
@@ -172,11 +174,11 @@ Command simulate() {
                 ->capture_default_str();
             add_seed(app, options->seed, "of a generated match, sensors and radio; same seed, same bytes");
             add_quantity(app, "--every", options->every_s,
-                         {"every", "s", Range::between(1e-3, 1e5), "longest time between two rows; 1 s unless given"});
+                         {"every", "s", base::Range::between(1e-3, 1e5), "longest time between two rows; 1 s unless given"});
             session.add_data_option(app);
             session.add_answer_options(app);
             return [options, &session] { return run(*options, session); };
           }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

@@ -14,23 +14,23 @@
 #include "motor/conditions.h"
 #include "motor/on_off_load.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 struct Options {
   std::string motor;
   std::map<std::string, std::string> conditions;
-  OnOffCurrent current;
+  thermal::OnOffCurrent current;
 };
 
-ExitCode run(const Options& options, Session& session) {
-  NamedFiles named(session.folders());
-  const std::optional<Motor> motor = named.motor(options.motor);
+base::ExitCode run(const Options& options, Session& session) {
+  duty::NamedFiles named(session.folders());
+  const std::optional<motor::Motor> motor = named.motor(options.motor);
   named.throw_if_any();
-  const OnOffAnswer answer = under_on_off_current(under(*motor, options.conditions), options.current);
+  const motor::OnOffAnswer answer = motor::under_on_off_current(motor::under(*motor, options.conditions), options.current);
   session.show(present::steady_document(answer));
   session.answer(present::steady_json(answer));
-  return answer.is_over_limit ? ExitCode::limit_exceeded : ExitCode::done;
+  return answer.is_over_limit ? base::ExitCode::limit_exceeded : base::ExitCode::done;
 }
 
 }  // namespace
@@ -42,24 +42,25 @@ Command steady() {
           "Temperatures in the steady state of an on/off current, mean and highest; and equations (8) to (12) of the RoboTeam Twente paper "
           "(copper loss only)",
       .example = "heatsoak steady --motor maxon_ec45_flat_70w_24v --current-on 6A --time-on 4s --time-off 6s --ambient 25degC",
-      .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+      .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
         const auto options = std::make_shared<Options>();
         app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->required()->type_name("M");
         add_conditions(app, options->conditions);
-        add_quantity(app, "--current-on", options->current.current_on_A, {"current-on", "A", Range::between(0.0, 1e5), "current while on"})
+        add_quantity(app, "--current-on", options->current.current_on_A,
+                     {"current-on", "A", base::Range::between(0.0, 1e5), "current while on"})
             ->required();
         add_quantity(app, "--time-on", options->current.time_on_s,
-                     {"time-on", "s", Range::between(1e-9, 1e9), "time of a cycle with current"})
+                     {"time-on", "s", base::Range::between(1e-9, 1e9), "time of a cycle with current"})
             ->required();
         add_quantity(app, "--time-off", options->current.time_off_s,
-                     {"time-off", "s", Range::between(0.0, 1e9), "time of a cycle without current"})
+                     {"time-off", "s", base::Range::between(0.0, 1e9), "time of a cycle without current"})
             ->required();
         add_quantity(app, "--ambient", options->current.ambient_C,
-                     {"ambient", "degC", Range::between(-60.0, 200.0), "temperature of the air; 25degC unless given"});
+                     {"ambient", "degC", base::Range::between(-60.0, 200.0), "temperature of the air; 25degC unless given"});
         session.add_data_option(app);
         session.add_answer_options(app);
         return [options, &session] { return run(*options, session); };
       }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

@@ -5,8 +5,8 @@
 
 #include "cli/command.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 std::vector<Topic> effect_topics();
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

@@ -4,19 +4,19 @@
 
 #include "cli/quantity_option.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
-void add_log_options(CLI::App& app, LogChoice& choice) {
+void add_log_options(CLI::App& app, recording::LogChoice& choice) {
   app.add_option("--map", choice.map, "mapping of columns to quantities; LOG.map.toml beside a log is found automatically")
       ->type_name("FILE.toml");
   add_quantity(app, "--ambient", choice.ambient_C,
-               {"ambient", "degC", Range::between(-60.0, 200.0), "air temperature of a log that has none"});
+               {"ambient", "degC", base::Range::between(-60.0, 200.0), "air temperature of a log that has none"});
   app.add_flag("--as-is", choice.takes_logs_as_they_are, "continue although units or sensors of a log look wrong");
 }
 
-LogChoice choice_of(LogChoice choice, const Session& session) {
+recording::LogChoice choice_of(recording::LogChoice choice, const Session& session) {
   choice.folders = session.folders();
   return choice;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

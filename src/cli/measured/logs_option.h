@@ -6,12 +6,12 @@
 #include "cli/command.h"
 #include "recording/named_logs.h"
 
-namespace heatsoak {
+namespace heatsoak::cli {
 
 /// --map, --ambient and --as-is.
-void add_log_options(CLI::App& app, LogChoice& choice);
+void add_log_options(CLI::App& app, recording::LogChoice& choice);
 
 /// Returns the choice with the folders of the session.
-LogChoice choice_of(LogChoice choice, const Session& session);
+recording::LogChoice choice_of(recording::LogChoice choice, const Session& session);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::cli

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace heatsoak::c_header {
+namespace heatsoak::derate::c_header {
 
 namespace {
 
@@ -59,4 +59,4 @@ const LineStyle& line_style() {
   return style;
 }
 
-}  // namespace heatsoak::c_header
+}  // namespace heatsoak::derate::c_header

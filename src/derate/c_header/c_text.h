@@ -8,7 +8,7 @@
 
 #include "derate/rate_lines.h"
 
-namespace heatsoak::c_header {
+namespace heatsoak::derate::c_header {
 
 /// Returns the shortest decimal that reads back to the same single-precision number, such as "0.01f"; in parentheses if negative. The value
 /// must be finite.
@@ -29,4 +29,4 @@ std::string replaced(std::string_view pattern, const Words& words);
 /// Syntax of the laws in the C header; an input is a field of `input`.
 const LineStyle& line_style();
 
-}  // namespace heatsoak::c_header
+}  // namespace heatsoak::derate::c_header

@@ -3,7 +3,7 @@
 #include "derate/c_header/c_text.h"
 #include "derate/c_header/parts.h"
 
-namespace heatsoak::c_header {
+namespace heatsoak::derate::c_header {
 
 std::string constants(const Source& source) {
   const Derating& derating = source.derating;
@@ -22,4 +22,4 @@ std::string constants(const Source& source) {
          define("LIMP_CURRENT_A", limp_current_A(derating)) + fmt::format("#define {}_STARTED 0x48454154u\n\n", source.capital);
 }
 
-}  // namespace heatsoak::c_header
+}  // namespace heatsoak::derate::c_header

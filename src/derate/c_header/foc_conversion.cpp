@@ -6,7 +6,7 @@
 #include "derate/c_header/parts.h"
 #include "derate/export_text.h"
 
-namespace heatsoak::c_header {
+namespace heatsoak::derate::c_header {
 
 std::string foc_conversion(const Source& source) {
   const Derating& derating = source.derating;
@@ -35,4 +35,4 @@ std::string foc_conversion(const Source& source) {
       source.capital, literal(kDcPerIq_ratio), source.prefix, source.capital, source.prefix, source.capital);
 }
 
-}  // namespace heatsoak::c_header
+}  // namespace heatsoak::derate::c_header

@@ -6,7 +6,7 @@
 #include "derate/c_header/parts.h"
 #include "derate/plausible_range.h"
 
-namespace heatsoak::c_header {
+namespace heatsoak::derate::c_header {
 namespace {
 
 constexpr std::string_view kPacked =
@@ -251,4 +251,4 @@ std::string memory_functions(const Source& source, unsigned signature) {
          replaced(kPacked, words) + replaced(kCool, words) + replaced(kUnsaved, words) + replaced(kRestore, words);
 }
 
-}  // namespace heatsoak::c_header
+}  // namespace heatsoak::derate::c_header

@@ -7,7 +7,7 @@
 
 #include "derate/derating.h"
 
-namespace heatsoak::c_header {
+namespace heatsoak::derate::c_header {
 
 /// Inputs of every part.
 struct Source {
@@ -48,4 +48,4 @@ Rates sensor_functions(const Source& source);
 /// refused.
 std::string memory_functions(const Source& source, unsigned signature);
 
-}  // namespace heatsoak::c_header
+}  // namespace heatsoak::derate::c_header

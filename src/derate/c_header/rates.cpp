@@ -3,7 +3,7 @@
 #include "derate/c_header/c_text.h"
 #include "derate/c_header/parts.h"
 
-namespace heatsoak::c_header {
+namespace heatsoak::derate::c_header {
 namespace {
 
 std::string rates_function(std::string_view comment, std::string_view name, const std::string& prefix, const RateLines& lines) {
@@ -22,4 +22,4 @@ Rates rates(const Source& source) {
           .calls_thermal_math = guarded.calls_thermal_math()};
 }
 
-}  // namespace heatsoak::c_header
+}  // namespace heatsoak::derate::c_header

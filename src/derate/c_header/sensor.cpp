@@ -5,7 +5,7 @@
 #include "derate/c_header/c_text.h"
 #include "derate/c_header/parts.h"
 
-namespace heatsoak::c_header {
+namespace heatsoak::derate::c_header {
 namespace {
 
 constexpr std::string_view kStructures = R"(typedef enum {
@@ -378,4 +378,4 @@ Rates sensor_functions(const Source& source) {
           .calls_thermal_math = lines.calls_thermal_math()};
 }
 
-}  // namespace heatsoak::c_header
+}  // namespace heatsoak::derate::c_header

@@ -6,7 +6,7 @@
 #include "derate/c_header/parts.h"
 #include "derate/plausible_range.h"
 
-namespace heatsoak::c_header {
+namespace heatsoak::derate::c_header {
 namespace {
 
 constexpr std::string_view kStart = R"(/* Both return false for NaN; the second also for a temperature that no motor can have. */
@@ -166,4 +166,4 @@ std::string step_functions(const Source& source) {
   return replaced(kStart, words) + (swept.empty() ? "" : replaced(kSweep, words)) + replaced(kStep, words);
 }
 
-}  // namespace heatsoak::c_header
+}  // namespace heatsoak::derate::c_header

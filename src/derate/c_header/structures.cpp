@@ -3,7 +3,7 @@
 #include "derate/c_header/c_text.h"
 #include "derate/c_header/parts.h"
 
-namespace heatsoak::c_header {
+namespace heatsoak::derate::c_header {
 
 std::string_view name_of(observed::Signal signal) { return observed::signals()[static_cast<std::size_t>(signal)].name; }
 
@@ -57,4 +57,4 @@ std::string structures(const Source& source) {
   return text;
 }
 
-}  // namespace heatsoak::c_header
+}  // namespace heatsoak::derate::c_header

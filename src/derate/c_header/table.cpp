@@ -3,7 +3,7 @@
 #include "derate/c_header/c_text.h"
 #include "derate/c_header/parts.h"
 
-namespace heatsoak::c_header {
+namespace heatsoak::derate::c_header {
 namespace {
 
 constexpr std::string_view kTable = R"(static const heatsoak_current_table @_table = {
@@ -55,4 +55,4 @@ std::string tables(const Source& source) {
 
 std::string allowed_function(const Source& source) { return replaced(kAllowed, {{"@", source.prefix}}); }
 
-}  // namespace heatsoak::c_header
+}  // namespace heatsoak::derate::c_header

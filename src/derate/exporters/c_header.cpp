@@ -11,7 +11,7 @@
 #include "derate/export_text.h"
 #include "derate/exporter.h"
 
-namespace heatsoak::exporters {
+namespace heatsoak::derate::exporters {
 namespace {
 
 /// Returns a checksum that differs between guards. In the include guard it makes the compiler report two headers with the same names.
@@ -54,4 +54,4 @@ ExporterType c_header() {
   return {.name = {}, .summary = "C99 header without dependencies: observer, table, one step per period; single precision", .write = write};
 }
 
-}  // namespace heatsoak::exporters
+}  // namespace heatsoak::derate::exporters

@@ -15,7 +15,7 @@
 #include "derate/integer_form/quantised_table.h"
 #include "derate/plausible_range.h"
 
-namespace heatsoak::exporters {
+namespace heatsoak::derate::exporters {
 namespace {
 
 using integer_form::FixedPoint;
@@ -62,7 +62,7 @@ std::int64_t heat_for_rounding(const FixedPoint& rate) {
 /// Returns how far, in K, the temperatures may lie above the exact ones because of the heat added for rounding, over a warm-up of 4 h.
 double temperature_excess_K(const Derating& derating, const IntegerLines& lines) {
   const Observer& observer = derating.observer;
-  FormulaRun<double> run(observer.formula(), observer.rate_steps());
+  thermal::FormulaRun<double> run(observer.formula(), observer.rate_steps());
   const std::size_t nodes = observer.state_count();
   std::vector<double> inputs(observed::kSignalCount + nodes, derating.rules.hottest_ambient_C);
   inputs[observed::current] = limp_current_A(derating);
@@ -352,4 +352,4 @@ ExporterType c_header_q15() {
   return {.name = {}, .summary = "C99 header in integers (16-bit table, 32-bit observer) for controllers without an FPU", .write = write};
 }
 
-}  // namespace heatsoak::exporters
+}  // namespace heatsoak::derate::exporters

@@ -6,7 +6,7 @@
 #include "derate/export_text.h"
 #include "derate/exporter.h"
 
-namespace heatsoak::exporters {
+namespace heatsoak::derate::exporters {
 namespace {
 
 /// Returns the breakpoints of an axis with intermediate points, so that linear interpolation between the rows follows the table.
@@ -49,4 +49,4 @@ ExporterType csv() {
           .write = write};
 }
 
-}  // namespace heatsoak::exporters
+}  // namespace heatsoak::derate::exporters

@@ -1,7 +1,7 @@
 #include "derate/exporter.h"
 #include "derate/fmi/fmu.h"
 
-namespace heatsoak::exporters {
+namespace heatsoak::derate::exporters {
 namespace {
 
 std::string write(const Derating& derating) { return zip_archive(fmu_files(motor_fmu(derating, "fmi2_motor"), FmiVersion::fmi2)); }
@@ -20,4 +20,4 @@ ExporterType fmi2_motor() {
           .write_compiled = write_compiled};
 }
 
-}  // namespace heatsoak::exporters
+}  // namespace heatsoak::derate::exporters

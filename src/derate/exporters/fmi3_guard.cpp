@@ -1,7 +1,7 @@
 #include "derate/exporter.h"
 #include "derate/fmi/fmu.h"
 
-namespace heatsoak::exporters {
+namespace heatsoak::derate::exporters {
 namespace {
 
 std::string write(const Derating& derating) { return zip_archive(fmu_files(guard_fmu(derating, "fmi3_guard"), FmiVersion::fmi3)); }
@@ -20,4 +20,4 @@ ExporterType fmi3_guard() {
           .write_compiled = write_compiled};
 }
 
-}  // namespace heatsoak::exporters
+}  // namespace heatsoak::derate::exporters

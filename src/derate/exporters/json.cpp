@@ -2,7 +2,7 @@
 #include "derate/export_text.h"
 #include "derate/exporter.h"
 
-namespace heatsoak::exporters {
+namespace heatsoak::derate::exporters {
 namespace {
 
 std::string write(const Derating& derating) {
@@ -17,4 +17,4 @@ ExporterType json() {
       .name = {}, .summary = "table with axes and units, observer parameters, limit and confidence (heatsoak.derating/1)", .write = write};
 }
 
-}  // namespace heatsoak::exporters
+}  // namespace heatsoak::derate::exporters

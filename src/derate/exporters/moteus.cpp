@@ -6,7 +6,7 @@
 #include "derate/export_text.h"
 #include "derate/exporter.h"
 
-namespace heatsoak::exporters {
+namespace heatsoak::derate::exporters {
 namespace {
 
 /// moteus limits i_q and i_d to
@@ -37,4 +37,4 @@ ExporterType moteus() {
       .name = {}, .summary = "moteus configuration: current and ramp over a stator thermistor, fitted on the safe side", .write = write};
 }
 
-}  // namespace heatsoak::exporters
+}  // namespace heatsoak::derate::exporters

@@ -10,7 +10,7 @@
 #include "derate/exporter.h"
 #include "motor/datasheet_network.h"
 
-namespace heatsoak::exporters {
+namespace heatsoak::derate::exporters {
 namespace {
 
 /// Removes "--", so that a user's text cannot end the XML comment.
@@ -31,10 +31,11 @@ std::string in_attribute(std::string_view id) {
 
 void require_datasheet_alone(const Derating& derating) {
   for (const ActingEffect& effect : derating.effects) {
-    if (std::ranges::find(kDatasheetEffects, effect.name) == kDatasheetEffects.end()) {
-      throw Failure(ExitCode::bad_input, fmt::format("mujoco cannot express {} ({}): <dcmotor> has copper loss and one thermal resistance "
-                                                     "only; use --to c_header or --to json",
-                                                     effect.name, effect.type));
+    if (std::ranges::find(motor::kDatasheetEffects, effect.name) == motor::kDatasheetEffects.end()) {
+      throw base::Failure(base::ExitCode::bad_input,
+                          fmt::format("mujoco cannot express {} ({}): <dcmotor> has copper loss and one thermal resistance "
+                                      "only; use --to c_header or --to json",
+                                      effect.name, effect.type));
     }
   }
 }
@@ -43,12 +44,12 @@ void require_datasheet_alone(const Derating& derating) {
 std::string write(const Derating& derating) {
   require_finite(derating);
   require_datasheet_alone(derating);
-  const MotorValues& motor = derating.nominal;
+  const motor::MotorValues& motor = derating.nominal;
   const double reserve = derating.observer.heat_safety_factor() * derating.heating_current_ratio * derating.heating_current_ratio;
   const double winding_K_per_W = motor.thermal_resistance_winding_stator_K_per_W;
   const double stator_K_per_W = motor.thermal_resistance_stator_ambient_K_per_W;
   const double winding_J_per_K = motor.thermal_time_constant_winding_s / winding_K_per_W;
-  const double drag_W = drag_torque_Nm(motor) * derating.rules.most_speed_rad_per_s;
+  const double drag_W = motor::drag_torque_Nm(motor) * derating.rules.most_speed_rad_per_s;
   const std::string about =
       provenance_lines(derating, "") +
       fmt::format(
@@ -85,4 +86,4 @@ ExporterType mujoco() {
           .write = write};
 }
 
-}  // namespace heatsoak::exporters
+}  // namespace heatsoak::derate::exporters

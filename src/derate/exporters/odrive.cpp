@@ -5,7 +5,7 @@
 #include "derate/export_text.h"
 #include "derate/exporter.h"
 
-namespace heatsoak::exporters {
+namespace heatsoak::derate::exporters {
 namespace {
 
 /// ODrive limits the current vector to current_lim·(upper − T)/(upper − lower), from 0 to current_lim, and disarms with an error 5 K above
@@ -34,4 +34,4 @@ ExporterType odrive() {
           .write = write};
 }
 
-}  // namespace heatsoak::exporters
+}  // namespace heatsoak::derate::exporters

@@ -5,7 +5,7 @@
 #include "derate/export_text.h"
 #include "derate/exporter.h"
 
-namespace heatsoak::exporters {
+namespace heatsoak::derate::exporters {
 namespace {
 
 std::string write(const Derating& derating) {
@@ -51,4 +51,4 @@ ExporterType simplefoc() {
   return {.name = {}, .summary = "Arduino code that limits a SimpleFOC motor with the C header of the same motor", .write = write};
 }
 
-}  // namespace heatsoak::exporters
+}  // namespace heatsoak::derate::exporters

@@ -9,7 +9,7 @@
 #include "derate/export_text.h"
 #include "derate/exporter.h"
 
-namespace heatsoak::exporters {
+namespace heatsoak::derate::exporters {
 namespace {
 
 /// VESC gives the full current up to this far beyond the start of its ramp.
@@ -22,12 +22,12 @@ std::string literal(double value) {
   return text.find('.') != std::string::npos ? text : text.insert(std::min(exponent, text.size()), ".0");
 }
 
-std::string operand(const Formula& formula, int place) {
-  const Formula::Step& step = formula.steps()[static_cast<std::size_t>(place)];
-  if (step.operation == Operation::constant) {
+std::string operand(const thermal::Formula& formula, int place) {
+  const thermal::Formula::Step& step = formula.steps()[static_cast<std::size_t>(place)];
+  if (step.operation == thermal::Operation::constant) {
     return literal(step.value);
   }
-  if (step.operation != Operation::input) {
+  if (step.operation != thermal::Operation::input) {
     return fmt::format("t{}", place);
   }
   const auto input = static_cast<std::size_t>(step.left);
@@ -37,25 +37,25 @@ std::string operand(const Formula& formula, int place) {
                                         : fmt::format("hs-state{}-C", input - observed::kSignalCount);
 }
 
-std::string expression(const Formula& formula, const Formula::Step& step) {
+std::string expression(const thermal::Formula& formula, const thermal::Formula::Step& step) {
   const std::string left = operand(formula, step.left);
   const std::string right = step.right < 0 ? "" : operand(formula, step.right);
   switch (step.operation) {
-    case Operation::add:
+    case thermal::Operation::add:
       return fmt::format("(+ {} {})", left, right);
-    case Operation::subtract:
+    case thermal::Operation::subtract:
       return fmt::format("(- {} {})", left, right);
-    case Operation::multiply:
+    case thermal::Operation::multiply:
       return fmt::format("(* {} {})", left, right);
-    case Operation::divide:
+    case thermal::Operation::divide:
       return fmt::format("(/ {} {})", left, right);
-    case Operation::magnitude:
+    case thermal::Operation::magnitude:
       return fmt::format("(if (< {0} 0.0) (- 0.0 {0}) {0})", left);
-    case Operation::positive_part:
+    case thermal::Operation::positive_part:
       return fmt::format("(if (> {0} 0.0) {0} 0.0)", left);
-    case Operation::square_root:
+    case thermal::Operation::square_root:
       return fmt::format("(sqrt {})", left);
-    case Operation::power:
+    case thermal::Operation::power:
       return fmt::format("(pow {} {})", left, right);
     default:
       return fmt::format("(exp {})", left);
@@ -64,12 +64,12 @@ std::string expression(const Formula& formula, const Formula::Step& step) {
 
 /// One Euler step over `dt` seconds. The rounding of each step is carried to the next (Kahan 1965).
 std::string step_function(const Observer& observer) {
-  const Formula& formula = observer.formula();
+  const thermal::Formula& formula = observer.formula();
   const std::vector<char> needed = formula.needed_for(observer.rate_steps());
   std::string text = "(defun hs-step (hs-current-A hs-speed-rad-per-s hs-ambient-C dt-s) {\n";
   for (std::size_t i = 0; i < needed.size(); ++i) {
-    const Formula::Step& step = formula.steps()[i];
-    if (needed[i] != 0 && step.operation != Operation::constant && step.operation != Operation::input) {
+    const thermal::Formula::Step& step = formula.steps()[i];
+    if (needed[i] != 0 && step.operation != thermal::Operation::constant && step.operation != thermal::Operation::input) {
       text += fmt::format("  (var t{} {})\n", i, expression(formula, step));
     }
   }
@@ -154,4 +154,4 @@ ExporterType vesc() {
           .write = write};
 }
 
-}  // namespace heatsoak::exporters
+}  // namespace heatsoak::derate::exporters

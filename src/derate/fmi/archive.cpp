@@ -8,12 +8,12 @@
 #include "base/diagnostic.h"
 #include "derate/fmi/fmu.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 void require(archive* zip, int code) {
   if (code != ARCHIVE_OK) {
-    throw Failure(ExitCode::bug, fmt::format("the archive cannot be made: {}", archive_error_string(zip)));
+    throw base::Failure(base::ExitCode::bug, fmt::format("the archive cannot be made: {}", archive_error_string(zip)));
   }
 }
 
@@ -43,11 +43,11 @@ std::string zip_archive(const std::vector<FmuFile>& files) {
     // No time is set, so libarchive writes 1980-01-01 in every time zone and the archive is reproducible.
     require(zip.get(), archive_write_header(zip.get(), entry.get()));
     if (archive_write_data(zip.get(), file.content.data(), file.content.size()) != static_cast<la_ssize_t>(file.content.size())) {
-      throw Failure(ExitCode::bug, fmt::format("the archive cannot be made: {}", archive_error_string(zip.get())));
+      throw base::Failure(base::ExitCode::bug, fmt::format("the archive cannot be made: {}", archive_error_string(zip.get())));
     }
   }
   require(zip.get(), archive_write_close(zip.get()));
   return bytes;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -14,7 +14,7 @@
 #include "base/files.h"
 #include "derate/fmi/fmu.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,7 +24,7 @@ class TemporaryFolder {
   TemporaryFolder() {
     std::string pattern = (fs::temp_directory_path() / "heatsoak_fmu_XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) {
-      throw Failure(ExitCode::bad_input, fmt::format("{}: cannot be made: {}", pattern, std::strerror(errno)));
+      throw base::Failure(base::ExitCode::bad_input, fmt::format("{}: cannot be made: {}", pattern, std::strerror(errno)));
     }
     path_ = pattern;
   }
@@ -79,10 +79,10 @@ std::string_view platform(FmiVersion version) {
 std::vector<FmuFile> with_binary(std::vector<FmuFile> files, const FmuModel& model, FmiVersion version, const std::string& compiler) {
   const std::string_view machine = platform(version);
   if (machine.empty()) {
-    throw Failure(ExitCode::bad_input,
-                  "this version of FMI has no name for this platform; leave --compiler out, the file then contains sources only");
+    throw base::Failure(base::ExitCode::bad_input,
+                        "this version of FMI has no name for this platform; leave --compiler out, the file then contains sources only");
   }
-  const DelayedSignals delayed;
+  const base::DelayedSignals delayed;
   const TemporaryFolder folder;
   // File names without a folder, so that the library contains no paths of this machine.
   std::vector<std::string> words{compiler, "-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared", "-fvisibility=hidden",
@@ -93,7 +93,7 @@ std::vector<FmuFile> with_binary(std::vector<FmuFile> files, const FmuModel& mod
       continue;
     }
     const std::string name = file.path.substr(kSources.size());
-    write_file(folder.path() / name, file.content);
+    base::write_file(folder.path() / name, file.content);
     if (name.ends_with(".c")) {
       words.push_back(name);
     }
@@ -102,16 +102,18 @@ std::vector<FmuFile> with_binary(std::vector<FmuFile> files, const FmuModel& mod
   const int code = run(words, folder.path());
   if (code != 0) {
     std::error_code none;
-    const std::string said = fs::exists(folder.path() / kSaid, none) ? read_file(folder.path() / kSaid, kLargest_bytes) : std::string();
-    throw Failure(
-        ExitCode::bad_input,
+    const std::string said =
+        fs::exists(folder.path() / kSaid, none) ? base::read_file(folder.path() / kSaid, kLargest_bytes) : std::string();
+    throw base::Failure(
+        base::ExitCode::bad_input,
         fmt::format("--compiler {}: {}, expected a C99 compiler such as cc; without --compiler the file contains sources only{}{}",
                     compiler, code < 0 || said.empty() ? "cannot be run" : fmt::format("ended with code {}", code),
                     said.empty() ? "" : "\n", said));
   }
-  files.push_back({fmt::format("binaries/{}/{}.so", machine, model.identifier), read_file(folder.path() / "unit.so", kLargest_bytes)});
+  files.push_back(
+      {fmt::format("binaries/{}/{}.so", machine, model.identifier), base::read_file(folder.path() / "unit.so", kLargest_bytes)});
   std::ranges::sort(files, {}, &FmuFile::path);
   return files;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -9,7 +9,7 @@
 #include "base/xml_text.h"
 #include "derate/export_text.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 struct FmuUnit {
@@ -45,7 +45,7 @@ std::string items(const FmuModel& model) {
   std::string text;
   for (std::size_t i = 0; i < model.items.size(); ++i) {
     text += fmt::format("        <Item name=\"{}\" value=\"{}\" description=\"{}\"/>\n", model.items[i].name, i,
-                        xml_attribute(model.items[i].description));
+                        base::xml_attribute(model.items[i].description));
   }
   return text;
 }
@@ -79,7 +79,7 @@ bool has_start(const FmuVariable& variable) {
 std::string attributes(const FmuVariable& variable, std::size_t reference) {
   const Words of = words(variable);
   return fmt::format("name=\"{}\" valueReference=\"{}\" description=\"{}\" causality=\"{}\" variability=\"{}\"{}", variable.name, reference,
-                     xml_attribute(variable.description), of.causality, of.variability,
+                     base::xml_attribute(variable.description), of.causality, of.variability,
                      of.initial.empty() ? "" : fmt::format(" initial=\"{}\"", of.initial));
 }
 
@@ -93,7 +93,7 @@ std::string default_experiment(const FmuModel& model) {
   return fmt::format("  <DefaultExperiment startTime=\"0\" stopTime=\"{}\" stepSize=\"{}\"/>\n", number(kStop_s), number(model.step_s));
 }
 
-std::string tool() { return fmt::format("heatsoak {}", program_version()); }
+std::string tool() { return fmt::format("heatsoak {}", base::program_version()); }
 
 /// Calls visit(index) for every output variable.
 template <class Visit>
@@ -126,7 +126,7 @@ std::string description_fmi2(const FmuModel& model, std::span<const std::string>
       "variableNamingConvention=\"flat\">\n"
       "  <CoSimulation modelIdentifier=\"{0}\" canHandleVariableCommunicationStepSize=\"true\" "
       "canNotUseMemoryManagementFunctions=\"true\" canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\">\n    <SourceFiles>\n",
-      model.identifier, xml_attribute(model.token), xml_attribute(model.description), xml_attribute(tool()));
+      model.identifier, base::xml_attribute(model.token), base::xml_attribute(model.description), base::xml_attribute(tool()));
   for (const std::string& name : compiled) {
     text += fmt::format("      <File name=\"{}\"/>\n", name);
   }
@@ -160,7 +160,7 @@ std::string description_fmi3(const FmuModel& model) {
       "  <CoSimulation modelIdentifier=\"{0}\" canHandleVariableCommunicationStepSize=\"true\"{4} "
       "hasEventMode=\"true\" mightReturnEarlyFromDoStep=\"true\" canGetAndSetFMUState=\"true\" "
       "canSerializeFMUState=\"true\"/>\n",
-      model.identifier, xml_attribute(model.token), xml_attribute(model.description), xml_attribute(tool()),
+      model.identifier, base::xml_attribute(model.token), base::xml_attribute(model.description), base::xml_attribute(tool()),
       model.fixed_step_s ? fmt::format(" fixedInternalStepSize=\"{}\"", number(*model.fixed_step_s)) : "");
   text += units(model);
   if (!model.items.empty()) {
@@ -195,4 +195,4 @@ std::string build_description_fmi3(const FmuModel& model, std::span<const std::s
          "</fmiBuildDescription>\n";
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

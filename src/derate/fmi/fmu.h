@@ -8,7 +8,7 @@
 
 #include "derate/derating.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 enum class FmiVersion { fmi2, fmi3 };
 enum class FmuCausality { independent, input, parameter, output, constant };
@@ -72,4 +72,4 @@ std::vector<FmuFile> with_binary(std::vector<FmuFile> files, const FmuModel& mod
 /// Returns a ZIP archive. Its bytes depend only on the files.
 std::string zip_archive(const std::vector<FmuFile>& files);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

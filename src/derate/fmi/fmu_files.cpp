@@ -10,7 +10,7 @@
 #include "derate/fmi/description.h"
 #include "derate/fmi/fmu.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 constexpr std::array<std::string_view, 5> kKinds{"kind_independent", "kind_input", "kind_parameter", "kind_output", "kind_constant"};
@@ -30,9 +30,9 @@ std::string documentation(const FmuModel& model) {
   std::string text = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{0}</title></head>\n<body>\n<h1>{0}</h1>\n<p>{1}</p>\n"
       "<pre>\n{2}</pre>\n<table>\n<tr><th>variable</th><th>unit</th><th>meaning</th></tr>\n",
-      xml_text(model.identifier), xml_text(model.description), xml_text(model.provenance));
+      base::xml_text(model.identifier), base::xml_text(model.description), base::xml_text(model.provenance));
   for (const FmuVariable& each : model.variables) {
-    text += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", each.name, each.unit, xml_text(each.description));
+    text += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", each.name, each.unit, base::xml_text(each.description));
   }
   return text + "</table>\n<p>Inputs are held over a communication step. Temperatures are in degrees Celsius.</p>\n</body>\n</html>\n";
 }
@@ -89,4 +89,4 @@ std::vector<FmuFile> fmu_files(const FmuModel& model, FmiVersion version) {
   return files;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -7,7 +7,7 @@
 #include "derate/exporter.h"
 #include "derate/fmi/fmu.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 /// Reasons of the C header, in its order.
@@ -82,4 +82,4 @@ FmuModel guard_fmu(const Derating& derating, std::string_view /*exporter*/) {
   return model;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

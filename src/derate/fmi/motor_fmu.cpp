@@ -7,7 +7,7 @@
 #include "derate/fmi/fmu.h"
 #include "derate/rate_lines.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 const LineStyle kStyle{
@@ -25,10 +25,11 @@ constexpr double kNoCrossing_s = -1.0;
 void require_expressible(const Derating& derating, std::string_view exporter) {
   for (const ActingEffect& effect : derating.effects) {
     if (!effect.column.empty()) {
-      throw Failure(ExitCode::bad_input,
-                    fmt::format("{} cannot express {} ({}): it depends on {} of the logs, which a simulation does not have; state the "
-                                "condition with --condition, or use --to c_header, which uses its hottest value",
-                                exporter, effect.name, effect.type, effect.column));
+      throw base::Failure(
+          base::ExitCode::bad_input,
+          fmt::format("{} cannot express {} ({}): it depends on {} of the logs, which a simulation does not have; state the "
+                      "condition with --condition, or use --to c_header, which uses its hottest value",
+                      exporter, effect.name, effect.type, effect.column));
     }
   }
 }
@@ -115,4 +116,4 @@ FmuModel motor_fmu(const Derating& derating, std::string_view exporter) {
   return model;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -10,7 +10,7 @@
 #include "derate/export_text.h"
 #include "derate/plausible_range.h"
 
-namespace heatsoak::integer_form {
+namespace heatsoak::derate::integer_form {
 namespace {
 
 constexpr int kNumberBits = 30;  ///< bits of a magnitude, so that the sum of two fits in 32 bits
@@ -49,8 +49,8 @@ class Writer {
   [[nodiscard]] static std::string name(int place) { return fmt::format("t{}", place); }
   [[nodiscard]] const FixedPoint& value(int place) const { return values_[static_cast<std::size_t>(place)]; }
 
-  [[nodiscard]] Failure refusal(std::string_view what) const {
-    return {ExitCode::bad_input,
+  [[nodiscard]] base::Failure refusal(std::string_view what) const {
+    return {base::ExitCode::bad_input,
             fmt::format("c_header_q15 cannot express the effects {}: {}; use --to c_header", own_effects_text(derating_), what)};
   }
 
@@ -60,23 +60,23 @@ class Writer {
   }
 
   void add_step(int place) {
-    const Formula::Step& step = formula_.steps()[static_cast<std::size_t>(place)];
+    const thermal::Formula::Step& step = formula_.steps()[static_cast<std::size_t>(place)];
     switch (step.operation) {
-      case Operation::constant:
+      case thermal::Operation::constant:
         return add_constant(place, step.value);
-      case Operation::input:
+      case thermal::Operation::input:
         return add_input(place, static_cast<std::size_t>(step.left));
-      case Operation::add:
+      case thermal::Operation::add:
         return add_sum(place, step, 1.0);
-      case Operation::subtract:
+      case thermal::Operation::subtract:
         return add_sum(place, step, -1.0);
-      case Operation::multiply:
+      case thermal::Operation::multiply:
         return add_product(place, step);
-      case Operation::divide:
+      case thermal::Operation::divide:
         return add_quotient(place, step);
-      case Operation::magnitude:
+      case thermal::Operation::magnitude:
         return add_magnitude(place, step);
-      case Operation::positive_part:
+      case thermal::Operation::positive_part:
         return add_positive_part(place, step);
       default:
         throw refusal("a law needs a square root, a power or an exponential");
@@ -118,7 +118,7 @@ class Writer {
     return shift == 0 ? name(place) : fmt::format("{}_product({}, 1, {})", prefix_, name(place), power_of_two(shift));
   }
 
-  void add_sum(int place, const Formula::Step& step, double sign) {
+  void add_sum(int place, const thermal::Formula::Step& step, double sign) {
     const FixedPoint& a = value(step.left);
     const FixedPoint& b = value(step.right);
     FixedPoint made{.low = sign > 0.0 ? a.low + b.low : a.low - b.high,
@@ -130,7 +130,7 @@ class Writer {
     set(place, made, fmt::format("{} {} {}", shifted(step.left, made.bits), sign > 0.0 ? "+" : "-", shifted(step.right, made.bits)));
   }
 
-  void add_product(int place, const Formula::Step& step) {
+  void add_product(int place, const thermal::Formula::Step& step) {
     const FixedPoint& a = value(step.left);
     const FixedPoint& b = value(step.right);
     const auto corners = {a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high};
@@ -146,7 +146,7 @@ class Writer {
         fmt::format("{}_product({}, {}, {})", prefix_, name(step.left), name(step.right), power_of_two(a.bits + b.bits - made.bits)));
   }
 
-  void add_quotient(int place, const Formula::Step& step) {
+  void add_quotient(int place, const thermal::Formula::Step& step) {
     const FixedPoint& a = value(step.left);
     const FixedPoint& b = value(step.right);
     const double least = std::min(std::abs(b.low), std::abs(b.high)) - b.absolute;
@@ -165,14 +165,14 @@ class Writer {
     set(place, made, fmt::format("{}_quotient({}, {}, {})", prefix_, name(step.left), name(step.right), power_of_two(shift)));
   }
 
-  void add_magnitude(int place, const Formula::Step& step) {
+  void add_magnitude(int place, const thermal::Formula::Step& step) {
     FixedPoint made = value(step.left);
     made.high = std::max(std::abs(made.low), std::abs(made.high));
     made.low = 0.0;
     set(place, made, fmt::format("({0} < 0) ? -{0} : {0}", name(step.left)));
   }
 
-  void add_positive_part(int place, const Formula::Step& step) {
+  void add_positive_part(int place, const thermal::Formula::Step& step) {
     FixedPoint made = value(step.left);
     made.high = std::max(made.high, 0.0);
     made.low = std::max(made.low, 0.0);
@@ -181,7 +181,7 @@ class Writer {
 
   const Derating& derating_;
   const std::string& prefix_;
-  const Formula& formula_;
+  const thermal::Formula& formula_;
   std::vector<FixedPoint> values_;
   IntegerLines lines_;
 };
@@ -190,4 +190,4 @@ class Writer {
 
 IntegerLines integer_lines(const Derating& derating, const std::string& prefix) { return Writer(derating, prefix).write(); }
 
-}  // namespace heatsoak::integer_form
+}  // namespace heatsoak::derate::integer_form

@@ -6,7 +6,7 @@
 
 #include "derate/derating.h"
 
-namespace heatsoak::integer_form {
+namespace heatsoak::derate::integer_form {
 
 /// Fraction bits of state temperatures: resolution 2^-20 K, range ±1000 °C.
 inline constexpr int kStateBits = 20;
@@ -33,4 +33,4 @@ struct IntegerLines {
 /// with the effects if a law needs a function without an integer implementation, or divides by a value that may be 0.
 IntegerLines integer_lines(const Derating& derating, const std::string& prefix);
 
-}  // namespace heatsoak::integer_form
+}  // namespace heatsoak::derate::integer_form

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace heatsoak::integer_form {
+namespace heatsoak::derate::integer_form {
 namespace {
 
 constexpr double kPerUnit = 1000.0;
@@ -78,4 +78,4 @@ double quantised_shortfall_ratio(const CurrentTable& exact, const QuantisedTable
   return most_ratio;
 }
 
-}  // namespace heatsoak::integer_form
+}  // namespace heatsoak::derate::integer_form

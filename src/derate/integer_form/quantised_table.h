@@ -7,7 +7,7 @@
 #include "derate/current_table.h"
 #include "derate/integer_form/integer_table.h"
 
-namespace heatsoak::integer_form {
+namespace heatsoak::derate::integer_form {
 
 /// Quantised copy of a table, in thousandths of the units (mA, mrad/s, 0.001 °C). Owns the arrays that table() points to.
 struct QuantisedTable {
@@ -31,4 +31,4 @@ struct QuantisedTable {
 /// ten speeds and of temperatures 0.5 K apart.
 double quantised_shortfall_ratio(const CurrentTable& exact, const QuantisedTable& quantised);
 
-}  // namespace heatsoak::integer_form
+}  // namespace heatsoak::derate::integer_form

@@ -11,12 +11,12 @@
 #include "derate/guarantee.h"
 #include "derate/sensed/sensor.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Components of the loop. All referenced objects must outlive it.
 struct SensedLoop {
-  const Motor& motor;
-  const Robot& robot;
+  const motor::Motor& motor;
+  const robot::Robot& robot;
   const BarrierRules& rules;
   const Observer& model_only;  ///< observer with the safety factor of the guard without a sensor
   const CurrentTable& table;   ///< table of that observer
@@ -34,10 +34,10 @@ struct SensedPeak : MotorPeak {
 
 /// Simulates kLanes drawn motors, from the random streams `first_stream` on, in every use with the full current that the sensed observer
 /// allows. Omits the bound most_gain_A and the cross-check, because both only lower the current.
-std::array<SensedPeak, kLanes> sensed_peaks(const SensedLoop& loop, std::span<const LoadPattern> uses, std::uint64_t seed,
-                                            std::uint64_t first_stream);
+std::array<SensedPeak, base::kLanes> sensed_peaks(const SensedLoop& loop, std::span<const LoadPattern> uses, std::uint64_t seed,
+                                                  std::uint64_t first_stream);
 
 /// Returns the current in A that the nominal motor, with a sensor without offset, is allowed at the end of a continuous use.
 double nominal_lasting_current_A(const SensedLoop& loop, const LoadPattern& held);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -6,25 +6,26 @@
 #include "derate/sensed/riccati.h"
 #include "thermal/linearised.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 /// Hot operating point for the linearisation: continuous current, winding at its limit, bodies halfway between air and limit.
 struct HotPoint {
-  OperatingPoint<double> at;
+  thermal::OperatingPoint<double> at;
   std::vector<double> state_C;
 };
 
-HotPoint hot_point(const Motor& motor, const Robot& robot, const BarrierRules& rules, double current_A, int states, double speed_share) {
+HotPoint hot_point(const motor::Motor& motor, const robot::Robot& robot, const BarrierRules& rules, double current_A, int states,
+                   double speed_share) {
   HotCase plain;
   plain.neighbour_C = rules.hottest_ambient_C;
   HotPoint point{operating_point<double>(motor.nominal, robot, plain.signals(rules, current_A, speed_share * rules.most_speed_rad_per_s)),
                  std::vector<double>(static_cast<std::size_t>(states), 0.5 * (rules.hottest_ambient_C + rules.limits.winding_C))};
-  point.state_C[states::winding] = rules.limits.winding_C;
+  point.state_C[motor::states::winding] = rules.limits.winding_C;
   return point;
 }
 
-Eigen::VectorXd rates(const Network& network, const HotPoint& point) {
+Eigen::VectorXd rates(const thermal::Network& network, const HotPoint& point) {
   const std::vector<double> values = network.values();
   std::vector<double> temperature_C = point.state_C;
   temperature_C.push_back(point.at.ambient_C);
@@ -33,13 +34,13 @@ Eigen::VectorXd rates(const Network& network, const HotPoint& point) {
   return Eigen::Map<const Eigen::VectorXd>(rate.data(), static_cast<Eigen::Index>(rate.size()));
 }
 
-Eigen::MatrixXd second_moments(const Motor& motor, const Network& nominal, std::span<const HotPoint> points, int samples,
+Eigen::MatrixXd second_moments(const motor::Motor& motor, const thermal::Network& nominal, std::span<const HotPoint> points, int samples,
                                std::uint64_t seed) {
   const int states = nominal.state_count();
   Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(states, states);
   for (int i = 0; i < samples; ++i) {
-    Random random(seed, static_cast<std::uint64_t>(i));
-    const Network drawn = datasheet_network(motor, draw_sample(motor, random));
+    base::Random random(seed, static_cast<std::uint64_t>(i));
+    const thermal::Network drawn = motor::datasheet_network(motor, motor::draw_sample(motor, random));
     for (const HotPoint& point : points) {
       const Eigen::VectorXd error_K_per_s = rates(drawn, point) - rates(nominal, point);
       moments += error_K_per_s * error_K_per_s.transpose();
@@ -50,15 +51,15 @@ Eigen::MatrixXd second_moments(const Motor& motor, const Network& nominal, std::
 
 }  // namespace
 
-SensorGain sensor_gain(const Motor& motor, const Robot& robot, const BarrierRules& rules, const SensorOptions& options, double period_s,
-                       double lasting_current_A, int samples, std::uint64_t seed) {
-  const Network nominal = datasheet_network(motor, nominal_sample(motor));
+SensorGain sensor_gain(const motor::Motor& motor, const robot::Robot& robot, const BarrierRules& rules, const SensorOptions& options,
+                       double period_s, double lasting_current_A, int samples, std::uint64_t seed) {
+  const thermal::Network nominal = motor::datasheet_network(motor, motor::nominal_sample(motor));
   const int states = nominal.state_count();
   std::vector<HotPoint> points;
   for (const double speed_share : {0.0, 0.3, 0.6}) {
     points.push_back(hot_point(motor, robot, rules, lasting_current_A, states, speed_share));
   }
-  Linearised linear;
+  thermal::Linearised linear;
   nominal.linearise(points[1].at, nominal.values(), points[1].state_C, linear);
   const bool lags = options.lag_s > 0.0;
   const int size = states + (lags ? 1 : 0);
@@ -79,4 +80,4 @@ SensorGain sensor_gain(const Motor& motor, const Robot& robot, const BarrierRule
   return {.gain = {gain.data(), gain.data() + states}, .lag_gain_ratio = lags ? gain[states] : 0.0};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

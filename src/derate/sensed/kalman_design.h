@@ -7,7 +7,7 @@
 #include "derate/hot_cases.h"
 #include "derate/sensed/sensor.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 struct SensorGain {
   std::vector<double> gain;     ///< per state: correction per period and kelvin of innovation
@@ -17,7 +17,7 @@ struct SensorGain {
 /// Returns the steady-state Kalman gain per period of the network linearised at a hot operating point. The process noise is the second
 /// moment of the rate differences between `samples` ≥ 1 drawn motors and the nominal one. Neither these differences nor the sensor's offset
 /// average out over the motor's time constants. Both have the same correlation time, which cancels in the gain.
-SensorGain sensor_gain(const Motor& motor, const Robot& robot, const BarrierRules& rules, const SensorOptions& options, double period_s,
-                       double lasting_current_A, int samples, std::uint64_t seed);
+SensorGain sensor_gain(const motor::Motor& motor, const robot::Robot& robot, const BarrierRules& rules, const SensorOptions& options,
+                       double period_s, double lasting_current_A, int samples, std::uint64_t seed);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -4,7 +4,7 @@
 
 #include "base/diagnostic.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 Eigen::MatrixXd steady_covariance(const LinearObserver& observer) {
   constexpr int kMostDoublings = 60;
@@ -26,7 +26,8 @@ Eigen::MatrixXd steady_covariance(const LinearObserver& observer) {
       return 0.5 * (H + H.transpose());
     }
   }
-  throw Failure(ExitCode::numerics_failed, "the Riccati equation of the sensor's gain does not converge; use a sensor at another node");
+  throw base::Failure(base::ExitCode::numerics_failed,
+                      "the Riccati equation of the sensor's gain does not converge; use a sensor at another node");
 }
 
 Eigen::VectorXd steady_kalman_gain(const LinearObserver& observer) {
@@ -35,4 +36,4 @@ Eigen::VectorXd steady_kalman_gain(const LinearObserver& observer) {
   return seen / (observer.output.dot(seen) + observer.sensor_sd_K * observer.sensor_sd_K);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// System x(k+1) = transition·x(k) + w, y(k) = output·x(k) + v, with independent noise w and v. State and noise are temperatures in K.
 struct LinearObserver {
@@ -21,4 +21,4 @@ Eigen::MatrixXd steady_covariance(const LinearObserver& observer);
 /// Returns the correction of the state per unit of innovation (reading − predicted reading).
 Eigen::VectorXd steady_kalman_gain(const LinearObserver& observer);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -10,12 +10,12 @@
 #include "base/quantity.h"
 #include "motor/default_spread.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 /// Returns the larger relative distance of the two ends of a tolerance from the value; 0 without a tolerance.
-double half_width_ratio(const Motor& motor, std::string_view key, double value) {
-  const std::optional<Spread> spread = spread_or_default(motor, key);
+double half_width_ratio(const motor::Motor& motor, std::string_view key, double value) {
+  const std::optional<base::Spread> spread = motor::spread_or_default(motor, key);
   if (!spread) {
     return 0.0;
   }
@@ -27,18 +27,18 @@ double half_width_ratio(const Motor& motor, std::string_view key, double value) 
 std::span<const SensorParameter> sensor_parameters() {
   using enum SensorKind;
   static constexpr std::array<SensorParameter, 5> kAll{{
-      {{"thermistor_accuracy", "K", Range::between(0.05, 50.0), "its largest error, mounting included; 2 K unless given"},
+      {{"thermistor_accuracy", "K", base::Range::between(0.05, 50.0), "its largest error, mounting included; 2 K unless given"},
        thermistor,
        &SensorOptions::accuracy_K},
-      {{"thermistor_lag", "s", Range::between(0.0, 600.0), "its time constant; 0 s unless given"}, thermistor, &SensorOptions::lag_s},
-      {{"resistance_accuracy", "K", Range::between(0.5, 50.0),
+      {{"thermistor_lag", "s", base::Range::between(0.0, 600.0), "its time constant; 0 s unless given"}, thermistor, &SensorOptions::lag_s},
+      {{"resistance_accuracy", "K", base::Range::between(0.5, 50.0),
         "readings are used if current and speed permit this accuracy; 10 K unless given"},
        winding_resistance,
        &SensorOptions::accuracy_K},
-      {{"voltage_error", "V", Range::between(0.0, 10.0), "offset of the terminal voltage; 20 mV unless given"},
+      {{"voltage_error", "V", base::Range::between(0.0, 10.0), "offset of the terminal voltage; 20 mV unless given"},
        winding_resistance,
        &SensorOptions::voltage_error_V},
-      {{"current_error", "A", Range::between(0.0, 10.0), "offset of the current; 10 mA unless given"},
+      {{"current_error", "A", base::Range::between(0.0, 10.0), "offset of the current; 10 mA unless given"},
        winding_resistance,
        &SensorOptions::current_error_A},
   }};
@@ -46,18 +46,18 @@ std::span<const SensorParameter> sensor_parameters() {
 }
 
 SensorOptions default_sensor(SensorKind kind) {
-  return kind == SensorKind::thermistor ? SensorOptions{} : SensorOptions{.kind = kind, .node = states::winding, .accuracy_K = 10.0};
+  return kind == SensorKind::thermistor ? SensorOptions{} : SensorOptions{.kind = kind, .node = motor::states::winding, .accuracy_K = 10.0};
 }
 
 std::string sensor_flags(const SensorOptions& sensor) {
   std::string text = sensor.kind == SensorKind::winding_resistance
                          ? "--winding-resistance"
-                         : fmt::format("--thermistor {}", sensor.node == states::winding ? "winding" : "stator");
+                         : fmt::format("--thermistor {}", sensor.node == motor::states::winding ? "winding" : "stator");
   for (const SensorParameter& each : sensor_parameters()) {
     if (each.kind == sensor.kind) {
       std::string flag(each.spec.key);
       std::ranges::replace(flag, '_', '-');
-      text += fmt::format(" --{} {}{}", flag, significant(sensor.*each.value, 6), each.spec.unit);
+      text += fmt::format(" --{} {}{}", flag, base::significant(sensor.*each.value, 6), each.spec.unit);
     }
   }
   return text;
@@ -67,8 +67,8 @@ bool ResistanceReading::is_usable(double current_A, double speed_rad_per_s) cons
   return std::abs(current_A) >= least_current_A + current_per_speed_A_s_per_rad * std::abs(speed_rad_per_s);
 }
 
-ResistanceReading resistance_reading(const Motor& motor, const SensorOptions& options, double period_s) {
-  const MotorValues& values = motor.nominal;
+ResistanceReading resistance_reading(const motor::Motor& motor, const SensorOptions& options, double period_s) {
+  const motor::MotorValues& values = motor.nominal;
   const double resistance_ohm = values.terminal_resistance_ohm;
   const double alpha_per_K = values.temperature_coefficient_per_K;
   constexpr double kReference_C = 25.0;
@@ -90,4 +90,4 @@ ResistanceReading resistance_reading(const Motor& motor, const SensorOptions& op
           .most_current_change_A = most_change_A};
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -12,7 +12,7 @@
 #include "derate/observer.h"
 #include "motor/datasheet_network.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 enum class SensorKind {
   thermistor,         ///< at winding or stator
@@ -22,16 +22,16 @@ enum class SensorKind {
 /// Declaration of the sensor by the user.
 struct SensorOptions {
   SensorKind kind = SensorKind::thermistor;
-  int node = states::stator;      ///< node whose temperature is measured
-  double accuracy_K = 2.0;        ///< largest error, > 0
-  double lag_s = 0.0;             ///< time constant between node and reading; 0: none
-  double voltage_error_V = 0.02;  ///< winding_resistance: largest offset of the terminal voltage
-  double current_error_A = 0.01;  ///< winding_resistance: largest offset of the current
+  int node = motor::states::stator;  ///< node whose temperature is measured
+  double accuracy_K = 2.0;           ///< largest error, > 0
+  double lag_s = 0.0;                ///< time constant between node and reading; 0: none
+  double voltage_error_V = 0.02;     ///< winding_resistance: largest offset of the terminal voltage
+  double current_error_A = 0.01;     ///< winding_resistance: largest offset of the current
 };
 
 /// Parameter of a sensor declaration, as commands and check files name it.
 struct SensorParameter {
-  ParameterSpec spec;
+  base::ParameterSpec spec;
   SensorKind kind = SensorKind::thermistor;
   double SensorOptions::*value = nullptr;
 };
@@ -59,7 +59,7 @@ struct ResistanceReading {
 };
 
 /// Computes the conditions for a motor. Treats the driver's series resistance as known; its tolerance is part of the voltage error.
-ResistanceReading resistance_reading(const Motor& motor, const SensorOptions& options, double period_s);
+ResistanceReading resistance_reading(const motor::Motor& motor, const SensorOptions& options, double period_s);
 
 /// Bounds of the cross-check. A reading outside of them is not used.
 struct ReadingCheck {
@@ -103,4 +103,4 @@ struct SensorPlan {
   double sensor_fault_nominal_C = 0.0;  ///< hottest winding of the nominal motor with that fault
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -6,16 +6,16 @@
 #include "robot/motor_drive.h"
 #include "thermal/transient.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 constexpr std::uint64_t kSensorFaultStream = std::uint64_t{1} << 42U;
 
-std::vector<UsePlayed> play_all(const SensorPlan& plan, const Derating& model_only, const Motor& motor, const Robot& robot,
+std::vector<UsePlayed> play_all(const SensorPlan& plan, const Derating& model_only, const motor::Motor& motor, const robot::Robot& robot,
                                 std::span<const LoadPattern> uses, double gain_A) {
   std::vector<UsePlayed> played(uses.size());
-  in_parallel(uses.size(), model_only.options.guarantee.threads,
-              [&](std::size_t i) { played[i] = play_sensor_fault(plan, model_only, motor, robot, uses[i], gain_A); });
+  base::in_parallel(uses.size(), model_only.options.guarantee.threads,
+                    [&](std::size_t i) { played[i] = play_sensor_fault(plan, model_only, motor, robot, uses[i], gain_A); });
   return played;
 }
 
@@ -25,21 +25,21 @@ struct NominalPeak {
   bool is_over = false;
 };
 
-NominalPeak nominal_peak(const Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses) {
-  const Network network = datasheet_network(motor, nominal_sample(motor));
+NominalPeak nominal_peak(const motor::Motor& motor, const TemperatureLimits& limits, std::span<const UsePlayed> uses) {
+  const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
   NominalPeak peak;
   for (const UsePlayed& each : uses) {
-    const TransientResult result = run_transient(network, network.values(), each.intervals, {});
-    peak.winding_C = std::max(peak.winding_C, result.peak_C[states::winding]);
-    peak.is_over = peak.is_over || result.peak_C[states::winding] > limits.winding_C ||
-                   (limits.stator_C && result.peak_C[states::stator] > *limits.stator_C);
+    const thermal::TransientResult result = thermal::run_transient(network, network.values(), each.intervals, {});
+    peak.winding_C = std::max(peak.winding_C, result.peak_C[motor::states::winding]);
+    peak.is_over = peak.is_over || result.peak_C[motor::states::winding] > limits.winding_C ||
+                   (limits.stator_C && result.peak_C[motor::states::stator] > *limits.stator_C);
   }
   return peak;
 }
 
 }  // namespace
 
-UsePlayed play_sensor_fault(const SensorPlan& plan, const Derating& model_only, const Motor& motor, const Robot& robot,
+UsePlayed play_sensor_fault(const SensorPlan& plan, const Derating& model_only, const motor::Motor& motor, const robot::Robot& robot,
                             const LoadPattern& use, double gain_A) {
   const BarrierRules& rules = model_only.rules;
   const double period_s = model_only.options.period_s;
@@ -55,8 +55,8 @@ UsePlayed play_sensor_fault(const SensorPlan& plan, const Derating& model_only, 
     double flowing_A = 0.0;
     double counted_A = 0.0;
     if (is_on) {
-      counted_A =
-          model_only.table.allowed_A(static_cast<float>(speed_rad_per_s), capped.hottest_body_C(), capped.state_C()[states::winding]);
+      counted_A = model_only.table.allowed_A(static_cast<float>(speed_rad_per_s), capped.hottest_body_C(),
+                                             capped.state_C()[motor::states::winding]);
       const double cold_A = plan.table.allowed_A(speed_rad_per_s, rules.hottest_ambient_C, rules.hottest_ambient_C);
       flowing_A = std::min({rules.most_current_A, cold_A, counted_A + gain_A});
     }
@@ -70,7 +70,7 @@ UsePlayed play_sensor_fault(const SensorPlan& plan, const Derating& model_only, 
   return result;
 }
 
-void set_sensor_fault(SensorPlan& plan, const Motor& motor, const Robot& robot, const Derating& model_only,
+void set_sensor_fault(SensorPlan& plan, const motor::Motor& motor, const robot::Robot& robot, const Derating& model_only,
                       std::span<const LoadPattern> uses) {
   constexpr double kTolerance_A = 0.02;
   const TemperatureLimits& limits = model_only.rules.limits;
@@ -87,4 +87,4 @@ void set_sensor_fault(SensorPlan& plan, const Motor& motor, const Robot& robot, 
   plan.sensor_fault_over = check(motor, limits, played, model_only.options.guarantee, kSensorFaultStream).over;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -6,16 +6,16 @@
 #include "derate/derating.h"
 #include "derate/sensed/sensor.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Simulates one use with a sensor that always reads the air temperature. The current is that of the sensed table for a cold motor, at most
 /// `gain_A` above the allowance of the guard without a sensor. That guard integrates only the current that it allows itself.
-UsePlayed play_sensor_fault(const SensorPlan& plan, const Derating& model_only, const Motor& motor, const Robot& robot,
+UsePlayed play_sensor_fault(const SensorPlan& plan, const Derating& model_only, const motor::Motor& motor, const robot::Robot& robot,
                             const LoadPattern& use, double gain_A);
 
 /// Sets most_gain_A to the largest gain at which the nominal motor keeps its limits; sets sensor_fault_nominal_C and sensor_fault_over
 /// accordingly.
-void set_sensor_fault(SensorPlan& plan, const Motor& motor, const Robot& robot, const Derating& model_only,
+void set_sensor_fault(SensorPlan& plan, const motor::Motor& motor, const robot::Robot& robot, const Derating& model_only,
                       std::span<const LoadPattern> uses);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -14,7 +14,7 @@
 #include "derate/smallest_factor.h"
 #include "select/spread.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 namespace {
 
 /// Simulation steps per approach_s of the search and of the check. A longer step holds the current longer, which heats more.
@@ -28,10 +28,10 @@ constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
 constexpr double kPulseExponent = 1.5;
 
 /// Returns the nominal motor with the winding's heat capacity divided by the ratio.
-Network faster_network(const Motor& motor, double winding_speed_ratio) {
-  MotorSample sample = nominal_sample(motor);
+thermal::Network faster_network(const motor::Motor& motor, double winding_speed_ratio) {
+  motor::MotorSample sample = motor::nominal_sample(motor);
   sample.values.thermal_time_constant_winding_s /= winding_speed_ratio;
-  return datasheet_network(motor, sample);
+  return motor::datasheet_network(motor, sample);
 }
 
 ReadingCheck first_check(const SensorOptions& options) {
@@ -42,7 +42,8 @@ ReadingCheck first_check(const SensorOptions& options) {
 
 class PlanSearch {
  public:
-  PlanSearch(const Motor& motor, const Robot& robot, const Derating& model_only, const SensorOptions& options, const Progress& progress)
+  PlanSearch(const motor::Motor& motor, const robot::Robot& robot, const Derating& model_only, const SensorOptions& options,
+             const base::Progress& progress)
       : motor_(motor),
         robot_(robot),
         model_only_(model_only),
@@ -79,11 +80,11 @@ class PlanSearch {
   [[nodiscard]] std::vector<SensedPeak> peaks(const SensorPlan& plan, double step_s, std::uint64_t first_stream) const {
     const GuaranteeOptions& options = model_only_.options.guarantee;
     const SensedLoop sensed = loop(plan, step_s);
-    const auto blocks = static_cast<std::size_t>((options.samples + kLanes - 1) / kLanes);
-    std::vector<SensedPeak> all(blocks * kLanes);
-    in_parallel(blocks, options.threads, [&](std::size_t block) {
-      const auto found = sensed_peaks(sensed, uses_, options.seed, first_stream + block * kLanes);
-      std::ranges::copy(found, all.begin() + static_cast<std::ptrdiff_t>(block * kLanes));
+    const auto blocks = static_cast<std::size_t>((options.samples + base::kLanes - 1) / base::kLanes);
+    std::vector<SensedPeak> all(blocks * base::kLanes);
+    base::in_parallel(blocks, options.threads, [&](std::size_t block) {
+      const auto found = sensed_peaks(sensed, uses_, options.seed, first_stream + block * base::kLanes);
+      std::ranges::copy(found, all.begin() + static_cast<std::ptrdiff_t>(block * base::kLanes));
     });
     all.resize(static_cast<std::size_t>(options.samples));
     return all;
@@ -150,11 +151,11 @@ class PlanSearch {
 
   /// Typical number of simulations of all drawn motors.
   static constexpr std::size_t kUsualRounds = 12;
-  const Motor& motor_;
-  const Robot& robot_;
+  const motor::Motor& motor_;
+  const robot::Robot& robot_;
   const Derating& model_only_;
   const SensorOptions& options_;
-  const Progress& progress_;
+  const base::Progress& progress_;
   std::vector<LoadPattern> uses_;
   std::vector<double> gain_;
   double lag_gain_ratio_ = 0.0;
@@ -177,8 +178,8 @@ void set_check(SensorPlan& plan, std::span<const SensedPeak> peaks) {
   std::ranges::sort(cold);
   std::ranges::sort(frozen);
   ReadingCheck& check = plan.check;
-  check.cold_share = quantile(cold, kFalse);
-  check.frozen_K = kFrozenMargin * quantile(frozen, 1.0 - kFalse);
+  check.cold_share = select::quantile(cold, kFalse);
+  check.frozen_K = kFrozenMargin * select::quantile(frozen, 1.0 - kFalse);
   check.most_rate_K_per_s = kRateMargin * rate_K_per_s;
   check.most_jump_K = 2.0 * plan.options.accuracy_K;
   plan.dropped = static_cast<int>(std::ranges::count_if(
@@ -199,19 +200,21 @@ void set_lasting(SensorPlan& plan, const SensedLoop& loop, const Derating& model
 
 void require_sensible(const Observer& observer, const SensorOptions& options) {
   if (!(options.accuracy_K > 0.0)) {
-    throw Failure(ExitCode::bad_input, fmt::format("a sensor accuracy of {:.3g} K: expected more than 0 K", options.accuracy_K));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("a sensor accuracy of {:.3g} K: expected more than 0 K", options.accuracy_K));
   }
   if (options.node < 0 || static_cast<std::size_t>(options.node) >= observer.state_count()) {
-    throw Failure(ExitCode::bad_input, fmt::format("sensor at node {}: expected a node below {}", options.node, observer.state_count()));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("sensor at node {}: expected a node below {}", options.node, observer.state_count()));
   }
 }
 
 }  // namespace
 
-SensorPlan plan_sensor(const Motor& as_written, const Robot& robot, const Derating& model_only, const SensorOptions& options,
-                       const Progress& progress) {
+SensorPlan plan_sensor(const motor::Motor& as_written, const robot::Robot& robot, const Derating& model_only, const SensorOptions& options,
+                       const base::Progress& progress) {
   require_sensible(model_only.observer, options);
-  const Motor motor = with_default_spreads(as_written);
+  const motor::Motor motor = motor::with_default_spreads(as_written);
   PlanSearch search(motor, robot, model_only, options, progress);
   if (const std::optional<double> reserve = search.reserve()) {
     if (std::optional<PlanSearch::Promise> promise = search.promise(*reserve);
@@ -223,11 +226,11 @@ SensorPlan plan_sensor(const Motor& as_written, const Robot& robot, const Derati
       return std::move(plan);
     }
   }
-  throw Failure(
-      ExitCode::cannot_answer,
+  throw base::Failure(
+      base::ExitCode::cannot_answer,
       fmt::format(
           "{}: a sensor with an error of {:.3g} K does not lower the safety factor on heat; leave it out or use a more accurate one",
           motor.id, options.accuracy_K));
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -5,7 +5,7 @@
 #include "derate/derating.h"
 #include "derate/sensed/sensor.h"
 
-namespace heatsoak {
+namespace heatsoak::derate {
 
 /// Computes the parameters of the sensor. `model_only` is the guard of the same motor without a sensor.
 /// 1. Gain: sensor_gain().
@@ -16,7 +16,7 @@ namespace heatsoak {
 ///    always reads the air temperature.
 /// Throws Failure: bad_input for a node that the motor lacks or an accuracy that is not positive; cannot_answer if the sensor allows no
 /// lower safety factor.
-SensorPlan plan_sensor(const Motor& motor, const Robot& robot, const Derating& model_only, const SensorOptions& options,
-                       const Progress& progress = {});
+SensorPlan plan_sensor(const motor::Motor& motor, const robot::Robot& robot, const Derating& model_only, const SensorOptions& options,
+                       const base::Progress& progress = {});
 
-}  // namespace heatsoak
+}  // namespace heatsoak::derate

@@ -18,7 +18,7 @@
 #include "duty/log_bytes.h"
 #include "duty/log_type.h"
 
-namespace heatsoak::logs {
+namespace heatsoak::duty::logs {
 namespace {
 
 const std::array<std::string, 6> kColumns{"t_s", "team", "robot_id", "x_m", "y_m", "yaw_rad"};
@@ -44,7 +44,7 @@ struct Before {
 /// Tells metres from millimetres, radians from degrees and seconds from milliseconds by what a robot can do.
 class Units {
  public:
-  void take(Before& before, const Detection& sight, const CsvRow& row) {
+  void take(Before& before, const Detection& sight, const input::CsvRow& row) {
     farthest_m_ = std::max({farthest_m_, std::abs(sight.x_m), std::abs(sight.y_m)});
     outside_ += std::abs(sight.x_m) > kField_m || std::abs(sight.y_m) > kField_m ? 1 : 0;
     lowest_yaw_ = std::min(lowest_yaw_, sight.yaw_rad);
@@ -60,9 +60,9 @@ class Units {
   }
 
   void say(const std::filesystem::path& file) const {
-    Diagnostics problems;
+    base::Diagnostics problems;
     if (2 * outside_ > sights_) {
-      const std::string far = farthest_m_ < 1e6 ? significant(farthest_m_, 3) : fmt::format("{:.3g}", farthest_m_);
+      const std::string far = farthest_m_ < 1e6 ? base::significant(farthest_m_, 3) : fmt::format("{:.3g}", farthest_m_);
       problems.add({file.string(), 1, 1}, "x_m, y_m",
                    fmt::format("reach {} m, and most positions are outside any field: are they in millimetres?", far));
     }
@@ -88,7 +88,7 @@ class Units {
   static constexpr double kField_m = 30.0;
   static constexpr double kWindow_s = 0.1;
 
-  void take_turn(Before& before, const Detection& sight, const CsvRow& row) {
+  void take_turn(Before& before, const Detection& sight, const input::CsvRow& row) {
     const double turn = std::abs(sight.yaw_rad - before.sight.yaw_rad);
     const bool is_lost = sight.time_s - before.sight.time_s > kLongestBridge_s;
     if (!is_lost && std::abs(turn - kFullTurn) < 30.0 && wrap_.line == 0) {
@@ -103,13 +103,14 @@ class Units {
     }
   }
 
-  void say_degrees(const std::filesystem::path& file, Diagnostics& problems) const {
+  void say_degrees(const std::filesystem::path& file, base::Diagnostics& problems) const {
     constexpr double kNobodyTurns_rad_per_s = 15.0;
     constexpr double kNobodyKeepsTurning_rad_per_s = 4.0;
     const double mean_rad_per_s = turned_s_ > 1.0 ? turned_ / turned_s_ : 0.0;
     if (wrap_.line > 0 && highest_yaw_ - lowest_yaw_ < 1.01 * kFullTurn) {
-      const Diagnostic there{{file.string(), wrap_.line, wrap_.column}, "yaw_rad", ""};
-      problems.add(with_characters({there}).front().at, there.key, "jumps by a full turn of 360: it is in degrees; expected radians");
+      const base::Diagnostic there{{file.string(), wrap_.line, wrap_.column}, "yaw_rad", ""};
+      problems.add(input::with_characters({there}).front().at, there.key,
+                   "jumps by a full turn of 360: it is in degrees; expected radians");
     } else if (mean_rad_per_s > kNobodyTurns_rad_per_s) {
       problems.add({file.string(), 1, 1}, "yaw_rad",
                    fmt::format("turns at {:.3g} rad/s on average over the game, which no robot does: is it in degrees?", mean_rad_per_s));
@@ -128,7 +129,7 @@ class Units {
   double lowest_yaw_ = std::numeric_limits<double>::infinity();
   double highest_yaw_ = -std::numeric_limits<double>::infinity();
   std::uint64_t beyond_a_turn_ = 0;
-  Location wrap_;  ///< the first step of 360; its column counts cells
+  base::Location wrap_;  ///< the first step of 360; its column counts cells
   double farthest_m_ = 0.0;
   std::uint64_t outside_ = 0;
   std::uint64_t sights_ = 0;
@@ -195,13 +196,14 @@ class RobotClock {
   std::vector<Row> late_;
 };
 
-RobotName robot_of(const std::filesystem::path& file, const CsvRow& row) {
+RobotName robot_of(const std::filesystem::path& file, const input::CsvRow& row) {
   const double id = row.values[robot_id];
   if (!(id >= 0.0 && id <= kLargestRobotId) || id != static_cast<double>(static_cast<int>(id))) {
-    throw Failure(ExitCode::bad_input, "",
-                  with_characters({{{file.string(), row.line, row.cells[robot_id]},
-                                    "robot_id",
-                                    fmt::format("{} is not a robot id; expected a whole number from 0 to {}", id, kLargestRobotId)}}));
+    throw base::Failure(
+        base::ExitCode::bad_input, "",
+        input::with_characters({{{file.string(), row.line, row.cells[robot_id]},
+                                 "robot_id",
+                                 fmt::format("{} is not a robot id; expected a whole number from 0 to {}", id, kLargestRobotId)}}));
   }
   return {row.values[team] == 0.0 ? Team::yellow : Team::blue, static_cast<int>(id)};
 }
@@ -211,7 +213,7 @@ class Rows {
  public:
   Rows(const std::filesystem::path& file, LogEvents& events) : file_(file), events_(events) {}
 
-  void take(const CsvRow& row) {
+  void take(const input::CsvRow& row) {
     ++events_.report().messages;
     ++events_.report().frames;
     const RobotName name = robot_of(file_, row);
@@ -267,7 +269,7 @@ class Rows {
   std::uint64_t repeated_ = 0;  ///< of the rows that are left out, those with the time of the one before
   std::map<RobotName, Robot> robots_;
   Units units_;
-  const CsvRow* row_ = nullptr;
+  const input::CsvRow* row_ = nullptr;
   Robot* robot_ = nullptr;  ///< that the row is of
   RobotClock::Listener listener_{
       .see =
@@ -289,15 +291,16 @@ class Rows {
 
 void read(const std::filesystem::path& file, const ImportOptions& /*options*/, LogEvents& events) {
   if (LogBytes(file).is_packed()) {
-    throw bad_input({file.string()}, "", "is packed by gzip; unpack it first");
+    throw base::bad_input({file.string()}, "", "is packed by gzip; unpack it first");
   }
-  const std::array<CsvWords, 1> words{CsvWords{"team", {"yellow", "blue"}}};
-  CsvColumns columns{{kColumns.begin(), kColumns.end()}, {}, {kColumns[x], kColumns[y], kColumns[yaw]}};
+  const std::array<input::CsvWords, 1> words{input::CsvWords{"team", {"yellow", "blue"}}};
+  input::CsvColumns columns{{kColumns.begin(), kColumns.end()}, {}, {kColumns[x], kColumns[y], kColumns[yaw]}};
   ImportReport& report = events.report();
   report.source = "positions in a table";
   Rows rows(file, events);
-  read_csv(
-      file, [&columns](std::span<const std::string> /*header*/) { return columns; }, words, [&rows](const CsvRow& row) { rows.take(row); },
+  input::read_csv(
+      file, [&columns](std::span<const std::string> /*header*/) { return columns; }, words,
+      [&rows](const input::CsvRow& row) { rows.take(row); },
       [&report](int line) {
         report.notes.push_back(fmt::format("line {}, the last, has no line break at its end and may be truncated: left out", line));
       });
@@ -312,4 +315,4 @@ LogType csv() {
   return {.name = {}, .summary = "table with the columns t_s, team, robot_id, x_m, y_m, yaw_rad", .recognises = recognises, .read = read};
 }
 
-}  // namespace heatsoak::logs
+}  // namespace heatsoak::duty::logs

@@ -11,7 +11,7 @@
 #include "duty/log_type.h"
 #include "duty/ssl_log_stream.h"
 
-namespace heatsoak::logs {
+namespace heatsoak::duty::logs {
 namespace {
 
 constexpr double kMillimetre_m = 1e-3;
@@ -298,4 +298,4 @@ LogType ssl_log() {
                      LogEvents& events) { Import(file, options, events).run(); }};
 }
 
-}  // namespace heatsoak::logs
+}  // namespace heatsoak::duty::logs

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 /// How a role differs from an attacker: shorter ways, fewer duels, a zone of its own.
@@ -40,7 +40,7 @@ MotionCommand stand(double duration_s) {
 
 }  // namespace
 
-Behaviour::Behaviour(const MatchInputs& inputs, const MatchValues& values, Random& random)
+Behaviour::Behaviour(const MatchInputs& inputs, const MatchValues& values, base::Random& random)
     : role_(inputs.role), values_(values), field_(field_of(inputs.division)), random_(random), next_duel_s_(until_next_duel_s()) {}
 
 double Behaviour::exponential(double value) { return -value * std::log(random_.uniform()); }
@@ -133,4 +133,4 @@ MotionCommand Behaviour::next(Phase phase, double into_phase_s, double left_s, c
   return stand(left_s);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

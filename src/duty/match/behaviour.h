@@ -3,7 +3,7 @@
 
 #include "duty/match/game.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 /// Hold for `duration_s`: go to the target, come to a stand where braking ends, or push against another robot there.
 struct MotionCommand {
@@ -26,7 +26,7 @@ struct FieldPose {
 
 class Behaviour {
  public:
-  Behaviour(const MatchInputs& inputs, const MatchValues& values, Random& random);
+  Behaviour(const MatchInputs& inputs, const MatchValues& values, base::Random& random);
 
   /// The next command, `into_phase_s` after the phase began with `left_s` still to go; never longer than `left_s`.
   MotionCommand next(Phase phase, double into_phase_s, double left_s, const FieldPose& now);
@@ -42,9 +42,9 @@ class Behaviour {
   Role role_;
   MatchValues values_;
   FieldSize field_;
-  Random& random_;
+  base::Random& random_;
   double play_end_s_ = 0.0;  ///< end of the present segment, in time of play
   double next_duel_s_;       ///< counted likewise: duels come by the minute of play, whatever time they take of it
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 constexpr double kHalf_s = 300.0;
@@ -15,10 +15,10 @@ constexpr double kTimeoutBudget_s = 300.0;
 constexpr int kTimeouts = 8;  // of both teams, in two halves
 constexpr double kLongestPlacement_s = 30.0;
 
-double exponential(double mean, Random& random) { return -mean * std::log(random.uniform()); }
+double exponential(double mean, base::Random& random) { return -mean * std::log(random.uniform()); }
 
 /// Times of a Poisson process with `mean` of them on average.
-int poisson(double mean, Random& random) {
+int poisson(double mean, base::Random& random) {
   int count = 0;
   for (double left = mean + std::log(random.uniform()); left > 0.0; left += std::log(random.uniform())) {
     ++count;
@@ -43,7 +43,7 @@ double mean_before_the_cut(double mean_s, double longest_s) {
 
 class Game {
  public:
-  Game(Division division, const MatchValues& values, Random& random)
+  Game(Division division, const MatchValues& values, base::Random& random)
       : free_kick_s_(division == Division::a ? 5.0 : 10.0),
         placement_mean_s_(mean_before_the_cut(values.placement_mean_s, kLongestPlacement_s)),
         values_(values),
@@ -136,7 +136,7 @@ class Game {
   double free_kick_s_;
   double placement_mean_s_;
   const MatchValues& values_;
-  Random& random_;
+  base::Random& random_;
   double timeout_left_s_ = 2.0 * kTimeoutBudget_s;
   std::vector<MatchPhase> spans_;
 };
@@ -163,7 +163,7 @@ PhaseRule rule_of(Phase phase) {
 
 FieldSize field_of(Division division) { return division == Division::a ? FieldSize{12.0, 9.0} : FieldSize{9.0, 6.0}; }
 
-std::vector<MatchPhase> generate_game(Division division, bool overtime, const MatchValues& values, Random& random) {
+std::vector<MatchPhase> generate_game(Division division, bool overtime, const MatchValues& values, base::Random& random) {
   Game game(division, values, random);
   game.half(kHalf_s);
   game.rest(kHalfTime_s);
@@ -178,4 +178,4 @@ std::vector<MatchPhase> generate_game(Division division, bool overtime, const Ma
   return game.spans();
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

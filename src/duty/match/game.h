@@ -9,7 +9,7 @@
 #include "base/random.h"
 #include "duty/match/match_inputs.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 enum class Phase { kick_off_preparation, running, stop, free_kick, ball_placement, halt, timeout, half_time };
 inline constexpr std::array<std::string_view, 8> kPhaseNames{"kick_off_preparation", "running", "stop",    "free_kick",
@@ -37,6 +37,6 @@ FieldSize field_of(Division division);
 
 /// Two halves of 300 s of play with 300 s between them (and two of 150 s in overtime). The last segment of
 /// a half is cut where its clock ends, so that play adds up exactly.
-std::vector<MatchPhase> generate_game(Division division, bool overtime, const MatchValues& values, Random& random);
+std::vector<MatchPhase> generate_game(Division division, bool overtime, const MatchValues& values, base::Random& random);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

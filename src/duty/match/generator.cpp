@@ -11,7 +11,7 @@
 
 #include "robot_core/trajectory.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 namespace {
 
 /// 2 % of the nominal torque of a 50 W motor, 0.1 m/s at the rim: finer than any verdict.
@@ -50,8 +50,8 @@ double least(double a, double b) { return std::isfinite(b) ? std::min(a, b) : a;
 /// The planner's trajectory, followed exactly.
 class IdealTracking final : public Follower {
  public:
-  IdealTracking(const Robot& robot, double aggressiveness, Planner planner) : planner_(planner) {
-    const RobotLimits& limits = robot.limits;
+  IdealTracking(const robot::Robot& robot, double aggressiveness, Planner planner) : planner_(planner) {
+    const robot::RobotLimits& limits = robot.limits;
     const double acceleration_m_per_s2 = limits.acceleration_m_per_s2.value_or(0.0);
     plane_ = {limits.speed_m_per_s.value_or(0.0) * aggressiveness,
               std::min(acceleration_m_per_s2, limits.braking_m_per_s2.value_or(acceleration_m_per_s2)) * aggressiveness,
@@ -62,7 +62,8 @@ class IdealTracking final : public Follower {
                                          10.0 * limits.yaw_acceleration_rad_per_s2.value_or(0.0) * aggressiveness);
     for (const double limit : {plane_.speed_max, plane_.acceleration_max, plane_.jerk_max, yaw_.velocity_max, yaw_.jerk_max}) {
       if (!(limit > 0.0)) {
-        throw bad_input({robot.file.string()}, "limits", "a match needs speed, acceleration, braking, jerk, yaw_rate and yaw_acceleration");
+        throw base::bad_input({robot.file.string()}, "limits",
+                              "a match needs speed, acceleration, braking, jerk, yaw_rate and yaw_acceleration");
       }
     }
   }
@@ -77,8 +78,9 @@ class IdealTracking final : public Follower {
                                   ? robot_core::plan_plane(state_, target, plane, yaw_, trajectories_)
                                   : robot_core::plan_plane_bang_bang(state_, target, plane, yaw_, trajectories_);
     if (result != PlanResult::ok) {
-      throw Failure(ExitCode::numerics_failed, fmt::format("no trajectory to ({:.3f}, {:.3f}) m: {}; look at [limits] of the robot",
-                                                           command.x_m, command.y_m, in_words(result)));
+      throw base::Failure(base::ExitCode::numerics_failed,
+                          fmt::format("no trajectory to ({:.3f}, {:.3f}) m: {}; look at [limits] of the robot", command.x_m, command.y_m,
+                                      in_words(result)));
     }
     time_s_ = 0.0;
   }
@@ -90,9 +92,11 @@ class IdealTracking final : public Follower {
     }
   }
 
-  [[nodiscard]] Pose pose() const override { return {state_[0].position, state_[1].position, state_[2].position}; }
-  [[nodiscard]] BodyVelocity velocity_global() const override { return {state_[0].velocity, state_[1].velocity, state_[2].velocity}; }
-  [[nodiscard]] BodyAcceleration acceleration_global() const override {
+  [[nodiscard]] robot::Pose pose() const override { return {state_[0].position, state_[1].position, state_[2].position}; }
+  [[nodiscard]] robot::BodyVelocity velocity_global() const override {
+    return {state_[0].velocity, state_[1].velocity, state_[2].velocity};
+  }
+  [[nodiscard]] robot::BodyAcceleration acceleration_global() const override {
     return {state_[0].acceleration, state_[1].acceleration, state_[2].acceleration};
   }
   [[nodiscard]] bool at_rest() const override {
@@ -112,7 +116,7 @@ enum class Keep { every_wheel, hardest_wheel };
 
 class Match {
  public:
-  Match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner, double bin_s,
+  Match(const MatchInputs& inputs, const MatchValues& values, const robot::Robot& robot, std::uint64_t seed, Planner planner, double bin_s,
         const MatchObserver& observer, double step_s, Keep keep)
       : step_s_(step_s),
         bin_s_(bin_s),
@@ -120,7 +124,7 @@ class Match {
         random_(seed, 0),
         game_(generate_game(inputs.division, inputs.overtime, values, random_)),
         behaviour_(inputs, values, random_),
-        body_(make_body(robot, without_rotor())),
+        body_(robot::make_body(robot, without_rotor())),
         motion_(ideal_tracking(robot, values.aggressiveness, planner)),
         observer_(observer),
         steps_(steps_of_thread()) {
@@ -135,7 +139,7 @@ class Match {
       load_.play_s += rule_of(span.phase).clock_runs ? span.duration_s : 0.0;
       double into_s = 0.0;
       while (span.duration_s - into_s > 0.5 * step_s_) {
-        const Pose now = motion_->pose();
+        const robot::Pose now = motion_->pose();
         const MotionCommand command = behaviour_.next(span.phase, into_s, span.duration_s - into_s, {now.x_m, now.y_m, now.yaw_rad});
         into_s += follow(span.phase, command, span.duration_s - into_s);
       }
@@ -155,8 +159,8 @@ class Match {
   }
 
  private:
-  static MotorValues without_rotor() {
-    MotorValues motor;
+  static motor::MotorValues without_rotor() {
+    motor::MotorValues motor;
     motor.rotor_inertia_kg_m2 = 0.0;
     return motor;
   }
@@ -164,7 +168,7 @@ class Match {
   [[nodiscard]] DemandGatherer gatherer(int wheel) const { return {fmt::format("wheel {}", wheel + 1), bin_s_, kGrid}; }
 
   void gather_hardest() {
-    PerWheel work_Nm2_s{};
+    robot::PerWheel work_Nm2_s{};
     for (const PhaseLoad& phase : load_.phases) {
       std::ranges::transform(work_Nm2_s, phase.torque_squared_Nm2_s, work_Nm2_s.begin(), std::plus());
     }
@@ -202,24 +206,24 @@ class Match {
   }
 
   void moment(Phase phase, const MotionCommand& command, double step_s, bool pushes) {
-    const Pose pose = motion_->pose();
-    const BodyVelocity velocity = motion_->velocity_global();
+    const robot::Pose pose = motion_->pose();
+    const robot::BodyVelocity velocity = motion_->velocity_global();
     if (pose.yaw_rad != axis_yaw_rad_) {
       axis_yaw_rad_ = pose.yaw_rad;
-      axis_ = field_axis(axis_yaw_rad_);
+      axis_ = robot::field_axis(axis_yaw_rad_);
     }
-    BodyMotion motion = local_motion(body_, axis_, velocity, motion_->acceleration_global());
+    robot::BodyMotion motion = robot::local_motion(body_, axis_, velocity, motion_->acceleration_global());
     if (pushes) {
       const double direction_rad = command.push_direction_rad - pose.yaw_rad;
-      const double force_N = command.push_share * largest_push_N(body_, direction_rad, motion.external_height_m);
+      const double force_N = command.push_share * robot::largest_push_N(body_, direction_rad, motion.external_height_m);
       motion.external = {-force_N * std::cos(direction_rad), -force_N * std::sin(direction_rad), 0.0};
     }
     // At constant speed every moment asks the same of the wheels.
     if (!(motion == motion_of_wheels_)) {
       motion_of_wheels_ = motion;
-      wheels_ = inverse_dynamics(body_, motion);
+      wheels_ = robot::inverse_dynamics(body_, motion);
     }
-    const WheelDemands& wheels = wheels_;
+    const robot::WheelDemands& wheels = wheels_;
     PhaseLoad& phase_load = load_.phases.at(static_cast<std::size_t>(phase));
     phase_load.time_s += step_s;
     phase_load.duel_s += pushes ? step_s : 0.0;
@@ -245,8 +249,8 @@ class Match {
   /// Merging loads into bins and points takes a third of a game's time, so they are kept until it is known which wheel counts.
   struct Step {
     double duration_s = 0.0;
-    PerWheel torque_Nm{};
-    PerWheel speed_rad_per_s{};
+    robot::PerWheel torque_Nm{};
+    robot::PerWheel speed_rad_per_s{};
   };
 
   /// Fresh memory for every game would cost as much as the robot's dynamics.
@@ -258,33 +262,33 @@ class Match {
   double step_s_;
   double bin_s_;
   Keep keep_;
-  Random random_;
+  base::Random random_;
   std::vector<MatchPhase> game_;
   Behaviour behaviour_;
-  BodyConfig body_;
+  robot::BodyConfig body_;
   std::unique_ptr<Follower> motion_;
   const MatchObserver& observer_;
   std::vector<DemandGatherer> gatherers_;
   std::vector<Step>& steps_;
   MatchLoad load_;
-  BodyMotion motion_of_wheels_;
-  WheelDemands wheels_ = inverse_dynamics(body_, motion_of_wheels_);
+  robot::BodyMotion motion_of_wheels_;
+  robot::WheelDemands wheels_ = robot::inverse_dynamics(body_, motion_of_wheels_);
   double axis_yaw_rad_ = 0.0;
-  FieldAxis axis_ = field_axis(0.0);
+  robot::FieldAxis axis_ = robot::field_axis(0.0);
 };
 
 }  // namespace
 
-std::unique_ptr<Follower> ideal_tracking(const Robot& robot, double aggressiveness, Planner planner) {
+std::unique_ptr<Follower> ideal_tracking(const robot::Robot& robot, double aggressiveness, Planner planner) {
   return std::make_unique<IdealTracking>(robot, aggressiveness, planner);
 }
 
-MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner,
+MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const robot::Robot& robot, std::uint64_t seed, Planner planner,
                      double bin_s, const MatchObserver& observer, double step_s) {
   return Match(inputs, values, robot, seed, planner, bin_s, observer, step_s, Keep::every_wheel).play();
 }
 
-WheelDemand hardest_wheel_of_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed,
+WheelDemand hardest_wheel_of_match(const MatchInputs& inputs, const MatchValues& values, const robot::Robot& robot, std::uint64_t seed,
                                    Planner planner, double bin_s, double step_s) {
   const MatchObserver nobody;
   return std::move(Match(inputs, values, robot, seed, planner, bin_s, nobody, step_s, Keep::hardest_wheel).play().wheels.front());
@@ -292,4 +296,4 @@ WheelDemand hardest_wheel_of_match(const MatchInputs& inputs, const MatchValues&
 
 std::string_view to_string(Planner planner) { return planner == Planner::bang_bang ? "bang_bang" : "jerk_limited"; }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -12,7 +12,7 @@
 #include "duty/match/behaviour.h"
 #include "robot/inverse_dynamics.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 /// How the robot gets from target to target. The seam where the drive core takes its place: anything that turns a
 /// motion command into body motion over time fits here.
@@ -23,9 +23,9 @@ class Follower {
   virtual void take(const MotionCommand& command) = 0;
   /// Advance by `step_s`.
   virtual void advance(double step_s) = 0;
-  [[nodiscard]] virtual Pose pose() const = 0;
-  [[nodiscard]] virtual BodyVelocity velocity_global() const = 0;
-  [[nodiscard]] virtual BodyAcceleration acceleration_global() const = 0;
+  [[nodiscard]] virtual robot::Pose pose() const = 0;
+  [[nodiscard]] virtual robot::BodyVelocity velocity_global() const = 0;
+  [[nodiscard]] virtual robot::BodyAcceleration acceleration_global() const = 0;
   /// Nothing moves and nothing will until the next command.
   [[nodiscard]] virtual bool at_rest() const = 0;
 };
@@ -34,7 +34,7 @@ enum class Planner { jerk_limited, bang_bang };
 std::string_view to_string(Planner planner);
 
 /// Follows the planner exactly: re-planned at every command from the state of the moment.
-std::unique_ptr<Follower> ideal_tracking(const Robot& robot, double aggressiveness, Planner planner);
+std::unique_ptr<Follower> ideal_tracking(const robot::Robot& robot, double aggressiveness, Planner planner);
 
 /// One step of the game at one robot. Torques and speeds as in WheelDemands.
 struct MatchMoment {
@@ -42,9 +42,9 @@ struct MatchMoment {
   double step_s = 0.0;
   Phase phase = Phase::halt;
   bool duel = false;
-  Pose pose;
-  BodyVelocity velocity_global;
-  const WheelDemands* wheels = nullptr;
+  robot::Pose pose;
+  robot::BodyVelocity velocity_global;
+  const robot::WheelDemands* wheels = nullptr;
 };
 
 /// A command and when the game gave it.
@@ -58,7 +58,7 @@ struct ScheduledCommand {
 struct PhaseLoad {
   double time_s = 0.0;
   double duel_s = 0.0;
-  PerWheel torque_squared_Nm2_s{};         ///< ∫M²dt per wheel: copper heat is this times R/K_t²
+  robot::PerWheel torque_squared_Nm2_s{};  ///< ∫M²dt per wheel: copper heat is this times R/K_t²
   double duel_torque_squared_Nm2_s = 0.0;  ///< part of it, all wheels, that comes from duels
   double slip_s = 0.0;                     ///< time in which the ground cannot pass on what is demanded
 };
@@ -82,11 +82,11 @@ inline constexpr double kDrawnGameStep_s = 4e-3;
 
 /// Runs one game in steps of `step_s` into bins of `bin_s`. The rotor's inertia is left out, so that the
 /// demand is the same for every motor. Throws Failure (bad_input) where the robot's file lacks what motion needs.
-MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed, Planner planner,
+MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const robot::Robot& robot, std::uint64_t seed, Planner planner,
                      double bin_s = kBin_s, const MatchObserver& observer = {}, double step_s = kGameStep_s);
 
 /// The demand of the wheel with the largest ∫M²dt of the same game, in less time.
-WheelDemand hardest_wheel_of_match(const MatchInputs& inputs, const MatchValues& values, const Robot& robot, std::uint64_t seed,
+WheelDemand hardest_wheel_of_match(const MatchInputs& inputs, const MatchValues& values, const robot::Robot& robot, std::uint64_t seed,
                                    Planner planner, double bin_s, double step_s);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -10,7 +10,7 @@
 #include "base/random.h"
 #include "input/reader.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 enum class Division { a, b };
 enum class Role { keeper, defender, attacker };
@@ -43,7 +43,7 @@ struct MatchValues {
 };
 
 struct MatchInputSpec {
-  ParameterSpec spec;
+  base::ParameterSpec spec;
   double MatchValues::*value = nullptr;
 };
 std::span<const MatchInputSpec> match_input_specs();
@@ -52,13 +52,13 @@ struct MatchInputs {
   Division division = Division::a;
   Role role = Role::attacker;
   bool overtime = false;
-  std::array<ParameterValue, 22> parameters;  ///< in the order of match_input_specs()
+  std::array<base::ParameterValue, 22> parameters;  ///< in the order of match_input_specs()
 
   [[nodiscard]] MatchValues nominal() const;
-  [[nodiscard]] MatchValues draw(Random& random) const;
+  [[nodiscard]] MatchValues draw(base::Random& random) const;
 };
 
 /// Problems go to the reader.
-MatchInputs read_match_inputs(Reader& table);
+MatchInputs read_match_inputs(input::Reader& table);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
-RoleLoads play_roles(const MatchInputs& inputs, const Robot& robot, std::uint64_t seed, Planner planner) {
+RoleLoads play_roles(const MatchInputs& inputs, const robot::Robot& robot, std::uint64_t seed, Planner planner) {
   RoleLoads roles;
   for (std::size_t i = 0; i < roles.size(); ++i) {
     MatchInputs as_role = inputs;
@@ -47,4 +47,4 @@ double duel_s(const MatchLoad& load) {
                          [](double sum_s, const PhaseLoad& phase) { return sum_s + phase.duel_s; });
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

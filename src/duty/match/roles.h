@@ -5,11 +5,11 @@
 
 #include "duty/match/generator.h"
 
-namespace heatsoak {
+namespace heatsoak::duty {
 
 /// The same game played in each role, in the order of kRoleNames.
 using RoleLoads = std::array<MatchLoad, kRoleNames.size()>;
-RoleLoads play_roles(const MatchInputs& inputs, const Robot& robot, std::uint64_t seed, Planner planner);
+RoleLoads play_roles(const MatchInputs& inputs, const robot::Robot& robot, std::uint64_t seed, Planner planner);
 
 /// Returns ∫M²dt summed over all wheels, in N²m²s. It is proportional to the copper heat of the motors without the part for their own drag.
 double effort_Nm2_s(const PhaseLoad& phase);
@@ -27,4 +27,4 @@ double torque_rms_Nm(const MatchLoad& load);
 /// Returns the time spent in duels.
 double duel_s(const MatchLoad& load);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::duty

@@ -3,12 +3,12 @@
 
 #include "duty/duty.h"
 
-namespace heatsoak::shapes {
+namespace heatsoak::duty::shapes {
 namespace {
 
 /// The spread of a parameter as a spread of a factor around 1.
-ParameterValue as_factor(const ParameterValue& parameter) {
-  ParameterValue factor = parameter;
+base::ParameterValue as_factor(const base::ParameterValue& parameter) {
+  base::ParameterValue factor = parameter;
   factor.value = 1.0;
   if (factor.spread && parameter.value != 0.0) {
     factor.spread->low /= parameter.value;
@@ -23,7 +23,7 @@ class Intermittent final : public DutyShape {
   Intermittent(const LoadBin& on, double off_s, int repeats, const LoadPoint& point)
       : on_(on), off_s_(off_s), repeats_(repeats), point_(point) {}
 
-  [[nodiscard]] std::vector<WheelDemand> demand(const Robot& /*robot*/, std::uint64_t /*seed*/) const override {
+  [[nodiscard]] std::vector<WheelDemand> demand(const robot::Robot& /*robot*/, std::uint64_t /*seed*/) const override {
     WheelDemand wheel{.wheel = "any wheel", .bins = {}, .points = {point_}};
     for (int i = 0; i < repeats_; ++i) {
       wheel.bins.push_back(on_);
@@ -41,20 +41,20 @@ class Intermittent final : public DutyShape {
   LoadPoint point_;
 };
 
-void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
+void read(input::Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   constexpr double kLongest_s = 1e6;
-  const ParameterSpec torque{"torque_on", "N m", Range::positive(), "at one wheel, while it is on"};
-  const ParameterSpec current{"current_on", "A", Range::positive(), "through the motor, while it is on"};
-  const std::optional<ParameterValue> torque_on = table.parameter(torque, Need::optional);
-  const std::optional<ParameterValue> current_on = table.parameter(current, Need::optional);
-  const ParameterSpec speed{"speed_on", "rad/s", Range::non_negative(), "of the wheel, while it is on"};
-  const ParameterSpec time_on{"time_on", "s", Range::positive(), "of one cycle"};
-  const ParameterSpec time_off{"time_off", "s", Range::non_negative(), "of one cycle"};
-  const ParameterSpec cycles{"repeats", "", Range::between(1.0, 1e6), "how many cycles"};
-  const std::optional<double> speed_on = table.quantity(speed, Need::required);
-  const std::optional<double> on_s = table.quantity(time_on, Need::required);
-  const std::optional<double> off_s = table.quantity(time_off, Need::required);
-  const std::optional<double> repeats = table.quantity(cycles, Need::required);
+  const base::ParameterSpec torque{"torque_on", "N m", base::Range::positive(), "at one wheel, while it is on"};
+  const base::ParameterSpec current{"current_on", "A", base::Range::positive(), "through the motor, while it is on"};
+  const std::optional<base::ParameterValue> torque_on = table.parameter(torque, input::Need::optional);
+  const std::optional<base::ParameterValue> current_on = table.parameter(current, input::Need::optional);
+  const base::ParameterSpec speed{"speed_on", "rad/s", base::Range::non_negative(), "of the wheel, while it is on"};
+  const base::ParameterSpec time_on{"time_on", "s", base::Range::positive(), "of one cycle"};
+  const base::ParameterSpec time_off{"time_off", "s", base::Range::non_negative(), "of one cycle"};
+  const base::ParameterSpec cycles{"repeats", "", base::Range::between(1.0, 1e6), "how many cycles"};
+  const std::optional<double> speed_on = table.quantity(speed, input::Need::required);
+  const std::optional<double> on_s = table.quantity(time_on, input::Need::required);
+  const std::optional<double> off_s = table.quantity(time_off, input::Need::required);
+  const std::optional<double> repeats = table.quantity(cycles, input::Need::required);
   const std::vector<std::string> keys = table.keys();
   const auto gives = [&](std::string_view key) { return std::ranges::find(keys, key) != keys.end(); };
   if (gives("torque_on") == gives("current_on")) {
@@ -76,7 +76,7 @@ void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   duty.load = as_factor(torque_on ? *torque_on : *current_on);
   duty.parameters.emplace_back(torque_on ? torque : current, torque_on ? *torque_on : *current_on);
   for (const auto& [spec, value] : {std::pair(speed, *speed_on), {time_on, *on_s}, {time_off, *off_s}, {cycles, *repeats}}) {
-    duty.parameters.emplace_back(spec, ParameterValue{}).second.value = value;
+    duty.parameters.emplace_back(spec, base::ParameterValue{}).second.value = value;
   }
   const double torque_Nm = torque_on ? torque_on->value : 0.0;
   const double current_A = current_on ? current_on->value : 0.0;
@@ -100,4 +100,4 @@ repeats = "240"
           .read = read};
 }
 
-}  // namespace heatsoak::shapes
+}  // namespace heatsoak::duty::shapes

@@ -1,10 +1,10 @@
 #include "duty/duty.h"
 #include "duty/match/match_duty.h"
 
-namespace heatsoak::shapes {
+namespace heatsoak::duty::shapes {
 namespace {
 
-void read(Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
+void read(input::Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   duty.kind = DutyKind::torque;
   duty.shape_data = std::make_shared<MatchDuty>(read_match_inputs(table));
 }
@@ -23,4 +23,4 @@ role = "attacker"   # or "defender", "keeper"
           .read = read};
 }
 
-}  // namespace heatsoak::shapes
+}  // namespace heatsoak::duty::shapes

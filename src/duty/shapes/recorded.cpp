@@ -7,7 +7,7 @@
 #include "duty/duty.h"
 #include "input/csv.h"
 
-namespace heatsoak::shapes {
+namespace heatsoak::duty::shapes {
 namespace {
 
 constexpr double kMostPieces = 2e6;  ///< more would fill the memory
@@ -38,30 +38,30 @@ class Recording {
   Recording(std::filesystem::path file, DutyKind kind) : file_(std::move(file)), kind_(kind) {}
 
   std::vector<WheelDemand> read() {
-    Diagnostics all;
+    base::Diagnostics all;
     try {
-      read_csv(
+      input::read_csv(
           file_,
           [this](std::span<const std::string> header) {
             names_ = columns(header).required;
             refuse_both_kinds(header);
             return columns(header);
           },
-          {}, [this](const CsvRow& row) { take(row); });
-    } catch (const Failure& failure) {
+          {}, [this](const input::CsvRow& row) { take(row); });
+    } catch (const base::Failure& failure) {
       if (pieces_ > kMostPieces) {
         throw;  // whatever else is wrong with it
       }
-      for (const Diagnostic& each : failure.diagnostics()) {
+      for (const base::Diagnostic& each : failure.diagnostics()) {
         all.add(each.at, each.key, each.message);
       }
     }
-    for (const Diagnostic& each : with_characters(std::move(problems_))) {
+    for (const base::Diagnostic& each : input::with_characters(std::move(problems_))) {
       all.add(each.at, each.key, each.message);
     }
     all.throw_if_any();
     if (rows_ < 2) {
-      throw bad_input({file_.string()}, "", "has one row; expected at least two, the last one ends the duty");
+      throw base::bad_input({file_.string()}, "", "has one row; expected at least two, the last one ends the duty");
     }
     std::vector<WheelDemand> wheels;
     for (DemandGatherer& wheel : wheels_) {
@@ -72,13 +72,13 @@ class Recording {
 
  private:
   /// Numbered columns up to the last wheel that the header knows, else those of the only wheel.
-  [[nodiscard]] CsvColumns columns(std::span<const std::string> header) const {
+  [[nodiscard]] input::CsvColumns columns(std::span<const std::string> header) const {
     const auto has = [&](const std::string& name) { return std::ranges::find(header, name) != header.end(); };
     int wheels = kMostWheels;
     while (wheels > 0 && !has(column(kind_, wheels, true)) && !has(column(kind_, wheels, false))) {
       --wheels;
     }
-    CsvColumns wanted{{"time_s"}, {}};
+    input::CsvColumns wanted{{"time_s"}, {}};
     for (int wheel = std::min(wheels, 1); wheel <= wheels; ++wheel) {
       wanted.required.push_back(column(kind_, wheel, true));
       wanted.required.push_back(column(kind_, wheel, false));
@@ -90,19 +90,19 @@ class Recording {
   void refuse_both_kinds(std::span<const std::string> header) const {
     const auto has = [&](int wheel) { return std::ranges::find(header, column(kind_, wheel, true)) != header.end(); };
     if (names_.size() > 1 && names_[1] != column(kind_, 0, true) && has(0)) {
-      throw bad_input(
+      throw base::bad_input(
           {file_.string(), 1, 1}, "",
           fmt::format("has {} and {}; expected the columns of one wheel without a number in their names, or of several wheels with numbers",
                       column(kind_, 0, true), names_[1]));
     }
   }
 
-  void take(const CsvRow& row) {
+  void take(const input::CsvRow& row) {
     const double now_s = row.values[0];
     const double duration_s = now_s - before_s_;
     pieces_ += rows_ > 0 ? std::min(1.0, std::abs(duration_s) / kMerged_s) : 0.0;
     if (pieces_ > kMostPieces) {
-      throw bad_input(
+      throw base::bad_input(
           {file_.string(), row.line, 1}, "",
           fmt::format("has more than {:.0f} rows (a row shorter than {} s counts as a fraction); expected about the length of a match",
                       kMostPieces, kMerged_s));
@@ -146,7 +146,7 @@ class Recording {
     }
   }
 
-  void problem(const CsvRow& row, std::size_t value, std::string message) {
+  void problem(const input::CsvRow& row, std::size_t value, std::string message) {
     if (problems_.size() < kMostProblems) {
       problems_.push_back({{file_.string(), row.line, row.cells[value]}, names_[value], std::move(message)});
     }
@@ -156,7 +156,7 @@ class Recording {
   DutyKind kind_;
   std::vector<std::string> names_;  ///< of the columns that are read, as they are given
   std::vector<DemandGatherer> wheels_;
-  std::vector<Diagnostic> problems_;
+  std::vector<base::Diagnostic> problems_;
   std::vector<double> before_;  ///< values of the row that still holds
   std::size_t rows_ = 0;
   double pieces_ = 0.0;
@@ -174,7 +174,7 @@ class Recorded final : public DutyShape {
     }
   }
 
-  [[nodiscard]] std::vector<WheelDemand> demand(const Robot& /*robot*/, std::uint64_t /*seed*/) const override {
+  [[nodiscard]] std::vector<WheelDemand> demand(const robot::Robot& /*robot*/, std::uint64_t /*seed*/) const override {
     std::vector<WheelDemand> wheels = once_;
     for (WheelDemand& wheel : wheels) {
       const std::vector<LoadBin> once = wheel.bins;
@@ -190,12 +190,13 @@ class Recorded final : public DutyShape {
   int repeats_;
 };
 
-void read(Reader& table, const std::filesystem::path& folder, Duty& duty) {
-  const std::optional<std::string> file = table.text("file", Need::required);
+void read(input::Reader& table, const std::filesystem::path& folder, Duty& duty) {
+  const std::optional<std::string> file = table.text("file", input::Need::required);
   constexpr std::array<std::string_view, 2> kQuantities{"torque", "current"};
-  const std::optional<std::string> quantity = table.choice("quantity", kQuantities, Need::required);
+  const std::optional<std::string> quantity = table.choice("quantity", kQuantities, input::Need::required);
   const double repeats =
-      table.quantity({"repeats", "", Range::between(1.0, 1e4), "how often the recording is run"}, Need::optional).value_or(1.0);
+      table.quantity({"repeats", "", base::Range::between(1.0, 1e4), "how often the recording is run"}, input::Need::optional)
+          .value_or(1.0);
   if (repeats != std::floor(repeats)) {
     table.problem("repeats", "is not a whole number");
   }
@@ -206,8 +207,8 @@ void read(Reader& table, const std::filesystem::path& folder, Duty& duty) {
   std::vector<WheelDemand> wheels;
   try {
     wheels = Recording(folder / *file, duty.kind).read();
-  } catch (const Failure& failure) {
-    for (const Diagnostic& each : failure.diagnostics()) {
+  } catch (const base::Failure& failure) {
+    for (const base::Diagnostic& each : failure.diagnostics()) {
       if (each.at.line > 0) {
         table.add(each);
       } else {
@@ -240,4 +241,4 @@ repeats = "1"
           .read = read};
 }
 
-}  // namespace heatsoak::shapes
+}  // namespace heatsoak::duty::shapes

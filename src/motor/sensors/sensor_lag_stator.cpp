@@ -1,6 +1,6 @@
 #include "motor/sensor_effect.h"
 
-namespace heatsoak::sensors {
+namespace heatsoak::motor::sensors {
 
 SensorEffectType sensor_lag_stator() {
   return {
@@ -9,7 +9,7 @@ SensorEffectType sensor_lag_stator() {
       .equation = "τ·d shown/dt = T_stator − shown",
       .reference = "first-order response of a temperature probe, ASTM E839",
       .signal = "stator_C",
-      .size = {"time_constant", "s", Range::between(0.0, 300.0), "after which 63 % of a step is shown"},
+      .size = {"time_constant", "s", base::Range::between(0.0, 300.0), "after which 63 % of a step is shown"},
       .typical_size = 8.0,
       .typical = "2 to 20 s for a probe glued or taped on",
       .confounded_with =
@@ -22,4 +22,4 @@ SensorEffectType sensor_lag_stator() {
   };
 }
 
-}  // namespace heatsoak::sensors
+}  // namespace heatsoak::motor::sensors

@@ -1,6 +1,6 @@
 #include "motor/sensor_effect.h"
 
-namespace heatsoak::sensors {
+namespace heatsoak::motor::sensors {
 
 SensorEffectType sensor_lag_winding() {
   return {
@@ -9,7 +9,7 @@ SensorEffectType sensor_lag_winding() {
       .equation = "τ·d shown/dt = T_winding − shown",
       .reference = "first-order response of a temperature probe, ASTM E839",
       .signal = "winding_C",
-      .size = {"time_constant", "s", Range::between(0.0, 120.0), "after which 63 % of a step is shown"},
+      .size = {"time_constant", "s", base::Range::between(0.0, 120.0), "after which 63 % of a step is shown"},
       .typical_size = 4.0,
       .typical = "1 to 5 s for a bead between the wires, more on top of tape",
       .confounded_with =
@@ -22,4 +22,4 @@ SensorEffectType sensor_lag_winding() {
   };
 }
 
-}  // namespace heatsoak::sensors
+}  // namespace heatsoak::motor::sensors

@@ -1,6 +1,6 @@
 #include "motor/sensor_effect.h"
 
-namespace heatsoak::sensors {
+namespace heatsoak::motor::sensors {
 
 SensorEffectType sensor_offset_winding() {
   return {
@@ -9,7 +9,7 @@ SensorEffectType sensor_offset_winding() {
       .equation = "shown = T_winding + ΔT",
       .reference = "JCGM 100 (GUM), systematic error of an instrument",
       .signal = "winding_C",
-      .size = {"offset", "K", Range::between(-30.0, 30.0), "shown above true"},
+      .size = {"offset", "K", base::Range::between(-30.0, 30.0), "shown above true"},
       .typical_size = 1.0,
       .typical = "0.5 to 2 K for thermistors and thermocouples",
       .confounded_with =
@@ -24,4 +24,4 @@ SensorEffectType sensor_offset_winding() {
   };
 }
 
-}  // namespace heatsoak::sensors
+}  // namespace heatsoak::motor::sensors

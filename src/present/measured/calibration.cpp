@@ -17,10 +17,10 @@ namespace {
 std::string with_digits(double value, double half) {
   const double smallest = std::max(half, 1e-6 * std::abs(value));
   const int digits = 2 + static_cast<int>(std::floor(std::log10(std::abs(value)))) - static_cast<int>(std::floor(std::log10(smallest)));
-  return significant(value, std::clamp(digits, 1, 6));
+  return base::significant(value, std::clamp(digits, 1, 6));
 }
 
-Table fitted_parameters(const Calibration& result) {
+Table fitted_parameters(const calibration::Calibration& result) {
   Table table{.columns = {{"value", "", 0, Alignment::left},
                           {"file", "", 2},
                           {"fit", "", 0},
@@ -28,20 +28,20 @@ Table fitted_parameters(const Calibration& result) {
                           {"unit", "", 1, Alignment::left},
                           {"identifiable", "", 3, Alignment::left}},
               .rows = {}};
-  for (const CalibratedParameter& each : result.parameters) {
+  for (const calibration::CalibratedParameter& each : result.parameters) {
     const double half = 0.5 * (each.high - each.low);
     table.rows.push_back({{each.name},
-                          {significant(each.before, 3)},
+                          {base::significant(each.before, 3)},
                           {with_digits(each.value, half)},
                           {fmt::format("{}…{}", with_digits(each.low, half), with_digits(each.high, half))},
-                          {std::string(unit_for_display(each.unit))},
+                          {std::string(base::unit_for_display(each.unit))},
                           {each.is_identifiable ? "yes" : "no"}});
   }
   return table;
 }
 
-void add_errors(Table& table, const std::string& what, const std::vector<ErrorBeforeAfter>& errors) {
-  for (const ErrorBeforeAfter& each : errors) {
+void add_errors(Table& table, const std::string& what, const std::vector<calibration::ErrorBeforeAfter>& errors) {
+  for (const calibration::ErrorBeforeAfter& each : errors) {
     table.rows.push_back({{what},
                           {each.signal},
                           {fmt::format("{:.2f}", each.before.rmse_K)},
@@ -52,10 +52,10 @@ void add_errors(Table& table, const std::string& what, const std::vector<ErrorBe
   }
 }
 
-std::vector<Text> headline_of(const Motor& motor, const CalibrationAnswer& answer) {
-  const Calibration& result = answer.calibration;
+std::vector<Text> headline_of(const motor::Motor& motor, const calibration::CalibrationAnswer& answer) {
+  const calibration::Calibration& result = answer.calibration;
   std::vector<std::string> open;
-  for (const CalibratedParameter& each : result.parameters) {
+  for (const calibration::CalibratedParameter& each : result.parameters) {
     if (!each.is_identifiable) {
       open.push_back(each.name);
     }
@@ -76,30 +76,31 @@ std::vector<Text> headline_of(const Motor& motor, const CalibrationAnswer& answe
 }
 
 /// Describes the heat that the written model does not contain.
-std::string heat_words(const Calibration& result) {
+std::string heat_words(const calibration::Calibration& result) {
   std::string words;
   if (result.is_forecast_written) {
-    const ForecastBand& band = result.forecast->band;
+    const motor::ForecastBand& band = result.forecast->band;
     words = fmt::format(
         "The written forecast model has no unmodelled heat; its error band allows for {} % of the heat at the winding and {} % at the "
         "stator, correlated over about {} s.",
-        significant(100.0 * band.unknown_heat_share[0], 2), significant(100.0 * band.unknown_heat_share[1], 2),
-        significant(band.time_scale_s, 1));
+        base::significant(100.0 * band.unknown_heat_share[0], 2), base::significant(100.0 * band.unknown_heat_share[1], 2),
+        base::significant(band.time_scale_s, 1));
   } else {
     words = fmt::format("Unmodelled heat: winding {} W rms, stator {} W rms, correlated over about {} s.",
-                        significant(result.fit.flux.rms_W[0], 2), significant(result.fit.flux.rms_W[1], 2),
-                        significant(result.fit.flux.time_scale_s, 1));
+                        base::significant(result.fit.flux.rms_W[0], 2), base::significant(result.fit.flux.rms_W[1], 2),
+                        base::significant(result.fit.flux.time_scale_s, 1));
   }
   if (result.fit.rejected_share > 0.0) {
-    words += fmt::format(" {} % of the samples were left out as outliers.", significant(100.0 * result.fit.rejected_share, 2));
+    words += fmt::format(" {} % of the samples were left out as outliers.", base::significant(100.0 * result.fit.rejected_share, 2));
   }
   return words;
 }
 
 }  // namespace
 
-Document calibration_document(const Motor& motor, const CalibrationAnswer& answer, std::span<const LogReading> readings) {
-  const Calibration& result = answer.calibration;
+Document calibration_document(const motor::Motor& motor, const calibration::CalibrationAnswer& answer,
+                              std::span<const recording::LogReading> readings) {
+  const calibration::Calibration& result = answer.calibration;
   Document document{.headline = headline_of(motor, answer)};
   document.paragraphs.push_back(heat_words(result));
   document.tables.push_back(fitted_parameters(result));
@@ -119,13 +120,13 @@ Document calibration_document(const Motor& motor, const CalibrationAnswer& answe
   for (const std::string& note : answer.admission.notes) {
     document.add_note(Severity::warning, note);
   }
-  for (const GrownError& each : result.worse) {
+  for (const calibration::GrownError& each : result.worse) {
     document.add_note(Severity::warning, words_of(each));
   }
-  for (const OpenDirection& each : result.open) {
+  for (const calibration::OpenDirection& each : result.open) {
     document.add_note(Severity::note, fmt::format("Not identifiable: {} ({}). To determine it: {}.", each.what, each.why, each.experiment));
   }
-  for (const CalibrationFinding& each : result.findings) {
+  for (const calibration::CalibrationFinding& each : result.findings) {
     document.add_note(severity_of(each), words_of(each));
   }
   // Rejected samples rank below notes that limit the answer.
@@ -135,7 +136,7 @@ Document calibration_document(const Motor& motor, const CalibrationAnswer& answe
   return document;
 }
 
-std::string next_steps_words(const CalibrationAnswer& answer) {
+std::string next_steps_words(const calibration::CalibrationAnswer& answer) {
   std::vector<std::string> steps = answer.admission.next_steps;
   if (const std::string& experiment = answer.calibration.next_experiment; !experiment.empty()) {
     steps.push_back(experiment);

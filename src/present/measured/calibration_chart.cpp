@@ -11,15 +11,16 @@ namespace {
 enum Curve { measured, fitted, predicted, of_file };
 
 struct Traces {
-  ChartPanel panel;
+  report::ChartPanel panel;
   std::string signal;
 };
 
 /// Appends one run to the traces, followed by a gap. `shown_as`: fitted, or predicted for a hold-out run.
-void append(const PredictedRun& before, const PredictedRun& after, Curve shown_as, double offset_s, std::vector<Traces>& traces) {
+void append(const calibration::PredictedRun& before, const calibration::PredictedRun& after, Curve shown_as, double offset_s,
+            std::vector<Traces>& traces) {
   for (Traces& each : traces) {
-    const auto found = std::ranges::find(after.signals, each.signal, &PredictedSignal::signal);
-    const auto of_file_too = std::ranges::find(before.signals, each.signal, &PredictedSignal::signal);
+    const auto found = std::ranges::find(after.signals, each.signal, &calibration::PredictedSignal::signal);
+    const auto of_file_too = std::ranges::find(before.signals, each.signal, &calibration::PredictedSignal::signal);
     if (found == after.signals.end() || of_file_too == before.signals.end()) {
       continue;
     }
@@ -40,10 +41,10 @@ void append(const PredictedRun& before, const PredictedRun& after, Curve shown_a
   }
 }
 
-std::string title_of(const Calibration& calibration, const ErrorBeforeAfter& error, const std::string& what) {
+std::string title_of(const calibration::Calibration& calibration, const calibration::ErrorBeforeAfter& error, const std::string& what) {
   std::string title =
       fmt::format("{}: {:.2f} K rms with the file's values, {:.2f} K fitted", what, error.before.rmse_K, error.after.rmse_K);
-  const auto unseen = std::ranges::find(calibration.holdout_error, error.signal, &ErrorBeforeAfter::signal);
+  const auto unseen = std::ranges::find(calibration.holdout_error, error.signal, &calibration::ErrorBeforeAfter::signal);
   if (unseen != calibration.holdout_error.end()) {
     title += fmt::format("; held out {:.2f} K and {:.2f} K", unseen->before.rmse_K, unseen->after.rmse_K);
   }
@@ -52,9 +53,9 @@ std::string title_of(const Calibration& calibration, const ErrorBeforeAfter& err
 
 }  // namespace
 
-Chart calibration_chart(const Motor& motor, const Calibration& calibration) {
+report::Chart calibration_chart(const motor::Motor& motor, const calibration::Calibration& calibration) {
   std::vector<Traces> traces;
-  for (const ErrorBeforeAfter& each : calibration.fit_error) {
+  for (const calibration::ErrorBeforeAfter& each : calibration.fit_error) {
     const std::string what = each.signal.substr(0, each.signal.rfind('_'));
     Traces trace;
     trace.panel.title = title_of(calibration, each, what);
@@ -68,7 +69,8 @@ Chart calibration_chart(const Motor& motor, const Calibration& calibration) {
   }
   double offset_s = 0.0;
   constexpr double kBetween_s = 60.0;
-  const auto append_all = [&](const std::vector<PredictedRun>& before, const std::vector<PredictedRun>& after, Curve shown_as) {
+  const auto append_all = [&](const std::vector<calibration::PredictedRun>& before, const std::vector<calibration::PredictedRun>& after,
+                              Curve shown_as) {
     for (std::size_t r = 0; r < after.size(); ++r) {
       append(before[r], after[r], shown_as, offset_s, traces);
       offset_s += after[r].time_s.back() - after[r].time_s.front() + kBetween_s;
@@ -76,7 +78,8 @@ Chart calibration_chart(const Motor& motor, const Calibration& calibration) {
   };
   append_all(calibration.fitted_before, calibration.fitted_after, fitted);
   append_all(calibration.holdout_before, calibration.holdout_after, predicted);
-  Chart chart{.title = fmt::format("{}: calibration", motor.name), .subtitle = {}, .x_label = "time, runs one after the other / min"};
+  report::Chart chart{
+      .title = fmt::format("{}: calibration", motor.name), .subtitle = {}, .x_label = "time, runs one after the other / min"};
   chart.subtitle =
       fmt::format("{} fitted{}; the model runs free from the start of each",
                   calibration.runs.size() == 1 ? "1 run" : fmt::format("{} runs", calibration.runs.size()),

@@ -6,6 +6,6 @@
 
 namespace heatsoak::present {
 
-Chart calibration_chart(const Motor& motor, const Calibration& calibration);
+report::Chart calibration_chart(const motor::Motor& motor, const calibration::Calibration& calibration);
 
 }  // namespace heatsoak::present

@@ -12,10 +12,10 @@
 namespace heatsoak::present {
 namespace {
 
-Json error_json(const std::vector<ErrorBeforeAfter>& errors, bool after) {
+Json error_json(const std::vector<calibration::ErrorBeforeAfter>& errors, bool after) {
   Json all = Json::object();
-  for (const ErrorBeforeAfter& each : errors) {
-    const SignalError& error = after ? each.after : each.before;
+  for (const calibration::ErrorBeforeAfter& each : errors) {
+    const estimation::SignalError& error = after ? each.after : each.before;
     all[each.signal] = {{"rmse_K", rounded(error.rmse_K, 4)}, {"max_abs_K", rounded(error.max_abs_K, 4)}, {"samples", error.samples}};
   }
   return all;
@@ -24,17 +24,17 @@ Json error_json(const std::vector<ErrorBeforeAfter>& errors, bool after) {
 /// Rounds to six significant digits, which are the same on every machine.
 Json number(double value) { return std::stod(fmt::format("{:.6g}", value)); }
 
-Json forecast_json(const Calibration& calibration) {
-  const Forecast& forecast = *calibration.forecast;
+Json forecast_json(const calibration::Calibration& calibration) {
+  const calibration::Forecast& forecast = *calibration.forecast;
   constexpr std::array kSources{"file", "least_squares", "forecast_fit", "innovations_fit"};
   Json left_out = Json::object();
-  for (const RivalScore& rival : forecast.rivals) {
+  for (const calibration::RivalScore& rival : forecast.rivals) {
     for (const auto& [signal, rmse_K] : rival.rmse_K) {
       left_out[kSources[static_cast<std::size_t>(rival.source)]][signal] = {{"rmse_K", rounded(rmse_K, 4)}};
     }
   }
   Json extensions = Json::array();
-  for (const AcceptedExtension& each : forecast.accepted) {
+  for (const calibration::AcceptedExtension& each : forecast.accepted) {
     extensions.push_back({{"id", each.name}, {"nats", rounded(each.gain_nats, 3)}});
   }
   return {{"best", kSources[static_cast<std::size_t>(forecast.source)]},
@@ -51,7 +51,7 @@ Json forecast_json(const Calibration& calibration) {
 }
 
 /// Returns all remarks and findings as sentences.
-std::vector<std::string> calibration_notes(const CalibrationAnswer& answer, std::span<const LogReading> readings) {
+std::vector<std::string> calibration_notes(const calibration::CalibrationAnswer& answer, std::span<const recording::LogReading> readings) {
   std::vector<std::string> all = reading_words(readings);
   all.insert(all.end(), answer.admission.notes.begin(), answer.admission.notes.end());
   const std::vector<std::string> findings = words_of(answer.calibration.findings);
@@ -61,10 +61,11 @@ std::vector<std::string> calibration_notes(const CalibrationAnswer& answer, std:
 
 }  // namespace
 
-Json calibration_json(const Motor& motor, const CalibrationAnswer& answer, std::span<const LogReading> readings, const std::string& out) {
-  const Calibration& result = answer.calibration;
+Json calibration_json(const motor::Motor& motor, const calibration::CalibrationAnswer& answer,
+                      std::span<const recording::LogReading> readings, const std::string& out) {
+  const calibration::Calibration& result = answer.calibration;
   Json parameters = Json::array();
-  for (const CalibratedParameter& each : result.parameters) {
+  for (const calibration::CalibratedParameter& each : result.parameters) {
     parameters.push_back({{"name", each.name},
                           {"value", number(each.value)},
                           {"unit", each.unit},
@@ -74,7 +75,7 @@ Json calibration_json(const Motor& motor, const CalibrationAnswer& answer, std::
                           {"interval", each.by_profile ? "profile_likelihood" : "curvature"}});
   }
   Json open = Json::array();
-  for (const OpenDirection& each : result.open) {
+  for (const calibration::OpenDirection& each : result.open) {
     open.push_back({{"parameters", each.what}, {"why", each.why}, {"experiment", each.experiment}});
   }
   Json correlation = Json::array();

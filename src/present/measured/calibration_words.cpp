@@ -13,109 +13,109 @@
 namespace heatsoak::present {
 namespace {
 
-std::string_view name_of(ForecastSource source) {
+std::string_view name_of(calibration::ForecastSource source) {
   switch (source) {
-    case ForecastSource::file:
+    case calibration::ForecastSource::file:
       return "file";
-    case ForecastSource::ordinary:
+    case calibration::ForecastSource::ordinary:
       return "least squares of free runs";
-    case ForecastSource::tempered:
+    case calibration::ForecastSource::tempered:
       return "forecast fit";
-    case ForecastSource::innovations:
+    case calibration::ForecastSource::innovations:
       break;
   }
   return "innovations fit";
 }
 
-std::string errors_in_words(const RivalScore& rival) {
+std::string errors_in_words(const calibration::RivalScore& rival) {
   std::vector<std::string> each;
   for (const auto& [signal, rmse_K] : rival.rmse_K) {
-    each.push_back(fmt::format("{} {} K", signal.substr(0, signal.rfind('_')), significant(rmse_K, 2)));
+    each.push_back(fmt::format("{} {} K", signal.substr(0, signal.rfind('_')), base::significant(rmse_K, 2)));
   }
   return fmt::format("{}: {}", name_of(rival.source), fmt::join(each, ", "));
 }
 
-std::string say(const LossAtSpeedUnknown& of) {
+std::string say(const calibration::LossAtSpeedUnknown& of) {
   return fmt::format(
       "the loss at speed is treated as unknown, 0 to {} W (the loss at no-load speed), in logs that have a current but no speed; if the "
       "motor stood still, add speed_rad_per_s = 0",
-      significant(of.most_W, 2));
+      base::significant(of.most_W, 2));
 }
 
-std::string say(const RowsTurn& /*of*/) { return std::string(kTurningRowsReason); }
+std::string say(const calibration::RowsTurn& /*of*/) { return std::string(estimation::kTurningRowsReason); }
 
-std::string say(const UnmodelledHeat& of) {
+std::string say(const calibration::UnmodelledHeat& of) {
   return fmt::format(
       "the model lacks {}: the unmodelled heat {} {} % of the {} W that flow through the motor on average; `heatsoak "
       "diagnose` searches for the effect",
-      of.exceeds_share ? "a large effect" : "an effect", of.exceeds_share ? "exceeds" : "is", significant(100.0 * of.share, 2),
-      significant(of.usual_heat_W, 2));
+      of.exceeds_share ? "a large effect" : "an effect", of.exceeds_share ? "exceeds" : "is", base::significant(100.0 * of.share, 2),
+      base::significant(of.usual_heat_W, 2));
 }
 
-std::string say(const SensorDrift& of) {
+std::string say(const calibration::SensorDrift& of) {
   return fmt::format(
       "the sensor at the {} seems to drift by {} K (standard deviation) over about {} s: either a sensor error or an error of the two-node "
       "model",
-      of.node, significant(of.drift_K, 2), significant(of.time_scale_s, 1));
+      of.node, base::significant(of.drift_K, 2), base::significant(of.time_scale_s, 1));
 }
 
-std::string say(const WindingNotMeasured& /*of*/) {
+std::string say(const calibration::WindingNotMeasured& /*of*/) {
   return "the values of the winding may be wrong by more than their intervals, because only the stator is measured: heat that follows the "
          "current but enters the stator directly (iron loss, driver, connections) looks like a faster winding";
 }
 
-std::string say(const ResponseNeedsOtherValues& /*of*/) {
+std::string say(const calibration::ResponseNeedsOtherValues& /*of*/) {
   return "the values are those that follow the whole runs best; the response within seconds of a load change needs other values, because "
          "the motor has more than two thermal nodes or an effect is missing in all of these runs";
 }
 
-std::string say(const FitStoppedEarly& /*of*/) {
+std::string say(const calibration::FitStoppedEarly& /*of*/) {
   return "the values are accurate to a few tenths of their intervals only, because the fit was stopped before it had fully converged";
 }
 
-std::string say(const HeatSeemsWrong& of) {
+std::string say(const calibration::HeatSeemsWrong& of) {
   return fmt::format(
       "all heat capacities are {1} and all resistances {2} than the file's by a factor of {0} or more: the heat of the logs seems too {3} "
       "for this motor; is a current a peak value or an amplitude ({4}), is the resistance wrong, or is it another motor?",
-      significant(of.factor, 2), of.is_too_large ? "larger" : "smaller", of.is_too_large ? "smaller" : "larger",
+      base::significant(of.factor, 2), of.is_too_large ? "larger" : "smaller", of.is_too_large ? "smaller" : "larger",
       of.is_too_large ? "large" : "small", of.is_too_large ? "its heat counts double" : "or that of one phase of several");
 }
 
-std::string say(const ResistanceDiffers& of) {
+std::string say(const calibration::ResistanceDiffers& of) {
   return fmt::format(
       "motor_V, current_A and speed of these logs give a terminal resistance of {} ohm at 25 °C, but the file states {} ohm, and every "
       "value scales with it; check whether it is this motor, and if so state the measured resistance in its file",
-      significant(of.found_ohm, 3), significant(of.stated_ohm, 3));
+      base::significant(of.found_ohm, 3), base::significant(of.stated_ohm, 3));
 }
 
-std::string say(const LargeChange& of) {
+std::string say(const calibration::LargeChange& of) {
   return fmt::format(
       "{} becomes {} times the value of the file, a change of {} prior standard deviations: is a unit of the logs wrong, or is it another "
       "motor?",
-      of.parameter, significant(of.factor, 2), significant(of.change_sd, 2));
+      of.parameter, base::significant(of.factor, 2), base::significant(of.change_sd, 2));
 }
 
-std::string say(const OutsideDeclaredRange& of) {
+std::string say(const calibration::OutsideDeclaredRange& of) {
   return fmt::format(
       "{} becomes {} {}, outside of its declared range of {} to {} {}: check the units of the logs, or whether the range still holds for "
       "this motor and its mounting",
-      of.parameter, significant(of.value, 3), unit_for_display(of.unit), significant(of.low, 3), significant(of.high, 3),
-      unit_for_display(of.unit));
+      of.parameter, base::significant(of.value, 3), base::unit_for_display(of.unit), base::significant(of.low, 3),
+      base::significant(of.high, 3), base::unit_for_display(of.unit));
 }
 
-std::string say(const PoorFit& of) {
+std::string say(const calibration::PoorFit& of) {
   return fmt::format(
       "do not rely on the fitted parameters: the model has an error of {} K rms in {}, which varies by {} K (standard deviation); is it "
       "another motor, or is a unit wrong (degrees Fahrenheit, minutes, milliamperes)?",
-      significant(of.rmse_K, 2), of.signal, significant(of.varies_K, 2));
+      base::significant(of.rmse_K, 2), of.signal, base::significant(of.varies_K, 2));
 }
 
-std::string say(const UnidentifiableAreWritten& /*of*/) {
+std::string say(const calibration::UnidentifiableAreWritten& /*of*/) {
   return "values that are not identifiable are written too: the forecast depends on all values together, so do not use these as "
          "measurements";
 }
 
-std::string say(const TooFewPieces& of) {
+std::string say(const calibration::TooFewPieces& of) {
   const std::string parts = of.are_whole_runs
                                 ? fmt::format("run{}", of.pieces == 1 ? "" : "s")
                                 : fmt::format("part{} of {}", of.pieces == 1 ? "" : "s", of.runs == 1 ? "the one run" : "the runs");
@@ -126,60 +126,61 @@ std::string say(const TooFewPieces& of) {
       of.pieces, parts, of.pieces == 1 ? "s" : "", of.needed);
 }
 
-std::string say(const CrossValidation& of) {
+std::string say(const calibration::CrossValidation& of) {
   std::vector<std::string> each;
   std::ranges::transform(of.rivals, std::back_inserter(each), errors_in_words);
   return fmt::format("cross-validation error of the left-out pieces ({}), rms: {}", of.pieces, fmt::join(each, "; "));
 }
 
-std::string say(const ForecastFitIsWritten& /*of*/) {
+std::string say(const calibration::ForecastFitIsWritten& /*of*/) {
   return "the parameters of the forecast fit are written: they follow whole runs best, not the response within seconds";
 }
 
-std::string say(const FilePredictsBest& of) {
+std::string say(const calibration::FilePredictsBest& of) {
   return of.is_written ? "no fit predicts left-out pieces better than the file: its values are written as they are"
          : of.is_better_than_fit
              ? "for forecasts the values of the file are better than the written ones: they predict left-out pieces better"
              : "no fit predicts left-out pieces better than the file, but the written values predict them as well";
 }
 
-std::string say(const FreeRunsPredictBest& of) {
+std::string say(const calibration::FreeRunsPredictBest& of) {
   return fmt::format("least squares of free runs predicts left-out pieces best: {}",
                      of.is_written ? "its parameters are written" : "`--forecast` writes its parameters");
 }
 
-std::string say(const ExtendedForForecasts& of) {
+std::string say(const calibration::ExtendedForForecasts& of) {
   return fmt::format("{} {}; this is no diagnosis: another effect may be the cause (`heatsoak diagnose`)",
                      of.is_written ? "for better forecasts the network now has"
                                    : "left-out pieces are predicted best by a network that `--forecast` writes, with",
                      fmt::join(of.effects, ", "));
 }
 
-std::string say(const Remark& of) { return of.words; }
+std::string say(const calibration::Remark& of) { return of.words; }
 
 }  // namespace
 
-std::string words_of(const CalibrationFinding& finding) {
+std::string words_of(const calibration::CalibrationFinding& finding) {
   return std::visit([](const auto& each) { return say(each); }, finding);
 }
 
-std::string words_of(const GrownError& error) {
+std::string words_of(const calibration::GrownError& error) {
   return fmt::format(
       "do not forecast such runs with this model: {} of {} is predicted worse than with the values of the file, {} K rms instead of {} K; "
       "{}{} constant values do not describe this motor (`heatsoak diagnose` searches for the missing effect)",
-      error.signal, error.is_holdout ? "the hold-out runs" : "the fitted runs", significant(error.after_K, 3),
-      significant(error.before_K, 3), error.is_holdout ? "they show something that the fitted ones do not, or " : "",
+      error.signal, error.is_holdout ? "the hold-out runs" : "the fitted runs", base::significant(error.after_K, 3),
+      base::significant(error.before_K, 3), error.is_holdout ? "they show something that the fitted ones do not, or " : "",
       error.is_extended ? "the extended network and its" : "two temperatures with");
 }
 
-Severity severity_of(const CalibrationFinding& finding) {
+Severity severity_of(const calibration::CalibrationFinding& finding) {
   return std::visit(
       [](const auto& each) {
         using Finding = std::decay_t<decltype(each)>;
-        constexpr bool is_warning = std::is_same_v<Finding, HeatSeemsWrong> || std::is_same_v<Finding, ResistanceDiffers> ||
-                                    std::is_same_v<Finding, LargeChange> || std::is_same_v<Finding, OutsideDeclaredRange> ||
-                                    std::is_same_v<Finding, PoorFit>;
-        constexpr bool is_background = std::is_same_v<Finding, CrossValidation>;
+        constexpr bool is_warning =
+            std::is_same_v<Finding, calibration::HeatSeemsWrong> || std::is_same_v<Finding, calibration::ResistanceDiffers> ||
+            std::is_same_v<Finding, calibration::LargeChange> || std::is_same_v<Finding, calibration::OutsideDeclaredRange> ||
+            std::is_same_v<Finding, calibration::PoorFit>;
+        constexpr bool is_background = std::is_same_v<Finding, calibration::CrossValidation>;
         return is_warning ? Severity::warning : is_background ? Severity::background : Severity::note;
       },
       finding);
@@ -196,7 +197,7 @@ std::vector<std::string> all_words(const std::vector<Finding>& findings) {
 
 }  // namespace
 
-std::vector<std::string> words_of(const std::vector<CalibrationFinding>& findings) { return all_words(findings); }
-std::vector<std::string> words_of(const std::vector<GrownError>& errors) { return all_words(errors); }
+std::vector<std::string> words_of(const std::vector<calibration::CalibrationFinding>& findings) { return all_words(findings); }
+std::vector<std::string> words_of(const std::vector<calibration::GrownError>& errors) { return all_words(errors); }
 
 }  // namespace heatsoak::present

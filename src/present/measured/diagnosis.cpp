@@ -11,19 +11,19 @@ namespace heatsoak::present {
 namespace {
 
 /// Returns the verdict as a sentence.
-std::string headline_of(const Diagnosis& diagnosis) {
+std::string headline_of(const diagnosis::Diagnosis& diagnosis) {
   std::vector<std::string> names;
-  for (const FoundEffect& effect : diagnosis.effects) {
+  for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
     names.push_back(effect.id);
   }
   switch (diagnosis.verdict) {
-    case DiagnosisVerdict::nothing_missing:
+    case diagnosis::DiagnosisVerdict::nothing_missing:
       return "No effect is missing.";
-    case DiagnosisVerdict::effect_found:
+    case diagnosis::DiagnosisVerdict::effect_found:
       return fmt::format("The model lacks {}.", fmt::join(names, " and "));
-    case DiagnosisVerdict::unexplained:
+    case diagnosis::DiagnosisVerdict::unexplained:
       return "Heat is missing that no effect of the catalogue explains.";
-    case DiagnosisVerdict::not_identifiable:
+    case diagnosis::DiagnosisVerdict::not_identifiable:
       break;
   }
   return "These runs do not determine whether an effect is missing.";
@@ -31,7 +31,7 @@ std::string headline_of(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-Document diagnosis_document(const DiagnosisAnswer& answer, std::span<const LogReading> readings) {
+Document diagnosis_document(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings) {
   Document document{.headline = {{headline_of(answer.diagnosis)}}, .paragraphs = diagnosis_words(answer.diagnosis, answer.score)};
   std::vector<DiagnosisNote> notes = diagnosis_notes(answer, readings);
   std::ranges::stable_partition(notes, [](const DiagnosisNote& each) { return each.severity == Severity::warning; });

@@ -9,6 +9,6 @@
 namespace heatsoak::present {
 
 /// `readings` are the reports of the logs.
-Document diagnosis_document(const DiagnosisAnswer& answer, std::span<const LogReading> readings);
+Document diagnosis_document(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings);
 
 }  // namespace heatsoak::present

@@ -13,7 +13,7 @@ namespace heatsoak::present {
 namespace {
 
 /// NaN and infinity become null, because JSON cannot represent them.
-Json errors_json(const Errors& errors) {
+Json errors_json(const estimation::Errors& errors) {
   Json json = Json::object();
   for (const auto& [signal, error] : errors) {
     json[signal] = {{"rmse_K", rounded(error.rmse_K, 4)}, {"max_abs_K", rounded(error.max_abs_K, 4)}};
@@ -33,9 +33,9 @@ std::vector<std::string> plain_ids(const std::vector<std::string>& candidates) {
   return ids;
 }
 
-Json effect_json(const FoundEffect& effect) {
+Json effect_json(const diagnosis::FoundEffect& effect) {
   Json parameters = Json::array();
-  for (const FittedParameter& parameter : effect.parameters) {
+  for (const diagnosis::FittedParameter& parameter : effect.parameters) {
     const bool is_fitted = parameter.low < parameter.high;
     parameters.push_back({{"name", parameter.name},
                           {"value", parameter.value},
@@ -60,9 +60,9 @@ Json effect_json(const FoundEffect& effect) {
   return json;
 }
 
-Json tests_json(const std::vector<InnovationTests>& tests) {
+Json tests_json(const std::vector<estimation::InnovationTests>& tests) {
   Json json = Json::object();
-  for (const InnovationTests& test : tests) {
+  for (const estimation::InnovationTests& test : tests) {
     Json correlated = Json::object();
     for (const auto& [name, correlation] : test.correlated_with) {
       correlated[name] = rounded(correlation, 4);
@@ -77,7 +77,7 @@ Json tests_json(const std::vector<InnovationTests>& tests) {
   return json;
 }
 
-Json unexplained_json(const Unexplained& heat) {
+Json unexplained_json(const diagnosis::Unexplained& heat) {
   Json json{{"node", heat.node},
             {"drivers", heat.drivers},
             {"heat_W", {{"mean", rounded(heat.mean_W, 4)}, {"max", rounded(heat.peak_W, 4)}}},
@@ -101,15 +101,15 @@ Json unexplained_json(const Unexplained& heat) {
   return json;
 }
 
-Json untested_json(const std::vector<UntestedEffect>& untested) {
+Json untested_json(const std::vector<attribution::UntestedEffect>& untested) {
   Json words = Json::array();
-  for (const UntestedEffect& each : untested) {
+  for (const attribution::UntestedEffect& each : untested) {
     words.push_back(fmt::format("{}: {}", each.effect, untested_words(each)));
   }
   return words;
 }
 
-Json notes_json(const DiagnosisAnswer& answer, std::span<const LogReading> readings) {
+Json notes_json(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings) {
   Json words = Json::array();
   for (const DiagnosisNote& each : diagnosis_notes(answer, readings)) {
     words.push_back(each.words);
@@ -117,11 +117,11 @@ Json notes_json(const DiagnosisAnswer& answer, std::span<const LogReading> readi
   return words;
 }
 
-Json ladder_json(const Selection& selection) {
+Json ladder_json(const attribution::Selection& selection) {
   Json rounds = Json::array();
-  for (const Round& round : selection.rounds) {
+  for (const attribution::Round& round : selection.rounds) {
     Json candidates = Json::array();
-    for (const JudgedCandidate& each : round.ladder) {
+    for (const attribution::JudgedCandidate& each : round.ladder) {
       candidates.push_back({{"id", each.candidate.id},
                             {"variant", each.candidate.variant},
                             {"nats", rounded(each.gain_nats, 2)},
@@ -129,11 +129,11 @@ Json ladder_json(const Selection& selection) {
                             {"probability", rounded(each.probability, 4)}});
     }
     Json curves = Json::array();
-    for (const ScanResult& each : round.scan) {
+    for (const attribution::ScanResult& each : round.scan) {
       curves.push_back({{"node", each.term.node},
                         {"other", each.term.other},
                         {"driver", selection.drivers[static_cast<std::size_t>(each.term.driver)].name},
-                        {"per", to_string(each.term.multiplier)},
+                        {"per", attribution::to_string(each.term.multiplier)},
                         {"nats", rounded(each.gain_nats, 2)}});
     }
     rounds.push_back({{"effects", candidates}, {"curves", curves}, {"taken", round.taken}, {"taken_nats", rounded(round.taken_nats, 2)}});
@@ -143,11 +143,11 @@ Json ladder_json(const Selection& selection) {
 
 }  // namespace
 
-Json diagnosis_json(const DiagnosisAnswer& answer, std::span<const LogReading> readings) {
-  const Diagnosis& diagnosis = answer.diagnosis;
-  const HoldoutScore& score = answer.score;
-  Json json{{"schema", "heatsoak.diagnosis/1"}, {"verdict", to_string(diagnosis.verdict)}, {"effects", Json::array()}};
-  for (const FoundEffect& effect : diagnosis.effects) {
+Json diagnosis_json(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings) {
+  const diagnosis::Diagnosis& diagnosis = answer.diagnosis;
+  const diagnosis::HoldoutScore& score = answer.score;
+  Json json{{"schema", "heatsoak.diagnosis/1"}, {"verdict", diagnosis::to_string(diagnosis.verdict)}, {"effects", Json::array()}};
+  for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
     json["effects"].push_back(effect_json(effect));
   }
   json["before"] = {{"train", errors_json(diagnosis.before_train)}, {"holdout", errors_json(score.before)}};
@@ -157,7 +157,7 @@ Json diagnosis_json(const DiagnosisAnswer& answer, std::span<const LogReading> r
   json["residual_tests"] = {{"before", tests_json(diagnosis.tests_before)}, {"after", tests_json(diagnosis.tests_after)}};
   json["description"] = fmt::format("{}", fmt::join(diagnosis_words(diagnosis, score), " "));
   json["figures_contradicted"] = Json::array();
-  for (const ChangedParameter& parameter : diagnosis.changed) {
+  for (const attribution::ChangedParameter& parameter : diagnosis.changed) {
     json["figures_contradicted"].push_back({{"name", parameter.name},
                                             {"unit", parameter.unit},
                                             {"before", parameter.before},
@@ -166,16 +166,16 @@ Json diagnosis_json(const DiagnosisAnswer& answer, std::span<const LogReading> r
                                             {"nats", rounded(parameter.gain_nats, 2)}});
   }
   if (!diagnosis.unexplained.empty()) {
-    json["unexplained"] = unexplained_json(*std::ranges::max_element(diagnosis.unexplained, {}, &Unexplained::mean_W));
+    json["unexplained"] = unexplained_json(*std::ranges::max_element(diagnosis.unexplained, {}, &diagnosis::Unexplained::mean_W));
     json["unexplained_all"] = Json::array();
-    for (const Unexplained& heat : diagnosis.unexplained) {
+    for (const diagnosis::Unexplained& heat : diagnosis.unexplained) {
       json["unexplained_all"].push_back(unexplained_json(heat));
     }
   }
   json["runs"] = {{"train", Json::array()}, {"holdout", Json::object()}};
-  for (const MeasuredRun& run : answer.input.train) {
+  for (const estimation::MeasuredRun& run : answer.input.train) {
     json["runs"]["train"].push_back(
-        {{"name", run.name}, {"error", errors_json(open_loop_errors(diagnosis.selection.after.model, {run}, {}))}});
+        {{"name", run.name}, {"error", errors_json(estimation::open_loop_errors(diagnosis.selection.after.model, {run}, {}))}});
   }
   json["runs"]["holdout"] = {{"before", runs_json(score.runs_before)}, {"after", runs_json(score.runs_after)}};
   json["ladder"] = ladder_json(diagnosis.selection);
@@ -184,11 +184,11 @@ Json diagnosis_json(const DiagnosisAnswer& answer, std::span<const LogReading> r
   json["not_judged"] = untested_json(diagnosis.selection.not_judged);
   json["unknown_heat_rms_W"] = {{"before", diagnosis.flux_rms_before_W}, {"after", diagnosis.flux_rms_after_W}};
   json["power_balance_W"] = Json::object();
-  for (const BalanceRow& row : diagnosis.balance) {
+  for (const diagnosis::BalanceRow& row : diagnosis.balance) {
     json["power_balance_W"][row.effect] = row.heat_W;
   }
   json["next_experiments"] = Json::array();
-  for (const Experiment& each : diagnosis.experiments) {
+  for (const diagnosis::Experiment& each : diagnosis.experiments) {
     json["next_experiments"].push_back(
         {{"tells", rivals_of(each)}, {"what", experiment_words(each)}, {"expected_nats", rounded(each.expected_nats, 1)}});
   }

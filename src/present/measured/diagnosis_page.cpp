@@ -21,7 +21,7 @@ std::string row(const std::vector<std::string>& cells, std::string_view tag = "t
   std::string text = "<tr>";
   for (const std::string& cell : cells) {
     text += fmt::format("<{}>", tag);
-    for (const char c : xml_text(cell)) {
+    for (const char c : base::xml_text(cell)) {
       text += c == '_' ? "_<wbr>" : std::string(1, c);
     }
     text += fmt::format("</{}>", tag);
@@ -29,11 +29,12 @@ std::string row(const std::vector<std::string>& cells, std::string_view tag = "t
   return text + "</tr>\n";
 }
 
-std::string error_table(const Diagnosis& diagnosis, const HoldoutScore& score) {
+std::string error_table(const diagnosis::Diagnosis& diagnosis, const diagnosis::HoldoutScore& score) {
   std::string text = "<table>" + row({"signal", "runs", "before: rms / K", "model refitted: rms / K", "after: rms / K", "before: worst / K",
                                       "after: worst / K"},
                                      "th");
-  const auto add = [&](const Errors& before, const Errors& refitted, const Errors& after, const char* where) {
+  const auto add = [&](const estimation::Errors& before, const estimation::Errors& refitted, const estimation::Errors& after,
+                       const char* where) {
     for (const auto& [signal, error] : before) {
       const auto found = after.find(signal);
       if (found != after.end()) {
@@ -48,26 +49,26 @@ std::string error_table(const Diagnosis& diagnosis, const HoldoutScore& score) {
   return text + "</table>\n";
 }
 
-std::string heat_in_words(const FoundEffect& effect) {
-  return effect.has_heat ? fmt::format("{} / {} W", significant(effect.mean_W, 2), significant(effect.peak_W, 2)) : "none";
+std::string heat_in_words(const diagnosis::FoundEffect& effect) {
+  return effect.has_heat ? fmt::format("{} / {} W", base::significant(effect.mean_W, 2), base::significant(effect.peak_W, 2)) : "none";
 }
 
 /// Returns the name of an effect; a curve is named with its input signals.
-std::string named(const FoundEffect& effect) {
+std::string named(const diagnosis::FoundEffect& effect) {
   return effect.is_from_catalogue ? effect.id : fmt::format("{} over {}", effect.id, fmt::join(effect.drivers, " times "));
 }
 
-std::string added_effects(const Diagnosis& diagnosis) {
+std::string added_effects(const diagnosis::Diagnosis& diagnosis) {
   std::string text = "<table>" + row({"effect", "node", "acts", "parameter", "value", "95 % interval", "heat: mean / peak", "evidence",
                                       "visibility", "confounded here"},
                                      "th");
-  for (const FoundEffect& effect : diagnosis.effects) {
+  for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
     std::string where = effect.condition.empty() ? "always" : "";
     for (const auto& [key, value] : effect.condition) {
       where += key + " = " + value + " ";
     }
     bool is_first = true;
-    for (const FittedParameter& parameter : effect.parameters) {
+    for (const diagnosis::FittedParameter& parameter : effect.parameters) {
       const bool is_fitted = parameter.low < parameter.high;
       text += row({is_first ? named(effect) : "", is_first ? effect.node : "", is_first ? where : "", parameter.name,
                    fmt::format("{:.4g} {}", parameter.value, parameter.unit),
@@ -83,15 +84,15 @@ std::string added_effects(const Diagnosis& diagnosis) {
   }
   text += "</table>\n";
   std::set<std::string> printed;
-  for (const FoundEffect& effect : diagnosis.effects) {
+  for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
     if (!effect.confounded_with.empty() && effect.is_from_catalogue && printed.insert(effect.id).second) {
-      text += fmt::format("<p>{} in general: {}</p>\n", xml_text(effect.id), xml_text(effect.confounded_with));
+      text += fmt::format("<p>{} in general: {}</p>\n", base::xml_text(effect.id), base::xml_text(effect.confounded_with));
     }
   }
   return text;
 }
 
-std::string outcome_of(const Round& round) {
+std::string outcome_of(const attribution::Round& round) {
   if (round.taken.empty()) {
     return "No candidate was accepted: none of these may be named.";
   }
@@ -100,39 +101,39 @@ std::string outcome_of(const Round& round) {
 }
 
 /// Keeps the best variant of each effect; variants differ only in the start of their fit.
-std::vector<JudgedCandidate> best_of_each(std::vector<JudgedCandidate> ladder) {
-  std::ranges::stable_sort(ladder, std::greater(), &JudgedCandidate::gain_nats);
+std::vector<attribution::JudgedCandidate> best_of_each(std::vector<attribution::JudgedCandidate> ladder) {
+  std::ranges::stable_sort(ladder, std::greater(), &attribution::JudgedCandidate::gain_nats);
   std::set<std::string> printed;
-  std::erase_if(ladder, [&](const JudgedCandidate& each) { return !printed.insert(each.candidate.id).second; });
+  std::erase_if(ladder, [&](const attribution::JudgedCandidate& each) { return !printed.insert(each.candidate.id).second; });
   return ladder;
 }
 
-std::string ladder_table(const Diagnosis& diagnosis) {
+std::string ladder_table(const diagnosis::Diagnosis& diagnosis) {
   std::string text;
   int number = 1;
-  for (const Round& round : diagnosis.selection.rounds) {
+  for (const attribution::Round& round : diagnosis.selection.rounds) {
     text += fmt::format("<h3>Round {}</h3><table>", number++) +
             row({"candidate", "evidence / nats", "size in typical sizes", "visibility", "probability"}, "th");
-    for (const JudgedCandidate& each : best_of_each(round.ladder)) {
+    for (const attribution::JudgedCandidate& each : best_of_each(round.ladder)) {
       text += row({each.candidate.id, fmt::format("{:.1f}", each.gain_nats), fmt::format("{:.2f}", each.size_share),
                    fmt::format("{:.3f}", each.visibility_ratio), fmt::format("{:.0f} %", 100.0 * each.probability)});
     }
     text += round.ladder.empty() ? row({"no effect of the catalogue makes the runs more probable", "", "", "", ""}) : "";
-    for (const ScanResult& each : round.scan) {
+    for (const attribution::ScanResult& each : round.scan) {
       const std::string& driver = diagnosis.selection.drivers[static_cast<std::size_t>(each.term.driver)].name;
-      text += row({fmt::format("curve over {} × {} at {}{}", driver, to_string(each.term.multiplier), each.term.node,
+      text += row({fmt::format("curve over {} × {} at {}{}", driver, attribution::to_string(each.term.multiplier), each.term.node,
                                each.term.other.empty() ? "" : "→" + each.term.other),
-                   fmt::format("{:.1f}", each.gain_nats), fmt::format("{} W mean", significant(each.mean_W, 2)), "", ""});
+                   fmt::format("{:.1f}", each.gain_nats), fmt::format("{} W mean", base::significant(each.mean_W, 2)), "", ""});
     }
-    text += "</table>\n" + fmt::format("<p>{}</p>\n", xml_text(outcome_of(round)));
+    text += "</table>\n" + fmt::format("<p>{}</p>\n", base::xml_text(outcome_of(round)));
   }
   return text;
 }
 
-std::string balance_table(const Diagnosis& diagnosis) {
+std::string balance_table(const diagnosis::Diagnosis& diagnosis) {
   std::string text = "<table>" + row({"effect", "mean heat into nodes / W (training runs)"}, "th");
   std::map<std::string, double> kept_W;
-  for (const BalanceRow& each : diagnosis.balance) {
+  for (const diagnosis::BalanceRow& each : diagnosis.balance) {
     std::string heats;
     for (const auto& [node, heat_W] : each.heat_W) {
       heats += fmt::format("{}{} {:+.3g}", heats.empty() ? "" : ", ", node, heat_W);
@@ -144,18 +145,18 @@ std::string balance_table(const Diagnosis& diagnosis) {
   }
   std::string kept;
   for (const auto& [node, heat_W] : kept_W) {
-    kept += node == Network::kAmbient ? "" : fmt::format("{}{} {:+.3g}", kept.empty() ? "" : ", ", node, heat_W);
+    kept += node == thermal::Network::kAmbient ? "" : fmt::format("{}{} {:+.3g}", kept.empty() ? "" : ", ", node, heat_W);
   }
   text += row({"sum: net heat into the node", kept});
   return text + "</table>\n";
 }
 
 /// Describes deviations of the innovations from white noise of the assumed variance, and what they mean for the results.
-std::string tests_in_words(const std::vector<InnovationTests>& tests) {
+std::string tests_in_words(const std::vector<estimation::InnovationTests>& tests) {
   constexpr double kWhite_probability = 0.01;
   constexpr double kLow_ratio = 0.7, kHigh_ratio = 1.4;
   std::string words;
-  for (const InnovationTests& test : tests) {
+  for (const estimation::InnovationTests& test : tests) {
     if (test.ljung_box_probability < kWhite_probability || test.periodogram_ratio > 1.0) {
       words += fmt::format(" The residual of {} is correlated from one second to the next: its intervals are too narrow.", test.signal);
     }
@@ -167,12 +168,12 @@ std::string tests_in_words(const std::vector<InnovationTests>& tests) {
   return words.empty() ? "" : "<p>" + words.substr(1) + "</p>\n";
 }
 
-std::string test_table(const Diagnosis& diagnosis) {
+std::string test_table(const diagnosis::Diagnosis& diagnosis) {
   std::string text = "<table>" + row({"innovations of", "model", "variance (1 is right)", "Ljung-Box p (40 lags)",
                                       "cumulated periodogram / band (below 1 is white)", "kurtosis / normal", "correlated with"},
                                      "th");
-  const auto add = [&](const std::vector<InnovationTests>& tests, const char* model) {
-    for (const InnovationTests& test : tests) {
+  const auto add = [&](const std::vector<estimation::InnovationTests>& tests, const char* model) {
+    for (const estimation::InnovationTests& test : tests) {
       std::string inputs;
       for (const auto& [name, correlation] : test.correlated_with) {
         inputs += fmt::format("{}{} ({:+.3f})", inputs.empty() ? "" : ", ", name, correlation);
@@ -188,19 +189,19 @@ std::string test_table(const Diagnosis& diagnosis) {
 }
 
 /// Returns the names of the runs, with times if another part of the same recording is in `others`.
-std::vector<std::string> names_of(const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& others) {
+std::vector<std::string> names_of(const std::vector<estimation::MeasuredRun>& runs, const std::vector<estimation::MeasuredRun>& others) {
   std::vector<std::string> names;
-  for (const MeasuredRun& run : runs) {
-    const bool is_split = std::ranges::find(others, run.name, &MeasuredRun::name) != others.end();
+  for (const estimation::MeasuredRun& run : runs) {
+    const bool is_split = std::ranges::find(others, run.name, &estimation::MeasuredRun::name) != others.end();
     names.push_back(is_split ? fmt::format("{} ({:.0f} to {:.0f} s)", run.name, run.time_s.front(), run.time_s.back()) : run.name);
   }
   return names;
 }
 
 /// Groups the effects by the signals that they lack, one remark per group.
-std::vector<std::string> by_reason(const std::vector<UntestedEffect>& untested) {
+std::vector<std::string> by_reason(const std::vector<attribution::UntestedEffect>& untested) {
   std::map<std::string, std::vector<std::string>> effects;
-  for (const UntestedEffect& each : untested) {
+  for (const attribution::UntestedEffect& each : untested) {
     effects[untested_words(each)].push_back(each.effect);
   }
   std::vector<std::string> remarks;
@@ -210,15 +211,15 @@ std::vector<std::string> by_reason(const std::vector<UntestedEffect>& untested) 
   return remarks;
 }
 
-std::string_view heading_of(DiagnosisVerdict verdict) {
+std::string_view heading_of(diagnosis::DiagnosisVerdict verdict) {
   switch (verdict) {
-    case DiagnosisVerdict::effect_found:
+    case diagnosis::DiagnosisVerdict::effect_found:
       return "an effect is missing in the model";
-    case DiagnosisVerdict::nothing_missing:
+    case diagnosis::DiagnosisVerdict::nothing_missing:
       return "nothing is missing in the model";
-    case DiagnosisVerdict::unexplained:
+    case diagnosis::DiagnosisVerdict::unexplained:
       return "heat that no effect of the catalogue explains";
-    case DiagnosisVerdict::not_identifiable:
+    case diagnosis::DiagnosisVerdict::not_identifiable:
       return "these runs do not determine it";
   }
   return "";
@@ -234,20 +235,20 @@ constexpr std::string_view kStyle =
 
 }  // namespace
 
-std::string diagnosis_page(const DiagnosisAnswer& answer, std::span<const LogReading> readings,
+std::string diagnosis_page(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings,
                            const std::vector<std::pair<std::string, std::string>>& svg) {
   const auto& [input, diagnosis, score, motor, admission, findings] = answer;
   std::string text = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Diagnosis</title><style>{}</style></head><body>\n", kStyle);
   text += fmt::format("<h1>Diagnosis: {}</h1>\n<div class=\"words\">\n", heading_of(diagnosis.verdict));
   for (const std::string& each : diagnosis_words(diagnosis, score)) {
-    text += fmt::format("<p>{}</p>\n", xml_text(each));
+    text += fmt::format("<p>{}</p>\n", base::xml_text(each));
   }
   text += "</div>\n";
   const std::vector<std::string> train = names_of(input.train, score.runs);
   const std::vector<std::string> holdout = names_of(score.runs, input.train);
-  text += fmt::format("<p>Fitted to {}. Hold-out runs: {}.</p>\n", xml_text(fmt::format("{}", fmt::join(train, ", "))),
-                      holdout.empty() ? "none" : xml_text(fmt::format("{}", fmt::join(holdout, ", "))));
+  text += fmt::format("<p>Fitted to {}. Hold-out runs: {}.</p>\n", base::xml_text(fmt::format("{}", fmt::join(train, ", "))),
+                      holdout.empty() ? "none" : base::xml_text(fmt::format("{}", fmt::join(holdout, ", "))));
   text +=
       "<h2>Error before and after</h2><p>The model runs freely from the first measured temperatures.</p>" + error_table(diagnosis, score);
   if (!diagnosis.effects.empty()) {
@@ -256,22 +257,22 @@ std::string diagnosis_page(const DiagnosisAnswer& answer, std::span<const LogRea
   for (const auto& [name, picture] : svg) {
     const std::size_t begin = picture.find("<svg");
     // Removes the XML header; each picture has its own title.
-    text +=
-        fmt::format("<figure id=\"{}\">\n{}\n</figure>\n", xml_text(name), begin == std::string::npos ? picture : picture.substr(begin));
+    text += fmt::format("<figure id=\"{}\">\n{}\n</figure>\n", base::xml_text(name),
+                        begin == std::string::npos ? picture : picture.substr(begin));
   }
   text +=
       fmt::format(
           "<h2>Evidence ladder</h2><p>Each candidate alone: its gain in evidence over the model without any candidate, averaged over the "
           "probable unknown heat. Its probability is that of all sets of effects that contain it; a name needs {:.0f} % for all effects of "
           "one kind together. Visibility is the share of an effect that no change of the model's own parameters can imitate.</p>",
-          100.0 * SelectionRules{}.named_probability) +
+          100.0 * attribution::SelectionRules{}.named_probability) +
       ladder_table(diagnosis);
   text += "<h2>Power balance</h2>" + balance_table(diagnosis);
   text += "<h2>Residual tests</h2>" + test_table(diagnosis);
   if (!diagnosis.experiments.empty()) {
     text += "<h2>Next experiment</h2><ul>";
-    for (const Experiment& each : diagnosis.experiments) {
-      text += fmt::format("<li>To separate {}: {}{}</li>", xml_text(rivals_of(each)), xml_text(experiment_words(each)),
+    for (const diagnosis::Experiment& each : diagnosis.experiments) {
+      text += fmt::format("<li>To separate {}: {}{}</li>", base::xml_text(rivals_of(each)), base::xml_text(experiment_words(each)),
                           each.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats)", each.expected_nats) : "");
     }
     text += "</ul>\n";
@@ -288,7 +289,7 @@ std::string diagnosis_page(const DiagnosisAnswer& answer, std::span<const LogRea
   std::ranges::move(by_reason(diagnosis.selection.not_judged), std::back_inserter(remarks));
   text += "<h2>Effects not tested, and assumptions</h2><ul>";
   for (const std::string& remark : remarks) {
-    text += "<li>" + xml_text(remark) + "</li>";
+    text += "<li>" + base::xml_text(remark) + "</li>";
   }
   return text + "</ul></body></html>\n";
 }

@@ -16,7 +16,7 @@ constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 /// Places runs one after the other on the time axis, with a gap between them.
 struct Axis {
   double begin_min = 0.0;
-  double put(const MeasuredRun& run, std::vector<double>& x) const {
+  double put(const estimation::MeasuredRun& run, std::vector<double>& x) const {
     for (const double time_s : run.time_s) {
       x.push_back(begin_min + (time_s - run.time_s.front()) / 60.0);
     }
@@ -32,21 +32,22 @@ std::string listed(const std::vector<std::string>& runs) {
                              : fmt::format("{}", fmt::join(runs, ", "));
 }
 
-ChartPanel residual_panel(const std::string& signal, const Model& before, const Model& after, const std::vector<MeasuredRun>& runs,
-                          const std::vector<MeasuredRun>& before_them, const std::string& title) {
-  ChartPanel panel{title, "measured − model / K", {}, {}, {}};
-  ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
+report::ChartPanel residual_panel(const std::string& signal, const estimation::Model& before, const estimation::Model& after,
+                                  const std::vector<estimation::MeasuredRun>& runs, const std::vector<estimation::MeasuredRun>& before_them,
+                                  const std::string& title) {
+  report::ChartPanel panel{title, "measured − model / K", {}, {}, {}};
+  report::ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
   std::vector<std::string> names;
   Axis axis;
-  for (const MeasuredRun& run : runs) {
-    const auto found = std::ranges::find(run.sensors, signal, &Sensor::signal);
+  for (const estimation::MeasuredRun& run : runs) {
+    const auto found = std::ranges::find(run.sensors, signal, &estimation::Sensor::signal);
     if (found == run.sensors.end()) {
       continue;
     }
     names.push_back(run.name);
     const Eigen::Index sensor = found - run.sensors.begin();
     for (const auto& [curve, model] : {std::pair(&old, &before), std::pair(&now, &after)}) {
-      const Eigen::VectorXd off_K = run.measured_C.col(sensor) - open_loop_C(*model, run, before_them).col(sensor);
+      const Eigen::VectorXd off_K = run.measured_C.col(sensor) - estimation::open_loop_C(*model, run, before_them).col(sensor);
       curve->y.insert(curve->y.end(), off_K.begin(), off_K.end());
       curve->y.push_back(kGap);
       axis.put(run, curve->x);
@@ -58,11 +59,12 @@ ChartPanel residual_panel(const std::string& signal, const Model& before, const 
   return panel;
 }
 
-DiagnosisPicture residuals(const Diagnosis& diagnosis, const DiagnosisInput& input, const HoldoutScore& score) {
-  Chart chart{"Residual in K before and after",
-              "runs one behind the other; the model runs freely from the first measured temperatures",
-              "time / min",
-              {}};
+DiagnosisPicture residuals(const diagnosis::Diagnosis& diagnosis, const diagnosis::DiagnosisInput& input,
+                           const diagnosis::HoldoutScore& score) {
+  report::Chart chart{"Residual in K before and after",
+                      "runs one behind the other; the model runs freely from the first measured temperatures",
+                      "time / min",
+                      {}};
   for (const auto& [signal, error] : diagnosis.before_train) {
     const std::string name = signal.substr(0, signal.rfind('_'));
     chart.panels.push_back(residual_panel(signal, input.model, diagnosis.selection.after.model, input.train, {}, name + ", training runs"));
@@ -75,18 +77,18 @@ DiagnosisPicture residuals(const Diagnosis& diagnosis, const DiagnosisInput& inp
   return {"residual_K", chart};
 }
 
-DiagnosisPicture unknown_heat(const Diagnosis& diagnosis) {
-  Chart chart{"Unknown heat in W before and after",
-              "unknown heat flux into the node that explains the measured temperatures; band: 95 % after, given the model",
-              "time / min",
-              {}};
+DiagnosisPicture unknown_heat(const diagnosis::Diagnosis& diagnosis) {
+  report::Chart chart{"Unknown heat in W before and after",
+                      "unknown heat flux into the node that explains the measured temperatures; band: 95 % after, given the model",
+                      "time / min",
+                      {}};
   for (const auto& [node, rms_W] : diagnosis.flux_rms_after_W) {
-    ChartPanel panel{"into the " + node, "heat / W", {}, {}, {}};
-    ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
-    ChartBand band{"95 %", {}, {}, {}, 0};
+    report::ChartPanel panel{"into the " + node, "heat / W", {}, {}, {}};
+    report::ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
+    report::ChartBand band{"95 %", {}, {}, {}, 0};
     std::vector<std::string> names;
     double begin_min = 0.0;
-    for (const FluxTrace& trace : diagnosis.flux) {
+    for (const diagnosis::FluxTrace& trace : diagnosis.flux) {
       if (trace.node != node) {
         continue;
       }
@@ -96,8 +98,8 @@ DiagnosisPicture unknown_heat(const Diagnosis& diagnosis) {
         old.x.push_back(x), old.y.push_back(trace.before_W[k]);
         now.x.push_back(x), now.y.push_back(trace.after_W[k]);
         band.x.push_back(x);
-        band.low.push_back(trace.after_W[k] - kInterval_sd * trace.after_sd_W[k]);
-        band.high.push_back(trace.after_W[k] + kInterval_sd * trace.after_sd_W[k]);
+        band.low.push_back(trace.after_W[k] - estimation::kInterval_sd * trace.after_sd_W[k]);
+        band.high.push_back(trace.after_W[k] + estimation::kInterval_sd * trace.after_sd_W[k]);
       }
       old.x.push_back(old.x.back()), old.y.push_back(kGap);
       now.x.push_back(now.x.back()), now.y.push_back(kGap);
@@ -114,22 +116,23 @@ DiagnosisPicture unknown_heat(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-std::vector<DiagnosisPicture> diagnosis_pictures(const DiagnosisAnswer& answer) {
-  const Diagnosis& diagnosis = answer.diagnosis;
+std::vector<DiagnosisPicture> diagnosis_pictures(const diagnosis::DiagnosisAnswer& answer) {
+  const diagnosis::Diagnosis& diagnosis = answer.diagnosis;
   std::vector<DiagnosisPicture> pictures{residuals(diagnosis, answer.input, answer.score), unknown_heat(diagnosis)};
-  for (const Unexplained& heat : diagnosis.unexplained) {
+  for (const diagnosis::Unexplained& heat : diagnosis.unexplained) {
     if (heat.knots.size() < 2) {
       continue;
     }
-    Chart chart{fmt::format("Curve found at the {}", heat.node),
-                fmt::format("linear between seven knots; band: 95 %{}", heat.is_in_model ? "" : "; the extended model does not have it"),
-                heat.drivers.front() + (heat.driver_unit.empty() ? "" : " / " + heat.driver_unit),
-                {}};
-    ChartPanel panel{"", heat.curve_unit.empty() ? "share of the copper loss" : "curve / " + heat.curve_unit, {}, {}, {}};
-    ChartBand band{"95 %", heat.knots, {}, {}, 0};
+    report::Chart chart{
+        fmt::format("Curve found at the {}", heat.node),
+        fmt::format("linear between seven knots; band: 95 %{}", heat.is_in_model ? "" : "; the extended model does not have it"),
+        heat.drivers.front() + (heat.driver_unit.empty() ? "" : " / " + heat.driver_unit),
+        {}};
+    report::ChartPanel panel{"", heat.curve_unit.empty() ? "share of the copper loss" : "curve / " + heat.curve_unit, {}, {}, {}};
+    report::ChartBand band{"95 %", heat.knots, {}, {}, 0};
     for (std::size_t i = 0; i < heat.curve.size(); ++i) {
-      band.low.push_back(heat.curve[i] - kInterval_sd * heat.curve_sd[i]);
-      band.high.push_back(heat.curve[i] + kInterval_sd * heat.curve_sd[i]);
+      band.low.push_back(heat.curve[i] - estimation::kInterval_sd * heat.curve_sd[i]);
+      band.high.push_back(heat.curve[i] + estimation::kInterval_sd * heat.curve_sd[i]);
     }
     panel.curves = {{"curve", heat.knots, heat.curve, 0, false}};
     panel.bands = {band};

@@ -20,7 +20,8 @@ namespace heatsoak::present {
 namespace {
 
 /// Reports the errors before and after, and with only the model's own parameters refitted, whose part is not due to an effect.
-std::string errors_in_words(const Errors& before, const Errors& refitted, const Errors& after, std::string_view where) {
+std::string errors_in_words(const estimation::Errors& before, const estimation::Errors& refitted, const estimation::Errors& after,
+                            std::string_view where) {
   std::string text;
   for (const auto& [signal, error] : before) {
     const auto found = after.find(signal);
@@ -46,9 +47,9 @@ std::string condition_in_words(const std::map<std::string, std::string>& conditi
   return text.empty() ? "" : ", " + text;
 }
 
-std::string effect_in_words(const FoundEffect& effect) {
+std::string effect_in_words(const diagnosis::FoundEffect& effect) {
   std::string text = fmt::format("Found: {} at the {}{}", effect.id, effect.node, condition_in_words(effect.condition));
-  for (const FittedParameter& parameter : effect.parameters) {
+  for (const diagnosis::FittedParameter& parameter : effect.parameters) {
     if (parameter.low < parameter.high) {
       text += fmt::format("; {} {:.3g}{}{} (95 %: {:.3g} to {:.3g})", parameter.name, parameter.value, parameter.unit.empty() ? "" : " ",
                           parameter.unit, parameter.low, parameter.high);
@@ -61,7 +62,7 @@ std::string effect_in_words(const FoundEffect& effect) {
     }
   }
   if (effect.mean_W > 0.0) {
-    text += fmt::format("; {} W on average, up to {} W", significant(effect.mean_W, 2), significant(effect.peak_W, 2));
+    text += fmt::format("; {} W on average, up to {} W", base::significant(effect.mean_W, 2), base::significant(effect.peak_W, 2));
   }
   text += fmt::format(". Without it the model would be e^{:.0f} times less probable.", effect.gain_nats);
   if (!effect.confusable_with.empty()) {
@@ -71,53 +72,55 @@ std::string effect_in_words(const FoundEffect& effect) {
 }
 
 /// Returns warnings about the use of the model for other runs.
-std::string reservations(const Diagnosis& diagnosis, const HoldoutScore& score) {
+std::string reservations(const diagnosis::Diagnosis& diagnosis, const diagnosis::HoldoutScore& score) {
   constexpr double kElsewhere_ratio = 3.0;
   std::string text;
-  const double before_K = rms_K(score.before);
-  const double after_K = rms_K(score.after), train_K = rms_K(diagnosis.after_train);
-  if (is_plainly_worse(after_K, before_K)) {
+  const double before_K = estimation::rms_K(score.before);
+  const double after_K = estimation::rms_K(score.after), train_K = estimation::rms_K(diagnosis.after_train);
+  if (diagnosis::is_plainly_worse(after_K, before_K)) {
     text += " Do not use the new model for other runs: the error on the hold-out runs grows.";
   }
-  if (is_plainly_worse(train_K, rms_K(diagnosis.before_train))) {
+  if (diagnosis::is_plainly_worse(train_K, estimation::rms_K(diagnosis.before_train))) {
     text += " Keep the parameters of the original file: the error on the training runs grows.";
   }
-  const auto report_growth = [&](const Errors& before, const Errors& after, std::string_view where) {
+  const auto report_growth = [&](const estimation::Errors& before, const estimation::Errors& after, std::string_view where) {
     for (const auto& [signal, error] : after) {
       const auto own = before.find(signal);
-      if (own != before.end() && is_plainly_worse(error.rmse_K, own->second.rmse_K) && !is_plainly_worse(rms_K(after), rms_K(before))) {
+      if (own != before.end() && diagnosis::is_plainly_worse(error.rmse_K, own->second.rmse_K) &&
+          !diagnosis::is_plainly_worse(estimation::rms_K(after), estimation::rms_K(before))) {
         text += fmt::format(" The error of the {} alone grows on {}, from {} to {} K.", signal.substr(0, signal.rfind('_')), where,
-                            significant(own->second.rmse_K, 2), significant(error.rmse_K, 2));
+                            base::significant(own->second.rmse_K, 2), base::significant(error.rmse_K, 2));
       }
     }
   };
   report_growth(score.before, score.after, "the hold-out runs");
   report_growth(diagnosis.before_train, diagnosis.after_train, "the training runs");
-  if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * kMatters_K) {
+  if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * estimation::kMatters_K) {
     text += fmt::format(
         " The error on the hold-out runs is {:.0f} times that on the training runs: they contain an effect that the training runs do not "
         "show.",
-        after_K / std::max(kMatters_K, train_K));
+        after_K / std::max(estimation::kMatters_K, train_K));
   }
   return text;
 }
 
-std::string verdict_in_words(const Diagnosis& diagnosis) {
+std::string verdict_in_words(const diagnosis::Diagnosis& diagnosis) {
   switch (diagnosis.verdict) {
-    case DiagnosisVerdict::effect_found:
-      if (std::ranges::any_of(diagnosis.effects, [](const FoundEffect& effect) { return effect.has_heat && effect.is_from_catalogue; })) {
+    case diagnosis::DiagnosisVerdict::effect_found:
+      if (std::ranges::any_of(diagnosis.effects,
+                              [](const diagnosis::FoundEffect& effect) { return effect.has_heat && effect.is_from_catalogue; })) {
         return "The runs show unmodelled heat, and it follows a known law.";
       }
       return std::string("The sensors have an error that follows a known law") +
              (diagnosis.unexplained.empty() ? "." : "; there is also unmodelled heat that no law of the catalogue explains.");
-    case DiagnosisVerdict::nothing_missing:
+    case diagnosis::DiagnosisVerdict::nothing_missing:
       return diagnosis.changed.empty()
                  ? "No effect of the catalogue and no curve over a measured signal explains the runs better than the model with a small, "
                    "smooth unknown heat."
                  : "These runs show no missing effect, but they contradict some of the file's parameters.";
-    case DiagnosisVerdict::unexplained:
+    case diagnosis::DiagnosisVerdict::unexplained:
       return "The runs show unmodelled heat, and no law of the catalogue explains it.";
-    case DiagnosisVerdict::not_identifiable:
+    case diagnosis::DiagnosisVerdict::not_identifiable:
       break;
   }
   if (!diagnosis.changed.empty()) {
@@ -135,7 +138,7 @@ std::string verdict_in_words(const Diagnosis& diagnosis) {
                    "resistances and capacities. No effect is named.");
 }
 
-std::string changed_in_words(const ChangedParameter& parameter) {
+std::string changed_in_words(const attribution::ChangedParameter& parameter) {
   // The interval includes a common factor on all heat. If it contains the file's value it would be misleading, so it is not printed.
   const bool is_beyond_scale = parameter.before < parameter.low || parameter.before > parameter.high;
   return fmt::format(
@@ -146,33 +149,33 @@ std::string changed_in_words(const ChangedParameter& parameter) {
 }
 
 /// A positive conductance means heat out of the node, a positive source means heat into it.
-bool is_leaving(const Unexplained& heat) {
+bool is_leaving(const diagnosis::Unexplained& heat) {
   const double largest = std::ranges::max(heat.curve, {}, [](double value) { return std::abs(value); });
   return heat.curve_unit == "W/K" ? largest > 0.0 : largest < 0.0;
 }
 
 /// Heat of several curves over one signal.
-std::string watts_in_words(std::span<const Unexplained* const> curves) {
+std::string watts_in_words(std::span<const diagnosis::Unexplained* const> curves) {
   std::vector<std::string> each;
-  for (const Unexplained* const heat : curves) {
-    each.push_back(fmt::format("{} W on average, up to {} W", significant(heat->mean_W, 2), significant(heat->peak_W, 2)));
+  for (const diagnosis::Unexplained* const heat : curves) {
+    each.push_back(fmt::format("{} W on average, up to {} W", base::significant(heat->mean_W, 2), base::significant(heat->peak_W, 2)));
   }
   return curves.size() == 1 ? each.front() : fmt::format("in {} curves: {}", each.size(), fmt::join(each, "; "));
 }
 
 /// All `curves` have the node and the signals of the first one.
-std::string unexplained_in_words(std::span<const Unexplained* const> curves, const Diagnosis& diagnosis) {
-  const Unexplained& heat = *curves.front();
+std::string unexplained_in_words(std::span<const diagnosis::Unexplained* const> curves, const diagnosis::Diagnosis& diagnosis) {
+  const diagnosis::Unexplained& heat = *curves.front();
   if (heat.drivers.empty()) {
-    const std::string_view no_driver = std::ranges::any_of(diagnosis.runs, turns_unseen)
+    const std::string_view no_driver = std::ranges::any_of(diagnosis.runs, calibration::turns_unseen)
                                            ? "no signal can be assigned to it, because not every log has a speed"
                                            : "it follows no signal that all logs have";
-    return fmt::format("Unexplained: unknown heat of {} W RMS into the {}{}, which varies within {:.0f} s; {}.", significant(heat.rms_W, 2),
-                       heat.node,
+    return fmt::format("Unexplained: unknown heat of {} W RMS into the {}{}, which varies within {:.0f} s; {}.",
+                       base::significant(heat.rms_W, 2), heat.node,
                        heat.or_nodes.empty() ? "" : fmt::format(" (or the {}, which has no sensor)", fmt::join(heat.or_nodes, " or ")),
                        heat.time_scale_s, no_driver);
   }
-  const bool goes_by_clock = heat.drivers.size() == 1 && heat.drivers.front() == kTimeDriver;
+  const bool goes_by_clock = heat.drivers.size() == 1 && heat.drivers.front() == attribution::kTimeDriver;
   const std::string where = fmt::format("{} the {}", is_leaving(heat) ? "out of" : "into", heat.node);
   return (goes_by_clock
               ? fmt::format("Unexplained: heat {} that no measured signal explains; it depends on the time since the start of the run",
@@ -185,13 +188,13 @@ std::string unexplained_in_words(std::span<const Unexplained* const> curves, con
 }
 
 /// Reports curves with the same node and signals in one sentence.
-void add_unexplained(const Diagnosis& diagnosis, std::vector<std::string>& all) {
-  const auto is_shared = [](const Unexplained& a, const Unexplained& b) {
+void add_unexplained(const diagnosis::Diagnosis& diagnosis, std::vector<std::string>& all) {
+  const auto is_shared = [](const diagnosis::Unexplained& a, const diagnosis::Unexplained& b) {
     return !a.drivers.empty() && a.node == b.node && a.drivers == b.drivers && a.times == b.times && a.is_in_model == b.is_in_model &&
            is_leaving(a) == is_leaving(b);
   };
-  std::vector<std::vector<const Unexplained*>> groups;
-  for (const Unexplained& heat : diagnosis.unexplained) {
+  std::vector<std::vector<const diagnosis::Unexplained*>> groups;
+  for (const diagnosis::Unexplained& heat : diagnosis.unexplained) {
     const auto own = std::ranges::find_if(groups, [&](const auto& group) { return is_shared(*group.front(), heat); });
     (own == groups.end() ? groups.emplace_back() : *own).push_back(&heat);
   }
@@ -201,46 +204,46 @@ void add_unexplained(const Diagnosis& diagnosis, std::vector<std::string>& all) 
 }
 
 /// Reports the larger errors of the motor file alone, which does not contain run deviations.
-std::string file_alone_in_words(const Diagnosis& diagnosis, const HoldoutScore& score) {
-  const std::vector<RunDeviation>& deviations = diagnosis.selection.after.model.deviations;
+std::string file_alone_in_words(const diagnosis::Diagnosis& diagnosis, const diagnosis::HoldoutScore& score) {
+  const std::vector<estimation::RunDeviation>& deviations = diagnosis.selection.after.model.deviations;
   if (deviations.empty()) {
     return {};
   }
   std::set<std::string> names;
-  for (const RunDeviation& each : deviations) {
-    names.insert(fmt::format("{} in {}", each.type->name, in_words(each.condition)));
+  for (const estimation::RunDeviation& each : deviations) {
+    names.insert(fmt::format("{} in {}", each.type->name, estimation::in_words(each.condition)));
   }
   const bool is_held_out = !score.file.empty();
   std::vector<std::string> errors;
   for (const auto& [signal, error] : is_held_out ? score.file : diagnosis.file_train) {
-    errors.push_back(fmt::format("{} {} K", signal.substr(0, signal.rfind('_')), significant(error.rmse_K, 2)));
+    errors.push_back(fmt::format("{} {} K", signal.substr(0, signal.rfind('_')), base::significant(error.rmse_K, 2)));
   }
   return fmt::format(
       "{} belongs to those runs, not to the motor, and is only a note in the motor file. RMS error of the file alone on {}: {}.",
       fmt::join(names, " and "), is_held_out ? "the hold-out runs" : "the training runs", fmt::join(errors, ", "));
 }
 
-std::string beyond_in_words(const BeyondTraining& beyond) {
-  const std::string_view name = beyond.signal == Signal::current       ? "current"
-                                : beyond.signal == Signal::speed       ? "speed"
-                                : beyond.signal == Signal::input_power ? "input power"
-                                                                       : "vehicle's speed";
+std::string beyond_in_words(const diagnosis::BeyondTraining& beyond) {
+  const std::string_view name = beyond.signal == thermal::Signal::current       ? "current"
+                                : beyond.signal == thermal::Signal::speed       ? "speed"
+                                : beyond.signal == thermal::Signal::input_power ? "input power"
+                                                                                : "vehicle's speed";
   return fmt::format(
       "The forecast is an extrapolation for {:.0f} % of the time of the hold-out runs, because the {} is outside the range of the "
       "training runs ({} to {} {}).",
-      100.0 * beyond.time_share, name, significant(beyond.low, 2), significant(beyond.high, 2), beyond.unit);
+      100.0 * beyond.time_share, name, base::significant(beyond.low, 2), base::significant(beyond.high, 2), beyond.unit);
 }
 
-std::string reason_in_words(const Refusal& refused) {
+std::string reason_in_words(const attribution::Refusal& refused) {
   switch (refused.reason) {
-    case RefusalReason::improbable:
+    case attribution::RefusalReason::improbable:
       return fmt::format("its probability is {:.0f} %, but a name requires {:.0f} %", 100.0 * refused.probability,
                          100.0 * refused.needed_probability);
-    case RefusalReason::curve_is_better:
+    case attribution::RefusalReason::curve_is_better:
       return fmt::format("a curve over {} explains the runs better", refused.signal);
-    case RefusalReason::unknown_heat_remains:
+    case attribution::RefusalReason::unknown_heat_remains:
       return "material unknown heat remains, and it does not reduce the error of whole runs enough";
-    case RefusalReason::hardly_improves_whole_runs:
+    case attribution::RefusalReason::hardly_improves_whole_runs:
       return "it hardly improves the prediction of whole runs";
   }
   return "";
@@ -248,53 +251,53 @@ std::string reason_in_words(const Refusal& refused) {
 
 std::string_view it_or_them(std::size_t count) { return count == 1 ? "it" : "them"; }
 
-std::string say(const ExtensionsMayImitate& of) {
+std::string say(const diagnosis::ExtensionsMayImitate& of) {
   return fmt::format(
       "an effect that {} imitates may stay unfound, because the file has {} for better forecasts only; calibrate with --innovations for a "
       "diagnosis",
       fmt::join(of.effects, " and "), it_or_them(of.effects.size()));
 }
 
-std::string say(const ColumnsTakenAsZero& of) {
+std::string say(const diagnosis::ColumnsTakenAsZero& of) {
   return fmt::format("no log has {}, which {} depends on: it is taken as 0", fmt::join(of.columns, " and "), of.effect);
 }
 
-std::string say(const ConditionNotApplied& of) {
+std::string say(const diagnosis::ConditionNotApplied& of) {
   return fmt::format(
       "{} acts in every run here, although its condition is {}: an effect of the type {} has no size that could be set to 0; leave out the "
       "runs without that condition",
-      of.effect, in_words(of.condition), of.type);
+      of.effect, estimation::in_words(of.condition), of.type);
 }
 
-std::string say(const ConditionNeverMet& of) {
-  return fmt::format("{} acts in none of these runs: no log has its condition {}", of.effect, in_words(of.condition));
+std::string say(const diagnosis::ConditionNeverMet& of) {
+  return fmt::format("{} acts in none of these runs: no log has its condition {}", of.effect, estimation::in_words(of.condition));
 }
 
-std::string say(const IntervalsOfDataSheet& /*of*/) {
+std::string say(const diagnosis::IntervalsOfDataSheet& /*of*/) {
   return "the file's intervals are replaced by those of a data sheet: it was fitted to some of these runs, which would count twice";
 }
 
-std::string say(const LossInUnknownHeat& of) {
+std::string say(const diagnosis::LossInUnknownHeat& of) {
   return fmt::format(
       "not every log has a speed: the loss at speed, up to {} W, is part of the unknown heat; no effect at the stator is named, and no "
       "curve over another signal is added",
-      significant(of.most_W, 2));
+      base::significant(of.most_W, 2));
 }
 
-std::string say(const TorqueFromCurrent& /*of*/) {
+std::string say(const diagnosis::TorqueFromCurrent& /*of*/) {
   return "not every log has a torque: without one, current times torque constant minus the no-load drag is used";
 }
 
-std::string say(const ColumnsNotSearched& of) {
+std::string say(const diagnosis::ColumnsNotSearched& of) {
   return fmt::format("not every log has {}: heat that depends on {} is not searched for; to search for it, leave out the other logs",
                      fmt::join(of.columns, ", "), it_or_them(of.columns.size()));
 }
 
-std::string diagnosis_finding_words(const DiagnosisFinding& finding) {
+std::string diagnosis_finding_words(const diagnosis::DiagnosisFinding& finding) {
   return std::visit(
       [](const auto& each) {
-        if constexpr (std::is_constructible_v<CalibrationFinding, decltype(each)>) {
-          return words_of(CalibrationFinding(each));
+        if constexpr (std::is_constructible_v<calibration::CalibrationFinding, decltype(each)>) {
+          return words_of(calibration::CalibrationFinding(each));
         } else {
           return say(each);
         }
@@ -304,18 +307,18 @@ std::string diagnosis_finding_words(const DiagnosisFinding& finding) {
 
 }  // namespace
 
-std::vector<std::string> diagnosis_words(const Diagnosis& diagnosis, const HoldoutScore& score) {
+std::vector<std::string> diagnosis_words(const diagnosis::Diagnosis& diagnosis, const diagnosis::HoldoutScore& score) {
   std::vector<std::string> all{verdict_in_words(diagnosis)};
-  for (const FoundEffect& effect : diagnosis.effects) {
+  for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
     // Effects outside the catalogue are described below, with their signals.
     if (effect.is_from_catalogue) {
       all.push_back(effect_in_words(effect));
     }
   }
-  for (const ChangedParameter& parameter : diagnosis.changed) {
+  for (const attribution::ChangedParameter& parameter : diagnosis.changed) {
     all.push_back(changed_in_words(parameter));
   }
-  if (!diagnosis.changed.empty() && diagnosis.verdict != DiagnosisVerdict::not_identifiable) {
+  if (!diagnosis.changed.empty() && diagnosis.verdict != diagnosis::DiagnosisVerdict::not_identifiable) {
     all.emplace_back("These runs do not determine whether this has changed, or whether a missing effect acts like such a change.");
   }
   add_unexplained(diagnosis, all);
@@ -325,7 +328,7 @@ std::vector<std::string> diagnosis_words(const Diagnosis& diagnosis, const Holdo
   const bool is_held_out = !score.before.empty();
   const bool is_more = !diagnosis.effects.empty();
   all.push_back(errors_in_words(is_held_out ? score.before : diagnosis.before_train,
-                                !is_more      ? Errors{}
+                                !is_more      ? estimation::Errors{}
                                 : is_held_out ? score.refitted
                                               : diagnosis.refitted_train,
                                 is_held_out ? score.after : diagnosis.after_train,
@@ -339,16 +342,16 @@ std::vector<std::string> diagnosis_words(const Diagnosis& diagnosis, const Holdo
     all.push_back(fmt::format("Not named: {}.", refused));
   }
   if (!diagnosis.experiments.empty()) {
-    const Experiment& next = diagnosis.experiments.front();
+    const diagnosis::Experiment& next = diagnosis.experiments.front();
     all.push_back(fmt::format("Next experiment, to decide whether it is {}: {}", rivals_of(next), experiment_words(next)) +
                   (next.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats).", next.expected_nats) : std::string(".")));
   }
   return all;
 }
 
-std::vector<std::string> refusal_words(const Selection& selection) {
+std::vector<std::string> refusal_words(const attribution::Selection& selection) {
   std::vector<std::string> all;
-  for (const Refusal& each : selection.refused) {
+  for (const attribution::Refusal& each : selection.refused) {
     std::string words = fmt::format("{}: {}", each.id, reason_in_words(each));
     if (std::ranges::find(all, words) == all.end()) {
       all.push_back(std::move(words));
@@ -357,33 +360,35 @@ std::vector<std::string> refusal_words(const Selection& selection) {
   return all;
 }
 
-std::string untested_words(const UntestedEffect& untested) {
+std::string untested_words(const attribution::UntestedEffect& untested) {
   return fmt::format("not every log has {}", fmt::join(untested.lacking, " and "));
 }
 
-std::string rivals_of(const Experiment& experiment) { return fmt::format("{} or {}", experiment.effect, experiment.rival); }
+std::string rivals_of(const diagnosis::Experiment& experiment) { return fmt::format("{} or {}", experiment.effect, experiment.rival); }
 
-std::string experiment_words(const Experiment& experiment) {
+std::string experiment_words(const diagnosis::Experiment& experiment) {
   std::vector<std::string> levels;
   if (experiment.most_A) {
-    levels.push_back(significant(*experiment.most_A, 2) + " A");
+    levels.push_back(base::significant(*experiment.most_A, 2) + " A");
   }
   if (experiment.most_rad_per_s) {
-    levels.push_back(significant(*experiment.most_rad_per_s, 2) + " rad/s");
+    levels.push_back(base::significant(*experiment.most_rad_per_s, 2) + " rad/s");
   }
   return levels.empty()
              ? experiment.what
              : fmt::format("{}; with at most {} the motor gets no hotter than in these runs", experiment.what, fmt::join(levels, " and "));
 }
 
-std::vector<DiagnosisNote> diagnosis_notes(const DiagnosisAnswer& answer, std::span<const LogReading> readings) {
+std::vector<DiagnosisNote> diagnosis_notes(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings) {
   std::vector<DiagnosisNote> notes;
   for (std::string& each : reading_words(readings)) {
     notes.push_back({Severity::background, std::move(each)});
   }
-  const auto is_warning = [](const DiagnosisFinding& finding) { return std::holds_alternative<ExtensionsMayImitate>(finding); };
+  const auto is_warning = [](const diagnosis::DiagnosisFinding& finding) {
+    return std::holds_alternative<diagnosis::ExtensionsMayImitate>(finding);
+  };
   const auto add_findings = [&](bool warnings) {
-    for (const DiagnosisFinding& each : answer.findings) {
+    for (const diagnosis::DiagnosisFinding& each : answer.findings) {
       if (is_warning(each) == warnings) {
         notes.push_back({warnings ? Severity::warning : Severity::note, diagnosis_finding_words(each)});
       }

@@ -12,23 +12,23 @@ namespace heatsoak::present {
 
 /// Returns the diagnosis as a list of sentences. The errors are those of the hold-out runs if `score` has any, else those of the training
 /// runs.
-std::vector<std::string> diagnosis_words(const Diagnosis& diagnosis, const HoldoutScore& score);
+std::vector<std::string> diagnosis_words(const diagnosis::Diagnosis& diagnosis, const diagnosis::HoldoutScore& score);
 
 /// Returns the rejected candidates with the reason: "windage: it hardly improves the prediction of whole runs".
-std::vector<std::string> refusal_words(const Selection& selection);
+std::vector<std::string> refusal_words(const attribution::Selection& selection);
 
 /// Returns the reason without the effect: "not every log has speed".
-std::string untested_words(const UntestedEffect& untested);
+std::string untested_words(const attribution::UntestedEffect& untested);
 
 /// Returns the effects that the experiment separates: "iron_loss_eddy or windage".
-std::string rivals_of(const Experiment& experiment);
-std::string experiment_words(const Experiment& experiment);
+std::string rivals_of(const diagnosis::Experiment& experiment);
+std::string experiment_words(const diagnosis::Experiment& experiment);
 
 struct DiagnosisNote {
   Severity severity = Severity::note;
   std::string words;
 };
 /// Returns the notes in the order of the JSON: logs, warnings, admission, assumptions. Rejected samples of the logs are background.
-std::vector<DiagnosisNote> diagnosis_notes(const DiagnosisAnswer& answer, std::span<const LogReading> readings);
+std::vector<DiagnosisNote> diagnosis_notes(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings);
 
 }  // namespace heatsoak::present

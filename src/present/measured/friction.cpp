@@ -16,7 +16,8 @@ namespace {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// Formats a value with its interval; `without_interval` explains why there is none.
-std::string estimate_text(const Estimate& estimate, int decimals, double scale = 1.0, const std::string& without_interval = "given") {
+std::string estimate_text(const friction::Estimate& estimate, int decimals, double scale = 1.0,
+                          const std::string& without_interval = "given") {
   if (!std::isfinite(estimate.value)) {
     return "–";
   }
@@ -27,7 +28,7 @@ std::string estimate_text(const Estimate& estimate, int decimals, double scale =
 
 std::string plural_of(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
 
-Table wheel_table(const FrictionFit& fit, std::size_t rows) {
+Table wheel_table(const friction::FrictionFit& fit, std::size_t rows) {
   Table table{.title = "Voltage of a wheel: d ω + a sin(θ + phase) + b sign",
               .columns = {{"wheel", "", 0},
                           {"d", "V s/rad", 0},
@@ -39,7 +40,7 @@ Table wheel_table(const FrictionFit& fit, std::size_t rows) {
                           {"left out", "", 5}},
               .rows = {}};
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-    const WheelFriction& wheel = fit.wheels[i];
+    const friction::WheelFriction& wheel = fit.wheels[i];
     if (!wheel.is_learned()) {
       table.rows.push_back({{fmt::format("{}", i + 1)}, {"not identifiable", Tone::bad}, {"–"}, {"–"}, {"–"}, {"–"}, {"–"}, {"–"}});
       continue;
@@ -57,12 +58,12 @@ Table wheel_table(const FrictionFit& fit, std::size_t rows) {
 }
 
 /// Adds notes about values that the legs do not determine.
-void add_given_values(Document& document, const FrictionFit& fit) {
-  if (std::ranges::any_of(fit.wheels, &WheelFriction::damping_is_given)) {
+void add_given_values(Document& document, const friction::FrictionFit& fit) {
+  if (std::ranges::any_of(fit.wheels, &friction::WheelFriction::damping_is_given)) {
     std::vector<std::string> moves;
     for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
       if (fit.wheels[i].damping_is_given) {
-        moves.push_back(fmt::format("{} V (wheel {})", significant(0.1 * std::abs(fit.wheels[i].sine_per_damping_V), 2), i + 1));
+        moves.push_back(fmt::format("{} V (wheel {})", base::significant(0.1 * std::abs(fit.wheels[i].sine_per_damping_V), 2), i + 1));
       }
     }
     document.add_note(
@@ -71,18 +72,18 @@ void add_given_values(Document& document, const FrictionFit& fit) {
                     "only: a d 10 % larger takes {} from a; legs at a second speed on the same headings determine both.",
                     fmt::join(moves, ", ")));
   }
-  if (std::ranges::any_of(fit.wheels, &WheelFriction::phase_is_given)) {
+  if (std::ranges::any_of(fit.wheels, &friction::WheelFriction::phase_is_given)) {
     document.add_note(
         Severity::note,
         fmt::format("phase (given) is a wheel's rolling direction, because its headings are too few to determine it; the intervals allow "
                     "for {:.0f}° to either side; six or more directions all around determine it.",
-                    FitSettings{}.phase_uncertainty_rad * kDegrees));
+                    friction::FitSettings{}.phase_uncertainty_rad * kDegrees));
   }
 }
 
-void add_wheel_notes(Document& document, const FrictionFit& fit) {
+void add_wheel_notes(Document& document, const friction::FrictionFit& fit) {
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-    const WheelFriction& wheel = fit.wheels[i];
+    const friction::WheelFriction& wheel = fit.wheels[i];
     if (!wheel.is_learned()) {
       document.add_note(Severity::warning, fmt::format("Wheel {} is not identifiable: {}.", i + 1, wheel.problem));
     }
@@ -96,55 +97,55 @@ void add_wheel_notes(Document& document, const FrictionFit& fit) {
                         fmt::format("Wheel {} turning on the spot: {} V.", i + 1, estimate_text(wheel.rotation_V, 3)));
     }
   }
-  if (std::ranges::any_of(fit.wheels, [](const WheelFriction& wheel) { return wheel.rotation_V.high < 0.0; })) {
+  if (std::ranges::any_of(fit.wheels, [](const friction::WheelFriction& wheel) { return wheel.rotation_V.high < 0.0; })) {
     document.add_note(Severity::warning,
                       "A friction below 0 V is impossible: the voltage is not proportional to the modulation, or the assumed battery "
                       "voltage is wrong.");
   }
 }
 
-std::string what_rolls(const RollOutRun& run) {
-  return run.kind == RollOut::translation ? fmt::format("towards {:.0f}°, {:.2f} N", run.heading_rad * kDegrees, run.force_N)
-         : run.kind == RollOut::rotation  ? "turning"
-                                          : fmt::format("wheel {} lifted", run.wheel + 1);
+std::string what_rolls(const friction::RollOutRun& run) {
+  return run.kind == friction::RollOut::translation ? fmt::format("towards {:.0f}°, {:.2f} N", run.heading_rad * kDegrees, run.force_N)
+         : run.kind == friction::RollOut::rotation  ? "turning"
+                                                    : fmt::format("wheel {} lifted", run.wheel + 1);
 }
 
-std::string source_words(const VoltageFrom& from) {
+std::string source_words(const friction::VoltageFrom& from) {
   switch (from.source) {
-    case VoltageFrom::Source::log:
+    case friction::VoltageFrom::Source::log:
       return "voltage: as the log has it";
-    case VoltageFrom::Source::modulation:
+    case friction::VoltageFrom::Source::modulation:
       return "voltage: modulation × battery voltage";
-    case VoltageFrom::Source::modulation_with_nominal_battery:
+    case friction::VoltageFrom::Source::modulation_with_nominal_battery:
       return fmt::format(
           "voltage: modulation × {} V, the robot's nominal battery voltage, because the log has none; every value in V scales with it, "
           "beyond its interval",
-          significant(from.battery_V, 3));
-    case VoltageFrom::Source::current:
+          base::significant(from.battery_V, 3));
+    case friction::VoltageFrom::Source::current:
       return "voltage: from currents, with the motor's resistance and torque constant";
-    case VoltageFrom::Source::current_without_sign:
+    case friction::VoltageFrom::Source::current_without_sign:
       return "voltage: from currents without sign (that of the speed is used), with the motor's resistance and torque constant";
   }
   return "";
 }
 
-std::string zero_words(const DragExceedsOffset& of) {
+std::string zero_words(const friction::DragExceedsOffset& of) {
   return fmt::format("0 is written for b of wheel {}: the drag of the motor alone, {:.3f} V by its data sheet, is larger than b", of.wheel,
                      of.drag_V);
 }
 
-std::string zero_words(const BackEmfExceedsDamping& of) {
+std::string zero_words(const friction::BackEmfExceedsDamping& of) {
   return fmt::format("0 is written for d of wheel {}: the back-EMF of the motor alone, {:.4f} V s/rad by its data sheet, is larger than d",
                      of.wheel, of.back_emf_V_s_per_rad);
 }
 
-std::string source_words(const DirectionFrom& from) {
+std::string source_words(const friction::DirectionFrom& from) {
   switch (from.source) {
-    case DirectionFrom::Source::commanded:
+    case friction::DirectionFrom::Source::commanded:
       return "direction of travel: as commanded";
-    case DirectionFrom::Source::measured:
+    case friction::DirectionFrom::Source::measured:
       return "direction of travel: as measured";
-    case DirectionFrom::Source::wheels:
+    case friction::DirectionFrom::Source::wheels:
       return "direction of travel: from the wheels' speeds";
   }
   return "";
@@ -152,8 +153,8 @@ std::string source_words(const DirectionFrom& from) {
 
 }  // namespace
 
-Document friction_document(const Robot& robot, const FrictionAnswer& answer) {
-  const auto learned = std::ranges::count_if(answer.fit.wheels, &WheelFriction::is_learned);
+Document friction_document(const robot::Robot& robot, const FrictionAnswer& answer) {
+  const auto learned = std::ranges::count_if(answer.fit.wheels, &friction::WheelFriction::is_learned);
   Document document{
       .headline = {{fmt::format("{}: the friction of {} of {} wheels is identifiable.", robot.id, learned, answer.fit.wheels.size()),
                     learned == std::ssize(answer.fit.wheels) ? Tone::good : Tone::undecided}},
@@ -176,34 +177,35 @@ Document friction_document(const Robot& robot, const FrictionAnswer& answer) {
   return document;
 }
 
-std::vector<std::string> lack_of_fit_words(const FrictionFit& fit) {
+std::vector<std::string> lack_of_fit_words(const friction::FrictionFit& fit) {
   std::vector<std::string> found;
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-    if (const LackOfFit& lack = fit.wheels[i].lack; lack.is_found) {
+    if (const friction::LackOfFit& lack = fit.wheels[i].lack; lack.is_found) {
       found.push_back(
           fmt::format("the residual of wheel {} depends on θ: {} V rms beyond the {} V by which {} differ; a sin(θ+φ) + b sign does not "
                       "hold there, and the intervals are wider by the part that may be in a and b",
-                      i + 1, significant(lack.left_V, 2), significant(lack.repeats_V, 2), lack.repeats));
+                      i + 1, base::significant(lack.left_V, 2), base::significant(lack.repeats_V, 2), lack.repeats));
     }
   }
   return found;
 }
 
-Estimate damping_with_back_emf(const DriveConstants& drive, const Estimate& mechanical_Nm_s_per_rad) {
-  const auto volts = [&](double damping) { return steady_voltage_V(drive, damping, 1.0); };
+friction::Estimate damping_with_back_emf(const robot::DriveConstants& drive, const friction::Estimate& mechanical_Nm_s_per_rad) {
+  const auto volts = [&](double damping) { return robot::steady_voltage_V(drive, damping, 1.0); };
   return {volts(mechanical_Nm_s_per_rad.value), volts(mechanical_Nm_s_per_rad.low), volts(mechanical_Nm_s_per_rad.high)};
 }
 
-Document roll_out_document(const Robot& robot, const RollOutResult& result, const DriveConstants& drive, std::size_t logs) {
+Document roll_out_document(const robot::Robot& robot, const friction::RollOutResult& result, const robot::DriveConstants& drive,
+                           std::size_t logs) {
   Document document{.headline = {{fmt::format("{}: {} in {}, motors assumed open.", robot.id, plural_of(result.runs.size(), "roll-out"),
                                               plural_of(logs, "log"))}},
                     .paragraphs = {"Torque and damping of a wheel without the motor's back-EMF; d with it."}};
-  const auto fitted = [](const Estimate& estimate, int decimals, double scale) {
+  const auto fitted = [](const friction::Estimate& estimate, int decimals, double scale) {
     return estimate_text(estimate, decimals, scale, "no interval");
   };
   Table wheels{.columns = {{"wheel", "", 0}, {"torque", "mN m", 0}, {"damping", "mN m s/rad", 1}, {"d", "V s/rad", 0}}, .rows = {}};
   for (std::size_t i = 0; i < result.wheel_damping_Nm_s_per_rad.size(); ++i) {
-    const Estimate& mechanical = result.wheel_damping_Nm_s_per_rad[i];
+    const friction::Estimate& mechanical = result.wheel_damping_Nm_s_per_rad[i];
     wheels.rows.push_back({{fmt::format("{}", i + 1)},
                            {fitted(result.wheel_torque_Nm[i], 2, 1e3)},
                            {fitted(mechanical, 4, 1e3)},
@@ -213,7 +215,7 @@ Document roll_out_document(const Robot& robot, const RollOutResult& result, cons
       .title = "Roll-outs, values per wheel",
       .columns = {{"run", "", 0, Alignment::left}, {"torque", "mN m", 0}, {"damping", "mN m s/rad", 0}, {"R²", "", 1}, {"rows", "", 2}},
       .rows = {}};
-  for (const RollOutRun& run : result.runs) {
+  for (const friction::RollOutRun& run : result.runs) {
     runs.rows.push_back({{what_rolls(run)},
                          {fmt::format("{:.1f}", 1e3 * run.wheel_torque_Nm)},
                          {fmt::format("{:.3f}", 1e3 * run.wheel_damping_Nm_s_per_rad)},
@@ -224,16 +226,17 @@ Document roll_out_document(const Robot& robot, const RollOutResult& result, cons
   return document;
 }
 
-std::string words_of(const WrittenAsZero& finding) {
+std::string words_of(const friction::WrittenAsZero& finding) {
   return std::visit([](const auto& each) { return zero_words(each); }, finding);
 }
 
-FrictionRemarks friction_remarks(const std::string& motor, bool has_motor, const FrictionRun& run, const std::vector<std::string>& of_fit) {
+FrictionRemarks friction_remarks(const std::string& motor, bool has_motor, const friction::FrictionRun& run,
+                                 const std::vector<std::string>& of_fit) {
   FrictionRemarks remarks{has_motor ? std::optional(motor) : std::nullopt, {}, run.suspicions};
   if (!has_motor) {
     remarks.findings.push_back(fmt::format("there is no file of the robot's motor '{}'; name a motor with --motor", motor));
   }
-  for (const FrictionFinding& each : run.findings) {
+  for (const friction::FrictionFinding& each : run.findings) {
     remarks.findings.push_back(std::visit([](const auto& finding) { return source_words(finding); }, each));
   }
   remarks.findings.insert(remarks.findings.end(), of_fit.begin(), of_fit.end());

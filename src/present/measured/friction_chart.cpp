@@ -16,8 +16,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string wheel_name(std::size_t wheel) { return fmt::format("wheel {}", wheel + 1); }
 
-ChartCurve dots(std::size_t wheel, const std::string& name) {
-  ChartCurve curve;
+report::ChartCurve dots(std::size_t wheel, const std::string& name) {
+  report::ChartCurve curve;
   curve.name = name;
   curve.color_index = static_cast<int>(wheel);
   curve.dots = true;
@@ -25,7 +25,7 @@ ChartCurve dots(std::size_t wheel, const std::string& name) {
 }
 
 /// Adds the interval as a vertical line at `x`.
-void add_interval(ChartCurve& bars, double x, const Estimate& estimate) {
+void add_interval(report::ChartCurve& bars, double x, const friction::Estimate& estimate) {
   if (estimate.is_known()) {
     bars.x.insert(bars.x.end(), {x, x, x});
     bars.y.insert(bars.y.end(), {estimate.low, estimate.high, kNaN});
@@ -33,8 +33,8 @@ void add_interval(ChartCurve& bars, double x, const Estimate& estimate) {
 }
 
 /// f(θ), interrupted where its sign changes.
-ChartCurve fitted_curve(const WheelFriction& wheel, std::size_t index) {
-  ChartCurve curve;
+report::ChartCurve fitted_curve(const friction::WheelFriction& wheel, std::size_t index) {
+  report::ChartCurve curve;
   curve.color_index = static_cast<int>(index);
   double before_V = kNaN;
   for (int i = -720; i <= 720; ++i) {
@@ -48,17 +48,17 @@ ChartCurve fitted_curve(const WheelFriction& wheel, std::size_t index) {
   return curve;
 }
 
-ChartPanel heading_panel(const FrictionFit& fit, bool of_damping) {
-  ChartPanel panel;
+report::ChartPanel heading_panel(const friction::FrictionFit& fit, bool of_damping) {
+  report::ChartPanel panel;
   panel.title = of_damping ? "Damping of every heading; dashed: fitted over all"
                            : "Static friction of every heading; lines: f = a sin(θ+φ) + b sign(sin(θ+φ))";
   panel.y_label = of_damping ? "damping / V s/rad" : "offset / V";
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-    const WheelFriction& wheel = fit.wheels[i];
-    ChartCurve points = dots(i, wheel_name(i));
-    ChartCurve bars{.color_index = static_cast<int>(i)};
-    for (const HeadingLine& line : fit.lines[i]) {
-      const Estimate& estimate = of_damping ? line.damping_V_s_per_rad : line.offset_V;
+    const friction::WheelFriction& wheel = fit.wheels[i];
+    report::ChartCurve points = dots(i, wheel_name(i));
+    report::ChartCurve bars{.color_index = static_cast<int>(i)};
+    for (const friction::HeadingLine& line : fit.lines[i]) {
+      const friction::Estimate& estimate = of_damping ? line.damping_V_s_per_rad : line.offset_V;
       const double x =
           line.heading_rad * kDegrees_per_rad + 0.8 * (static_cast<double>(i) - 0.5 * static_cast<double>(fit.wheels.size() - 1));
       points.x.push_back(x);
@@ -79,8 +79,8 @@ ChartPanel heading_panel(const FrictionFit& fit, bool of_damping) {
   return panel;
 }
 
-bool has_points(const ChartPanel& panel) {
-  return std::ranges::any_of(panel.curves, [](const ChartCurve& curve) {
+bool has_points(const report::ChartPanel& panel) {
+  return std::ranges::any_of(panel.curves, [](const report::ChartCurve& curve) {
     return curve.dots && std::ranges::any_of(curve.y, [](double value) { return std::isfinite(value); });
   });
 }
@@ -88,8 +88,9 @@ bool has_points(const ChartPanel& panel) {
 /// The legs that are drawn: those that the fit uses.
 class Drives {
  public:
-  Drives(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics, const FitSettings& settings)
-      : fit_(fit), kinematics_(kinematics), numbers_(heading_numbers(steady.parts, settings)) {
+  Drives(const friction::SteadyParts& steady, const friction::FrictionFit& fit, const robot::Kinematics& kinematics,
+         const friction::FitSettings& settings)
+      : fit_(fit), kinematics_(kinematics), numbers_(friction::heading_numbers(steady.parts, settings)) {
     for (std::size_t i = 0; i < steady.parts.size(); ++i) {
       if (settings.use_return_legs || !steady.parts[i].is_return) {
         parts_.emplace_back(&steady.parts[i], numbers_[i]);
@@ -98,16 +99,16 @@ class Drives {
   }
 
   /// Figure 4: the lines of the heading with the most legs; of equal ones the heading in which the slowest wheel turns fastest.
-  [[nodiscard]] std::optional<ChartPanel> of_one_heading() const {
+  [[nodiscard]] std::optional<report::ChartPanel> of_one_heading() const {
     const int number = informative_heading();
     if (number < 0) {
       return std::nullopt;
     }
-    ChartPanel panel;
+    report::ChartPanel panel;
     panel.y_label = "voltage / V";
     bool has_line = false;
     for (std::size_t i = 0; i < fit_.wheels.size(); ++i) {
-      ChartCurve points = dots(i, wheel_name(i));
+      report::ChartCurve points = dots(i, wheel_name(i));
       double heading_rad = 0.0;
       for (const auto& [part, of_part] : parts_) {
         if (of_part == number) {
@@ -119,7 +120,7 @@ class Drives {
       panel.title = fmt::format("Towards {:.0f}°: measured, and the line of each wheel; at 0 rad/s its static friction",
                                 heading_rad * kDegrees_per_rad);
       panel.curves.push_back(points);
-      const auto line = std::ranges::find_if(fit_.lines[i], [&](const HeadingLine& each) {
+      const auto line = std::ranges::find_if(fit_.lines[i], [&](const friction::HeadingLine& each) {
         return std::abs(std::remainder(each.heading_rad - heading_rad, 2.0 * std::numbers::pi)) < kSameHeading_rad;
       });
       if (line != fit_.lines[i].end() && std::isfinite(line->damping_V_s_per_rad.value)) {
@@ -134,13 +135,13 @@ class Drives {
   }
 
   /// Legs of pure rotation, with the lines d·ω ± c.
-  [[nodiscard]] std::optional<ChartPanel> of_rotation() const {
-    ChartPanel panel;
+  [[nodiscard]] std::optional<report::ChartPanel> of_rotation() const {
+    report::ChartPanel panel;
     panel.title = "Turning on the spot: measured; lines: d ω + c sign(ω)";
     panel.y_label = "voltage / V";
     for (std::size_t i = 0; i < fit_.wheels.size(); ++i) {
-      const WheelFriction& wheel = fit_.wheels[i];
-      ChartCurve points = dots(i, wheel_name(i));
+      const friction::WheelFriction& wheel = fit_.wheels[i];
+      report::ChartCurve points = dots(i, wheel_name(i));
       for (const auto& [part, number] : parts_) {
         if (part->is_rotation) {
           points.x.push_back(part->wheel_speed_rad_per_s[i]);
@@ -167,16 +168,16 @@ class Drives {
   }
 
   /// All headings together: voltage minus the fitted friction leaves d·ω.
-  [[nodiscard]] ChartPanel less_friction() const {
-    ChartPanel panel;
+  [[nodiscard]] report::ChartPanel less_friction() const {
+    report::ChartPanel panel;
     panel.title = "All headings: voltage less the fitted friction; lines: d ω";
     panel.y_label = "voltage less friction / V";
     for (std::size_t i = 0; i < fit_.wheels.size(); ++i) {
-      const WheelFriction& wheel = fit_.wheels[i];
-      ChartCurve points = dots(i, wheel_name(i));
+      const friction::WheelFriction& wheel = fit_.wheels[i];
+      report::ChartCurve points = dots(i, wheel_name(i));
       for (const auto& [part, number] : parts_) {
         const double speed_rad_per_s = part->wheel_speed_rad_per_s[i];
-        if (part->is_rotation || !should_stand(kinematics_.wheels[i], part->heading_rad)) {
+        if (part->is_rotation || !friction::should_stand(kinematics_.wheels[i], part->heading_rad)) {
           const double friction_V =
               part->is_rotation ? wheel.rotation_V.value * (speed_rad_per_s > 0.0 ? 1.0 : -1.0)
                                 : wheel.voltage_V(part->heading_rad, speed_rad_per_s) - wheel.damping_V_s_per_rad.value * speed_rad_per_s;
@@ -202,7 +203,7 @@ class Drives {
     for (const auto& [part, number] : parts_) {
       double least_share = 1.0;
       for (int i = 0; i < kinematics_.wheel_count; ++i) {
-        least_share = std::min(least_share, std::abs(rolling_share(kinematics_.wheels[i], part->heading_rad)));
+        least_share = std::min(least_share, std::abs(friction::rolling_share(kinematics_.wheels[i], part->heading_rad)));
       }
       if (number >= 0) {
         ++worth[number].first;
@@ -213,41 +214,41 @@ class Drives {
     return best == worth.end() ? -1 : best->first;
   }
 
-  const FrictionFit& fit_;
-  const Kinematics& kinematics_;
+  const friction::FrictionFit& fit_;
+  const robot::Kinematics& kinematics_;
   std::vector<int> numbers_;
-  std::vector<std::pair<const SteadyPart*, int>> parts_;
+  std::vector<std::pair<const friction::SteadyPart*, int>> parts_;
 };
 
 }  // namespace
 
-Chart friction_chart(const FrictionFit& fit, const std::string& robot, const std::string& subtitle) {
-  Chart chart;
+report::Chart friction_chart(const friction::FrictionFit& fit, const std::string& robot, const std::string& subtitle) {
+  report::Chart chart;
   chart.title = fmt::format("Friction of {} over the direction of travel", robot);
-  const bool has_intervals = std::ranges::any_of(fit.lines, [](const std::vector<HeadingLine>& lines) {
-    return std::ranges::any_of(lines, [](const HeadingLine& line) { return line.offset_V.is_known(); });
+  const bool has_intervals = std::ranges::any_of(fit.lines, [](const std::vector<friction::HeadingLine>& lines) {
+    return std::ranges::any_of(lines, [](const friction::HeadingLine& line) { return line.offset_V.is_known(); });
   });
   const bool is_given =
-      std::ranges::any_of(fit.wheels, [](const WheelFriction& wheel) { return wheel.is_learned() && wheel.damping_is_given; });
+      std::ranges::any_of(fit.wheels, [](const friction::WheelFriction& wheel) { return wheel.is_learned() && wheel.damping_is_given; });
   chart.subtitle = subtitle + (has_intervals ? "; vertical lines: 95 % intervals of each heading alone, from the scatter of all" : "") +
                    (is_given ? "; all at one speed, so the expected damping is used" : "");
   chart.x_label = "direction of travel in the robot's frame / °";
   for (const bool of_damping : {false, true}) {
-    if (ChartPanel panel = heading_panel(fit, of_damping); has_points(panel)) {
+    if (report::ChartPanel panel = heading_panel(fit, of_damping); has_points(panel)) {
       chart.panels.push_back(std::move(panel));
     }
   }
   return chart;
 }
 
-Chart voltage_chart(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics, const std::string& robot,
-                    const FitSettings& settings) {
-  Chart chart;
+report::Chart voltage_chart(const friction::SteadyParts& steady, const friction::FrictionFit& fit, const robot::Kinematics& kinematics,
+                            const std::string& robot, const friction::FitSettings& settings) {
+  report::Chart chart;
   chart.title = fmt::format("Voltage over wheel speed of {}", robot);
   chart.subtitle = fmt::format("{} steady intervals; wheels that should stand are left out", steady.parts.size());
   chart.x_label = "wheel speed / rad/s";
   const Drives drives(steady, fit, kinematics, settings);
-  for (const std::optional<ChartPanel>& panel : {drives.of_one_heading(), drives.of_rotation()}) {
+  for (const std::optional<report::ChartPanel>& panel : {drives.of_one_heading(), drives.of_rotation()}) {
     if (panel) {
       chart.panels.push_back(*panel);
     }

@@ -10,10 +10,10 @@
 namespace heatsoak::present {
 
 /// Offset of every heading with the fitted f(θ), and the damping of every heading, over the direction of travel.
-Chart friction_chart(const FrictionFit& fit, const std::string& robot, const std::string& subtitle);
+report::Chart friction_chart(const friction::FrictionFit& fit, const std::string& robot, const std::string& subtitle);
 
 /// Voltage over wheel speed: one heading with lines whose offsets are the static friction, and all headings after subtracting the friction.
-Chart voltage_chart(const SteadyParts& steady, const FrictionFit& fit, const Kinematics& kinematics, const std::string& robot,
-                    const FitSettings& settings);
+report::Chart voltage_chart(const friction::SteadyParts& steady, const friction::FrictionFit& fit, const robot::Kinematics& kinematics,
+                            const std::string& robot, const friction::FitSettings& settings);
 
 }  // namespace heatsoak::present

@@ -6,12 +6,12 @@ namespace heatsoak::present {
 namespace {
 
 /// Unknown (NaN) values become null.
-Json json(const Estimate& estimate) { return {{"value", estimate.value}, {"ci95", {estimate.low, estimate.high}}}; }
+Json json(const friction::Estimate& estimate) { return {{"value", estimate.value}, {"ci95", {estimate.low, estimate.high}}}; }
 
-Json wheels_json(const FrictionFit& fit, const HeldOutError& error, std::size_t rows) {
+Json wheels_json(const friction::FrictionFit& fit, const friction::HeldOutError& error, std::size_t rows) {
   Json wheels = Json::array();
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-    const WheelFriction& wheel = fit.wheels[i];
+    const friction::WheelFriction& wheel = fit.wheels[i];
     wheels.push_back({{"index", i + 1},
                       {"damping_V_s_per_rad", json(wheel.damping_V_s_per_rad)},
                       {"a_V", json(wheel.sine_V)},
@@ -40,8 +40,8 @@ Json wheels_json(const FrictionFit& fit, const HeldOutError& error, std::size_t 
 
 }  // namespace
 
-Json friction_json(const Robot& robot, const FrictionAnswer& answer, const FrictionRemarks& remarks) {
-  const SteadyParts& steady = answer.steady;
+Json friction_json(const robot::Robot& robot, const FrictionAnswer& answer, const FrictionRemarks& remarks) {
+  const friction::SteadyParts& steady = answer.steady;
   return {{"schema", "heatsoak.friction/1"},
           {"method", "steady_state"},
           {"robot", robot.id},
@@ -59,19 +59,20 @@ Json friction_json(const Robot& robot, const FrictionAnswer& answer, const Frict
           {"suspicions", remarks.suspicions}};
 }
 
-Json roll_out_json(const Robot& robot, const RollOutResult& result, const DriveConstants& drive, const FrictionRemarks& remarks) {
+Json roll_out_json(const robot::Robot& robot, const friction::RollOutResult& result, const robot::DriveConstants& drive,
+                   const FrictionRemarks& remarks) {
   Json wheels = Json::array();
   for (std::size_t i = 0; i < result.wheel_damping_Nm_s_per_rad.size(); ++i) {
-    const Estimate& mechanical = result.wheel_damping_Nm_s_per_rad[i];
+    const friction::Estimate& mechanical = result.wheel_damping_Nm_s_per_rad[i];
     std::size_t used = 0;
-    for (const RollOutRun& run : result.runs) {
+    for (const friction::RollOutRun& run : result.runs) {
       used += run.wheel < 0 || run.wheel == static_cast<int>(i) ? static_cast<std::size_t>(run.rows_used) : 0U;
     }
     wheels.push_back({{"index", i + 1},
                       {"damping_V_s_per_rad", json(damping_with_back_emf(drive, mechanical))},
-                      {"a_V", json(Estimate{})},
-                      {"b_V", json(Estimate{})},
-                      {"phase_rad", json(Estimate{})},
+                      {"a_V", json(friction::Estimate{})},
+                      {"b_V", json(friction::Estimate{})},
+                      {"phase_rad", json(friction::Estimate{})},
                       {"wheel_damping_Nm_s_per_rad", json(mechanical)},
                       {"wheel_torque_Nm", json(result.wheel_torque_Nm[i])},
                       {"r2", Json()},

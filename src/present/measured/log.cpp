@@ -15,12 +15,12 @@ constexpr std::size_t kShownRanges = 6;
 constexpr std::size_t kShownGaps = 8;
 constexpr int kDigits = 4;
 
-std::string list_of(const std::vector<LineRange>& lines, std::size_t most) {
+std::string list_of(const std::vector<recording::LineRange>& lines, std::size_t most) {
   std::vector<std::string> words;
-  for (const LineRange& range : lines) {
+  for (const recording::LineRange& range : lines) {
     if (words.size() == most) {
       words.push_back(fmt::format("and {} more range{}{}", lines.size() - most, lines.size() - most == 1 ? "" : "s",
-                                  lines.size() == LeftOut::kMostRanges ? " at least" : ""));
+                                  lines.size() == recording::LeftOut::kMostRanges ? " at least" : ""));
       break;
     }
     words.push_back(range.first == range.last ? fmt::format("{}", range.first) : fmt::format("{}-{}", range.first, range.last));
@@ -30,20 +30,20 @@ std::string list_of(const std::vector<LineRange>& lines, std::size_t most) {
 
 std::string plural(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
 
-std::string sampling_text(const DataQuality& quality) {
-  const Sampling& sampling = quality.sampling;
-  return fmt::format("{} s in all, a row every {} s, jitter {} s", significant(sampling.duration_s, kDigits),
-                     significant(sampling.usual_period_s, 3),
-                     sampling.jitter_s < 1e-6 * sampling.usual_period_s ? "0" : significant(sampling.jitter_s, 2));
+std::string sampling_text(const recording::DataQuality& quality) {
+  const recording::Sampling& sampling = quality.sampling;
+  return fmt::format("{} s in all, a row every {} s, jitter {} s", base::significant(sampling.duration_s, kDigits),
+                     base::significant(sampling.usual_period_s, 3),
+                     sampling.jitter_s < 1e-6 * sampling.usual_period_s ? "0" : base::significant(sampling.jitter_s, 2));
 }
 
-std::string runs_text(const DataQuality& quality) {
+std::string runs_text(const recording::DataQuality& quality) {
   if (quality.gaps.empty()) {
     return "";
   }
   std::vector<std::string> begins;
   for (std::size_t i = 0; i < std::min(kShownGaps, quality.gaps.size()); ++i) {
-    begins.push_back(fmt::format("{} (after {} s)", quality.gaps[i].line, significant(quality.gaps[i].duration_s, 3)));
+    begins.push_back(fmt::format("{} (after {} s)", quality.gaps[i].line, base::significant(quality.gaps[i].duration_s, 3)));
   }
   if (quality.gaps.size() > kShownGaps) {
     begins.push_back(fmt::format("and {} more", quality.runs - 1 - kShownGaps));
@@ -51,15 +51,16 @@ std::string runs_text(const DataQuality& quality) {
   return fmt::format("{}; they begin at line {}", plural(quality.runs, "run"), fmt::join(begins, ", "));
 }
 
-std::string clock_text(const ClockOffset& offset) {
+std::string clock_text(const recording::ClockOffset& offset) {
   if (!offset.delay_s) {
     return fmt::format("{} against {}: not determinable, {}", offset.temperature, offset.heat_input, offset.why_not);
   }
   return fmt::format("{} follows {} by {:+.2g} s ± {} s (standard error); a clock offset and a sensor's lag are indistinguishable",
-                     offset.temperature, offset.heat_input, *offset.delay_s, significant(offset.delay_uncertainty_s, 2));
+                     offset.temperature, offset.heat_input, *offset.delay_s, base::significant(offset.delay_uncertainty_s, 2));
 }
 
-Table summary_table(const std::string& title, const Recording& recording, const RecordingReport& report, const DataQuality& quality) {
+Table summary_table(const std::string& title, const recording::Recording& recording, const recording::RecordingReport& report,
+                    const recording::DataQuality& quality) {
   Table table = labelled_table(title);
   add_labelled(table, "rows",
                fmt::format("{} of {} kept, {:.1f} MB", plural(report.rows_kept, "row"), report.rows_in_file,
@@ -70,13 +71,13 @@ Table summary_table(const std::string& title, const Recording& recording, const 
   }
   add_labelled(table, "sampling", sampling_text(quality));
   add_labelled(table, "runs", runs_text(quality));
-  for (const ClockOffset& offset : quality.clock_offsets) {
+  for (const recording::ClockOffset& offset : quality.clock_offsets) {
     add_labelled(table, "clock", clock_text(offset));
   }
   return table;
 }
 
-Table channel_table(const DataQuality& quality) {
+Table channel_table(const recording::DataQuality& quality) {
   Table table{.columns = {{"channel", "", 0, Alignment::left},
                           {"samples", "", 2},
                           {"left out", "", 1},
@@ -86,21 +87,21 @@ Table channel_table(const DataQuality& quality) {
                           {"noise", "", 3},
                           {"kind", "", 5, Alignment::left}},
               .rows = {}};
-  for (const ChannelQuality& channel : quality.channels) {
+  for (const recording::ChannelQuality& channel : quality.channels) {
     table.rows.push_back(
         {{channel.quantity.key},
          {fmt::format("{}", channel.samples)},
          {fmt::format("{}", channel.left_out), channel.left_out > 0 ? Tone::undecided : Tone::neutral},
-         {significant(channel.low, kDigits)},
-         {significant(channel.high, kDigits)},
-         {channel.step > 0.0 ? significant(channel.step, 2) : "–"},
-         {significant(channel.noise, 2)},
-         {channel.quantity.key.starts_with("wheel_") ? "of a robot's wheel" : std::string(to_string(channel.quantity.kind))}});
+         {base::significant(channel.low, kDigits)},
+         {base::significant(channel.high, kDigits)},
+         {channel.step > 0.0 ? base::significant(channel.step, 2) : "–"},
+         {base::significant(channel.noise, 2)},
+         {channel.quantity.key.starts_with("wheel_") ? "of a robot's wheel" : std::string(recording::to_string(channel.quantity.kind))}});
   }
   return table;
 }
 
-void add_fitness(Document& document, const std::string& name, const char* what, const Fitness& fitness) {
+void add_fitness(Document& document, const std::string& name, const char* what, const recording::Fitness& fitness) {
   document.headline.push_back({fitness.is_good() ? fmt::format("{}: usable for {}.", name, what)
                                                  : fmt::format("{}: not usable for {}: {}.", name, what, fmt::join(fitness.lacks, "; ")),
                                fitness.is_good() ? Tone::good : Tone::bad});
@@ -108,17 +109,18 @@ void add_fitness(Document& document, const std::string& name, const char* what, 
 
 }  // namespace
 
-std::vector<std::string> left_out_sentences(const RecordingReport& report) {
+std::vector<std::string> left_out_sentences(const recording::RecordingReport& report) {
   std::vector<std::string> sentences;
   for (const auto& [what, entry] : report.left_out) {
-    sentences.push_back(fmt::format(
-        "{}: {}; line {}{}", what.first.empty() ? plural(entry.count, "row") : plural(entry.count, "sample") + " of " + what.first,
-        to_string(what.second), list_of(entry.lines, kShownRanges), entry.example.empty() ? "" : fmt::format(" (\"{}\")", entry.example)));
+    sentences.push_back(fmt::format("{}: {}; line {}{}",
+                                    what.first.empty() ? plural(entry.count, "row") : plural(entry.count, "sample") + " of " + what.first,
+                                    recording::to_string(what.second), list_of(entry.lines, kShownRanges),
+                                    entry.example.empty() ? "" : fmt::format(" (\"{}\")", entry.example)));
   }
   return sentences;
 }
 
-std::vector<std::string> reading_words(std::span<const LogReading> readings) {
+std::vector<std::string> reading_words(std::span<const recording::LogReading> readings) {
   std::vector<std::string> all;
   const auto add = [&all](std::string words) {
     if (std::ranges::find(all, words) == all.end()) {
@@ -136,11 +138,13 @@ std::vector<std::string> reading_words(std::span<const LogReading> readings) {
   return all;
 }
 
-void add_log(Document& document, const Recording& recording, const RecordingReport& report, const DataQuality& quality) {
+void add_log(Document& document, const recording::Recording& recording, const recording::RecordingReport& report,
+             const recording::DataQuality& quality) {
   // A thermal log without wheel channels gets no remark about wheels, and a drive log none about heat.
   const auto has = [&](auto is_of) { return std::ranges::any_of(recording.channels, is_of); };
-  const bool has_wheels = has([](const Channel& channel) { return channel.quantity.key.starts_with("wheel_"); });
-  const bool has_temperatures = has([](const Channel& channel) { return channel.quantity.kind == QuantityKind::temperature; });
+  const bool has_wheels = has([](const recording::Channel& channel) { return channel.quantity.key.starts_with("wheel_"); });
+  const bool has_temperatures =
+      has([](const recording::Channel& channel) { return channel.quantity.kind == recording::QuantityKind::temperature; });
   const std::string name = recording.file.string();
   if (has_temperatures || !quality.drive.is_good()) {
     add_fitness(document, name, "thermal models", quality.thermal);

@@ -14,12 +14,13 @@
 namespace heatsoak::present {
 
 /// Adds one log to the document. `recording` holds at least the data that the assessment keeps.
-void add_log(Document& document, const Recording& recording, const RecordingReport& report, const DataQuality& quality);
+void add_log(Document& document, const recording::Recording& recording, const recording::RecordingReport& report,
+             const recording::DataQuality& quality);
 
 /// Returns the rejected samples, one sentence per channel and reason: "798 samples of winding_C: saturated; line 12-14, 20".
-std::vector<std::string> left_out_sentences(const RecordingReport& report);
+std::vector<std::string> left_out_sentences(const recording::RecordingReport& report);
 
 /// Returns what the reader did with the logs, one sentence each. Parts of one log give the same sentences; they are listed once.
-std::vector<std::string> reading_words(std::span<const LogReading> readings);
+std::vector<std::string> reading_words(std::span<const recording::LogReading> readings);
 
 }  // namespace heatsoak::present

@@ -51,26 +51,29 @@ std::size_t wheel_of(const std::string& key) {
   return std::max<std::size_t>(number, 1) - 1;
 }
 
-bool is_temperature(const Channel& channel) {
-  return channel.quantity.kind == QuantityKind::temperature || channel.quantity.kind == QuantityKind::surroundings;
+bool is_temperature(const recording::Channel& channel) {
+  return channel.quantity.kind == recording::QuantityKind::temperature || channel.quantity.kind == recording::QuantityKind::surroundings;
 }
 
-std::vector<ChannelGroup> groups_of(const Recording& recording) {
+std::vector<ChannelGroup> groups_of(const recording::Recording& recording) {
   std::vector<ChannelGroup> groups;
   std::vector<std::string> names;
-  for (const QuantityKind kind : {QuantityKind::temperature, QuantityKind::surroundings, QuantityKind::heat_input, QuantityKind::signal}) {
+  for (const recording::QuantityKind kind : {recording::QuantityKind::temperature, recording::QuantityKind::surroundings,
+                                             recording::QuantityKind::heat_input, recording::QuantityKind::signal}) {
     for (std::size_t place = 0; place < recording.channels.size(); ++place) {
-      const Channel& channel = recording.channels[place];
+      const recording::Channel& channel = recording.channels[place];
       if (channel.quantity.kind != kind) {
         continue;
       }
       const std::string stem = stem_of(channel.quantity.key);
       const bool is_wheel = stem != channel.quantity.key;
-      const std::string name = is_temperature(channel) ? "temperature" : is_wheel ? stem : channel.quantity.unit + to_string(kind).data();
+      const std::string name = is_temperature(channel) ? "temperature"
+                               : is_wheel              ? stem
+                                                       : channel.quantity.unit + recording::to_string(kind).data();
       const auto found = std::ranges::find(names, name);
       if (found == names.end()) {
         names.push_back(name);
-        const std::string unit = channel.quantity.unit.empty() ? "ratio" : unit_for_display(channel.quantity.unit);
+        const std::string unit = channel.quantity.unit.empty() ? "ratio" : base::unit_for_display(channel.quantity.unit);
         groups.push_back({is_temperature(channel) ? "temperatures" : is_wheel ? stem : "", unit, is_wheel, {place}});
       } else {
         groups[static_cast<std::size_t>(found - names.begin())].channels.push_back(place);
@@ -91,7 +94,7 @@ std::vector<ChannelGroup> groups_of(const Recording& recording) {
 
 class LogChart {
  public:
-  LogChart(const CondensedRecording& condensed, const DataQuality& quality, const RecordingReport& report)
+  LogChart(const recording::CondensedRecording& condensed, const recording::DataQuality& quality, const recording::RecordingReport& report)
       : condensed_(condensed),
         recording_(condensed.rows()),
         quality_(quality),
@@ -99,8 +102,8 @@ class LogChart {
         duration_s_(quality.sampling.duration_s),
         scale_(scale_for(duration_s_)) {}
 
-  Chart draw() const {
-    Chart chart;
+  report::Chart draw() const {
+    report::Chart chart;
     chart.title = recording_.name + (recording_.motor.empty() ? "" : ", motor " + recording_.motor);
     chart.subtitle = subtitle();
     chart.x_label = scale_.label;
@@ -122,8 +125,8 @@ class LogChart {
                               quality_.runs == 1 ? "" : "s", report_.left_out.empty() ? "" : "; shaded: left out");
   }
 
-  ChartPanel panel(const ChannelGroup& group, std::set<std::string>& named) const {
-    ChartPanel result{.title = group.title, .y_label = group.y_label, .curves = {}, .bands = {}, .levels = {}};
+  report::ChartPanel panel(const ChannelGroup& group, std::set<std::string>& named) const {
+    report::ChartPanel result{.title = group.title, .y_label = group.y_label, .curves = {}, .bands = {}, .levels = {}};
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (std::size_t i = 0; i < group.channels.size(); ++i) {
@@ -145,8 +148,8 @@ class LogChart {
     return result;
   }
 
-  [[nodiscard]] ChartCurve curve(std::size_t place, const std::string& name, int color, bool dashed) const {
-    ChartCurve result{name, {}, {}, color, dashed};
+  [[nodiscard]] report::ChartCurve curve(std::size_t place, const std::string& name, int color, bool dashed) const {
+    report::ChartCurve result{name, {}, {}, color, dashed};
     const std::vector<double>& low = condensed_.low(place);
     const std::vector<double>& high = condensed_.high(place);
     const auto add = [&](std::size_t row, double value) {
@@ -172,7 +175,7 @@ class LogChart {
       const bool is_here = what.first.empty() || std::ranges::any_of(group.channels, [this, &key = what.first](std::size_t place) {
                              return recording_.channels[place].quantity.key == key;
                            });
-      for (const LineRange& lines : is_here ? entry.lines : std::vector<LineRange>{}) {
+      for (const recording::LineRange& lines : is_here ? entry.lines : std::vector<recording::LineRange>{}) {
         const double begin_s = time_of(lines.first);
         const double width_s = std::max(time_of(lines.last + 1) - begin_s, kNarrowestMark_share * duration_s_);
         found.emplace_back(begin_s * scale_.factor, (begin_s + width_s) * scale_.factor);
@@ -196,17 +199,18 @@ class LogChart {
                                         : recording_.time_s[static_cast<std::size_t>(row - recording_.line.begin())];
   }
 
-  const CondensedRecording& condensed_;
-  const Recording& recording_;
-  const DataQuality& quality_;
-  const RecordingReport& report_;
+  const recording::CondensedRecording& condensed_;
+  const recording::Recording& recording_;
+  const recording::DataQuality& quality_;
+  const recording::RecordingReport& report_;
   double duration_s_;
   TimeScale scale_;
 };
 
 }  // namespace
 
-Chart log_chart(const CondensedRecording& condensed, const DataQuality& quality, const RecordingReport& report) {
+report::Chart log_chart(const recording::CondensedRecording& condensed, const recording::DataQuality& quality,
+                        const recording::RecordingReport& report) {
   return LogChart(condensed, quality, report).draw();
 }
 

@@ -8,6 +8,7 @@
 
 namespace heatsoak::present {
 
-Chart log_chart(const CondensedRecording& condensed, const DataQuality& quality, const RecordingReport& report);
+report::Chart log_chart(const recording::CondensedRecording& condensed, const recording::DataQuality& quality,
+                        const recording::RecordingReport& report);
 
 }  // namespace heatsoak::present

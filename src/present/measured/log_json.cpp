@@ -5,11 +5,11 @@
 namespace heatsoak::present {
 namespace {
 
-Json channels_json(const DataQuality& quality) {
+Json channels_json(const recording::DataQuality& quality) {
   Json channels = Json::array();
-  for (const ChannelQuality& channel : quality.channels) {
+  for (const recording::ChannelQuality& channel : quality.channels) {
     channels.push_back({{"name", channel.quantity.key},
-                        {"kind", to_string(channel.quantity.kind)},
+                        {"kind", recording::to_string(channel.quantity.kind)},
                         {"unit", channel.quantity.unit},
                         {"samples", channel.samples},
                         {"left_out", channel.left_out},
@@ -21,15 +21,15 @@ Json channels_json(const DataQuality& quality) {
   return channels;
 }
 
-Json left_out_json(const RecordingReport& report) {
+Json left_out_json(const recording::RecordingReport& report) {
   Json all = Json::array();
   for (const auto& [what, entry] : report.left_out) {
     Json lines = Json::array();
-    for (const LineRange& range : entry.lines) {
+    for (const recording::LineRange& range : entry.lines) {
       lines.push_back({range.first, range.last});
     }
     all.push_back({{"channel", what.first.empty() ? Json(nullptr) : Json(what.first)},
-                   {"reason", to_string(what.second)},
+                   {"reason", recording::to_string(what.second)},
                    {"count", entry.count},
                    {"lines", lines},
                    {"example", entry.example}});
@@ -37,9 +37,9 @@ Json left_out_json(const RecordingReport& report) {
   return all;
 }
 
-Json clocks_json(const DataQuality& quality) {
+Json clocks_json(const recording::DataQuality& quality) {
   Json clocks = Json::array();
-  for (const ClockOffset& offset : quality.clock_offsets) {
+  for (const recording::ClockOffset& offset : quality.clock_offsets) {
     clocks.push_back({{"temperature", offset.temperature},
                       {"heat_input", offset.heat_input},
                       {"delay_s", offset.delay_s ? Json(*offset.delay_s) : Json()},
@@ -51,9 +51,9 @@ Json clocks_json(const DataQuality& quality) {
 
 }  // namespace
 
-Json log_json(const Recording& recording, const RecordingReport& report, const DataQuality& quality) {
+Json log_json(const recording::Recording& recording, const recording::RecordingReport& report, const recording::DataQuality& quality) {
   Json gaps = Json::array();
-  for (const Gap& gap : quality.gaps) {
+  for (const recording::Gap& gap : quality.gaps) {
     gaps.push_back({{"line", gap.line}, {"begin_s", gap.begin_s}, {"duration_s", gap.duration_s}});
   }
   return {{"file", recording.file.string()},
@@ -79,7 +79,8 @@ Json log_json(const Recording& recording, const RecordingReport& report, const D
 
 Json logs_json(const std::vector<Json>& logs) { return {{"schema", "heatsoak.log/1"}, {"logs", logs}}; }
 
-Json conversion_json(const std::filesystem::path& file, const std::string& out, const Recording& recording, const RecordingReport& report) {
+Json conversion_json(const std::filesystem::path& file, const std::string& out, const recording::Recording& recording,
+                     const recording::RecordingReport& report) {
   return {{"schema", "heatsoak.log_convert/1"},  {"file", file.string()},         {"out", out},
           {"rows_in_file", report.rows_in_file}, {"rows_kept", report.rows_kept}, {"channels", recording.channels.size()}};
 }

@@ -13,12 +13,13 @@
 namespace heatsoak::present {
 
 /// `recording` holds at least the data that the assessment keeps.
-Json log_json(const Recording& recording, const RecordingReport& report, const DataQuality& quality);
+Json log_json(const recording::Recording& recording, const recording::RecordingReport& report, const recording::DataQuality& quality);
 
 /// Returns the answer of `log inspect`; `logs` are results of log_json().
 Json logs_json(const std::vector<Json>& logs);
 
 /// Returns the answer of `log convert`.
-Json conversion_json(const std::filesystem::path& file, const std::string& out, const Recording& recording, const RecordingReport& report);
+Json conversion_json(const std::filesystem::path& file, const std::string& out, const recording::Recording& recording,
+                     const recording::RecordingReport& report);
 
 }  // namespace heatsoak::present

@@ -11,46 +11,47 @@
 namespace heatsoak::present {
 namespace {
 
-std::string say(const UnseenCondition& of) {
+std::string say(const calibration::UnseenCondition& of) {
   return fmt::format(
       "The forecast of {0} may be far off: its run has {1}={2}, the model was fitted to runs {3}. Calibrate with a run under {1}={2}.",
       of.recording, of.key, of.value,
       of.seen.empty() ? fmt::format("that do not state {}", of.key) : fmt::format("with {}", fmt::join(of.seen, ", ")));
 }
 
-std::string say(const Extrapolation& of) {
+std::string say(const calibration::Extrapolation& of) {
   const std::string_view input = of.channel == "ambient_C"         ? "an ambient temperature"
                                  : of.channel == "speed_rad_per_s" ? "a speed"
                                                                    : "a current";
   return fmt::format("The forecast of {} extrapolates: it has {} of {} {}, the fitted runs had {} to {} {}.", of.recording, input,
-                     significant(of.value, 3), of.unit, significant(of.low, 3), significant(of.high, 3), of.unit);
+                     base::significant(of.value, 3), of.unit, base::significant(of.low, 3), base::significant(of.high, 3), of.unit);
 }
 
-std::string say(const FittedRun& of) {
+std::string say(const calibration::FittedRun& of) {
   return fmt::format("the error of {} is not a forecast error, because the model was fitted to this run", of.recording);
 }
 
-std::string say(const OutsideTraining& of) {
+std::string say(const calibration::OutsideTraining& of) {
   return std::visit([](const auto& each) { return say(each); }, of);
 }
 
 }  // namespace
 
-std::vector<std::string> warning_words(const PredictionAnswer& answer) {
+std::vector<std::string> warning_words(const calibration::PredictionAnswer& answer) {
   std::vector<std::string> all;
-  for (const PredictionWarning& warning : answer.warnings) {
+  for (const calibration::PredictionWarning& warning : answer.warnings) {
     all.push_back(std::visit([](const auto& each) { return say(each); }, warning));
   }
   return all;
 }
 
-std::string signal_words(const PredictedSignal& signal) { return signal.signal.substr(0, signal.signal.rfind('_')); }
+std::string signal_words(const calibration::PredictedSignal& signal) { return signal.signal.substr(0, signal.signal.rfind('_')); }
 
-Document prediction_document(const Motor& motor, const PredictionAnswer& answer, std::span<const LogReading> readings) {
-  const Prediction& prediction = answer.prediction;
+Document prediction_document(const motor::Motor& motor, const calibration::PredictionAnswer& answer,
+                             std::span<const recording::LogReading> readings) {
+  const calibration::Prediction& prediction = answer.prediction;
   Document document;
-  const PredictedSignal* worst = nullptr;
-  const PredictedRun* worst_run = nullptr;
+  const calibration::PredictedSignal* worst = nullptr;
+  const calibration::PredictedRun* worst_run = nullptr;
   Table table{.columns = {{"run", "", 0, Alignment::left},
                           {"signal", "", 0, Alignment::left},
                           {"rms error", "K", 0},
@@ -58,8 +59,8 @@ Document prediction_document(const Motor& motor, const PredictionAnswer& answer,
                           {"in band", "%", 0},
                           {"samples", "", 1}},
               .rows = {}};
-  for (const PredictedRun& run : prediction.runs) {
-    for (const PredictedSignal& each : run.signals) {
+  for (const calibration::PredictedRun& run : prediction.runs) {
+    for (const calibration::PredictedSignal& each : run.signals) {
       table.rows.push_back({{run.name},
                             {signal_words(each)},
                             {fmt::format("{:.2f}", each.rmse_K)},
@@ -75,7 +76,7 @@ Document prediction_document(const Motor& motor, const PredictionAnswer& answer,
   if (worst != nullptr) {
     document.headline.push_back(
         {fmt::format("{} forecasts {} run{}; the largest error is {} K rms, of the {} in {}.", motor.id, prediction.runs.size(),
-                     prediction.runs.size() == 1 ? "" : "s", significant(worst->rmse_K, 2), signal_words(*worst), worst_run->name)});
+                     prediction.runs.size() == 1 ? "" : "s", base::significant(worst->rmse_K, 2), signal_words(*worst), worst_run->name)});
   }
   document.paragraphs.emplace_back(
       "Each run is predicted from its first temperatures and its measured inputs. A correct 90 % band contains 90 % of the samples.");

@@ -12,16 +12,18 @@
 namespace heatsoak::present {
 
 /// Returns the name of a predicted signal without its unit.
-std::string signal_words(const PredictedSignal& signal);
+std::string signal_words(const calibration::PredictedSignal& signal);
 
 /// Warnings about the model's validity come first, and the reader's remarks of `readings` last.
-Document prediction_document(const Motor& motor, const PredictionAnswer& answer, std::span<const LogReading> readings);
+Document prediction_document(const motor::Motor& motor, const calibration::PredictionAnswer& answer,
+                             std::span<const recording::LogReading> readings);
 
 /// Returns the answer in the schema heatsoak.prediction/1.
-Json prediction_json(const Motor& motor, const PredictionAnswer& answer, std::span<const LogReading> readings);
+Json prediction_json(const motor::Motor& motor, const calibration::PredictionAnswer& answer,
+                     std::span<const recording::LogReading> readings);
 /// Returns the warnings as sentences, in the order of the logs.
-std::vector<std::string> warning_words(const PredictionAnswer& answer);
+std::vector<std::string> warning_words(const calibration::PredictionAnswer& answer);
 /// Returns one JSON object per run, with the keys of heatsoak.prediction/1.
-Json runs_json(const std::vector<PredictedRun>& runs);
+Json runs_json(const std::vector<calibration::PredictedRun>& runs);
 
 }  // namespace heatsoak::present

@@ -7,19 +7,20 @@
 
 namespace heatsoak::present {
 
-Chart prediction_chart(const Motor& motor, const Prediction& prediction) {
-  Chart chart{.title = fmt::format("{}: prediction", motor.name),
-              .subtitle = "from the first temperatures and the measured inputs of each run; 90 % of the samples are expected in the band",
-              .x_label = "time / min"};
-  for (const PredictedRun& run : prediction.runs) {
+report::Chart prediction_chart(const motor::Motor& motor, const calibration::Prediction& prediction) {
+  report::Chart chart{
+      .title = fmt::format("{}: prediction", motor.name),
+      .subtitle = "from the first temperatures and the measured inputs of each run; 90 % of the samples are expected in the band",
+      .x_label = "time / min"};
+  for (const calibration::PredictedRun& run : prediction.runs) {
     std::vector<double> time_min;
     for (const double time_s : run.time_s) {
       time_min.push_back((time_s - run.time_s.front()) / 60.0);
     }
-    for (const PredictedSignal& each : run.signals) {
-      ChartPanel panel;
-      panel.title = fmt::format("{}, {}: {} K rms, {:.0f} % within the band", run.name, signal_words(each), significant(each.rmse_K, 2),
-                                100.0 * each.coverage_share);
+    for (const calibration::PredictedSignal& each : run.signals) {
+      report::ChartPanel panel;
+      panel.title = fmt::format("{}, {}: {} K rms, {:.0f} % within the band", run.name, signal_words(each),
+                                base::significant(each.rmse_K, 2), 100.0 * each.coverage_share);
       panel.y_label = signal_words(each) + " temperature / °C";
       panel.bands = {{.name = "90 % band", .x = time_min, .low = each.low_C, .high = each.high_C, .color_index = 1}};
       panel.curves = {{.name = "measured", .x = time_min, .y = each.measured_C, .color_index = 0},

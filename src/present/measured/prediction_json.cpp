@@ -5,12 +5,12 @@
 
 namespace heatsoak::present {
 
-Json runs_json(const std::vector<PredictedRun>& runs) {
+Json runs_json(const std::vector<calibration::PredictedRun>& runs) {
   Json all = Json::array();
-  for (const PredictedRun& run : runs) {
+  for (const calibration::PredictedRun& run : runs) {
     Json error = Json::object();
     Json coverage = Json::object();
-    for (const PredictedSignal& each : run.signals) {
+    for (const calibration::PredictedSignal& each : run.signals) {
       error[each.signal] = {{"rmse_K", rounded(each.rmse_K, 4)}, {"max_abs_K", rounded(each.max_abs_K, 4)}, {"samples", each.samples}};
       coverage[each.signal] = rounded(each.coverage_share, 4);
     }
@@ -19,7 +19,8 @@ Json runs_json(const std::vector<PredictedRun>& runs) {
   return all;
 }
 
-Json prediction_json(const Motor& motor, const PredictionAnswer& answer, std::span<const LogReading> readings) {
+Json prediction_json(const motor::Motor& motor, const calibration::PredictionAnswer& answer,
+                     std::span<const recording::LogReading> readings) {
   std::vector<std::string> notes = warning_words(answer);
   for (const std::vector<std::string>& more : {reading_words(readings), answer.admission.notes, answer.prediction.notes}) {
     notes.insert(notes.end(), more.begin(), more.end());

@@ -9,14 +9,14 @@
 
 namespace heatsoak::present {
 
-std::string typical_size(const RunDeviationType& type) {
+std::string typical_size(const estimation::RunDeviationType& type) {
   const std::string_view unit = type.size.unit;
-  return fmt::format("{}{}{}", significant(type.usual, 3), unit.empty() ? "" : " ", unit_for_display(unit));
+  return fmt::format("{}{}{}", base::significant(type.usual, 3), unit.empty() ? "" : " ", base::unit_for_display(unit));
 }
 
-std::string place_of(const RunDeviationType& type) { return fmt::format("at the {}, in runs of one condition", type.node); }
+std::string place_of(const estimation::RunDeviationType& type) { return fmt::format("at the {}, in runs of one condition", type.node); }
 
-Document run_deviation_description(const RunDeviationType& type) {
+Document run_deviation_description(const estimation::RunDeviationType& type) {
   const std::array lines{LabelledWords{"equation", std::string(type.equation)}, LabelledWords{"typical size", typical_size(type)},
                          LabelledWords{"confounded", std::string(type.confounded_with)},
                          LabelledWords{"experiment", std::string(type.experiment)}};

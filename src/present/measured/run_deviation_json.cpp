@@ -6,7 +6,7 @@
 
 namespace heatsoak::present {
 
-Json run_deviation_json(const RunDeviationType& type) {
+Json run_deviation_json(const estimation::RunDeviationType& type) {
   const std::string typical = typical_size(type);
   const std::array lines{TopicLine{"equation", type.equation}, TopicLine{"typical", typical}, TopicLine{"look_alike", type.confounded_with},
                          TopicLine{"experiment", type.experiment}};

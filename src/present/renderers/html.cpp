@@ -6,18 +6,8 @@
 #include "base/xml_text.h"
 #include "present/renderer.h"
 
-namespace heatsoak::renderers {
+namespace heatsoak::present::renderers {
 namespace {
-
-using present::Alignment;
-using present::Document;
-using present::Listing;
-using present::Note;
-using present::RenderOptions;
-using present::Severity;
-using present::Table;
-using present::Text;
-using present::Tone;
 
 constexpr std::string_view kStyle =
     "body{font:15px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:0 1em}table{border-collapse:collapse;margin:1em 0}"
@@ -27,7 +17,7 @@ constexpr std::string_view kStyle =
     "pre{background:#f6f8fa;padding:1em}";
 
 /// Returns the text with XML entities; control characters become '?'.
-std::string in_html(std::string_view text) { return xml_text(text); }
+std::string in_html(std::string_view text) { return base::xml_text(text); }
 
 std::string_view class_of(Tone tone) {
   constexpr std::array<std::string_view, 4> kClasses{"", "good", "undecided", "bad"};
@@ -37,9 +27,9 @@ std::string_view class_of(Tone tone) {
 std::string table_of(const Table& table) {
   std::string text = table.title.empty() ? "" : fmt::format("<h2>{}</h2>\n", in_html(table.title));
   text += "<table>\n";
-  if (!std::ranges::all_of(table.columns, [](const present::Column& each) { return each.name.empty(); })) {
+  if (!std::ranges::all_of(table.columns, [](const Column& each) { return each.name.empty(); })) {
     text += "<tr>";
-    for (const present::Column& column : table.columns) {
+    for (const Column& column : table.columns) {
       text += fmt::format("<th{}>{}{}</th>", column.alignment == Alignment::right ? " class=\"number\"" : "", in_html(column.name),
                           column.unit.empty() ? "" : fmt::format(" / {}", in_html(column.unit)));
     }
@@ -71,7 +61,7 @@ std::string render(const Document& document, const RenderOptions& /*options*/) {
     text += table_of(table);
   }
   text += document.notes.empty() ? "" : "<ul>\n";
-  for (const Note& note : present::by_urgency(document.notes)) {
+  for (const Note& note : by_urgency(document.notes)) {
     text += fmt::format("<li>{}{}</li>\n", note.severity == Severity::warning ? "<b>warning:</b> " : "", in_html(note.words));
   }
   text += document.notes.empty() ? "" : "</ul>\n";
@@ -87,8 +77,8 @@ std::string render(const Document& document, const RenderOptions& /*options*/) {
 
 }  // namespace
 
-present::Renderer html() {
+Renderer html() {
   return {.name = {}, .file_ending = ".html", .summary = "one HTML page with every column and every note", .render = render};
 }
 
-}  // namespace heatsoak::renderers
+}  // namespace heatsoak::present::renderers

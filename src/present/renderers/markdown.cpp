@@ -2,17 +2,8 @@
 
 #include "present/renderer.h"
 
-namespace heatsoak::renderers {
+namespace heatsoak::present::renderers {
 namespace {
-
-using present::Alignment;
-using present::Document;
-using present::Listing;
-using present::Note;
-using present::RenderOptions;
-using present::Severity;
-using present::Table;
-using present::Text;
 
 /// Escapes characters that Markdown would interpret, and replaces control characters by '?'.
 std::string escaped(std::string_view text) {
@@ -31,7 +22,7 @@ std::string text_of(const Table& table) {
   std::string text = table.title.empty() ? "" : fmt::format("### {}\n\n", escaped(table.title));
   std::string rule = "|";
   text += "|";
-  for (const present::Column& column : table.columns) {
+  for (const Column& column : table.columns) {
     text += fmt::format(" {}{} |", escaped(column.name), column.unit.empty() ? "" : fmt::format(" / {}", escaped(column.unit)));
     rule += column.alignment == Alignment::right ? "---:|" : "---|";
   }
@@ -57,7 +48,7 @@ std::string render(const Document& document, const RenderOptions& /*options*/) {
   for (const Table& table : document.tables) {
     text += text_of(table);
   }
-  for (const Note& note : present::by_urgency(document.notes)) {
+  for (const Note& note : by_urgency(document.notes)) {
     text += fmt::format("- {}{}\n", note.severity == Severity::warning ? "warning: " : "", escaped(note.words));
   }
   for (const std::string& file : document.files) {
@@ -72,8 +63,6 @@ std::string render(const Document& document, const RenderOptions& /*options*/) {
 
 }  // namespace
 
-present::Renderer markdown() {
-  return {.name = {}, .file_ending = ".md", .summary = "Markdown with every column and every note", .render = render};
-}
+Renderer markdown() { return {.name = {}, .file_ending = ".md", .summary = "Markdown with every column and every note", .render = render}; }
 
-}  // namespace heatsoak::renderers
+}  // namespace heatsoak::present::renderers

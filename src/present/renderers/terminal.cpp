@@ -6,23 +6,8 @@
 #include "present/renderer.h"
 #include "present/wrap.h"
 
-namespace heatsoak::renderers {
+namespace heatsoak::present::renderers {
 namespace {
-
-using present::Alignment;
-using present::Column;
-using present::Document;
-using present::leading;
-using present::Listing;
-using present::Note;
-using present::RenderOptions;
-using present::Severity;
-using present::Table;
-using present::Text;
-using present::Tone;
-using present::trailing;
-using present::width_of;
-using present::wrapped;
 
 constexpr std::size_t kGap = 2;  ///< characters between columns
 
@@ -196,14 +181,14 @@ std::string text_of(const Listing& listing, const RenderOptions& options) {
   std::ranges::replace_if(
       lines, [](unsigned char c) { return (c < ' ' && c != '\n') || c == 0x7f; }, '?');
   if (options.is_terminal && listing.is_prose) {
-    lines = present::folded(lines, options.width);
+    lines = folded(lines, options.width);
   }
   return (listing.title.empty() ? "" : wrapped(printable(listing.title), "", options.width) + "\n") + lines;
 }
 
 std::string text_of(const std::vector<Note>& notes, const RenderOptions& options) {
-  const std::vector<Note> sorted = present::by_urgency(notes);
-  const std::size_t most = options.explains ? sorted.size() : std::min(sorted.size(), present::kMostNotes);
+  const std::vector<Note> sorted = by_urgency(notes);
+  const std::size_t most = options.explains ? sorted.size() : std::min(sorted.size(), kMostNotes);
   std::string text;
   for (std::size_t i = 0; i < most; ++i) {
     const bool is_warning = sorted[i].severity == Severity::warning;
@@ -228,7 +213,7 @@ std::string text_of(const std::vector<Text>& headline, const RenderOptions& opti
 
 std::string render(const Document& document, const RenderOptions& given) {
   RenderOptions options = given;
-  options.width = std::max(options.width, present::kLeastWidth);
+  options.width = std::max(options.width, kLeastWidth);
   std::string text = text_of(document.headline, options);
   if (options.is_quiet) {
     return document.headline.empty() ? names_in(document) : text;
@@ -252,6 +237,6 @@ std::string render(const Document& document, const RenderOptions& given) {
 
 }  // namespace
 
-present::Renderer terminal() { return {.name = {}, .file_ending = {}, .summary = "plain text, as wide as the terminal", .render = render}; }
+Renderer terminal() { return {.name = {}, .file_ending = {}, .summary = "plain text, as wide as the terminal", .render = render}; }
 
-}  // namespace heatsoak::renderers
+}  // namespace heatsoak::present::renderers

@@ -39,7 +39,7 @@
 VTK_MODULE_INIT(vtkRenderingOpenGL2)
 VTK_MODULE_INIT(vtkRenderingFreeType)
 
-namespace heatsoak {
+namespace heatsoak::report {
 namespace {
 
 using Color = std::array<unsigned char, 3>;
@@ -319,16 +319,16 @@ std::string draw(const Chart& chart) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::report
 
-extern "C" __attribute__((visibility("default"))) bool heatsoak_draw_chart(const heatsoak::Chart* chart, std::string* text,
+extern "C" __attribute__((visibility("default"))) bool heatsoak_draw_chart(const heatsoak::report::Chart* chart, std::string* text,
                                                                            std::size_t layout) {
-  if (layout != heatsoak::chart_layout) {
-    *text = std::string(heatsoak::chart_plugin_file) + " is of another build than the program; build or install both again";
+  if (layout != heatsoak::report::chart_layout) {
+    *text = std::string(heatsoak::report::chart_plugin_file) + " is of another build than the program; build or install both again";
     return false;
   }
   try {
-    *text = heatsoak::draw(*chart);
+    *text = heatsoak::report::draw(*chart);
     return true;
   } catch (const std::exception& problem) {
     *text = problem.what();

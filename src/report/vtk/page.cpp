@@ -9,7 +9,7 @@
 
 #include "report/vtk/reduce.h"
 
-namespace heatsoak {
+namespace heatsoak::report {
 namespace {
 
 constexpr TextStyle title_style{.size_px = 20, .is_bold = true, .color = {0x11, 0x11, 0x11}};
@@ -410,4 +410,4 @@ class PageBuilder {
 
 Page lay_out(const Chart& chart) { return PageBuilder(chart).build(); }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::report

@@ -8,7 +8,7 @@
 #include "report/vtk/scale.h"
 #include "report/vtk/text.h"
 
-namespace heatsoak {
+namespace heatsoak::report {
 
 enum class Anchor { left, middle, right };
 
@@ -58,4 +58,4 @@ inline constexpr unsigned char limit_color[3] = {0xC8, 0x10, 0x2E};
 
 Page lay_out(const Chart& chart);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::report

@@ -8,7 +8,7 @@
 
 #include "report/chart_plugin.h"
 
-namespace heatsoak {
+namespace heatsoak::report {
 namespace {
 
 /// Pixels of the PNG per pixel of the SVG, so that small text stays sharp.
@@ -53,11 +53,11 @@ std::string png_of(const std::string& svg) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::report
 
 extern "C" __attribute__((visibility("default"))) bool heatsoak_svg_to_png(const std::string* svg, std::string* png) {
   try {
-    *png = heatsoak::png_of(*svg);
+    *png = heatsoak::report::png_of(*svg);
     return true;
   } catch (const std::exception& problem) {
     *png = problem.what();

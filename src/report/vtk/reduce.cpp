@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-namespace heatsoak {
+namespace heatsoak::report {
 namespace {
 
 /// Rounds to 0.01 px: finer steps are invisible and only enlarge the file.
@@ -197,4 +197,4 @@ std::vector<std::vector<BandPoint>> reduce(const ChartBand& band, const AxisScal
   return pieces;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::report

@@ -6,7 +6,7 @@
 #include "report/chart.h"
 #include "report/vtk/scale.h"
 
-namespace heatsoak {
+namespace heatsoak::report {
 
 struct CurvePoint {
   double x_px = 0.0;
@@ -35,4 +35,4 @@ struct RippledPiece {
 };
 RippledPiece without_ripple(const std::vector<CurvePoint>& piece);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::report

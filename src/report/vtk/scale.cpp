@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace heatsoak {
+namespace heatsoak::report {
 namespace {
 
 double round_step(double step) {
@@ -102,4 +102,4 @@ std::vector<AxisTick> ticks(const AxisRange& range, double count) {
   return result;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::report

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::report {
 
 /// Visible range of an axis; empty until a finite value was included. A logarithmic axis ignores non-positive values.
 struct AxisRange {
@@ -37,4 +37,4 @@ struct AxisTick {
 /// of ten, with 2 and 5 times them if there is room.
 std::vector<AxisTick> ticks(const AxisRange& range, double count);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::report

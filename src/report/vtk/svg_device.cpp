@@ -10,7 +10,7 @@
 #include <cmath>
 #include <string>
 
-namespace heatsoak {
+namespace heatsoak::report {
 
 vtkStandardNewMacro(SvgDevice);
 
@@ -58,4 +58,4 @@ void SvgDevice::add_text(float x_px, float y_px, const vtkStdString& text, bool 
   this->ActiveNode->AddNestedElement(element);
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::report

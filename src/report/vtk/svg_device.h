@@ -3,7 +3,7 @@
 
 #include <vtkSVGContextDevice2D.h>
 
-namespace heatsoak {
+namespace heatsoak::report {
 
 /// Corrects two faults of VTK 9.1. Text: VTK writes glyph outlines (large, not searchable), or <text> with attribute values that SVG does
 /// not define ("right", "top"), sizes in pt and the wrong rotation. Clipping: VTK uses wrong coordinates for the rectangle; clipping is
@@ -27,4 +27,4 @@ class SvgDevice : public vtkSVGContextDevice2D {
   void add_text(float x_px, float y_px, const vtkStdString& text, bool is_rim);
 };
 
-}  // namespace heatsoak
+}  // namespace heatsoak::report

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace heatsoak {
+namespace heatsoak::report {
 namespace {
 
 /// Returns the length of the valid UTF-8 sequence at `at`; 0 if it is invalid.
@@ -93,4 +93,4 @@ std::vector<std::string> wrapped(const std::string& text, const TextStyle& style
   return lines;
 }
 
-}  // namespace heatsoak
+}  // namespace heatsoak::report

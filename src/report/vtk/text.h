@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace heatsoak {
+namespace heatsoak::report {
 
 struct TextStyle {
   int size_px = 12;
@@ -21,4 +21,4 @@ double text_width_px(const std::string& text, const TextStyle& style);
 /// Breaks text into lines no wider than `width_px`, after a space or `_` if possible. An empty text gives no line.
 std::vector<std::string> wrapped(const std::string& text, const TextStyle& style, double width_px);
 
-}  // namespace heatsoak
+}  // namespace heatsoak::report

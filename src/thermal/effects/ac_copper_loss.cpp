@@ -1,7 +1,7 @@
 #include "thermal/law.h"
 #include "thermal/reference_point.h"
 
-namespace heatsoak::effects {
+namespace heatsoak::thermal::effects {
 namespace {
 
 enum Node { winding };
@@ -26,7 +26,7 @@ EffectType ac_copper_loss() {
           "P. L. Dowell, Effects of eddy currents in transformer windings, Proc. IEE 113 (1966), expanded for wires thin against the skin "
           "depth",
       .nodes = {{"winding", "winding"}},
-      .parameters = {{"share", "", Range::between(0.0, 10.0), "extra copper loss per copper loss, at 500 rad/s"}},
+      .parameters = {{"share", "", base::Range::between(0.0, 10.0), "extra copper loss per copper loss, at 500 rad/s"}},
       .typical = "0.05 to 0.4 of the copper loss at 500 rad/s",
       .confounded_with =
           "Confounded with armature_iron_loss, the same product of current and speed at the stator, and with winding_through_flow of the "
@@ -45,4 +45,4 @@ EffectType ac_copper_loss() {
   };
 }
 
-}  // namespace heatsoak::effects
+}  // namespace heatsoak::thermal::effects

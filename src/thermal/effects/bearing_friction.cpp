@@ -1,7 +1,7 @@
 #include "thermal/law.h"
 #include "thermal/reference_point.h"
 
-namespace heatsoak::effects {
+namespace heatsoak::thermal::effects {
 namespace {
 
 enum Node { stator };
@@ -26,9 +26,9 @@ EffectType bearing_friction() {
       .equation = "P_stator = P_500 · ((1 − v)·|ω|/(500 rad/s) + v·e^(−κ·(T_stator − 25 °C))·(ω_rms/(500 rad/s))²)",
       .reference = "SKF, Rolling bearings: the SKF model for calculating the frictional moment; A. Palmgren's load and viscous moments",
       .nodes = {{"stator", "stator"}},
-      .parameters = {{"loss", "W", Range::non_negative(), "at 500 rad/s and 25 °C"},
-                     {"viscous_share", "", Range::between(0.0, 1.0), "of it that is viscous"},
-                     {"thinning", "1/K", Range::between(0.0, 0.05),
+      .parameters = {{"loss", "W", base::Range::non_negative(), "at 500 rad/s and 25 °C"},
+                     {"viscous_share", "", base::Range::between(0.0, 1.0), "of it that is viscous"},
+                     {"thinning", "1/K", base::Range::between(0.0, 0.05),
                       "relative fall of the viscous part per kelvin; mineral grease 0.02 to 0.04"}},
       .typical = "0.2 to 1 W at 500 rad/s",
       .confounded_with =
@@ -50,4 +50,4 @@ EffectType bearing_friction() {
   };
 }
 
-}  // namespace heatsoak::effects
+}  // namespace heatsoak::thermal::effects

@@ -1,6 +1,6 @@
 #include "thermal/law.h"
 
-namespace heatsoak::effects {
+namespace heatsoak::thermal::effects {
 namespace {
 
 enum Node { hot, cold };
@@ -29,9 +29,10 @@ EffectType contact_ageing() {
           "Energy "
           "Convers. 20 (2005): gaps between parts determine the contact; the exponential is a modelling choice",
       .nodes = {{"hot", "winding"}, {"cold", "stator"}},
-      .parameters = {{"conductance", "W/K", Range::non_negative(), "part that appears or disappears, in parallel to the settled contact"},
-                     {"time_constant", "h", Range::positive(), "of the change"},
-                     {"fresh_share", "", Range::between(0.0, 1.0),
+      .parameters = {{"conductance", "W/K", base::Range::non_negative(),
+                      "part that appears or disappears, in parallel to the settled contact"},
+                     {"time_constant", "h", base::Range::positive(), "of the change"},
+                     {"fresh_share", "", base::Range::between(0.0, 1.0),
                       "1: present when fresh, lost with age; 0: absent when fresh, appears with age"}},
       .typical = "0.03 to 0.1 W/K: 10 to 30 % of the conductance between winding and stator, over hours to hundreds of hours",
       .confounded_with =
@@ -48,4 +49,4 @@ EffectType contact_ageing() {
   };
 }
 
-}  // namespace heatsoak::effects
+}  // namespace heatsoak::thermal::effects

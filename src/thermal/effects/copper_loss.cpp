@@ -1,7 +1,7 @@
 #include "base/copper.h"
 #include "thermal/law.h"
 
-namespace heatsoak::effects {
+namespace heatsoak::thermal::effects {
 namespace {
 
 enum Node { winding };
@@ -10,7 +10,7 @@ enum Parameter { terminal_resistance, temperature_coefficient };
 struct CopperLoss {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S hot_ratio = resistance_ratio(x.parameter(temperature_coefficient), x.temperature_C(winding));
+    const S hot_ratio = base::resistance_ratio(x.parameter(temperature_coefficient), x.temperature_C(winding));
     const S resistance_ohm = x.parameter(terminal_resistance) * hot_ratio;
     heat.source(winding, x.at.current_rms_A * x.at.current_rms_A * resistance_ohm);
   }
@@ -25,8 +25,8 @@ EffectType copper_loss() {
       .equation = "P_winding = I² · R25 · (1 + α · (T_winding − 25 °C))",
       .reference = "IEC 60034-2-1; maxon, key information on motor data",
       .nodes = {{"winding", "winding"}},
-      .parameters = {{"terminal_resistance", "ohm", Range::positive(), "between two terminals at 25 °C"},
-                     {"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "of the resistance, at 25 °C; copper 0.0039 1/K"}},
+      .parameters = {{"terminal_resistance", "ohm", base::Range::positive(), "between two terminals at 25 °C"},
+                     {"temperature_coefficient", "1/K", base::Range::between(0.0, 0.01), "of the resistance, at 25 °C; copper 0.0039 1/K"}},
       .typical = "5 to 10 W at nominal current",
       .confounded_with =
           "Confounded with all heat capacities and thermal resistances together: a wrong resistance or current gain scales all heat. A "
@@ -41,4 +41,4 @@ EffectType copper_loss() {
   };
 }
 
-}  // namespace heatsoak::effects
+}  // namespace heatsoak::thermal::effects

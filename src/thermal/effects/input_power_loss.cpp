@@ -1,6 +1,6 @@
 #include "thermal/law.h"
 
-namespace heatsoak::effects {
+namespace heatsoak::thermal::effects {
 namespace {
 
 enum Node { heated };
@@ -22,7 +22,7 @@ EffectType input_power_loss() {
       .equation = "P_node = k · max(0, P_input − P_shaft)",
       .reference = "conservation of energy; IEC 60034-2-1, direct measurement of input and output",
       .nodes = {{"heated", "stator"}},
-      .parameters = {{"share", "", Range::between(0.0, 1.0),
+      .parameters = {{"share", "", base::Range::between(0.0, 1.0),
                       "of the lost power that heats the node; the rest heats the driver or another node"}},
       .typical = "0.2 to 1; the power of a propeller or a wheel counts as shaft power",
       .confounded_with = "Confounded with copper_loss and the speed losses, which are its parts: use either them or this at one node.",
@@ -37,4 +37,4 @@ EffectType input_power_loss() {
   };
 }
 
-}  // namespace heatsoak::effects
+}  // namespace heatsoak::thermal::effects

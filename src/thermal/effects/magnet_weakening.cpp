@@ -1,6 +1,6 @@
 #include "thermal/law.h"
 
-namespace heatsoak::effects {
+namespace heatsoak::thermal::effects {
 namespace {
 
 enum Node { winding, magnet };
@@ -26,7 +26,7 @@ EffectType magnet_weakening() {
       .equation = "P_winding = P_copper · 2·β·max(0, T_magnet − 25 °C), first order of 1/(1 − β·ΔT)², corner rounded over 2 K",
       .reference = "reversible temperature coefficient of remanence, IEC 60404-8-1: NdFeB −0.10 to −0.12 %/K, ferrite −0.2 %/K",
       .nodes = {{"winding", "winding"}, {"magnet", "stator"}},
-      .parameters = {{"temperature_coefficient", "1/K", Range::between(0.0, 0.01), "loss of torque constant per kelvin above 25 °C"}},
+      .parameters = {{"temperature_coefficient", "1/K", base::Range::between(0.0, 0.01), "loss of torque constant per kelvin above 25 °C"}},
       .typical = "0.001 to 0.0012 1/K: 14 % more copper loss at 60 K",
       .confounded_with =
           "Confounded with a temperature coefficient of the resistance that is too low. If the current was measured, the measurement "
@@ -42,4 +42,4 @@ EffectType magnet_weakening() {
   };
 }
 
-}  // namespace heatsoak::effects
+}  // namespace heatsoak::thermal::effects

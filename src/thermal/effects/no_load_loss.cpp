@@ -1,6 +1,6 @@
 #include "thermal/law.h"
 
-namespace heatsoak::effects {
+namespace heatsoak::thermal::effects {
 namespace {
 
 enum Node { stator };
@@ -22,7 +22,7 @@ EffectType no_load_loss() {
       .equation = "P_stator = M_drag · |ω|",
       .reference = "maxon, key information on motor data: iron loss is treated like additional friction",
       .nodes = {{"stator", "stator"}},
-      .parameters = {{"drag_torque", "N m", Range::non_negative(), "torque constant times no-load current"}},
+      .parameters = {{"drag_torque", "N m", base::Range::non_negative(), "torque constant times no-load current"}},
       .typical = "1 to 5 W at no-load speed",
       .confounded_with =
           "Confounded with iron_loss_hysteresis and dry bearing friction, which are the same term. Eddy-current loss grows with ω² "
@@ -37,4 +37,4 @@ EffectType no_load_loss() {
   };
 }
 
-}  // namespace heatsoak::effects
+}  // namespace heatsoak::thermal::effects

@@ -1,6 +1,6 @@
 #include "thermal/law.h"
 
-namespace heatsoak::effects {
+namespace heatsoak::thermal::effects {
 namespace {
 
 enum Node { hot, cold };
@@ -28,7 +28,7 @@ EffectType radiation() {
       .equation = "P_hot→cold = ε·A·σ·(T_hot⁴ − T_cold⁴), T in kelvin",
       .reference = "Stefan-Boltzmann law; σ of CODATA 2018",
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
-      .parameters = {{"emissive_area", "m2", Range::between(0.0, 10.0),
+      .parameters = {{"emissive_area", "m2", base::Range::between(0.0, 10.0),
                       "emissivity times surface; bare metal 0.1, paint and plastics 0.9"}},
       .typical = "0.004 to 0.01 m²: 0.03 to 0.06 W/K",
       .confounded_with =
@@ -45,4 +45,4 @@ EffectType radiation() {
   };
 }
 
-}  // namespace heatsoak::effects
+}  // namespace heatsoak::thermal::effects

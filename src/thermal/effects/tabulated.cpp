@@ -3,7 +3,7 @@
 
 #include "thermal/law.h"
 
-namespace heatsoak::effects {
+namespace heatsoak::thermal::effects {
 namespace {
 
 enum Node { hot, cold, watched, reference };
@@ -34,8 +34,8 @@ enum Regressor {
   column,
   driver_count = column + kLogColumns
 };
-constexpr std::array<Choice, driver_count> kDrivers = [] {
-  std::array<Choice, driver_count> choices{};
+constexpr std::array<base::Choice, driver_count> kDrivers = [] {
+  std::array<base::Choice, driver_count> choices{};
   for (std::size_t i = 0; i < kSignalDrivers; ++i) {
     const OperatingQuantity<double>& quantity = kQuantities<double>[kRows[i]];
     choices[i] = {quantity.name, quantity.unit, quantity.meaning};
@@ -56,11 +56,11 @@ static_assert(kDrivers[speed].name == "speed");
 
 enum Form { heat_into, per_copper_loss, per_difference, per_current, per_speed };
 constexpr std::array kForms{
-    Choice{"heat", "W", "the curve is the heat into 'hot'"},
-    Choice{"per_copper_loss", "", "the curve times the copper loss is the heat into 'hot'"},
-    Choice{"per_difference", "W/K", "the curve is a conductance from 'hot' to 'cold'"},
-    Choice{"per_current", "W/A", "the curve times the current (rms) is the heat into 'hot'"},
-    Choice{"per_speed", "W s/rad", "the curve times the mean of |ω| is the heat into 'hot'"},
+    base::Choice{"heat", "W", "the curve is the heat into 'hot'"},
+    base::Choice{"per_copper_loss", "", "the curve times the copper loss is the heat into 'hot'"},
+    base::Choice{"per_difference", "W/K", "the curve is a conductance from 'hot' to 'cold'"},
+    base::Choice{"per_current", "W/A", "the curve times the current (rms) is the heat into 'hot'"},
+    base::Choice{"per_speed", "W s/rad", "the curve times the mean of |ω| is the heat into 'hot'"},
 };
 
 template <class S>
@@ -154,15 +154,15 @@ std::vector<Signal> all_signals() {
   return all;
 }
 
-std::vector<ParameterSpec> parameters() {
-  std::vector<ParameterSpec> specs{
-      ParameterSpec::choice("driver", kDrivers, "input signal of the curve"),
-      ParameterSpec::choice("form", kForms, "meaning of the curve's values"),
-      {"first_knot", "", Range::any(), "input signal at value_1", {}, driver},
-      {"last_knot", "", Range::any(), "input signal at value_7; the others are evenly spaced between", {}, driver}};
+std::vector<base::ParameterSpec> parameters() {
+  std::vector<base::ParameterSpec> specs{
+      base::ParameterSpec::choice("driver", kDrivers, "input signal of the curve"),
+      base::ParameterSpec::choice("form", kForms, "meaning of the curve's values"),
+      {"first_knot", "", base::Range::any(), "input signal at value_1", {}, driver},
+      {"last_knot", "", base::Range::any(), "input signal at value_7; the others are evenly spaced between", {}, driver}};
   constexpr std::array<std::string_view, kKnots> kKeys{"value_1", "value_2", "value_3", "value_4", "value_5", "value_6", "value_7"};
   for (const std::string_view key : kKeys) {
-    specs.push_back({key, "", Range::non_negative(), "of the curve", {}, form});
+    specs.push_back({key, "", base::Range::non_negative(), "of the curve", {}, form});
   }
   return specs;
 }
@@ -197,4 +197,4 @@ EffectType tabulated() {
   };
 }
 
-}  // namespace heatsoak::effects
+}  // namespace heatsoak::thermal::effects

@@ -14,11 +14,11 @@
 namespace {
 
 using namespace heatsoak;
-using namespace heatsoak::truth;
+using namespace heatsoak::attribution::truth;
 
 struct Sealed {
   Case made;
-  DiagnosisInput input;
+  diagnosis::DiagnosisInput input;
   const Subject* subject = nullptr;
   const Outsider* outsider = nullptr;
   bool is_logged = true;  ///< true if a logged signal follows the outsider's heat
@@ -54,12 +54,12 @@ struct Marks {
   Share false_alarm, single, outside, unlogged;
 };
 
-Marks marks_of(const std::vector<Sealed>& sealed, const SelectionRules& rules) {
+Marks marks_of(const std::vector<Sealed>& sealed, const attribution::SelectionRules& rules) {
   Marks marks;
   for (const Sealed& one : sealed) {
     Answer answer;
-    answer.diagnosis = diagnose(one.input, rules);
-    for (const AcceptedTerm& term : answer.diagnosis.selection.terms) {
+    answer.diagnosis = diagnosis::diagnose(one.input, rules);
+    for (const attribution::AcceptedTerm& term : answer.diagnosis.selection.terms) {
       answer.named.push_back(term.candidate ? term.candidate->id : "curve");
     }
     if (one.subject) {
@@ -83,31 +83,31 @@ std::string in_short(const Marks& marks) {
 /// A number of SelectionRules; `off` is the value that disables it.
 struct Number {
   const char* name;
-  double SelectionRules::*value;
+  double attribution::SelectionRules::*value;
   double off;
 };
 
 const std::vector<Number>& numbers() {
   constexpr double kInfinity = 1e9;
   static const std::vector<Number> all{
-      {"inclusion_nats", &SelectionRules::inclusion_nats, 0.0},
-      {"conditional_nats", &SelectionRules::conditional_nats, 0.0},
-      {"size_sd", &SelectionRules::size_sd, 100.0},
-      {"body_start_K", &SelectionRules::body_start_K, 1e-3},
-      {"curve_nats", &SelectionRules::curve_nats, 0.0},
-      {"curve_level_precision_ratio", &SelectionRules::curve_level_precision_ratio, 1e-4},
-      {"curve_step_precision_ratio", &SelectionRules::curve_step_precision_ratio, 1e-4},
-      {"named_probability", &SelectionRules::named_probability, 0.0},
-      {"material_K", &SelectionRules::material_K, 0.0},
-      {"material_share", &SelectionRules::material_share, 0.0},
-      {"curve_gain_nats", &SelectionRules::curve_gain_nats, 0.0},
-      {"narrow_nats", &SelectionRules::narrow_nats, kInfinity},
-      {"second_signal_nats", &SelectionRules::second_signal_nats, 0.0},
-      {"same_shape_share", &SelectionRules::same_shape_share, 0.0},
-      {"same_shape_ratio", &SelectionRules::same_shape_ratio, 0.0},
-      {"seen_nats", &SelectionRules::seen_nats, 0.0},
-      {"start_error_K", &SelectionRules::start_error_K, 0.05},
-      {"longest_step_ratio", &SelectionRules::longest_step_ratio, kInfinity},
+      {"inclusion_nats", &attribution::SelectionRules::inclusion_nats, 0.0},
+      {"conditional_nats", &attribution::SelectionRules::conditional_nats, 0.0},
+      {"size_sd", &attribution::SelectionRules::size_sd, 100.0},
+      {"body_start_K", &attribution::SelectionRules::body_start_K, 1e-3},
+      {"curve_nats", &attribution::SelectionRules::curve_nats, 0.0},
+      {"curve_level_precision_ratio", &attribution::SelectionRules::curve_level_precision_ratio, 1e-4},
+      {"curve_step_precision_ratio", &attribution::SelectionRules::curve_step_precision_ratio, 1e-4},
+      {"named_probability", &attribution::SelectionRules::named_probability, 0.0},
+      {"material_K", &attribution::SelectionRules::material_K, 0.0},
+      {"material_share", &attribution::SelectionRules::material_share, 0.0},
+      {"curve_gain_nats", &attribution::SelectionRules::curve_gain_nats, 0.0},
+      {"narrow_nats", &attribution::SelectionRules::narrow_nats, kInfinity},
+      {"second_signal_nats", &attribution::SelectionRules::second_signal_nats, 0.0},
+      {"same_shape_share", &attribution::SelectionRules::same_shape_share, 0.0},
+      {"same_shape_ratio", &attribution::SelectionRules::same_shape_ratio, 0.0},
+      {"seen_nats", &attribution::SelectionRules::seen_nats, 0.0},
+      {"start_error_K", &attribution::SelectionRules::start_error_K, 0.05},
+      {"longest_step_ratio", &attribution::SelectionRules::longest_step_ratio, kInfinity},
   };
   return all;
 }
@@ -128,9 +128,9 @@ int main(int argc, char** argv) {
       continue;
     }
     std::vector<std::string> cells;
-    const double own = SelectionRules{}.*number.value;
+    const double own = attribution::SelectionRules{}.*number.value;
     for (const double value : {number.off, 0.5 * own, 2.0 * own}) {
-      SelectionRules rules;
+      attribution::SelectionRules rules;
       rules.*number.value = value;
       cells.push_back(in_short(marks_of(sealed, rules)));
     }

@@ -15,7 +15,7 @@
 namespace {
 
 using namespace heatsoak;
-using namespace heatsoak::truth;
+using namespace heatsoak::attribution::truth;
 
 /// Conditions that make an examination harder than the ordinary one.
 struct Hardship {
@@ -76,7 +76,7 @@ void examine_nothing(Marks& marks, int number) {
     const auto seed = static_cast<std::uint64_t>(10000 + i);
     const Answer answer = examined(marks, sealed_case({}, seed));
     marks.false_alarm.add(!is_silent(answer));
-    marks.says_nothing.add(answer.diagnosis.verdict == DiagnosisVerdict::nothing_missing);
+    marks.says_nothing.add(answer.diagnosis.verdict == diagnosis::DiagnosisVerdict::nothing_missing);
     say("nothing", seed, answer, is_silent(answer));
   }
 }
@@ -86,9 +86,9 @@ std::string cover(Marks& marks, const Answer& answer, const Subject& subject, do
   if (subject.true_value == 0.0 || answer.diagnosis.effects.size() != 1 || answer.named.front() != subject.name) {
     return "";
   }
-  const AcceptedTerm& term = answer.diagnosis.selection.terms.front();
+  const attribution::AcceptedTerm& term = answer.diagnosis.selection.terms.front();
   const std::string_view key = term.candidate->size_spec().key;
-  for (const FittedParameter& parameter : answer.diagnosis.effects.front().parameters) {
+  for (const diagnosis::FittedParameter& parameter : answer.diagnosis.effects.front().parameters) {
     if (parameter.name == key) {
       const double truth = size * subject.true_value;
       const bool holds = parameter.low <= truth && truth <= parameter.high;

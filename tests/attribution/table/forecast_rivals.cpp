@@ -23,7 +23,7 @@
 namespace {
 
 using namespace heatsoak;
-using namespace heatsoak::truth;
+using namespace heatsoak::attribution::truth;
 
 constexpr double kTorque_Nm_per_A = 0.034;
 constexpr double kNoLoad_A = 0.2;
@@ -41,7 +41,7 @@ Missing drag(double ratio) {
 }
 
 /// Data sheet of the motor: each thermal value is off by up to 25 %, and says so.
-Motor sheet_of(const MotorMake& make, std::uint64_t seed) {
+motor::Motor sheet_of(const MotorMake& make, std::uint64_t seed) {
   Dice dice(seed * 104729 + 5);
   const auto off = [&dice](double value) { return value * dice.uniform(0.8, 1.25); };
   std::string text =
@@ -66,7 +66,7 @@ Motor sheet_of(const MotorMake& make, std::uint64_t seed) {
   figure("thermal_time_constant_stator", off(make.iron_capacity_J_per_K) * out, "s", kQuarter);
   const std::filesystem::path path = std::filesystem::temp_directory_path() / fmt::format("heatsoak_rivals_{}.toml", seed);
   std::ofstream(path) << text;
-  Motor motor = read_motor(path);
+  motor::Motor motor = motor::read_motor(path);
   std::filesystem::remove(path);
   return motor;
 }
@@ -75,22 +75,23 @@ struct Result {
   std::string name;
   int runs = 0;
   std::array<double, rival_count> error_K{};
-  ForecastSource source = ForecastSource::file;
+  calibration::ForecastSource source = calibration::ForecastSource::file;
   std::string accepted = {};
 };
 
-std::vector<Recording> logs_of(const std::vector<TrueRun>& runs) {
-  std::vector<Recording> logs;
+std::vector<recording::Recording> logs_of(const std::vector<TrueRun>& runs) {
+  std::vector<recording::Recording> logs;
   std::ranges::transform(runs, std::back_inserter(logs), &TrueRun::log);
   return logs;
 }
 
-double worst_K(const ForecastModel& model, const Eigen::VectorXd& theta, const std::vector<MeasuredRun>& unseen) {
+double worst_K(const calibration::ForecastModel& model, const Eigen::VectorXd& theta, const std::vector<estimation::MeasuredRun>& unseen) {
   double worst = 0.0;
-  for (const MeasuredRun& run : unseen) {
-    const PredictedRun of_run = predict(model, theta, Eigen::MatrixXd::Zero(theta.size(), theta.size()), usual_band(1.0), run);
+  for (const estimation::MeasuredRun& run : unseen) {
+    const calibration::PredictedRun of_run =
+        calibration::predict(model, theta, Eigen::MatrixXd::Zero(theta.size(), theta.size()), calibration::usual_band(1.0), run);
     double squares = 0.0;
-    for (const PredictedSignal& each : of_run.signals) {
+    for (const calibration::PredictedSignal& each : of_run.signals) {
       squares += each.rmse_K * each.rmse_K / static_cast<double>(of_run.signals.size());
     }
     worst = std::max(worst, std::sqrt(squares));
@@ -98,39 +99,39 @@ double worst_K(const ForecastModel& model, const Eigen::VectorXd& theta, const s
   return worst;
 }
 
-Result examine(const std::string& name, int runs, const Motor& motor, const Runs& recorded) {
+Result examine(const std::string& name, int runs, const motor::Motor& motor, const Runs& recorded) {
   Result result{.name = name, .runs = runs};
-  const std::vector<Recording> fitted = logs_of(recorded.training);
-  const ForecastSetup setup = forecast_setup(motor, fitted);
+  const std::vector<recording::Recording> fitted = logs_of(recorded.training);
+  const calibration::ForecastSetup setup = calibration::forecast_setup(motor, fitted);
   std::vector<std::string> notes;
-  const std::vector<MeasuredRun> train = forecast_runs(setup, fitted, {}, notes);
-  const std::vector<MeasuredRun> unseen = forecast_runs(setup, logs_of(recorded.unseen), {}, notes);
-  const ForecastModel base = setup.model();
-  FitOptions options;
+  const std::vector<estimation::MeasuredRun> train = calibration::forecast_runs(setup, fitted, {}, notes);
+  const std::vector<estimation::MeasuredRun> unseen = calibration::forecast_runs(setup, logs_of(recorded.unseen), {}, notes);
+  const calibration::ForecastModel base = setup.model();
+  estimation::FitOptions options;
   options.threads = 1;
-  const Fit by_innovations = fit(base.motor().model, train, options);
+  const estimation::Fit by_innovations = estimation::fit(base.motor().model, train, options);
   const auto free_run = [&](bool is_tempered) {
-    const ForecastRules rules{.is_tempered = is_tempered, .has_heat_factors = is_tempered, .threads = 1};
-    ForecastFit best = fit_forecast(base, train, {}, base.start(), rules);
-    const ForecastFit other = fit_forecast(base, train, {}, base.within_bounds(by_innovations.theta), rules);
+    const calibration::ForecastRules rules{.is_tempered = is_tempered, .has_heat_factors = is_tempered, .threads = 1};
+    calibration::ForecastFit best = calibration::fit_forecast(base, train, {}, base.start(), rules);
+    const calibration::ForecastFit other = calibration::fit_forecast(base, train, {}, base.within_bounds(by_innovations.theta), rules);
     return other.error_K < best.error_K ? other : best;
   };
-  const Forecast forecast = forecast_of(setup, train, std::vector{base.within_bounds(by_innovations.theta)}, 1);
+  const calibration::Forecast forecast = calibration::forecast_of(setup, train, std::vector{base.within_bounds(by_innovations.theta)}, 1);
   result.error_K[file] = worst_K(base, base.start(), unseen);
   result.error_K[innovations] = worst_K(base, base.within_bounds(by_innovations.theta), unseen);
   result.error_K[ordinary] = worst_K(base, free_run(false).theta, unseen);
   result.error_K[tempered] = worst_K(base, free_run(true).theta, unseen);
   result.error_K[extended] = worst_K(forecast.model(), forecast.fit.theta, unseen);
-  Calibration calibration;
+  calibration::Calibration calibration;
   calibration.motor_model = base.motor();
   calibration.fit = by_innovations;
   calibration.runs = train;
   calibration.forecast = forecast;
-  score_innovations(base, options, calibration);
-  const bool is_forecast = writes_forecast(WrittenFit::best, *calibration.forecast, true);
+  calibration::score_innovations(base, options, calibration);
+  const bool is_forecast = calibration::writes_forecast(calibration::WrittenFit::best, *calibration.forecast, true);
   result.error_K[written] = result.error_K[is_forecast ? extended : innovations];
-  result.source = is_forecast ? forecast.source : ForecastSource::innovations;
-  for (const AcceptedExtension& each : forecast.accepted) {
+  result.source = is_forecast ? forecast.source : calibration::ForecastSource::innovations;
+  for (const calibration::AcceptedExtension& each : forecast.accepted) {
     result.accepted += each.name + " ";
   }
   return result;
@@ -169,7 +170,7 @@ int main(int argc, char** argv) {
   struct Task {
     std::string name;
     int runs;
-    Motor motor;
+    motor::Motor motor;
     Runs recorded;
   };
   std::vector<Task> tasks;
@@ -182,7 +183,7 @@ int main(int argc, char** argv) {
         sealed.training_runs = runs;
         sealed.seed = own;
         Runs recorded = record(sealed);
-        Motor motor = sheet_of(recorded.make, own);
+        motor::Motor motor = sheet_of(recorded.make, own);
         tasks.push_back({name, runs, std::move(motor), std::move(recorded)});
       };
       for (int i = 0; i < 10; ++i) {
@@ -194,7 +195,7 @@ int main(int argc, char** argv) {
     }
   }
   std::vector<Result> results(tasks.size());
-  in_parallel(tasks.size(), 0, [&](std::size_t i) {
+  base::in_parallel(tasks.size(), 0, [&](std::size_t i) {
     const Task& task = tasks[i];
     results[i] = examine(task.name, task.runs, task.motor, task.recorded);
   });

@@ -12,7 +12,7 @@
 
 namespace {
 
-using namespace heatsoak::truth;
+using namespace heatsoak::attribution::truth;
 
 constexpr int kRows = 1200;
 
@@ -29,7 +29,7 @@ Missing chassis() {
   return missing;
 }
 
-void write(const std::filesystem::path& file, const heatsoak::Recording& log) {
+void write(const std::filesystem::path& file, const heatsoak::recording::Recording& log) {
   std::ofstream out(file);
   out << "time_s,winding_C,stator_C,ambient_C,current_A,speed_rad_per_s\n";
   for (std::size_t k = 0; k < log.rows(); ++k) {

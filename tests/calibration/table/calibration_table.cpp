@@ -15,7 +15,7 @@
 namespace {
 
 using namespace heatsoak;
-using namespace heatsoak::study;
+using namespace heatsoak::calibration::study;
 
 double median(std::vector<double> values) {
   std::ranges::sort(values);
@@ -30,7 +30,7 @@ std::pair<double, double> bounds_of(int hits, int count) {
 
 void tabulate(const std::string& title, const Sheet& sheet, const Case& like, int cases, std::uint64_t first_seed) {
   std::vector<CaseResult> results(static_cast<std::size_t>(cases));
-  in_parallel(results.size(), 0, [&](std::size_t i) {
+  base::in_parallel(results.size(), 0, [&](std::size_t i) {
     Case one = like;
     one.seed = first_seed + i;
     results[i] = calibrate_case(sheet, one);
@@ -51,7 +51,7 @@ void tabulate(const std::string& title, const Sheet& sheet, const Case& like, in
       widths.push_back(half);
       squares += std::pow(std::log(mark.figure.value / mark.truth) / (half / 1.96), 2);
       const Eigen::VectorXd& exponents = each.calibration.motor_model.parameters[f].exponents;
-      const Fit& fit = each.calibration.fit;
+      const estimation::Fit& fit = each.calibration.fit;
       averaged.push_back(
           std::sqrt(exponents.dot(fit.covariance * exponents) / exponents.dot(fit.hypotheses.front().covariance * exponents)));
     }
@@ -86,33 +86,35 @@ void tabulate_local(std::uint64_t seed) {
       "\nstandard deviation of the logarithm in %, four runs of 30 min, no prior, flux of 180 s known\n{:24} {:>8} {:>8} {:>8} {:>8}   "
       "{}\n",
       "sensors, flux", "C_w", "R_ws", "C_s", "R_sa", "prototype: C_w, R_ws, C_s, R_sa");
-  const TwoNodeTruth truth;
-  const Model model = two_node_model(truth, 1e3);
+  const estimation::TwoNodeTruth truth;
+  const estimation::Model model = estimation::two_node_model(truth, 1e3);
   std::vector<int> wanted;
-  for (const FreeParameter& parameter : model.free) {
+  for (const estimation::FreeParameter& parameter : model.free) {
     wanted.push_back(parameter.place);
   }
   for (const auto& [winding_is_sensed, flux_W, prototype] :
        {LocalRow{true, 0.0, "0.14, 0.07, 0.15, 0.03"}, LocalRow{true, 0.05, "0.18-0.24, 0.2, 0.44, 0.6-0.7"},
         LocalRow{false, 0.0, "6-8, 5-7, 1.3-1.7, 0.15"}, LocalRow{false, 0.05, "37-40, 30-33, 7.5, 1.1"}}) {
-    std::vector<RunEvidence> all;
+    std::vector<estimation::RunEvidence> all;
     for (std::uint64_t r = 0; r < 4; ++r) {
-      LogMaking making;
+      estimation::LogMaking making;
       making.winding_is_sensed = winding_is_sensed;
       making.outlier_share = making.dropout_share = 0.0;
       making.largest_current_A = kMild_A;
-      const MeasuredRun run = generated_run(truth, making, seed, r);
-      const RunStart start = start_of(model.network, run);
-      const LinearisedRun line = linearise(model.network, model.values, wanted, model.flux_nodes,
-                                           {start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, run);
-      SensorNoise noise;
-      for (const Sensor& sensor : run.sensors) {
+      const estimation::MeasuredRun run = estimation::generated_run(truth, making, seed, r);
+      const estimation::RunStart start = estimation::start_of(model.network, run);
+      const estimation::LinearisedRun line =
+          estimation::linearise(model.network, model.values, wanted, model.flux_nodes,
+                                {start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, run);
+      estimation::SensorNoise noise;
+      for (const estimation::Sensor& sensor : run.sensors) {
         noise.noise_K.push_back(std::hypot(making.noise_K, sensor.step_K / std::sqrt(12.0)));
       }
-      all.push_back(run_evidence(line, by_theta(model, model.theta(), line.by_parameter), Whitening(line, {{flux_W, flux_W}, 180.0}, noise),
-                                 {start.prior_C - start.state_C, start.prior_sd_K}));
+      all.push_back(estimation::run_evidence(line, estimation::by_theta(model, model.theta(), line.by_parameter),
+                                             estimation::Whitening(line, {{flux_W, flux_W}, 180.0}, noise),
+                                             {start.prior_C - start.state_C, start.prior_sd_K}));
     }
-    const LinearFit fit = linear_fit(all, Eigen::VectorXd::Zero(4), Eigen::MatrixXd::Zero(4, 4));
+    const estimation::LinearFit fit = estimation::linear_fit(all, Eigen::VectorXd::Zero(4), Eigen::MatrixXd::Zero(4, 4));
     const Eigen::VectorXd sd = 100.0 * fit.covariance.diagonal().cwiseSqrt();
     fmt::print("{:24} {:8.2f} {:8.2f} {:8.2f} {:8.2f}   {}\n",
                fmt::format("{}, {:g} W", winding_is_sensed ? "winding, stator" : "stator", flux_W), sd[0], sd[1], sd[2], sd[3], prototype);

@@ -14,7 +14,7 @@
 #include "recording/read_recording.h"
 #include "support/source_folder.h"
 
-namespace heatsoak {
+namespace heatsoak::calibration {
 namespace {
 
 struct Part {
@@ -72,13 +72,14 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
-std::vector<Recording> read(const Case& one, const std::vector<Part>& parts) {
-  std::vector<Recording> all;
+std::vector<recording::Recording> read(const Case& one, const std::vector<Part>& parts) {
+  std::vector<recording::Recording> all;
   for (const Part& part : parts) {
     const std::filesystem::path log = *measured_data(one.folder) / part.file;
-    RecordingReport report;
-    const Recording whole = read_recording(log, mapping_for(log.string(), (kSource / one.mapping).string()), report);
-    all.push_back(part_of(whole, part.from_share, part.to_share));
+    recording::RecordingReport report;
+    const recording::Recording whole =
+        recording::read_recording(log, recording::mapping_for(log.string(), (kSource / one.mapping).string()), report);
+    all.push_back(recording::part_of(whole, part.from_share, part.to_share));
   }
   return all;
 }
@@ -98,26 +99,27 @@ std::string errors(const std::vector<PredictedRun>& runs) {
 }
 
 /// Returns predictions of the unseen runs with the base network.
-std::vector<PredictedRun> predictions(const ForecastModel& model, const Eigen::VectorXd& theta, const std::vector<MeasuredRun>& runs) {
+std::vector<PredictedRun> predictions(const ForecastModel& model, const Eigen::VectorXd& theta,
+                                      const std::vector<estimation::MeasuredRun>& runs) {
   std::vector<PredictedRun> all;
-  for (const MeasuredRun& run : runs) {
+  for (const estimation::MeasuredRun& run : runs) {
     all.push_back(predict(model, theta, Eigen::MatrixXd::Zero(theta.size(), theta.size()), usual_band(1.0), run));
   }
   return all;
 }
 
 void examine(const Case& one, int threads) {
-  const std::vector<Recording> fitted = read(one, one.fitted);
-  const std::vector<Recording> unseen = read(one, one.predicted);
-  const Motor motor = read_motor(kSource / "reports" / one.motor);
+  const std::vector<recording::Recording> fitted = read(one, one.fitted);
+  const std::vector<recording::Recording> unseen = read(one, one.predicted);
+  const motor::Motor motor = motor::read_motor(kSource / "reports" / one.motor);
   const ForecastSetup setup = forecast_setup(motor, fitted);
   std::vector<std::string> notes;
-  const std::vector<MeasuredRun> runs = forecast_runs(setup, fitted, one.ambient_C, notes);
-  const std::vector<MeasuredRun> others = forecast_runs(setup, unseen, one.ambient_C, notes);
+  const std::vector<estimation::MeasuredRun> runs = forecast_runs(setup, fitted, one.ambient_C, notes);
+  const std::vector<estimation::MeasuredRun> others = forecast_runs(setup, unseen, one.ambient_C, notes);
   const ForecastModel base = setup.model();
-  FitOptions options;
+  estimation::FitOptions options;
   options.threads = threads;
-  const Fit innovations = fit(base.motor().model, runs, options);
+  const estimation::Fit innovations = estimation::fit(base.motor().model, runs, options);
   const ForecastRules ordinary{.is_tempered = false, .has_heat_factors = false, .threads = threads};
   const ForecastFit plain = fit_forecast(base, runs, {}, innovations.theta, ordinary);
   const auto begin = std::chrono::steady_clock::now();
@@ -125,7 +127,7 @@ void examine(const Case& one, int threads) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const ForecastModel model = forecast.model();
   std::vector<PredictedRun> predicted;
-  for (const MeasuredRun& run : others) {
+  for (const estimation::MeasuredRun& run : others) {
     predicted.push_back(predict(model, forecast.fit.theta, forecast.fit.covariance, forecast.band, run));
   }
   std::vector<std::string> accepted;
@@ -157,7 +159,7 @@ void examine(const Case& one, int threads) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::calibration
 
 /// Arguments: parts of the names of the wanted cases; without arguments all cases run.
 int main(int argc, char** argv) {
@@ -169,11 +171,11 @@ int main(int argc, char** argv) {
   fmt::print(
       "| predicted | file | innovations | free runs, least squares | written | in the 90 % band, % | by | pieces | extensions | s |\n"
       "|---|---|---|---|---|---|---|---|---|---|\n");
-  for (const heatsoak::Case& one : heatsoak::all_cases()) {
+  for (const heatsoak::calibration::Case& one : heatsoak::calibration::all_cases()) {
     const bool is_wanted =
         argc < 2 || std::any_of(argv + 1, argv + argc, [&](const char* part) { return one.name.find(part) != std::string::npos; });
     if (is_wanted) {
-      heatsoak::examine(one, 1);
+      heatsoak::calibration::examine(one, 1);
       std::fflush(stdout);
     }
   }

@@ -8,12 +8,12 @@
 #include "derate/held_current.h"
 #include "robot/motor_drive.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::derate::studies {
 namespace {
 
 constexpr double kFastest_share = 0.98;
 
-Segment random_segment(const BarrierRules& rules, Random& random) {
+Segment random_segment(const BarrierRules& rules, base::Random& random) {
   constexpr double kShortest_s = 0.05;
   constexpr double kLongest_s = 300.0;
   Segment segment;
@@ -30,7 +30,7 @@ Segment random_segment(const BarrierRules& rules, Random& random) {
 }
 
 /// Extends or cuts the script to kScript_s.
-void complete(Script& script, const BarrierRules& rules, Random& random) {
+void complete(Script& script, const BarrierRules& rules, base::Random& random) {
   double sum_s = 0.0;
   for (std::size_t i = 0; i < script.segments.size(); ++i) {
     sum_s += script.segments[i].duration_s;
@@ -46,13 +46,13 @@ void complete(Script& script, const BarrierRules& rules, Random& random) {
 
 }  // namespace
 
-Script bang_bang(const BarrierRules& rules, Random& random) {
+Script bang_bang(const BarrierRules& rules, base::Random& random) {
   Script script{{}, rules.hottest_ambient_C, rules.hottest_ambient_C};
   complete(script, rules, random);
   return script;
 }
 
-Script mutated(const Script& script, const BarrierRules& rules, Random& random) {
+Script mutated(const Script& script, const BarrierRules& rules, base::Random& random) {
   Script other = script;
   const int changes = 1 + static_cast<int>(4.0 * random.uniform());
   for (int i = 0; i < changes; ++i) {
@@ -70,7 +70,7 @@ Script mutated(const Script& script, const BarrierRules& rules, Random& random) 
   return other;
 }
 
-void step_ambient(Script& script, double coldest_C, const BarrierRules& rules, Random& random) {
+void step_ambient(Script& script, double coldest_C, const BarrierRules& rules, base::Random& random) {
   constexpr double kMean_s = 50.0;
   double left_s = 0.0;
   double ambient_C = rules.hottest_ambient_C;
@@ -94,16 +94,16 @@ void step_ambient(Script& script, double coldest_C, const BarrierRules& rules, R
   script.observer_start_C = script.motor_start_C = script.segments.front().ambient_C;
 }
 
-Script match(const WheelDemand& wheel, const Motor& motor, const Robot& robot, const BarrierRules& rules, double aggressiveness,
-             double first_share) {
+Script match(const duty::WheelDemand& wheel, const motor::Motor& motor, const robot::Robot& robot, const BarrierRules& rules,
+             double aggressiveness, double first_share) {
   Script script{{}, rules.hottest_ambient_C, rules.hottest_ambient_C};
   double sum_s = 0.0;
   for (auto i = static_cast<std::size_t>(first_share * static_cast<double>(wheel.bins.size())); sum_s < kScript_s; ++i) {
-    const LoadBin& bin = wheel.bins[i % wheel.bins.size()];
+    const duty::LoadBin& bin = wheel.bins[i % wheel.bins.size()];
     Segment segment;
     segment.duration_s = std::min(bin.duration_s, kScript_s - sum_s);
     segment.wanted_A =
-        aggressiveness * std::abs(drive_point(motor.nominal, robot, {bin.torque_rms_Nm, bin.speed_rms_rad_per_s}).current_wanted_A);
+        aggressiveness * std::abs(robot::drive_point(motor.nominal, robot, {bin.torque_rms_Nm, bin.speed_rms_rad_per_s}).current_wanted_A);
     segment.speed_rad_per_s = std::min(kFastest_share * rules.most_speed_rad_per_s, robot.drive.gear_ratio * bin.speed_rms_rad_per_s);
     segment.is_braking = bin.torque_along_motion_Nm < 0.0;
     segment.ambient_C = rules.hottest_ambient_C;
@@ -113,8 +113,8 @@ Script match(const WheelDemand& wheel, const Motor& motor, const Robot& robot, c
   return script;
 }
 
-UsePlayed play(const Script& script, const Observer& observer, const CurrentTable& table, const Motor& motor, const Robot& robot,
-               double period_s) {
+UsePlayed play(const Script& script, const Observer& observer, const CurrentTable& table, const motor::Motor& motor,
+               const robot::Robot& robot, double period_s) {
   UsePlayed result;
   result.start_C = script.motor_start_C;
   ObserverRun<float> run(observer, static_cast<float>(period_s), static_cast<float>(script.observer_start_C));
@@ -130,7 +130,7 @@ UsePlayed play(const Script& script, const Observer& observer, const CurrentTabl
     };
     for (double left_s = segment.duration_s; left_s > 1e-9; left_s -= period_s) {
       const float allowed_A =
-          table.allowed_A(static_cast<float>(segment.speed_rad_per_s), run.hottest_body_C(), run.state_C()[states::winding]);
+          table.allowed_A(static_cast<float>(segment.speed_rad_per_s), run.hottest_body_C(), run.state_C()[motor::states::winding]);
       const double current_A = std::min(segment.wanted_A, segment.share * static_cast<double>(allowed_A));
       if (held.is_over(current_A, segment.speed_rad_per_s)) {
         end_interval();
@@ -139,7 +139,7 @@ UsePlayed play(const Script& script, const Observer& observer, const CurrentTabl
       std::array<float, observed::kSignalCount> guard_inputs{};
       std::ranges::transform(signals(current_A), guard_inputs.begin(), [](double value) { return static_cast<float>(value); });
       run.step(guard_inputs);
-      result.winding_peak_C = std::max<double>(result.winding_peak_C, run.state_C()[states::winding]);
+      result.winding_peak_C = std::max<double>(result.winding_peak_C, run.state_C()[motor::states::winding]);
     }
     if (held.duration_s > 0.0) {
       end_interval();
@@ -161,4 +161,4 @@ std::string to_text(const Script& script, std::size_t most) {
   return text + (script.segments.size() > most ? fmt::format("; … ({} in all)", script.segments.size()) : std::string());
 }
 
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::derate::studies

@@ -10,7 +10,7 @@
 #include "derate/derating.h"
 #include "duty/demand.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::derate::studies {
 
 /// Load that is held for a while. The guard's allowed current always applies.
 struct Segment {
@@ -31,20 +31,20 @@ struct Script {
 inline constexpr double kScript_s = 600.0;  ///< 7 time constants of the stator of the ECX FLAT 32 L
 
 /// Returns on-off loads that last 0.05 to 300 s, mostly with the full allowed current, at any speed, driving or braking.
-Script bang_bang(const BarrierRules& rules, Random& random);
+Script bang_bang(const BarrierRules& rules, base::Random& random);
 /// Returns the script with one to four changed segments.
-Script mutated(const Script& script, const BarrierRules& rules, Random& random);
+Script mutated(const Script& script, const BarrierRules& rules, base::Random& random);
 /// Makes the air temperature jump between `coldest_C` and the hottest, twelve times on average.
-void step_ambient(Script& script, double coldest_C, const BarrierRules& rules, Random& random);
+void step_ambient(Script& script, double coldest_C, const BarrierRules& rules, base::Random& random);
 /// Repeats the load of a wheel of a generated match with `aggressiveness` times the current for kScript_s.
-Script match(const WheelDemand& wheel, const Motor& motor, const Robot& robot, const BarrierRules& rules, double aggressiveness,
-             double first_share);
+Script match(const duty::WheelDemand& wheel, const motor::Motor& motor, const robot::Robot& robot, const BarrierRules& rules,
+             double aggressiveness, double first_share);
 
 /// Returns the load that the guard lets through, with the firmware's arithmetic.
-UsePlayed play(const Script& script, const Observer& observer, const CurrentTable& table, const Motor& motor, const Robot& robot,
-               double period_s);
+UsePlayed play(const Script& script, const Observer& observer, const CurrentTable& table, const motor::Motor& motor,
+               const robot::Robot& robot, double period_s);
 
 /// Formats segments: "0.31 s all at 402 rad/s; 12 s none at 0 rad/s; …".
 std::string to_text(const Script& script, std::size_t most);
 
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::derate::studies

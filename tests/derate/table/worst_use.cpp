@@ -24,7 +24,7 @@
 #include "select/evaluate.h"
 #include "support/shipped.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::derate::studies {
 namespace {
 
 constexpr std::uint64_t kSeed = 20'261;
@@ -36,8 +36,8 @@ constexpr int kMotorsPerUse = 64;
 
 /// The paper's robot with the motor that failed in it, and their derating with the default options.
 struct Subject {
-  Robot robot = twente();
-  Motor motor = with_default_spreads(ecx_32());
+  robot::Robot robot = twente();
+  motor::Motor motor = motor::with_default_spreads(ecx_32());
   DerateOptions options = {};
   Derating derating = derate(ecx_32(), robot, options);
 };
@@ -81,26 +81,26 @@ struct Tally {
   }
 };
 
-std::vector<Network> drawn(const Subject& subject, std::uint64_t first_stream) {
-  std::vector<Network> networks;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    Random random(kSeed, first_stream + static_cast<std::uint64_t>(lane));
-    networks.push_back(datasheet_network(subject.motor, draw_sample(subject.motor, random)));
+std::vector<thermal::Network> drawn(const Subject& subject, std::uint64_t first_stream) {
+  std::vector<thermal::Network> networks;
+  for (int lane = 0; lane < base::kLanes; ++lane) {
+    base::Random random(kSeed, first_stream + static_cast<std::uint64_t>(lane));
+    networks.push_back(motor::datasheet_network(subject.motor, motor::draw_sample(subject.motor, random)));
   }
   return networks;
 }
 
 /// Returns a network with every parameter at the low or high end of its spread; the bits of `corner` select the ends.
-Network at_the_ends(const Subject& subject, std::uint64_t corner) {
-  Motor motor = subject.motor;
+thermal::Network at_the_ends(const Subject& subject, std::uint64_t corner) {
+  motor::Motor motor = subject.motor;
   unsigned bit = 0;
   for (auto& [key, figure] : motor.parameters) {
-    if (needs_spread(key) && figure.spread) {
+    if (motor::needs_spread(key) && figure.spread) {
       figure.value = ((corner >> bit++) & 1U) != 0 ? figure.spread->high : figure.spread->low;
     }
   }
-  refresh_values(motor);
-  return datasheet_network(motor, nominal_sample(motor));
+  motor::refresh_values(motor);
+  return motor::datasheet_network(motor, motor::nominal_sample(motor));
 }
 
 UsePlayed played(const Subject& subject, const Script& script) {
@@ -108,9 +108,9 @@ UsePlayed played(const Subject& subject, const Script& script) {
 }
 
 /// Returns the heating of a fixed panel of motors by a load. The adversary maximises this score.
-double heat_of(const UsePlayed& use, const Subject& subject, const std::vector<std::vector<Network>>& panel) {
+double heat_of(const UsePlayed& use, const Subject& subject, const std::vector<std::vector<thermal::Network>>& panel) {
   double sum_C = 0.0;
-  for (const std::vector<Network>& motors : panel) {
+  for (const std::vector<thermal::Network>& motors : panel) {
     for (const MotorPeak& peak : peaks(motors, subject.derating.rules.limits, {&use, 1})) {
       sum_C += peak.winding_C;
     }
@@ -123,11 +123,11 @@ class Adversary {
  public:
   explicit Adversary(const Subject& subject) : subject_(subject) {
     for (int block = 0; block < 2; ++block) {
-      panel_.push_back(drawn(subject, kPanel + static_cast<std::uint64_t>(block * kLanes)));
+      panel_.push_back(drawn(subject, kPanel + static_cast<std::uint64_t>(block * base::kLanes)));
     }
   }
 
-  Script next(Random& random) const {
+  Script next(base::Random& random) const {
     const BarrierRules& rules = subject_.derating.rules;
     if (best_.empty() || random.uniform() < 0.5) {
       return bang_bang(rules, random);
@@ -155,7 +155,7 @@ class Adversary {
 
  private:
   const Subject& subject_;
-  std::vector<std::vector<Network>> panel_;
+  std::vector<std::vector<thermal::Network>> panel_;
   std::deque<std::pair<double, Script>> best_;  ///< sorted, hottest first
 };
 
@@ -187,7 +187,7 @@ class Clock {
   double reported_min_ = 0.0;
 };
 
-using MakeScript = std::function<Script(Random& random)>;
+using MakeScript = std::function<Script(base::Random& random)>;
 /// Runs every load on newly drawn motors.
 void run_class(Tally& tally, const Subject& subject, std::uint64_t trials, std::uint64_t number, Clock& clock, const MakeScript& make,
                const std::function<void(const Script&, const UsePlayed&)>& learn = {}) {
@@ -195,14 +195,14 @@ void run_class(Tally& tally, const Subject& subject, std::uint64_t trials, std::
   for (std::uint64_t use = 0; use < uses && !clock.is_over(); ++use) {
     clock.report(tally, trials);
     const std::uint64_t id = (number << 32U) + use;
-    Random random(kSeed, id);
+    base::Random random(kSeed, id);
     const Script script = make(random);
     const UsePlayed done = played(subject, script);
     if (learn) {
       learn(script, done);
     }
     ++tally.uses;
-    for (std::uint64_t i = 0; i < kMotorsPerUse; i += kLanes) {
+    for (std::uint64_t i = 0; i < kMotorsPerUse; i += base::kLanes) {
       const std::uint64_t stream = kMotors + id * kMotorsPerUse + i;
       const auto found = peaks(drawn(subject, stream), subject.derating.rules.limits, {&done, 1});
       for (std::size_t lane = 0; lane < found.size(); ++lane) {
@@ -214,21 +214,21 @@ void run_class(Tally& tally, const Subject& subject, std::uint64_t trials, std::
 
 /// Runs all corners of the tolerances under the hottest loads and under random ones.
 void run_corners(Tally& tally, const Subject& subject, std::uint64_t trials, Clock& clock, const Adversary& adversary) {
-  const auto values = static_cast<unsigned>(
-      std::ranges::count_if(subject.motor.parameters, [](const auto& each) { return needs_spread(each.first) && each.second.spread; }));
+  const auto values = static_cast<unsigned>(std::ranges::count_if(
+      subject.motor.parameters, [](const auto& each) { return motor::needs_spread(each.first) && each.second.spread; }));
   const std::uint64_t corners = std::uint64_t{1} << values;
-  std::vector<Network> networks;
+  std::vector<thermal::Network> networks;
   for (std::uint64_t corner = 0; corner < corners; ++corner) {
     networks.push_back(at_the_ends(subject, corner));
   }
   for (std::uint64_t use = 0; tally.trials < trials && !clock.is_over(); ++use) {
     clock.report(tally, trials);
-    Random random(kSeed, (std::uint64_t{7} << 32U) + use);
+    base::Random random(kSeed, (std::uint64_t{7} << 32U) + use);
     const Script script = use == 0 ? adversary.hottest() : bang_bang(subject.derating.rules, random);
     const UsePlayed done = played(subject, script);
     ++tally.uses;
-    for (std::uint64_t corner = 0; corner + kLanes <= corners; corner += kLanes) {
-      const auto found = peaks(std::span(networks).subspan(corner, kLanes), subject.derating.rules.limits, {&done, 1});
+    for (std::uint64_t corner = 0; corner + base::kLanes <= corners; corner += base::kLanes) {
+      const auto found = peaks(std::span(networks).subspan(corner, base::kLanes), subject.derating.rules.limits, {&done, 1});
       for (std::size_t lane = 0; lane < found.size(); ++lane) {
         tally.take(found[lane], use, corner + lane, script);
       }
@@ -246,8 +246,8 @@ Retest retest(const Subject& subject, const Adversary& adversary, int motors) {
   constexpr std::size_t kHottest = 8;
   const std::vector<UsePlayed> found = adversary.best(kHottest);
   Retest result;
-  for (; result.motors < motors; result.motors += kLanes) {
-    const std::vector<Network> block = drawn(subject, kFresh + static_cast<std::uint64_t>(result.motors));
+  for (; result.motors < motors; result.motors += base::kLanes) {
+    const std::vector<thermal::Network> block = drawn(subject, kFresh + static_cast<std::uint64_t>(result.motors));
     const auto by_check = peaks(block, subject.derating.rules.limits, subject.derating.uses);
     const auto by_found = peaks(block, subject.derating.rules.limits, found);
     for (std::size_t lane = 0; lane < by_check.size(); ++lane) {
@@ -261,7 +261,7 @@ Retest retest(const Subject& subject, const Adversary& adversary, int motors) {
 std::string share_text(std::uint64_t over, std::uint64_t of) {
   const auto count = static_cast<double>(over);
   const auto all = static_cast<double>(of);
-  return fmt::format("{:.3g} % (at most {:.3g} %)", 100.0 * count / all, 100.0 * upper_bound_share(count, all, kCertainty_share));
+  return fmt::format("{:.3g} % (at most {:.3g} %)", 100.0 * count / all, 100.0 * base::upper_bound_share(count, all, kCertainty_share));
 }
 
 std::string table_text(std::span<const Tally> tallies) {
@@ -292,8 +292,8 @@ std::string csv_text(std::span<const Tally> tallies) {
   return text;
 }
 
-Chart chart_of(std::span<const Tally> tallies, double limit_C) {
-  Chart chart{
+report::Chart chart_of(std::span<const Tally> tallies, double limit_C) {
+  report::Chart chart{
       .title = "Peak temperature of the winding with the guard, in each class of attack",
       .subtitle = fmt::format("ECX FLAT 32 L in roboteam_twente_v2024, limit {:.0f} °C, {:.1f} million trials, computed", limit_C,
                               1e-6 * std::accumulate(tallies.begin(), tallies.end(), 0.0,
@@ -301,7 +301,7 @@ Chart chart_of(std::span<const Tally> tallies, double limit_C) {
       .x_label = "peak winding temperature / °C",
       .panels = {{.title = "share of trials with a higher peak", .y_label = "share / %", .levels = {{"5 %", 5.0}}, .logarithmic = true}}};
   for (std::size_t i = 0; i < tallies.size(); ++i) {
-    ChartCurve curve{.name = tallies[i].name, .color_index = static_cast<int>(i)};
+    report::ChartCurve curve{.name = tallies[i].name, .color_index = static_cast<int>(i)};
     std::uint64_t above = tallies[i].trials;
     for (int cell = 0; cell < Tally::kCells && above > 0; ++cell) {
       above -= tallies[i].peaks[static_cast<std::size_t>(cell)];
@@ -331,25 +331,25 @@ std::vector<Tally> run_all(const Subject& subject, std::uint64_t trials, Clock& 
   };
   clock.begin_class(classes_left);
   run_class(
-      tallies[0], subject, trials, 1, clock, [&](Random& random) { return adversary.next(random); },
+      tallies[0], subject, trials, 1, clock, [&](base::Random& random) { return adversary.next(random); },
       [&](const Script& script, const UsePlayed& use) { adversary.learn(script, use); });
   end_class(1);
   constexpr int kGames = 40;
-  const std::vector<WheelDemand> games =
-      draw_demands(read_duty(kSource / "duty_profiles/division_a_match.toml"), subject.robot, kSeed, kGames, 1);
-  run_class(tallies[1], subject, trials, 2, clock, [&](Random& random) {
-    const WheelDemand& game = games[static_cast<std::size_t>(random.uniform() * kGames)];
+  const std::vector<duty::WheelDemand> games =
+      select::draw_demands(duty::read_duty(kSource / "duty_profiles/division_a_match.toml"), subject.robot, kSeed, kGames, 1);
+  run_class(tallies[1], subject, trials, 2, clock, [&](base::Random& random) {
+    const duty::WheelDemand& game = games[static_cast<std::size_t>(random.uniform() * kGames)];
     const double aggressiveness = 1.0 + 2.0 * random.uniform();
     return match(game, subject.motor, subject.robot, rules, aggressiveness, random.uniform());
   });
   end_class(2);
-  run_class(tallies[2], subject, trials, 3, clock, [&](Random& random) {
+  run_class(tallies[2], subject, trials, 3, clock, [&](base::Random& random) {
     Script script = adversary.next(random);
     step_ambient(script, subject.options.coldest_ambient_C + 1.0, rules, random);
     return script;
   });
   end_class(3);
-  run_class(tallies[3], subject, trials, 4, clock, [&](Random& random) {
+  run_class(tallies[3], subject, trials, 4, clock, [&](base::Random& random) {
     constexpr double kWrong_K = 20.0;
     Script script = adversary.next(random);
     script.motor_start_C = std::lerp(rules.hottest_ambient_C + kWrong_K, rules.limits.winding_C, random.uniform());
@@ -363,12 +363,13 @@ std::vector<Tally> run_all(const Subject& subject, std::uint64_t trials, Clock& 
 
 void write(const std::filesystem::path& folder, const Subject& subject, std::span<const Tally> tallies, double elapsed_min,
            const std::string& promise) {
-  write_file(folder / "worst_use.md",
-             fmt::format("Safety factor on heat {:.2f}, confidence {:.2f}, limit {:.0f} °C. Run time {:.0f} min, one thread.\n\n{}\n{}",
-                         subject.derating.observer.heat_safety_factor(), subject.options.guarantee.confidence,
-                         subject.derating.rules.limits.winding_C, elapsed_min, table_text(tallies), promise));
-  write_file(folder / "worst_use.csv", csv_text(tallies));
-  write_file(folder / "worst_use.svg", draw_svg(chart_of(tallies, subject.derating.rules.limits.winding_C)));
+  base::write_file(
+      folder / "worst_use.md",
+      fmt::format("Safety factor on heat {:.2f}, confidence {:.2f}, limit {:.0f} °C. Run time {:.0f} min, one thread.\n\n{}\n{}",
+                  subject.derating.observer.heat_safety_factor(), subject.options.guarantee.confidence,
+                  subject.derating.rules.limits.winding_C, elapsed_min, table_text(tallies), promise));
+  base::write_file(folder / "worst_use.csv", csv_text(tallies));
+  base::write_file(folder / "worst_use.svg", report::draw_svg(chart_of(tallies, subject.derating.rules.limits.winding_C)));
 }
 
 void run(const std::filesystem::path& folder, std::uint64_t trials, double minutes) {
@@ -387,7 +388,7 @@ void run(const std::filesystem::path& folder, std::uint64_t trials, double minut
 }
 
 }  // namespace
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::derate::studies
 
 int main(int argc, char** argv) {
   try {
@@ -402,7 +403,7 @@ int main(int argc, char** argv) {
       const std::string_view text(argv[3]);
       std::from_chars(text.data(), text.data() + text.size(), minutes);
     }
-    heatsoak::studies::run(folder, trials, minutes);
+    heatsoak::derate::studies::run(folder, trials, minutes);
     return 0;
   } catch (const std::exception& problem) {
     fmt::print(stderr, "{}\n", problem.what());

@@ -6,14 +6,14 @@
 #include "support/shipped.h"
 #include "test_drive.h"
 
-namespace heatsoak {
+namespace heatsoak::friction {
 namespace {
 
 constexpr double kPlantPeriod_s = 0.001;
 constexpr std::size_t kEvery = 2;  ///< every second row of the drive is in the log, as a radio link would send it
 
 /// Friction at the wheel: 20 mN m that varies with the wheel's direction, plus 5 mN m constant, as in README.md of the folder.
-Robot with_dirty_wheel(Robot robot) {
+robot::Robot with_dirty_wheel(robot::Robot robot) {
   robot.friction.heading.double_angle_Nm = 0.0;
   for (const double axis_rad : robot.wheels.axis_rad) {
     robot.friction.heading.wheels.push_back({.constant_Nm = 0.005, .sine_Nm = 0.020, .phase_rad = -axis_rad});
@@ -42,7 +42,7 @@ std::vector<DriveRow> thinned(const std::vector<DriveRow>& rows) {
 }
 
 }  // namespace
-}  // namespace heatsoak
+}  // namespace heatsoak::friction
 
 int main(int argc, char** argv) {
   using namespace heatsoak;
@@ -50,9 +50,9 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: heatsoak_friction_example FOLDER\n");
     return 2;
   }
-  const PlantConfig plant = make_plant(with_dirty_wheel(twente()), ecx_32().nominal, kPlantPeriod_s);
+  const robot::PlantConfig plant = robot::make_plant(friction::with_dirty_wheel(twente()), ecx_32().nominal, friction::kPlantPeriod_s);
   const std::filesystem::path folder(argv[1]);
   std::filesystem::create_directories(folder);
-  std::ofstream(folder / "steady_state_test.csv")
-      << csv_of(thinned(DriveOnPlant(plant, headings_of_a_circle(), 7).rows()), plant.body.kinematics.wheel_count);
+  std::ofstream(folder / "steady_state_test.csv") << friction::csv_of(
+      friction::thinned(friction::DriveOnPlant(plant, friction::headings_of_a_circle(), 7).rows()), plant.body.kinematics.wheel_count);
 }

@@ -5,7 +5,7 @@
 
 #include "cost_study.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::simulate::studies {
 namespace {
 
 constexpr int kWidth_px = 1200;
@@ -114,4 +114,4 @@ std::string draw_costs(const std::string& title, const std::vector<std::string>&
       kWidth_px, height_px, title, body);
 }
 
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::simulate::studies

@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 #include "limiters.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::simulate::studies {
 
 namespace {
 
@@ -46,10 +46,10 @@ struct Level {
 struct Known {
   std::string name;
   const char* key;
-  Motor motor;
+  motor::Motor motor;
   MotorGuard guard;
-  std::vector<Motor> drawn;
-  std::vector<Derating> exact;  ///< one per drawn motor
+  std::vector<motor::Motor> drawn;
+  std::vector<derate::Derating> exact;  ///< one per drawn motor
 };
 
 struct Run {
@@ -62,16 +62,16 @@ struct Run {
 struct Cell {
   const Level* level = nullptr;
   const Known* known = nullptr;
-  double cap_A = kUnknown;  ///< found in hindsight; absent if no cap is needed
+  double cap_A = base::kUnknown;  ///< found in hindsight; absent if no cap is needed
   std::array<std::vector<Run>, kMethods.size()> runs;
 };
 
 const Game& game_of(const Level& level, std::size_t motor) { return level.games[motor % kMatches]; }
 std::uint64_t seed_of(std::size_t motor) { return motor % kMatches + kFirstSeed; }
 
-std::unique_ptr<Limiter> make_limiter(Method method, const Known& known, std::size_t i, const Robot& robot) {
-  const Derating& exact = known.exact[i];
-  const Motor& motor = known.drawn[i];
+std::unique_ptr<Limiter> make_limiter(Method method, const Known& known, std::size_t i, const robot::Robot& robot) {
+  const derate::Derating& exact = known.exact[i];
+  const motor::Motor& motor = known.drawn[i];
   const double ratio = motor.nominal.terminal_resistance_ohm / known.motor.nominal.terminal_resistance_ohm;
   switch (method) {
     case Method::sheet_cap:
@@ -81,14 +81,14 @@ std::unique_ptr<Limiter> make_limiter(Method method, const Known& known, std::si
     case Method::overload:
       return Limiter::i_squared_t(exact, ratio, overload_of(known.motor.nominal));
     case Method::oracle:
-      return Limiter::oracle(exact, ratio, braking_reserve_K(robot, motor.nominal, exact));
+      return Limiter::oracle(exact, ratio, firmware::braking_reserve_K(robot, motor.nominal, exact));
     default:
       return nullptr;
   }
 }
 
-Run drive(const Level& level, const Known& known, Method method, std::size_t i, double cap_A = kUnknown) {
-  Robot robot = level.match.robot;
+Run drive(const Level& level, const Known& known, Method method, std::size_t i, double cap_A = base::kUnknown) {
+  robot::Robot robot = level.match.robot;
   if (method == Method::hindsight_cap) {
     // The firmware limits the current through the voltage and the lowest resistance, so a cold winding gets more than a warm one.
     robot.drive.current_limit_A = cap_A;
@@ -124,7 +124,7 @@ void find_cap(Cell& cell) {
       (drive(*cell.level, *cell.known, Method::hindsight_cap, hottest, tried_A).peak_C <= limit_C ? low_A : high_A) = tried_A;
     }
     cell.cap_A = high_A = low_A;
-    in_parallel(kMotors, 0, [&](std::size_t i) { runs[i] = drive(*cell.level, *cell.known, Method::hindsight_cap, i, cell.cap_A); });
+    base::in_parallel(kMotors, 0, [&](std::size_t i) { runs[i] = drive(*cell.level, *cell.known, Method::hindsight_cap, i, cell.cap_A); });
   }
 }
 
@@ -143,7 +143,7 @@ void run_all(std::vector<Cell>& cells, std::initializer_list<Method> methods) {
       }
     }
   }
-  in_parallel(jobs.size(), 0, [&](std::size_t j) {
+  base::in_parallel(jobs.size(), 0, [&](std::size_t j) {
     const Job& job = jobs[j];
     job.cell->runs[place_of(job.method)][job.motor] = drive(*job.cell->level, *job.cell->known, job.method, job.motor);
   });
@@ -271,13 +271,13 @@ std::string picture(const std::vector<Level>& levels, const std::vector<Known>& 
       {"motor known from its file (estimates)", "motor known from a bench test"}, shown);
 }
 
-Known make_known(std::string name, const char* key, Motor motor, const Robot& robot) {
+Known make_known(std::string name, const char* key, motor::Motor motor, const robot::Robot& robot) {
   Known known{std::move(name), key, std::move(motor), {}, {}, {}};
   known.guard = make_guard(known.motor, robot, 40.0, 0);
   known.drawn = representative_motors(known.motor, kMotors);
-  std::vector<std::optional<Derating>> exact(kMotors);
-  in_parallel(kMotors, 0, [&](std::size_t i) { exact[i].emplace(exact_derating(known.drawn[i], robot)); });
-  for (std::optional<Derating>& each : exact) {
+  std::vector<std::optional<derate::Derating>> exact(kMotors);
+  base::in_parallel(kMotors, 0, [&](std::size_t i) { exact[i].emplace(exact_derating(known.drawn[i], robot)); });
+  for (std::optional<derate::Derating>& each : exact) {
     known.exact.push_back(std::move(*each));
   }
   return known;
@@ -310,7 +310,7 @@ void study_costs(const Subject& subject, const Report& report) {
     }
   }
   run_all(cells, {Method::none});
-  in_parallel(cells.size(), 0, [&](std::size_t i) { find_cap(cells[i]); });
+  base::in_parallel(cells.size(), 0, [&](std::size_t i) { find_cap(cells[i]); });
   run_all(cells, {Method::sheet_cap, Method::stator_ramp, Method::overload, Method::guard_unsensed, Method::guard, Method::oracle});
 
   const Overload overload = overload_of(subject.motor.nominal);
@@ -330,4 +330,4 @@ void study_costs(const Subject& subject, const Report& report) {
   report.write("costs.svg", picture(levels, known, cells));
 }
 
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::simulate::studies

@@ -7,7 +7,7 @@
 
 #include "guard_study.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::simulate::studies {
 
 /// One limiting method at one level, over its motors and matches.
 struct Cost {
@@ -43,7 +43,7 @@ struct Knowledge {
   const MotorGuard* guard = nullptr;
 };
 /// Writes rest.svg and rest.csv and returns the section of the report. `match` and `game` belong to the middle level.
-std::string study_rest(const HardMatch& match, const Game& game, const Motor& motor, const std::vector<Knowledge>& known,
+std::string study_rest(const HardMatch& match, const Game& game, const motor::Motor& motor, const std::vector<Knowledge>& known,
                        const Report& report);
 
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::simulate::studies

@@ -14,7 +14,7 @@
 #include "base/files.h"
 #include "support/shipped.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::simulate::studies {
 
 Spread spread_of(std::vector<double> values) {
   std::ranges::sort(values);
@@ -51,10 +51,10 @@ std::string Sheet::csv() const {
   return text;
 }
 
-void Report::write(const std::string& file, const std::string& text) const { write_file(folder / file, text); }
-void Report::draw(const std::string& file, const Chart& chart) const { write(file, draw_svg(chart)); }
+void Report::write(const std::string& file, const std::string& text) const { base::write_file(folder / file, text); }
+void Report::draw(const std::string& file, const report::Chart& chart) const { write(file, report::draw_svg(chart)); }
 
-DriveOptions sensed_drive(const Robot& robot, std::uint64_t seed, bool has_current_sensor) {
+DriveOptions sensed_drive(const robot::Robot& robot, std::uint64_t seed, bool has_current_sensor) {
   DriveOptions options = real_drive(robot, seed);
   options.sensing.has_motor_current = has_current_sensor;
   return options;
@@ -96,11 +96,11 @@ int run(const std::vector<std::string>& words) {
 }
 
 }  // namespace
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::simulate::studies
 
 int main(int argc, char** argv) {
   try {
-    return heatsoak::studies::run({argv + 1, argv + argc});
+    return heatsoak::simulate::studies::run({argv + 1, argv + argc});
   } catch (const std::exception& problem) {
     fmt::print(stderr, "{}\n", problem.what());
     return 70;

@@ -10,7 +10,7 @@
 #include "robot/robot.h"
 #include "simulate/core_drive.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::simulate::studies {
 
 /// Statistics over seeds, headings or motors.
 struct Spread {
@@ -38,21 +38,21 @@ struct Report {
   std::filesystem::path folder;
 
   void write(const std::string& file, const std::string& text) const;
-  void draw(const std::string& file, const Chart& chart) const;
+  void draw(const std::string& file, const report::Chart& chart) const;
 };
 
 /// The paper's robot with the motor that failed in it.
 struct Subject {
-  Robot robot;
-  Motor motor;
+  robot::Robot robot;
+  motor::Motor motor;
 };
 
 /// Sensors and radio of the robot, with an optional current sensor per motor, which Twente's motor controller lacks.
-DriveOptions sensed_drive(const Robot& robot, std::uint64_t seed, bool has_current_sensor);
+DriveOptions sensed_drive(const robot::Robot& robot, std::uint64_t seed, bool has_current_sensor);
 
 void study_low_speed(const Subject& subject, const Report& report);
 void study_planners_in_match(const Subject& subject, const Report& report);
 void study_guard(const Subject& subject, const Report& report);
 void study_costs(const Subject& subject, const Report& report);
 
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::simulate::studies

@@ -7,7 +7,7 @@
 
 #include "base/parallel.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::simulate::studies {
 namespace {
 
 constexpr std::size_t kSeeds = 5;
@@ -16,9 +16,9 @@ constexpr std::size_t kMotors = 12;
 /// The core's knowledge of the motor, and all drives with this knowledge.
 struct Group {
   std::string name;
-  Motor known;
+  motor::Motor known;
   MotorGuard guard;
-  std::vector<Motor> drawn;                     ///< motors drawn within the tolerances of `known`
+  std::vector<motor::Motor> drawn;              ///< motors drawn within the tolerances of `known`
   std::vector<Way> ways;                        ///< the first has no limit
   std::vector<std::vector<Hardship>> by_seed;   ///< [way][seed], nominal motor
   std::vector<std::vector<Hardship>> by_motor;  ///< [way][motor], first match
@@ -31,25 +31,27 @@ struct Study {
   Group bench;
 };
 
-std::vector<Hardship> drive_motors(const Study& study, const Way& way, const std::vector<Motor>& motors) {
+std::vector<Hardship> drive_motors(const Study& study, const Way& way, const std::vector<motor::Motor>& motors) {
   std::vector<Hardship> hardships(motors.size());
-  in_parallel(motors.size(), 0,
-              [&](std::size_t i) { hardships[i] = drive_hard(study.match, study.games.front(), way, motors[i], 1, false); });
+  base::in_parallel(motors.size(), 0,
+                    [&](std::size_t i) { hardships[i] = drive_hard(study.match, study.games.front(), way, motors[i], 1, false); });
   return hardships;
 }
 
-std::vector<Hardship> drive_seeds(const Study& study, const Way& way, const Motor& motor) {
+std::vector<Hardship> drive_seeds(const Study& study, const Way& way, const motor::Motor& motor) {
   std::vector<Hardship> hardships(kSeeds);
-  in_parallel(kSeeds, 0, [&](std::size_t i) { hardships[i] = drive_hard(study.match, study.games[i], way, motor, i + 1, i == 0); });
+  base::in_parallel(kSeeds, 0, [&](std::size_t i) { hardships[i] = drive_hard(study.match, study.games[i], way, motor, i + 1, i == 0); });
   return hardships;
 }
 
 /// Adds the largest caps that keep the limit in the first match: for the nominal motor, and for the hottest drawn motor.
 void add_caps(const Study& study, Group& group) {
   const auto hottest = std::ranges::max_element(group.by_motor.front(), {}, [](const Hardship& each) { return each.score.winding_peak_C; });
-  const std::array<const Motor*, 2> kept{&group.known, &group.drawn[static_cast<std::size_t>(hottest - group.by_motor.front().begin())]};
+  const std::array<const motor::Motor*, 2> kept{&group.known,
+                                                &group.drawn[static_cast<std::size_t>(hottest - group.by_motor.front().begin())]};
   std::array<double, 2> cap_A{};
-  in_parallel(2, 0, [&](std::size_t i) { cap_A.at(i) = largest_cap_A(study.match, study.games.front(), group.known, *kept.at(i), 1); });
+  base::in_parallel(2, 0,
+                    [&](std::size_t i) { cap_A.at(i) = largest_cap_A(study.match, study.games.front(), group.known, *kept.at(i), 1); });
   group.ways.push_back({.name = fmt::format("cap {:.1f} A, for the nominal motor", cap_A[0]), .motor = &group.known, .cap_A = cap_A[0]});
   group.ways.push_back({.name = fmt::format("cap {:.1f} A, for the hottest motor", cap_A[1]), .motor = &group.known, .cap_A = cap_A[1]});
 }
@@ -177,8 +179,8 @@ Sheet all_runs(const Study& study) {
 
 const std::vector<Second>& seconds_of(const Group& group, std::size_t way) { return group.by_seed[way].front().seconds; }
 
-ChartCurve curve_of(std::string name, const std::vector<Second>& seconds, double Second::*value, int color) {
-  ChartCurve curve{.name = std::move(name), .color_index = color};
+report::ChartCurve curve_of(std::string name, const std::vector<Second>& seconds, double Second::*value, int color) {
+  report::ChartCurve curve{.name = std::move(name), .color_index = color};
   for (const Second& each : seconds) {
     curve.x.push_back(each.time_s / 60.0);
     curve.y.push_back(each.*value);
@@ -187,15 +189,15 @@ ChartCurve curve_of(std::string name, const std::vector<Second>& seconds, double
 }
 
 /// Returns the accumulated lost distance, relative to a drive with the same knowledge without guard.
-ChartCurve lost_m(const Group& group, std::size_t way, std::string name, int color) {
-  ChartCurve curve = curve_of(std::move(name), seconds_of(group, way), &Second::distance_m, color);
+report::ChartCurve lost_m(const Group& group, std::size_t way, std::string name, int color) {
+  report::ChartCurve curve = curve_of(std::move(name), seconds_of(group, way), &Second::distance_m, color);
   for (std::size_t i = 0; i < curve.y.size(); ++i) {
     curve.y[i] = seconds_of(group, 0)[i].distance_m - curve.y[i];
   }
   return curve;
 }
 
-ChartPanel panel(std::string title, std::string label) {
+report::ChartPanel panel(std::string title, std::string label) {
   return {.title = std::move(title), .y_label = std::move(label), .curves = {}, .bands = {}, .levels = {}};
 }
 
@@ -203,49 +205,50 @@ constexpr const char* kGuardOfBench = "guard from bench data";
 constexpr const char* kGuardOfFile = "guard from the file's estimates";
 
 /// Draws the first match of the nominal motor.
-Chart time_picture(const Study& study) {
+report::Chart time_picture(const Study& study) {
   const Group& file = study.file;
   const Group& bench = study.bench;
   const double limit_C = file.known.nominal.winding_limit_C;
   const auto peak_C = [](const Group& group, std::size_t way) { return group.by_seed[way].front().score.winding_peak_C; };
-  Chart chart{.title = fmt::format("Hard match: winding at {:.0f} °C without guard, {:.0f} °C with it (bench data)", peak_C(bench, 0),
-                                   peak_C(bench, 1)),
-              .subtitle = "Twente v2024, ECX FLAT 32 L (nominal), simulated with real sensing, seed 1; hottest wheel of each second",
-              .x_label = "time / min",
-              .panels = {},
-              .panel_height_px = 280};
-  ChartPanel heat = panel("Hottest winding", "temperature / °C");
+  report::Chart chart{
+      .title =
+          fmt::format("Hard match: winding at {:.0f} °C without guard, {:.0f} °C with it (bench data)", peak_C(bench, 0), peak_C(bench, 1)),
+      .subtitle = "Twente v2024, ECX FLAT 32 L (nominal), simulated with real sensing, seed 1; hottest wheel of each second",
+      .x_label = "time / min",
+      .panels = {},
+      .panel_height_px = 280};
+  report::ChartPanel heat = panel("Hottest winding", "temperature / °C");
   heat.curves = {curve_of("no guard", seconds_of(bench, 0), &Second::winding_C, 0),
                  curve_of(kGuardOfBench, seconds_of(bench, 1), &Second::winding_C, 2),
                  curve_of(kGuardOfFile, seconds_of(file, 1), &Second::winding_C, 1)};
   heat.levels = {{fmt::format("limit {:.0f} °C", limit_C), limit_C}};
-  ChartPanel observer = panel("Winding of the guard's observer, which adds the safety factor on heat", "temperature / °C");
+  report::ChartPanel observer = panel("Winding of the guard's observer, which adds the safety factor on heat", "temperature / °C");
   observer.curves = {curve_of("", seconds_of(bench, 1), &Second::observer_C, 2), curve_of("", seconds_of(file, 1), &Second::observer_C, 1)};
   observer.levels = heat.levels;
-  ChartPanel allowed = panel("Allowed current of the most limited wheel; at the top grip limits, not the guard", "current / A");
+  report::ChartPanel allowed = panel("Allowed current of the most limited wheel; at the top grip limits, not the guard", "current / A");
   allowed.curves = {curve_of("", seconds_of(bench, 1), &Second::allowed_A, 2), curve_of("", seconds_of(file, 1), &Second::allowed_A, 1)};
-  ChartPanel distance = panel("Distance lost against no guard", "distance / m");
+  report::ChartPanel distance = panel("Distance lost against no guard", "distance / m");
   distance.curves = {lost_m(file, 1, "", 1), lost_m(file, 3, "file: " + file.ways[3].name, 5), lost_m(bench, 1, "", 2),
                      lost_m(bench, 3, "bench: " + bench.ways[3].name, 3)};
-  ChartPanel off = panel("Distance between plan and robot", "largest of a second / m");
+  report::ChartPanel off = panel("Distance between plan and robot", "largest of a second / m");
   off.curves = {curve_of("", seconds_of(file, 1), &Second::off_plan_m, 1), curve_of("", seconds_of(bench, 1), &Second::off_plan_m, 2)};
   chart.panels = {std::move(heat), std::move(observer), std::move(allowed), std::move(distance), std::move(off)};
   return chart;
 }
 
 /// Draws peak temperature over distance, one point per drawn motor.
-Chart motor_picture(const Study& study) {
+report::Chart motor_picture(const Study& study) {
   const Group& file = study.file;
   const Group& bench = study.bench;
   const auto over = [&](std::size_t way) { return over_limit(file, way) + over_limit(bench, way); };
-  Chart chart{.title = fmt::format("Over the limit: {} of {} motors unguarded, {} with the nominal cap, {} with guard", over(0),
-                                   2 * kMotors, over(2), over(1)),
-              .subtitle =
-                  "hard match, seed 1; motors known from their file and from a bench test, drawn within their tolerances; "
-                  "each point is one motor",
-              .x_label = "distance driven in the match / m",
-              .panels = {},
-              .panel_height_px = 400};
+  report::Chart chart{.title = fmt::format("Over the limit: {} of {} motors unguarded, {} with the nominal cap, {} with guard", over(0),
+                                           2 * kMotors, over(2), over(1)),
+                      .subtitle =
+                          "hard match, seed 1; motors known from their file and from a bench test, drawn within their tolerances; "
+                          "each point is one motor",
+                      .x_label = "distance driven in the match / m",
+                      .panels = {},
+                      .panel_height_px = 400};
   constexpr double kRoom_m = 4.0;
   std::vector<double> driven_m;
   for (const Group* const group : {&study.file, &study.bench}) {
@@ -260,7 +263,7 @@ Chart motor_picture(const Study& study) {
                                  is_file ? "file: cap for the hottest motor" : "bench: cap for the hottest motor", "guard, nothing sensed"};
     const int colors[] = {0, is_file ? 1 : 2, 4, is_file ? 5 : 3, 6};
     const auto [least, most] = std::ranges::minmax(driven_m);
-    ChartPanel one = panel(title, "winding peak / °C");
+    report::ChartPanel one = panel(title, "winding peak / °C");
     for (std::size_t w = 0; w < group.ways.size(); ++w) {
       one.curves.push_back({.name = names[w],
                             .x = values_of(group.by_motor[w], kDistance),
@@ -303,4 +306,4 @@ void study_guard(const Subject& subject, const Report& report) {
   report.draw("guard_motors.svg", motor_picture(study));
 }
 
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::simulate::studies

@@ -8,7 +8,7 @@
 #include "simulate/guarded_core.h"
 #include "simulate/match_run.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::simulate::studies {
 
 /// An input of the hard match that differs from the files.
 struct HardInput {
@@ -19,27 +19,27 @@ struct HardInput {
 };
 
 struct HardMatch {
-  Robot robot;
-  MatchInputs inputs;
+  robot::Robot robot;
+  duty::MatchInputs inputs;
   double ambient_C = 0.0;
   std::vector<HardInput> changed;
 };
 /// Makes the hard match and lists every change. Inputs with a declared range are moved to their harder end. `share` scales all changes: 0
 /// means files as they are, 1 the hard match.
-HardMatch make_hard_match(const Robot& robot, double share = 1.0);
+HardMatch make_hard_match(const robot::Robot& robot, double share = 1.0);
 
 /// Returns the motor's file after a bench test: its values with the tolerances that such a test leaves.
-Motor bench_tested(const Motor& motor);
+motor::Motor bench_tested(const motor::Motor& motor);
 inline constexpr const char* kBenchTolerances =
     "both thermal resistances ±5 %, both time constants ±10 %, resistance and torque constant ±2 %, no-load current ±20 %";
 
 /// One method of limiting the current.
 struct Way {
   std::string name;
-  const Motor* motor = nullptr;       ///< the core knows the tolerances of this motor file
-  const MotorGuard* guard = nullptr;  ///< null: no guard
-  bool has_sensors = false;           ///< sensors of motor current and air temperature
-  double cap_A = kUnknown;            ///< constant cap for every motor
+  const motor::Motor* motor = nullptr;  ///< the core knows the tolerances of this motor file
+  const MotorGuard* guard = nullptr;    ///< null: no guard
+  bool has_sensors = false;             ///< sensors of motor current and air temperature
+  double cap_A = base::kUnknown;        ///< constant cap for every motor
 };
 
 /// Values of one second.
@@ -60,21 +60,23 @@ struct Hardship {
 inline constexpr double kOffPlan_m = 0.09;  ///< radius of a robot of the league
 
 /// Drives the match; `motor` is the true motor.
-Hardship drive_hard(const HardMatch& match, const Game& game, const Way& way, const Motor& motor, std::uint64_t seed, bool with_seconds);
+Hardship drive_hard(const HardMatch& match, const Game& game, const Way& way, const motor::Motor& motor, std::uint64_t seed,
+                    bool with_seconds);
 
 /// Drives the match with a given configuration of the core; `has_sensors` has the meaning in Way.
-Hardship drive_hard(const HardMatch& match, const Game& game, const robot_core::Config& core, bool has_sensors, const Motor& motor,
+Hardship drive_hard(const HardMatch& match, const Game& game, const robot_core::Config& core, bool has_sensors, const motor::Motor& motor,
                     std::uint64_t seed, bool with_seconds);
 
 /// Draws motors of a file within its tolerances.
-std::vector<Motor> drawn_motors(const Motor& motor, std::size_t count);
+std::vector<motor::Motor> drawn_motors(const motor::Motor& motor, std::size_t count);
 
 /// Draws 1000 motors within the tolerances, orders them by their rise per square of the torque in steady state, and returns the middle of
 /// each of `count` equal groups. Few motors then represent the tolerances: the hottest of nine is at the 94th percentile.
-std::vector<Motor> representative_motors(const Motor& motor, std::size_t count);
+std::vector<motor::Motor> representative_motors(const motor::Motor& motor, std::size_t count);
 
 /// Finds the largest cap, to 0.05 A, that keeps the true winding within its limit in this match; it is known only in hindsight. The core
 /// applies it through the voltage and the lowest resistance that the motor may have, so a warm motor gets less.
-double largest_cap_A(const HardMatch& match, const Game& game, const Motor& core_motor, const Motor& motor, std::uint64_t seed);
+double largest_cap_A(const HardMatch& match, const Game& game, const motor::Motor& core_motor, const motor::Motor& motor,
+                     std::uint64_t seed);
 
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::simulate::studies

@@ -8,7 +8,7 @@
 #include "guard_study.h"
 #include "support/source_folder.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::simulate::studies {
 namespace {
 
 struct HarderInput {
@@ -33,29 +33,29 @@ constexpr HarderInput kHarder[] = {
 struct HarderParameter {
   const char* name;
   const char* unit;
-  std::optional<double>& (*value)(Robot&);
+  std::optional<double>& (*value)(robot::Robot&);
   double hard;
   double per_unit;  ///< displayed unit per SI unit
   const char* remark;
 };
 constexpr HarderParameter kHarderParameters[] = {
-    {"acceleration limit", "m/s²", [](Robot& robot) -> auto& {return robot.limits.acceleration_m_per_s2;
+    {"acceleration limit", "m/s²", [](robot::Robot& robot) -> auto& {return robot.limits.acceleration_m_per_s2;
 }  // namespace
 , 3.0, 1.0, "harsher than the team's own limit; the braking that TIGERs saw of the robot"
-}  // namespace heatsoak::studies
-, {"braking limit", "m/s²", [](Robot& robot) -> auto& {return robot.limits.braking_m_per_s2;
+}  // namespace heatsoak::simulate::studies
+, {"braking limit", "m/s²", [](robot::Robot& robot) -> auto& {return robot.limits.braking_m_per_s2;
 }
 , 3.0, 1.0, kEnd
 }
-, {"jerk limit", "m/s³", [](Robot& robot) -> auto& {return robot.limits.jerk_m_per_s3;
+, {"jerk limit", "m/s³", [](robot::Robot& robot) -> auto& {return robot.limits.jerk_m_per_s3;
 }
 , 20.0, 1.0, "harsher than the team's own limit"
 }
-, {"coefficient of traction", "", [](Robot& robot) -> auto& {return robot.traction.coefficient_ratio;
+, {"coefficient of traction", "", [](robot::Robot& robot) -> auto& {return robot.traction.coefficient_ratio;
 }
 , 1.0, 1.0, kEnd
 }
-, {"constant friction of a wheel", "mN m", [](Robot& robot) -> auto& {return robot.friction.heading.constant_Nm;
+, {"constant friction of a wheel", "mN m", [](robot::Robot& robot) -> auto& {return robot.friction.heading.constant_Nm;
 }
 , 0.038, 1e3, kEnd
 }
@@ -65,22 +65,22 @@ constexpr HarderParameter kHarderParameters[] = {
 
 }  // namespace
 
-HardMatch make_hard_match(const Robot& robot, double share) {
+HardMatch make_hard_match(const robot::Robot& robot, double share) {
   constexpr double kHardAmbient_C = 40.0;
-  const Duty duty = read_duty(kSource / "duty_profiles" / "division_a_match.toml");
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles" / "division_a_match.toml");
   HardMatch match{robot,
-                  std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data)->inputs(),
+                  std::dynamic_pointer_cast<const duty::MatchDuty>(duty.shape_data)->inputs(),
                   std::lerp(duty.ambient_C.value, kHardAmbient_C, share),
                   {}};
   match.changed.push_back({"air at the motors", fmt::format("{:.0f} °C", duty.ambient_C.value), fmt::format("{:.3g} °C", match.ambient_C),
                            "harsher than the declared 20 to 32 °C of a hall: 8 K more inside of a closed robot"});
-  const auto specs = match_input_specs();
+  const auto specs = duty::match_input_specs();
   for (const HarderInput& harder : kHarder) {
-    const auto spec = std::ranges::find_if(specs, [&](const MatchInputSpec& each) { return each.spec.key == harder.key; });
+    const auto spec = std::ranges::find_if(specs, [&](const duty::MatchInputSpec& each) { return each.spec.key == harder.key; });
     if (spec == specs.end()) {
-      throw Failure(ExitCode::bug, fmt::format("a match has no input {}", harder.key));
+      throw base::Failure(base::ExitCode::bug, fmt::format("a match has no input {}", harder.key));
     }
-    ParameterValue& figure = match.inputs.parameters.at(static_cast<std::size_t>(spec - specs.begin()));
+    base::ParameterValue& figure = match.inputs.parameters.at(static_cast<std::size_t>(spec - specs.begin()));
     const std::string unit(spec->spec.unit);
     const double value = std::lerp(figure.value, harder.value, share);
     match.changed.push_back(
@@ -97,7 +97,7 @@ HardMatch make_hard_match(const Robot& robot, double share) {
   return match;
 }
 
-Motor bench_tested(const Motor& motor) {
+motor::Motor bench_tested(const motor::Motor& motor) {
   struct Tolerance {
     const char* key;
     double share;
@@ -110,22 +110,23 @@ Motor bench_tested(const Motor& motor) {
                                        {"torque_constant", 0.02},
                                        {"speed_constant", 0.02},
                                        {"no_load_current", 0.2}};
-  Motor tested = motor;
+  motor::Motor tested = motor;
   for (const Tolerance& each : kTolerances) {
-    ParameterValue* const figure = find_parameter(tested, each.key);
+    base::ParameterValue* const figure = motor::find_parameter(tested, each.key);
     if (figure == nullptr) {
-      throw Failure(ExitCode::bug, fmt::format("the motor has no {}", each.key));
+      throw base::Failure(base::ExitCode::bug, fmt::format("the motor has no {}", each.key));
     }
     // Tolerances this narrow would be replaced by the default for an estimate.
-    figure->origin = Origin::measured;
-    figure->spread = heatsoak::Spread{
-        .kind = heatsoak::Spread::Kind::range, .low = figure->value * (1.0 - each.share), .high = figure->value * (1.0 + each.share)};
+    figure->origin = base::Origin::measured;
+    figure->spread = base::Spread{
+        .kind = base::Spread::Kind::range, .low = figure->value * (1.0 - each.share), .high = figure->value * (1.0 + each.share)};
   }
   return tested;
 }
 
-Hardship drive_hard(const HardMatch& match, const Game& game, const Way& way, const Motor& motor, std::uint64_t seed, bool with_seconds) {
-  Robot known = match.robot;
+Hardship drive_hard(const HardMatch& match, const Game& game, const Way& way, const motor::Motor& motor, std::uint64_t seed,
+                    bool with_seconds) {
+  robot::Robot known = match.robot;
   if (!std::isnan(way.cap_A)) {
     known.drive.current_limit_A = way.cap_A;
   }
@@ -134,7 +135,7 @@ Hardship drive_hard(const HardMatch& match, const Game& game, const Way& way, co
   return drive_hard(match, game, core.config(), way.has_sensors, motor, seed, with_seconds);
 }
 
-Hardship drive_hard(const HardMatch& match, const Game& game, const robot_core::Config& core, bool has_sensors, const Motor& motor,
+Hardship drive_hard(const HardMatch& match, const Game& game, const robot_core::Config& core, bool has_sensors, const motor::Motor& motor,
                     std::uint64_t seed, bool with_seconds) {
   MatchRunOptions options;
   options.ambient_C = match.ambient_C;
@@ -144,8 +145,8 @@ Hardship drive_hard(const HardMatch& match, const Game& game, const robot_core::
   Second open{.allowed_A = std::numeric_limits<double>::infinity()};
   double distance_m = 0.0;
   hardship.score = run_match(game, match.robot, motor, core, options, [&](const LoopMoment& moment) {
-                     const Pose plan = moment.plan->pose();
-                     const PlantState& state = moment.robot->state();
+                     const robot::Pose plan = moment.plan->pose();
+                     const robot::PlantState& state = moment.robot->state();
                      const double off_m = std::hypot(plan.x_m - state.pose.x_m, plan.y_m - state.pose.y_m);
                      hardship.off_plan_s += off_m > kOffPlan_m ? SimulatedRobot::kPeriod_s : 0.0;
                      distance_m += std::hypot(state.velocity.x_m_per_s, state.velocity.y_m_per_s) * SimulatedRobot::kPeriod_s;
@@ -169,32 +170,33 @@ Hardship drive_hard(const HardMatch& match, const Game& game, const robot_core::
   return hardship;
 }
 
-std::vector<Motor> drawn_motors(const Motor& motor, std::size_t count) {
+std::vector<motor::Motor> drawn_motors(const motor::Motor& motor, std::size_t count) {
   constexpr std::uint64_t kSeed = 20250;
-  std::vector<Motor> motors(count, motor);
+  std::vector<motor::Motor> motors(count, motor);
   for (std::size_t i = 0; i < count; ++i) {
-    Random random(kSeed, i);
-    motors[i].nominal = draw_sample(motor, random).values;
+    base::Random random(kSeed, i);
+    motors[i].nominal = motor::draw_sample(motor, random).values;
   }
   return motors;
 }
 
-std::vector<Motor> representative_motors(const Motor& motor, std::size_t count) {
+std::vector<motor::Motor> representative_motors(const motor::Motor& motor, std::size_t count) {
   constexpr std::size_t kDrawn = 1000;
-  std::vector<Motor> drawn = drawn_motors(motor, kDrawn);
-  std::ranges::sort(drawn, {}, [](const Motor& each) {
-    const MotorValues& values = each.nominal;
+  std::vector<motor::Motor> drawn = drawn_motors(motor, kDrawn);
+  std::ranges::sort(drawn, {}, [](const motor::Motor& each) {
+    const motor::MotorValues& values = each.nominal;
     return (values.thermal_resistance_winding_stator_K_per_W + values.thermal_resistance_stator_ambient_K_per_W) *
            values.terminal_resistance_ohm / std::pow(values.torque_constant_Nm_per_A, 2);
   });
-  std::vector<Motor> motors;
+  std::vector<motor::Motor> motors;
   for (std::size_t i = 0; i < count; ++i) {
     motors.push_back(drawn[(2 * i + 1) * kDrawn / (2 * count)]);
   }
   return motors;
 }
 
-double largest_cap_A(const HardMatch& match, const Game& game, const Motor& core_motor, const Motor& motor, std::uint64_t seed) {
+double largest_cap_A(const HardMatch& match, const Game& game, const motor::Motor& core_motor, const motor::Motor& motor,
+                     std::uint64_t seed) {
   double low_A = 0.5;
   double high_A = 12.0;
   while (high_A - low_A > 0.05) {
@@ -206,4 +208,4 @@ double largest_cap_A(const HardMatch& match, const Game& game, const Motor& core
   return low_A;
 }
 
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::simulate::studies

@@ -6,7 +6,7 @@
 #include "base/diagnostic.h"
 #include "motor/datasheet_network.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::simulate::studies {
 namespace {
 
 /// The accumulator's node has this value when the budget is used up. It is far above any stator temperature, because the table takes the
@@ -15,8 +15,8 @@ constexpr float kFull = 900.0F;
 constexpr float kFallsFrom_share = 0.9F;
 constexpr float kMost = 999.0F;  ///< the core treats more than 1000 as a corrupted state
 
-Derating scaled(Derating exact, double ratio) {
-  CurrentTable& table = exact.table;
+derate::Derating scaled(derate::Derating exact, double ratio) {
+  derate::CurrentTable& table = exact.table;
   std::ranges::transform(table.square_A2, table.square_A2.begin(), [ratio](double square_A2) { return ratio * ratio * square_A2; });
   table.straight_below_A *= ratio;
   table.most_current_A *= ratio;
@@ -25,18 +25,18 @@ Derating scaled(Derating exact, double ratio) {
 
 }  // namespace
 
-Derating exact_derating(const Motor& motor, const Robot& robot) {
-  const DerateOptions options;
-  const Network network = datasheet_network(motor, nominal_sample(motor));
-  Observer observer(network, motor.nominal, robot, 1.0);
-  BarrierRules rules = barrier_rules(motor, robot, options);
+derate::Derating exact_derating(const motor::Motor& motor, const robot::Robot& robot) {
+  const derate::DerateOptions options;
+  const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
+  derate::Observer observer(network, motor.nominal, robot, 1.0);
+  derate::BarrierRules rules = derate::barrier_rules(motor, robot, options);
   const double reachable_rad_per_s = rules.most_speed_rad_per_s;
-  rules.most_speed_rad_per_s = sustainable_speed_rad_per_s(observer, rules);
+  rules.most_speed_rad_per_s = derate::sustainable_speed_rad_per_s(observer, rules);
   if (rules.most_speed_rad_per_s < reachable_rad_per_s) {
     rules.no_current_speed_rad_per_s = 0.0;
   }
   // The oracle's table is nearly exact.
-  CurrentTable table = current_table(observer, rules, {.shortfall_ratio = 0.003, .most_bytes = 1U << 16U});
+  derate::CurrentTable table = derate::current_table(observer, rules, {.shortfall_ratio = 0.003, .most_bytes = 1U << 16U});
   return {.motor_id = motor.id,
           .robot_id = robot.id,
           .data_quality = {},
@@ -52,17 +52,17 @@ Derating exact_derating(const Motor& motor, const Robot& robot) {
           .reachable_speed_rad_per_s = reachable_rad_per_s};
 }
 
-Overload overload_of(const MotorValues& motor) {
+Overload overload_of(const motor::MotorValues& motor) {
   Overload overload;
-  overload.continuous_A = motor.nominal_current_A.value_or(motor.nominal_torque_Nm.value_or(kUnknown) / motor.torque_constant_Nm_per_A +
-                                                           motor.no_load_current_A);
+  overload.continuous_A = motor.nominal_current_A.value_or(
+      motor.nominal_torque_Nm.value_or(base::kUnknown) / motor.torque_constant_Nm_per_A + motor.no_load_current_A);
   overload.peak_A = motor.nominal_voltage_V / motor.terminal_resistance_ohm;
   const double ratio = overload.peak_A / overload.continuous_A;
   overload.peak_s = motor.thermal_time_constant_winding_s * std::log(ratio * ratio / (ratio * ratio - 1.0));
   return overload;
 }
 
-Limiter::Limiter(const Derating& exact, double resistance_ratio)
+Limiter::Limiter(const derate::Derating& exact, double resistance_ratio)
     : exact_(scaled(exact, resistance_ratio)), motor_(exact_), model_(motor_.model()), resistance_ratio_(resistance_ratio) {}
 
 void Limiter::set_table(const std::vector<float>& body, const std::vector<double>& current_A) {
@@ -92,23 +92,23 @@ void Limiter::set_table(const std::vector<float>& body, const std::vector<double
   model_.cold_current_A = static_cast<float>(resistance_ratio_ * current_A.front());
 }
 
-std::unique_ptr<Limiter> Limiter::fixed_cap(const Derating& exact, double resistance_ratio, double cap_A) {
+std::unique_ptr<Limiter> Limiter::fixed_cap(const derate::Derating& exact, double resistance_ratio, double cap_A) {
   std::unique_ptr<Limiter> made(new Limiter(exact, resistance_ratio));
   made->set_table({0.0F, 1000.0F}, {cap_A, cap_A});
   return made;
 }
 
-std::unique_ptr<Limiter> Limiter::stator_ramp(const Derating& exact, double resistance_ratio, double full_C, double none_C) {
+std::unique_ptr<Limiter> Limiter::stator_ramp(const derate::Derating& exact, double resistance_ratio, double full_C, double none_C) {
   std::unique_ptr<Limiter> made(new Limiter(exact, resistance_ratio));
   const double most_A = exact.rules.most_current_A;
   made->set_table({0.0F, static_cast<float>(full_C), static_cast<float>(none_C), 1000.0F}, {most_A, most_A, 0.0, 0.0});
   return made;
 }
 
-std::unique_ptr<Limiter> Limiter::i_squared_t(const Derating& exact, double resistance_ratio, const Overload& overload) {
+std::unique_ptr<Limiter> Limiter::i_squared_t(const derate::Derating& exact, double resistance_ratio, const Overload& overload) {
   std::unique_ptr<Limiter> made(new Limiter(exact, resistance_ratio));
   if (made->model_.node_count != 2) {
-    throw Failure(ExitCode::bug, "the I²t limiter expects a network of winding and stator");
+    throw base::Failure(base::ExitCode::bug, "the I²t limiter expects a network of winding and stator");
   }
   const double most_A = exact.rules.most_current_A;
   made->set_table({0.0F, kFallsFrom_share * kFull, kFull, 1000.0F}, {most_A, most_A, overload.continuous_A, overload.continuous_A});
@@ -120,14 +120,14 @@ std::unique_ptr<Limiter> Limiter::i_squared_t(const Derating& exact, double resi
   return made;
 }
 
-std::unique_ptr<Limiter> Limiter::oracle(const Derating& exact, double resistance_ratio, double braking_reserve_K) {
+std::unique_ptr<Limiter> Limiter::oracle(const derate::Derating& exact, double resistance_ratio, double braking_reserve_K) {
   std::unique_ptr<Limiter> made(new Limiter(exact, resistance_ratio));
   made->braking_reserve_K_ = braking_reserve_K;
   return made;
 }
 
-robot_core::Config Limiter::config(const Robot& robot, const Motor& known) const {
-  robot_core::Config config = make_core_config(robot, known.nominal, with_tolerance({}, known));
+robot_core::Config Limiter::config(const robot::Robot& robot, const motor::Motor& known) const {
+  robot_core::Config config = firmware::make_core_config(robot, known.nominal, firmware::with_tolerance({}, known));
   config.guard = &model_;
   config.limp_current_A = config.current_limit_A;
   config.braking_reserve_K = static_cast<float>(braking_reserve_K_);
@@ -149,4 +149,4 @@ void Limiter::overload_rates(const void* context, const float* signal, const flo
   rate_K_per_s[2] = motor_K_per_s[1];
 }
 
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::simulate::studies

@@ -7,10 +7,10 @@
 #include "firmware/core_config.h"
 #include "firmware/host_guard.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::simulate::studies {
 
 /// Derating for exactly this motor: safety factor on heat 1, no tolerances, no check on drawn motors.
-Derating exact_derating(const Motor& motor, const Robot& robot);
+derate::Derating exact_derating(const motor::Motor& motor, const robot::Robot& robot);
 
 /// Overload data of a data sheet for an I²t limiter.
 struct Overload {
@@ -23,7 +23,7 @@ struct Overload {
 /// Calculates the overload data. continuous_A: nominal current or, if the data sheet has none, nominal torque/K_t + no-load current.
 /// peak_A: stall current U/R, because maxon's data sheets state no other. peak_s: maxon's overload rule from a cold winding, τ_w·ln(K²/(K²
 /// − 1)) with K = peak_A/continuous_A.
-Overload overload_of(const MotorValues& motor);
+Overload overload_of(const motor::MotorValues& motor);
 
 /// One limiter of one true motor. Its winding and stator temperatures come from the true motor's network with the sensed current, like a
 /// sensor without lag or error. Currents hold for the true motor's resistance, as with a current-controlling driver. Not movable, because
@@ -31,28 +31,28 @@ Overload overload_of(const MotorValues& motor);
 class Limiter {
  public:
   /// Constant current limit.
-  static std::unique_ptr<Limiter> fixed_cap(const Derating& exact, double resistance_ratio, double cap_A);
+  static std::unique_ptr<Limiter> fixed_cap(const derate::Derating& exact, double resistance_ratio, double cap_A);
   /// Full current up to a stator temperature of `full_C`, none from `none_C` on, linear between.
-  static std::unique_ptr<Limiter> stator_ramp(const Derating& exact, double resistance_ratio, double full_C, double none_C);
+  static std::unique_ptr<Limiter> stator_ramp(const derate::Derating& exact, double resistance_ratio, double full_C, double none_C);
   /// dE/dt = I² − I_continuous², E ≥ 0. Full current up to 90 % of the budget, continuous current at 100 %, linear between.
-  static std::unique_ptr<Limiter> i_squared_t(const Derating& exact, double resistance_ratio, const Overload& overload);
+  static std::unique_ptr<Limiter> i_squared_t(const derate::Derating& exact, double resistance_ratio, const Overload& overload);
   /// The guard from the derating of the true motor.
-  static std::unique_ptr<Limiter> oracle(const Derating& exact, double resistance_ratio, double braking_reserve_K);
+  static std::unique_ptr<Limiter> oracle(const derate::Derating& exact, double resistance_ratio, double braking_reserve_K);
 
   Limiter(const Limiter&) = delete;
   Limiter& operator=(const Limiter&) = delete;
 
   /// Returns the configuration of a core that knows the motor as `known`. It is valid only while the limiter exists.
-  [[nodiscard]] robot_core::Config config(const Robot& robot, const Motor& known) const;
+  [[nodiscard]] robot_core::Config config(const robot::Robot& robot, const motor::Motor& known) const;
 
  private:
-  Limiter(const Derating& exact, double resistance_ratio);
+  Limiter(const derate::Derating& exact, double resistance_ratio);
   /// Sets a table that depends on the second node only.
   void set_table(const std::vector<float>& body, const std::vector<double>& current_A);
   static void overload_rates(const void* context, const float* signal, const float* state_C, float* rate_K_per_s);
 
-  Derating exact_;
-  HostGuard motor_;
+  derate::Derating exact_;
+  firmware::HostGuard motor_;
   robot_core::GuardModel model_;
   double resistance_ratio_;  ///< true resistance divided by the known one
   double braking_reserve_K_ = 0.0;
@@ -64,4 +64,4 @@ class Limiter {
   float fill_per_A2_s_ = 0.0F;
 };
 
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::simulate::studies

@@ -10,7 +10,7 @@
 #include "firmware/core_config.h"
 #include "simulate/test_drive.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::simulate::studies {
 namespace {
 
 constexpr std::array<double, 7> kSpeeds_m_per_s{0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5};
@@ -26,7 +26,7 @@ constexpr double kDuration_s = 2.5;
 struct Case {
   std::string name;
   robot_core::Config core;
-  const Robot* robot = nullptr;
+  const robot::Robot* robot = nullptr;
 };
 
 /// Disables equations (2) and (3); back-EMF, acceleration and control remain.
@@ -41,7 +41,7 @@ robot_core::Config without_feed_forward(robot_core::Config config, double gain_r
   return config;
 }
 
-std::vector<Case> cases_of(const robot_core::Config& core, const Robot& clean, const Robot& dirty) {
+std::vector<Case> cases_of(const robot_core::Config& core, const robot::Robot& clean, const robot::Robot& dirty) {
   return {{"feed-forward", core, &clean},
           {"no feed-forward", without_feed_forward(core, 1.0), &clean},
           {"no feed-forward, PI gains doubled", without_feed_forward(core, 2.0), &clean},
@@ -62,7 +62,8 @@ struct Outcome {
   double fault_s = 0.0;
 };
 
-Outcome drive(const Case& tried, const Motor& motor, bool is_core_alone, double speed_m_per_s, std::size_t heading, std::size_t seed) {
+Outcome drive(const Case& tried, const motor::Motor& motor, bool is_core_alone, double speed_m_per_s, std::size_t heading,
+              std::size_t seed) {
   const DriveOptions with_feedback = sensed_drive(*tried.robot, seed + 1, true);
   const DriveOptions options = is_core_alone ? without_position_feedback(with_feedback) : with_feedback;
   StraightDrive straight;
@@ -96,9 +97,9 @@ Outcome drive(const Case& tried, const Motor& motor, bool is_core_alone, double 
 /// All drives: [case][speed][heading][seed]. Either the core alone keeps the course, or the team's computer corrects it with the cameras.
 class Results {
  public:
-  Results(const std::vector<Case>& cases, const Motor& motor, bool is_core_alone)
+  Results(const std::vector<Case>& cases, const motor::Motor& motor, bool is_core_alone)
       : outcomes_(cases.size() * kSpeeds_m_per_s.size() * kHeadings * kSeeds) {
-    in_parallel(outcomes_.size(), 0, [&](std::size_t i) {
+    base::in_parallel(outcomes_.size(), 0, [&](std::size_t i) {
       const std::size_t drive_of_case = i % (kSpeeds_m_per_s.size() * kHeadings * kSeeds);
       const double speed_m_per_s = kSpeeds_m_per_s.at(drive_of_case / (kHeadings * kSeeds));
       outcomes_[i] = drive(cases[i / (kSpeeds_m_per_s.size() * kHeadings * kSeeds)], motor, is_core_alone, speed_m_per_s,
@@ -214,7 +215,7 @@ std::string other_table(const std::vector<Case>& cases, const Results& results, 
 void draw_over_speed(const std::vector<Case>& cases, const Results& results, const Report& report) {
   const double with = results.over_all(0, kShownSpeed, &Outcome::error_rms_m_per_s, kMilli).mean;
   const double without = results.over_all(1, kShownSpeed, &Outcome::error_rms_m_per_s, kMilli).mean;
-  Chart chart{
+  report::Chart chart{
       .title = fmt::format("Feed-forward cuts the velocity error at {} m/s from {:.0f} to {:.0f} mm/s", kShownSpeed_m_per_s, without, with),
       .subtitle = fmt::format("Twente v2024 simulated with real sensing; means of {} directions and {} seeds; areas: 5 % to 95 %",
                               kHeadings, kSeeds),
@@ -222,10 +223,10 @@ void draw_over_speed(const std::vector<Case>& cases, const Results& results, con
       .panels = {},
       .panel_height_px = 400};
   const auto add = [&](const char* title, const char* label, double Outcome::*value, double scale, bool is_first) {
-    ChartPanel panel{.title = title, .y_label = label, .curves = {}, .bands = {}, .levels = {}};
+    report::ChartPanel panel{.title = title, .y_label = label, .curves = {}, .bands = {}, .levels = {}};
     for (std::size_t c = 0; c < kDrawnCases; ++c) {
-      ChartCurve curve{.name = is_first ? cases[c].name : "", .color_index = static_cast<int>(c)};
-      ChartBand band{.color_index = static_cast<int>(c)};
+      report::ChartCurve curve{.name = is_first ? cases[c].name : "", .color_index = static_cast<int>(c)};
+      report::ChartBand band{.color_index = static_cast<int>(c)};
       for (std::size_t s = 0; s < kSpeeds_m_per_s.size(); ++s) {
         const Spread spread = results.over_all(c, s, value, scale);
         curve.x.push_back(kSpeeds_m_per_s.at(s));
@@ -254,18 +255,19 @@ void draw_over_heading(const std::vector<Case>& cases, const Results& results, c
     }
     return worst;
   };
-  Chart chart{.title = fmt::format("Worst direction at {} m/s: error {:.0f} mm/s without feed-forward, {:.0f} mm/s with it",
-                                   kShownSpeed_m_per_s, worst_mm_per_s(1), worst_mm_per_s(0)),
-              .subtitle = fmt::format(
-                  "Twente v2024 simulated with real sensing; means of {} seeds; areas, mostly as thin as the lines: 5 % to 95 %", kSeeds),
-              .x_label = "direction of travel from straight ahead, counter-clockwise / °",
-              .panels = {},
-              .panel_height_px = 400};
+  report::Chart chart{
+      .title = fmt::format("Worst direction at {} m/s: error {:.0f} mm/s without feed-forward, {:.0f} mm/s with it", kShownSpeed_m_per_s,
+                           worst_mm_per_s(1), worst_mm_per_s(0)),
+      .subtitle = fmt::format(
+          "Twente v2024 simulated with real sensing; means of {} seeds; areas, mostly as thin as the lines: 5 % to 95 %", kSeeds),
+      .x_label = "direction of travel from straight ahead, counter-clockwise / °",
+      .panels = {},
+      .panel_height_px = 400};
   const auto add = [&](const char* title, const char* label, double Outcome::*value, double scale, bool is_first) {
-    ChartPanel panel{.title = title, .y_label = label, .curves = {}, .bands = {}, .levels = {}};
+    report::ChartPanel panel{.title = title, .y_label = label, .curves = {}, .bands = {}, .levels = {}};
     for (std::size_t c = 0; c < kDrawnCases; ++c) {
-      ChartCurve curve{.name = is_first ? cases[c].name : "", .color_index = static_cast<int>(c)};
-      ChartBand band{.color_index = static_cast<int>(c)};
+      report::ChartCurve curve{.name = is_first ? cases[c].name : "", .color_index = static_cast<int>(c)};
+      report::ChartBand band{.color_index = static_cast<int>(c)};
       for (std::size_t h = 0; h <= kHeadings; ++h) {
         const Spread spread = results.over_seeds(c, kShownSpeed, h % kHeadings, value, scale);
         curve.x.push_back(360.0 * static_cast<double>(h) / kHeadings);
@@ -289,8 +291,8 @@ void draw_over_heading(const std::vector<Case>& cases, const Results& results, c
 }  // namespace
 
 void study_low_speed(const Subject& subject, const Report& report) {
-  const Robot dirty = with_dirty_wheel(subject.robot, kDirtyWheel, kDirt_ratio);
-  const std::vector<Case> cases = cases_of(make_core_config(subject.robot, subject.motor.nominal, {}), subject.robot, dirty);
+  const robot::Robot dirty = with_dirty_wheel(subject.robot, kDirtyWheel, kDirt_ratio);
+  const std::vector<Case> cases = cases_of(firmware::make_core_config(subject.robot, subject.motor.nominal, {}), subject.robot, dirty);
   const Results results(cases, subject.motor, true);
   const Results corrected(cases, subject.motor, false);
   write_tables(cases, results, report);
@@ -303,4 +305,4 @@ void study_low_speed(const Subject& subject, const Report& report) {
   draw_over_heading(cases, results, report);
 }
 
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::simulate::studies

@@ -8,11 +8,11 @@
 #include "simulate/match_run.h"
 #include "support/source_folder.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::simulate::studies {
 namespace {
 
 constexpr std::size_t kSeeds = 10;
-constexpr std::array<Planner, 2> kPlanners{Planner::bang_bang, Planner::jerk_limited};
+constexpr std::array<duty::Planner, 2> kPlanners{duty::Planner::bang_bang, duty::Planner::jerk_limited};
 constexpr std::array<const char*, 2> kNames{"bang-bang", "jerk-limited"};
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
@@ -66,7 +66,7 @@ constexpr std::array<Setting, 3> kSettings{
 using Scores = std::array<std::vector<DriveScore>, kSettings.size() * kPlanners.size()>;
 
 /// No errors, delays or lost packets, but the gains of the real link, so that only the sensors differ.
-DriveOptions exact_drive(const Robot& robot) {
+DriveOptions exact_drive(const robot::Robot& robot) {
   DriveOptions options = ideal_drive();
   const RadioConfig real = radio_of(robot);
   options.radio.position_gain_per_s = real.position_gain_per_s;
@@ -74,18 +74,18 @@ DriveOptions exact_drive(const Robot& robot) {
   return options;
 }
 
-Scores play_all(const Subject& subject, const MatchInputs& inputs, double ambient_C) {
+Scores play_all(const Subject& subject, const duty::MatchInputs& inputs, double ambient_C) {
   Scores scores;
   scores.fill(std::vector<DriveScore>(kSeeds));
-  in_parallel(kSeeds * scores.size(), 0, [&](std::size_t i) {
+  base::in_parallel(kSeeds * scores.size(), 0, [&](std::size_t i) {
     const std::size_t seed = i / scores.size() + 1;
     const std::size_t set = i % scores.size();
     const Setting& setting = kSettings.at(set / kPlanners.size());
-    Robot robot = subject.robot;
+    robot::Robot robot = subject.robot;
     if (!setting.has_double_angle) {
       robot.friction.heading.double_angle_Nm = 0.0;
     }
-    const robot_core::Config core = make_core_config(robot, subject.motor.nominal, with_tolerance({}, subject.motor));
+    const robot_core::Config core = firmware::make_core_config(robot, subject.motor.nominal, firmware::with_tolerance({}, subject.motor));
     MatchRunOptions options;
     options.planner = kPlanners.at(set % kPlanners.size());
     options.ambient_C = ambient_C;
@@ -159,16 +159,17 @@ Sheet all_runs(const Scores& scores) {
   return sheet;
 }
 
-Chart picture(const Scores& scores) {
+report::Chart picture(const Scores& scores) {
   const Value& slid = kValues[2];
   const Value& heat = kValues[4];
   const auto mean = [&](std::size_t planner, const Value& value) { return spread_of(values_of(scores.at(planner), value)).mean; };
-  Chart chart{.title = fmt::format("Jerk limit: wheels slide {:.0f} s instead of {:.0f} s, copper heat {:.1f} instead of {:.1f} kJ",
-                                   mean(1, slid), mean(0, slid), mean(1, heat), mean(0, heat)),
-              .subtitle = "division A match, Twente v2024, ECX FLAT 32 L, simulated with real sensing; earlier: a plain controller, mean",
-              .x_label = "seed of the match",
-              .panels = {},
-              .panel_height_px = 270};
+  report::Chart chart{
+      .title = fmt::format("Jerk limit: wheels slide {:.0f} s instead of {:.0f} s, copper heat {:.1f} instead of {:.1f} kJ", mean(1, slid),
+                           mean(0, slid), mean(1, heat), mean(0, heat)),
+      .subtitle = "division A match, Twente v2024, ECX FLAT 32 L, simulated with real sensing; earlier: a plain controller, mean",
+      .x_label = "seed of the match",
+      .panels = {},
+      .panel_height_px = 270};
   struct Shown {
     const char* title;
     const char* label;
@@ -179,9 +180,9 @@ Chart picture(const Scores& scores) {
                               {"Peak of the hottest winding", "temperature / °C", 6},
                               {"Distance between plan and robot", "distance / (mm rms)", 8}};
   for (const Shown& shown : kShown) {
-    ChartPanel panel{.title = shown.title, .y_label = shown.label, .curves = {}, .bands = {}, .levels = {}};
+    report::ChartPanel panel{.title = shown.title, .y_label = shown.label, .curves = {}, .bands = {}, .levels = {}};
     for (std::size_t p = 0; p < kPlanners.size(); ++p) {
-      ChartCurve curve{.name = chart.panels.empty() ? kNames.at(p) : "", .color_index = static_cast<int>(p), .dots = true};
+      report::ChartCurve curve{.name = chart.panels.empty() ? kNames.at(p) : "", .color_index = static_cast<int>(p), .dots = true};
       for (std::size_t i = 0; i < kSeeds; ++i) {
         curve.x.push_back(static_cast<double>(i + 1));
       }
@@ -204,8 +205,8 @@ Chart picture(const Scores& scores) {
 }  // namespace
 
 void study_planners_in_match(const Subject& subject, const Report& report) {
-  const Duty duty = read_duty(kSource / "duty_profiles" / "division_a_match.toml");
-  const auto match = std::dynamic_pointer_cast<const MatchDuty>(duty.shape_data);
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles" / "division_a_match.toml");
+  const auto match = std::dynamic_pointer_cast<const duty::MatchDuty>(duty.shape_data);
   const Scores scores = play_all(subject, match->inputs(), duty.ambient_C.value);
   report.write("planners.md",
                fmt::format("Means of {} matches; in brackets 5th and 95th percentile. *Earlier controller*: means of ten matches that "
@@ -215,4 +216,4 @@ void study_planners_in_match(const Subject& subject, const Report& report) {
   report.draw("planners.svg", picture(scores));
 }
 
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::simulate::studies

@@ -10,7 +10,7 @@
 #include "limiters.h"
 #include "robot_core/thermal_guard.h"
 
-namespace heatsoak::studies {
+namespace heatsoak::simulate::studies {
 namespace {
 
 /// Load over one guard period.
@@ -25,19 +25,19 @@ constexpr int kLongestRest_s = 3600;
 constexpr double kLongestPlay_s = 1200.0;
 
 /// Records the load of the wheel with the most copper loss.
-std::vector<Load> record(const HardMatch& match, const Game& game, const Motor& motor) {
+std::vector<Load> record(const HardMatch& match, const Game& game, const motor::Motor& motor) {
   const GuardedCore core(match.robot, motor, GuardUse::off, {});
   MatchRunOptions options;
   options.ambient_C = match.ambient_C;
   options.drive = sensed_drive(match.robot, 1, true);
-  std::array<std::vector<Load>, kMostWheels> loads;
-  std::array<double, kMostWheels> heat_J{};
+  std::array<std::vector<Load>, robot::kMostWheels> loads;
+  std::array<double, robot::kMostWheels> heat_J{};
   struct Sum {
     double squared_A2 = 0.0;
     double current_A = 0.0;
     double speed_rad_per_s = 0.0;
   };
-  std::array<Sum, kMostWheels> sums;
+  std::array<Sum, robot::kMostWheels> sums;
   const int periods = static_cast<int>(std::lround(kPeriod_s / SimulatedRobot::kPeriod_s));
   int count = 0;
   run_match(game, match.robot, motor, core.config(), options, [&](const LoopMoment& moment) {
@@ -71,14 +71,14 @@ class Judge {
  public:
   /// If `braking_reserve_K` is absent, this is the true motor, whose winding must stay within its limit. Otherwise it is the guard, which
   /// must not limit.
-  Judge(std::string name, const HostGuard& guard, double braking_reserve_K)
+  Judge(std::string name, const firmware::HostGuard& guard, double braking_reserve_K)
       : name_(std::move(name)), guard_(guard), reserve_K_(braking_reserve_K) {}
 
   [[nodiscard]] const std::string& name() const { return name_; }
 
   /// Temperatures of a motor that was held at its limit until the stator was steady, then rested without current; one entry per second.
   [[nodiscard]] std::vector<Bodies> rested(float air_C) const {
-    const HostGuard own = guard_;
+    const firmware::HostGuard own = guard_;
     const robot_core::GuardModel& model = own.model();
     constexpr float kStep_s = 0.05F;
     constexpr int kStepsPerSecond = 20;
@@ -107,7 +107,7 @@ class Judge {
 
   /// Time until the guard limits or the winding exceeds its limit. The load starts at `first` and restarts when it ends.
   [[nodiscard]] double plays_s(const std::vector<Load>& load, std::size_t first, float air_C, Bodies start, double most_s) const {
-    const HostGuard own = guard_;
+    const firmware::HostGuard own = guard_;
     const robot_core::GuardModel& model = own.model();
     const bool is_true_motor = std::isnan(reserve_K_);
     const float reserve_K = is_true_motor ? 0.0F : static_cast<float>(reserve_K_);
@@ -140,7 +140,7 @@ class Judge {
 
  private:
   std::string name_;
-  HostGuard guard_;
+  firmware::HostGuard guard_;
   double reserve_K_;
 };
 
@@ -150,7 +150,7 @@ double rest_needed_s(const Judge& judge, const std::vector<Load>& load, std::siz
                      double play_s) {
   const auto is_enough = [&](Bodies start) { return judge.plays_s(load, first, air_C, start, play_s) >= play_s; };
   if (!is_enough({air_C, air_C})) {
-    return kUnknown;
+    return base::kUnknown;
   }
   std::size_t low = 0;
   std::size_t high = rested.size() - 1;
@@ -199,16 +199,16 @@ std::string never_text(const std::vector<double>& rests_s) {
 
 }  // namespace
 
-std::string study_rest(const HardMatch& match, const Game& game, const Motor& motor, const std::vector<Knowledge>& known,
+std::string study_rest(const HardMatch& match, const Game& game, const motor::Motor& motor, const std::vector<Knowledge>& known,
                        const Report& report) {
   const std::vector<Load> load = record(match, game, motor);
   const double squared_A2 = std::transform_reduce(load.begin(), load.end(), 0.0, std::plus<>(), [](const Load& each) {
     return static_cast<double>(each.current_A) * static_cast<double>(each.current_A);
   });
   std::vector<Judge> judges;
-  judges.emplace_back("nominal motor, winding within its limit", HostGuard(exact_derating(motor, match.robot)), kUnknown);
+  judges.emplace_back("nominal motor, winding within its limit", firmware::HostGuard(exact_derating(motor, match.robot)), base::kUnknown);
   for (const Knowledge& each : known) {
-    judges.emplace_back(each.name, *each.guard->guard, braking_reserve_K(match.robot, motor.nominal, *each.guard->derating));
+    judges.emplace_back(each.name, *each.guard->guard, firmware::braking_reserve_K(match.robot, motor.nominal, *each.guard->derating));
   }
   std::vector<std::size_t> firsts;
   const auto apart = static_cast<std::size_t>(std::lround(kWindows_s / kPeriod_s));
@@ -224,13 +224,13 @@ std::string study_rest(const HardMatch& match, const Game& game, const Motor& mo
     }
   }
   constexpr std::size_t kPlays = std::size(kPlays_s);
-  in_parallel(rows.size() * kPlays * firsts.size(), 0, [&](std::size_t job) {
+  base::in_parallel(rows.size() * kPlays * firsts.size(), 0, [&](std::size_t job) {
     Row& row = rows[job / (kPlays * firsts.size())];
     const std::size_t play = job / firsts.size() % kPlays;
     const std::size_t window = job % firsts.size();
     row.rest_s[play][window] = rest_needed_s(*row.judge, load, firsts[window], row.air_C, row.rested, kPlays_s[play]);
   });
-  in_parallel(rows.size() * kRests, 0, [&](std::size_t job) {
+  base::in_parallel(rows.size() * kRests, 0, [&](std::size_t job) {
     Row& row = rows[job / kRests];
     const Bodies start = row.rested[static_cast<std::size_t>(kRestStep_s) * (job % kRests)];
     std::vector<double> plays_s;
@@ -260,7 +260,7 @@ std::string study_rest(const HardMatch& match, const Game& game, const Motor& mo
     sheet.rows.push_back(std::move(cells));
   }
   constexpr std::size_t kShown = 4;
-  Chart chart{
+  report::Chart chart{
       .title = fmt::format("After {:.0f} min of rest, bench data: {:.0f} min of play at 25 °C, {:.0f} min at 40 °C",
                            kShown * kRestStep_s / 60.0, rows[1].median_s[kShown] / 60.0, rows[judges.size() + 1].median_s[kShown] / 60.0),
       .subtitle = fmt::format("half-way level, load of the hottest wheel, {} windows of play: median; 20 min is as long as was played",
@@ -278,7 +278,7 @@ std::string study_rest(const HardMatch& match, const Game& game, const Motor& mo
                               .levels = {}});
     }
     constexpr int kColors[] = {0, 2, 1};
-    ChartCurve curve{.name = r < judges.size() ? rows[r].judge->name() : "", .color_index = kColors[place % std::size(kColors)]};
+    report::ChartCurve curve{.name = r < judges.size() ? rows[r].judge->name() : "", .color_index = kColors[place % std::size(kColors)]};
     for (std::size_t i = 0; i < kRests; ++i) {
       curve.x.push_back(static_cast<double>(i) * kRestStep_s / 60.0);
       curve.y.push_back(rows[r].median_s[i] / 60.0);
@@ -296,4 +296,4 @@ std::string study_rest(const HardMatch& match, const Game& game, const Motor& mo
       kWindows_s, sheet.markdown());
 }
 
-}  // namespace heatsoak::studies
+}  // namespace heatsoak::simulate::studies

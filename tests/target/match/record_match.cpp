@@ -28,7 +28,7 @@ void write_bytes(const std::filesystem::path& file, const void* data, std::size_
   std::ofstream stream(file, std::ios::binary);
   stream.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
   if (!stream.flush()) {
-    throw Failure(ExitCode::bug, fmt::format("{} cannot be written", file.string()));
+    throw base::Failure(base::ExitCode::bug, fmt::format("{} cannot be written", file.string()));
   }
 }
 
@@ -38,8 +38,9 @@ void write_all(const std::filesystem::path& file, const std::vector<Value>& valu
 }
 
 /// Writes configuration and guard as source code for the target.
-void write_sources(const std::filesystem::path& folder, const Robot& robot, const Motor& motor, const Derating& derating) {
-  for (const CoreFile& file : core_files(robot, motor, with_tolerance({}, motor), derating, "test").files) {
+void write_sources(const std::filesystem::path& folder, const robot::Robot& robot, const motor::Motor& motor,
+                   const derate::Derating& derating) {
+  for (const firmware::CoreFile& file : firmware::core_files(robot, motor, firmware::with_tolerance({}, motor), derating, "test").files) {
     if (file.path == "core_config.h" || file.path.starts_with("motor_guard.")) {
       write_bytes(folder / file.path, file.content.data(), file.content.size());
     }
@@ -47,39 +48,40 @@ void write_sources(const std::filesystem::path& folder, const Robot& robot, cons
 }
 
 /// Returns the start, in whole seconds, of the first minute that is mostly play and contains a duel, not at the very start.
-double segment_start_s(const Game& game) {
+double segment_start_s(const simulate::Game& game) {
   for (double from_s = 10.0; from_s + kSegment_s < game.duration_s; from_s += 1.0) {
     double play_s = 0.0;
     double duel_s = 0.0;
     for (std::size_t i = 0; i < game.script.size(); ++i) {
       const double end_s = i + 1 < game.script.size() ? game.script[i + 1].time_s : game.duration_s;
       const double inside_s = std::min(end_s, from_s + kSegment_s) - std::max(game.script[i].time_s, from_s);
-      play_s += game.script[i].phase == Phase::running ? std::max(0.0, inside_s) : 0.0;
+      play_s += game.script[i].phase == duty::Phase::running ? std::max(0.0, inside_s) : 0.0;
       duel_s += game.script[i].command.duel ? std::max(0.0, inside_s) : 0.0;
     }
     if (play_s > 0.5 * kSegment_s && duel_s > 1.0) {
       return from_s;
     }
   }
-  throw Failure(ExitCode::bug, "the match has no minute of play with a duel");
+  throw base::Failure(base::ExitCode::bug, "the match has no minute of play with a duel");
 }
 
 /// Plays the game and writes its last minute, from `start_s` on.
-void record_minute(const std::filesystem::path& folder, const std::string& name, const GuardedCore& core, const Game& game,
-                   const Robot& robot, const Motor& motor, bool has_motor_current, double start_s) {
-  MatchRunOptions options;
+void record_minute(const std::filesystem::path& folder, const std::string& name, const simulate::GuardedCore& core,
+                   const simulate::Game& game, const robot::Robot& robot, const motor::Motor& motor, bool has_motor_current,
+                   double start_s) {
+  simulate::MatchRunOptions options;
   options.ambient_C = kAmbient_C;
-  options.drive = real_drive(robot, kSeed);
+  options.drive = simulate::real_drive(robot, kSeed);
   options.drive.sensing.has_motor_current = has_motor_current;
   MatchStart start{};
   std::vector<robot_core::Input> inputs;
   std::vector<DriveResult> results;
-  run_match(game, robot, motor, core.config(), options, [&](const LoopMoment& moment) {
+  simulate::run_match(game, robot, motor, core.config(), options, [&](const simulate::LoopMoment& moment) {
     const double since_s = moment.time_s - start_s;
-    if (since_s > 0.5 * SimulatedRobot::kPeriod_s) {
+    if (since_s > 0.5 * simulate::SimulatedRobot::kPeriod_s) {
       inputs.push_back(moment.drive->input());
       copy_output(moment.drive->output(), moment.drive->state(), results.emplace_back());
-    } else if (since_s > -0.5 * SimulatedRobot::kPeriod_s) {
+    } else if (since_s > -0.5 * simulate::SimulatedRobot::kPeriod_s) {
       start = {moment.drive->config().check_sum, 0, moment.drive->state()};
     }
   });
@@ -89,16 +91,16 @@ void record_minute(const std::filesystem::path& folder, const std::string& name,
 }
 
 void record(const std::filesystem::path& folder) {
-  const Robot robot = twente();
-  const Motor motor = ecx_32();
-  const MotorGuard guard = make_guard(motor, robot, kAmbient_C, 1);
-  const GuardedCore core(robot, motor, GuardUse::on, guard);
+  const robot::Robot robot = twente();
+  const motor::Motor motor = ecx_32();
+  const simulate::MotorGuard guard = simulate::make_guard(motor, robot, kAmbient_C, 1);
+  const simulate::GuardedCore core(robot, motor, simulate::GuardUse::on, guard);
   write_sources(folder, robot, motor, *guard.derating);
-  const Duty duty = read_duty(kSource / "duty_profiles/division_a_match.toml");
-  Game game = play_game(dynamic_cast<const MatchDuty&>(*duty.shape_data).inputs(), robot, kSeed);
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/division_a_match.toml");
+  simulate::Game game = simulate::play_game(dynamic_cast<const duty::MatchDuty&>(*duty.shape_data).inputs(), robot, kSeed);
   const double start_s = segment_start_s(game);
   game.duration_s = start_s + kSegment_s;
-  std::erase_if(game.script, [&](const ScheduledCommand& each) { return each.time_s >= game.duration_s; });
+  std::erase_if(game.script, [&](const duty::ScheduledCommand& each) { return each.time_s >= game.duration_s; });
   record_minute(folder, "match", core, game, robot, motor, false, start_s);
   record_minute(folder, "sensed", core, game, robot, motor, true, start_s);
 }

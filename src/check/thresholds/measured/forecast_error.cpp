@@ -7,27 +7,27 @@
 #include "check/computations.h"
 #include "recording/read_recording.h"
 
-namespace heatsoak::thresholds {
+namespace heatsoak::check::thresholds {
 namespace {
 
-std::vector<Recording> recordings_of(const Check& check) {
+std::vector<recording::Recording> recordings_of(const Check& check) {
   if (check.logs.empty()) {
-    throw Failure(ExitCode::bad_input, "the list of logs is empty");
+    throw base::Failure(base::ExitCode::bad_input, "the list of logs is empty");
   }
-  std::vector<Recording> all;
+  std::vector<recording::Recording> all;
   for (const std::filesystem::path& log : check.logs) {
-    RecordingReport report;
-    all.push_back(read_recording(log, mapping_for(log, check.mapping), report));
+    recording::RecordingReport report;
+    all.push_back(recording::read_recording(log, recording::mapping_for(log, check.mapping), report));
   }
   return all;
 }
 
 Measured measure(const Check& check, Computations& /*computations*/) {
-  const Prediction prediction = predict(*check.motor, recordings_of(check), {.ambient_C = check.air_C});
+  const calibration::Prediction prediction = calibration::predict(*check.motor, recordings_of(check), {.ambient_C = check.air_C});
   std::string detail;
   double worst_K = std::numeric_limits<double>::quiet_NaN();
-  for (const PredictedRun& run : prediction.runs) {
-    for (const PredictedSignal& each : run.signals) {
+  for (const calibration::PredictedRun& run : prediction.runs) {
+    for (const calibration::PredictedSignal& each : run.signals) {
       if (each.samples > 0) {
         worst_K = std::fmax(worst_K, each.rmse_K);
         detail += fmt::format("{}{}: {} {:.2f} K rms, {:.1f} K at most", detail.empty() ? "" : "; ", run.name, each.signal, each.rmse_K,
@@ -36,7 +36,7 @@ Measured measure(const Check& check, Computations& /*computations*/) {
     }
   }
   if (detail.empty()) {
-    throw Failure(ExitCode::cannot_answer, "the logs have no temperature to compare with");
+    throw base::Failure(base::ExitCode::cannot_answer, "the logs have no temperature to compare with");
   }
   return {worst_K, 0.0, detail};
 }
@@ -46,7 +46,7 @@ Measured measure(const Check& check, Computations& /*computations*/) {
 ThresholdType forecast_error() {
   return {.name = {},
           .unit = "K",
-          .range = Range::between(0.0, 1e3),
+          .range = base::Range::between(0.0, 1e3),
           .meaning =
               "error of the motor's model on committed logs (root mean square, the worst of the runs and measured temperatures): a "
               "free-running simulation of each run with the log's currents, speeds and air, started from its first samples",
@@ -56,4 +56,4 @@ ThresholdType forecast_error() {
           .measure = measure};
 }
 
-}  // namespace heatsoak::thresholds
+}  // namespace heatsoak::check::thresholds

@@ -12,7 +12,7 @@
 #include "present/measured/calibration.h"
 #include "present/measured/calibration_chart.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 struct Options {
@@ -21,29 +21,31 @@ struct Options {
   std::vector<std::string> holdout;
   std::string out;
   std::string plot;
-  LogChoice how;
-  FitOptions fit;
+  recording::LogChoice how;
+  estimation::FitOptions fit;
   bool writes_forecast = false;
   bool writes_innovations = false;
 };
 
-ExitCode run(const Options& options, Session& session) {
-  CalibrationJob job{motor_named(session.folders(), options.motor),
-                     read_named_logs(options.logs, options.holdout, choice_of(options.how, session)), options.fit};
-  job.written = options.writes_forecast ? WrittenFit::forecast : options.writes_innovations ? WrittenFit::innovations : WrittenFit::best;
+base::ExitCode run(const Options& options, Session& session) {
+  calibration::CalibrationJob job{duty::motor_named(session.folders(), options.motor),
+                                  recording::read_named_logs(options.logs, options.holdout, choice_of(options.how, session)), options.fit};
+  job.written = options.writes_forecast      ? calibration::WrittenFit::forecast
+                : options.writes_innovations ? calibration::WrittenFit::innovations
+                                             : calibration::WrittenFit::best;
   std::shared_ptr<void> line = elapsed_line("calibrating");
-  const CalibrationAnswer answer = run_calibration(job);
+  const calibration::CalibrationAnswer answer = calibration::run_calibration(job);
   line.reset();
-  session.write(options.out, to_toml(answer.motor));
+  session.write(options.out, motor::to_toml(answer.motor));
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_picture(present::calibration_chart(job.motor, answer.calibration), options.plot));
+    session.write(options.plot, report::draw_picture(present::calibration_chart(job.motor, answer.calibration), options.plot));
   }
   present::Document document = present::calibration_document(job.motor, answer, job.logs.readings);
   document.add_file(options.out);
   document.add_file(options.plot);
   session.show(document);
   session.answer(present::calibration_json(job.motor, answer, job.logs.readings, options.out));
-  return ExitCode::done;
+  return base::ExitCode::done;
 }
 
 }  // namespace
@@ -56,7 +58,7 @@ Command calibrate_command() {
           .example =
               "heatsoak simulate --motor maxon_ec45_flat_70w_24v --robot roboteam_twente_v2024 --duty paper_intermittent --out log.csv && "
               "heatsoak calibrate --motor maxon_ec45_flat_70w_24v log.csv --out model.toml --plot calibration.svg",
-          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+          .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<Options>();
             app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file: start of the fit and prior knowledge")
                 ->required()
@@ -83,4 +85,4 @@ Command calibrate_command() {
           }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

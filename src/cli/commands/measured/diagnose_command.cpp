@@ -14,7 +14,7 @@
 #include "present/measured/diagnosis.h"
 #include "present/measured/diagnosis_answer.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 struct Options {
@@ -22,29 +22,30 @@ struct Options {
   std::vector<std::string> train;
   std::vector<std::string> holdout;
   std::string out;
-  LogChoice logs;
+  recording::LogChoice logs;
 };
 
-void write_folder(const Options& options, const DiagnosisAnswer& answer, const std::vector<LogReading>& readings, Session& session) {
+void write_folder(const Options& options, const diagnosis::DiagnosisAnswer& answer, const std::vector<recording::LogReading>& readings,
+                  Session& session) {
   const std::filesystem::path folder(options.out);
   session.make_folder(folder);
   std::vector<std::pair<std::string, std::string>> svg;
   for (const present::DiagnosisPicture& picture : present::diagnosis_pictures(answer)) {
-    svg.emplace_back(picture.name, draw_svg(picture.chart));
+    svg.emplace_back(picture.name, report::draw_svg(picture.chart));
     session.write(folder / (picture.name + ".svg"), svg.back().second);
   }
-  session.write(folder / (answer.motor.id + ".toml"), to_toml(answer.motor));
+  session.write(folder / (answer.motor.id + ".toml"), motor::to_toml(answer.motor));
   session.write(folder / "diagnosis.json", present::diagnosis_json(answer, readings).dump(2) + "\n");
   session.write(folder / "diagnosis.html", present::diagnosis_page(answer, readings, svg));
 }
 
-ExitCode run(const Options& options, Session& session) {
-  const DiagnosisJob job{motor_named(session.folders(), options.model),
-                         read_named_logs(options.train, options.holdout, choice_of(options.logs, session))};
+base::ExitCode run(const Options& options, Session& session) {
+  const diagnosis::DiagnosisJob job{duty::motor_named(session.folders(), options.model),
+                                    recording::read_named_logs(options.train, options.holdout, choice_of(options.logs, session))};
   std::shared_ptr<void> line = elapsed_line("searching for missing effects");
-  const DiagnosisAnswer answer = run_diagnosis(job);
+  const diagnosis::DiagnosisAnswer answer = diagnosis::run_diagnosis(job);
   line.reset();
-  const std::vector<LogReading>& readings = job.logs.readings;
+  const std::vector<recording::LogReading>& readings = job.logs.readings;
   present::Document document = present::diagnosis_document(answer, readings);
   if (!options.out.empty()) {
     write_folder(options, answer, readings, session);
@@ -53,7 +54,7 @@ ExitCode run(const Options& options, Session& session) {
   }
   session.show(document);
   session.answer(present::diagnosis_json(answer, readings));
-  return answer.diagnosis.verdict == DiagnosisVerdict::not_identifiable ? ExitCode::cannot_answer : ExitCode::done;
+  return answer.diagnosis.verdict == diagnosis::DiagnosisVerdict::not_identifiable ? base::ExitCode::cannot_answer : base::ExitCode::done;
 }
 
 }  // namespace
@@ -66,7 +67,7 @@ Command diagnose_command() {
       .example =
           "heatsoak diagnose --model maxon_ec45_flat_70w_24v --train reports/soak/match_1.csv reports/soak/match_2.csv "
           "reports/soak/bench.csv --holdout reports/soak/match_3.csv --out diagnosis",
-      .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+      .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
         const auto options = std::make_shared<Options>();
         app.add_option("--model", options->model, "motor file, best from `heatsoak calibrate`, or an id")
             ->required()
@@ -86,4 +87,4 @@ Command diagnose_command() {
   };
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

@@ -12,7 +12,7 @@
 #include "friction/friction_job.h"
 #include "present/measured/friction_chart.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 struct Options {
@@ -30,17 +30,17 @@ struct Options {
 };
 
 struct Input {
-  FrictionJob job;
+  friction::FrictionJob job;
   std::string motor_id;
 };
 
 /// Finds the motor. The robot's own motor may be missing from the data base: fits from modulation do not need it, and
 /// present::friction_remarks() reports it.
-void find_motor(const Options& options, const DataFolders& folders, Input& input) {
+void find_motor(const Options& options, const input::DataFolders& folders, Input& input) {
   input.motor_id = options.motor.empty() ? input.job.robot.drive.motor : options.motor;
   try {
-    input.job.motor = motor_named(folders, input.motor_id).nominal;
-  } catch (const Failure&) {
+    input.job.motor = duty::motor_named(folders, input.motor_id).nominal;
+  } catch (const base::Failure&) {
     if (!options.motor.empty()) {
       throw;
     }
@@ -48,15 +48,15 @@ void find_motor(const Options& options, const DataFolders& folders, Input& input
 }
 
 Input input_of(const Options& options, const Session& session) {
-  const DataFolders folders = session.folders();
-  Input input{.job = {.robot = robot_named(folders, options.robot), .logs = options.logs, .folders = folders, .map = options.map},
+  const input::DataFolders folders = session.folders();
+  Input input{.job = {.robot = duty::robot_named(folders, options.robot), .logs = options.logs, .folders = folders, .map = options.map},
               .motor_id = {}};
   find_motor(options, folders, input);
-  FrictionJob& job = input.job;
-  job.direction = options.direction == "commanded"  ? TravelDirection::commanded
-                  : options.direction == "measured" ? TravelDirection::measured
-                  : options.direction == "wheels"   ? TravelDirection::wheels
-                                                    : TravelDirection::best;
+  friction::FrictionJob& job = input.job;
+  job.direction = options.direction == "commanded"  ? friction::TravelDirection::commanded
+                  : options.direction == "measured" ? friction::TravelDirection::measured
+                  : options.direction == "wheels"   ? friction::TravelDirection::wheels
+                                                    : friction::TravelDirection::best;
   job.use_return_legs = options.return_legs == "use";
   job.is_lifted = options.is_lifted;
   job.takes_logs_as_they_are = options.takes_logs_as_they_are;
@@ -64,35 +64,36 @@ Input input_of(const Options& options, const Session& session) {
   return input;
 }
 
-void draw(const Options& options, const Robot& robot, const SteadyFriction& found, present::Document& document, Session& session) {
-  const FrictionFit& fit = found.fit;
+void draw(const Options& options, const robot::Robot& robot, const friction::SteadyFriction& found, present::Document& document,
+          Session& session) {
+  const friction::FrictionFit& fit = found.fit;
   const std::string of_headings = fmt::format("{} legs on {} headings", found.steady.parts.size(), fit.headings);
   std::filesystem::path voltage = options.plot;
   voltage.replace_filename(voltage.stem().string() + "_voltage" + voltage.extension().string());
-  const Chart chart = present::friction_chart(fit, robot.name, of_headings);
+  const report::Chart chart = present::friction_chart(fit, robot.name, of_headings);
   if (!chart.panels.empty()) {
-    session.write(options.plot, draw_picture(chart, options.plot));
+    session.write(options.plot, report::draw_picture(chart, options.plot));
     document.add_file(options.plot);
   }
   const std::string second = chart.panels.empty() ? options.plot : voltage.string();
-  session.write(second,
-                draw_picture(present::voltage_chart(found.steady, fit, make_kinematics(robot), robot.name, found.settings), second));
+  session.write(second, report::draw_picture(
+                            present::voltage_chart(found.steady, fit, robot::make_kinematics(robot), robot.name, found.settings), second));
   document.add_file(second);
 }
 
-void write_robot_file(const Options& options, const FrictionRun& run, present::Document& document, Session& session) {
+void write_robot_file(const Options& options, const friction::FrictionRun& run, present::Document& document, Session& session) {
   if (!options.out.empty()) {
     session.write(options.out, run.robot_text);
-    for (const WrittenAsZero& each : run.notes) {
+    for (const friction::WrittenAsZero& each : run.notes) {
       document.add_note(present::Severity::note, present::words_of(each));
     }
     document.add_file(options.out);
   }
 }
 
-ExitCode steady_state(const Options& options, const Input& input, Session& session) {
-  const Robot& robot = input.job.robot;
-  const SteadyFriction found = steady_friction(input.job, progress_bar("reading"));
+base::ExitCode steady_state(const Options& options, const Input& input, Session& session) {
+  const robot::Robot& robot = input.job.robot;
+  const friction::SteadyFriction found = friction::steady_friction(input.job, progress_bar("reading"));
   const present::FrictionRemarks remarks =
       present::friction_remarks(input.motor_id, input.job.motor.has_value(), found, present::lack_of_fit_words(found.fit));
   const present::FrictionAnswer answer{found.steady,          found.fit,           found.error,        found.settings.use_return_legs,
@@ -105,26 +106,26 @@ ExitCode steady_state(const Options& options, const Input& input, Session& sessi
   }
   session.show(document);
   session.answer(present::friction_json(robot, answer, remarks));
-  return ExitCode::done;
+  return base::ExitCode::done;
 }
 
-ExitCode by_roll_out(const Options& options, const Input& input, Session& session) {
-  const RollOutFriction found = roll_out_friction(input.job, progress_bar("reading"));
+base::ExitCode by_roll_out(const Options& options, const Input& input, Session& session) {
+  const friction::RollOutFriction found = friction::roll_out_friction(input.job, progress_bar("reading"));
   const present::FrictionRemarks remarks = present::friction_remarks(input.motor_id, input.job.motor.has_value(), found, {});
   present::Document document = present::roll_out_document(input.job.robot, found.result, found.drive, options.logs.size());
   present::add_findings(document, remarks.findings, remarks.suspicions);
   write_robot_file(options, found, document, session);
   session.show(document);
   session.answer(present::roll_out_json(input.job.robot, found.result, found.drive, remarks));
-  return ExitCode::done;
+  return base::ExitCode::done;
 }
 
-ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const Options& options, Session& session) {
   if (options.method == "roll_out" && !options.plot.empty()) {
-    throw Failure(ExitCode::bad_input, "--plot draws the steady-state test; a roll-out has no picture");
+    throw base::Failure(base::ExitCode::bad_input, "--plot draws the steady-state test; a roll-out has no picture");
   }
   if (options.method != "roll_out" && options.is_lifted) {
-    throw Failure(ExitCode::bad_input, "--lifted applies to roll-outs only; expected --method roll_out with it");
+    throw base::Failure(base::ExitCode::bad_input, "--lifted applies to roll-outs only; expected --method roll_out with it");
   }
   const Input input = input_of(options, session);
   return options.method == "steady_state" ? steady_state(options, input, session) : by_roll_out(options, input, session);
@@ -140,7 +141,7 @@ Command friction() {
           .example =
               "heatsoak friction --robot roboteam_twente_v2024 reports/friction_test/steady_state_test.csv --out my_robot.toml "
               "--plot friction.svg",
-          .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+          .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<Options>();
             app.add_option("logs", options->logs,
                            "logs of the drives: wheel_speed_rad_per_s_1 …, wheel_pwm_ratio_1 … with battery_V (or "
@@ -169,4 +170,4 @@ Command friction() {
           }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

@@ -14,7 +14,7 @@
 #include "recording/recording_stream.h"
 #include "recording/write_recording.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 struct Options {
@@ -28,38 +28,39 @@ struct Options {
 void check(const Options& options) {
   const bool converts = options.action == "convert";
   if (converts && (options.files.size() != 1 || options.out.empty() || !options.plot.empty())) {
-    throw Failure(ExitCode::bad_input, "log convert: expected one FILE and --out FILE.csv");
+    throw base::Failure(base::ExitCode::bad_input, "log convert: expected one FILE and --out FILE.csv");
   }
   if (!converts && !options.out.empty()) {
-    throw Failure(ExitCode::bad_input, "log inspect has no --out; `heatsoak log convert FILE --out FILE.csv` writes the canonical form");
+    throw base::Failure(base::ExitCode::bad_input,
+                        "log inspect has no --out; `heatsoak log convert FILE --out FILE.csv` writes the canonical form");
   }
   if (!options.plot.empty() && options.files.size() != 1) {
-    throw Failure(ExitCode::bad_input, fmt::format("--plot draws one log; {} are given", options.files.size()));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("--plot draws one log; {} are given", options.files.size()));
   }
 }
 
-ExitCode inspect(const Options& options, Session& session) {
-  ExitCode code = ExitCode::done;
+base::ExitCode inspect(const Options& options, Session& session) {
+  base::ExitCode code = base::ExitCode::done;
   present::Document document;
   std::vector<present::Json> logs;
   for (const std::string& name : options.files) {
-    const std::filesystem::path file = log_named(session.folders(), name);
-    RecordingReport report;
-    const Mapping mapping = mapping_for(file, options.map);
-    RecordingStream stream(file, mapping, report);
-    Assessment assessment;
-    for (Recording part; stream.next(part);) {
+    const std::filesystem::path file = input::log_named(session.folders(), name);
+    recording::RecordingReport report;
+    const recording::Mapping mapping = recording::mapping_for(file, options.map);
+    recording::RecordingStream stream(file, mapping, report);
+    recording::Assessment assessment;
+    for (recording::Recording part; stream.next(part);) {
       assessment.add(part);
     }
-    const DataQuality quality = assessment.conclude(report);
-    const Recording& recording = assessment.condensed().rows();
+    const recording::DataQuality quality = assessment.conclude(report);
+    const recording::Recording& recording = assessment.condensed().rows();
     present::add_log(document, recording, report, quality);
     logs.push_back(present::log_json(recording, report, quality));
     if (!quality.thermal.is_good() && !quality.drive.is_good()) {
-      code = ExitCode::cannot_answer;
+      code = base::ExitCode::cannot_answer;
     }
     if (!options.plot.empty()) {
-      session.write(options.plot, draw_picture(present::log_chart(assessment.condensed(), quality, report), options.plot));
+      session.write(options.plot, report::draw_picture(present::log_chart(assessment.condensed(), quality, report), options.plot));
       document.add_file(options.plot);
     }
   }
@@ -68,20 +69,20 @@ ExitCode inspect(const Options& options, Session& session) {
   return code;
 }
 
-ExitCode convert(const Options& options, Session& session) {
-  const std::filesystem::path file = log_named(session.folders(), options.files.front());
-  RecordingReport report;
-  const Recording recording = read_recording(file, mapping_for(file, options.map), report);
-  session.write(options.out, to_canonical_csv(recording));
+base::ExitCode convert(const Options& options, Session& session) {
+  const std::filesystem::path file = input::log_named(session.folders(), options.files.front());
+  recording::RecordingReport report;
+  const recording::Recording recording = recording::read_recording(file, recording::mapping_for(file, options.map), report);
+  session.write(options.out, recording::to_canonical_csv(recording));
   present::Document document = present::short_answer(
       fmt::format("{} of {} rows and {} channels converted.", report.rows_kept, report.rows_in_file, recording.channels.size()));
   document.add_file(options.out);
   session.show(document);
   session.answer(present::conversion_json(file, options.out, recording, report));
-  return ExitCode::done;
+  return base::ExitCode::done;
 }
 
-ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const Options& options, Session& session) {
   check(options);
   return options.action == "inspect" ? inspect(options, session) : convert(options, session);
 }
@@ -96,7 +97,7 @@ Command log_command() {
       .example =
           "heatsoak simulate --motor maxon_ec45_flat_70w_24v --robot roboteam_twente_v2024 --duty paper_intermittent --out log.csv && "
           "heatsoak log inspect log.csv --plot log.svg",
-      .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+      .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
         const auto options = std::make_shared<Options>();
         app.add_option("action", options->action, "inspect or convert")->required()->check(CLI::IsMember({"inspect", "convert"}));
         app.add_option("file", options->files, "logs: canonical CSV (time_s, winding_C, current_A, …), or any table with a mapping")
@@ -112,4 +113,4 @@ Command log_command() {
       }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands

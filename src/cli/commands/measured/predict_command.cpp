@@ -10,28 +10,28 @@
 #include "present/measured/prediction.h"
 #include "present/measured/prediction_chart.h"
 
-namespace heatsoak::commands {
+namespace heatsoak::cli::commands {
 namespace {
 
 struct Options {
   std::string model;
   std::vector<std::string> logs;
   std::string plot;
-  LogChoice how;
+  recording::LogChoice how;
 };
 
-ExitCode run(const Options& options, Session& session) {
-  const PredictionJob job{motor_named(session.folders(), options.model),
-                          read_named_logs({}, options.logs, choice_of(options.how, session))};
-  const PredictionAnswer answer = run_prediction(job);
+base::ExitCode run(const Options& options, Session& session) {
+  const calibration::PredictionJob job{duty::motor_named(session.folders(), options.model),
+                                       recording::read_named_logs({}, options.logs, choice_of(options.how, session))};
+  const calibration::PredictionAnswer answer = calibration::run_prediction(job);
   if (!options.plot.empty()) {
-    session.write(options.plot, draw_picture(present::prediction_chart(job.motor, answer.prediction), options.plot));
+    session.write(options.plot, report::draw_picture(present::prediction_chart(job.motor, answer.prediction), options.plot));
   }
   present::Document document = present::prediction_document(job.motor, answer, job.logs.readings);
   document.add_file(options.plot);
   session.show(document);
   session.answer(present::prediction_json(job.motor, answer, job.logs.readings));
-  return ExitCode::done;
+  return base::ExitCode::done;
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ Command predict_command() {
           "Predicts the temperatures of measured logs from their first temperatures and measured inputs, with a 90 % band; reports error "
           "and coverage",
       .example = "heatsoak predict --model maxon_ec45_flat_70w_24v reports/soak/match_1.csv reports/soak/bench.csv --plot prediction.svg",
-      .declare = [](CLI::App& app, Session& session) -> std::function<ExitCode()> {
+      .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
         const auto options = std::make_shared<Options>();
         app.add_option("--model", options->model, "motor file, best from `heatsoak calibrate`, or an id (see `heatsoak list motors`)")
             ->required()
@@ -59,4 +59,4 @@ Command predict_command() {
       }};
 }
 
-}  // namespace heatsoak::commands
+}  // namespace heatsoak::cli::commands
