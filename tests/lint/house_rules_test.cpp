@@ -101,6 +101,22 @@ TEST(Layers, TreeKeepsToTheTable) {
   }
 }
 
+TEST(Layers, PlantedNamespacesAreFound) {
+  EXPECT_TRUE(namespace_violations("src/upper/a.h", "namespace heatsoak::base {\nclass A;\n}\n\nnamespace heatsoak::upper {\n").empty());
+  EXPECT_TRUE(namespace_violations("src/upper/shapes/a.cpp", "namespace heatsoak::upper::shapes {\nnamespace {\n").empty());
+  EXPECT_EQ(namespace_violations("src/upper/a.h", "\nnamespace heatsoak::upper_side {\n"),
+            std::vector<std::string>{"src/upper/a.h: opens heatsoak::upper_side instead of heatsoak::upper"});
+  EXPECT_EQ(namespace_violations("src/upper/a.h", "namespace heatsoak {\n\nclass A;\n").size(), 1U);
+}
+
+TEST(Layers, NamespacesAreThoseOfTheFolders) {
+  for (const SourceFile& file : files_in("src")) {
+    for (const std::string& violation : namespace_violations(file.path, file.text)) {
+      ADD_FAILURE() << violation;
+    }
+  }
+}
+
 TEST(UnitNames, FieldsAndParametersAreSeen) {
   const char* const header = R"(
     // double in_comment;

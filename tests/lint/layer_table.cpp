@@ -103,4 +103,20 @@ std::vector<std::string> layer_violations(const LayerTable& table, const std::st
   return found;
 }
 
+std::vector<std::string> namespace_violations(const std::string& path, std::string_view text) {
+  static const std::regex kOpened("(?:^|\\n)namespace (heatsoak[a-z0-9_:]*) \\{(\\n(class|struct|enum class) \\w+;)?");
+  const std::size_t begin = path.find('/') + 1;
+  const std::string own = "heatsoak::" + path.substr(begin, path.find('/', begin) - begin);
+  const std::string all(text);
+  std::vector<std::string> found;
+  for (std::sregex_iterator each(all.begin(), all.end(), kOpened), end; each != end; ++each) {
+    const std::string opened = (*each)[1];
+    const bool is_own = opened == own || opened.starts_with(own + "::");
+    if (!is_own && !(*each)[2].matched) {
+      found.push_back(path + ": opens " + opened + " instead of " + own);
+    }
+  }
+  return found;
+}
+
 }  // namespace heatsoak::lint

@@ -21,4 +21,8 @@ LayerTable read_layer_table(std::string_view cmake, const std::set<std::string>&
 /// Returns "file:line: …" for every include in a file of src that the table does not allow.
 std::vector<std::string> layer_violations(const LayerTable& table, const std::string& path, std::string_view text);
 
+/// Returns "file: …" for every namespace of the project in a file of src that is not the one of the file's layer. A namespace of another
+/// layer may only contain forward declarations.
+std::vector<std::string> namespace_violations(const std::string& path, std::string_view text);
+
 }  // namespace heatsoak::lint
