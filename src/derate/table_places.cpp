@@ -97,19 +97,52 @@ ExactGrid exact_grid(Barrier& barrier, const BarrierRules& rules) {
   return grid;
 }
 
+/// Rule by which a table turns squares into currents.
+struct CurrentRule {
+  double straight_below_A = 0.0;
+  double most_current_A = 0.0;
+
+  /// Negative for a negative square, so that tables which allow nothing can be ranked. Not clamped until 1.1 times the most current, so
+  /// that the point between two grid points at which the most current is reached influences the shortfall.
+  [[nodiscard]] double current_A(double square_A2) const {
+    const double straight_A2 = straight_below_A * straight_below_A;
+    constexpr double kBeyond_ratio = 1.1;
+    return std::min(kBeyond_ratio * most_current_A, square_A2 < straight_A2 ? square_A2 / straight_below_A : std::sqrt(square_A2));
+  }
+};
+
+/// Returns the exact current of every grid point, 0 where a shortfall does not count: above the limit, and below the straight part.
+std::vector<double> counted_currents_A(const ExactGrid& grid, const CurrentRule& rule) {
+  std::vector<double> all;
+  const std::size_t windings = grid.points[winding].size();
+  for (std::size_t place = 0; place < grid.square_A2.size(); ++place) {
+    const double square_A2 = grid.square_A2[place];
+    const bool counts = place % windings <= grid.limit && square_A2 >= rule.straight_below_A * rule.straight_below_A;
+    all.push_back(counts ? rule.current_A(square_A2) : 0.0);
+  }
+  return all;
+}
+
 /// Part of an axis between two neighbouring breakpoints, or the whole axis if it has one breakpoint.
 struct Segment {
   std::size_t low = 0;  ///< point of the grid
   std::size_t high = 0;
+  std::vector<double> share;  ///< of each point from low to high: 0 at low, 1 at high
 };
 
-std::vector<Segment> segments(const std::vector<std::size_t>& places, std::size_t points) {
-  if (places.size() == 1) {
-    return {{0, points - 1}};
-  }
+std::vector<Segment> segments(const std::vector<std::size_t>& places, const std::vector<double>& points) {
   std::vector<Segment> all;
+  const auto add = [&](std::size_t low, std::size_t high) {
+    Segment& each = all.emplace_back(low, high);
+    for (std::size_t point = low; point <= high; ++point) {
+      each.share.push_back(high > low ? (points[point] - points[low]) / (points[high] - points[low]) : 0.0);
+    }
+  };
+  if (places.size() == 1) {
+    add(0, points.size() - 1);
+  }
   for (std::size_t i = 0; i + 1 < places.size(); ++i) {
-    all.push_back({places[i], places[i + 1]});
+    add(places[i], places[i + 1]);
   }
   return all;
 }
@@ -117,17 +150,26 @@ std::vector<Segment> segments(const std::vector<std::size_t>& places, std::size_
 /// Squares at chosen breakpoints of the grid, lowered so that the interpolation never exceeds the grid; and their shortfall.
 class Fit {
  public:
-  Fit(const ExactGrid& grid, Places places, double straight_below_A, double most_current_A)
-      : grid_(&grid), places_(std::move(places)), straight_below_A_(straight_below_A), most_current_A_(most_current_A) {
+  /// `counted_A`: counted_currents_A() of grid and rule. The search for the shortfall ends once it exceeds `of_no_use_ratio`.
+  Fit(const ExactGrid& grid, const CurrentRule& rule, const std::vector<double>& counted_A, Places places, double of_no_use_ratio)
+      : places_(std::move(places)) {
     for (const std::size_t i : places_[speed]) {
       for (const std::size_t j : places_[stator]) {
         for (const std::size_t k : places_[winding]) {
-          square_A2_.push_back(grid_->square_A2[grid_->place({i, j, k})]);
+          square_A2_.push_back(grid.square_A2[grid.place({i, j, k})]);
         }
       }
     }
-    for_each_cell([this](const Index& cell, const std::array<Segment, kAxes>& at) { lower(cell, at); });
-    for_each_cell([this](const Index& cell, const std::array<Segment, kAxes>& at) { find_shortfall(cell, at); });
+    std::array<std::vector<Segment>, kAxes> parts;
+    for (const Axis axis : {speed, stator, winding}) {
+      parts.at(axis) = segments(places_.at(axis), grid.points.at(axis));
+    }
+    for_each_cell(parts, [&](const Index& cell, const Cell& at) { lower(grid, cell, at); });
+    for_each_cell(parts, [&](const Index& cell, const Cell& at) {
+      if (shortfall_ratio_ <= of_no_use_ratio) {
+        find_shortfall(grid, rule, counted_A, cell, at);
+      }
+    });
   }
 
   [[nodiscard]] const Places& places() const { return places_; }
@@ -139,31 +181,38 @@ class Fit {
   }
 
  private:
+  using Cell = std::array<const Segment*, kAxes>;
+
   template <class Visit>
-  void for_each_cell(const Visit& visit) {
-    const auto speeds = segments(places_[speed], grid_->points[speed].size());
-    const auto stators = segments(places_[stator], grid_->points[stator].size());
-    const auto windings = segments(places_[winding], grid_->points[winding].size());
-    for (std::size_t i = 0; i < speeds.size(); ++i) {
-      for (std::size_t j = 0; j < stators.size(); ++j) {
-        for (std::size_t k = 0; k < windings.size(); ++k) {
-          visit(Index{i, j, k}, {speeds[i], stators[j], windings[k]});
+  static void for_each_cell(const std::array<std::vector<Segment>, kAxes>& parts, const Visit& visit) {
+    for (std::size_t i = 0; i < parts[speed].size(); ++i) {
+      for (std::size_t j = 0; j < parts[stator].size(); ++j) {
+        for (std::size_t k = 0; k < parts[winding].size(); ++k) {
+          visit(Index{i, j, k}, Cell{&parts[speed][i], &parts[stator][j], &parts[winding][k]});
         }
       }
     }
   }
 
+  /// Calls visit(place in the grid, interpolated square, index) for all grid points of a cell.
   template <class Visit>
-  void for_each_point(const std::array<Segment, kAxes>& at, const Visit& visit) const {
-    const auto share = [&](Axis axis, std::size_t point) {
-      const double low = grid_->points[axis][at[axis].low];
-      const double high = grid_->points[axis][at[axis].high];
-      return high > low ? (grid_->points[axis][point] - low) / (high - low) : 0.0;
-    };
-    for (std::size_t i = at[speed].low; i <= at[speed].high; ++i) {
-      for (std::size_t j = at[stator].low; j <= at[stator].high; ++j) {
-        for (std::size_t k = at[winding].low; k <= at[winding].high; ++k) {
-          visit(Index{i, j, k}, std::array{share(speed, i), share(stator, j), share(winding, k)});
+  void for_each_point(const ExactGrid& grid, const std::array<std::size_t, 8>& corner, const Cell& at, const Visit& visit) const {
+    const Segment& along_winding = *at[winding];
+    for (std::size_t i = at[speed]->low; i <= at[speed]->high; ++i) {
+      const double speed_share = at[speed]->share[i - at[speed]->low];
+      for (std::size_t j = at[stator]->low; j <= at[stator]->high; ++j) {
+        const double stator_share = at[stator]->share[j - at[stator]->low];
+        const std::size_t first = grid.place({i, j, 0});
+        for (std::size_t k = along_winding.low; k <= along_winding.high; ++k) {
+          const double winding_share = along_winding.share[k - along_winding.low];
+          const auto along = [&](std::size_t from) {
+            return square_A2_[corner[from]] + winding_share * (square_A2_[corner[from + 1]] - square_A2_[corner[from]]);
+          };
+          const double first_A2 = along(0);
+          const double low_A2 = first_A2 + stator_share * (along(2) - first_A2);
+          const double third_A2 = along(4);
+          const double high_A2 = third_A2 + stator_share * (along(6) - third_A2);
+          visit(first + k, low_A2 + speed_share * (high_A2 - low_A2), Index{i, j, k});
         }
       }
     }
@@ -179,55 +228,43 @@ class Fit {
     return places;
   }
 
-  [[nodiscard]] double between_A2(const std::array<std::size_t, 8>& corner, const std::array<double, kAxes>& share) const {
-    const auto along = [&](std::size_t first) {
-      return square_A2_[corner[first]] + share[winding] * (square_A2_[corner[first + 1]] - square_A2_[corner[first]]);
-    };
-    const double low_A2 = along(0) + share[stator] * (along(2) - along(0));
-    const double high_A2 = along(4) + share[stator] * (along(6) - along(4));
-    return low_A2 + share[speed] * (high_A2 - low_A2);
-  }
-
   /// Lowers the corners of a cell by the largest excess over the exact squares in it.
-  void lower(const Index& cell, const std::array<Segment, kAxes>& at) {
+  void lower(const ExactGrid& grid, const Index& cell, const Cell& at) {
     std::array<std::size_t, 8> corner = corners(cell);
     double excess_A2 = 0.0;
-    for_each_point(at, [&](const Index& point, const std::array<double, kAxes>& share) {
-      excess_A2 = std::max(excess_A2, between_A2(corner, share) - grid_->square_A2[grid_->place(point)]);
+    for_each_point(grid, corner, at, [&](std::size_t place, double square_A2, const Index& /*point*/) {
+      excess_A2 = std::max(excess_A2, square_A2 - grid.square_A2[place]);
     });
     std::ranges::sort(corner);
     const auto end = std::unique(corner.begin(), corner.end());
     std::for_each(corner.begin(), end, [&](std::size_t each) { square_A2_[each] -= excess_A2; });
   }
 
-  /// Negative for a negative square, so that tables which allow nothing can be ranked. Not clamped until 1.1 times the most current, so
-  /// that the point between two grid points at which the most current is reached influences the shortfall.
-  [[nodiscard]] double current_A(double square_A2) const {
-    const double straight_A2 = straight_below_A_ * straight_below_A_;
-    constexpr double kBeyond_ratio = 1.1;
-    return std::min(kBeyond_ratio * most_current_A_, square_A2 < straight_A2 ? square_A2 / straight_below_A_ : std::sqrt(square_A2));
-  }
-
-  void find_shortfall(const Index& cell, const std::array<Segment, kAxes>& at) {
-    const std::array<std::size_t, 8> corner = corners(cell);
-    for_each_point(at, [&](const Index& point, const std::array<double, kAxes>& share) {
-      const double exact_A2 = grid_->square_A2[grid_->place(point)];
-      if (point[winding] > grid_->limit || exact_A2 < straight_below_A_ * straight_below_A_) {
+  void find_shortfall(const ExactGrid& grid, const CurrentRule& rule, const std::vector<double>& counted_A, const Index& cell,
+                      const Cell& at) {
+    const double straight_A2 = rule.straight_below_A * rule.straight_below_A;
+    constexpr double kRounding_ratio = 1.0 + 1e-9;
+    const auto least_square_ratio = [&] {
+      const double kept_ratio = std::max(0.0, 1.0 - shortfall_ratio_);
+      return kRounding_ratio * kept_ratio * kept_ratio;
+    };
+    double least_ratio = least_square_ratio();
+    for_each_point(grid, corners(cell), at, [&](std::size_t place, double square_A2, const Index& point) {
+      // Most points are better than the worst one so far, which their squares show without a root.
+      if (counted_A[place] == 0.0 || square_A2 >= std::max(straight_A2, least_ratio * counted_A[place] * counted_A[place])) {
         return;
       }
-      const double short_ratio = 1.0 - current_A(between_A2(corner, share)) / current_A(exact_A2);
+      const double short_ratio = 1.0 - rule.current_A(square_A2) / counted_A[place];
       if (short_ratio > shortfall_ratio_) {
         shortfall_ratio_ = short_ratio;
+        least_ratio = least_square_ratio();
         worst_ = point;
       }
     });
   }
 
-  const ExactGrid* grid_;
   Places places_;
   std::vector<double> square_A2_;
-  double straight_below_A_;
-  double most_current_A_;
   double shortfall_ratio_ = 0.0;
   Index worst_{};
 };
@@ -256,18 +293,18 @@ double three_digits(double positive) {
 /// Adds breakpoints until the goal is reached.
 class Search {
  public:
-  Search(const ExactGrid& grid, const BarrierRules& rules, const TableGoal& goal)
-      : grid_(grid), goal_(goal), most_current_A_(rules.most_current_A) {
+  Search(const ExactGrid& grid, const BarrierRules& rules, const TableGoal& goal) : grid_(grid), goal_(goal) {
     double hottest_A2 = 0.0;
     for (std::size_t j = 0; j < grid.points[stator].size(); ++j) {
       hottest_A2 = std::max(hottest_A2, grid.square_A2[grid.place({0, j, grid.limit})]);
     }
     constexpr double kShare = 1.0 / 3.0;
     constexpr double kLeast_share = 0.02;
-    straight_below_A_ = three_digits(std::max(kShare * std::sqrt(hottest_A2), kLeast_share * most_current_A_));
+    rule_ = {three_digits(std::max(kShare * std::sqrt(hottest_A2), kLeast_share * rules.most_current_A)), rules.most_current_A};
+    counted_A_ = counted_currents_A(grid, rule_);
   }
 
-  [[nodiscard]] double straight_below_A() const { return straight_below_A_; }
+  [[nodiscard]] double straight_below_A() const { return rule_.straight_below_A; }
 
   [[nodiscard]] Fit best() const {
     Fit fit = of({std::vector<std::size_t>{0}, {0}, {0, grid_.points[winding].size() - 1}});
@@ -282,7 +319,9 @@ class Search {
   }
 
  private:
-  [[nodiscard]] Fit of(Places places) const { return {grid_, std::move(places), straight_below_A_, most_current_A_}; }
+  [[nodiscard]] Fit of(Places places, double of_no_use_ratio = std::numeric_limits<double>::infinity()) const {
+    return {grid_, rule_, counted_A_, std::move(places), of_no_use_ratio};
+  }
 
   /// Tries one more breakpoint on each axis. Returns the fit that reduces the shortfall most per stored number; nothing if none fits.
   [[nodiscard]] std::optional<Fit> refined(const Fit& fit) const {
@@ -314,7 +353,7 @@ class Search {
       for (std::size_t i = 1; i + 1 < fit.places()[axis].size();) {
         Places places = fit.places();
         places[axis].erase(places[axis].begin() + static_cast<std::ptrdiff_t>(i));
-        Fit tried = of(std::move(places));
+        Fit tried = of(std::move(places), allowed_ratio);
         if (tried.shortfall_ratio() <= allowed_ratio) {
           fit = std::move(tried);
         } else {
@@ -336,12 +375,12 @@ class Search {
         for (std::size_t i = 1; i + 1 < places.size(); ++i) {
           Places fewer = fit.places();
           fewer[axis].erase(fewer[axis].begin() + static_cast<std::ptrdiff_t>(i));
-          keep_better(best, of(std::move(fewer)));
+          keep_better(best, std::move(fewer));
         }
         if (places.size() == 2 && axis != winding) {
           Places fewer = fit.places();
           fewer[axis] = {0};
-          keep_better(best, of(std::move(fewer)));
+          keep_better(best, std::move(fewer));
         }
       }
       if (!best) {
@@ -368,7 +407,7 @@ class Search {
               continue;
             }
             moved[axis][i] = point;
-            if (Fit tried = of(std::move(moved)); tried.shortfall_ratio() < fit.shortfall_ratio()) {
+            if (Fit tried = of(std::move(moved), fit.shortfall_ratio()); tried.shortfall_ratio() < fit.shortfall_ratio()) {
               fit = std::move(tried);
               has_moved = true;
             }
@@ -379,7 +418,8 @@ class Search {
     return fit;
   }
 
-  static void keep_better(std::optional<Fit>& best, Fit tried) {
+  void keep_better(std::optional<Fit>& best, Places places) const {
+    Fit tried = best ? of(std::move(places), best->shortfall_ratio()) : of(std::move(places));
     if (!best || tried.shortfall_ratio() < best->shortfall_ratio()) {
       best.emplace(std::move(tried));
     }
@@ -390,8 +430,8 @@ class Search {
 
   const ExactGrid& grid_;
   const TableGoal& goal_;
-  double most_current_A_;
-  double straight_below_A_ = 0.0;
+  CurrentRule rule_;
+  std::vector<double> counted_A_;
 };
 
 }  // namespace
