@@ -44,7 +44,7 @@ std::array<MotorPeak, base::kLanes> peaks(std::span<const thermal::Network> moto
   for (const UsePlayed& each : uses) {
     const auto to_lanes = [](const thermal::OperatingPoint<double>& at) {
       thermal::OperatingPoint<thermal::Lanes> lanes;
-      thermal::for_each_quantity([](thermal::Lanes& to, const double& from) { to = thermal::Lanes::Constant(from); }, lanes, at);
+      thermal::convert_point([](thermal::Lanes& to, const double& from) { to = thermal::Lanes::Constant(from); }, lanes, at);
       return lanes;
     };
     const double ambient_C = each.intervals.front().at.ambient_C;

@@ -42,7 +42,7 @@ thermal::OperatingPoint<S> operating_point(const motor::MotorValues& motor, cons
       at.*thermal::kQuantities<S>[*row].value = signals[i];
     }
   }
-  at.neighbour_share = 1.0;
+  at.known = thermal::kNeighbour;
   at.bus_V = robot.battery.full_V.value_or(robot.battery.nominal_V);
   return at;
 }

@@ -107,8 +107,10 @@ thermal::OperatingPoint<double> LogRows::at(std::size_t row) const {
   at.shaft_power_W = torque_Nm_ ? of(torque_Nm_, row) * speed_rad_per_s : power_of_current_W(of(current_A_, row), speed_rad_per_s);
   at.modulation_ratio =
       modulation_ ? std::abs(of(modulation_, row)) : modulation_of_current(of(current_A_, row), speed_rad_per_s, at.bus_V);
-  at.neighbour_share = neighbour_C_ && !std::isnan((*neighbour_C_)[row]) ? 1.0 : 0.0;
-  at.neighbour_C = neighbour_C_ && at.neighbour_share > 0.0 ? (*neighbour_C_)[row] : 25.0;
+  if (neighbour_C_ && !std::isnan((*neighbour_C_)[row])) {
+    at.known = thermal::kNeighbour;
+    at.neighbour_C = (*neighbour_C_)[row];
+  }
   at.unlogged_speed_share = is_driven_ && (!speed_rad_per_s_ || std::isnan(speed_rad_per_s)) ? 1.0 : 0.0;
   return at;
 }

@@ -37,6 +37,7 @@ void set_motion(thermal::OperatingPoint<double>& at, const thermal::OperatingPoi
 thermal::OperatingPoint<double> MeanInputs::zero() {
   thermal::OperatingPoint<double> at;
   thermal::for_each_quantity([](double& value) { value = 0.0; }, at);
+  at.known = ~thermal::Quantities{0};
   return at;
 }
 
@@ -44,6 +45,7 @@ void MeanInputs::add(const thermal::OperatingPoint<double>& at, double duration_
   duration_s_ += duration_s;
   const thermal::OperatingPoint<double> squares = squared(at);
   thermal::for_each_quantity([&](double& sum, const double& value) { sum += duration_s * value; }, sum_, squares);
+  sum_.known &= at.known;
 }
 
 void MeanInputs::add_uncertainty(const thermal::OperatingPoint<double>& at, const thermal::OperatingPoint<double>& other,

@@ -5,7 +5,8 @@
 
 namespace heatsoak::estimation {
 
-/// Time averages of operating points; current and RMS speed are averaged as squares. Uncertainties of different intervals are independent.
+/// Time averages of operating points; current and RMS speed are averaged as squares. An optional quantity is known if it is known in all of
+/// them. Uncertainties of different intervals are independent.
 class MeanInputs {
  public:
   void add(const thermal::OperatingPoint<double>& at, double duration_s);

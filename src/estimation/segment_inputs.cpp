@@ -33,6 +33,7 @@ thermal::OperatingPoint<double> with_cells(thermal::OperatingPoint<double> suppo
   const double unlogged_share = supposed.unlogged_speed_share;
   thermal::for_each_quantity([](double& value, const double& cell) { value = std::isnan(cell) ? value : cell; }, supposed, cells);
   supposed.unlogged_speed_share = unlogged_share;
+  supposed.known = cells.known;
   return supposed;
 }
 

@@ -19,6 +19,7 @@ thermal::OperatingPoint<double> at_work() {
   for (const thermal::OperatingQuantity<double>& each : thermal::kQuantities<double>) {
     at.*each.value = each.usual;
   }
+  at.known = thermal::kNeighbour;
   return at;
 }
 

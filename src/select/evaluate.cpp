@@ -89,7 +89,7 @@ class Block {
     for (int lane = 0; lane < base::kLanes; ++lane) {
       const auto i = static_cast<std::size_t>(lane);
       const thermal::OperatingPoint<double> one = operating_point(motors_[i].values, robots_[i], kind_, bin, duties_[i]);
-      thermal::for_each_quantity([lane](thermal::Lanes& to, const double& from) { to[lane] = from; }, at, one);
+      thermal::convert_point([lane](thermal::Lanes& to, const double& from) { to[lane] = from; }, at, one);
     }
     return at;
   }
@@ -186,7 +186,7 @@ NominalRun run_nominal(const thermal::Network& network, const motor::MotorSample
   double last_A2 = 0.0;
   double last_s = 0.0;
   const auto keep = [&](const thermal::TransientMoment& moment) {
-    const double flows_A = network.within_headroom(run.intervals[moment.interval].at, parameters.data(), moment.state_C.data());
+    const double flows_A = network.flowing_A(run.intervals[moment.interval].at, parameters.data(), moment.state_C.data());
     if (!moment.begins_interval) {
       charge_A2_s += 0.5 * (last_A2 + flows_A * flows_A) * (moment.time_s - last_s);
     }

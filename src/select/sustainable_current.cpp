@@ -38,7 +38,7 @@ std::optional<double> sustainable_current_factor(const thermal::Network& network
     thermal::EnsembleRun run(network, parameters, start_C);
     for (const thermal::Interval& interval : intervals) {
       thermal::OperatingPoint<thermal::Lanes> at;
-      thermal::for_each_quantity([](thermal::Lanes& to, const double& from) { to = thermal::Lanes::Constant(from); }, at, interval.at);
+      thermal::convert_point([](thermal::Lanes& to, const double& from) { to = thermal::Lanes::Constant(from); }, at, interval.at);
       at.current_rms_A *= factor;
       at.input_power_W = at.shaft_power_W * factor + (at.input_power_W - at.shaft_power_W) * factor * factor;
       at.shaft_power_W *= factor;

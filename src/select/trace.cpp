@@ -113,7 +113,7 @@ Trace run_trace(const robot::Robot& robot, const duty::Duty& duty, const duty::W
     if (!moment.begins_interval && moment.time_s < end_s) {
       return;
     }
-    const double flows_A = network.within_headroom(all[moment.interval].at, parameters.data(), moment.state_C.data());
+    const double flows_A = network.flowing_A(all[moment.interval].at, parameters.data(), moment.state_C.data());
     const robot::DrivePoint point = point_of(sample.values, robot, fine.bins[moment.interval], flows_A);
     TraceRow row{.time_s = moment.time_s,
                  .winding_C = moment.state_C[winding],

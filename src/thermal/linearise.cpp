@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "thermal/law.h"
 #include "thermal/linearised.h"
@@ -11,12 +12,12 @@ namespace {
 constexpr int kMostRoles = Network::kMostRoles;
 constexpr int kMostParameters = Network::kMostParameters;
 
-/// The copper loss at this moment and its derivatives, for laws that depend on it.
+/// Derivatives of the copper loss at this moment, for laws that depend on it.
 struct CopperGradient {
-  const EffectInPlace* effect = nullptr;
-  double heat_W = 0.0;
-  std::array<double, kMostRoles> by_temperature{};
-  std::array<double, kMostParameters> by_parameter{};
+  DriveStage::Places places;
+  double by_winding_W_per_K = 0.0;
+  double by_resistance_W_per_ohm = 0.0;
+  double by_coefficient_W_K = 0.0;
 };
 
 /// Scratch memory kept between calls: clearing unused derivatives would cost more than evaluating the laws.
@@ -90,7 +91,7 @@ class Linearisation {
     out.by_parameter.setZero(states, static_cast<Eigen::Index>(parameters.size()));
   }
 
-  void add(const EffectInPlace& effect, OperatingPoint<Tangent>& at, CopperGradient* noted) {
+  void add(const EffectInPlace& effect, OperatingPoint<Tangent>& at) {
     LocalLaw law(effect, parameters_, temperature_C_, workspace_);
     const int roles = static_cast<int>(effect.node_index.size());
     for (int first = 0; first < law.direction_count(); first += kDirections) {
@@ -105,15 +106,8 @@ class Linearisation {
         }
         for (int d = first; d < std::min(first + kDirections, law.direction_count()); ++d) {
           add_derivative(effect, node, d, law.heat_W(role).v[d - first]);
-          if (noted && role == 0) {
-            note(*noted, roles, d, law.heat_W(role).v[d - first]);
-          }
         }
       }
-    }
-    if (noted) {
-      noted->effect = &effect;
-      noted->heat_W = law.heat_W(0).a;
     }
   }
   void set_copper(const CopperGradient& copper) { copper_ = copper; }
@@ -143,32 +137,21 @@ class Linearisation {
       }
     } else if (direction < roles + count) {
       out_.by_parameter(node, effect.parameter_index[direction - roles]) += slope;
-    } else if (copper_.effect) {
-      const EffectInPlace& copper = *copper_.effect;
-      for (std::size_t role = 0; role < copper.node_index.size(); ++role) {
-        if (copper.node_index[role] < states_) {
-          out_.by_state(node, copper.node_index[role]) += slope * copper_.by_temperature[role];
-        }
+    } else if (copper_) {
+      const DriveStage::Places& from = copper_->places;
+      if (from.winding < states_) {
+        out_.by_state(node, from.winding) += slope * copper_->by_winding_W_per_K;
       }
-      for (std::size_t i = 0; i < copper.parameter_index.size(); ++i) {
-        out_.by_parameter(node, copper.parameter_index[i]) += slope * copper_.by_parameter[i];
-      }
+      out_.by_parameter(node, from.resistance) += slope * copper_->by_resistance_W_per_ohm;
+      out_.by_parameter(node, from.coefficient) += slope * copper_->by_coefficient_W_K;
     }
   }
-  static void note(CopperGradient& copper, int roles, int direction, double slope) {
-    if (direction < roles) {
-      copper.by_temperature[direction] = slope;
-    } else if (direction - roles < kMostParameters) {
-      copper.by_parameter[direction - roles] = slope;
-    }
-  }
-
   Workspace& workspace_;
   std::span<const double> parameters_;
   const double* temperature_C_;
   int states_;
   Linearised& out_;
-  CopperGradient copper_;
+  std::optional<CopperGradient> copper_;
 };
 
 }  // namespace
@@ -181,18 +164,18 @@ void Network::linearise(const OperatingPoint<double>& at, std::span<const double
   static thread_local Workspace workspace;
   OperatingPoint<Tangent>& seen = workspace.seen;
   // Only the copper loss ever carries derivatives here; they are set again for every law.
-  for_each_quantity([](Tangent& to, const double& from) { to.a = from; }, seen, at);
+  convert_point([](Tangent& to, const double& from) { to.a = from; }, seen, at);
   seen.copper_loss_W.v.setZero();
   Linearisation linearisation(parameters, temperature_C.data(), state_count(), workspace, out);
-  std::size_t turn = 0;
-  if (copper_effect_ >= 0) {
-    CopperGradient copper;
-    linearisation.add(effects_[booked_at(turn++)], seen, &copper);
-    linearisation.set_copper(copper);
-    seen.copper_loss_W = Tangent(copper.heat_W);
+  if (drive_) {
+    const auto& [resistance, coefficient, node] = drive_->places();
+    const Tangent loss_W = DriveStage::copper_loss_W(Tangent(at.current_rms_A), Tangent(parameters[resistance], 0),
+                                                     Tangent(parameters[coefficient], 1), Tangent(temperature_C[node], 2));
+    seen.copper_loss_W.a = loss_W.a;
+    linearisation.set_copper({drive_->places(), loss_W.v[2], loss_W.v[0], loss_W.v[1]});
   }
-  for (; turn < effects_.size(); ++turn) {
-    linearisation.add(effects_[booked_at(turn)], seen, nullptr);
+  for (const EffectInPlace& effect : effects_) {
+    linearisation.add(effect, seen);
   }
   linearisation.divide_by(capacity_index_);
 }

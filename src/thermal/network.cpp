@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <stdexcept>
+#include <type_traits>
 
-#include "base/copper.h"
 #include "thermal/law.h"
 
 namespace heatsoak::thermal {
@@ -97,32 +96,7 @@ void Network::limit_current_by(std::string_view copper_effect) {
   if (found == effects_.end() || found->parameter_index.size() != 2 || found->node_index.size() != 1) {
     throw std::logic_error(fmt::format("'{}' is not a copper loss of this network", copper_effect));
   }
-  copper_effect_ = static_cast<int>(found - effects_.begin());
-}
-
-template <class S>
-S Network::within_headroom(const OperatingPoint<S>& at, const S* parameters, const S* temperature_C) const {
-  if (copper_effect_ < 0) {
-    return at.current_rms_A;
-  }
-  const EffectInPlace& copper = effects_[static_cast<std::size_t>(copper_effect_)];
-  const S hot_ratio = base::resistance_ratio(parameters[copper.parameter_index[1]], temperature_C[copper.node_index[0]]);
-  const S loop_ohm = parameters[copper.parameter_index[0]] * hot_ratio + at.series_resistance_ohm;
-  // A solver may try temperatures at which the linear resistance is negative; an infinite headroom must not give -inf A there.
-  constexpr double kLeast_ohm = std::numeric_limits<double>::min();
-  if constexpr (std::is_same_v<S, double>) {
-    return std::min(at.current_rms_A, at.resistive_headroom_V / std::max(loop_ohm, kLeast_ohm));
-  } else {
-    return at.current_rms_A.min(at.resistive_headroom_V / loop_ohm.max(kLeast_ohm));
-  }
-}
-
-std::size_t Network::booked_at(std::size_t turn) const {
-  const auto copper = static_cast<std::size_t>(copper_effect_);
-  if (copper_effect_ < 0 || turn > copper) {
-    return turn;
-  }
-  return turn == 0 ? copper : turn - 1;
+  drive_.emplace(DriveStage::Places{found->parameter_index[0], found->parameter_index[1], found->node_index[0]});
 }
 
 std::vector<double> Network::values() const {
@@ -133,24 +107,32 @@ std::vector<double> Network::values() const {
   return all;
 }
 
+template <class S, class Book>
+void Network::evaluate(OperatingPoint<S>& at, const S* parameters, const S* temperature_C, const Book& book) const {
+  const S given_A = at.current_rms_A;
+  const S given_W = at.copper_loss_W;
+  if (drive_) {
+    if constexpr (!std::is_same_v<S, Traced>) {
+      at.current_rms_A = drive_->current_A(at, parameters, temperature_C);
+    }
+    at.copper_loss_W = drive_->copper_loss_W(at.current_rms_A, parameters, temperature_C);
+  }
+  for (const EffectInPlace& effect : effects_) {
+    book(effect, at);
+  }
+  at.current_rms_A = given_A;
+  at.copper_loss_W = given_W;
+}
+
 template <class S>
 void Network::rate_K_per_s(OperatingPoint<S>& at, std::span<const S> parameters, std::span<S> temperature_C, std::span<S> rate) const {
   std::array<S, kMostNodes> heat_W;  // NOLINT(cppcoreguidelines-pro-type-member-init): those in use are set in the next lines
   const std::size_t states = node_names_.size();
   std::fill_n(heat_W.begin(), states + 1, S(0.0));
   temperature_C[states] = at.ambient_C;
-  const S given_A = at.current_rms_A;
-  const S given_W = at.copper_loss_W;
-  at.current_rms_A = within_headroom(at, parameters.data(), temperature_C.data());
-  for (std::size_t turn = 0; turn < effects_.size(); ++turn) {
-    const EffectInPlace& effect = effects_[booked_at(turn)];
-    book<S>(effect, at, parameters.data(), temperature_C.data(), heat_W.data());
-    if (turn == 0 && copper_effect_ >= 0) {
-      at.copper_loss_W = heat_W[static_cast<std::size_t>(effect.node_index[0])];
-    }
-  }
-  at.current_rms_A = given_A;
-  at.copper_loss_W = given_W;
+  evaluate<S>(at, parameters.data(), temperature_C.data(), [&](const EffectInPlace& effect, const OperatingPoint<S>& driven) {
+    book<S>(effect, driven, parameters.data(), temperature_C.data(), heat_W.data());
+  });
   for (std::size_t node = 0; node < states; ++node) {
     rate[node] = heat_W[node] / parameters[static_cast<std::size_t>(capacity_index_[node])];
   }
@@ -162,16 +144,12 @@ void Network::balance_W(const OperatingPoint<double>& at, std::span<const double
   std::copy_n(state_C.begin(), state_count(), temperature_C.begin());
   temperature_C[static_cast<std::size_t>(state_count())] = at.ambient_C;
   std::ranges::fill(heat_W, 0.0);
-  OperatingPoint<double> seen = at;
-  seen.current_rms_A = within_headroom(at, parameters.data(), temperature_C.data());
-  for (std::size_t turn = 0; turn < effects_.size(); ++turn) {
-    const std::size_t e = booked_at(turn);
-    double* const row_W = heat_W.data() + e * static_cast<std::size_t>(node_count());
-    book<double>(effects_[e], seen, parameters.data(), temperature_C.data(), row_W);
-    if (turn == 0 && copper_effect_ >= 0) {
-      seen.copper_loss_W = row_W[effects_[e].node_index[0]];
-    }
-  }
+  OperatingPoint<double> own = at;
+  double* row_W = heat_W.data();
+  evaluate<double>(own, parameters.data(), temperature_C.data(), [&](const EffectInPlace& effect, const OperatingPoint<double>& driven) {
+    book<double>(effect, driven, parameters.data(), temperature_C.data(), row_W);
+    row_W += node_count();
+  });
 }
 
 void Network::trace(const OperatingPoint<Traced>& at, std::span<const Traced> temperature_C, std::span<TracedHeat> node_heat) const {
@@ -183,23 +161,21 @@ void Network::trace(const OperatingPoint<Traced>& at, std::span<const Traced> te
   for (int node = 0; node < node_count(); ++node) {
     nodes.emplace_back(node_name(node));
   }
-  OperatingPoint<Traced> seen = at;
-  for (std::size_t turn = 0; turn < effects_.size(); ++turn) {
-    const EffectInPlace& effect = effects_[booked_at(turn)];
-    const Situation<Traced> situation(seen, parameters.data(), effect.parameter_index.data(), temperature_C.data(),
+  if (formula != nullptr && drive_) {
+    formula->begin_law("copper_loss");
+  }
+  OperatingPoint<Traced> own = at;
+  evaluate<Traced>(own, parameters.data(), temperature_C.data(), [&](const EffectInPlace& effect, const OperatingPoint<Traced>& driven) {
+    const Situation<Traced> situation(driven, parameters.data(), effect.parameter_index.data(), temperature_C.data(),
                                       effect.node_index.data());
     HeatBook<Traced> heat_book(node_heat.data(), effect.node_index.data(), {std::string(effect.type->name), nodes});
     if (formula != nullptr) {
       formula->begin_law(std::string(effect.type->name));
     }
     effect.type->laws->traced(situation, heat_book);
-    if (turn == 0 && copper_effect_ >= 0) {
-      seen.copper_loss_W = node_heat[static_cast<std::size_t>(effect.node_index[0])].made_W;
-    }
-  }
+  });
 }
 
-template double Network::within_headroom<double>(const OperatingPoint<double>&, const double*, const double*) const;
 template void Network::rate_K_per_s<double>(OperatingPoint<double>&, std::span<const double>, std::span<double>, std::span<double>) const;
 template void Network::rate_K_per_s<Lanes>(OperatingPoint<Lanes>&, std::span<const Lanes>, std::span<Lanes>, std::span<Lanes>) const;
 

@@ -1,11 +1,13 @@
 // A thermal network: nodes that store heat, effects that book heat, and one flat list of all their parameters.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "thermal/drive_stage.h"
 #include "thermal/effect.h"
 
 namespace heatsoak::thermal {
@@ -46,9 +48,8 @@ class Network {
   /// effect's own: it is added under the name given for its role. Throws std::logic_error on a mismatch or a value out of range.
   void add_effect(std::string name, const EffectType& type, std::span<const std::string> nodes, std::span<const double> parameters);
 
-  /// Selects the copper loss, an effect with the parameters terminal_resistance and temperature_coefficient. Its heat becomes the
-  /// copper_loss_W of all other laws. The current is limited to the operating point's resistive headroom divided by R25·(1+α·(T−25 °C))
-  /// plus the series resistance. Throws std::logic_error if there is no such effect.
+  /// Puts a drive stage before the laws: they see its current and its copper loss. It reads the parameters terminal_resistance and
+  /// temperature_coefficient and the node of the effect named. Throws std::logic_error if there is no such effect.
   void limit_current_by(std::string_view copper_effect);
 
   [[nodiscard]] int state_count() const { return static_cast<int>(node_names_.size()); }
@@ -86,25 +87,26 @@ class Network {
   void balance_W(const OperatingPoint<double>& at, std::span<const double> parameters, std::span<const double> state_C,
                  std::span<double> heat_W) const;
 
-  /// Returns the current in A after the voltage limit: the part of the operating point's current that its headroom allows at these
-  /// temperatures (at least state_count() entries). Without limit_current_by() all of it.
-  template <class S>
-  [[nodiscard]] S within_headroom(const OperatingPoint<S>& at, const S* parameters, const S* temperature_C) const;
+  /// Returns the current in A behind the drive stage at these temperatures (at least state_count() entries); without a drive stage that of
+  /// the operating point.
+  [[nodiscard]] double flowing_A(const OperatingPoint<double>& at, const double* parameters, const double* temperature_C) const {
+    return drive_ ? drive_->current_A(at, parameters, temperature_C) : at.current_rms_A;
+  }
 
  private:
+  /// Calls book(effect, at) for all effects with the operating point behind the drive stage, then restores the point.
+  template <class S, class Book>
+  void evaluate(OperatingPoint<S>& at, const S* parameters, const S* temperature_C, const Book& book) const;
   int add_parameter(NetworkParameter parameter);
   int add_state(std::string name, int capacity_index);
-  /// Index of the effect that is booked at position `turn`: the copper loss comes first because other laws use its heat.
-  [[nodiscard]] std::size_t booked_at(std::size_t turn) const;
 
   std::vector<std::string> node_names_;
   std::vector<int> capacity_index_;
   std::vector<EffectInPlace> effects_;
   std::vector<NetworkParameter> parameters_;
-  int copper_effect_ = -1;
+  std::optional<DriveStage> drive_;
 };
 
-extern template double Network::within_headroom<double>(const OperatingPoint<double>&, const double*, const double*) const;
 extern template void Network::rate_K_per_s<double>(OperatingPoint<double>&, std::span<const double>, std::span<double>,
                                                    std::span<double>) const;
 

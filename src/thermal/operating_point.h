@@ -9,6 +9,14 @@
 
 namespace heatsoak::thermal {
 
+/// Set of optional quantities, one bit each.
+using Quantities = unsigned;
+inline constexpr Quantities kNeighbour = 1U;
+/// Largest number of log columns that the curves of one motor can use.
+inline constexpr std::size_t kLogColumns = 3;
+/// Returns the bit of a column of the log; `place` is below kLogColumns.
+constexpr Quantities column_bit(std::size_t place) { return 2U << place; }
+
 /// Means over one interval, chosen so that intervals can be merged without changing the heat: I²R uses the RMS current, a loss ∝ |ω| the
 /// mean speed, one ∝ ω² the RMS speed. Products such as |I|·ω² use the product of the means. That is accurate if the interval is short
 /// compared with load changes, like the rows of a log. The default of a quantity is the assumption without a
@@ -30,20 +38,19 @@ struct OperatingPoint {
   S bus_V = S(0.0);                    ///< supply voltage of the driver
   S modulation_ratio = S(0.0);         ///< mean of |terminal voltage| / supply voltage, 0 to 1
   S vehicle_speed_m_per_s = S(0.0);    ///< mean of the speed's magnitude
-  S neighbour_C = S(25.0);             ///< temperature of the neighbouring motor; valid if neighbour_share is 1
-  S neighbour_share = S(0.0);          ///< 1 if neighbour_C is known, else 0
+  S neighbour_C = S(25.0);             ///< temperature of the neighbouring motor, valid if `known` has kNeighbour
   S unlogged_speed_share = S(0.0);     ///< 1 if the machine may turn at a speed that was not logged, else 0
   S age_h = S(0.0);                    ///< operating hours so far
   S velocity_rad_per_s = S(0.0);       ///< signed mean of ω, motor shaft; a log of |ω| does not provide the sign
   S acceleration_rad_per_s2 = S(0.0);  ///< mean of |dω/dt|, motor shaft
-  // Columns of a log, in their own units: abscissas of tabulated curves over none of the signals above.
+  // Columns of a log, in their own units: abscissas of tabulated curves over none of the signals above. Valid if `known` has their bits.
   S first_column = S(0.0);
   S second_column = S(0.0);
   S third_column = S(0.0);
-  S first_column_share = S(0.0);  ///< 1 if `first_column` is known, else 0
-  S second_column_share = S(0.0);
-  S third_column_share = S(0.0);
-  S copper_loss_W = S(0.0);  ///< copper loss of the network, which sets it before it evaluates the other laws
+  S copper_loss_W = S(0.0);  ///< copper loss of the network, which its drive stage sets before the laws are evaluated
+  Quantities known = 0;      ///< optional quantities that are known, equal for all samples of Lanes
+
+  [[nodiscard]] constexpr bool knows(Quantities quantities) const { return (known & quantities) == quantities; }
 };
 
 /// Signals, other than temperatures, that a law may need. A log without one of them holds no evidence about the law. The copper loss is
@@ -79,7 +86,7 @@ struct OperatingQuantity {
 };
 
 // clang-format off
-/// Every member of OperatingPoint once; the order of the input signals is also that in which a diagnosis tries them.
+/// Every number of OperatingPoint once; the order of the input signals is also that in which a diagnosis tries them.
 template <class S, class P = OperatingPoint<S>>
 inline constexpr std::array kQuantities{
     OperatingQuantity<S>{&P::speed_mean_rad_per_s, "speed", "rad/s", 300.0, AveragingRule::mean, true, Signal::speed, "speed_rad_per_s", FromColumn::computed, "speed", true, "mean of |ω|"},
@@ -93,7 +100,6 @@ inline constexpr std::array kQuantities{
     OperatingQuantity<S>{&P::vehicle_speed_m_per_s, "vehicle_speed", "m/s", 2.0, AveragingRule::mean, true, Signal::vehicle_speed, "vehicle_speed_m_per_s", FromColumn::magnitude, "vehicle speed", true, "magnitude"},
     OperatingQuantity<S>{&P::age_h, "age", "h", 100.0, AveragingRule::mean, false, Signal::age, "age_h", FromColumn::value, "hours of running", true, "operating hours"},
     OperatingQuantity<S>{&P::neighbour_C, "neighbour_temperature", "degC", 90.0, AveragingRule::mean, false, Signal::neighbour_temperature, "neighbour_C", FromColumn::computed, "temperature of the neighbour"},
-    OperatingQuantity<S>{&P::neighbour_share, "neighbour_share", "", 1.0},
     OperatingQuantity<S>{&P::ambient_C, "ambient", "degC", 20.0, AveragingRule::mean, false, {}, "ambient_C"},
     OperatingQuantity<S>{&P::speed_rms_rad_per_s, "speed_rms", "rad/s", 300.0, AveragingRule::rms, true, Signal::speed},
     OperatingQuantity<S>{&P::resistive_headroom_V, "resistive_headroom", "V", std::numeric_limits<double>::infinity(), AveragingRule::limit},
@@ -102,23 +108,16 @@ inline constexpr std::array kQuantities{
     OperatingQuantity<S>{&P::first_column, "first_column", ""},
     OperatingQuantity<S>{&P::second_column, "second_column", ""},
     OperatingQuantity<S>{&P::third_column, "third_column", ""},
-    OperatingQuantity<S>{&P::first_column_share, "first_column_share", ""},
-    OperatingQuantity<S>{&P::second_column_share, "second_column_share", ""},
-    OperatingQuantity<S>{&P::third_column_share, "third_column_share", ""},
     OperatingQuantity<S>{&P::copper_loss_W, "copper_loss", "W", 10.0},
 };
 // clang-format on
 
 inline constexpr std::size_t kQuantityCount = kQuantities<double>.size();
-static_assert(sizeof(OperatingPoint<double>) == kQuantityCount * sizeof(double), "every member of OperatingPoint needs one row");
+static_assert(sizeof(OperatingPoint<double>) == (kQuantityCount + 1) * sizeof(double), "every number of OperatingPoint needs one row");
 
-/// Members for the columns of a log, and the members that state whether each is known.
+/// Members for the columns of a log.
 template <class S, class P = OperatingPoint<S>>
-inline constexpr std::array kColumns{&P::first_column, &P::second_column, &P::third_column};
-template <class S, class P = OperatingPoint<S>>
-inline constexpr std::array kColumnShares{&P::first_column_share, &P::second_column_share, &P::third_column_share};
-/// Largest number of log columns that the curves of one motor can use.
-inline constexpr std::size_t kLogColumns = kColumns<double>.size();
+inline constexpr std::array<S P::*, kLogColumns> kColumns{&P::first_column, &P::second_column, &P::third_column};
 
 /// Returns the index of a quantity in the table; kQuantityCount if there is none of that name.
 constexpr std::size_t quantity_row(std::string_view name) {
@@ -145,6 +144,13 @@ constexpr void for_each_quantity(F&& f, Point&... at) {
   const auto one = [&]<std::size_t i>() { f(at.*(kQuantities<typename Point::Scalar>[i].value)...); };
   [&]<std::size_t... i>(std::index_sequence<i...>) { (one.template operator()<i>(), ...); }
   (std::make_index_sequence<kQuantityCount>());
+}
+
+/// Calls assign(target, source) for each quantity of the two points, and copies which optional quantities are known.
+template <class F, class To, class From>
+constexpr void convert_point(F&& assign, To& to, const From& from) {
+  for_each_quantity(std::forward<F>(assign), to, from);
+  to.known = from.known;
 }
 
 }  // namespace heatsoak::thermal

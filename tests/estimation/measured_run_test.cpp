@@ -356,7 +356,7 @@ TEST(MeasuredRun, brings_columns_of_the_log_into_the_operating_points) {
   ASSERT_EQ(run.columns.size(), 2U) << "a current of both signs is one";
   for (std::size_t k = 0; k < run.at.size(); ++k) {
     const double begin_s = run.time_s[k], end_s = std::min(run.time_s[k + 1], 15.0);
-    EXPECT_EQ(run.at[k].first_column_share, 1.0) << begin_s;
+    EXPECT_TRUE(run.at[k].knows(thermal::column_bit(0))) << begin_s;
     EXPECT_EQ(run.at[k].first_column, begin_s < 15.0 ? 0.5 * (begin_s + end_s - 1.0) : run.at[k - 1].first_column) << begin_s;
   }
   EXPECT_GT(thinned(run, 1000).at.at(0).first_column, 5.0);
@@ -364,9 +364,9 @@ TEST(MeasuredRun, brings_columns_of_the_log_into_the_operating_points) {
   set_columns(run, std::vector<std::string>{"current_A", "nobody_logs_this", "thrust_N"});
   const thermal::OperatingPoint<double>& first = run.at.front();
   EXPECT_EQ(first.first_column, -2.0);
-  EXPECT_EQ(first.second_column_share, 0.0);
+  EXPECT_FALSE(first.knows(thermal::column_bit(1)));
   EXPECT_EQ(first.third_column, before.first_column);
-  EXPECT_EQ(first.third_column_share, 1.0);
+  EXPECT_TRUE(first.knows(thermal::column_bit(2)));
 }
 
 TEST(MeasuredRun, a_gap_of_a_column_is_filled_from_its_nearer_side) {

@@ -209,7 +209,7 @@ TEST(OperatingPoint, has_powers_voltage_and_the_vehicle_of_a_driving_wheel) {
   EXPECT_NEAR(at.modulation_ratio, 4.6 / 24.0, 1e-13);
   EXPECT_NEAR(at.vehicle_speed_m_per_s, 3.0, 1e-13);
   EXPECT_EQ(at.velocity_rad_per_s, 100.0);
-  EXPECT_EQ(at.neighbour_share, 0.0);
+  EXPECT_FALSE(at.knows(thermal::kNeighbour));
 }
 
 // Braking, turning backwards: I = (0.09 − 0.006)/0.03 = 2.8 A, −9 W at the shaft, 2.8·0.5 − 3 = −1.6 V, −4.48 W, which is regenerated.

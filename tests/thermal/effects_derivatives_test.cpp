@@ -51,7 +51,7 @@ std::vector<Scalar> as(const std::vector<double>& values) {
 
 std::vector<Tangent> tangent_heat_W(const EffectType& type, State& state, std::size_t direction) {
   OperatingPoint<Tangent> at;
-  for_each_quantity([](Tangent& to, const double& from) { to = Tangent(from); }, at, state.at);
+  convert_point([](Tangent& to, const double& from) { to = Tangent(from); }, at, state.at);
   std::vector<Tangent> temperature_C = as<Tangent>(state.temperature_C);
   std::vector<Tangent> parameters = as<Tangent>(state.parameters);
   constexpr int kSlot = 3;  // any of the eight lanes

@@ -116,7 +116,7 @@ TEST(NeighbourCoupling, warms_from_a_hotter_one_and_does_nothing_where_it_is_unk
   OperatingPoint<double> at;
   at.neighbour_C = 90.0;
   EXPECT_EQ(size_of(heat_W<double>(type, at, {0.1}, {40.0, 25.0})), 0.0);
-  at.neighbour_share = 1.0;
+  at.known = kNeighbour;
   EXPECT_NEAR(heat_W<double>(type, at, {0.1}, {40.0, 25.0})[0], 5.0, 1e-12);
   EXPECT_NEAR(heat_W<double>(type, at, {0.1}, {95.0, 25.0})[0], -0.5, 1e-12);
 }
@@ -196,7 +196,7 @@ TEST_F(Tabulated, needs_the_signals_that_it_depends_on) {
   before.current_rms_A = before.copper_loss_W = before.speed_mean_rad_per_s = before.speed_rms_rad_per_s = 2.2;
   before.velocity_rad_per_s = before.acceleration_rad_per_s2 = before.shaft_power_W = before.input_power_W = 2.2;
   before.modulation_ratio = before.bus_V = before.vehicle_speed_m_per_s = before.age_h = 2.2;
-  before.neighbour_share = 1.0, before.neighbour_C = 62.2;
+  before.known = kNeighbour, before.neighbour_C = 62.2;
   for (const base::Choice& signal : type().parameters[driver].choices) {
     for (const base::Choice& shape : type().parameters[form].choices) {
       std::vector<double> curve = parameters(signal.name, shape.name, -50.0, 60.0);
@@ -229,9 +229,8 @@ TEST_F(Tabulated, looks_at_the_signal_that_was_chosen) {
   at.vehicle_speed_m_per_s = 1.5;
   at.age_h = 3.5;
   at.neighbour_C = 46.5;
-  at.neighbour_share = 1.0;
+  at.known = kNeighbour | column_bit(0) | column_bit(1) | column_bit(2);
   at.first_column = 7.5, at.second_column = 8.5, at.third_column = 9.5;
-  at.first_column_share = at.second_column_share = at.third_column_share = 1.0;
   // A line from −10 to 50 returns the regressor itself: value = regressor + 10.
   const std::vector<double> temperature_C{60.0, 40.0, 43.0, 42.0};
   const std::vector<std::pair<std::string_view, double>> expected{{"speed", 2.0},
@@ -268,7 +267,7 @@ TEST_F(Tabulated, is_at_its_hottest_where_a_column_is_not_known) {
   EXPECT_NEAR(heat(parameters("column", "per_copper_loss", 0.0, 6.0), at)[0], 8.0 * 7.0, 1e-12);
   EXPECT_EQ(heat(parameters("column", "per_difference", 0.0, 6.0), at)[0], 0.0);
   at.first_column = 2.0;
-  at.first_column_share = 1.0;
+  at.known = column_bit(0);
   EXPECT_NEAR(heat(parameters("column", "per_difference", 0.0, 6.0), at)[0], -2.0 * 20.0, 1e-12);
 }
 

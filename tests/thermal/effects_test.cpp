@@ -62,6 +62,7 @@ TEST_P(EveryEffect, lanes_have_the_bits_of_the_law_for_one) {
       parameters[lane] = random_parameters(chance, type());
       temperature_C[lane] = random_temperatures(chance, type());
       at[lane] = random_point(chance);
+      at[lane].known = at[0].known;  // equal for all samples
       for (std::size_t p = 0; p < lane_parameters.size(); ++p) {
         if (!type().parameters[p].choices.empty()) {
           parameters[lane][p] = parameters[0][p];  // choices are equal for all samples
@@ -71,7 +72,7 @@ TEST_P(EveryEffect, lanes_have_the_bits_of_the_law_for_one) {
       for (std::size_t node = 0; node < lane_temperature_C.size(); ++node) {
         lane_temperature_C[node][l] = temperature_C[lane][node];
       }
-      for_each_quantity([l](Lanes& to, const double& from) { to[l] = from; }, lane_at, at[lane]);
+      convert_point([l](Lanes& to, const double& from) { to[l] = from; }, lane_at, at[lane]);
     }
     const std::vector<Lanes> side_by_side = heat_W(type(), lane_at, lane_parameters, lane_temperature_C);
     for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
@@ -97,6 +98,7 @@ TEST_P(EveryEffect, heat_is_finite_at_the_ends_of_every_range) {
     for (const double size : {0.0, 1.0, 1e4}) {
       OperatingPoint<double> at;
       for_each_quantity([size](double& quantity) { quantity = size; }, at);
+      at.known = ~Quantities{0};
       for (const double hot_C : {-60.0, 25.0, kDestroyed_C}) {
         for (const double cold_C : {-60.0, 25.0, kDestroyed_C}) {
           std::vector<double> temperature_C(type().nodes.size(), cold_C);
@@ -143,7 +145,6 @@ TEST_P(EveryEffect, looks_at_no_signal_but_those_it_needs) {
                                            {Signal::bus_voltage, &OperatingPoint<double>::bus_V},
                                            {Signal::vehicle_speed, &OperatingPoint<double>::vehicle_speed_m_per_s},
                                            {Signal::neighbour_temperature, &OperatingPoint<double>::neighbour_C},
-                                           {Signal::neighbour_temperature, &OperatingPoint<double>::neighbour_share},
                                            {Signal::age, &OperatingPoint<double>::age_h}}) {
       if (!needs(signal)) {
         blind.*quantity = none;
@@ -298,7 +299,7 @@ TEST_P(EveryCandidate, of_typical_size_books_watts) {
     at.modulation_ratio = 0.6;
     at.vehicle_speed_m_per_s = 2.0;
     at.neighbour_C = 60.0;
-    at.neighbour_share = 1.0;
+    at.known = kNeighbour;
     at.copper_loss_W = 10.0;
     std::vector<double> temperature_C;
     for (const NodeRole& role : type().nodes) {

@@ -65,7 +65,7 @@ inline OperatingPoint<double> random_point(Chance& chance) {
   at.modulation_ratio = chance.between(0.0, 1.0);
   at.vehicle_speed_m_per_s = chance.between(0.0, 10.0);
   at.neighbour_C = chance.between(-40.0, 150.0);
-  at.neighbour_share = chance.below(2);
+  at.known = chance.below(2) == 1 ? kNeighbour : 0;
   at.age_h = chance.between(0.0, 1000.0);
   at.velocity_rad_per_s = at.speed_mean_rad_per_s * chance.between(-1.0, 1.0);
   at.acceleration_rad_per_s2 = chance.between(0.0, 1e4);

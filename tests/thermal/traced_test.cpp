@@ -21,7 +21,7 @@ std::vector<double> heat_by_formula_W(const EffectType& type, const OperatingPoi
     return Traced(formula, formula.input(""));
   };
   OperatingPoint<Traced> point;
-  for_each_quantity([&](Traced& to, const double& from) { to = std::isfinite(from) ? input(from) : Traced(from); }, point, at);
+  convert_point([&](Traced& to, const double& from) { to = std::isfinite(from) ? input(from) : Traced(from); }, point, at);
   std::vector<Traced> temperature;
   for (const double each : temperature_C) {
     temperature.push_back(input(each));

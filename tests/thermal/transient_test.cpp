@@ -435,7 +435,7 @@ TEST(Transient, a_headroom_without_limit_limits_nowhere) {
   const std::vector<double> values = network.values();
   OperatingPoint<double> at = current_point(6.0);
   for (const double winding_C : {-1e6, -300.0, 25.0 - 1.0 / kMotor.temperature_coefficient_per_K, 25.0, 1e6}) {
-    EXPECT_EQ(network.within_headroom(at, values.data(), std::array{winding_C, 25.0, 25.0}.data()), 6.0) << winding_C;
+    EXPECT_EQ(network.flowing_A(at, values.data(), std::array{winding_C, 25.0, 25.0}.data()), 6.0) << winding_C;
   }
 }
 

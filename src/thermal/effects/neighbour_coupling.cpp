@@ -9,7 +9,9 @@ enum Parameter { conductance };
 struct NeighbourCoupling {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    heat.flow(node, surroundings, x.at.neighbour_share * x.parameter(conductance) * (x.temperature_C(node) - x.at.neighbour_C));
+    if (x.at.knows(kNeighbour)) {
+      heat.flow(node, surroundings, x.parameter(conductance) * (x.temperature_C(node) - x.at.neighbour_C));
+    }
   }
 };
 
@@ -29,7 +31,7 @@ EffectType neighbour_coupling() {
       .confounded_with = "Confounded with third_node and enclosure_warm_up. Running the neighbour alone separates them.",
       // 0.05 W/K · (40 − 60) K = −1 W: the hotter neighbour adds 1 W to the node
       .example = {.parameters = {0.05},
-                  .at = {.neighbour_C = 60.0, .neighbour_share = 1.0},
+                  .at = {.neighbour_C = 60.0, .known = kNeighbour},
                   .temperature_C = {40.0, 25.0},
                   .expected_heat_W = {1.0, -1.0}},
       .laws = laws<NeighbourCoupling>(),

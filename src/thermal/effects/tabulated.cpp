@@ -74,7 +74,7 @@ S value_of_driver(const Situation<S>& x) {
     case temperature_difference:
       return x.temperature_C(watched) - x.temperature_C(reference);
     case neighbour_difference:
-      return x.at.neighbour_share * (x.at.neighbour_C - x.temperature_C(watched));
+      return x.at.knows(kNeighbour) ? S(x.at.neighbour_C - x.temperature_C(watched)) : S(0.0);
     default:
       if (chosen_driver >= column) {
         return x.at.*kColumns<S>[static_cast<std::size_t>(chosen_driver - column)];
@@ -106,9 +106,8 @@ struct Tabulated {
     for (int knot = 1; knot < kKnots; ++knot) {
       curve += x.parameter(first_value + knot) * positive_part(1.0 - magnitude(within - static_cast<double>(knot)));
     }
-    if (const int own = chosen(x.parameter(driver)) - column; own >= 0) {
-      const S share = x.at.*kColumnShares<S>[static_cast<std::size_t>(own)];
-      curve = share * curve + (1.0 - share) * hottest(x);
+    if (const int own = chosen(x.parameter(driver)) - column; own >= 0 && !x.at.knows(column_bit(static_cast<std::size_t>(own)))) {
+      curve = hottest(x);
     }
     switch (chosen(x.parameter(form))) {
       case heat_into:
