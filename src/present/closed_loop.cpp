@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "present/evaluation.h"
+#include "simulate/sensing.h"
 
 namespace heatsoak::present {
 namespace {
@@ -47,7 +48,18 @@ std::string words_of(simulate::DriveProblem problem, const simulate::DriveScore&
                      score.tracking_rms_m);
 }
 
-void add_closed_loop(Document& document, const std::vector<simulate::ClosedLoopRank>& ranks, int games, std::uint64_t seed) {
+void add_missing_sensors(Document& document, const robot::Robot& robot) {
+  if (!simulate::sensing_of(robot).has_motor_current) {
+    document.add_note(
+        Severity::note,
+        fmt::format("{} has no sensors of the motor currents, because its file states no [drive] current_limit: the drive core "
+                    "computes the currents from voltage and speed.",
+                    robot.id));
+  }
+}
+
+void add_closed_loop(Document& document, const robot::Robot& robot, const std::vector<simulate::ClosedLoopRank>& ranks, int games,
+                     std::uint64_t seed) {
   Table table{
       .title = fmt::format("Closed loop: {} driven by the drive core, seeds {} to {}; first game [lowest…highest of all]",
                            fmt::format("{} game{}", games, games == 1 ? "" : "s"), seed, seed + static_cast<std::uint64_t>(games) - 1),
@@ -74,6 +86,7 @@ void add_closed_loop(Document& document, const std::vector<simulate::ClosedLoopR
       document.add_note(Severity::note, fmt::format("{} has no thermal guard: {}", drives.motor_id, drives.why_no_guard));
     }
   }
+  add_missing_sensors(document, robot);
   const auto passed = std::ranges::count(ranks, select::Verdict::pass, &simulate::ClosedLoopRank::verdict);
   document.headline.insert(document.headline.begin(),
                            {fmt::format("Driven in a closed loop, {} of {} pass. The ranking below follows these games.", passed,

@@ -399,7 +399,7 @@ Document evaluation_document(const simulate::EvaluationAnswer& answer) {
   }
   add_lines(document.notes, robot::assumed_friction_text(answer.robot), Severity::warning);
   if (answer.closed_loop) {
-    add_closed_loop(document, answer.ranks, answer.closed_loop->games, answer.seed);
+    add_closed_loop(document, answer.robot, answer.ranks, answer.closed_loop->games, answer.seed);
   }
   return document;
 }

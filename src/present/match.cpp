@@ -172,6 +172,9 @@ Document match_document(const simulate::MatchSimulation& answer) {
     }
   }
   add_guard_notes(document, answer);
+  if (!answer.is_sensing_ideal) {
+    add_missing_sensors(document, answer.robot);
+  }
   add_motor_notes(document, {&answer.motor, 1});
   if (answer.guard_use != simulate::GuardUse::off) {
     add_lines(document.notes, default_spreads_text({&answer.motor, 1}), Severity::note);
