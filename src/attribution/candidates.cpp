@@ -52,10 +52,10 @@ std::vector<std::string> usual_nodes(const thermal::Network& network, const ther
   for (const thermal::NodeRole& role : type.nodes) {
     std::string node(role.default_node);
     if (role.own_capacity) {
-      for (int number = 2; network.find_node(node) >= 0; ++number) {
+      for (int number = 2; network.find_node(node); ++number) {
         node = fmt::format("{}_{}", role.default_node, number);
       }
-    } else if (network.find_node(node) < 0) {
+    } else if (!network.find_node(node)) {
       return {};
     }
     nodes.push_back(std::move(node));
@@ -162,7 +162,7 @@ void add_conditional_candidates(const estimation::Model& model, const std::vecto
     for (const std::string_view name : {"airflow", "constant_heat"}) {
       const thermal::EffectType& type = *thermal::find_effect(name);
       for (const std::string_view node : {"stator", "winding"}) {
-        if (network.find_node(node) < 0) {
+        if (!network.find_node(node)) {
           continue;
         }
         Candidate candidate;

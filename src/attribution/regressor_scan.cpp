@@ -20,8 +20,8 @@ using HatColumns = Eigen::Matrix<double, Eigen::Dynamic, kKnots + 1, Eigen::RowM
 constexpr double kUsual_share = 0.3;
 
 /// Returns the response of the sensors to `heat_W` (intervals × hats), constant over each interval. The heat enters the node with index
-/// `flux` and leaves the node with index `other`; -1: none.
-HatColumns response(const estimation::LinearisedRun& run, const HatColumns& heat_W, int flux, int other) {
+/// `flux` and leaves the node with index `other`; empty: no node.
+HatColumns response(const estimation::LinearisedRun& run, const HatColumns& heat_W, int flux, std::optional<int> other) {
   HatColumns shown = HatColumns::Zero(run.residual_K.size(), heat_W.cols());
   HatColumns state = HatColumns::Zero(run.states, heat_W.cols());
   HatColumns next = state;
@@ -29,7 +29,7 @@ HatColumns response(const estimation::LinearisedRun& run, const HatColumns& heat
     const double* const transition = run.transition.data() + k * run.states * run.states;
     const double* const injection = run.injection.data() + k * run.states * run.fluxes;
     for (Eigen::Index i = 0; i < run.states; ++i) {
-      const double gain_K_per_W = injection[i * run.fluxes + flux] - (other >= 0 ? injection[i * run.fluxes + other] : 0.0);
+      const double gain_K_per_W = injection[i * run.fluxes + flux] - (other ? injection[i * run.fluxes + *other] : 0.0);
       next.row(i) = gain_K_per_W * heat_W.row(k);
       for (Eigen::Index j = 0; j < run.states; ++j) {
         next.row(i) += transition[i * run.states + j] * state.row(j);
@@ -238,8 +238,8 @@ class Scanner {
   }
 
   void set_responses(Family& family) const {
-    const int into = flux_of(*input_.model, family.term.node);
-    const int other = family.term.other.empty() ? -1 : flux_of(*input_.model, family.term.other);
+    const int into = flux_of(*input_.model, family.term.node).value();
+    const std::optional<int> other = family.term.other.empty() ? std::nullopt : flux_of(*input_.model, family.term.other);
     for (std::size_t r = 0; r < input_.runs->size(); ++r) {
       family.shown.push_back(response((*input_.designs)[r].run, heats_W(family, r), into, other));
     }

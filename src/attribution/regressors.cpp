@@ -144,7 +144,7 @@ void add_temperatures(Collector& all, const estimation::Model& model, const std:
   const std::string ambient(thermal::Network::kAmbient);
   for (int node = 0; node < model.network.state_count(); ++node) {
     const std::string name(model.network.node_name(node));
-    const bool is_seen = std::ranges::any_of(runs, [&](const estimation::MeasuredRun& run) { return run.sensor_at(name) >= 0; });
+    const bool is_seen = std::ranges::any_of(runs, [&](const estimation::MeasuredRun& run) { return run.sensor_at(name).has_value(); });
     if (!is_seen && name != "winding" && name != "stator") {
       continue;  // a body without a sensor is no signal
     }
@@ -169,7 +169,7 @@ void add_temperatures(Collector& all, const estimation::Model& model, const std:
   }
   if (std::ranges::all_of(runs, [](const estimation::MeasuredRun& run) { return run.has(thermal::Signal::neighbour_temperature); })) {
     Regressor neighbour = driver_of("neighbour_above_stator", "K", DriverKind::node_temperature);
-    const int stator = std::max(0, model.network.find_node("stator"));
+    const int stator = model.network.find_node("stator").value_or(0);
     neighbour.choice = "neighbour_difference";
     neighbour.watched = model.network.node_name(stator);
     neighbour.reference = ambient;

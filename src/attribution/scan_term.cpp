@@ -4,10 +4,10 @@
 
 namespace heatsoak::attribution {
 
-int flux_of(const estimation::Model& model, std::string_view node) {
-  const int place = model.network.find_node(node);
-  const auto found = std::ranges::find(model.flux_nodes, place);
-  return found == model.flux_nodes.end() ? -1 : static_cast<int>(found - model.flux_nodes.begin());
+std::optional<int> flux_of(const estimation::Model& model, std::string_view node) {
+  const std::optional<int> place = model.network.find_node(node);
+  const auto found = place ? std::ranges::find(model.flux_nodes, *place) : model.flux_nodes.end();
+  return found == model.flux_nodes.end() ? std::nullopt : std::optional(static_cast<int>(found - model.flux_nodes.begin()));
 }
 
 std::vector<ScanTerm> terms_of_one_signal(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
@@ -21,8 +21,8 @@ std::vector<ScanTerm> terms_of_one_signal(const estimation::Model& model, const 
     }
   }
   const auto is_seen = [&](std::string_view node) {
-    return flux_of(model, node) >= 0 &&
-           std::ranges::any_of(runs, [&](const estimation::MeasuredRun& run) { return run.sensor_at(node) >= 0; });
+    return flux_of(model, node) &&
+           std::ranges::any_of(runs, [&](const estimation::MeasuredRun& run) { return run.sensor_at(node).has_value(); });
   };
   if (is_seen("winding") && is_seen("stator")) {
     terms.push_back({"winding", "stator", Multiplier::difference, 0});
@@ -32,7 +32,7 @@ std::vector<ScanTerm> terms_of_one_signal(const estimation::Model& model, const 
 
 std::vector<ScanTerm> terms_of_two_signals(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
   std::vector<ScanTerm> terms;
-  if (flux_of(model, "stator") < 0) {
+  if (!flux_of(model, "stator")) {
     return terms;
   }
   for (const auto& [signal, multiplier] :
@@ -86,7 +86,7 @@ std::string_view second_signal(Multiplier multiplier) {
 
 Eigen::VectorXd multiplier_along(const ScanTerm& term, const estimation::Model& model, const estimation::LinearisedRun& fitted,
                                  const estimation::MeasuredRun& run) {
-  const int node = model.network.find_node(term.node);
+  const int node = model.network.node(term.node);
   Eigen::VectorXd along = Eigen::VectorXd::Ones(run.samples() - 1);
   if (term.multiplier == Multiplier::copper) {
     std::vector<double> heat_W(model.network.effects().size() * static_cast<std::size_t>(model.network.node_count()));
@@ -108,9 +108,9 @@ Eigen::VectorXd multiplier_along(const ScanTerm& term, const estimation::Model& 
     }
     return along;
   }
-  const int other = term.other.empty() ? -1 : model.network.find_node(term.other);
+  const std::optional<int> other = term.other.empty() ? std::nullopt : model.network.find_node(term.other);
   for (Eigen::Index k = 0; k < along.size() && term.multiplier != Multiplier::source; ++k) {
-    const double other_C = other >= 0 ? fitted.state_C(other, k) : run.at[static_cast<std::size_t>(k)].ambient_C;
+    const double other_C = other ? fitted.state_C(*other, k) : run.at[static_cast<std::size_t>(k)].ambient_C;
     along[k] = fitted.state_C(node, k) - other_C;
   }
   return along;

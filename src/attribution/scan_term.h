@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,8 +39,8 @@ struct ScanTerm {
 std::vector<ScanTerm> terms_of_one_signal(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs);
 /// Returns the families at the stator whose heat depends on a second signal, current or speed.
 std::vector<ScanTerm> terms_of_two_signals(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs);
-/// Returns the index of the node among those with unknown heat; -1 if it is not one of them.
-int flux_of(const estimation::Model& model, std::string_view node);
+/// Returns the index of the node among those with unknown heat; empty if it is not one of them.
+std::optional<int> flux_of(const estimation::Model& model, std::string_view node);
 
 /// Returns the multiplier per interval of a run, from the fitted temperatures at the start of each interval.
 Eigen::VectorXd multiplier_along(const ScanTerm& term, const estimation::Model& model, const estimation::LinearisedRun& fitted,

@@ -488,8 +488,8 @@ motor::Motor calibrated_motor(const motor::Motor& motor, const Calibration& cali
   for (std::size_t i = 0; i < calibration.fit.sensor_nodes.size(); ++i) {
     const std::string& node = calibration.fit.sensor_nodes[i];
     const estimation::MeasuredRun& run =
-        *std::ranges::find_if(calibration.runs, [&](const estimation::MeasuredRun& r) { return r.sensor_at(node) >= 0; });
-    const double noise_K = run.sensors[static_cast<std::size_t>(run.sensor_at(node))].noise_K * calibration.fit.noise_ratio[i];
+        *std::ranges::find_if(calibration.runs, [&](const estimation::MeasuredRun& r) { return r.sensor_at(node).has_value(); });
+    const double noise_K = run.sensors[static_cast<std::size_t>(run.sensor_at(node).value())].noise_K * calibration.fit.noise_ratio[i];
     fit.noise_K.emplace_back(node, noise_K);
   }
   fit.band = calibration.forecast->band;

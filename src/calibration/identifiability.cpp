@@ -30,8 +30,8 @@ Look look(const MotorModel& motor, std::span<const estimation::MeasuredRun> runs
   seen.has_heat = is_heated(motor, runs);
   for (const estimation::MeasuredRun& run : runs) {
     seen.longest_s = std::max(seen.longest_s, run.time_s.back() - run.time_s.front());
-    seen.winding_is_sensed = seen.winding_is_sensed || run.sensor_at("winding") >= 0;
-    seen.stator_is_sensed = seen.stator_is_sensed || run.sensor_at("stator") >= 0;
+    seen.winding_is_sensed = seen.winding_is_sensed || run.sensor_at("winding");
+    seen.stator_is_sensed = seen.stator_is_sensed || run.sensor_at("stator");
     for (const thermal::OperatingPoint<double>& at : run.at) {
       seen.is_ever_at_speed = seen.is_ever_at_speed || at.speed_mean_rad_per_s > 1.0;
     }

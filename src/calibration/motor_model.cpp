@@ -75,7 +75,7 @@ class ModelBuilder {
     if (heat != HeatInput::current) {
       all_.model.values[static_cast<std::size_t>(place_of(all_.model.network, "no_load_loss.drag_torque"))] = 0.0;
     }
-    all_.model.flux_nodes = {all_.model.network.find_node("winding"), all_.model.network.find_node("stator")};
+    all_.model.flux_nodes = {all_.model.network.node("winding"), all_.model.network.node("stator")};
     all_.needed = {heat == HeatInput::input_power ? thermal::Signal::input_power : thermal::Signal::current};
     if (heat == HeatInput::power_balance) {
       all_.needed.insert(all_.needed.end(), {thermal::Signal::input_power, thermal::Signal::shaft_power, thermal::Signal::speed});

@@ -180,7 +180,7 @@ double separation_nats(const estimation::Posterior& fit, const estimation::Laten
 bool has_nodes_of(const thermal::Network& network, const attribution::Candidate& candidate) {
   bool has_all = true;
   for (std::size_t role = 0; role < candidate.nodes.size(); ++role) {
-    has_all = has_all && (candidate.type->nodes[role].own_capacity.has_value() || network.find_node(candidate.nodes[role]) >= 0);
+    has_all = has_all && (candidate.type->nodes[role].own_capacity.has_value() || network.find_node(candidate.nodes[role]));
   }
   return has_all;
 }

@@ -40,7 +40,7 @@ std::vector<double> start_C(const Model& model, const MeasuredRun& run, const st
   }
   RunStart start = start_of(network, run);
   for (const Sensor& sensor : run.sensors) {
-    double& node_C = start.state_C[network.find_node(sensor.node)];
+    double& node_C = start.state_C[network.node(sensor.node)];
     node_C = motor::true_at_rest_C(all_faults(model, sensor), motor::sensor_at_rest_C(sensor.faults, node_C));
   }
   start.prior_C = start.state_C;

@@ -102,7 +102,7 @@ LinearisedRun linearise_unnamed(const thermal::Network& network, std::span<const
   out.states = network.state_count();
   out.fluxes = static_cast<Eigen::Index>(flux_nodes.size());
   for (const Sensor& sensor : run.sensors) {
-    out.sensor_node.push_back(network.find_node(sensor.node));
+    out.sensor_node.push_back(network.node(sensor.node));
   }
   Recorder recorder(out, run, static_cast<Eigen::Index>(wanted.size()), path_C);
   out.state_C.col(0) = Eigen::Map<const Eigen::VectorXd>(start_C.data(), out.states);

@@ -149,7 +149,9 @@ class Builder {
       }
     }
     if (!rows_.has_surroundings() && !options_.ambient_C) {
-      lacking.push_back({{recording_.file.string()}, "ambient_C", "the log has no ambient temperature; state it with --ambient 25degC"});
+      lacking.push_back({{recording_.file.string()},
+                         "ambient_C",
+                         "the log has no ambient temperature; state it with --ambient 25degC, in a check file with air = \"25 degC\""});
     }
     if (sensors_.empty()) {
       lacking.push_back({{recording_.file.string()}, "winding_C", "the log has no temperature of winding, stator or housing"});
@@ -299,9 +301,9 @@ bool MeasuredRun::has(const std::map<std::string, std::string>& of_conditions) c
   });
 }
 
-Eigen::Index MeasuredRun::sensor_at(std::string_view node) const {
+std::optional<Eigen::Index> MeasuredRun::sensor_at(std::string_view node) const {
   const auto found = std::ranges::find(sensors, node, &Sensor::node);
-  return found == sensors.end() ? -1 : found - sensors.begin();
+  return found == sensors.end() ? std::nullopt : std::optional<Eigen::Index>(found - sensors.begin());
 }
 
 MeasuredRuns measured_runs(const recording::Recording& recording, const MeasuredRunOptions& options) {

@@ -47,8 +47,8 @@ struct MeasuredRun {
   [[nodiscard]] bool has(thermal::Signal signal) const;
   /// True if the run has all these conditions.
   [[nodiscard]] bool has(const std::map<std::string, std::string>& of_conditions) const;
-  /// Index of the sensor at a node; −1 if it has none.
-  [[nodiscard]] Eigen::Index sensor_at(std::string_view node) const;
+  /// Returns the index of the sensor at a node; empty if the node has none.
+  [[nodiscard]] std::optional<Eigen::Index> sensor_at(std::string_view node) const;
 };
 
 /// Motor constants that give shaft torque and terminal voltage from current and speed. All zero: only the log's own columns are used.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace heatsoak::estimation {
 
@@ -21,9 +22,9 @@ RunStart start_of(const thermal::Network& network, const MeasuredRun& run) {
   for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
     const auto sensor_C = run.measured_C.col(static_cast<Eigen::Index>(sensor));
     const auto first = std::ranges::find_if(sensor_C, [](double value_C) { return !std::isnan(value_C); });
-    if (const int node = network.find_node(run.sensors[sensor].node); node >= 0 && node < states && first != sensor_C.end()) {
+    if (const std::optional<int> node = network.find_node(run.sensors[sensor].node); node && *node < states && first != sensor_C.end()) {
       const double true_C = motor::true_at_rest_C(run.sensors[sensor].faults, *first);
-      start.state_C[node] = true_C;
+      start.state_C[*node] = true_C;
       sum_C += true_C;
       farthest_K = std::max(farthest_K, std::abs(true_C - ambient_C));
       ++seen;
@@ -51,7 +52,7 @@ Eigen::Index deciding_samples(const thermal::Network& network, const MeasuredRun
   constexpr Eigen::Index kFew = 5;
   bool all_are_sensed = true;
   for (int node = 0; node < network.state_count(); ++node) {
-    all_are_sensed = all_are_sensed && run.sensor_at(network.node_name(node)) >= 0;
+    all_are_sensed = all_are_sensed && run.sensor_at(network.node_name(node));
   }
   if (all_are_sensed) {
     return kFew;

@@ -18,8 +18,8 @@ double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const
     for (std::size_t k = 0; k < runs[r].at.size(); ++k) {
       const double step_s = runs[r].time_s[k + 1] - runs[r].time_s[k];
       for (const Sensor& sensor : runs[r].sensors) {
-        const double sensor_C = runs[r].measured_C(static_cast<Eigen::Index>(k), runs[r].sensor_at(sensor.node));
-        double& node_C = state_C[static_cast<std::size_t>(network.find_node(sensor.node))];
+        const double sensor_C = runs[r].measured_C(static_cast<Eigen::Index>(k), runs[r].sensor_at(sensor.node).value());
+        double& node_C = state_C[static_cast<std::size_t>(network.node(sensor.node))];
         node_C = std::isnan(sensor_C) ? node_C : motor::true_at_rest_C(sensor.faults, sensor_C);
       }
       network.balance_W(runs[r].at[k], model.values, state_C, heat_W);

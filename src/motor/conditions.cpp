@@ -32,7 +32,7 @@ bool acts_by_default(const MotorEffect& effect, std::span<const double> paramete
   for (std::size_t role = 0; role < effect.nodes.size(); ++role) {
     const std::string& node = effect.nodes[role];
     const bool is_own = effect.type->nodes[role].own_capacity.has_value();
-    if (!is_own && node != thermal::Network::kAmbient && network.find_node(node) < 0) {
+    if (!is_own && node != thermal::Network::kAmbient && !network.find_node(node)) {
       network.add_node(node, 1.0);
     }
   }

@@ -41,7 +41,7 @@ double limit_current_A(const Motor& motor, double speed_rad_per_s) {
   Motor sheet = motor;
   sheet.effects.clear();
   const thermal::Network network = datasheet_network(sheet, nominal_sample(sheet));
-  const auto winding = static_cast<std::size_t>(network.find_node("winding"));
+  const auto winding = static_cast<std::size_t>(network.node("winding"));
   const auto excess_K = [&](double current_A) {
     const std::optional<thermal::SteadyState> rest =
         thermal::steady_state(network, {current_A, speed_rad_per_s, speed_rad_per_s, kSheetAmbient_C});

@@ -39,7 +39,7 @@ int Network::add_node(std::string name, double heat_capacity_J_per_K) {
 }
 
 int Network::add_state(std::string name, int capacity_index) {
-  if (node_count() >= kMostNodes || find_node(name) >= 0) {
+  if (node_count() >= kMostNodes || find_node(name)) {
     throw std::logic_error(fmt::format("node '{}': the name is in use, or there are {} nodes already", name, kMostNodes - 1));
   }
   const int ambient = state_count();
@@ -51,12 +51,20 @@ int Network::add_state(std::string name, int capacity_index) {
   return ambient;
 }
 
-int Network::find_node(std::string_view name) const {
+std::optional<int> Network::find_node(std::string_view name) const {
   if (name == kAmbient) {
     return state_count();
   }
   const auto found = std::ranges::find(node_names_, name);
-  return found == node_names_.end() ? -1 : static_cast<int>(found - node_names_.begin());
+  return found == node_names_.end() ? std::nullopt : std::optional(static_cast<int>(found - node_names_.begin()));
+}
+
+int Network::node(std::string_view name) const {
+  const std::optional<int> index = find_node(name);
+  if (!index) {
+    throw std::logic_error(fmt::format("there is no node '{}'", name));
+  }
+  return *index;
 }
 
 std::string_view Network::node_name(int node) const {
@@ -82,11 +90,11 @@ void Network::add_effect(std::string name, const EffectType& type, std::span<con
     }
   }
   for (const std::string& node : nodes) {
-    const int index = find_node(node);
-    if (index < 0) {
+    const std::optional<int> index = find_node(node);
+    if (!index) {
       throw std::logic_error(fmt::format("{}: there is no node '{}'", effect.name, node));
     }
-    effect.node_index.push_back(index);
+    effect.node_index.push_back(*index);
   }
   effects_.push_back(std::move(effect));
 }

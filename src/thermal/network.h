@@ -54,8 +54,10 @@ class Network {
 
   [[nodiscard]] int state_count() const { return static_cast<int>(node_names_.size()); }
   [[nodiscard]] int node_count() const { return state_count() + 1; }
-  /// Returns -1 if there is no such node, state_count() for ambient.
-  [[nodiscard]] int find_node(std::string_view name) const;
+  /// Returns the index of a node, state_count() for ambient; empty if there is no such node.
+  [[nodiscard]] std::optional<int> find_node(std::string_view name) const;
+  /// Returns the index of a node. Throws std::logic_error if there is no such node.
+  [[nodiscard]] int node(std::string_view name) const;
   [[nodiscard]] std::string_view node_name(int node) const;
   /// Index of a state node's heat capacity in the list of parameters.
   [[nodiscard]] int capacity_index(int node) const { return capacity_index_.at(static_cast<std::size_t>(node)); }

@@ -27,7 +27,7 @@ constexpr double kLag_s = 10.0;
 
 void state(std::vector<estimation::MeasuredRun>& runs, const std::vector<motor::SensorFault>& faults) {
   for (estimation::MeasuredRun& run : runs) {
-    run.sensors[static_cast<std::size_t>(run.sensor_at("stator"))].faults = faults;
+    run.sensors[static_cast<std::size_t>(run.sensor_at("stator").value())].faults = faults;
   }
 }
 
@@ -81,7 +81,7 @@ TEST(StatedSensors, CandidatesAreSeenThroughThem) {
     const estimation::LinearisedRun with =
         estimation::linearise(with_candidate(input.model, *candidate, kLittle_share), std::vector<double>{30.0, 28.0}, run);
     const Eigen::MatrixXd expected = (with.sensor_C - here.sensor_C) / kLittle_share;
-    const Eigen::Index sensor = run.sensor_at("stator");
+    const Eigen::Index sensor = run.sensor_at("stator").value();
     double worst = 0.0;
     for (Eigen::Index k = 0; k < run.samples(); ++k) {
       worst = std::max(worst, std::abs(column(k * run.measured_C.cols() + sensor, 0) - expected(k, sensor)));

@@ -124,7 +124,7 @@ TEST_F(StatedSensors, SlopesAreThoseOfWhatIsShown) {
   };
   const std::vector<double> start_C{31.0, 27.0};
   const estimation::LinearisedRun here = at(model.values, start_C);
-  const Eigen::Index stator = run.sensor_at("stator");
+  const Eigen::Index stator = run.sensor_at("stator").value();
   EXPECT_NEAR(here.sensor_C(0, stator), 27.0 + kOffset_K, 1e-12);
   EXPECT_GT((here.sensor_C.col(stator).transpose() - here.state_C.row(1)).array().abs().maxCoeff(), kOffset_K + 0.3);
   const auto expect_slopes = [&](const estimation::Columns& columns, Eigen::Index column, const estimation::LinearisedRun& up,

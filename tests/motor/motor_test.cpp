@@ -138,9 +138,9 @@ heat_capacity = { value = "300 J/K", origin = "measured", source = "sheet" }
   const thermal::Network network = datasheet_network(motor, nominal_sample(motor));
   EXPECT_EQ(network.state_count(), 4);
   for (const char* node : {"winding", "stator", "chassis", "b_mount"}) {
-    EXPECT_GE(network.find_node(node), 0) << node;
+    EXPECT_TRUE(network.find_node(node)) << node;
   }
-  EXPECT_EQ(network.values()[static_cast<std::size_t>(network.capacity_index(network.find_node("b_mount")))], 300.0);
+  EXPECT_EQ(network.values()[static_cast<std::size_t>(network.capacity_index(network.node("b_mount")))], 300.0);
 }
 
 TEST(MotorEffects, a_curve_takes_its_units_from_what_was_chosen_and_a_choice_is_no_estimate) {

@@ -100,7 +100,7 @@ inline std::vector<std::string> add_alone(Network& network, const std::string& n
   std::vector<std::string> nodes;
   for (const NodeRole& role : type.nodes) {
     nodes.emplace_back(role.own_capacity ? name : role.default_node);
-    if (!role.own_capacity && network.find_node(nodes.back()) < 0) {
+    if (!role.own_capacity && !network.find_node(nodes.back())) {
       network.add_node(nodes.back(), chance.by_ratio(1.0, 100.0));
     }
   }

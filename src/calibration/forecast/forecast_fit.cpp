@@ -34,7 +34,7 @@ class Fitting {
     for (const estimation::MeasuredRun& run : runs) {
       std::vector<int> unseen;
       for (int node = 0; node < model.network().state_count(); ++node) {
-        if (run.sensor_at(model.network().node_name(node)) < 0) {
+        if (!run.sensor_at(model.network().node_name(node))) {
           unseen.push_back(node);
         }
       }

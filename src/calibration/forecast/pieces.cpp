@@ -14,7 +14,7 @@ constexpr std::size_t kBlocks = 4;
 constexpr double kExcited_share = 0.25;
 
 /// Index of the winding's sensor, or 0 if there is none.
-Eigen::Index watched_sensor(const estimation::MeasuredRun& run) { return std::max<Eigen::Index>(0, run.sensor_at("winding")); }
+Eigen::Index watched_sensor(const estimation::MeasuredRun& run) { return run.sensor_at("winding").value_or(0); }
 
 /// Range of the predicted readings of samples [from, to). Predicted readings have no missing samples.
 std::pair<double, double> range_of(const Eigen::MatrixXd& sensor_C, Eigen::Index sensor, Eigen::Index from, Eigen::Index to) {
