@@ -22,7 +22,7 @@ std::span<const SignalSpec> signals() {
       {"neighbour_C", "temperature of the motor next to this one; the winding's limit if it is not known",
        thermal::quantity_row("neighbour_temperature")},
       {"age_h", "operating hours of the motor", thermal::quantity_row("age")},
-      {"acceleration_rad_per_s2", "speed of the motor's shaft, magnitude", thermal::quantity_row("acceleration")},
+      {"acceleration_rad_per_s2", "magnitude of dω/dt of the motor's shaft, mean over the period", thermal::quantity_row("acceleration")},
   }};
   return kSignals;
 }

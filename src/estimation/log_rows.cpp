@@ -91,7 +91,7 @@ thermal::OperatingPoint<double> LogRows::at(std::size_t row) const {
   const double speed_rad_per_s = of(speed_rad_per_s_, row);
   thermal::OperatingPoint<double> at;
   for (std::size_t i = 0; i < thermal::kQuantityCount; ++i) {
-    if (const thermal::OperatingQuantity<double>& each = thermal::kQuantities<double>[i]; each.from != thermal::FromColumn::computed) {
+    if (const thermal::OperatingQuantity<double>& each = thermal::kQuantities<double>[i]; columns_[i] != nullptr) {
       const double value = of(columns_[i], row);
       at.*each.value = each.from == thermal::FromColumn::magnitude ? std::abs(value) : value;
     }

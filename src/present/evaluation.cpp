@@ -166,10 +166,9 @@ std::string sampling_error(std::span<const select::MotorEvaluation> results) {
     probability_ratio = std::max(probability_ratio, 0.5 * (each.probability_interval->high - each.probability_interval->low));
     p95_K = std::max(p95_K, 0.5 * (each.winding_p95_interval_C->high - each.winding_p95_interval_C->low));
   }
-  return fmt::format(
-      "Other samples would give P over within ±{:.0f} points and the upper end of the peak {} (95 %).",
-      std::ceil(100.0 * probability_ratio),
-      std::isfinite(p95_K) ? fmt::format("within ±{:.0f} K at most", std::ceil(p95_K)) : "anywhere above: take more samples");
+  return fmt::format("Sampling error (95 %): the share over a limit ±{:.0f} percentage points, the upper end of the peak {}.",
+                     std::ceil(100.0 * probability_ratio),
+                     std::isfinite(p95_K) ? fmt::format("±{:.0f} K", std::ceil(p95_K)) : "unknown: take more samples");
 }
 
 std::string undecided_note(const select::MotorEvaluation& motor) {
@@ -222,12 +221,12 @@ std::vector<std::string> paragraphs(const simulate::EvaluationAnswer& answer) {
                                                            counted(results, &select::MotorEvaluation::samples, "sample"), answer.seed)
                                              : "nominal values only");
   if (answer.draw_count > 0) {
-    first += fmt::format(" {} with other inputs and robot parameters; verdict, range and P over are of all of them.",
+    first += fmt::format(" {} with other inputs and robot parameters; verdict and range cover all of them.",
                          counted(results, &select::MotorEvaluation::games, "game"));
   }
   const auto most = std::ranges::max_element(results, {}, &select::MotorEvaluation::samples);
   if (most->samples != std::ranges::min(results, {}, &select::MotorEvaluation::samples).samples) {
-    first += fmt::format(" Near a threshold a verdict takes more: {} took most.", most->motor_id);
+    first += fmt::format(" {} needed most, because its share over a limit is near a threshold.", most->motor_id);
   }
   return {first};
 }
@@ -257,7 +256,8 @@ std::string best_change_words(const select::ChangeEffect* change, std::span<cons
     return change->makes_deliverable
                ? fmt::format("This change lets {} deliver what the duty demands: {}.", change->other_motor.empty() ? motor_id : "the robot",
                              change_words(*change))
-               : fmt::format("Of the changes this one cools {} most: {}, by {:.0f} K.", motor_id, change_words(*change), change->saved_K);
+               : fmt::format("Largest improvement for {}: {}, {:.0f} K cooler{}.", motor_id, change_words(*change), change->saved_K,
+                             change->other_motor.empty() ? "" : " (its mass and size are not compared)");
   }
   const auto largest = std::ranges::max_element(effects, {}, &select::ChangeEffect::saved_K);
   if (largest == effects.end() || largest->is_deliverable || !(largest->saved_K > 0.5)) {
@@ -364,7 +364,8 @@ Document ranking_document(const simulate::EvaluationAnswer& answer) {
   }
   if (std::ranges::any_of(results, [](const select::MotorEvaluation& each) { return each.data_quality == "estimated"; })) {
     document.add_note(Severity::note,
-                      "The verdicts depend on estimated thermal values where data is \"estimated\": no manufacturer publishes them "
+                      "The temperatures may be wrong by tens of kelvins where the thermal values of a motor are estimates: no manufacturer "
+                      "publishes them "
                       "(`heatsoak describe MOTOR` shows each derivation). Calibrate on a bench before you rely on them.");
   }
   add_lines(document.notes, slip_text(answer.demand), Severity::note);

@@ -39,8 +39,9 @@ fs::path find_plugin() {
     }
     searched += "\n  " + folder.string();
   }
-  throw base::Failure(base::ExitCode::bug, fmt::format("the drawing library {} is missing; HEATSOAK_PLUGINS names its folder; searched:{}",
-                                                       chart_plugin_file, searched));
+  throw base::Failure(
+      base::ExitCode::bad_input,
+      fmt::format("the drawing library {} is missing; HEATSOAK_PLUGINS names its folder; searched:{}", chart_plugin_file, searched));
 }
 
 /// The library is never closed: VTK's object factories do not survive unloading. Opening it again is cheap.

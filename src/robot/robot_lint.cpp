@@ -93,9 +93,41 @@ void check_inertia(const Robot& robot, std::vector<motor::LintFinding>& findings
     findings.push_back(
         {motor::LintFinding::Level::warning, "inertia",
          fmt::format("body.yaw_inertia: is {:.3g} times mass times contact radius squared; expected {} to {} times. Check the "
-                     "unit: 1 kg m2 is 10 000 000 g cm2",
+                     "unit (1 kg m2 is 10 000 000 g cm2), mass and wheels.contact_radius",
                      share, kLeast, kMost),
          input::place_of(robot.file, "body.yaw_inertia")});
+  }
+}
+
+/// Values that are possible, but far from those of small robots, and so probably in another unit.
+void check_motion(const Robot& robot, std::vector<motor::LintFinding>& findings) {
+  const auto add = [&](const char* key, std::string message) {
+    findings.push_back(
+        {motor::LintFinding::Level::warning, "motion", fmt::format("{}: {}", key, message), input::place_of(robot.file, key)});
+  };
+  constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
+  if (std::ranges::any_of(robot.wheels.axis_rad, [](double each_rad) { return std::abs(each_rad) > kFullTurn_rad; })) {
+    add("wheels.axis_angles", "an angle is more than a full turn; check the unit, deg or rad");
+  }
+  // A solid disc has 0.5 of mass times radius squared; a wheel of an omni robot weighs less than a tenth of the robot.
+  constexpr double kLargestInertia_share = 0.05;
+  const double own_kg_m2 = robot.mass_kg * robot.wheels.radius_m * robot.wheels.radius_m;
+  if (robot.wheels.inertia_kg_m2 && *robot.wheels.inertia_kg_m2 > kLargestInertia_share * own_kg_m2) {
+    add("wheels.inertia", fmt::format("is {:.3g} times the robot's mass times wheel radius squared; expected at most {}. Check the unit: "
+                                      "1 kg cm2 is 1000 g cm2",
+                                      *robot.wheels.inertia_kg_m2 / own_kg_m2, kLargestInertia_share));
+  }
+  if (robot.body.center_of_gravity_height_m && *robot.body.center_of_gravity_height_m > 3.0 * robot.wheels.contact_radius_m) {
+    add("body.center_of_gravity_height", fmt::format("{} is more than three times the contact radius of {}; check the unit, mm or cm",
+                                                     in_mm(*robot.body.center_of_gravity_height_m), in_mm(robot.wheels.contact_radius_m)));
+  }
+  // Grip limits wheels on carpet to about 10 m/s2.
+  constexpr double kMost_m_per_s2 = 30.0;
+  for (const auto& [key, value] :
+       {std::pair{"limits.acceleration", robot.limits.acceleration_m_per_s2}, std::pair{"limits.braking", robot.limits.braking_m_per_s2}}) {
+    if (value && *value > kMost_m_per_s2) {
+      add(key, fmt::format("{:.3g} m/s2 is more than the grip of wheels allows; expected at most {:.0f} m/s2", *value, kMost_m_per_s2));
+    }
   }
 }
 
@@ -113,6 +145,7 @@ std::vector<motor::LintFinding> lint(const Robot& robot, std::span<const std::st
   check_battery(robot, findings);
   check_drive(robot, findings);
   check_inertia(robot, findings);
+  check_motion(robot, findings);
   try {
     motor::MotorValues any;
     any.rotor_inertia_kg_m2 = 0.0;
@@ -122,9 +155,10 @@ std::vector<motor::LintFinding> lint(const Robot& robot, std::span<const std::st
       throw;
     }
     for (const base::Diagnostic& each : failure.diagnostics()) {
-      findings.push_back({motor::LintFinding::Level::note, "motion",
-                          each.key + " " + each.message + "; a match needs it, a prescribed duty does not",
-                          input::place_of(robot.file, each.key)});
+      findings.push_back(
+          {motor::LintFinding::Level::note, "motion",
+           each.key + " " + each.message + "; a match needs it (friction is assumed where it is missing), a prescribed duty does not",
+           input::place_of(robot.file, each.key)});
     }
   }
   return findings;

@@ -115,6 +115,21 @@ inline constexpr std::array kQuantities{
 inline constexpr std::size_t kQuantityCount = kQuantities<double>.size();
 static_assert(sizeof(OperatingPoint<double>) == (kQuantityCount + 1) * sizeof(double), "every number of OperatingPoint needs one row");
 
+/// Returns the number of signals that have a log column in the table.
+constexpr std::size_t logged_signal_count() {
+  std::size_t count = 0;
+  for (std::size_t signal = 0; signal <= kQuantityCount; ++signal) {
+    for (const OperatingQuantity<double>& each : kQuantities<double>) {
+      if (each.signal == static_cast<Signal>(signal) && !each.column.empty()) {
+        ++count;
+        break;
+      }
+    }
+  }
+  return count;
+}
+static_assert(logged_signal_count() == kSignalCount, "kSignalCount is the number of signals, and each has a log column");
+
 /// Members for the columns of a log.
 template <class S, class P = OperatingPoint<S>>
 inline constexpr std::array<S P::*, kLogColumns> kColumns{&P::first_column, &P::second_column, &P::third_column};

@@ -64,6 +64,17 @@ TEST(RobotPlausibility, yaw_inertia_fits_mass_and_size) {
               Contains("inertia warning"));
 }
 
+TEST(RobotPlausibility, values_in_other_units_get_a_warning) {
+  EXPECT_THAT(findings_with("axis_angles = \\[\"-30 deg\"", "axis_angles = [\"-30 rad\""), Contains("motion warning"));
+  EXPECT_THAT(findings_with("inertia = \\{ value = \"220 g cm2\", origin = \"estimated\", range = \\[\"100 g cm2\", \"450 g cm2\"\\]",
+                            "inertia = { value = \"22 kg cm2\", origin = \"estimated\", range = [\"10 kg cm2\", \"45 kg cm2\"]"),
+              Contains("motion warning"));
+  EXPECT_THAT(findings_with("center_of_gravity_height = \\{ value = \"50 mm\", origin = \"estimated\", range = \\[\"35 mm\", \"65 mm\"\\]",
+                            "center_of_gravity_height = { value = \"50 cm\", origin = \"estimated\", range = [\"35 cm\", \"65 cm\"]"),
+              Contains("motion warning"));
+  EXPECT_THAT(findings_with("acceleration = \\{ value = \"2 m/s2\"", "acceleration = { value = \"200 m/s2\""), Contains("motion warning"));
+}
+
 TEST(RobotPlausibility, robots_of_the_project_pass) {
   for (const auto& entry : std::filesystem::directory_iterator(kRobotFiles)) {
     if (entry.path().extension() != ".toml") {

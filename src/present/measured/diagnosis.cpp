@@ -13,14 +13,17 @@ namespace {
 /// Returns the verdict as a sentence.
 std::string headline_of(const diagnosis::Diagnosis& diagnosis) {
   std::vector<std::string> names;
+  bool is_class = false;
   for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
-    names.push_back(effect.id);
+    is_class = is_class || !effect.confusable_with.empty();
+    names.push_back(effect.confusable_with.empty() ? effect.id
+                                                   : fmt::format("{} or {}", effect.id, fmt::join(effect.confusable_with, " or ")));
   }
   switch (diagnosis.verdict) {
     case diagnosis::DiagnosisVerdict::nothing_missing:
       return "No effect is missing.";
     case diagnosis::DiagnosisVerdict::effect_found:
-      return fmt::format("The model lacks {}.", fmt::join(names, " and "));
+      return fmt::format("The model lacks {}{}.", fmt::join(names, " and "), is_class ? ", which these runs do not distinguish" : "");
     case diagnosis::DiagnosisVerdict::unexplained:
       return "Heat is missing that no effect of the catalogue explains.";
     case diagnosis::DiagnosisVerdict::not_identifiable:
