@@ -110,7 +110,7 @@ report::Chart verdict_chart(const std::vector<select::MotorEvaluation>& results,
           .subtitle = fmt::format(
               "{}{}{}{}", shown.size() < results.size() ? fmt::format("the robot's motor and the best of {}, ", results.size()) : "",
               duty.summary,
-              sampled ? fmt::format("; lines: nominal, areas{}: 5\u00a0% to 95\u00a0% of samples at each moment",
+              sampled ? fmt::format("; lines: nominal, highest and lowest of each load cycle; areas without lines{}: 5\u00a0% to 95\u00a0% of samples",
                                     bands_of(shown.size()) < shown.size() ? " of the first two motors" : "")
                       : "; nominal values",
               estimated ? "; thermal data partly estimated" : ""),

@@ -53,8 +53,8 @@ constexpr std::array<Color, 8> palette{{{0x00, 0x72, 0xB2},
                                         {0x00, 0x00, 0x00},
                                         {0xD5, 0x5E, 0x00},
                                         {0xF0, 0xE4, 0x42}}};
-constexpr unsigned char band_opacity = 51;     // 20 %
-constexpr unsigned char ripple_opacity = 115;  // 45 %
+constexpr unsigned char band_opacity = 51;    // 20 %
+constexpr unsigned char ripple_opacity = 46;  // 18 %
 constexpr float curve_width_px = 2.0F;
 
 Color palette_color(int index) { return palette[static_cast<unsigned>(index) % palette.size()]; }
@@ -116,14 +116,16 @@ void add_area(vtkChartXY* chart, const std::vector<BandPoint>& points, const Col
   chart->AddPlot(area);
 }
 
-/// Draws ripple as a light area between thin edges, the rest as a line.
+/// Draws ripple as a light area under a line along its maxima and above a thin one along its minima, the rest as a line.
 void add_curve(vtkChartXY* chart, const RippledPiece& piece, const Color& color, bool is_dashed) {
   for (const std::vector<BandPoint>& ripple : piece.envelopes) {
     add_area(chart, ripple, color, ripple_opacity);
-    for (double BandPoint::*edge : {&BandPoint::low_px, &BandPoint::high_px}) {
+    for (const auto& [edge, width_px] : {std::pair{&BandPoint::low_px, 1.0F}, std::pair{&BandPoint::high_px, curve_width_px}}) {
       std::vector<CurvePoint> line;
-      std::ranges::transform(ripple, std::back_inserter(line), [edge](const BandPoint& at) { return CurvePoint{at.x_px, at.*edge}; });
-      add_line(chart, line, color, 1.0F, is_dashed);
+      std::ranges::transform(ripple, std::back_inserter(line), [edge = edge](const BandPoint& at) {
+        return CurvePoint{at.x_px, at.*edge};
+      });
+      add_line(chart, line, color, width_px, is_dashed);
     }
   }
   for (const std::vector<CurvePoint>& line : piece.lines) {
