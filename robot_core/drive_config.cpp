@@ -1,4 +1,5 @@
 // Checks a Config and calculates the values that follow from others.
+#include "robot_core/crc_32.h"
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
@@ -180,14 +181,10 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
 }
 
 [[gnu::cold]] std::uint32_t config_check_sum(const Config& config) {
-  // FNV-1a over words (Fowler, Noll, Vo): every change of a single word changes the sum.
-  static_assert(__builtin_offsetof(Config, unused) % sizeof(std::uint32_t) == 2, "flags and padding fill the last word");
-  constexpr unsigned kWords = (__builtin_offsetof(Config, unused) + sizeof(Config::unused)) / sizeof(std::uint32_t);
-  std::uint32_t sum = 2166136261U;
-  for (unsigned i = 1; i < kWords; ++i) {
-    sum = (sum ^ word_of(&config, i)) * 16777619U;
-  }
-  return sum;
+  constexpr unsigned kFirst = __builtin_offsetof(Config, check_sum) + sizeof(Config::check_sum);
+  constexpr unsigned kEnd = __builtin_offsetof(Config, unused) + sizeof(Config::unused);
+  static_assert(kEnd % sizeof(std::uint32_t) == 0, "no padding up to the end of the flags");
+  return heatsoak_crc_32(reinterpret_cast<const unsigned char*>(&config) + kFirst, kEnd - kFirst);
 }
 
 }  // namespace robot_core

@@ -84,7 +84,7 @@ struct DerivedConfig {
 
 /// Parameters that stay constant while the robot runs. `heatsoak generate core` writes them, or make_core_config() on the host.
 struct Config {
-  std::uint32_t check_sum = 0;  ///< config_check_sum(); start() rejects a Config with any other value
+  std::uint32_t check_sum = 0;  ///< CRC-32: config_check_sum(); start() rejects a Config with any other value
   std::int32_t wheel_count = 4;
   float period_s = 0.001F;
   // Geometry and mass.
@@ -311,7 +311,7 @@ void step(const Config& config, State& state, const Input& input, Output& out);
 
 /// Calculates Config::derived and Config::check_sum. Call it last when a Config is made.
 void complete(Config& config);
-/// Returns the check sum of all values of the Config except the check sum itself and the pointers.
+/// Returns the CRC-32 of all values of the Config except the check sum itself and the pointers.
 std::uint32_t config_check_sum(const Config& config);
 /// Returns true if all values are finite and plausible. Does not verify the check sum.
 bool is_possible(const Config& config);

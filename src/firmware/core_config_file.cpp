@@ -52,7 +52,7 @@ Origins wheel_origins(bool has_friction) {
 
 Origins body_origins(const CoreSource& source) {
   return {
-      {"check_sum", "robot_core::config_check_sum() of what follows"},
+      {"check_sum", "CRC-32 of what follows, without the pointers: robot_core::config_check_sum()"},
       {"wheel_count", "robot file: wheels.axis_angles"},
       {"period_s", "option --period"},
       {"wheel_radius_m", of_robot(source.robot, "wheels.radius")},

@@ -25,7 +25,7 @@ extern "C" {
 #define HEATSOAK_CORE_WHEELS @WHEELS@ /* of this robot */
 #define HEATSOAK_CORE_MOST_WHEELS 4   /* size of the arrays; of a robot with three wheels the last is ignored */
 #define HEATSOAK_CORE_STATE_BYTES @STATE_BYTES@
-#define HEATSOAK_CORE_CONFIG_CHECK_SUM @CHECK_SUM@
+#define HEATSOAK_CORE_CONFIG_CHECK_SUM @CHECK_SUM@ /* CRC-32 of the values in core_config.h, for telemetry and logs */
 
 /* A sensor that is not fitted, or has no sample: not a number. */
 #define HEATSOAK_CORE_NO_SAMPLE (__builtin_nanf(""))
