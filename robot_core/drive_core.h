@@ -279,8 +279,8 @@ struct Output {
 };
 
 inline constexpr float kLongestGap_periods = 3.0F;
-/// Time after which the watchdog of the firmware resets the controller, which opens the bridges. An invalid Input::elapsed_s may hide a gap
-/// of this length.
+/// Longest time after which the watchdog of the firmware resets the controller, which opens the bridges, with the tolerance of its
+/// oscillator. An invalid Input::elapsed_s may hide a gap of this length.
 inline constexpr float kWatchdog_s = 0.02F;
 /// A sensor that was faulty is accepted again after it has agreed with the other sensors for this time.
 inline constexpr float kSteadyAgain_s = 0.25F;

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <optional>
 #include <random>
+#include <regex>
 #include <set>
 
 #include "faulty_drive.h"
@@ -197,6 +198,10 @@ void expect_firmware_builds(const Generated& core) {
     EXPECT_THAT(names, Not(AnyOf(HasSubstr("plan_to_pose"), HasSubstr("plan_plane"))));
     // Double precision would appear as calls of the compiler's library.
     EXPECT_THAT(names, Not(HasSubstr("__aeabi_d")));
+    // An interrupt between the test and wfi must not be missed.
+    const std::string wait = build(core, fmt::format("arm-none-eabi-objdump -d --disassemble=board_wait_for_period {}", image)).out;
+    EXPECT_LT(wait.find("cpsid"), wait.find("wfi"));
+    EXPECT_THAT(wait, HasSubstr("cpsie"));
     const std::string sections = build(core, fmt::format("arm-none-eabi-size -A -d {}", image)).out;
     EXPECT_THAT(sections, AllOf(HasSubstr(".vectors"), HasSubstr("134217728"), HasSubstr(".noinit")));
   }
@@ -207,6 +212,17 @@ TEST(GeneratedCore, CompilesForTheHostWithBothBuildsAndHasTheBitsOfTheCoreHere) 
 }
 
 TEST(GeneratedCore, CompilesForTheControllerWithBothBuilds) { expect_firmware_builds(plain_core()); }
+
+// The oscillator of the independent watchdog has 17 to 47 kHz (data sheet DS11532 of the STM32F767).
+TEST(GeneratedCore, WatchdogEndsWithinTheGapThatTheCoreCounts) {
+  const std::string board = content_of(plain_core().core / "firmware/board_default.c");
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(board, found, std::regex("WATCHDOG_RELOAD (\\d+)u")));
+  constexpr double kPrescaler = 4.0;
+  const double cycles = kPrescaler * (std::stod(found[1]) + 1.0);
+  EXPECT_LE(cycles / 17e3, static_cast<double>(robot_core::kWatchdog_s));
+  EXPECT_GT(cycles / 47e3, 5.0 * static_cast<double>(plain_core().config.period_s));
+}
 
 // These effects need a power, an exponential, a third node, and a signal that the core lacks.
 TEST(GeneratedCore, HasTheLawsOfAddedEffects) {

@@ -24,6 +24,7 @@ static_assert(sizeof(Input) == sizeof(heatsoak_core_input) && alignof(Input) == 
 static_assert(sizeof(Output) == sizeof(heatsoak_core_output) && alignof(Output) == alignof(heatsoak_core_output));
 static_assert(sizeof(Command) == sizeof(heatsoak_core_command));
 static_assert(kCoreConfig.wheel_count == HEATSOAK_CORE_WHEELS && kCoreConfig.period_s == HEATSOAK_CORE_PERIOD_S);
+static_assert(0.999999F * (HEATSOAK_CORE_WATCHDOG_US * 1e-6F) <= robot_core::kWatchdog_s);
 static_assert(kCoreConfig.check_sum == HEATSOAK_CORE_CONFIG_CHECK_SUM && robot_core::kMostWheels == HEATSOAK_CORE_MOST_WHEELS);
 
 #define SAME_PLACE(c, cpp, member)                           \

@@ -22,6 +22,9 @@ extern "C" {
 #endif
 
 #define HEATSOAK_CORE_PERIOD_S @PERIOD_S@
+#define HEATSOAK_CORE_PERIOD_US @PERIOD_US@
+/* Longest time after which the watchdog of the firmware must have reset the controller; the core assumes no longer undetected gap. */
+#define HEATSOAK_CORE_WATCHDOG_US 20000u
 #define HEATSOAK_CORE_WHEELS @WHEELS@ /* of this robot */
 #define HEATSOAK_CORE_MOST_WHEELS 4   /* size of the arrays; of a robot with three wheels the last is ignored */
 #define HEATSOAK_CORE_STATE_BYTES @STATE_BYTES@
