@@ -139,6 +139,8 @@ struct Config {
   const GuardModel* guard = nullptr;  ///< null: no thermal limit
   /// Planner of pose targets: plan_to_pose, or null if the firmware has no pose. Through a pointer the linker can leave the planner out.
   bool (*plan_step)(const Config& config, const Vector3& pose, const Vector3& target, Vector3& velocity, Vector3& acceleration) = nullptr;
+  /// Predictor of the pose that plan_step starts from: predict_pose, or null without plan_step.
+  void (*predict_pose)(const Vector3& velocity, float age_s, Vector3& pose) = nullptr;
 };
 
 enum class Mode : std::uint8_t { coast, brake, body_velocity, wheel_speed, wheel_torque, pose_target };
@@ -319,5 +321,9 @@ bool is_possible(const Config& config);
 /// Planner for Config::plan_step: one period of the time-optimal motion from `pose` to `target` (robot_core/trajectory.h). `velocity` and
 /// `acceleration` are those of the last call's plan, field frame, in and out. Returns false if no plan exists.
 bool plan_to_pose(const Config& config, const Vector3& pose, const Vector3& target, Vector3& velocity, Vector3& acceleration);
+
+/// Predictor for Config::predict_pose: moves a `pose` that is `age_s` old to the present, with the measured velocity of the body (local
+/// frame) as constant.
+void predict_pose(const Vector3& velocity, float age_s, Vector3& pose);
 
 }  // namespace robot_core
