@@ -253,7 +253,7 @@ struct alignas(8) State {
   float battery_current_A = 0.0F;  ///< estimate for the last period
   float battery_source_V = 0.0F;   ///< open-circuit voltage estimated from samples; sinks slowly between them
   float late_periods = 0.0F;       ///< sum of delays below a tenth of a period each
-  std::uint32_t unused_word = 0;   ///< keeps the size a multiple of 8 without padding
+  float kept_share = 1.0F;         ///< fraction of their wanted currents that the most held-back wheel leaves to all wheels; rises slowly
   Vector3 plan_velocity;           ///< velocity of the pose target's plan, field frame
   Vector3 plan_acceleration;
   std::uint32_t shadow_steps = 0;   ///< steps in which the guard would have limited

@@ -64,7 +64,10 @@
 //     current while the wheels roll. With one sensor less (three wheels, or after a fault) one may be wrong. Swapped wheel sensors are then
 //     assumed until driving has ruled them out (kConfirmations). The search for fault 113 also ends there. Without a spare sensor every
 //     current is limited to limp_current_A (limit 17).
-//   - The bridge opens if no voltage keeps the limit by the current sensor and by the speeds.
+//   - The bridge opens if no voltage keeps the limit by the current sensor and by the speeds, or if the sensed current is far above it
+//     (code 16 or 18). The other wheels are not scaled then, because the robot must still drive home.
+//   - If sensed current or slip hold one wheel back, all are scaled from the next period on, so that the direction of travel is kept: to a
+//     quarter at least, because the sensor of that wheel may be wrong.
 //   - A command fault (104 to 106) opens the bridges, because braking takes more current than rolling. A robot that must brake gets
 //   Mode::brake.
 //
@@ -109,6 +112,7 @@ enum class Reason : std::uint8_t {
   // Faults.
   config_invalid = 100,
   state_corrupted = 101,
+  sensed_current = 18,  ///< the current sensor shows more current than voltage and speed explain
   period_invalid = 102,
   time_jump = 103,
   command_invalid = 104,
