@@ -5,6 +5,7 @@
 
 #include "core_config.h"
 #include "robot_core/drive_core.h"
+#include "robot_core/guard_memory.h"
 
 #ifdef __FAST_MATH__
 #error "without -ffast-math: it removes the checks for values that are not a number"
@@ -55,6 +56,10 @@ bool heatsoak_core_start(heatsoak_core_state *state, bool is_rested, float body_
   start_up.is_rested = is_rested;
   start_up.body_C = body_C;
   return robot_core::start(kCoreConfig, state_in(state), start_up);
+}
+
+bool heatsoak_core_restore(heatsoak_core_state *state, const heatsoak_core_state *saved, float elapsed_s, float board_C) {
+  return robot_core::restore(kCoreConfig, state_in(state), *reinterpret_cast<const State *>(saved->bytes), elapsed_s, board_C);
 }
 
 void heatsoak_core_clear(heatsoak_core_input *input) {
