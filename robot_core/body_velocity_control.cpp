@@ -55,8 +55,10 @@ void follow_command(const Config& config, State& state, const Input& input, cons
     body.acceleration = turned(command.acceleration, turn);
     body.push = turned(command.push, turn);
   } else if (validated.mode == Mode::pose_target) {
-    if (config.plan_step(config, input.pose, input.command.pose, state.plan_velocity, state.plan_acceleration)) {
-      const SineCosine turn = sine_cosine(-input.pose.yaw);
+    Vector3 pose = input.pose;
+    config.predict_pose(validated.velocity, input.pose_age_s, pose);
+    if (config.plan_step(config, pose, input.command.pose, state.plan_velocity, state.plan_acceleration)) {
+      const SineCosine turn = sine_cosine(-pose.yaw);
       body.velocity = turned(state.plan_velocity, turn);
       body.acceleration = turned(state.plan_acceleration, turn);
     } else {

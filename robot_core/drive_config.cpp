@@ -1,4 +1,5 @@
 // Checks a Config and calculates the values that follow from others.
+#include "robot_core/crc_32.h"
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
@@ -6,8 +7,8 @@ namespace {
 
 constexpr float kGravity_m_per_s2 = 9.80665F;
 
-bool is_positive(float x) { return is_finite(x) && x > 0.0F; }
-bool is_not_negative(float x) { return is_finite(x) && x >= 0.0F; }
+bool is_positive(float x) { return x > 0.0F; }
+bool is_not_negative(float x) { return x >= 0.0F; }
 
 /// Returns true if a condition holds for these members. Their offsets are constants, which take less room than code that reads them.
 template <auto holds, typename Object, unsigned count>
@@ -19,14 +20,16 @@ bool all(const Object& object, float Object::*const (&members)[count]) {
   return all_hold;
 }
 
-[[gnu::cold]] bool is_possible(const WheelConfig& wheel) {
-  using W = WheelConfig;
-  static constexpr float W::*kFinite[] = {&W::rolling_x_share,    &W::rolling_y_share,   &W::inverse_x_factor,
-                                          &W::inverse_y_factor,   &W::inverse_yaw_per_m, &W::sine_V,
-                                          &W::phase_cosine_ratio, &W::phase_sine_ratio,  &W::others_factor};
-  static constexpr float W::*kPositive[] = {&W::slip_factor, &W::damping_V_s_per_rad};
-  static constexpr float W::*kNotNegative[] = {&W::level_load_share, &W::sign_V};
-  return all<is_finite<float>>(wheel, kFinite) && all<is_positive>(wheel, kPositive) && all<is_not_negative>(wheel, kNotNegative);
+/// Returns true if all numbers are finite. All members between these two are floats, but for flags, which are finite as floats, too.
+bool are_finite(const Config& config) {
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(&config);
+  bool are_all = true;
+  for (unsigned at = __builtin_offsetof(Config, period_s); at < __builtin_offsetof(Config, has_friction); at += sizeof(float)) {
+    float number = 0.0F;
+    __builtin_memcpy(&number, bytes + at, sizeof(number));
+    are_all = are_all && is_finite(number);
+  }
+  return are_all;
 }
 
 /// Returns true if a guard period is a whole number of control periods and the guard has a table.
@@ -77,12 +80,13 @@ bool all(const Object& object, float Object::*const (&members)[count]) {
   bool possible =
       all<is_positive>(config, kPositive) && all<is_not_negative>(config, kNotNegative) && config.battery_lowest_V <= config.battery_full_V;
   const DerivedConfig& derived = config.derived;
-  static constexpr float DerivedConfig::*kPlane[] = {&DerivedConfig::plane_xx_factor, &DerivedConfig::plane_xy_factor,
-                                                     &DerivedConfig::plane_yy_factor};
-  possible = possible && all<is_finite<float>>(derived, kPlane) && is_positive(derived.geared_constant_V_s_per_rad);
+  possible = possible && is_positive(derived.geared_constant_V_s_per_rad) && are_finite(config);
   for (int i = 0; i < config.wheel_count; ++i) {
-    possible = possible && is_possible(config.wheel[i]);
+    const WheelConfig& wheel = config.wheel[i];
+    possible = possible && is_positive(wheel.slip_factor) && is_positive(wheel.damping_V_s_per_rad) &&
+               is_not_negative(wheel.level_load_share) && is_not_negative(wheel.sign_V);
   }
+  possible = possible && (config.plan_step == nullptr || config.predict_pose != nullptr);
   return possible && (config.guard == nullptr || is_possible(*config.guard, config.period_s));
 }
 
@@ -180,14 +184,10 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
 }
 
 [[gnu::cold]] std::uint32_t config_check_sum(const Config& config) {
-  // FNV-1a over words (Fowler, Noll, Vo): every change of a single word changes the sum.
-  static_assert(__builtin_offsetof(Config, unused) % sizeof(std::uint32_t) == 2, "flags and padding fill the last word");
-  constexpr unsigned kWords = (__builtin_offsetof(Config, unused) + sizeof(Config::unused)) / sizeof(std::uint32_t);
-  std::uint32_t sum = 2166136261U;
-  for (unsigned i = 1; i < kWords; ++i) {
-    sum = (sum ^ word_of(&config, i)) * 16777619U;
-  }
-  return sum;
+  constexpr unsigned kFirst = __builtin_offsetof(Config, check_sum) + sizeof(Config::check_sum);
+  constexpr unsigned kEnd = __builtin_offsetof(Config, unused) + sizeof(Config::unused);
+  static_assert(kEnd % sizeof(std::uint32_t) == 0, "no padding up to the end of the flags");
+  return heatsoak_crc_32(reinterpret_cast<const unsigned char*>(&config) + kFirst, kEnd - kFirst);
 }
 
 }  // namespace robot_core

@@ -18,43 +18,42 @@ constexpr std::uint64_t kSeed = 0x9E3779B97F4A7C15U;
 
 namespace {
 
-/// Spreads the guard steps of the wheels over the guard period.
-void spread_guards(const Config& config, State& state) {
-  if (config.guard == nullptr) {
-    return;
-  }
-  const int periods = static_cast<int>(config.guard->period_s / config.period_s + 0.5F);
-  for (int i = 0; i < config.wheel_count; ++i) {
-    state.wheel[i].guard_steps = static_cast<std::uint16_t>(i * periods / config.wheel_count);
-  }
-}
-
 [[gnu::cold]] void reset(const Config& config, State& state, float body_C) {
   state = {};
-  for (WheelState& wheel : state.wheel) {
-    wheel.allowed_A = wheel.allowed_braking_A = std::numeric_limits<float>::max();
-    wheel.conductance_A_per_V = config.derived.per_resistance_A_per_V;
-  }
-  for (int i = 0; i < config.wheel_count && config.guard != nullptr; ++i) {
+  const GuardModel* const model = config.guard;
+  for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
-    start_guard(*config.guard, state.guard[i], body_C);
+    wheel.conductance_A_per_V = config.derived.per_resistance_A_per_V;
+    wheel.allowed_A = wheel.allowed_braking_A = std::numeric_limits<float>::max();
+    if (model == nullptr) {
+      continue;
+    }
+    start_guard(*model, state.guard[i], body_C);
     const float start_C = state.guard[i].state_C[0];
-    const bool is_at_limit = !(start_C < config.guard->winding_limit_C);
+    const bool is_at_limit = !(start_C < model->winding_limit_C);
     wheel.guard_fault = is_at_limit ? static_cast<std::uint8_t>(Reason::guard_unknown) : 0;
     // Until the guard's first step, use the table at standstill.
-    wheel.allowed_A = wheel.allowed_braking_A = allowed_current_A(*config.guard, 0.0F, start_C, start_C + config.braking_reserve_K);
+    wheel.allowed_A = wheel.allowed_braking_A = allowed_current_A(*model, 0.0F, start_C, start_C + config.braking_reserve_K);
+    // Spreads the guard steps of the wheels over the guard period.
+    const int periods = static_cast<int>(model->period_s / config.period_s + 0.5F);
+    wheel.guard_steps = static_cast<std::uint16_t>(i * periods / config.wheel_count);
   }
-  spread_guards(config, state);
   seal(state.comparison);
 }
 
-[[gnu::cold]] Output all_open(Reason reason) {
-  Output out{};
+/// Starts with an accepted Config.
+[[gnu::cold, gnu::noinline]] void begin(const Config& config, State& state, float body_C) {
+  reset(config, state, body_C);
+  state.is_valid = kStarted;
+  state.check_sum = check_sum_of(state);
+}
+
+[[gnu::cold]] void open_all(Reason reason, Output& out) {
+  out = {};
   out.robot_reason = reason;
   for (Reason& each : out.reason) {
     each = reason;
   }
-  return out;
 }
 
 }  // namespace
@@ -66,9 +65,7 @@ void spread_guards(const Config& config, State& state) {
     state.check_sum = check_sum_of(state);
     return false;
   }
-  reset(config, state, start_up.is_rested ? start_up.body_C : kNoSample);
-  state.is_valid = kStarted;
-  state.check_sum = check_sum_of(state);
+  begin(config, state, start_up.is_rested ? start_up.body_C : kNoSample);
   return true;
 }
 
@@ -144,11 +141,15 @@ void step_valid(const Config& config, State& state, const Input& input, bool was
 [[gnu::cold, gnu::noinline]] void restart(const Config& config, State& state) {
   const ComparisonState known = state.comparison;
   const std::uint32_t flips = state.is_valid ^ kStarted;
-  if (start(config, state, {}) && (flips & (flips - 1)) == 0) {
-    recall_faults(known, state);
-    state.battery_source_V = config.battery_full_V;
-    state.check_sum = check_sum_of(state);
+  if ((flips & (flips - 1)) != 0) {
+    start(config, state, {});
+    return;
   }
+  // start() has accepted this Config; its check sum would take longer than a step may.
+  begin(config, state, kNoSample);
+  recall_faults(known, state);
+  state.battery_source_V = config.battery_full_V;
+  state.check_sum = check_sum_of(state);
 }
 
 }  // namespace
@@ -161,7 +162,7 @@ void step(const Config& config, State& state, const Input& input, Output& out) {
   if (state.is_valid == kStarted) {
     step_valid(config, state, input, is_corrupted, out);
   } else {
-    out = all_open(Reason::config_invalid);
+    open_all(Reason::config_invalid, out);
   }
 }
 

@@ -84,7 +84,7 @@ struct DerivedConfig {
 
 /// Parameters that stay constant while the robot runs. `heatsoak generate core` writes them, or make_core_config() on the host.
 struct Config {
-  std::uint32_t check_sum = 0;  ///< config_check_sum(); start() rejects a Config with any other value
+  std::uint32_t check_sum = 0;  ///< CRC-32: config_check_sum(); start() rejects a Config with any other value
   std::int32_t wheel_count = 4;
   float period_s = 0.001F;
   // Geometry and mass.
@@ -139,6 +139,8 @@ struct Config {
   const GuardModel* guard = nullptr;  ///< null: no thermal limit
   /// Planner of pose targets: plan_to_pose, or null if the firmware has no pose. Through a pointer the linker can leave the planner out.
   bool (*plan_step)(const Config& config, const Vector3& pose, const Vector3& target, Vector3& velocity, Vector3& acceleration) = nullptr;
+  /// Predictor of the pose that plan_step starts from: predict_pose, or null without plan_step.
+  void (*predict_pose)(const Vector3& velocity, float age_s, Vector3& pose) = nullptr;
 };
 
 enum class Mode : std::uint8_t { coast, brake, body_velocity, wheel_speed, wheel_torque, pose_target };
@@ -251,7 +253,7 @@ struct alignas(8) State {
   float battery_current_A = 0.0F;  ///< estimate for the last period
   float battery_source_V = 0.0F;   ///< open-circuit voltage estimated from samples; sinks slowly between them
   float late_periods = 0.0F;       ///< sum of delays below a tenth of a period each
-  std::uint32_t unused_word = 0;   ///< keeps the size a multiple of 8 without padding
+  float kept_share = 1.0F;         ///< fraction of their wanted currents that the most held-back wheel leaves to all wheels; rises slowly
   Vector3 plan_velocity;           ///< velocity of the pose target's plan, field frame
   Vector3 plan_acceleration;
   std::uint32_t shadow_steps = 0;   ///< steps in which the guard would have limited
@@ -279,8 +281,8 @@ struct Output {
 };
 
 inline constexpr float kLongestGap_periods = 3.0F;
-/// Time after which the watchdog of the firmware resets the controller, which opens the bridges. An invalid Input::elapsed_s may hide a gap
-/// of this length.
+/// Longest time after which the watchdog of the firmware resets the controller, which opens the bridges, with the tolerance of its
+/// oscillator. An invalid Input::elapsed_s may hide a gap of this length.
 inline constexpr float kWatchdog_s = 0.02F;
 /// A sensor that was faulty is accepted again after it has agreed with the other sensors for this time.
 inline constexpr float kSteadyAgain_s = 0.25F;
@@ -311,7 +313,7 @@ void step(const Config& config, State& state, const Input& input, Output& out);
 
 /// Calculates Config::derived and Config::check_sum. Call it last when a Config is made.
 void complete(Config& config);
-/// Returns the check sum of all values of the Config except the check sum itself and the pointers.
+/// Returns the CRC-32 of all values of the Config except the check sum itself and the pointers.
 std::uint32_t config_check_sum(const Config& config);
 /// Returns true if all values are finite and plausible. Does not verify the check sum.
 bool is_possible(const Config& config);
@@ -319,5 +321,9 @@ bool is_possible(const Config& config);
 /// Planner for Config::plan_step: one period of the time-optimal motion from `pose` to `target` (robot_core/trajectory.h). `velocity` and
 /// `acceleration` are those of the last call's plan, field frame, in and out. Returns false if no plan exists.
 bool plan_to_pose(const Config& config, const Vector3& pose, const Vector3& target, Vector3& velocity, Vector3& acceleration);
+
+/// Predictor for Config::predict_pose: moves a `pose` that is `age_s` old to the present, with the measured velocity of the body (local
+/// frame) as constant.
+void predict_pose(const Vector3& velocity, float age_s, Vector3& pose);
 
 }  // namespace robot_core

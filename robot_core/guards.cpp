@@ -52,8 +52,8 @@ float missing_A2(const State& state, int i) {
   return larger(0.0F, state.comparison.driven_V2[i] * per_ohm * per_ohm - state.comparison.counted_A2[i]);
 }
 
-/// Steps the guard of one wheel. `periods`: number of periods summed up in current_squared_A2.
-void step_wheel_guard(const Config& config, State& state, const Validated& validated, int i, float periods) {
+/// Steps the guard of one wheel. `periods`: number of periods summed up in current_squared_A2. `extra_s`: as in step_guard().
+void step_wheel_guard(const Config& config, State& state, const Validated& validated, int i, float periods, float extra_s) {
   WheelState& wheel = state.wheel[i];
   const GuardModel& model = *config.guard;
   const ValidatedWheel& sensed = validated.wheel[i];
@@ -69,7 +69,7 @@ void step_wheel_guard(const Config& config, State& state, const Validated& valid
   signal[guard_neighbour_C] = model.plausible_range[guard_neighbour_C].is_used ? hottest_neighbour_C(config, state, i) : 0.0F;
   signal[guard_age_h] = kNoSample;
   signal[guard_acceleration_rad_per_s2] = absolute(speed_rad_per_s - state.guard[i].speed_rad_per_s) / model.period_s;
-  const GuardOutput guard = step_guard(model, state.guard[i], signal, config.braking_reserve_K);
+  const GuardOutput guard = step_guard(model, state.guard[i], signal, config.braking_reserve_K, extra_s);
   wheel.conductance_A_per_V = nominal_conductance_A_per_V(config, state.guard[i], validated.ambient_C);
   const float cold_ratio = cold_current_ratio(config, guard.winding_C);
   // A winding carries the limp current permanently, unless it is at its limit already.
@@ -111,19 +111,16 @@ void take_stator_sample(const GuardModel& model, State& state, const Input& inpu
   }
 }
 
-/// Steps the guards whose period has passed.
-void run_due_guards(const Config& config, State& state, const Input& input, const Validated& validated, int periods) {
-  for (int i = 0; i < config.wheel_count; ++i) {
-    WheelState& wheel = state.wheel[i];
-    const int steps = wheel.guard_steps;
-    if (steps >= periods) {
-      take_stator_sample(*config.guard, state, input, i);
-      step_wheel_guard(config, state, validated, i, static_cast<float>(steps));
-      // The sum may cover one or two periods more than the guard's: its mean is used now and the surplus kept for the next step.
-      wheel.guard_steps = static_cast<std::uint16_t>(steps - periods);
-      wheel.current_squared_A2 *= static_cast<float>(steps - periods) / static_cast<float>(steps);
-    }
-  }
+/// Steps the guard of a wheel whose guard period has passed. A surplus of one period, from waiting, is kept for the next step, so that the
+/// guards stay apart. More, after late steps, is counted at once.
+void run_due_guard(const Config& config, State& state, const Input& input, const Validated& validated, int i, int periods) {
+  WheelState& wheel = state.wheel[i];
+  const int late = wheel.guard_steps - periods;
+  const auto steps = static_cast<float>(wheel.guard_steps);
+  take_stator_sample(*config.guard, state, input, i);
+  step_wheel_guard(config, state, validated, i, steps, late > 1 ? static_cast<float>(late) * config.period_s : 0.0F);
+  wheel.guard_steps = late == 1 ? 1 : 0;
+  wheel.current_squared_A2 = late == 1 ? wheel.current_squared_A2 * (1.0F / steps) : 0.0F;
 }
 
 }  // namespace
@@ -147,11 +144,19 @@ void run_guards(const Config& config, State& state, const Input& input, const Va
   if (validated.robot_fault == Reason::time_jump || validated.robot_fault == Reason::period_invalid) {
     note_gap(config, state, validated);
   }
-  // Comparisons of sensors, guards and estimates do not share a step. A guard waits for one period if its period leaves time for that.
-  constexpr int kLeastPeriods = 4;
+  // A step runs one guard, a comparison of sensors or an estimate, because together they would take too long. Guards with a period too
+  // short for that run at once.
   constexpr std::uint32_t kPeriodsPerEstimate = 32;
-  if (most_steps >= periods + (validated.were_sensors_compared && periods >= kLeastPeriods ? 1 : 0)) {
-    run_due_guards(config, state, input, validated, periods);
+  const bool is_short = periods < config.wheel_count;
+  if (most_steps >= periods) {
+    for (int i = 0; i < config.wheel_count && (is_short || !validated.were_sensors_compared); ++i) {
+      if (state.wheel[i].guard_steps >= (is_short ? periods : most_steps)) {
+        run_due_guard(config, state, input, validated, i, periods);
+        if (!is_short) {
+          break;
+        }
+      }
+    }
   } else if (state.steps % kPeriodsPerEstimate == 1) {
     const std::uint32_t turn = state.steps / kPeriodsPerEstimate % static_cast<std::uint32_t>(config.wheel_count);
     estimate_time_to_limit(*config.guard, state.guard[turn], config.braking_reserve_K);

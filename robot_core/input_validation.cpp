@@ -29,10 +29,12 @@ void validate_time(const Config& config, State& state, const Input& input, Valid
     const auto whole = static_cast<float>(validated.guard_periods);
     validated.elapsed_s = whole * config.period_s;
     // A loop that is always slightly late would otherwise lose that share of its heat.
-    state.late_periods += larger(0.0F, periods - whole);
-    if (state.late_periods >= 1.0F) {
-      state.late_periods -= 1.0F;
-      ++validated.guard_periods;
+    if (periods > whole) {
+      state.late_periods += periods - whole;
+      if (state.late_periods >= 1.0F) {
+        state.late_periods -= 1.0F;
+        ++validated.guard_periods;
+      }
     }
   } else if (elapsed_s > longest_s && is_finite(elapsed_s)) {
     validated.robot_fault = Reason::time_jump;

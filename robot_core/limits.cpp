@@ -2,12 +2,18 @@
 //
 // The limits act on currents: I = (V − K_e·n·ω)/R with the lowest R that the motor can have, so that the true current is not larger. One
 // factor scales the currents of all wheels, which keeps the direction of the force on the body. Finally each voltage must keep the current
-// limit for every speed that the wheel may have, by its own sensor and by the others (speed_range()). If no voltage does, the bridge
+// limit for every speed that the wheel may have, by its own sensor and by the others (speed_range()), and by the sensed current. A wheel
+// that this holds back lowers the common factor from the next period on (State::kept_share). If no voltage keeps the limit, the bridge
 // opens.
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
 namespace {
+
+// A wheel whose speed is judged wrongly may be left without current. Then the others must still move the robot, although in another
+// direction.
+constexpr float kLeastKept_share = 0.25F;
+constexpr float kKeptRise_ratio = 1.01F;  // per period
 
 // A sensed current this far above the limit is neither noise nor settling.
 constexpr float kOvercurrent_ratio = 1.3F;
@@ -95,7 +101,7 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
 }
 
 [[gnu::cold, gnu::noinline]] bool move_into_window(const Config& config, const State& state, const Validated& validated,
-                                                   const WheelDemand& demand, int i, float most_V, float& voltage_V, Reason& reason) {
+                                                   const WheelDemand& demand, int i, float& voltage_V) {
   const float band_V = config.lowest_resistance_ohm * demand.most_A;
   // Without a spare sensor a single set of sensors determines each speed.
   const float speed_rad_per_s = validated.wheel[i].speed_rad_per_s;
@@ -105,10 +111,8 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
   if (!(demand.most_A > 0.0F) || !(low_V <= high_V)) {
     return false;
   }
-  const float asked_V = voltage_V;
   voltage_V = clamped(voltage_V, low_V, high_V);
-  reason = reason == Reason::none && absolute(voltage_V - asked_V) > kSlip_V ? Reason::slip : reason;
-  return absolute(voltage_V) <= kRounding * most_V;
+  return true;
 }
 
 /// Returns true if a voltage keeps the current limit for every speed that the wheel may have, because the spread of their estimates is
@@ -118,10 +122,8 @@ bool is_within(const Config& config, const Validated& validated, const WheelDema
 }
 
 /// Keeps a voltage within the current limit for every speed that the wheel may have. Returns false if no voltage does, or for NaN.
-bool hold_window(const Config& config, const State& state, const Validated& validated, const WheelDemand& demand, int i, float most_V,
-                 float& voltage_V, Reason& reason) {
-  return is_within(config, validated, demand, voltage_V) ||
-         move_into_window(config, state, validated, demand, i, most_V, voltage_V, reason);
+bool hold_window(const Config& config, const State& state, const Validated& validated, const WheelDemand& demand, int i, float& voltage_V) {
+  return is_within(config, validated, demand, voltage_V) || move_into_window(config, state, validated, demand, i, voltage_V);
 }
 
 /// Limits the voltage of a wheel with unknown speed: at standstill at most the limp current or the guard's limit. False: open the bridge.
@@ -224,6 +226,10 @@ float find_demands(const Config& config, State& state, const Validated& validate
   if (is_hot) {
     least = apply_guards(config, state, validated, body, most_V, demand, limited, least);
   }
+  if (state.kept_share < 1.0F) {
+    state.kept_share = smaller(1.0F, kKeptRise_ratio * state.kept_share);
+    least *= body.is_wheelwise ? 1.0F : state.kept_share;
+  }
   // Scaled by this factor, the power falls at least as much.
   const float of_battery = share_of_battery(config, state, validated, least * power_W);
   const float factor = least * of_battery;
@@ -248,30 +254,43 @@ Reason strongest(const WheelState& wheel, Reason limit) {
   return (wheel.speed_fault | wheel.current_fault | wheel.guard_fault) == 0 ? limit : fault_of(wheel);
 }
 
-/// Limits a wheel whose voltage may exceed the current limit. Returns false if its bridge has to open.
+/// Limits a wheel whose voltage may exceed the current limit. Returns false if its bridge has to open, else lowers `kept` to the fraction
+/// of its wanted current that is left.
 [[gnu::noinline]] bool hold_wheel(const Config& config, State& state, const Validated& validated, const WheelDemand& demand, int i,
-                                  float most_V, float& voltage_V, Reason& reason) {
+                                  float most_V, LimitedWheel& end, float& kept) {
   WheelState& wheel = state.wheel[i];
   const ValidatedWheel& sensed = validated.wheel[i];
-  if (sensed.is_speed_known && !sensed.is_current_sensed) {
-    wheel.current_bound_A = demand.most_A;
-    return move_into_window(config, state, validated, demand, i, most_V, voltage_V, reason);
-  }
-  bool is_held = sensed.is_speed_known ? hold_window(config, state, validated, demand, i, most_V, voltage_V, reason)
+  const float asked_V = end.voltage_V;
+  float voltage_V = asked_V;
+  Reason cause = Reason::slip;
+  bool is_held = sensed.is_speed_known ? hold_window(config, state, validated, demand, i, voltage_V)
                                        : limp_blindly(config, validated, demand, i, most_V, voltage_V);
   if (sensed.is_current_sensed) {
-    const float asked_V = voltage_V;
+    const float by_speed_V = voltage_V;
     hold_sensed_current(config, validated, i, wheel, demand.most_A, voltage_V);
-    if (voltage_V != asked_V) {
-      reason = reason == Reason::none ? reason_of(config.wheel[i], demand) : reason;
+    if (voltage_V != by_speed_V) {
+      cause = Reason::sensed_current;
       // The current sensor may be faulty too: if it and the speeds leave no common voltage, the bridge opens.
       const float held_V = voltage_V;
-      is_held = is_held && !(sensed.is_speed_known && (!hold_window(config, state, validated, demand, i, most_V, voltage_V, reason) ||
-                                                       absolute(voltage_V - held_V) > kSlip_V));
+      is_held = is_held && !(sensed.is_speed_known &&
+                             (!hold_window(config, state, validated, demand, i, voltage_V) || absolute(voltage_V - held_V) > kSlip_V));
     }
   }
   wheel.current_bound_A = larger(demand.most_A, kBoundDecay * wheel.current_bound_A);
-  return is_held && is_finite(voltage_V) && !(sensed.is_current_sensed && is_overcurrent(config, sensed, wheel));
+  if (sensed.is_current_sensed && is_overcurrent(config, sensed, wheel)) {
+    cause = Reason::sensed_current;
+    is_held = false;
+  }
+  is_held = is_held && absolute(voltage_V) <= kRounding * most_V;  // false for NaN
+  end.voltage_V = voltage_V;
+  const bool is_changed = absolute(voltage_V - asked_V) > kSlip_V;
+  if (!is_held || (is_changed && (cause == Reason::sensed_current || end.reason == Reason::none || end.reason == Reason::other_wheel))) {
+    end.reason = demand.most_A > 0.0F ? cause : reason_of(config.wheel[i], demand);
+  }
+  if (is_held && is_changed && sensed.is_speed_known) {
+    kept = smaller(kept, (voltage_V - demand.back_V) / (asked_V - demand.back_V));
+  }
+  return is_held;
 }
 
 /// Returns true if the sensed current and the current that it predicts for a voltage keep the limit.
@@ -284,21 +303,21 @@ bool is_within_by_current(const Config& config, WheelState& wheel, float sensed_
 
 /// Limits the wanted voltage of one wheel. Returns true if its bridge has to open.
 bool finish_wheel(const Config& config, State& state, const Validated& validated, const WheelDemand& demand, int i, float most_V,
-                  float& voltage_V, Reason& reason) {
-  voltage_V = demand.back_V + config.lowest_resistance_ohm * demand.current_A;
+                  LimitedWheel& end, float& kept) {
+  end.voltage_V = demand.back_V + config.lowest_resistance_ohm * demand.current_A;
   const ValidatedWheel& sensed = validated.wheel[i];
   WheelState& wheel = state.wheel[i];
   // The common case of hold_wheel(): speeds and sensed current agree that the voltage keeps the limit.
-  if (sensed.is_speed_known && is_within(config, validated, demand, voltage_V)) {
+  if (sensed.is_speed_known && is_within(config, validated, demand, end.voltage_V)) {
     if (!sensed.is_current_sensed) {
       wheel.current_bound_A = demand.most_A;
       return false;
     }
-    if (is_within_by_current(config, wheel, sensed.current_A, demand.most_A, voltage_V)) {
+    if (is_within_by_current(config, wheel, sensed.current_A, demand.most_A, end.voltage_V)) {
       return false;
     }
   }
-  return !hold_wheel(config, state, validated, demand, i, most_V, voltage_V, reason);
+  return !hold_wheel(config, state, validated, demand, i, most_V, end, kept);
 }
 
 }  // namespace
@@ -313,16 +332,17 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
   // Back-calculation: the integrators follow the voltages after the limits.
   const float feedback_share = smaller(1.0F, validated.elapsed_s * config.derived.per_tracking_time_per_s);
   float power_W = 0.0F;
+  float kept = 1.0F;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     LimitedWheel& end = limited.wheel[i];
     end.allowed_A = demand[i].most_A;
-    end.is_open = finish_wheel(config, state, validated, demand[i], i, most_V, end.voltage_V, end.reason) || body.is_open;
+    end.is_open = finish_wheel(config, state, validated, demand[i], i, most_V, end, kept) || body.is_open;
     wheel.is_open = end.is_open ? 1 : 0;
     if (end.is_open) {
       end.voltage_V = 0.0F;
-      end.reason = body.is_open ? Reason::none : reason_of(config.wheel[i], demand[i]);
+      end.reason = body.is_open ? Reason::none : end.reason;
       wheel.integral_V = 0.0F;
     } else {
       power_W += end.voltage_V * demand[i].current_A;
@@ -333,6 +353,9 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
     end.reason = validated.wheel[i].is_speed_known ? strongest(wheel, end.reason) : Reason::wheel_speed_unknown;
   }
   state.battery_current_A = power_W / validated.pwm_battery_V;
+  if (kept < 1.0F) {
+    state.kept_share = larger(kLeastKept_share, state.kept_share * kept);
+  }
   return limited;
 }
 

@@ -49,13 +49,6 @@ inline Real square_root(Real x) {
 /// Sign of x, smoothed over `width` around zero: x/√(x² + width²). Returns 0 if `width` is not positive.
 inline float smooth_sign(float x, float width) { return width > 0.0F ? x / square_root(x * x + width * width) : 0.0F; }
 
-/// Returns the 32-bit word number `i` of an object, for check sums.
-inline std::uint32_t word_of(const void* object, unsigned i) {
-  std::uint32_t word = 0;
-  __builtin_memcpy(&word, static_cast<const unsigned char*>(object) + i * sizeof(word), sizeof(word));
-  return word;
-}
-
 /// Running check sum, the halves of a 64-bit number.
 struct CheckSum {
   std::uint32_t low;

@@ -1,7 +1,18 @@
-// Pose targets: calls the planner once per period. A file of its own, so that firmware without a pose does not link the planner.
+// Pose targets: predicts the pose and calls the planner once per period. A file of its own, so that firmware without a pose does not link
+// the planner.
 #include "robot_core/drive_core.h"
 
 namespace robot_core {
+
+void predict_pose(const Vector3& velocity, float age_s, Vector3& pose) {
+  // With constant local velocity and yaw rate the robot follows an arc: the chord has the mean direction and sin(x)/x of the length.
+  const float half_rad = 0.5F * velocity.yaw * age_s;
+  const SineCosine mean = sine_cosine(pose.yaw + half_rad);
+  const float chord_s = age_s * (1.0F - half_rad * half_rad * (1.0F / 6.0F));
+  pose.x += chord_s * (velocity.x * mean.cosine_ratio - velocity.y * mean.sine_ratio);
+  pose.y += chord_s * (velocity.x * mean.sine_ratio + velocity.y * mean.cosine_ratio);
+  pose.yaw += 2.0F * half_rad;
+}
 
 bool plan_to_pose(const Config& config, const Vector3& pose, const Vector3& target, Vector3& velocity, Vector3& acceleration) {
   constexpr float kPi = 3.14159265F;

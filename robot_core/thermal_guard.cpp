@@ -199,7 +199,7 @@ namespace {
 
 }  // namespace
 
-GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K) {
+GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K, float extra_s) {
   GuardOutput out;
   out.allowed_A = out.allowed_braking_A = 0.0F;
   const float unknown_s = gap_s(state);
@@ -217,7 +217,8 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
     find_hottest_rates(model, replaced.open, validated, state.state_C, rate_K_per_s);
   }
   for (int node = 0; node < model.node_count; ++node) {
-    const float change_K = model.period_s * rate_K_per_s[node] - state.carry_K[node];
+    const float counted_s = rate_K_per_s[node] > 0.0F ? model.period_s + extra_s : model.period_s;
+    const float change_K = counted_s * rate_K_per_s[node] - state.carry_K[node];
     const float next_C = state.state_C[node] + change_K;
     state.carry_K[node] = (next_C - state.state_C[node]) - change_K;
     state.state_C[node] = next_C > model.coldest_ambient_C ? next_C : model.coldest_ambient_C;

@@ -97,8 +97,9 @@ void set_gap(GuardState& state, float gap_s);
 void add_gap(GuardState& state, float added_s);
 
 /// Runs one guard period. `signal` has kGuardSignals values; its current flowed since the last call. `braking_reserve_K` is kept free below
-/// the limit for braking: the driving current is read from the table for a winding that much hotter.
-GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K);
+/// the limit for braking: the driving current is read from the table for a winding that much hotter. `extra_s`: time since the last call
+/// beyond the guard period, which counts for heating but not for cooling.
+GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K, float extra_s = 0.0F);
 
 /// Updates GuardState::time_to_limit_s. Extrapolates the smoothed heating linearly at the present load: too short near the steady state.
 void estimate_time_to_limit(const GuardModel& model, GuardState& state, float braking_reserve_K);

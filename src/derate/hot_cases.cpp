@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <limits>
+#include <numeric>
 
 #include "base/random.h"
 #include "motor/datasheet_network.h"
@@ -177,10 +179,11 @@ std::vector<std::vector<float>> random_inputs(const Observer& observer, const Ba
   return places;
 }
 
-/// Removes each value for which another value heats every node at least as much, at random inputs and temperatures. The guard then finds
-/// the same highest rates in a shorter search: losses that grow with the speed leave one of its values.
-std::vector<double> without_dominated(std::vector<double> values, const Observer& observer, const BarrierRules& rules,
-                                      observed::Signal signal) {
+/// Removes each value that the others together make needless: at random inputs and temperatures, and for each node, one of them heats at
+/// least as much. The guard then finds the same highest rates in a shorter search. Losses that grow with the speed leave one of its values;
+/// a flow of heat that grows with the speed leaves the two ends, because its direction depends on the temperatures.
+std::vector<double> without_needless(const std::vector<double>& values, const Observer& observer, const BarrierRules& rules,
+                                     observed::Signal signal) {
   thermal::FormulaRun<float> run(observer.formula(), observer.rate_steps());
   std::vector<std::vector<float>> rates(values.size());
   for (std::vector<float>& inputs : random_inputs(observer, rules)) {
@@ -191,19 +194,28 @@ std::vector<double> without_dominated(std::vector<double> values, const Observer
       rates[i].insert(rates[i].end(), rate.begin(), rate.end());
     }
   }
-  for (std::size_t i = 0; i < values.size();) {
-    const bool is_dominated = std::ranges::any_of(rates, [&](const std::vector<float>& other) {
-      return &other != &rates[i] && std::ranges::equal(other, rates[i], std::greater_equal{});
-    });
-    const auto at = static_cast<std::ptrdiff_t>(i);
-    if (is_dominated) {
-      values.erase(values.begin() + at);
-      rates.erase(rates.begin() + at);
-    } else {
-      ++i;
+  // The ends come last, because rounding may make a value beside an end equal to it.
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return i == 0 || i + 1 == values.size(); });
+  std::vector<bool> is_needed(values.size(), true);
+  for (const std::size_t i : order) {
+    is_needed[i] = false;
+    for (std::size_t at = 0; at < rates[i].size() && !is_needed[i]; ++at) {
+      bool is_matched = false;
+      for (std::size_t other = 0; other < values.size() && !is_matched; ++other) {
+        is_matched = is_needed[other] && rates[other][at] >= rates[i][at];
+      }
+      is_needed[i] = !is_matched;
     }
   }
-  return values;
+  std::vector<double> needed;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (is_needed[i]) {
+      needed.push_back(values[i]);
+    }
+  }
+  return needed;
 }
 
 }  // namespace
@@ -218,10 +230,10 @@ std::vector<double> values_if_unknown(const Observer& observer, const BarrierRul
   constexpr int kMany = 33;
   switch (signal) {
     case observed::current:
-      return without_dominated(with_hottest(evenly(-rules.most_current_A, rules.most_current_A, kMany), observer, rules, signal), observer,
+      return without_needless(with_hottest(evenly(-rules.most_current_A, rules.most_current_A, kMany), observer, rules, signal), observer,
                                rules, signal);
     case observed::speed:
-      return without_dominated(
+      return without_needless(
           with_hottest(evenly(-rules.most_speed_rad_per_s, rules.most_speed_rad_per_s, kMany), observer, rules, signal), observer, rules,
           signal);
     case observed::ambient:
@@ -242,7 +254,7 @@ std::vector<double> values_if_unknown(const Observer& observer, const BarrierRul
   values.push_back(scan.values.back());
   std::ranges::sort(values);
   values.erase(std::unique(values.begin(), values.end()), values.end());
-  return without_dominated(values, observer, rules, signal);
+  return without_needless(values, observer, rules, signal);
 }
 
 std::vector<HotCase> hot_cases(const Observer& observer, const BarrierRules& rules) {

@@ -197,6 +197,7 @@ robot_core::Config make_core_config(const robot::Robot& robot, const motor::Moto
   set_gains(wheel_loop_gains(wheel_loop_plant(body, robot::drive_constants(robot, motor)), options.period_s), config);
   set_limits(robot, body, config);
   config.plan_step = options.has_pose_targets ? &robot_core::plan_to_pose : nullptr;
+  config.predict_pose = options.has_pose_targets ? &robot_core::predict_pose : nullptr;
   return finished(config);
 }
 

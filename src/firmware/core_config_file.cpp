@@ -52,7 +52,7 @@ Origins wheel_origins(bool has_friction) {
 
 Origins body_origins(const CoreSource& source) {
   return {
-      {"check_sum", "robot_core::config_check_sum() of what follows"},
+      {"check_sum", "CRC-32 of what follows, without the pointers: robot_core::config_check_sum()"},
       {"wheel_count", "robot file: wheels.axis_angles"},
       {"period_s", "option --period"},
       {"wheel_radius_m", of_robot(source.robot, "wheels.radius")},
@@ -243,7 +243,8 @@ std::string core_config_header(const CoreSource& source) {
   text += Writer(source, declaration()).config() + "    .guard = &kMotorGuard,\n};\n\n";
   return text +
          "namespace detail {\n\nconstexpr robot_core::Config with_planner(robot_core::Config config) {\n"
-         "  config.plan_step = &robot_core::plan_to_pose;  // the check sum leaves pointers out\n  return config;\n}\n\n"
+         "  // The check sum leaves pointers out.\n  config.plan_step = &robot_core::plan_to_pose;\n"
+         "  config.predict_pose = &robot_core::predict_pose;\n  return config;\n}\n\n"
          "}  // namespace detail\n\n"
          "/// With the planner of pose targets. The linker leaves the planner out if nothing refers to this.\n"
          "inline constexpr robot_core::Config kCoreConfigWithPlanner = detail::with_planner(kCoreConfig);\n";

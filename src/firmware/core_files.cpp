@@ -99,6 +99,7 @@ Words words_for(const CoreSource& source, const std::vector<std::string>& notes)
               {"MOTOR", in_one_line(source.motor.id)},
               {"VERSION", source.version},
               {"PERIOD_S", float_literal(source.config.period_s)},
+              {"PERIOD_US", fmt::format("{:.0f}u", 1e6 * source.options.period_s)},
               {"PERIOD_MS", fmt::format("{:.6g}", 1e3 * source.options.period_s)},
               {"WHEELS", std::to_string(source.config.wheel_count)},
               {"STATE_BYTES", std::to_string(sizeof(robot_core::State))},

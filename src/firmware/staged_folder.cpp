@@ -40,6 +40,38 @@ std::set<std::string> generated_before(const fs::path& folder) {
   return paths;
 }
 
+bool has_write_permission(const fs::path& folder) {
+  constexpr fs::perms kWrite = fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
+  std::error_code problem;
+  // The superuser may write to every folder, but a folder without any write permission is meant to stay as it is.
+  return (fs::status(folder, problem).permissions() & kWrite) != fs::perms::none && access(folder.c_str(), W_OK | X_OK) == 0;
+}
+
+/// Throws if writing the files would overwrite something that no earlier run generated, or change a folder without write permission.
+void check_replaced_files(const fs::path& folder, std::span<const CoreFile> files) {
+  const std::set<std::string> generated = generated_before(folder);
+  std::error_code problem;
+  for (const CoreFile& file : files) {
+    for (fs::path part = fs::path(file.path).parent_path(); !part.empty(); part = part.parent_path()) {
+      const fs::file_status status = fs::symlink_status(folder / part, problem);
+      if (fs::exists(status) && !fs::is_directory(status)) {
+        throw base::Failure(base::ExitCode::bad_input,
+                            fmt::format("{} is not a folder, but generated files belong into it; move it away or "
+                                        "choose another folder with --out",
+                                        (folder / part).string()));
+      }
+      if (fs::exists(status) && !has_write_permission(folder / part)) {
+        throw unwritable(folder / part, std::make_error_code(std::errc::permission_denied));
+      }
+    }
+    if (fs::exists(fs::symlink_status(folder / file.path, problem)) && !generated.contains(file.path)) {
+      throw base::Failure(base::ExitCode::bad_input,
+                          fmt::format("{} exists and {} does not list it as generated; move it away or choose another folder with --out",
+                                      (folder / file.path).string(), kGeneratedFiles));
+    }
+  }
+}
+
 /// Copies the files that a user added. Generated files of an older version stay behind.
 void copy_others(const fs::path& from, const fs::path& to) {
   const std::set<std::string> generated = generated_before(from);
@@ -92,6 +124,9 @@ void check_target_folder(const fs::path& folder, bool may_replace) {
                                     "and keeps all others",
                                     folder.string()));
   }
+  if (!problem && fs::is_directory(status) && !has_write_permission(path)) {
+    problem = std::make_error_code(std::errc::permission_denied);
+  }
   if (problem) {
     throw unwritable(path, problem);
   }
@@ -99,6 +134,7 @@ void check_target_folder(const fs::path& folder, bool may_replace) {
 
 StagedFolder::StagedFolder(const fs::path& folder, std::span<const CoreFile> files, bool may_replace) : folder_(real_path(folder)) {
   check_target_folder(folder, may_replace);
+  check_replaced_files(folder_, files);
   stage_ = folder_.parent_path() / fmt::format(".{}.{}.new", folder_.filename().string(), getpid());
   std::error_code problem;
   fs::remove_all(stage_, problem);
@@ -109,6 +145,7 @@ StagedFolder::StagedFolder(const fs::path& folder, std::span<const CoreFile> fil
     write(files);
     if (fs::is_directory(folder_, problem)) {
       copy_others(folder_, stage_);
+      fs::permissions(stage_, fs::status(folder_).permissions());
     }
   } catch (...) {
     fs::remove_all(stage_, problem);

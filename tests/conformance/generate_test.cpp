@@ -11,6 +11,7 @@
 #include <fstream>
 #include <optional>
 #include <random>
+#include <regex>
 #include <set>
 
 #include "faulty_drive.h"
@@ -197,6 +198,10 @@ void expect_firmware_builds(const Generated& core) {
     EXPECT_THAT(names, Not(AnyOf(HasSubstr("plan_to_pose"), HasSubstr("plan_plane"))));
     // Double precision would appear as calls of the compiler's library.
     EXPECT_THAT(names, Not(HasSubstr("__aeabi_d")));
+    // An interrupt between the test and wfi must not be missed.
+    const std::string wait = build(core, fmt::format("arm-none-eabi-objdump -d --disassemble=board_wait_for_period {}", image)).out;
+    EXPECT_LT(wait.find("cpsid"), wait.find("wfi"));
+    EXPECT_THAT(wait, HasSubstr("cpsie"));
     const std::string sections = build(core, fmt::format("arm-none-eabi-size -A -d {}", image)).out;
     EXPECT_THAT(sections, AllOf(HasSubstr(".vectors"), HasSubstr("134217728"), HasSubstr(".noinit")));
   }
@@ -207,6 +212,17 @@ TEST(GeneratedCore, CompilesForTheHostWithBothBuildsAndHasTheBitsOfTheCoreHere) 
 }
 
 TEST(GeneratedCore, CompilesForTheControllerWithBothBuilds) { expect_firmware_builds(plain_core()); }
+
+// The oscillator of the independent watchdog has 17 to 47 kHz (data sheet DS11532 of the STM32F767).
+TEST(GeneratedCore, WatchdogEndsWithinTheGapThatTheCoreCounts) {
+  const std::string board = content_of(plain_core().core / "firmware/board_default.c");
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(board, found, std::regex("WATCHDOG_RELOAD (\\d+)u")));
+  constexpr double kPrescaler = 4.0;
+  const double cycles = kPrescaler * (std::stod(found[1]) + 1.0);
+  EXPECT_LE(cycles / 17e3, static_cast<double>(robot_core::kWatchdog_s));
+  EXPECT_GT(cycles / 47e3, 5.0 * static_cast<double>(plain_core().config.period_s));
+}
 
 // These effects need a power, an exponential, a third node, and a signal that the core lacks.
 TEST(GeneratedCore, HasTheLawsOfAddedEffects) {
@@ -348,7 +364,7 @@ TEST(GenerateCore, KeepsWhatAUserAdded) {
   write(core / "robot_core/mine.h", "of my project");
   write(core / "robot_core/gone.cpp", "of an older version");
   write(core / "core_config.h", "of an older version");
-  write(core / "generated_files.txt", "core_config.h\nrobot_core/gone.cpp\n");
+  write(core / "generated_files.txt", "core_config.h\ngenerated_files.txt\nrobot_core/gone.cpp\n");
   EXPECT_EQ(run(generate(kEcx, core)).exit_code, 2);
   ASSERT_EQ(run(generate(kEcx, core) + Words{"--force"}).exit_code, 0);
   EXPECT_EQ(content_of(core / "firmware/board.c"), "of my board");
@@ -357,6 +373,45 @@ TEST(GenerateCore, KeepsWhatAUserAdded) {
   EXPECT_THAT(content_of(core / "core_config.h"), HasSubstr("kCoreConfig"));
   EXPECT_THAT(content_of(core / "generated_files.txt"), AllOf(HasSubstr("robot_core/limits.cpp\n"), Not(HasSubstr("gone"))));
   EXPECT_THAT(folder.names(), testing::ElementsAre("core"));
+}
+
+/// --force must fail with this message and change nothing.
+void expect_refused(const TemporaryFolder& folder, const std::string& message) {
+  const std::string before = all_bytes(folder.path() / "core");
+  const ProgramRun done = run(generate(kEcx, folder.path() / "core") + Words{"--force"});
+  EXPECT_EQ(done.exit_code, 2);
+  EXPECT_THAT(done.err, HasSubstr(message));
+  EXPECT_EQ(all_bytes(folder.path() / "core"), before);
+  EXPECT_THAT(folder.names(), testing::ElementsAre("core"));
+}
+
+TEST(GenerateCore, ReplacesNoFileThatItHasNotGenerated) {
+  const TemporaryFolder folder;
+  const fs::path core = folder.path() / "core";
+  fs::create_directories(core);
+  write(core / "Makefile", "of my project");
+  expect_refused(folder, "Makefile exists and generated_files.txt does not list it");
+  write(core / "generated_files.txt", "README.md\ngenerated_files.txt\n");
+  expect_refused(folder, "Makefile exists and generated_files.txt does not list it");
+  fs::remove(core / "Makefile");
+  write(core / "robot_core", "of my project");
+  expect_refused(folder, "robot_core is not a folder");
+}
+
+TEST(GenerateCore, LeavesAFolderWithoutWritePermission) {
+  const TemporaryFolder folder;
+  const fs::path core = folder.path() / "core";
+  fs::create_directories(core / "robot_core");
+  constexpr auto kReadOnly = fs::perms::owner_read | fs::perms::owner_exec;
+  fs::permissions(core, kReadOnly);
+  expect_refused(folder, "cannot be written");
+  EXPECT_EQ(fs::status(core).permissions(), kReadOnly);
+  fs::permissions(core, fs::perms::owner_all);
+  fs::permissions(core / "robot_core", kReadOnly);
+  expect_refused(folder, "robot_core cannot be written");
+  fs::permissions(core / "robot_core", fs::perms::owner_all);
+  ASSERT_EQ(run(generate(kEcx, core) + Words{"--force"}).exit_code, 0);
+  EXPECT_EQ(fs::status(core).permissions(), fs::perms::owner_all);
 }
 
 struct WrongLine {

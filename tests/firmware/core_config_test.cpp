@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <boost/crc.hpp>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -30,6 +32,15 @@ TEST(CoreConfig, OfEveryShippedRobotStartsTheCore) {
     EXPECT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F})) << id;
     EXPECT_EQ(config.check_sum, robot_core::config_check_sum(config)) << id;
   }
+}
+
+TEST(CoreConfig, CheckSumIsTheCommonCrc32) {
+  const robot_core::Config config = twente_config();
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(&config);
+  const std::size_t first = sizeof(config.check_sum);
+  boost::crc_32_type sum;
+  sum.process_bytes(bytes + first, offsetof(robot_core::Config, unused) + sizeof(config.unused) - first);
+  EXPECT_EQ(config.check_sum, sum.checksum());
 }
 
 // 1.07 ohm with a tolerance of 10 %, 10 mohm of the motor controller, 25.2 V, 32.8 mN m/A, J = 220 g cm² + 9.47 g cm².

@@ -99,6 +99,29 @@ TEST(UnknownSignal, HeatsAsMuchIfTheHottestSpeedDependsOnTheTemperature) {
   expect_as_hot(observer, derate::rules_for(motor), "hump");
 }
 
+// The flow to the air reverses with the temperatures, so no single speed heats every node most. Both ends of the range together do.
+TEST(UnknownSignal, OfACoolingWindLeavesItsTwoEnds) {
+  const motor::Motor motor = derate::ecx_32_with(
+      "[effects.wind]\ntype = \"vehicle_airflow\"\n"
+      "conductance = { value = \"0.03 W/K\", origin = \"estimated\", derivation = \"a test\" }\n"
+      "exponent = { value = \"0.5\", origin = \"estimated\", derivation = \"a test\" }\n");
+  const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
+  const derate::Observer observer(network, motor.nominal, twente(), 1.5);
+  const derate::BarrierRules rules = derate::rules_for(motor);
+  ASSERT_TRUE(observer.uses(derate::observed::vehicle_speed));
+  const std::vector<double> few = derate::values_if_unknown(observer, rules, derate::observed::vehicle_speed);
+  EXPECT_EQ(few, (std::vector<double>{0.0, rules.most_vehicle_speed_m_per_s}));
+  thermal::FormulaRun<float> run(observer.formula(), observer.rate_steps());
+  Uniform uniform(7);
+  for (int i = 0; i < 4000; ++i) {
+    const std::vector<float> place = random_place(observer, rules, uniform);
+    const auto most = [&](const std::vector<double>& values) {
+      return hottest(run, place, derate::observed::vehicle_speed, values, observer.state_count());
+    };
+    EXPECT_EQ(most(few), most(derate::evenly(0.0, rules.most_vehicle_speed_m_per_s, kSearched))) << i;
+  }
+}
+
 // The drive core's own search: never a higher current than with all values.
 TEST(UnknownSignal, GuardAllowsNoMoreCurrentThanWithALongSearch) {
   const derate::GuardedMotor guarded(ecx_32(), derate::rules_for(ecx_32()), 1.5);

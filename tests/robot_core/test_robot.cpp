@@ -213,6 +213,7 @@ Config make_config(int wheel_count, bool has_guard) {
   set_inverse(config);
   config.guard = has_guard ? &guard.model : nullptr;
   config.plan_step = robot_core::plan_to_pose;
+  config.predict_pose = robot_core::predict_pose;
   robot_core::complete(config);
   return config;
 }

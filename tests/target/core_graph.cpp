@@ -22,6 +22,8 @@ CallGraph core_graph(const std::string& files, const std::string& rates, const s
   for (const std::string& caller : graph.names_with("most_square")) {
     graph.bound_recursion_of(caller, kHalvings + 1);
   }
+  const std::vector<std::string> predictor = graph.names_with("predict_pose");
+  EXPECT_EQ(predictor.size(), 1U);
   for (const std::string& caller : graph.callers_through_pointers()) {
     if (caller.find("replay") != std::string::npos) {
       continue;  // belongs to the test program, which calls the core
@@ -30,7 +32,11 @@ CallGraph core_graph(const std::string& files, const std::string& rates, const s
     const bool is_guard = caller.find("guard") != std::string::npos || caller.find("hottest") != std::string::npos ||
                           caller.find("heat_for_gap") != std::string::npos;
     EXPECT_TRUE(is_planner != is_guard) << caller << " calls through a pointer that this test does not know";
-    graph.resolve_pointers_of(caller, named(is_planner ? planner : rates));
+    std::set<std::string> targets = named(is_planner ? planner : rates);
+    if (is_planner && !planner.empty()) {
+      targets.insert(predictor.begin(), predictor.end());
+    }
+    graph.resolve_pointers_of(caller, targets);
   }
   return graph;
 }

@@ -10,7 +10,9 @@ namespace heatsoak::target {
 inline constexpr double kMeanInstructions = 3000.0;
 /// The same with current sensors, changing commands, and faults in a third of the time.
 inline constexpr double kMeanInstructionsWithFaults = 3250.0;
-/// Of every step, with or without faults.
+/// The same with one step in ten late by up to two periods, which then has more work.
+inline constexpr double kMeanInstructionsLate = 3350.0;
+/// Of every step of the tests: on time or late, with or without the faults of drive_stream.h.
 inline constexpr std::uint32_t kMostInstructions = 6000;
 /// Code and constants, with the motor's law and tables.
 inline constexpr std::uint64_t kMostCode_bytes = 24 * 1024;

@@ -73,7 +73,7 @@ CallGraph::Depth depth_of_step(const std::string& function, bool with_planner) {
 
 TEST(DriveCoreOnTarget, MinuteOfPlayAgreesBitForBit) {
   SKIP_WITHOUT_EMULATOR();
-  const std::vector<Input> inputs = minute_of_play(1, false);
+  const std::vector<Input> inputs = minute_of_play(1, Play::usual);
   const std::vector<DriveResult> host = on_host(inputs);
   const std::set<Reason> reasons = reasons_of(host);
   for (const Reason reason : {Reason::none, Reason::driver_current, Reason::traction, Reason::guard, Reason::other_wheel, Reason::time_jump,
@@ -100,9 +100,23 @@ TEST(DriveCoreOnTarget, MinuteOfPlayAgreesBitForBit) {
   RecordProperty("stack_bytes", std::to_string(target.summary.most_stack_bytes));
 }
 
+TEST(DriveCoreOnTarget, LateStepsStayWithinTheBudget) {
+  SKIP_WITHOUT_EMULATOR();
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const std::vector<Input> inputs = minute_of_play(seed, Play::late_steps);
+    const Replay target = replay(HEATSOAK_DRIVE_IMAGE, bytes_of(inputs));
+    expect_same(target, inputs, on_host(inputs));
+    EXPECT_LE(target.mean_instructions(), kMeanInstructionsLate) << seed;
+    const auto most = std::ranges::max_element(target.instructions);
+    EXPECT_LE(*most, kMostInstructions) << "seed " << seed << ", step " << most - target.instructions.begin();
+    RecordProperty("mean_instructions_" + std::to_string(seed), std::to_string(target.mean_instructions()));
+    RecordProperty("most_instructions_" + std::to_string(seed), std::to_string(*most));
+  }
+}
+
 TEST(DriveCoreOnTarget, PoseTargetsAgreeBitForBit) {
   SKIP_WITHOUT_EMULATOR();
-  std::vector<Input> inputs = minute_of_play(1, true);
+  std::vector<Input> inputs = minute_of_play(1, Play::pose_targets);
   inputs.resize(inputs.size() / 10);  // fewer inputs, because the planner is slow
   const Replay target = replay(HEATSOAK_DRIVE_IMAGE, bytes_of(inputs));
   expect_same(target, inputs, on_host(inputs));

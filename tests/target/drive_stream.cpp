@@ -33,7 +33,7 @@ class Robot {
  public:
   explicit Robot(const Config& config) : config_(config) {}
 
-  void move(const Output& output) {
+  void move(const Output& output, float time_s) {
     std::array<float, 3> force{};
     battery_A_ = 0.0F;
     for (int i = 0; i < config_.wheel_count; ++i) {
@@ -50,14 +50,14 @@ class Robot {
     // The wheels' inertia is added as if each turned with half of the body's squared speed.
     const float of_wheels_kg = 2.0F * config_.wheel_inertia_kg_m2 / (config_.wheel_radius_m * config_.wheel_radius_m);
     const float inertia_kg_m2 = config_.yaw_inertia_kg_m2 + 2.0F * of_wheels_kg * config_.contact_radius_m * config_.contact_radius_m;
-    velocity_[0] += config_.period_s * force[0] / (config_.mass_kg + of_wheels_kg);
-    velocity_[1] += config_.period_s * force[1] / (config_.mass_kg + of_wheels_kg);
-    velocity_[2] += config_.period_s * force[2] / inertia_kg_m2;
+    velocity_[0] += time_s * force[0] / (config_.mass_kg + of_wheels_kg);
+    velocity_[1] += time_s * force[1] / (config_.mass_kg + of_wheels_kg);
+    velocity_[2] += time_s * force[2] / inertia_kg_m2;
     const float cosine = std::cos(pose_[2]);
     const float sine = std::sin(pose_[2]);
-    pose_[0] += config_.period_s * (cosine * velocity_[0] - sine * velocity_[1]);
-    pose_[1] += config_.period_s * (sine * velocity_[0] + cosine * velocity_[1]);
-    pose_[2] += config_.period_s * velocity_[2];
+    pose_[0] += time_s * (cosine * velocity_[0] - sine * velocity_[1]);
+    pose_[1] += time_s * (sine * velocity_[0] + cosine * velocity_[1]);
+    pose_[2] += time_s * velocity_[2];
   }
 
   void sense(Random& random, Input& input) const {
@@ -173,7 +173,8 @@ void spoil(const Fault& fault, const Input& last, Input& input) {
 
 }  // namespace
 
-std::vector<Input> minute_of_play(unsigned seed, bool with_poses) {
+std::vector<Input> minute_of_play(unsigned seed, Play play) {
+  const bool with_poses = play == Play::pose_targets;
   Random random(seed);
   DriveRun run{};
   begin(run);
@@ -197,6 +198,10 @@ std::vector<Input> minute_of_play(unsigned seed, bool with_poses) {
     input.command_age_s = age_s;
     age_s += run.config.period_s;
     robot.sense(random, input);
+    if (play == Play::late_steps && random.happens(0.1F)) {
+      input.elapsed_s = run.config.period_s * random.between(1.0F, robot_core::kLongestGap_periods);
+    }
+    const float time_s = input.elapsed_s;
     if (3 * k >= 2 * periods) {
       if (--fault.periods <= 0) {
         fault = {random.happens(0.5F) ? random.below(kFaultKinds) : -1, random.below(kMostWheels), 1 + random.below(300)};
@@ -207,7 +212,7 @@ std::vector<Input> minute_of_play(unsigned seed, bool with_poses) {
     }
     inputs.push_back(input);
     run.output = robot_core::step(run.config, run.state, input);
-    robot.move(run.output);
+    robot.move(run.output, play == Play::late_steps ? time_s : run.config.period_s);
   }
   return inputs;
 }

@@ -7,8 +7,11 @@
 
 namespace heatsoak::target {
 
-/// Inputs over 60 s at the Config's period: commands that change 60 times per second, sensors with noise, and faults of sensors and radio
-/// link in the last third. With `with_poses` all commands are pose targets.
-std::vector<robot_core::Input> minute_of_play(unsigned seed, bool with_poses);
+/// Difference from a usual minute of play: one step in ten takes 1 to 3 periods, or all commands are pose targets.
+enum class Play { usual, late_steps, pose_targets };
+
+/// 60000 inputs at the Config's period: commands that change 60 times per second, sensors with noise, and faults of sensors and radio link
+/// in the last third.
+std::vector<robot_core::Input> minute_of_play(unsigned seed, Play play);
 
 }  // namespace heatsoak::target

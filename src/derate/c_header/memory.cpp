@@ -18,19 +18,6 @@ typedef enum {
   @_nothing_restored /* not saved, damaged or of another guard: starts as hot as the limit */
 } @_restored_from;
 
-static inline uint32_t @_crc_32(const uint8_t *bytes, int count) {
-  uint32_t crc = 0xffffffffu;
-  int i;
-  int bit;
-  for (i = 0; i < count; ++i) {
-    crc ^= bytes[i];
-    for (bit = 0; bit < 8; ++bit) {
-      crc = (crc & 1u) != 0u ? (crc >> 1) ^ 0xedb88320u : crc >> 1;
-    }
-  }
-  return ~crc;
-}
-
 static inline void @_pack(uint8_t *to, uint32_t word) {
   to[0] = (uint8_t)(word & 0xffu);
   to[1] = (uint8_t)((word >> 8) & 0xffu);
@@ -76,7 +63,7 @@ static inline void @_save(const @_state *state, uint8_t *buffer) {
     @_pack(&buffer[4 + 4 * node], @_bits(state->state_C[node]));
     @_pack(&buffer[4 + 4 * (@NODES@ + node)], @_bits(state->nominal_C[node]));
   }
-  @_pack(&buffer[@CAP@_SAVED_SIZE - 4], @_crc_32(buffer, @CAP@_SAVED_SIZE - 4));
+  @_pack(&buffer[@CAP@_SAVED_SIZE - 4], heatsoak_crc_32(buffer, @CAP@_SAVED_SIZE - 4));
 }
 
 )";
@@ -191,7 +178,7 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, f
   const bool is_known = elapsed_s >= 0.0f;
   int node;
   bool is_whole = @_unpack(buffer) == @CAP@_SIGNATURE &&
-                       @_unpack(&buffer[@CAP@_SAVED_SIZE - 4]) == @_crc_32(buffer, @CAP@_SAVED_SIZE - 4);
+                       @_unpack(&buffer[@CAP@_SAVED_SIZE - 4]) == heatsoak_crc_32(buffer, @CAP@_SAVED_SIZE - 4);
   for (node = 0; node < @NODES@; ++node) {
     state->state_C[node] = @_number(@_unpack(&buffer[4 + 4 * node]));
     state->nominal_C[node] = @_number(@_unpack(&buffer[4 + 4 * (@NODES@ + node)]));

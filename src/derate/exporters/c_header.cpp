@@ -23,9 +23,12 @@ unsigned signature_of(const Derating& derating) {
   return sum.checksum();
 }
 
+/// Text without its include of <stdint.h>, which the header has at its top.
 std::string shared_text(std::string_view file) {
+  constexpr std::string_view kInclude = "#include <stdint.h>\n";
   const std::span<const embedded::Text> all = embedded::shared_c_text();
-  return std::string(std::ranges::find_if(all, [file](const embedded::Text& each) { return each.path.ends_with(file); })->text);
+  std::string text(std::ranges::find_if(all, [file](const embedded::Text& each) { return each.path.ends_with(file); })->text);
+  return text.erase(text.find(kInclude), kInclude.size());
 }
 
 std::string write(const Derating& derating) {
@@ -43,9 +46,9 @@ std::string write(const Derating& derating) {
          "#ifdef __FAST_MATH__\n#error \"compile without -ffast-math: it removes the checks for NaN and the carried rounding "
          "error\"\n#endif\n\n" +
          (rates.calls_thermal_math ? shared_text("thermal_math.h") + "\n" : "") + shared_text("current_table.h") + "\n" +
-         c_header::constants(source) + c_header::foc_conversion(source) + c_header::structures(source) + c_header::tables(source) +
-         rates.text + c_header::candidates(source) + c_header::allowed_function(source) + c_header::step_functions(source) +
-         c_header::memory_functions(source, signature) + sensor.text + "#endif\n";
+         shared_text("crc_32.h") + "\n" + c_header::constants(source) + c_header::foc_conversion(source) + c_header::structures(source) +
+         c_header::tables(source) + rates.text + c_header::candidates(source) + c_header::allowed_function(source) +
+         c_header::step_functions(source) + c_header::memory_functions(source, signature) + sensor.text + "#endif\n";
 }
 
 }  // namespace

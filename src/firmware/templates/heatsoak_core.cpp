@@ -5,6 +5,7 @@
 
 #include "core_config.h"
 #include "robot_core/drive_core.h"
+#include "robot_core/guard_memory.h"
 
 #ifdef __FAST_MATH__
 #error "without -ffast-math: it removes the checks for values that are not a number"
@@ -24,6 +25,7 @@ static_assert(sizeof(Input) == sizeof(heatsoak_core_input) && alignof(Input) == 
 static_assert(sizeof(Output) == sizeof(heatsoak_core_output) && alignof(Output) == alignof(heatsoak_core_output));
 static_assert(sizeof(Command) == sizeof(heatsoak_core_command));
 static_assert(kCoreConfig.wheel_count == HEATSOAK_CORE_WHEELS && kCoreConfig.period_s == HEATSOAK_CORE_PERIOD_S);
+static_assert(0.999999F * (HEATSOAK_CORE_WATCHDOG_US * 1e-6F) <= robot_core::kWatchdog_s);
 static_assert(kCoreConfig.check_sum == HEATSOAK_CORE_CONFIG_CHECK_SUM && robot_core::kMostWheels == HEATSOAK_CORE_MOST_WHEELS);
 
 #define SAME_PLACE(c, cpp, member)                           \
@@ -54,6 +56,10 @@ bool heatsoak_core_start(heatsoak_core_state *state, bool is_rested, float body_
   start_up.is_rested = is_rested;
   start_up.body_C = body_C;
   return robot_core::start(kCoreConfig, state_in(state), start_up);
+}
+
+bool heatsoak_core_restore(heatsoak_core_state *state, const heatsoak_core_state *saved, float elapsed_s, float board_C) {
+  return robot_core::restore(kCoreConfig, state_in(state), *reinterpret_cast<const State *>(saved->bytes), elapsed_s, board_C);
 }
 
 void heatsoak_core_clear(heatsoak_core_input *input) {

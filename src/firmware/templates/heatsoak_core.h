@@ -22,10 +22,13 @@ extern "C" {
 #endif
 
 #define HEATSOAK_CORE_PERIOD_S @PERIOD_S@
+#define HEATSOAK_CORE_PERIOD_US @PERIOD_US@
+/* Longest time after which the watchdog of the firmware must have reset the controller; the core assumes no longer undetected gap. */
+#define HEATSOAK_CORE_WATCHDOG_US 20000u
 #define HEATSOAK_CORE_WHEELS @WHEELS@ /* of this robot */
 #define HEATSOAK_CORE_MOST_WHEELS 4   /* size of the arrays; of a robot with three wheels the last is ignored */
 #define HEATSOAK_CORE_STATE_BYTES @STATE_BYTES@
-#define HEATSOAK_CORE_CONFIG_CHECK_SUM @CHECK_SUM@
+#define HEATSOAK_CORE_CONFIG_CHECK_SUM @CHECK_SUM@ /* CRC-32 of the values in core_config.h, for telemetry and logs */
 
 /* A sensor that is not fitted, or has no sample: not a number. */
 #define HEATSOAK_CORE_NO_SAMPLE (__builtin_nanf(""))
@@ -98,13 +101,21 @@ typedef enum heatsoak_core_reason {
  * as its limit. Returns false if the configuration is damaged: then step opens all bridges. */
 bool heatsoak_core_start(heatsoak_core_state *state, bool is_rested, float body_C);
 
+/* After a loss of power, once after heatsoak_core_start(): restores the temperatures of the guards and the list of fitted sensors from a
+ * copy of the state, which the firmware stores in backup RAM or flash after each step. `elapsed_s`: time without power; negative or not a
+ * number: unknown. No part becomes colder than `board_C`. Returns false if a wheel has no valid copy: its guard begins as hot as its
+ * limit. May take some milliseconds; the linker leaves it out if it is not called. */
+bool heatsoak_core_restore(heatsoak_core_state *state, const heatsoak_core_state *saved, float elapsed_s, float board_C);
+
 /* No samples, and the command to coast. */
 void heatsoak_core_clear(heatsoak_core_input *input);
 
 /* One control step. A state that was not started, or is damaged, is started again with a hot guard. */
 void heatsoak_core_step(heatsoak_core_state *state, const heatsoak_core_input *input, heatsoak_core_output *output);
 
-/* The same with the planner of pose targets, which the linker leaves out if this is not called. */
+/* The same with the planner of pose targets, which the linker leaves out if this is not called. It plans anew in every step: 86 000
+ * instructions on average, up to 536 000. At 216 MHz and one instruction per cycle these are 0.4 and 2.5 ms, at 16 MHz 5 and 34 ms: longer
+ * than a period. A step that is late by more than two periods counts as a time jump. */
 void heatsoak_core_step_with_planner(heatsoak_core_state *state, const heatsoak_core_input *input, heatsoak_core_output *output);
 
 #ifdef __cplusplus

@@ -92,6 +92,28 @@ void recovers_from_damage() {
   check(output.winding_C[0] > 60.0F, "the guard of a damaged state begins hot");
 }
 
+void restores_after_power_loss() {
+  heatsoak_core_state saved = rested();
+  const heatsoak_core_input input = standing();
+  heatsoak_core_output output;
+  heatsoak_core_step(&saved, &input, &output);
+  const float before_C = output.winding_C[0];
+  heatsoak_core_state state;
+  std::memset(&state, 0, sizeof state);
+  heatsoak_core_start(&state, false, HEATSOAK_CORE_NO_SAMPLE);
+  heatsoak_core_step(&state, &input, &output);
+  check(output.winding_C[0] > 60.0F, "without a copy the guard begins hot");
+  heatsoak_core_start(&state, false, HEATSOAK_CORE_NO_SAMPLE);
+  check(heatsoak_core_restore(&state, &saved, 1.0F, 25.0F), "a copy is restored");
+  heatsoak_core_step(&state, &input, &output);
+  check(std::fabs(output.winding_C[0] - before_C) < 5.0F, "the guard continues with the temperatures of the copy");
+  for (unsigned char &byte : saved.bytes) {
+    byte = static_cast<unsigned char>(byte ^ 4U);
+  }
+  heatsoak_core_start(&state, false, HEATSOAK_CORE_NO_SAMPLE);
+  check(!heatsoak_core_restore(&state, &saved, 1.0F, 25.0F), "a damaged copy is refused");
+}
+
 void needs_a_planner_for_poses() {
   heatsoak_core_input input = standing();
   heatsoak_core_output output;
@@ -145,6 +167,7 @@ int main(int count, char **words) {
   drives_when_commanded();
   opens_without_command();
   recovers_from_damage();
+  restores_after_power_loss();
   needs_a_planner_for_poses();
   std::printf(failures == 0 ? "the generated core passes its self-test\n" : "%d checks failed\n", failures);
   return failures == 0 ? 0 : 1;

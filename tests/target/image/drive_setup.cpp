@@ -152,6 +152,7 @@ Config drive_setup() {
   set_control(config);
   config.guard = &kGuard;
   config.plan_step = robot_core::plan_to_pose;
+  config.predict_pose = robot_core::predict_pose;
   robot_core::complete(config);
   return config;
 }

@@ -43,7 +43,8 @@ bool board_motors_have_rested(float *body_C);
 /* True after a reset by the watchdog or a fault, when the memory still holds the previous state. */
 bool board_has_kept_memory(void);
 
-/* The independent watchdog resets the controller, which opens the bridges, unless it is fed every 20 ms. */
+/* The watchdog resets the controller, which opens the bridges, if it is not fed for HEATSOAK_CORE_WATCHDOG_US or less. It must not be
+ * later: the core counts no longer gap. The default watchdog ends after 7.1 to 19.8 ms. */
 void board_start_watchdog(void);
 void board_feed_watchdog(void);
 

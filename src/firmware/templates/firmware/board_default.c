@@ -11,6 +11,7 @@
 #define IWDG_KR REGISTER(0x40003000u)
 #define IWDG_PR REGISTER(0x40003004u)
 #define IWDG_RLR REGISTER(0x40003008u)
+#define IWDG_SR REGISTER(0x4000300Cu)
 #define SYST_CSR REGISTER(0xE000E010u)
 #define SYST_RVR REGISTER(0xE000E014u)
 #define SYST_CVR REGISTER(0xE000E018u)
@@ -20,6 +21,15 @@
 #define DWT_LAR REGISTER(0xE0001FB0u)
 
 #define CLOCK_PER_US 16u /* internal oscillator; 216 with the PLL */
+
+/* Independent watchdog: its oscillator of 32 kHz is only accurate to 17 to 47 kHz (data sheet DS11532), so it ends after 7.1 to 19.8 ms. */
+#define WATCHDOG_RELOAD 83u
+#define WATCHDOG_CYCLES (4u * (WATCHDOG_RELOAD + 1u)) /* of the oscillator; prescaler 4 */
+#define SLOWEST_KHZ 17u
+#define FASTEST_KHZ 47u
+_Static_assert(WATCHDOG_CYCLES * 1000u <= SLOWEST_KHZ * HEATSOAK_CORE_WATCHDOG_US, "the core counts no longer gap");
+_Static_assert(WATCHDOG_CYCLES * 1000u >= 2u * FASTEST_KHZ * HEATSOAK_CORE_PERIOD_US,
+               "this watchdog may end within two periods: use a more accurate one of the same time");
 
 static volatile uint32_t periods;
 
@@ -32,17 +42,20 @@ WEAK void board_start(void) {
   DWT_LAR = 0xC5ACCE55u;
   DWT_CYCCNT = 0;
   DWT_CTRL |= 1u;
-  SYST_RVR = (uint32_t)(HEATSOAK_CORE_PERIOD_S * 1e6F + 0.5F) * CLOCK_PER_US - 1u;
+  SYST_RVR = HEATSOAK_CORE_PERIOD_US * CLOCK_PER_US - 1u;
   SYST_CVR = 0;
   SYST_CSR = 7u; /* processor clock, interrupt, on */
 }
 
 WEAK void board_wait_for_period(void) {
   static uint32_t seen;
+  /* A masked interrupt still ends wfi: one that comes between the test and wfi is not missed. */
+  __asm__ volatile("cpsid i" ::: "memory");
   while (periods == seen) {
-    __asm__ volatile("wfi");
+    __asm__ volatile("wfi\n\tcpsie i\n\tisb\n\tcpsid i" ::: "memory");
   }
   seen = periods;
+  __asm__ volatile("cpsie i" ::: "memory");
 }
 
 WEAK uint32_t board_time_us(void) {
@@ -101,10 +114,12 @@ WEAK bool board_has_kept_memory(void) {
 }
 
 WEAK void board_start_watchdog(void) {
-  IWDG_KR = 0xCCCCu; /* start: switches the oscillator of 32 kHz on */
+  IWDG_KR = 0xCCCCu; /* start: switches its oscillator on */
   IWDG_KR = 0x5555u; /* allow changes */
-  IWDG_PR = 0u;      /* 8 kHz */
-  IWDG_RLR = 160u;   /* 20 ms */
+  IWDG_PR = 0u;      /* prescaler 4 */
+  IWDG_RLR = WATCHDOG_RELOAD;
+  while (IWDG_SR != 0u) {
+  } /* until the oscillator's clock has taken both over */
   IWDG_KR = 0xAAAAu;
 }
 

@@ -51,7 +51,7 @@ int main(void) {
       board_set_wheel(wheel, output.pwm_ratio[wheel], output.is_open[wheel]);
     }
     board_report(&output);
-    /* Fed here only: a loop that hangs, or an interrupt that never ends, stops the robot within 20 ms. */
+    /* Fed here only: a loop that hangs, or an interrupt that never ends, stops the robot within HEATSOAK_CORE_WATCHDOG_US. */
     board_feed_watchdog();
     board_wait_for_period();
     now_us = board_time_us();
