@@ -21,11 +21,11 @@ void add_derate_options(CLI::App& app, derate::DerateOptions& options) {
   add_quantity(app, "--coldest", options.coldest_ambient_C,
                {"coldest", "degC", base::Range::between(-60.0, 120.0),
                 "coldest air; a sensor that reads less is treated as faulty; 0degC unless given"});
-  add_quantity(
-      app, "--approach", options.approach_s,
-      {"approach", "s", base::Range::between(0.01, 100.0),
-       "in which the winding may approach its limit: a shorter time allows higher peaks while it is cold, a longer one leaves more current "
-       "later in a long load, because the safety factor on heat falls; a quarter of the winding's time constant unless given"});
+  add_quantity(app, "--approach", options.approach_s,
+               {"approach", "s", base::Range::between(0.01, 100.0),
+                "time in which the winding approaches its limit under full use: a shorter time allows higher peaks while it is cold, a "
+                "longer one leaves more current "
+                "later in a long load, because the safety factor on heat falls; a quarter of the winding's time constant unless given"});
   add_quantity(app, "--confidence", guarantee.confidence,
                {"confidence", "", base::Range::between(0.5, 0.999),
                 "least share of motors that keep their limits, shown with 95 % certainty; 0.95 unless given"});

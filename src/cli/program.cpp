@@ -170,7 +170,7 @@ void refuse_one_file_for_two(const CLI::App& verb, Session& session) {
 }
 
 int parse_and_run(int argc, const char* const* argv, Session& session) {
-  CLI::App app("Does this motor survive the match? And if not, what current may it still get?", "heatsoak");
+  CLI::App app("Predicts whether a motor survives a match, and the current that its firmware may allow.", "heatsoak");
   app.set_version_flag("--version", fmt::format("heatsoak {}", base::program_version()));
   app.require_subcommand(1);
   app.formatter(std::make_shared<HelpText>(terminal_width(STDOUT_FILENO)));

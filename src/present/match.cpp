@@ -80,7 +80,7 @@ void add_row(Table& table, const simulate::MatchSimulation& answer, std::string_
 }
 
 Table score_table(const simulate::MatchSimulation& answer) {
-  Table table = planner_table("How well, and at what price, the match was driven", answer);
+  Table table = planner_table("Driving performance and heat of the match", answer);
   for (const ScoreRow& each : kScores) {
     add_row(table, answer, each.name, each.unit, each.cell);
   }

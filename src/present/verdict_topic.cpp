@@ -29,9 +29,9 @@ std::vector<VerdictMeaning> verdict_meanings() {
 std::string undecided_meaning() {
   return fmt::format(
       "The interval of the share of samples over a limit covers the threshold between two verdicts ({:.0f} %, and {:.0f} % on a duty that "
-      "is drawn). Without --samples the program doubles the samples until it does not, at most five times; on a duty that is drawn once, "
-      "and only if that would decide. --samples continues with the number that the answer gives. Looking several times is part "
-      "of the interval: the first may err with a probability of 2.5 %, each later one with 0.36 %, so a verdict is wrong with a "
+      "is drawn). Without --samples the program doubles the samples up to five times, on a duty that is drawn once, and only if that can "
+      "decide the verdict. --samples continues with the number that the answer gives. Looking several times is part of the interval: the "
+      "first may err with a probability of 2.5 %, each later one with 0.36 %, so a verdict is wrong with a "
       "probability of 5 % at most (Clopper and Pearson 1934; alpha spending, Jennison and Turnbull 2000). Samples of one game count as "
       "one. Exit code and JSON then use the verdict of the samples so far.",
       100.0 * select::kMarginalProbability, 100.0 * select::kMajority);

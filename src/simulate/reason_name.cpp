@@ -22,6 +22,7 @@ constexpr NamedReason kNames[] = {
     {Reason::other_wheel, "other_wheel"},
     {Reason::slip, "slip"},
     {Reason::unchecked, "unchecked"},
+    {Reason::sensed_current, "sensed_current"},
     {Reason::config_invalid, "config_invalid"},
     {Reason::state_corrupted, "state_corrupted"},
     {Reason::period_invalid, "period_invalid"},

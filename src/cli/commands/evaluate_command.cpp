@@ -123,13 +123,14 @@ Command evaluate_command() {
         app.add_flag("--closed-loop", options->is_closed_loop,
                      "on a match: the drive core drives games with each motor, with slip, battery sag and real sensing; ranks by them, and "
                      "exit 1 follows them");
-        app.add_option("--guard", options->guard,
-                       "of --closed-loop: shadow counts for how long the motor's thermal guard would have limited it; off leaves that out, "
-                       "which saves some seconds per motor")
+        app.add_option(
+               "--guard", options->guard,
+               "with --closed-loop: shadow counts for how long the motor's thermal guard would have limited it; off leaves that out, "
+               "which saves some seconds per motor")
             ->check(CLI::IsMember({"off", "shadow"}))
             ->type_name("G")
             ->capture_default_str();
-        app.add_option("--games", options->closed_loop.games, "of --closed-loop, with successive seeds")
+        app.add_option("--games", options->closed_loop.games, "number of games with --closed-loop, with successive seeds")
             ->check(CLI::Range(1, 1000))
             ->capture_default_str();
         app.add_flag(

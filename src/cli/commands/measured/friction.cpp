@@ -149,7 +149,7 @@ Command friction() {
                 ->required()
                 ->type_name("LOG");
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
-            app.add_option("--motor", options->motor, "that the robot drove with; the robot's own unless given")->type_name("M");
+            app.add_option("--motor", options->motor, "motor in the robot during the test; the robot's own unless given")->type_name("M");
             app.add_option("--map", options->map, "mapping of foreign logs (see `heatsoak log --help`)")->type_name("FILE.toml");
             app.add_option("--method", options->method, "steady_state, or roll_out: damping alone, from decelerations with open motors")
                 ->check(CLI::IsMember({"steady_state", "roll_out"}))
