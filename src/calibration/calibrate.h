@@ -1,4 +1,5 @@
-// Calibrates a motor from measured runs: parameter values with intervals, what the data do not determine, and which experiment would.
+// Calibrates a motor from measured runs: parameter values with intervals, combinations that the data do not determine, and the experiment
+// that would determine them.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +19,8 @@
 
 namespace heatsoak::calibration {
 
-/// Fit whose parameters are written. `best`: innovations if it predicts left-out pieces as well as the forecast fit, otherwise that.
+/// Fit whose parameters are written. `best`: the innovations fit if it predicts left-out pieces as well as the forecast fit, else the
+/// forecast fit.
 enum class WrittenFit { best, forecast, innovations };
 
 struct CalibrationOptions {
@@ -35,7 +37,7 @@ struct CalibratedParameter {
   double value = 0.0;
   double low = 0.0;  ///< limits of the 95 % interval
   double high = 0.0;
-  bool is_learned = false;       ///< the data say something about it, see is_learned() of motor_model.h
+  bool is_learned = false;       ///< the data reduce the prior's uncertainty, see is_learned() of motor_model.h
   bool is_identifiable = false;  ///< the data, not only the prior, determine it to a factor of two or better
   bool by_profile = false;       ///< true: interval from the profile likelihood; false: from the curvature
 };

@@ -79,7 +79,7 @@ struct ForecastFitIsWritten {};
 /// No fit predicts left-out pieces better than the file.
 struct FilePredictsBest {
   bool is_written = false;          ///< the values of the file are written
-  bool is_better_than_fit = false;  ///< than the written values
+  bool is_better_than_fit = false;  ///< the file predicts better than the written values
 };
 struct FreeRunsPredictBest {
   bool is_written = false;

@@ -19,7 +19,7 @@ std::vector<HeaderArray> header_arrays(std::string_view text);
 
 struct HeaderDifference {
   int line = 0;            ///< in the first header, from 1; 0 if both are equal
-  std::string text;        ///< that line, shortened to 100 bytes
+  std::string text;        ///< text of that line, shortened to 100 bytes
   std::string other_text;  ///< line of the other header at the same place
 };
 

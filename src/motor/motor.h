@@ -90,7 +90,7 @@ struct MotorEffect {
 
   /// Returns the values of the parameters in the type's declared order.
   [[nodiscard]] std::vector<double> values() const;
-  /// Index of its column among those of the motor, see kColumns; 0 without a column.
+  /// Returns the index of its column among those of the motor, see kColumns; 0 without a column.
   [[nodiscard]] std::size_t column_place() const;
 };
 
@@ -120,7 +120,7 @@ struct Motor {
   MotorValues nominal;
 };
 
-/// Throws Failure (bad_input) with every problem of the file.
+/// Reads a motor file. Throws Failure (bad_input) with every problem of the file.
 Motor read_motor(const std::filesystem::path& path);
 
 /// Finds a value by key, "thermal_resistance_winding_stator" or "effects.fan.conductance"; null if the motor has none.

@@ -21,9 +21,9 @@ struct BodyConfig {
   double wheel_inertia_kg_m2 = 0.0;  ///< wheel plus rotor·(gear ratio)², at the wheel
 };
 
-/// Uses the tables body, wheels, friction and traction of the robot's file and the rotor inertia of the motor. Throws Failure (bad_input)
-/// with all missing values. If the file has a measured friction curve over the direction of travel, it replaces wheel torque and roller
-/// drag.
+/// Builds the body from the tables body, wheels, friction and traction of the robot's file and the rotor inertia of the motor. Throws
+/// Failure (bad_input) with all missing values. If the file has a measured friction curve over the direction of travel, it replaces wheel
+/// torque and roller drag.
 BodyConfig make_body(const Robot& robot, const motor::MotorValues& motor);
 
 /// Returns the force and the moment about the origin for an acceleration of the origin, local axes:

@@ -24,7 +24,7 @@ struct FieldAxis {
   double y_share = 0.0;
 };
 FieldAxis field_axis(double yaw_rad);
-/// The same for a caller that keeps the axis while the robot does not turn.
+/// Same conversion for a caller that keeps the axis while the robot does not turn.
 BodyMotion local_motion(const BodyConfig& body, const FieldAxis& axis, const BodyVelocity& velocity_global,
                         const BodyAcceleration& acceleration_global);
 

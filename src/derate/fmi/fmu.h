@@ -17,7 +17,7 @@ enum class FmuType { real, boolean, enumeration };
 /// A variable of the unit. Its index in the list is its value reference.
 struct FmuVariable {
   std::string name;       ///< a C identifier
-  std::string_view unit;  ///< as fmu_unit() returns it; empty if none
+  std::string_view unit;  ///< unit from fmu_unit(); empty if none
   FmuCausality causality = FmuCausality::input;
   FmuType type = FmuType::real;
   double value = 0.0;  ///< start value; ignored for outputs
