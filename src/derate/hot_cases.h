@@ -10,6 +10,7 @@
 
 namespace heatsoak::derate {
 
+/// Temperature limits of a motor; a motor may have no stator limit.
 struct TemperatureLimits {
   double winding_C = 0.0;
   std::optional<double> stator_C = {};

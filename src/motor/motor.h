@@ -137,7 +137,9 @@ struct MotorSample {
   MotorValues values;
   std::vector<std::vector<double>> effect_parameters;  ///< per effect, in declared order
 };
+/// Returns the nominal values of the file.
 MotorSample nominal_sample(const Motor& motor);
+/// Returns a random sample of all values with a spread.
 MotorSample draw_sample(const Motor& motor, base::Random& random);
 
 /// Returns the quality of the data that determine temperatures. If a calibration wrote the file: `measured` if all four thermal resistances

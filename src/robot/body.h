@@ -11,12 +11,13 @@
 
 namespace heatsoak::robot {
 
+/// Constants of the body and its wheels.
 struct BodyConfig {
   Kinematics kinematics;
   WeightConfig weight;
   TractionConfig traction;
   FrictionConfig friction;
-  double rolling_efficiency = 1.0;
+  double rolling_efficiency = 1.0;   ///< share of the wheel's torque that reaches the ground
   double yaw_inertia_kg_m2 = 0.0;    ///< about the centre of gravity
   double wheel_inertia_kg_m2 = 0.0;  ///< wheel plus rotor·(gear ratio)², at the wheel
 };

@@ -16,6 +16,7 @@ struct WheelLoad {
 /// Limit that determines the current: none, the available voltage (with a winding at 25 °C), or the driver's current limit.
 enum class DriveLimit { none, voltage, current };
 
+/// Operating point of a motor after the limits.
 struct DrivePoint {
   double current_A = 0.0;  ///< after limits; equivalent DC current of block commutation, with the sign of the torque
   double current_wanted_A = 0.0;

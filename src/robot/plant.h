@@ -9,6 +9,7 @@
 
 namespace heatsoak::robot {
 
+/// Constants of the simulated robot.
 struct PlantConfig {
   BodyConfig body;
   MotorElectrics motor;

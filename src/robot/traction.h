@@ -24,6 +24,7 @@ struct WeightConfig {
   PerWheel along_x_per_m{};
   PerWheel along_y_per_m{};
 };
+/// Returns the weight with its centre of gravity at (`x_m`, `y_m`) in the local frame and `height_m` above the ground.
 WeightConfig make_weight(const Kinematics& kinematics, double mass_kg, double height_m, double x_m, double y_m);
 
 /// First moment of the loads, S = Σ N_i·(x_i, y_i).
@@ -42,6 +43,7 @@ inline LoadMoment load_moment(const WeightConfig& weight, const Wrench& ground, 
           weight_N * weight.center_of_gravity_y_m - height_m * ground.y_N + above_m * external.y_N};
 }
 
+/// Normal loads of the wheels.
 struct NormalLoads {
   PerWheel force_N{};   ///< at least 0; the sum is the weight
   bool lifted = false;  ///< a wheel has left the ground, or the robot would tip over
