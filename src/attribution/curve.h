@@ -24,6 +24,7 @@ struct HatsAt {
   Eigen::Index left = 0;
   double right_share = 0.0;
 };
+/// Returns the hat functions at a value.
 HatsAt hats_at(const std::vector<double>& knots, double value);
 
 /// Evaluates the piecewise linear curve with the given values at the knots.

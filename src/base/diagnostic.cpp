@@ -33,7 +33,7 @@ bool has_letters_in_order(std::string_view word, std::string_view letters) {
   return letters.empty();
 }
 
-/// Levenshtein distance, O(|a|·|b|).
+/// Returns the Levenshtein distance. O(|a|·|b|).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

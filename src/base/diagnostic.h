@@ -1,4 +1,4 @@
-// How problems are reported to the user: the place, what is wrong, and what to do. All commands use these types.
+// Problems as they are reported to the user: place, problem and remedy. All commands use these types.
 #pragma once
 
 #include <span>
@@ -29,7 +29,7 @@ struct Location {
 struct Diagnostic {
   Location at;
   std::string key;      ///< dotted path of the value in the file; may be empty
-  std::string message;  ///< what is wrong, what was expected, what to do
+  std::string message;  ///< problem, expectation and remedy
 };
 
 /// Formats as `file:line:column: error: key: message`, the form from which editors jump to the place.

@@ -29,7 +29,7 @@ std::string to_string(const Range& range, std::string_view unit);
 
 /// One of the named options of a parameter that is not a number.
 struct Choice {
-  std::string_view name;  ///< as written in a file
+  std::string_view name;  ///< name in a file
   std::string_view unit;  ///< unit of those parameters whose unit depends on this choice
   std::string_view meaning;
 };

@@ -39,7 +39,7 @@ struct ParameterValue {
   Origin origin = Origin::estimated;
   std::string printed;     ///< the text in the file, "36.9 mN m/A"
   std::string source;      ///< ids of the file's [sources], comma separated; may be empty for estimates
-  std::string derivation;  ///< how a derived or estimated value was found
+  std::string derivation;  ///< method by which a derived or estimated value was found
   std::optional<Spread> spread;
   std::vector<Confirmation> confirmed_by;
   Location at;

@@ -5,7 +5,7 @@
 
 namespace heatsoak::base {
 
-/// "0.1.0"; set by the project() line of CMakeLists.txt.
+/// Returns the version, "0.1.0"; set by the project() line of CMakeLists.txt.
 std::string_view program_version();
 
 }  // namespace heatsoak::base

@@ -421,7 +421,7 @@ class Calibrating {
   ForecastSetup setup_;
   bool rows_turn_ = false;
   std::vector<ErrorBeforeAfter> innovations_error_;  ///< errors of the innovations fit in the fitted runs
-  bool is_learned_ = false;                          ///< the innovations fit learned something
+  bool is_learned_ = false;                          ///< the innovations fit determined or narrowed at least one parameter
   Calibration all_;
 };
 

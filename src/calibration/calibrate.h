@@ -1,4 +1,5 @@
-// Calibrates a motor from measured runs: parameter values with intervals, what the data do not determine, and which experiment would.
+// Calibrates a motor from measured runs: parameter values with intervals, combinations that the data do not determine, and the experiment
+// that would determine them.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +19,8 @@
 
 namespace heatsoak::calibration {
 
-/// Fit whose parameters are written. `best`: innovations if it predicts left-out pieces as well as the forecast fit, otherwise that.
+/// Fit whose parameters are written. `best`: the innovations fit if it predicts left-out pieces as well as the forecast fit, else the
+/// forecast fit.
 enum class WrittenFit { best, forecast, innovations };
 
 struct CalibrationOptions {
@@ -30,12 +32,12 @@ struct CalibrationOptions {
 struct CalibratedParameter {
   std::string name;  ///< key in the motor file, or the name of a heat capacity
   std::string unit;
-  bool is_of_file = true;
-  double before = 0.0;
-  double value = 0.0;
-  double low = 0.0;  ///< limits of the 95 % interval
+  bool is_of_file = true;  ///< false: a heat capacity; files contain time constants instead
+  double before = 0.0;     ///< value in the file
+  double value = 0.0;      ///< calibrated value
+  double low = 0.0;        ///< limits of the 95 % interval
   double high = 0.0;
-  bool is_learned = false;       ///< the data say something about it, see is_learned() of motor_model.h
+  bool is_learned = false;       ///< the data reduce the prior's uncertainty, see is_learned() of motor_model.h
   bool is_identifiable = false;  ///< the data, not only the prior, determine it to a factor of two or better
   bool by_profile = false;       ///< true: interval from the profile likelihood; false: from the curvature
 };
@@ -58,8 +60,8 @@ struct Calibration {
   std::vector<CalibratedParameter> parameters;
   Eigen::MatrixXd correlation;  ///< correlation of the logarithms of the motor file's parameters, in the order of `parameters`
   std::vector<OpenDirection> open;
-  std::string next_experiment;  ///< empty if nothing is open
-  std::vector<ErrorBeforeAfter> fit_error;
+  std::string next_experiment;              ///< empty if nothing is open
+  std::vector<ErrorBeforeAfter> fit_error;  ///< per signal: errors in the fitted runs, of the original and the written file
   std::optional<Forecast> forecast;         ///< forecast fit, its rivals and its error band
   bool is_forecast_written = false;         ///< true: `parameters` are from the forecast fit; false: from the innovations fit
   std::vector<motor::MotorEffect> effects;  ///< effects of the written file

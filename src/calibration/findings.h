@@ -32,22 +32,25 @@ struct SensorDrift {
 struct WindingNotMeasured {};
 /// The values follow whole runs best, and the response within seconds needs other values.
 struct ResponseNeedsOtherValues {};
+/// The search stopped before it had converged.
 struct FitStoppedEarly {};
 /// All capacities and resistances moved by one factor, which is the effect of wrong heat.
 struct HeatSeemsWrong {
-  double factor = 1.0;  ///< > 1
-  bool is_too_large = false;
+  double factor = 1.0;        ///< > 1: ratio of the values, in either direction
+  bool is_too_large = false;  ///< the heat of the logs seems too large, else too small
 };
 /// Voltage, current and speed give another terminal resistance than the file.
 struct ResistanceDiffers {
   double found_ohm = 0.0;
   double stated_ohm = 0.0;
 };
+/// A value changed by more than its prior and the fit's uncertainty make plausible.
 struct LargeChange {
   std::string parameter;
-  double factor = 1.0;
+  double factor = 1.0;     ///< new value divided by that of the file
   double change_sd = 0.0;  ///< size of the change in prior standard deviations
 };
+/// A fitted value is outside the declared range of its parameter.
 struct OutsideDeclaredRange {
   std::string parameter;
   std::string unit;
@@ -75,14 +78,16 @@ struct CrossValidation {
   std::size_t pieces = 0;
   std::vector<RivalScore> rivals;
 };
+/// The parameters of the tempered forecast fit are written.
 struct ForecastFitIsWritten {};
 /// No fit predicts left-out pieces better than the file.
 struct FilePredictsBest {
   bool is_written = false;          ///< the values of the file are written
-  bool is_better_than_fit = false;  ///< than the written values
+  bool is_better_than_fit = false;  ///< the file predicts better than the written values
 };
+/// Ordinary least squares of free runs predicts left-out pieces best.
 struct FreeRunsPredictBest {
-  bool is_written = false;
+  bool is_written = false;  ///< its parameters are written
 };
 /// For better forecasts the network has additional effects; this is no diagnosis.
 struct ExtendedForForecasts {

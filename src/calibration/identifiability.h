@@ -1,4 +1,4 @@
-// Identifiability: which parameter combinations the data do not determine, in words, and the cheapest experiment that would.
+// Identifiability in words: parameter combinations that the data do not determine, and the cheapest experiment that would determine them.
 #pragma once
 
 #include <span>

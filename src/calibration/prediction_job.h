@@ -1,4 +1,4 @@
-// The answer of `predict`: checks the logs, predicts their temperatures, and finds where the model is not valid for them.
+// The answer of `predict`: checks the logs, predicts their temperatures, and reports conditions for which the model is not valid.
 #pragma once
 
 #include <string>

@@ -30,7 +30,7 @@ void carry_identifiability(const Forecast& forecast, std::span<const CalibratedP
 /// intervals also contain the innovations fit and its intervals. Needs calibration.forecast.
 void write_forecast(Calibration& calibration);
 
-/// Returns what the compared fits and the chosen one mean for the answer.
+/// Returns the findings about the compared fits and the chosen one.
 std::vector<CalibrationFinding> forecast_findings(const Calibration& calibration);
 
 /// Adds the effects and sensor faults of the calibration that the motor file does not have. Returns the names of those that were added for

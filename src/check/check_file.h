@@ -1,4 +1,4 @@
-// A check file: [[check]] tables, each a robot, a duty, a motor … and limits on what is computed of them.
+// Check files: [[check]] tables with a robot, a duty, a motor … and limits on the results computed from them.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace heatsoak::check {
 struct Limit {
   const ThresholdType* type = nullptr;
   double value = 0.0;  ///< in the type's unit
-  std::string unit;    ///< as written in the file
+  std::string unit;    ///< unit as written in the file
   std::string text;    ///< limit as written in the file: "at most 150 degC"
   base::Location at;   ///< place of that text
 };
@@ -36,7 +36,7 @@ struct Check {
   std::map<std::string, std::string> conditions;
   int samples = 500;
   std::uint64_t seed = 1;
-  std::optional<double> temperature_C = {};  ///< set if a limit needs it
+  std::optional<double> temperature_C = {};  ///< temperature of the key `temperature`; set if a limit needs it
   std::filesystem::path table;
   std::vector<std::filesystem::path> files;
   std::vector<std::filesystem::path> logs;
@@ -44,7 +44,7 @@ struct Check {
   std::optional<double> air_C = {};  ///< air temperature for logs without one
   derate::DerateOptions derate;
   std::vector<Limit> limits;
-  std::map<Setting, std::string> unreadable;  ///< setting whose file does not exist, with the reason: its thresholds fail
+  std::map<Setting, std::string> unreadable;  ///< settings whose file does not exist, with the reason; the thresholds that need them fail
 };
 
 struct CheckFile {
@@ -53,9 +53,9 @@ struct CheckFile {
 };
 
 /// Reads the file and the robots, duties and motors that it names. Throws Failure (bad_input) with every problem of all of them: unknown
-/// keys with "did you mean", limits that are none, a setting that a limit needs and that is missing, a setting that no limit uses.
-/// Committed tables, logs and linted files are not opened here: where one is missing its threshold fails. The same holds for the file of a
-/// robot, duty or motor that does not exist (Check::unreadable).
+/// keys with "did you mean", invalid limits, missing settings that a limit needs, and settings that no limit uses. Committed tables, logs
+/// and linted files are not opened here. If one of them is missing, its threshold fails. The same holds if the file of a robot, duty or
+/// motor does not exist (Check::unreadable).
 CheckFile read_check_file(const std::filesystem::path& path, const input::DataFolders& folders);
 
 }  // namespace heatsoak::check

@@ -23,14 +23,14 @@ struct RewrittenFile {
 };
 
 struct CheckAnswer {
-  std::vector<CheckFile> files;  ///< read files, which `outcomes` points into
+  std::vector<CheckFile> files;  ///< files that were read; `outcomes` points into them
   std::vector<Outcome> outcomes;
   std::vector<RewrittenFile> rewritten;  ///< files whose limits changed; not yet written
 
   [[nodiscard]] bool passed() const;
 };
 
-/// Throws Failure (bad_input) with the problems of all files together; or if a file that came with the program were to be rewritten.
+/// Throws Failure (bad_input) with the problems of all files together, or if a file that came with the program would have to be rewritten.
 CheckAnswer run_check_job(const CheckJob& job, const input::DataFolders& folders, const base::ProgressFor& progress = {});
 
 }  // namespace heatsoak::check

@@ -28,7 +28,7 @@ Counts counts_of(std::span<const Outcome> outcomes) {
   return counts;
 }
 
-/// The outcomes of one check follow each other.
+/// Groups the outcomes by check. The outcomes of one check must be adjacent.
 std::vector<std::span<const Outcome>> by_check(std::span<const Outcome> outcomes) {
   std::vector<std::span<const Outcome>> groups;
   for (std::size_t begin = 0; begin < outcomes.size();) {

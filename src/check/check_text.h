@@ -1,4 +1,4 @@
-// The outcomes of checks for people and for the programs of a CI service.
+// Text of outcomes for people and for the programs of a CI service.
 #pragma once
 
 #include <filesystem>
@@ -13,29 +13,29 @@ namespace heatsoak::check {
 /// Returns how many limits hold, do not hold and cannot be evaluated, without a full stop.
 std::string conclusion_text(std::span<const Outcome> outcomes);
 
-/// Margin with its sign and unit; "–" if the threshold was not evaluated.
+/// Returns the margin with its sign and unit; "–" if the threshold was not evaluated.
 std::string margin_text(const Outcome& outcome);
 
-/// "at most 150 °C".
+/// Returns the limit as text: "at most 150 °C".
 std::string limit_text(const Outcome& outcome);
 
-/// Robot, duty and motor of a check, as far as it has them.
+/// Returns robot, duty and motor of a check as text, without those that it lacks.
 std::string things_of(const Check& check);
 
 /// Returns the basis of the value, or the reason why the threshold fails or could not be evaluated.
 std::string explanation(const Outcome& outcome);
 
-/// One <testsuite> per check and one <testcase> per threshold, as GitHub, GitLab and Jenkins read it. A limit that is exceeded is a
-/// <failure>, a threshold that could not be evaluated an <error>.
+/// Returns JUnit XML as GitHub, GitLab and Jenkins read it: one <testsuite> per check and one <testcase> per threshold. An exceeded limit
+/// is a <failure>, a threshold that could not be evaluated an <error>.
 std::string junit_xml(std::span<const Outcome> outcomes, std::string_view version);
 
-/// A Markdown table for $GITHUB_STEP_SUMMARY.
+/// Returns a Markdown table for $GITHUB_STEP_SUMMARY.
 std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view version);
 
-/// Workflow commands of GitHub Actions, "::error file=…,line=…,col=…,title=…::…": one line for each threshold that fails. Paths below
-/// `workspace` are written relative to it, as GitHub wants them; it may be empty.
+/// Returns workflow commands of GitHub Actions, "::error file=…,line=…,col=…,title=…::…": one line for each threshold that fails. Paths
+/// below `workspace`, which may be empty, are written relative to it, as GitHub expects.
 std::string annotations(std::span<const Outcome> outcomes, const std::filesystem::path& workspace);
-/// One of them.
+/// Returns one workflow command.
 std::string annotation(const base::Location& at, const std::filesystem::path& workspace, std::string_view title, std::string_view message);
 
 }  // namespace heatsoak::check

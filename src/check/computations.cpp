@@ -98,7 +98,7 @@ const GuardedDrive& Computations::guarded_drive(const Check& check) {
   derate::DerateOptions options = check.derate;
   options.hottest_ambient_C = std::max(options.hottest_ambient_C, check.duty->ambient_C.value);
   options.coldest_ambient_C = std::min(options.coldest_ambient_C, check.duty->ambient_C.value);
-  options.sensor.reset();  // the drive core has none
+  options.sensor.reset();  // the drive core has no temperature sensor
   return drives_.get(fmt::format("{}|{}|{}", key_of_load(check), key_of(*check.motor), key_of(options)), [&] {
     simulate::MotorGuard guard;
     guard.derating.emplace(derating(check, options));

@@ -19,7 +19,7 @@
 
 namespace heatsoak::check {
 
-/// Values by key. The first who asks for a key computes it, others wait; a Failure is kept and thrown to all of them.
+/// Values by key. The first caller computes the value of a key, others wait for it. A Failure is kept and thrown to every caller.
 template <class T>
 class Kept {
  public:
@@ -57,26 +57,28 @@ class Kept {
   std::map<std::string, std::unique_ptr<Place>> places_;
 };
 
-/// The match of a check as the drive core drives it, its thermal guard in shadow mode: it counts what it would limit and limits nothing.
+/// Match of a check, driven by the drive core with its thermal guard in shadow mode: the guard reports what it would limit, but limits
+/// nothing.
 struct GuardedDrive {
   simulate::DriveScore score;
   double duration_s = 0.0;
 };
 
-/// Any thread may ask. A function needs what it reads of the check to be there (ThresholdType::needs), and throws Failure with the reason
-/// where it has no result.
+/// Thread-safe. The check must have the settings that a function reads (ThresholdType::needs). Functions throw Failure with the reason if
+/// there is no result.
 class Computations {
  public:
   explicit Computations(int threads) : threads_(threads) {}
 
-  /// `motor` alone on the check's robot and duty: `heatsoak evaluate` gives the same numbers with any other motors beside it.
+  /// Returns the evaluation of `motor` alone on the check's robot and duty. `heatsoak evaluate` gives the same numbers, whatever motors it
+  /// compares.
   const select::MotorEvaluation& evaluation(const Check& check, const motor::Motor& motor);
-  /// Of the check's motor, where it delivers what is demanded; else throws, for the temperatures of a motor that does not are worth
-  /// nothing.
+  /// Returns the evaluation of the check's motor. Throws Failure if the motor cannot deliver the demand, because its temperatures are then
+  /// meaningless.
   const select::MotorEvaluation& feasible_evaluation(const Check& check);
-  /// Draws that are independent of each other: games where the duty is drawn, else samples.
+  /// Returns the number of independent draws: games if the duty is drawn, else samples.
   [[nodiscard]] static int independent_draws(const Check& check);
-  /// One demand per wheel.
+  /// Returns the demand of the duty for the check's seed, one per wheel.
   const std::vector<duty::WheelDemand>& demand(const Check& check);
   const derate::Derating& derating(const Check& check, const derate::DerateOptions& options);
   const GuardedDrive& guarded_drive(const Check& check);

@@ -20,20 +20,21 @@ std::string expected(const ThresholdType& type) {
   return fmt::format("expected {} and a value, such as \"{}\"", to_string(type.direction), type.example);
 }
 
-/// Offset at which the unit begins, after the number.
+/// Returns the unit behind the number; empty without a unit.
 std::string unit_behind(std::string_view quantity) {
   const std::size_t end = quantity.find_first_not_of("+-0123456789.eE \t");
-  // The "e" of a unit such as "eV" is none of a number's; units of this program do not begin with one.
+  // An "e" counts as part of the number, because no unit of this program begins with one.
   return end == std::string_view::npos ? std::string() : std::string(trimmed(quantity.substr(end)));
 }
 
-/// UDUNITS adds an offset for temperatures, so the distance of two is taken.
+/// Converts a value; unchanged if `to` is empty. Callers that need a distance subtract two results, because temperature scales have
+/// offsets.
 double in_unit(double value, std::string_view from, std::string_view to) { return base::convert(value, from, to.empty() ? from : to); }
 
-/// Three significant digits of a distance.
+/// Returns the step of the third significant digit of a distance.
 double step_of(double distance) { return std::pow(10.0, std::floor(std::log10(std::max(std::abs(distance), 1e-9))) - 2.0); }
 
-/// Away from the value that has to keep the limit; 150 stays 150 where it is 150.0000000001.
+/// Rounds to a multiple of `step`, up or down. Rounding errors do not count: 150.0000000001 gives 150.
 double rounded_away(double value, double step, bool is_up) {
   constexpr double kRounding = 1e-9;
   return is_up ? step * std::ceil(value / step - kRounding) : step * std::floor(value / step + kRounding);
@@ -75,7 +76,7 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
 
 std::string looseness_problem(double value, std::string_view text, const ThresholdType& type, const Check& check) {
   const std::optional<LoosestLimit> loosest = type.loosest != nullptr ? type.loosest(check) : std::nullopt;
-  // A limit of 99.9 % is not exactly 0.999.
+  // The slack absorbs rounding errors: 99.9 % in a file is not exactly 0.999.
   constexpr double kRounding = 1e-9;
   const double slack = kRounding * (type.direction == Bound::at_most ? 1.0 : -1.0);
   if (!loosest || keeps(type.direction, value, loosest->value + (loosest->always_holds ? -slack : slack))) {
@@ -95,14 +96,14 @@ std::string updated_limit(const Measured& measured, const ThresholdType& type, s
   if (type.room == Room::none) {
     return text_of(in_unit(measured.value, type.unit, unit));
   }
-  // A value at its origin would have no room at all: it gets that of one of its smallest sensible size.
+  // A value at its origin would get no room, so its distance counts as at least least_size_ratio.
   const double room = margin_share * std::max(std::abs(measured.value - measured.origin_value), type.least_size_ratio);
   const double limit = in_unit(is_up ? measured.value + room : measured.value - room, type.unit, unit);
   const double step = step_of(limit - in_unit(measured.origin_value, type.unit, unit));
   const double most = std::isfinite(type.range.high) ? in_unit(type.range.high, type.unit, unit) : std::numeric_limits<double>::infinity();
   const double rounded = rounded_away(limit, step, is_up);
   std::string text = text_of(std::min(rounded, most));
-  // Without room the rounding of the last digit may have taken the value's own side.
+  // With little room, the rounding to six digits may put the limit on the wrong side of the value.
   if (!keeps(type.direction, measured.value, parse_limit(text, type).value)) {
     text = text_of(std::min(is_up ? rounded + step : rounded - step, most));
   }

@@ -10,7 +10,7 @@
 namespace heatsoak::check {
 namespace {
 
-/// Byte offset of a place given in characters; npos if the text has no such place.
+/// Returns the byte offset of a place given in characters; npos if the text has no such place.
 std::size_t byte_at(std::string_view content, const base::Location& at) {
   std::size_t i = 0;
   for (int line = 1; line < at.line; ++line) {
@@ -32,7 +32,7 @@ std::size_t byte_at(std::string_view content, const base::Location& at) {
 }  // namespace
 
 std::string with_new_limits(const std::string& content, std::span<Outcome> outcomes, double margin_share) {
-  // begin -> length, text; the last first, so that the places before it stay right
+  // Maps begin to length and text. Descending order, so that a replacement does not move the places still to be replaced.
   std::map<std::size_t, std::pair<std::size_t, std::string>, std::greater<>> by_place;
   for (Outcome& outcome : outcomes) {
     if (!outcome.is_evaluated) {
@@ -44,7 +44,7 @@ std::string with_new_limits(const std::string& content, std::span<Outcome> outco
     const std::string problem =
         parsed.problem.empty() ? looseness_problem(parsed.value, text, *limit.type, *outcome.check) : parsed.problem;
     if (!problem.empty()) {
-      // The limit stays as it is, so that a motor above its own limit still fails.
+      // The limit is not changed, so that a motor above its own limit still fails.
       outcome.reason += fmt::format("{}the limit is not rewritten: {}", outcome.reason.empty() ? "" : "; ", problem);
       continue;
     }

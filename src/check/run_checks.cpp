@@ -14,7 +14,7 @@
 namespace heatsoak::check {
 namespace {
 
-/// Diagnostics of a committed file in one line each.
+/// Joins the summary and the diagnostics of a failure in one line.
 std::string reason_of(const base::Failure& failure) {
   std::string text = failure.message();
   for (const base::Diagnostic& each : failure.diagnostics()) {

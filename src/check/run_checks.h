@@ -1,4 +1,4 @@
-// Every threshold of a check file, evaluated.
+// Evaluates every threshold of a check file.
 #pragma once
 
 #include <span>
@@ -12,19 +12,19 @@ namespace heatsoak::check {
 struct Outcome {
   const Check* check = nullptr;
   Limit limit;
-  Measured measured;           ///< value NaN where it could not be evaluated
-  std::string reason;          ///< why it fails; empty where it passes
-  std::string before = {};     ///< the limit's text before --update, where that changed it
-  bool failed_before = false;  ///< the value did not keep that limit
+  Measured measured;           ///< value is NaN if it could not be evaluated
+  std::string reason;          ///< why it fails; empty if it passes
+  std::string before = {};     ///< text of the limit before --update; empty if unchanged
+  bool failed_before = false;  ///< the value did not keep the limit before --update
   bool is_evaluated = false;
   bool passed = false;
 
-  /// Distance from the value to the limit in the type's unit: positive on the safe side, NaN without a value.
+  /// Returns the distance from the value to the limit in the type's unit: positive on the safe side, NaN without a value.
   [[nodiscard]] double margin_value() const;
 };
 
-/// In the order of the file. Thresholds that cannot be evaluated fail and say why; the others are evaluated all the same. The results do
-/// not depend on `threads`, 0: all cores. `progress` counts checks.
+/// Returns one outcome per limit, in the order of the file. Thresholds that cannot be evaluated fail with a reason; all others are still
+/// evaluated. The results do not depend on `threads`; 0 means all cores. `progress` counts checks.
 std::vector<Outcome> run_checks(const CheckFile& file, int threads, const base::Progress& progress = {});
 
 /// Compares the value with the limit again, after the limit was changed.

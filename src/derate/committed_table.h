@@ -35,8 +35,8 @@ struct CommittedTable {
 /// an unreadable file, another kind of file, a truncated header, an axis that does not ascend, an impossible value or an incomplete grid.
 CommittedTable read_committed_table(const std::filesystem::path& file);
 
-/// Returns which options of the sensor differ between a C header and `expected`; empty if none does, and for a CSV table. Such a header has
-/// another observer, so its currents say nothing about a fresh header.
+/// Returns which options of the sensor differ between a C header and `expected`; empty if none does, and for a CSV table. A header with
+/// other options has another observer, so its currents cannot be compared with those of a fresh header.
 std::string sensor_difference(const CommittedTable& committed, const std::optional<SensorOptions>& expected);
 
 /// Point at which two tables differ most.

@@ -48,11 +48,12 @@ struct CurrentTable {
   [[nodiscard]] std::size_t size_bytes() const {
     return sizeof(float) * (speed_rad_per_s.size() + stator_C.size() + winding_C.size() + square_A2.size());
   }
-  /// Allowed current in A, from 0 to most_current_A, continuous in all three arguments (rad/s, °C, °C). Any NaN gives 0. In single
-  /// precision the result is bit-identical to robot_core/current_table.h.
+  /// Returns the allowed current in A, from 0 to most_current_A, continuous in all three arguments (rad/s, °C, °C). Any NaN gives 0. In
+  /// single precision the result is bit-identical to robot_core/current_table.h.
   template <class Number>
   [[nodiscard]] Number allowed_A(Number speed, Number stator, Number winding) const;
-  /// Current in A for a squared current in A², at most most_current_A. Does not include the reduction above most_speed_rad_per_s.
+  /// Returns the current in A for a squared current in A², at most most_current_A. Does not include the reduction above
+  /// most_speed_rad_per_s.
   template <class Number>
   [[nodiscard]] Number current_of_A(Number square) const;
 };
@@ -62,7 +63,7 @@ extern template double CurrentTable::allowed_A<double>(double, double, double) c
 /// Target of a table: the smallest table within the shortfall and the size. If both cannot be met, the size is kept.
 struct TableGoal {
   double shortfall_ratio = 0.01;  ///< 0 < … < 1
-  std::size_t most_bytes = 8192;  ///< of the single-precision numbers
+  std::size_t most_bytes = 8192;  ///< largest size of the single-precision numbers
 };
 
 /// Computes a table for the goal. Adds breakpoints one by one, each on the axis where it reduces the largest shortfall most, and removes

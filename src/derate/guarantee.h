@@ -21,10 +21,10 @@ namespace heatsoak::derate {
 
 /// A load pattern that always draws the full allowed current, continuously or in pulses, at constant speed in one hot case.
 struct LoadPattern {
-  double speed_share = 0.0;  ///< of the rules' highest speed
+  double speed_share = 0.0;  ///< speed as a share of the rules' highest speed
   double on_s = 0.0;         ///< length of a pulse; 0: continuous
   double off_s = 0.0;
-  double off_speed_share = 0.0;  ///< coasting between pulses
+  double off_speed_share = 0.0;  ///< the same while coasting between pulses
   HotCase hot_case = {};
 
   bool operator==(const LoadPattern&) const = default;

@@ -15,11 +15,13 @@ struct HeaderArray {
   std::size_t begin = 0;       ///< position of the declaration in the text
   std::size_t end = 0;         ///< position after its "};"
 };
+/// Returns all arrays of a header.
 std::vector<HeaderArray> header_arrays(std::string_view text);
 
+/// First difference between two headers.
 struct HeaderDifference {
   int line = 0;            ///< in the first header, from 1; 0 if both are equal
-  std::string text;        ///< that line, shortened to 100 bytes
+  std::string text;        ///< text of that line, shortened to 100 bytes
   std::string other_text;  ///< line of the other header at the same place
 };
 

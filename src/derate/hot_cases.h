@@ -10,6 +10,7 @@
 
 namespace heatsoak::derate {
 
+/// Temperature limits of a motor; a motor may have no stator limit.
 struct TemperatureLimits {
   double winding_C = 0.0;
   std::optional<double> stator_C = {};
@@ -25,7 +26,7 @@ struct BarrierRules {
   double stator_approach_s = 10.0;
   double hottest_ambient_C = 40.0;
   double most_current_A = 0.0;        ///< current limit of the motor driver
-  double most_speed_rad_per_s = 0.0;  ///< of the motor: up to this speed the limits are kept
+  double most_speed_rad_per_s = 0.0;  ///< highest speed of the motor up to which the limits are kept
   /// Speed at which the allowed current reaches 0, above the highest speed; 0: kSpeedFadeOut_ratio times the highest speed.
   double no_current_speed_rad_per_s = 0.0;
   double most_vehicle_speed_m_per_s = 0.0;

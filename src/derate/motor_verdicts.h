@@ -16,13 +16,13 @@ namespace heatsoak::derate {
 /// the step of the integration may differ because other motors share a block.
 class MotorVerdicts {
  public:
-  /// Returns use `index` of the patterns, as the guard with the safety factor plays it.
+  /// Returns use `index` of the patterns, simulated with the guard for this safety factor.
   using Play = std::function<const UsePlayed&(std::size_t index)>;
 
   /// Draws options.samples motors from the random streams from `first_stream` on.
   MotorVerdicts(const motor::Motor& motor, const TemperatureLimits& limits, const GuaranteeOptions& options, std::uint64_t first_stream);
 
-  /// True before the first count.
+  /// Returns true before the first count.
   [[nodiscard]] bool knows_nothing() const { return known_.empty(); }
 
   /// Returns how many motors exceed a limit in at least one use. Calls `play` only for uses that are needed, from one thread.

@@ -13,8 +13,10 @@ struct DerateOptions;
 
 /// Check sum that identifies inputs: CRC-64/XZ (ECMA-182 polynomial, reflected), 16 hexadecimal digits.
 inline constexpr std::string_view kInputHash = "CRC-64/XZ";
+/// Returns the check sum of the bytes.
 std::string input_hash(std::string_view bytes);
 
+/// Origin of an exported file.
 struct Provenance {
   std::string program_version;  ///< "heatsoak 0.1.0"
   std::string input_hash;       ///< kInputHash over the texts of both files and the options

@@ -18,7 +18,7 @@ struct CurrentRamp {
   double most_current_A = 0.0;  ///< equivalent DC current
   double full_beyond_K = 0.0;   ///< a controller may give the full current until this far beyond the start
 
-  /// NaN gives 0.
+  /// Returns the current at a temperature; 0 for NaN.
   [[nodiscard]] double current_A(double signal_C) const;
 };
 
@@ -39,11 +39,11 @@ CurrentRamp fit_ramp(const Derating& derating, RampSignal signal, double full_be
 struct RampLoss {
   double from_C = 0.0;
   double to_C = 0.0;
-  double bound_mean_A = 0.0;  ///< of ramp_bound_A()
+  double bound_mean_A = 0.0;  ///< mean of ramp_bound_A()
   double ramp_mean_A = 0.0;
   double most_A = 0.0;  ///< largest difference, bound minus ramp
   double most_at_C = 0.0;
-  double peak_A = 0.0;  ///< allowed by the table at standstill with the whole motor at the hottest air temperature
+  double peak_A = 0.0;  ///< current that the table allows at standstill with the whole motor at the hottest air temperature
 
   [[nodiscard]] double mean_A() const { return bound_mean_A - ramp_mean_A; }
   [[nodiscard]] double mean_percent() const { return bound_mean_A > 0.0 ? 100.0 * mean_A() / bound_mean_A : 0.0; }

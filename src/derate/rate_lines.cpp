@@ -9,7 +9,7 @@
 namespace heatsoak::derate {
 namespace {
 
-/// A longer expression gets a line of its own.
+/// Longest expression, in characters, that is written where it is used; a longer one gets a line of its own.
 constexpr std::size_t kLongestInlined = 80;
 
 bool is_arithmetic(thermal::Operation operation) {
@@ -17,7 +17,7 @@ bool is_arithmetic(thermal::Operation operation) {
          operation == thermal::Operation::divide;
 }
 
-/// These use their operand twice, so it must be a name.
+/// Returns whether the text of the operation contains its operand twice; the operand must then be a name.
 bool repeats_its_operand(thermal::Operation operation) {
   return operation == thermal::Operation::magnitude || operation == thermal::Operation::positive_part;
 }

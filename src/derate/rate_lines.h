@@ -14,12 +14,12 @@ namespace heatsoak::derate {
 
 /// Syntax of the target language.
 struct LineStyle {
-  std::string (*literal)(double value) = nullptr;            ///< in the precision of `number`; in parentheses where negative
-  std::string (*signal)(observed::Signal signal) = nullptr;  ///< an input
+  std::string (*literal)(double value) = nullptr;            ///< in the precision of `number`; in parentheses if negative
+  std::string (*signal)(observed::Signal signal) = nullptr;  ///< expression for an input
   std::string_view square_root;                              ///< function of one number
   std::string_view number = "float";                         ///< type of the steps
   std::string_view exponential = "heatsoak_exp";             ///< function of one number
-  std::string_view power = "heatsoak_pow";                   ///< of a base and an exponent; 0 for a base that is not positive
+  std::string_view power = "heatsoak_pow";                   ///< function of a base and an exponent; 0 if the base is not positive
 };
 
 /// One line per quantity with a name of its own, "  const float copper_loss_W = …;", then one per node, "  rate_K_per_s[node] = …;".
@@ -50,8 +50,8 @@ class RateLines {
 
   const Observer& observer_;
   LineStyle style_;
-  std::vector<int> uses_;        ///< by step
-  std::map<int, Text> written_;  ///< by step
+  std::vector<int> uses_;        ///< number of uses of each step
+  std::map<int, Text> written_;  ///< text of each step that was written
   std::set<std::string> names_;  ///< names of variables that are in use
   std::string text_;
   bool calls_square_root_ = false;

@@ -151,7 +151,8 @@ double check_table(CurrentTable& table, Barrier& barrier, const std::vector<Chec
   return shortfall_ratio;
 }
 
-/// Returns how many kelvins of the winding must stand for one of a stator above its axis so that the barrier holds: a power of 2, up to 32.
+/// Returns how many kelvins of the winding one kelvin of a stator above its axis must count as, so that the barrier holds: a power of 2, up
+/// to 32.
 double winding_per_stator_K(CurrentTable table, Barrier& barrier, const BarrierRules& rules) {
   constexpr double kMost_K = 32.0;
   constexpr int kWindings = 24;

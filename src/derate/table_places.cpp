@@ -125,9 +125,9 @@ std::vector<double> counted_currents_A(const ExactGrid& grid, const CurrentRule&
 
 /// Part of an axis between two neighbouring breakpoints, or the whole axis if it has one breakpoint.
 struct Segment {
-  std::size_t low = 0;  ///< point of the grid
+  std::size_t low = 0;  ///< index of the first grid point
   std::size_t high = 0;
-  std::vector<double> share;  ///< of each point from low to high: 0 at low, 1 at high
+  std::vector<double> share;  ///< position of each point from low to high: 0 at low, 1 at high
 };
 
 std::vector<Segment> segments(const std::vector<std::size_t>& places, const std::vector<double>& points) {

@@ -130,8 +130,8 @@ void describe(const Primitive& primitive, const estimation::MeasuredRun& run, Ex
   experiment.most_rad_per_s = fastest_rad_per_s > 0.0 ? std::optional(fastest_rad_per_s) : std::nullopt;
 }
 
-/// Returns the menu. Reduces the current of each experiment until it stays below the temperatures of the runs. A logged peak of 0.1 s must
-/// not be held for minutes.
+/// Returns the planned experiments. Reduces the current of each one until it stays below the temperatures of the runs, because a logged
+/// peak of 0.1 s must not be held for minutes.
 std::vector<Plan> plans(const attribution::Selection& selection, const std::vector<estimation::MeasuredRun>& runs) {
   constexpr double kStep_ratio = 0.7;
   constexpr int kTries = 12;

@@ -56,7 +56,7 @@ std::vector<double> bridged(const std::vector<double>* values, const std::vector
   }
   return all;
 }
-/// Value of a row, or 0 if there is no such channel. The signals that a model needs are checked beforehand.
+/// Returns the value of a row, or 0 if there is no such channel. The signals that a model needs are checked beforehand.
 double of(const std::vector<double>* values, std::size_t row) { return values ? (*values)[row] : 0.0; }
 
 }  // namespace

@@ -16,6 +16,7 @@ std::string_view column_of(thermal::Signal signal);
 /// Returns the name of a signal in sentences, for example "torque and speed".
 std::string_view words_of(thermal::Signal signal);
 
+/// Returns whether the channel exists and has a value in any row.
 bool has_values(const recording::Channel* channel);
 
 /// Returns the value of a signal in an operating point, in SI units (°C for temperatures, h for age).

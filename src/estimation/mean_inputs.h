@@ -9,6 +9,7 @@ namespace heatsoak::estimation {
 /// them. Uncertainties of different intervals are independent.
 class MeanInputs {
  public:
+  /// Adds inputs that were held for `duration_s`.
   void add(const thermal::OperatingPoint<double>& at, double duration_s);
   /// Adds uncertainty: for `duration_s` of the added time the inputs may have been `other` instead of `at`, or equally far in the other
   /// direction.

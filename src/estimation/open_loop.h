@@ -34,12 +34,14 @@ struct DecidedStart {
 /// Estimates the start temperatures from the first five samples, or from the first minute (at most a tenth of the run) if a node has no
 /// sensor. The prior is that of `start`.
 DecidedStart decided_start(const thermal::Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
+/// Returns the temperatures of decided_start() in °C.
 Eigen::VectorXd decided_start_C(const thermal::Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
 
 /// Returns the predicted readings (n × sensors, in °C) of a free-running simulation. The start temperatures come from decided_start(), that
 /// is, only from the first samples: otherwise they could compensate for heat that the model lacks.
 Eigen::MatrixXd open_loop_C(const thermal::Network& network, std::span<const double> parameters, const MeasuredRun& run);
 
+/// Error of a predicted signal.
 struct SignalError {
   std::string signal;
   double rmse_K = 0.0;

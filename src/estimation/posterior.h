@@ -26,7 +26,7 @@ struct PosteriorOptions {
   /// Per run, noise of the sensors in place of their own; its weights apply, too. Not together with averaging. Empty: their own.
   std::vector<SensorNoise> noise = {};
   double white_noise_K = 0.0;  ///< if > 0, noise of every sensor in place of its own, for an incomplete model
-  int most_steps = 8;
+  int most_steps = 8;          ///< largest number of Gauss-Newton steps
   /// The covariance of the residuals depends on the parameters. true: a step is judged by the covariance before it, as in iteratively
   /// reweighted least squares, and a step that fails is searched for in a smaller box. false: it is judged by the covariance after it, and
   /// a step that fails is halved.

@@ -11,6 +11,7 @@ struct RowSteps {
   bool is_regular = false;
 };
 
+/// Analyses the times of the rows.
 RowSteps row_steps(std::span<const double> time_s);
 
 }  // namespace heatsoak::estimation

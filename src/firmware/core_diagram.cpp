@@ -22,9 +22,9 @@ constexpr double kMargin_px = 24.0;
 constexpr double kHead_px = 108.0;
 constexpr double kRowGap_px = 34.0;
 constexpr double kLane_px = 15.0;
-constexpr double kLabel_px = 132.0;  // between the innermost lane and a block: room for the name of a carrier
+constexpr double kLabel_px = 132.0;  // between the innermost lane and a block, with space for the name of a carrier
 constexpr double kBlock_px = 300.0;
-constexpr double kSide_px = 268.0;  // of a block beside the stages
+constexpr double kSide_px = 268.0;  // width of a block beside the stages
 constexpr double kLine_px = 16.0;
 constexpr double kSlot_px = 19.0;
 constexpr double kMono_px = 6.63;  // advance of a monospaced letter of 11 px, which is 0.602 of its size in DejaVu Sans Mono
@@ -42,7 +42,7 @@ struct Box {
   [[nodiscard]] double bottom_px() const { return top_px + height_px; }
 };
 
-/// End of a lane at a block: at the height `y_px` of its edge.
+/// End of a lane at the edge of a block, at the height `y_px`.
 struct Tap {
   Block block;
   bool is_source = false;
@@ -54,7 +54,7 @@ struct Lane {
   SignalGroup group;
   bool is_left = false;
   Box card;
-  double card_y_px = 0.0;  ///< where the line to the card leaves the lane
+  double card_y_px = 0.0;  ///< height of the line from the lane to the card
   double x_px = 0.0;
   std::vector<Tap> taps;
   std::string color;
@@ -96,9 +96,9 @@ std::vector<std::string_view> files_of(const BlockText& block) {
   return files;
 }
 
-/// Columns of the cards, as wide as their longest text.
+/// Column positions of the cards, which are as wide as their longest text.
 struct Columns {
-  double unit_px = 0.0;  ///< from the card's edge
+  double unit_px = 0.0;  ///< distance from the card's left edge
   double to_px = 0.0;
   double width_px = 0.0;
 };
@@ -121,7 +121,7 @@ Columns columns_of(const std::vector<SignalGroup>& groups) {
   return columns;
 }
 
-/// Where everything stands.
+/// Layout: positions of the blocks, cards and lanes.
 class Plan {
  public:
   Plan() : columns_(columns_of(signal_groups())) {
@@ -156,7 +156,8 @@ class Plan {
     bottom_px_ = kHead_px;
   }
 
-  /// The card of a group stands in the row of the block that writes it; that of the firmware's own in the first.
+  /// Returns whether the card of a group belongs to this row: that of the block that writes it, or the first row for signals of the
+  /// firmware.
   [[nodiscard]] static bool is_in_row(const Lane& lane, Block row) {
     return lane.group.from == row || (lane.group.from == Block::firmware && row == Block::validate_input);
   }
@@ -174,7 +175,7 @@ class Plan {
     return y - bottom_px_ - kPad_px;
   }
 
-  /// Ends of the lanes at one edge of a block, those that leave it first.
+  /// Adds the ends of the lanes at one edge of a block, outgoing ones first. Returns the height that they need.
   double add_taps(Block block, bool is_left) {
     double slots = 0.0;
     for (const bool is_source : {true, false}) {
@@ -198,7 +199,7 @@ class Plan {
     bottom_px_ += std::max(height, cards) + kRowGap_px;
   }
 
-  /// Lanes that reach far stand far outside, so that they cross fewer ends of others.
+  /// Places the longest lanes outermost, so that they cross fewer ends of other lanes.
   void set_lanes() {
     std::map<bool, double> used;
     std::vector<Lane*> order;
@@ -227,7 +228,7 @@ class Plan {
   double bottom_px_ = 0.0;
 };
 
-/// Elements of an SVG.
+/// Collects the elements of an SVG picture.
 class Picture {
  public:
   void rectangle(const Box& box, std::string_view style, double radius_px) {
@@ -238,7 +239,7 @@ class Picture {
     text_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"{}\"{}{}>{}</text>\n", x_px, y_px, kind, style.empty() ? "" : " ", style,
                          base::xml_text(words));
   }
-  /// On a white ground, so that it passes over what it crosses.
+  /// Draws a line with a white outline, which interrupts the lines that it crosses.
   void line(double from_x_px, double from_y_px, double to_x_px, double to_y_px, std::string_view color) {
     const std::string path = fmt::format("x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"", from_x_px, from_y_px, to_x_px, to_y_px);
     text_ +=
@@ -247,7 +248,7 @@ class Picture {
   void dot(double x_px, double y_px, std::string_view color) {
     text_ += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>\n", x_px, y_px, color);
   }
-  /// Its tip at x, pointing to the right or to the left.
+  /// Draws an arrowhead with its tip at x, pointing to the right or to the left.
   void arrowhead(double x_px, double y_px, bool is_to_right, std::string_view color) {
     const double back = is_to_right ? -8.0 : 8.0;
     text_ += fmt::format("<path d=\"M{:.1f} {:.1f} l{:.0f} -4 v8 z\" fill=\"{}\"/>\n", x_px, y_px, back, color);
@@ -331,7 +332,7 @@ void draw_block(const BlockText& block, const Box& box, Picture& picture) {
   picture.write(x, y + kLine_px, "small", rate_words(block.rate));
 }
 
-/// Order of the calls; beside blocks that are no stage it passes by.
+/// Draws arrows for the order of the calls; they bypass the blocks that are no stages.
 void draw_order(const Plan& plan, Picture& picture) {
   const Box* before = nullptr;
   for (const BlockText& block : robot_core::kBlocks) {

@@ -15,10 +15,10 @@ namespace heatsoak::firmware {
 namespace {
 
 constexpr int kHeadings = 72;
-/// Where the wheel does not roll the sign has no value.
+/// Smallest |sin(θ + φ)| at which a wheel counts as rolling; below it the sign of its friction is undefined.
 constexpr double kNoRolling = 1e-6;
 
-/// The body as it moves slowly but with every sign settled: no damping, no smoothing, any grip.
+/// Returns the body for slow motion with settled signs: without damping, smoothing or traction limit.
 robot::BodyConfig at_low_speed(robot::BodyConfig body) {
   constexpr double kNarrow = 1e-9;
   body.friction.wheel_damping_Nm_s_per_rad = 0.0;
@@ -33,7 +33,8 @@ struct Sample {
   robot::PerWheel voltage_V{};
 };
 
-/// Voltage of each wheel over the direction of travel, back-EMF apart. Headings lie half a step beside those where a wheel stands still.
+/// Returns the voltage of each wheel over the direction of travel, without back-EMF. Headings are offset by half a step to avoid those at
+/// which a wheel stands still.
 std::vector<Sample> steady_voltages(const robot::Robot& robot, const robot::DriveConstants& drive, const robot::BodyConfig& body) {
   constexpr double kSpeed_m_per_s = 0.1;
   const robot::BodyConfig slow = at_low_speed(body);
@@ -53,7 +54,7 @@ std::vector<Sample> steady_voltages(const robot::Robot& robot, const robot::Driv
   return samples;
 }
 
-/// One wheel's sin(θ + φ) and its voltage, where it rolls.
+/// A wheel's sin(θ + φ) and its voltage, at a heading at which it rolls.
 struct Point {
   double sine = 0.0;
   double voltage_V = 0.0;
@@ -70,7 +71,7 @@ std::vector<Point> points_of(const std::vector<Sample>& samples, int wheel, doub
   return points;
 }
 
-/// Normal equations of min Σ(V − a·s − b·sign s)²; two unknowns that no set of headings makes alike.
+/// Solves the normal equations of min Σ(V − a·s − b·sign s)². The columns s and sign s are never collinear on these headings.
 void fit(const std::vector<Point>& points, double& sine_V, double& sign_V) {
   double ss = 0.0;
   double s1 = 0.0;
@@ -86,7 +87,7 @@ void fit(const std::vector<Point>& points, double& sine_V, double& sign_V) {
   const double determinant = ss * count - s1 * s1;
   sine_V = (sv_V * count - signed_V * s1) / determinant;
   sign_V = (signed_V * ss - sv_V * s1) / determinant;
-  // The core takes no friction that drives the wheel where its sign changes.
+  // The drive core rejects friction that would drive a wheel near the heading at which its sign changes.
   if (sign_V < 0.0) {
     sign_V = 0.0;
     sine_V = sv_V / ss;

@@ -1,4 +1,4 @@
-// The friction of a robot as the feed-forward of the drive core takes it: a voltage over the direction of travel, per wheel.
+// Friction of a robot in the form of the drive core's feed-forward: a voltage over the direction of travel, per wheel.
 #pragma once
 
 #include <array>
@@ -16,25 +16,25 @@ struct FrictionVoltage {
   robot::PerWheel sine_V{};          ///< a
   robot::PerWheel sign_V{};          ///< b
   robot::PerWheel phase_rad{};       ///< φ
-  double rotation_V = 0.0;           ///< in pure rotation, in place of f
+  double rotation_V = 0.0;           ///< friction voltage in pure rotation, replaces f
   robot::PerWheel
-      residual_rms_V{};  ///< over the directions of travel: what this form cannot represent of the friction that the file states
+      residual_rms_V{};  ///< RMS over the directions of travel of the part of the file's friction that this form cannot represent
 };
 
-/// Method:
+/// Converts the friction of the robot's file. Method:
 ///   d = K_t·n + D·R/(K_t·n·η)            back-EMF, and the damping D of the file at the wheel (n gear ratio, η gear efficiency);
-///   V(T) = (T/(n·η) + K_t·I_0)·R/K_t     of a torque T at a turning wheel (steady_voltage_V() without back-EMF).
-/// A measured curve ([friction.heading]) without double angle has the form already: a and b are converted by V(T), with the phases of the
-/// file. A curve with double angle, and roller drag, do not have it: for these the steady torque of each wheel at 72 directions of travel
-/// follows from inverse_dynamics() without damping, and a_i and b_i from linear least squares, φ_i being the phase of the file or, where it
-/// has none, that of the wheel's rolling direction.
-/// Needs the parameters that make_body() needs, [friction] apart; throws Failure (bad_input) that names those that are missing.
+///   V(T) = (T/(n·η) + K_t·I_0)·R/K_t     voltage for a torque T at a turning wheel (steady_voltage_V() without back-EMF).
+/// A measured curve ([friction.heading]) without double angle already has this form: a and b are converted by V(T), with the phases of the
+/// file. A curve with double angle, and roller drag, do not have it. For these, the steady torque of each wheel at 72 directions of travel
+/// follows from inverse_dynamics() without damping, and a_i and b_i from linear least squares. φ_i is the phase of the file or, without
+/// one, that of the wheel's rolling direction.
+/// Needs the parameters of make_body() except [friction]. Throws Failure (bad_input) with the names of those that are missing.
 FrictionVoltage friction_voltage(const robot::Robot& robot, const motor::MotorValues& motor);
 
-/// The body with the friction of the file, or without any where the file has none.
+/// Returns the body with the friction of the file; without friction if the file has none.
 robot::BodyConfig make_body_with_known_friction(const robot::Robot& robot, const motor::MotorValues& motor);
 
-/// For the user; empty where nothing is missing.
+/// Returns a note for the user if the robot's file has no friction; else an empty text.
 std::string friction_note(const robot::Robot& robot);
 
 }  // namespace heatsoak::firmware

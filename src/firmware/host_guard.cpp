@@ -104,7 +104,7 @@ void HostGuard::point_to_own() {
 }
 
 void HostGuard::rates(const void* context, const float* signals, const float* state_C, float* rate_K_per_s) {
-  // The context is the `mutable` law of a HostGuard, never a constant.
+  // The cast is valid, because the context is always the `mutable` law of a HostGuard.
   Law& law = *const_cast<Law*>(static_cast<const Law*>(context));
   std::copy_n(signals, derate::observed::kSignalCount, law.values.begin());
   std::copy_n(state_C, law.rates_K_per_s.size(), law.values.begin() + derate::observed::kSignalCount);

@@ -1,4 +1,4 @@
-// The thermal guard on the host: what a robot_core::GuardModel points to, made from a derating.
+// The thermal guard on the host: a robot_core::GuardModel made from a derating.
 #pragma once
 
 #include <array>
@@ -9,12 +9,12 @@
 
 namespace heatsoak::firmware {
 
-/// Owns the tables of one motor's guard and runs the observer's formula in single precision, with the bits of the code generated for the
-/// controller. Steps of one HostGuard must not run in two threads at once, because the formula has scratch memory: give each thread a
-/// copy. A model() is valid as long as its HostGuard is.
+/// Owns the tables of one motor's guard and runs the observer's formula in single precision, bit-identical to the code generated for the
+/// controller. The formula has scratch memory, so two threads must not step one HostGuard at once: give each thread a copy. A model() is
+/// valid as long as its HostGuard.
 class HostGuard {
  public:
-  /// Throws Failure (bad_input) where the motor has more nodes than robot_core::kMostGuardNodes.
+  /// Throws Failure (bad_input) if the motor has more nodes than robot_core::kMostGuardNodes.
   explicit HostGuard(const derate::Derating& derating);
   HostGuard(const HostGuard& other);
   HostGuard& operator=(const HostGuard& other);
@@ -26,7 +26,7 @@ class HostGuard {
   struct Law {
     explicit Law(const derate::Observer& observer);
     thermal::FormulaRun<float> run;
-    std::vector<float> values;  ///< of the formula's inputs: signals, then temperatures
+    std::vector<float> values;  ///< inputs of the formula: signals, then temperatures
     std::vector<float> rates_K_per_s;
   };
   static void rates(const void* context, const float* signals, const float* state_C, float* rate_K_per_s);

@@ -12,7 +12,7 @@ namespace {
 
 std::string_view name_of(derate::observed::Signal signal) { return derate::observed::signals()[static_cast<std::size_t>(signal)].name; }
 
-/// Negative ones in parentheses.
+/// Returns the literal of a value; in parentheses if negative.
 std::string operand_literal(double value) {
   const std::string text = float_literal(static_cast<float>(value));
   return text.front() == '-' ? fmt::format("({})", text) : text;

@@ -5,18 +5,18 @@
 
 namespace heatsoak::firmware {
 
-/// What the loops act on. Inertias at the wheel.
+/// Plant parameters of the velocity loops; inertias are at the wheel.
 struct WheelLoopPlant {
   double back_emf_V_s_per_rad = 0.0;        ///< K_t·n, per wheel speed
   double volt_per_Nm = 0.0;                 ///< R/(K_t·n), per torque at the wheel, without gear loss
   double gear_efficiency = 1.0;             ///< motor to ground
-  double wheel_inertia_kg_m2 = 0.0;         ///< of a wheel in the air, rotor included
-  double loaded_inertia_kg_m2 = 0.0;        ///< with the wheel's share of the robot's mass behind it
-  double hardest_body_inertia_kg_m2 = 0.0;  ///< per wheel, of the direction of travel in which the wheels have the most body behind them
+  double wheel_inertia_kg_m2 = 0.0;         ///< inertia of a wheel in the air, rotor included
+  double loaded_inertia_kg_m2 = 0.0;        ///< the same plus the wheel's share of the robot's mass
+  double hardest_body_inertia_kg_m2 = 0.0;  ///< inertia of the body per wheel in the direction of travel with the largest one
 };
 
-/// J_eff = J_wheel + m·r²·level share (of the mean wheel); the hardest direction has m·r²·λ, λ the larger eigenvalue of the plane part of
-/// (JᵀJ)⁻¹ = J⁺·J⁺ᵀ.
+/// Computes the plant. J_eff = J_wheel + m·r²·level share (of the mean wheel). The hardest direction has m·r²·λ, λ the larger eigenvalue of
+/// the plane part of (JᵀJ)⁻¹ = J⁺·J⁺ᵀ.
 WheelLoopPlant wheel_loop_plant(const robot::BodyConfig& body, const robot::DriveConstants& drive);
 
 struct WheelLoopGains {
@@ -27,10 +27,11 @@ struct WheelLoopGains {
   double yaw_integral_per_s2 = 0.0;
   double tracking_time_s = 0.0;
   double wheel_rate_per_s = 0.0;  ///< 2·ζ·ω_0 of the loaded wheel's loop
-  double longest_period_s = 0.0;  ///< up to which these equations give a useful loop
+  double longest_period_s = 0.0;  ///< longest control period for which these equations give a useful loop
 };
 
-/// Plant of one wheel: τ·dω/dt = V/(K_t·n) − ω with τ = J·R/(η·(K_t·n)²). Control: V = k_p·e + k_i·∫e dt. Closed loop of the loaded wheel:
+/// Computes the gains. Plant of one wheel: τ·dω/dt = V/(K_t·n) − ω with τ = J·R/(η·(K_t·n)²). Control: V = k_p·e + k_i·∫e dt. Closed loop
+/// of the loaded wheel:
 ///   s² + (1 + k_p/(K_t·n))/τ·s + k_i/(τ·K_t·n) = s² + 2·ζ·ω_0·s + ω_0²,   ζ = 1.
 /// The delay between motion and voltage is L = 2·T, T the control period: one period to compute, half of one because the voltage is held,
 /// half of one because an encoder gives the mean speed of the last period. Two bounds set the bandwidth; the lower gain counts:
@@ -40,11 +41,11 @@ struct WheelLoopGains {
 ///     per period. k_p is at most that of κ_u/3 (gain margin 3), and at most κ_u/2 with the body loop on top, which sees the same wheels.
 /// k_i follows from ω_0 = (1 + k_p/(K_t·n))/(2·ζ·τ).
 /// The body loop closes over the wheels' speeds through the feed-forward m·a: it adds κ_b = b·T·(m·r²·λ + J_wheel)/J_wheel in the air. b is
-/// a quarter of the wheel loop's rate 2·ζ·ω_0, or what κ_u/2 leaves, if that is less. The yaw loop closes over the gyro, which feels no
-/// wheel in the air: its gain is half of the wheel loop's rate, its integral a quarter of the gain's square, the double pole of that gain.
+/// a quarter of the wheel loop's rate 2·ζ·ω_0, or the rest up to κ_u/2, if that is less. The yaw loop closes over the gyro, which does not
+/// respond to a wheel in the air. Its gain is half of the wheel loop's rate, its integral a quarter of the gain's square (double pole).
 /// Back-calculation: a fifth of k_p/k_i, five periods at least.
-/// A light wheel allows less gain than its back-EMF K_t·n has already. The margins hold, and the integrator still removes the error.
-/// Throws Failure (bad_input) where the period is so long that k_p would be less than half of K_t·n: then the loop adds too little.
+/// A light wheel may allow a gain below its back-EMF constant K_t·n. The margins hold, and the integrator still removes the error.
+/// Throws Failure (bad_input) if the period is so long that k_p would be less than half of K_t·n: then the loop adds too little.
 WheelLoopGains wheel_loop_gains(const WheelLoopPlant& plant, double period_s);
 
 }  // namespace heatsoak::firmware

@@ -83,6 +83,7 @@ struct FitSettings {
 /// Returns the heading number of each part; −1 for rotation and for legs that are not used. Headings within 2.5° of each other are one.
 std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts, const FitSettings& settings);
 
+/// Fits every wheel. A wheel whose parts do not determine its terms gets a reason in WheelFriction::problem.
 FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const robot::Kinematics& kinematics, const FitSettings& settings);
 
 /// Returns the voltages of all wheels that are expected before the fit.
@@ -90,13 +91,14 @@ using ExpectedVoltages = std::function<robot::PerWheel(const SteadyPart&)>;
 
 /// Prediction errors on hold-out headings: every third heading is excluded from the fit and then predicted.
 struct HeldOutError {
-  int headings = 0;  ///< number of hold-out headings
-  int all_headings = 0;
-  double before_V = std::numeric_limits<double>::quiet_NaN();  ///< RMS over wheels and parts
-  double after_V = std::numeric_limits<double>::quiet_NaN();
+  int headings = 0;                                            ///< number of hold-out headings
+  int all_headings = 0;                                        ///< number of all headings
+  double before_V = std::numeric_limits<double>::quiet_NaN();  ///< RMS over wheels and parts, of the expected voltages
+  double after_V = std::numeric_limits<double>::quiet_NaN();   ///< the same, of the fit
   std::vector<double> before_of_wheel_V;
   std::vector<double> after_of_wheel_V;
 };
+/// Returns the errors of a fit to the other headings, and those of `before`; these are NaN if `before` is empty.
 HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, const robot::Kinematics& kinematics,
                                         const FitSettings& settings, const ExpectedVoltages& before);
 

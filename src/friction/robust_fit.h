@@ -41,6 +41,7 @@ struct RobustFit {
   [[nodiscard]] double quantile_factor(Eigen::Index coefficient) const;
   [[nodiscard]] Estimate estimate(Eigen::Index coefficient) const;
 };
+/// Fits β. `cluster` has the cluster number of each row.
 RobustFit robust_fit(const Eigen::MatrixXd& X, const Eigen::VectorXd& y, std::span<const int> cluster);
 
 /// Returns the RMS share of a column that is linearly independent of the other columns; 0 means collinear.

@@ -26,7 +26,7 @@ struct RollOutRun {
   double force_N = 0.0;                     ///< friction force against a translation at zero speed
   double wheel_damping_Nm_s_per_rad = 0.0;  ///< D; equal for all wheels if the robot is on the floor
   double wheel_torque_Nm = 0.0;             ///< τ; equal for all wheels if the robot is on the floor
-  double r2_ratio = 0.0;
+  double r2_ratio = 0.0;                    ///< coefficient of determination of the energy
   int rows_used = 0;
 };
 

@@ -17,14 +17,17 @@ struct WheelPoint {
   int side = 0;               ///< sign of the wheel's speed, 1 or −1
 };
 
+/// Points of one wheel.
 struct WheelPoints {
   std::vector<WheelPoint> points;
-  int standing = 0;
+  int standing = 0;  ///< number of parts in which the wheel stands or should stand, or has no voltage
 };
 
 enum class WheelTerm { damping, sine, cosine, constant, rotation };
 
+/// Returns whether the settings admit the part: return legs only with use_return_legs.
 bool is_used(const SteadyPart& part, const FitSettings& settings);
+/// Returns the points of the parts that the settings admit, for the phase φ_0 of the rolling direction.
 WheelPoints points_of(const std::vector<SteadyPart>& parts, const robot::Kinematics& kinematics, int wheel, const FitSettings& settings);
 
 /// Returns the points for the phase φ_0 + offset. The signs of the measured speeds stay.
@@ -38,15 +41,17 @@ struct ChosenTerms {
   std::string problem;
 };
 
+/// Chooses the terms that the points determine. `problem` states the reason if they do not suffice for a fit.
 ChosenTerms chosen_terms(const std::vector<WheelPoint>& points, int wheel, const FitSettings& settings);
 
 /// Linear regression of a wheel: voltage_V = X · coefficients. `given_V_s_per_rad` is the known damping, whose voltage is subtracted.
 struct WheelRegression {
   Eigen::MatrixXd X;
   Eigen::VectorXd voltage_V;
-  std::vector<int> legs;
+  std::vector<int> legs;  ///< cluster of each row: its leg, or the row itself if there are few legs
 };
 
+/// Sets up the regression of these terms. `given_V_s_per_rad` is 0 if the damping is one of them.
 WheelRegression regression_of(const std::vector<WheelPoint>& points, int wheel, const std::vector<WheelTerm>& terms,
                               double given_V_s_per_rad);
 

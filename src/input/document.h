@@ -15,10 +15,10 @@ struct Value {
   enum class Kind { text, number, boolean, array, table, other };
   Kind kind = Kind::other;
   base::Location at;
-  std::string text;  ///< of a text: its content; of a number: as written in the file
+  std::string text;  ///< content of a text; a number as written in the file
   bool boolean = false;
   std::vector<Value> items;     ///< elements of an array
-  std::vector<Member> members;  ///< of a table, in the order of the file
+  std::vector<Member> members;  ///< members of a table, in the order of the file
 
   [[nodiscard]] const Value* find(std::string_view key) const;
 };

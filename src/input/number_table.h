@@ -16,7 +16,7 @@ struct TableFormat {
   char decimal_point = '.';
   std::string comment = "#";  ///< lines that begin with it are skipped; empty: the file has no comments
   int header_rows = 1;
-  int names_row = 1;  ///< which header row names the columns, from 1
+  int names_row = 1;  ///< number of the header row with the column names, from 1
 };
 
 /// A cell that is not a finite number.

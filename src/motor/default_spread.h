@@ -42,6 +42,7 @@ struct NarrowSpread {
   base::Spread least;      ///< narrowest credible range, in the unit of the declaration
   bool is_fitted = false;  ///< measured by a fit of the file
 };
+/// Returns all stated spreads of the motor that are too narrow.
 std::vector<NarrowSpread> narrow_spreads(const Motor& motor);
 
 /// Returns the motor with all default spreads applied. Every function that samples motors for a verdict or for firmware calls it first.

@@ -18,7 +18,7 @@ struct LintFinding {
   };
   Level level = Level::note;
   std::string check;    ///< name of the check, "constants"
-  std::string message;  ///< what was found, what was expected, what to do
+  std::string message;  ///< finding, expected value and advice
   base::Location at;
 };
 

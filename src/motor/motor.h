@@ -90,7 +90,7 @@ struct MotorEffect {
 
   /// Returns the values of the parameters in the type's declared order.
   [[nodiscard]] std::vector<double> values() const;
-  /// Index of its column among those of the motor, see kColumns; 0 without a column.
+  /// Returns the index of its column among those of the motor, see kColumns; 0 without a column.
   [[nodiscard]] std::size_t column_place() const;
 };
 
@@ -120,7 +120,7 @@ struct Motor {
   MotorValues nominal;
 };
 
-/// Throws Failure (bad_input) with every problem of the file.
+/// Reads a motor file. Throws Failure (bad_input) with every problem of the file.
 Motor read_motor(const std::filesystem::path& path);
 
 /// Finds a value by key, "thermal_resistance_winding_stator" or "effects.fan.conductance"; null if the motor has none.
@@ -137,7 +137,9 @@ struct MotorSample {
   MotorValues values;
   std::vector<std::vector<double>> effect_parameters;  ///< per effect, in declared order
 };
+/// Returns the nominal values of the file.
 MotorSample nominal_sample(const Motor& motor);
+/// Returns a random sample of all values with a spread.
 MotorSample draw_sample(const Motor& motor, base::Random& random);
 
 /// Returns the quality of the data that determine temperatures. If a calibration wrote the file: `measured` if all four thermal resistances

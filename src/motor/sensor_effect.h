@@ -64,7 +64,7 @@ struct SensorFault {
 
 /// Like SensorLaw::apply(), for all faults in order.
 void apply(std::span<const SensorFault> faults, std::span<const double> time_s, bool is_change, std::span<double> shown_C);
-/// Reading of a constant temperature, and the constant temperature of a reading.
+/// Returns the reading at a constant temperature, and the constant temperature of a reading.
 double sensor_at_rest_C(std::span<const SensorFault> faults, double true_C);
 double true_at_rest_C(std::span<const SensorFault> faults, double sensor_C);
 

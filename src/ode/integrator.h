@@ -17,8 +17,8 @@ struct OdeTolerances {
   double absolute = 1e-9;  ///< in the unit of the state
 };
 
-/// End of a step. `crossed` tells for each event whether it crossed zero: +1 rising, -1 falling, 0 not. It is empty unless `at_event`, and
-/// valid until the next call.
+/// End of a step. `crossed` has one entry per event: +1 for a rising zero crossing, -1 for a falling one, 0 for none. It is empty unless
+/// `at_event`, and valid until the next call.
 struct OdeStep {
   double time_s = 0.0;
   bool at_event = false;
@@ -49,7 +49,7 @@ class Integrator {
 
   [[nodiscard]] std::span<const double> state() const;
   [[nodiscard]] double time_s() const;
-  /// Number of calls of OdeSystem::derivative so far, for benchmarks and tests.
+  /// Returns the number of calls of OdeSystem::derivative so far, for benchmarks and tests.
   [[nodiscard]] long derivative_count() const;
 
  private:

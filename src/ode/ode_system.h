@@ -14,7 +14,7 @@ class OdeSystem {
   [[nodiscard]] virtual int size() const = 0;
   virtual void derivative(double time_s, std::span<const double> y, std::span<double> dydt) = 0;
 
-  /// Number of event functions; `events` writes one value for each.
+  /// Returns the number of event functions; `events` writes one value for each.
   [[nodiscard]] virtual int event_count() const { return 0; }
   virtual void events(double /*time_s*/, std::span<const double> /*y*/, std::span<double> /*values*/) {}
 };

@@ -11,9 +11,9 @@
 
 namespace heatsoak::present {
 
-/// One table for each check: result, threshold, value, limit, margin, and what the value rests on. `is_update`: limits were rewritten.
+/// Returns one table for each check: result, threshold, value, limit, margin and basis of the value. `is_update`: limits were rewritten.
 Document check_document(std::span<const check::Outcome> outcomes, bool is_update);
-/// `files` are the names as the user gave them.
+/// Returns the answer as JSON. `files` are the names as the user gave them.
 Json check_json(std::span<const check::Outcome> outcomes, const std::vector<std::string>& files);
 
 }  // namespace heatsoak::present

@@ -20,7 +20,7 @@ Document motor_description(const motor::Motor& motor);
 Document robot_description(const robot::Robot& robot);
 Document duty_description(const duty::Duty& duty);
 
-/// `file` is a complete duty file of this shape.
+/// Describes a duty shape. `file` is a complete duty file of this shape.
 Document shape_description(const duty::ShapeType& shape, const std::string& file);
 
 /// Describes an effect of the thermal network, with lines for a motor file at its typical size.

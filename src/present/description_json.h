@@ -18,7 +18,7 @@ namespace heatsoak::present {
 Json motor_json(const motor::Motor& motor);
 Json robot_json(const robot::Robot& robot);
 Json duty_file_json(const duty::Duty& duty);
-/// `file` is a complete duty file of this shape.
+/// Returns the JSON of a duty shape. `file` is a complete duty file of this shape.
 Json shape_json(const duty::ShapeType& shape, const std::string& file);
 Json network_effect_json(const thermal::EffectType& effect);
 Json sensor_json(const motor::SensorEffectType& type);

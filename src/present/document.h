@@ -56,7 +56,7 @@ struct Note {
 
 struct Document {
   std::vector<Text> headline = {};           ///< the verdict, sentence by sentence
-  std::vector<std::string> paragraphs = {};  ///< what was computed, from which inputs
+  std::vector<std::string> paragraphs = {};  ///< computed quantities and their inputs
   std::vector<Table> tables = {};
   std::vector<Note> notes = {};
   std::vector<std::string> files = {};  ///< names of the files that the command writes

@@ -47,7 +47,7 @@ std::string_view factor_text(const select::MotorEvaluation& motor) {
   }
 }
 
-/// On a narrower terminal the winding over time, which is drawn up to the limit, stands in for rank, limit and margin.
+/// A narrower terminal shows the winding temperature over time, scaled to the limit, instead of rank, limit and margin.
 constexpr std::size_t kLeastForLimit = 70;
 
 std::vector<Column> columns() {
@@ -235,7 +235,7 @@ std::string shown_value(double value, std::string_view unit) {
   return unit.empty() ? base::significant(value, 3) : fmt::format("{} {}", base::significant(value, 3), unit);
 }
 
-/// "jerk limit from 20 m/s³ to 10 m/s³", "the motor to nanotec_df45l024048_a2".
+/// Formats a change: "jerk limit from 20 m/s³ to 10 m/s³", "motor to nanotec_df45l024048_a2".
 std::string change_words(const select::ChangeEffect& change) {
   return change.other_motor.empty() ? fmt::format("{} from {} to {}", select::name_of(change.quantity),
                                                   shown_value(change.before, select::unit_of(change.quantity)),
@@ -243,7 +243,7 @@ std::string change_words(const select::ChangeEffect& change) {
                                     : fmt::format("motor to {}", change.other_motor);
 }
 
-/// A change that is not larger than its own scatter does not count, unless the motor needs it to deliver the demand.
+/// Returns whether the motor needs the change to deliver the demand, or whether its effect is larger than its own scatter.
 bool counts(const select::ChangeEffect& change) {
   const double error_K = std::isfinite(change.standard_error_K) ? change.standard_error_K : 0.0;
   return change.makes_deliverable || (change.is_deliverable && change.saved_K > std::max(0.5, 2.0 * error_K));

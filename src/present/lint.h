@@ -7,7 +7,7 @@
 
 namespace heatsoak::present {
 
-/// The findings are lines "file:line:column: level: check: message", which editors understand.
+/// Returns the findings as lines "file:line:column: level: check: message", which editors understand.
 Document lint_document(const duty::FilesLint& lint);
 Json lint_json(const duty::FilesLint& lint);
 

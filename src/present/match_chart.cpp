@@ -19,7 +19,7 @@ std::vector<double> column(const std::vector<simulate::MatchRow>& rows, const st
   return values;
 }
 
-/// Panels for one planner: the windings of all wheels, then the motor of the hottest one, the robot and the battery.
+/// Returns the panels for one planner: the windings of all wheels, then the motor of the hottest one, the robot and the battery.
 std::vector<report::ChartPanel> detail(const simulate::MatchSimulation& match, const simulate::DrivenMatch& driven) {
   const auto hottest = static_cast<std::size_t>(driven.run.score.hottest_wheel);
   const std::vector<double> minutes = column(driven.rows, [](const simulate::MatchRow& row) { return row.time_s / 60.0; });
@@ -47,7 +47,7 @@ std::vector<report::ChartPanel> detail(const simulate::MatchSimulation& match, c
           single("Battery", "voltage / V", curve("", 6, [](const simulate::MatchRow& row) { return row.battery_V; }))};
 }
 
-/// Panels that compare both planners: heat and precision.
+/// Returns the panels that compare both planners: heat and precision.
 std::vector<report::ChartPanel> comparison(const simulate::MatchSimulation& match) {
   std::vector<report::ChartPanel> panels{
       {.title = "Hottest winding", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}},

@@ -6,7 +6,7 @@
 
 namespace heatsoak::present {
 
-/// The runs must have their rows.
+/// Returns the chart. The runs must contain their rows.
 report::Chart match_chart(const simulate::MatchSimulation& match);
 
 }  // namespace heatsoak::present

@@ -150,7 +150,7 @@ void read_conditions(input::Reader& table, std::map<std::string, std::string>& c
 /// Applies the [[files]] entries for this log. Returns true if there is any.
 bool read_files(input::Reader& root, const fs::path& log, Mapping& mapping) {
   bool is_named = false;
-  std::map<std::pair<std::string, std::string>, std::string> said;  // by name and condition
+  std::map<std::pair<std::string, std::string>, std::string> said;  // values that entries gave, by log name and condition
   for (input::Reader& file : root.tables("files")) {
     const std::string name = file.text("name", input::Need::required).value_or("");
     std::map<std::string, std::string> conditions;

@@ -27,7 +27,7 @@ struct LogReading {
 struct NamedLogs {
   std::vector<Recording> fitted;
   std::vector<Recording> held_out;
-  std::vector<LogReading> readings;  ///< of `fitted`, then of `held_out`
+  std::vector<LogReading> readings;  ///< reports of the logs in `fitted`, then of those in `held_out`
   LogChoice choice;                  ///< choice that they were read with
 };
 

@@ -45,7 +45,7 @@ double resolution_of_sorted(const std::vector<double>& sorted) {
     return 0.0;
   }
   const double smallest = std::ranges::min(apart);
-  constexpr double kFinestGrid_share = 1e-6;  // of the range; a finer grid comes from the number of stored digits
+  constexpr double kFinestGrid_share = 1e-6;  // share of the range; a finer grid comes from the number of stored digits
   constexpr double kOffGrid_share = 0.1;
   constexpr double kOnGrid_share = 0.95;
   const auto on_grid = std::ranges::count_if(apart, [smallest](double difference) {

@@ -57,7 +57,7 @@ struct ClockOffset {
 
 /// Suitability of a log for one purpose.
 struct Fitness {
-  std::vector<std::string> lacks;  ///< sentences: what is missing; empty if suitable
+  std::vector<std::string> lacks;  ///< sentences about missing data; empty if suitable
   [[nodiscard]] bool is_good() const { return lacks.empty(); }
 };
 

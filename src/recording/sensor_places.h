@@ -10,6 +10,7 @@
 
 namespace heatsoak::recording {
 
+/// Returns sentences about temperatures that are probably swapped or have the wrong sign; empty if there are none.
 std::vector<std::string> suspicious_places(const Recording& recording, std::span<const ChannelQuality> channels);
 
 }  // namespace heatsoak::recording

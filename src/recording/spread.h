@@ -10,6 +10,7 @@ namespace heatsoak::recording {
 
 /// Quantile of the values that are not NaN; `share` is 0 to 1. NaN if there are none.
 double percentile(std::span<const double> values, double share);
+/// Median of the values that are not NaN; NaN if there are none.
 double middle_of(std::span<const double> values);
 /// 98th percentile of the magnitudes, insensitive to single outliers.
 double top_of_sizes(std::span<const double> values);
@@ -33,6 +34,7 @@ struct Regression {
   double correlation_ratio = 0.0;  ///< −1 to 1; 0 if x or y does not vary
   std::size_t points = 0;
 };
+/// Fits a line to pairs without NaN. The slope is 0 if x or y does not vary.
 Regression regress(std::span<const double> x, std::span<const double> y);
 
 }  // namespace heatsoak::recording

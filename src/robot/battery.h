@@ -26,8 +26,8 @@ struct BatteryLoad {
   double current_A = 0.0;  ///< positive when discharging
   bool collapsed = false;  ///< the demanded power exceeds the maximum E²/(4·R)
 };
-/// Terminal voltage and current at a power: P = V·I with V = E − R·I gives V = (E + √(E² − 4·R·P))/2. Without a solution the result is the
-/// maximum power point, V = E/2, and `collapsed`; the caller must then reduce the load.
+/// Returns terminal voltage and current at a power: P = V·I with V = E − R·I gives V = (E + √(E² − 4·R·P))/2. Without a solution the result
+/// is the maximum power point, V = E/2, and `collapsed`; the caller must then reduce the load.
 inline BatteryLoad battery_load(const BatteryConfig& battery, double charge_A_s, double power_W) {
   const double source_V = open_circuit_V(battery, charge_A_s);
   const double below_root_V2 = source_V * source_V - 4.0 * battery.internal_resistance_ohm * power_W;

@@ -11,19 +11,20 @@
 
 namespace heatsoak::robot {
 
+/// Constants of the body and its wheels.
 struct BodyConfig {
   Kinematics kinematics;
   WeightConfig weight;
   TractionConfig traction;
   FrictionConfig friction;
-  double rolling_efficiency = 1.0;
+  double rolling_efficiency = 1.0;   ///< share of the wheel's torque that reaches the ground
   double yaw_inertia_kg_m2 = 0.0;    ///< about the centre of gravity
   double wheel_inertia_kg_m2 = 0.0;  ///< wheel plus rotor·(gear ratio)², at the wheel
 };
 
-/// Uses the tables body, wheels, friction and traction of the robot's file and the rotor inertia of the motor. Throws Failure (bad_input)
-/// with all missing values. If the file has a measured friction curve over the direction of travel, it replaces wheel torque and roller
-/// drag.
+/// Builds the body from the tables body, wheels, friction and traction of the robot's file and the rotor inertia of the motor. Throws
+/// Failure (bad_input) with all missing values. If the file has a measured friction curve over the direction of travel, it replaces wheel
+/// torque and roller drag.
 BodyConfig make_body(const Robot& robot, const motor::MotorValues& motor);
 
 /// Returns the force and the moment about the origin for an acceleration of the origin, local axes:

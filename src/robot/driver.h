@@ -17,6 +17,7 @@ struct DriverConfig {
   double standby_W = 0.0;       ///< constant power of the electronics
 };
 
+/// Electrical constants of a motor, at 25 °C and over temperature.
 struct MotorElectrics {
   double resistance_25C_ohm = 1.0;
   double resistance_rise_per_K = 0.0039;
@@ -26,15 +27,19 @@ struct MotorElectrics {
   double heating_factor = 1.0;  ///< copper loss per R·I²: 0.912 for sinusoidal current
   double drag_torque_Nm = 0.0;  ///< iron and bearing loss, K_t·I_0, at the motor
 };
+/// Returns the driver of one motor. The robot's file must give driver_resistance and driver_standby.
 DriverConfig make_driver(const Robot& robot);
+/// Returns the electrical constants of the motor for the driver's commutation.
 MotorElectrics make_electrics(const Robot& robot, const motor::MotorValues& motor);
 
+/// Command to the driver of one motor.
 struct MotorCommand {
   enum class Kind { voltage, current, open };
   Kind kind = Kind::open;
   double value = 0.0;  ///< V or A; ignored for an open motor, which has no current
 };
 
+/// Operating point of one motor on its driver.
 struct MotorPoint {
   double current_A = 0.0;
   double bridge_V = 0.0;    ///< mean output voltage of the bridge
@@ -43,8 +48,8 @@ struct MotorPoint {
   double resistance_ohm = 0.0;  ///< winding (with heating factor) plus driver
   double copper_W = 0.0;
   double driver_W = 0.0;  ///< conduction loss and standby
-  double input_W = 0.0;   ///< from the bus: bridge_V·I + standby; negative when feeding back
-  bool limited = false;   ///< by the bus voltage, the limit of the command or the current limit
+  double input_W = 0.0;   ///< power from the bus, bridge_V·I + standby; negative when feeding back
+  bool limited = false;   ///< true if the bus voltage, the limit of the command or the current limit acts
 };
 
 /// motor_currents() (wheel_laws.h) for a single motor, with its powers.

@@ -52,7 +52,7 @@ struct FrictionConfig {
   HeadingFriction heading;
 };
 
-/// x/√(x² + width²). S is double or Wheels.
+/// Returns x/√(x² + width²), a smoothed sign. S is double or Wheels.
 template <class S>
 S smooth_sign(const S& x, double width) {
   using std::sqrt;
@@ -71,7 +71,7 @@ struct DriveConstants {
   double gear_ratio = 1.0;
   double gear_efficiency = 1.0;
 };
-/// A missing driver_resistance counts as 0.
+/// Returns the constants of the robot with this motor. A missing driver_resistance counts as 0.
 DriveConstants drive_constants(const Robot& robot, const motor::MotorValues& motor);
 
 /// Converts friction that a team states as a voltage to a torque at the wheel: at standstill the voltage drives the current V/R, so the

@@ -23,11 +23,13 @@ struct FieldAxis {
   double x_share = 1.0;
   double y_share = 0.0;
 };
+/// Returns the axis for a yaw angle.
 FieldAxis field_axis(double yaw_rad);
-/// The same for a caller that keeps the axis while the robot does not turn.
+/// Same conversion for a caller that keeps the axis while the robot does not turn.
 BodyMotion local_motion(const BodyConfig& body, const FieldAxis& axis, const BodyVelocity& velocity_global,
                         const BodyAcceleration& acceleration_global);
 
+/// Demands on the wheels, and the part of the motion that the contacts transmit.
 struct WheelDemands {
   PerWheel torque_Nm{};        ///< at the axle, after the gear, without the motor's own drag; > 0 drives along t
   PerWheel speed_rad_per_s{};  ///< speed without slip

@@ -43,6 +43,7 @@ struct Wrench {
   bool operator==(const Wrench&) const = default;
 };
 
+// Conversions of components between the global and the local frame of a robot with this yaw angle.
 BodyVelocity to_local(const BodyVelocity& global, double yaw_rad);
 BodyVelocity to_global(const BodyVelocity& local, double yaw_rad);
 BodyAcceleration to_local(const BodyAcceleration& global, double yaw_rad);

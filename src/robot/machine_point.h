@@ -11,7 +11,7 @@ namespace heatsoak::robot {
 template <class S>
 S input_power_W(const motor::MotorValues& motor, const S& heating_current_A, const S& shaft_power_W, const S& speed_rad_per_s);
 
-/// The part of an operating point that follows from current and speed alone; without headroom and vehicle speed. `current_A` and
+/// Returns the part of an operating point that follows from current and speed alone, without headroom and vehicle speed. `current_A` and
 /// `velocity_rad_per_s` have the same sign when driving.
 template <class S>
 thermal::OperatingPoint<S> machine_point(const motor::MotorValues& motor, const Robot& robot, const S& current_A,

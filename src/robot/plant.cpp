@@ -97,9 +97,9 @@ struct Held {
 struct Electrics {
   MotorCurrents motors;
   BatteryLoad battery;
-  double power_W = 0.0;           ///< drawn from the battery
-  double standby_W = 0.0;         ///< of each driver
-  double highest_bridge_V = 0.0;  ///< of any motor, without sign
+  double power_W = 0.0;           ///< power drawn from the battery
+  double standby_W = 0.0;         ///< standby power of each driver
+  double highest_bridge_V = 0.0;  ///< largest magnitude of any motor's bridge voltage
   bool undervoltage = false;
 };
 
@@ -213,7 +213,7 @@ Electrics settle_electrics(const Held& held, double charge_A_s, const Wheels& ba
 struct Contacts {
   Wheels rolling_N;
   Wheels stiffness_N_s_per_m;  ///< rolling force over slip
-  Wrench ground;               ///< of all forces along rolling directions and axles
+  Wrench ground;               ///< sum of all forces along rolling directions and axles
 };
 
 /// Forces per normal force are known; the normal loads depend on the forces: F = Σ N_i(F)·g_i, a 2×2 system.

@@ -9,6 +9,7 @@
 
 namespace heatsoak::robot {
 
+/// Constants of the simulated robot.
 struct PlantConfig {
   BodyConfig body;
   MotorElectrics motor;
@@ -19,7 +20,7 @@ struct PlantConfig {
   double period_s = 0.001;
 };
 
-/// Needs all tables of the robot's file except [limits]. Throws Failure (bad_input) with the missing values.
+/// Builds the plant from all tables of the robot's file except [limits]. Throws Failure (bad_input) with the missing values.
 PlantConfig make_plant(const Robot& robot, const motor::MotorValues& motor, double period_s);
 
 struct PlantState {

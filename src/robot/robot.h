@@ -28,7 +28,7 @@ enum class Commutation { block, sinusoidal };
 
 struct RobotWheels {
   double radius_m = 0.0;
-  double contact_radius_m = 0.0;             ///< from the robot's axis to the wheels' contact points
+  double contact_radius_m = 0.0;             ///< distance from the robot's axis to the wheels' contact points
   std::vector<double> axis_rad;              ///< direction of each wheel's axle from straight ahead, counter-clockwise, wheel 1 first
   std::optional<double> inertia_kg_m2 = {};  ///< one wheel about its axle, without the motor's rotor
 };
@@ -122,7 +122,7 @@ struct Robot {
   [[nodiscard]] double series_resistance_ohm() const;
 };
 
-/// A value of a robot file that may be absent, as a member of one of the tables.
+/// Access to a value in one of the tables that a robot file may omit.
 struct RobotMember {
   std::optional<double>& (*of)(Robot&) = nullptr;
   const std::optional<double>& (*in)(const Robot&) = nullptr;
@@ -154,7 +154,7 @@ void require_parameters(const Robot& robot, std::span<const std::string_view> ta
 /// Returns the robot with one random sample of every uncertain value.
 Robot draw_sample(const Robot& robot, base::Random& random);
 
-/// Throws Failure (bad_input) with every problem of the file.
+/// Reads a robot file. Throws Failure (bad_input) with every problem of the file.
 Robot read_robot(const std::filesystem::path& path);
 
 /// Like read_robot() for a text in memory; `path` names the robot.

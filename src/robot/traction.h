@@ -24,6 +24,7 @@ struct WeightConfig {
   PerWheel along_x_per_m{};
   PerWheel along_y_per_m{};
 };
+/// Returns the weight with its centre of gravity at (`x_m`, `y_m`) in the local frame and `height_m` above the ground.
 WeightConfig make_weight(const Kinematics& kinematics, double mass_kg, double height_m, double x_m, double y_m);
 
 /// First moment of the loads, S = Σ N_i·(x_i, y_i).
@@ -32,8 +33,8 @@ struct LoadMoment {
   double y_Nm = 0.0;
 };
 
-/// S = m·g·c − h·F + (h_e − h)·F_e. The ground force F acts below the centre of gravity (height h, offset c), so forward acceleration loads
-/// the rear wheels. An external force F_e at the height h_e tips the robot the other way.
+/// Returns S = m·g·c − h·F + (h_e − h)·F_e. The ground force F acts below the centre of gravity (height h, offset c), so forward
+/// acceleration loads the rear wheels. An external force F_e at the height h_e tips the robot the other way.
 inline LoadMoment load_moment(const WeightConfig& weight, const Wrench& ground, const Wrench& external, double external_height_m) {
   const double weight_N = weight.mass_kg * kGravity_m_per_s2;
   const double height_m = weight.center_of_gravity_height_m;
@@ -42,12 +43,13 @@ inline LoadMoment load_moment(const WeightConfig& weight, const Wrench& ground, 
           weight_N * weight.center_of_gravity_y_m - height_m * ground.y_N + above_m * external.y_N};
 }
 
+/// Normal loads of the wheels.
 struct NormalLoads {
   PerWheel force_N{};   ///< at least 0; the sum is the weight
   bool lifted = false;  ///< a wheel has left the ground, or the robot would tip over
 };
-/// A wheel with a negative load gets 0, and the others carry the moment. If three or fewer wheels cannot carry it, the robot tips over: the
-/// remaining loads are scaled to the weight.
+/// Returns the loads. A wheel with a negative load gets 0, and the others carry the moment. If three or fewer wheels cannot carry it, the
+/// robot tips over: the remaining loads are scaled to the weight.
 NormalLoads normal_loads(const WeightConfig& weight, const LoadMoment& moment);
 
 /// Forces of a contact with rubber rollers. Along the rolling direction
@@ -65,7 +67,7 @@ struct TractionConfig {
   double roller_speed_m_per_s = 0.01;  ///< u_0: speed over which the sign of u is smoothed
 };
 
-/// Force per normal force, and its derivative with respect to slip. S is double for one contact, Wheels for all.
+/// Returns the force per normal force and its derivative with respect to slip. S is double for one contact, Wheels for all.
 template <class S>
 struct ContactRatios {
   S rolling_ratio;

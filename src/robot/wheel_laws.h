@@ -74,9 +74,9 @@ struct MotorCurrents {
   bool limited = false;  ///< true if any motor is limited by the bus, the limit of its command or the current limit
 };
 
-/// Steady-state currents; the electrical time constant L/R is below a millisecond. I = (U − K_t·ω)/(R(T)·k + R_driver) with the heating
-/// factor k, so that U·I = copper + driver conduction + K_t·ω·I holds to rounding error. |U| ≤ min(bus, voltage limit), |I| ≤ current
-/// limit.
+/// Returns the steady-state currents; the electrical time constant L/R is below a millisecond. I = (U − K_t·ω)/(R(T)·k + R_driver) with the
+/// heating factor k, so that U·I = copper + driver conduction + K_t·ω·I holds to rounding error. |U| ≤ min(bus, voltage limit), |I| ≤
+/// current limit.
 inline MotorCurrents motor_currents(const MotorCircuits& circuits, const DriverDemands& demands, const Wheels& back_emf_V, double bus_V) {
   const Wheels limit_V = (demands.beyond_bus_V + bus_V).min(demands.voltage_limit_V);
   const Wheels asked_V = demands.voltage_V.max(-limit_V).min(limit_V);

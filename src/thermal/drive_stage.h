@@ -1,4 +1,4 @@
-// Stage between the supply and the thermal network: how much of the wanted current flows, and the copper loss that it makes.
+// Stage between the supply and the thermal network: limits the wanted current to the available voltage and computes its copper loss.
 #pragma once
 
 #include <algorithm>

@@ -22,8 +22,8 @@ struct NodeRole {
   std::optional<int> own_capacity = {};
 };
 
-/// How an effect is proposed when a model may lack it: parameter values typical for a motor of about 50 W, one variant for each
-/// distinguishable shape of the law.
+/// Proposal of an effect that a model may lack: parameter values typical for a motor of about 50 W, one variant for each distinguishable
+/// shape of the law.
 struct Candidacy {
   /// Index of the parameter that the heat is proportional to; 0 is the model without the effect. Empty: the effect is never a candidate.
   std::optional<int> size_parameter = {};

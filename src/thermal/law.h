@@ -1,4 +1,4 @@
-// The law of an effect: what it reads, and how it books heat into nodes. Files that only need the description include effect.h.
+// The law of an effect: its inputs, and the heat that it books into nodes. Files that only need the description include effect.h.
 //
 // Sign convention of the whole program: heat is in watts and positive *into* a node. A law books heat in two ways only. flow(from, to, W)
 // moves heat between nodes and so conserves energy; source(into, W) generates heat and is used by losses.

@@ -37,10 +37,11 @@ struct EffectInPlace {
 class Network {
  public:
   static constexpr std::string_view kAmbient = "ambient";
-  /// Includes ambient. The bound lets rate_K_per_s(), which is called millions of times, keep its arrays on the stack.
+  /// Largest number of nodes, ambient included. The bound lets rate_K_per_s(), which is called millions of times, keep its arrays on the
+  /// stack.
   static constexpr int kMostNodes = 16;
-  static constexpr int kMostRoles = 4;        ///< per effect
-  static constexpr int kMostParameters = 16;  ///< per effect
+  static constexpr int kMostRoles = 4;        ///< node roles of one effect
+  static constexpr int kMostParameters = 16;  ///< parameters of one effect
 
   /// Adds a state node and returns its index. Throws std::logic_error for a capacity ≤ 0, a known name or too many nodes.
   int add_node(std::string name, double heat_capacity_J_per_K);
@@ -59,7 +60,7 @@ class Network {
   /// Returns the index of a node. Throws std::logic_error if there is no such node.
   [[nodiscard]] int node(std::string_view name) const;
   [[nodiscard]] std::string_view node_name(int node) const;
-  /// Index of a state node's heat capacity in the list of parameters.
+  /// Returns the index of a state node's heat capacity in the list of parameters.
   [[nodiscard]] int capacity_index(int node) const { return capacity_index_.at(static_cast<std::size_t>(node)); }
   [[nodiscard]] std::span<const EffectInPlace> effects() const { return effects_; }
   [[nodiscard]] std::span<const NetworkParameter> parameters() const { return parameters_; }

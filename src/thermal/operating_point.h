@@ -32,7 +32,7 @@ struct OperatingPoint {
   /// Voltage available for I·R after the back-EMF, scaled by the heating factor of the current. As the winding heats up and its resistance
   /// rises, it limits the current. Infinite: no voltage limit.
   S resistive_headroom_V = S(std::numeric_limits<double>::infinity());
-  S series_resistance_ohm = S(0.0);    ///< of driver and leads; they share that voltage, but their heat goes elsewhere
+  S series_resistance_ohm = S(0.0);    ///< driver and leads: they take part of that voltage, but do not heat the motor
   S shaft_power_W = S(0.0);            ///< mean of M·ω: positive drives, negative brakes
   S input_power_W = S(0.0);            ///< electrical power into the motor (or into its driver, if the log says so)
   S bus_V = S(0.0);                    ///< supply voltage of the driver

@@ -17,15 +17,14 @@ struct SteadyState {
 /// converge.
 std::optional<SteadyState> steady_state(const Network& network, const OperatingPoint<double>& at);
 
-/// Steady state under an on/off current after maxon: equations (8) to (12) of the RoboTeam Twente paper of 2025. α refers to 25 °C. For
-/// another ambient temperature T_A it is converted together with R, which keeps the equations exact for the network:
-/// R_TA = R25·(1+α(T_A−25)), α_TA = α·R25/R_TA.
+/// Current that is switched on and off periodically.
 struct OnOffCurrent {
   double current_on_A = 0.0;
   double time_on_s = 0.0;
   double time_off_s = 0.0;
   double ambient_C = 25.0;
 };
+/// Values of a motor with the nodes winding and stator.
 struct TwoNodeMotor {
   double terminal_resistance_25C_ohm = 0.0;
   double temperature_coefficient_per_K = 0.0;
@@ -38,6 +37,9 @@ struct OnOffSteadyState {
   double winding_C = 0.0;
   double stator_C = 0.0;
 };
+/// Returns the steady state under an on/off current after maxon: equations (8) to (12) of the RoboTeam Twente paper of 2025. α refers to
+/// 25 °C. For another ambient temperature T_A it is converted together with R, which keeps the equations exact for the network:
+/// R_TA = R25·(1+α(T_A−25)), α_TA = α·R25/R_TA.
 OnOffSteadyState on_off_steady_state(const TwoNodeMotor& motor, const OnOffCurrent& current);
 
 }  // namespace heatsoak::thermal

@@ -37,12 +37,12 @@ class Formula {
 
   /// Names the value of a step for generated code. The first name of a step stays; constants and inputs get none.
   void name(int step, std::string name);
-  /// Empty for a step without a name.
+  /// Returns the name of a step; empty if it has none.
   [[nodiscard]] std::string_view name_of(int step) const;
   [[nodiscard]] bool has_name(std::string_view name) const;
-  /// The steps from here on belong to this law.
+  /// Starts a law: all later steps belong to it, until the next law starts.
   void begin_law(std::string law) { laws_[static_cast<int>(steps_.size())] = std::move(law); }
-  /// Empty for a step before the first law.
+  /// Returns the law of a step; empty before the first law.
   [[nodiscard]] std::string_view law_of(int step) const;
 
  private:
@@ -50,8 +50,8 @@ class Formula {
 
   std::vector<Step> steps_;
   std::vector<std::string> inputs_;
-  std::map<int, std::string> names_;                                     ///< by step
-  std::map<int, std::string> laws_;                                      ///< by first step
+  std::map<int, std::string> names_;                                     ///< names by step
+  std::map<int, std::string> laws_;                                      ///< laws by their first step
   std::map<std::tuple<Operation, int, int, std::uint64_t>, int> known_;  ///< index of each step by its content; constants by their bits
 };
 
@@ -81,11 +81,11 @@ class Traced {
   Traced(Formula& formula, int step) : formula_(&formula), step_(step) {}
 
   [[nodiscard]] bool is_constant() const { return formula_ == nullptr; }
-  /// Valid for a constant only.
+  /// Returns the value of a constant; must not be called for a formula.
   [[nodiscard]] double value() const { return value_; }
-  /// Null for a constant.
+  /// Returns the formula; null for a constant.
   [[nodiscard]] Formula* formula() const { return formula_; }
-  /// Index of its step in the formula; a constant is added to it.
+  /// Returns the index of its step in the formula; a constant is added to it.
   [[nodiscard]] int step_in(Formula& formula) const { return is_constant() ? formula.constant(value_) : step_; }
 
   /// Formula::name() of its step with the first candidate that no other step has, or else the last; nothing for a constant.

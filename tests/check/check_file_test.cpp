@@ -1,4 +1,4 @@
-// Check files: their meaning, the report of all mistakes in one pass, and limits that are rewritten in place.
+// Check files: results, the report of all mistakes in one pass, and limits that are rewritten in place.
 #include "check/check_file.h"
 
 #include <fmt/format.h>
@@ -78,7 +78,7 @@ TEST_F(CheckFiles, ReportEveryProblemAtItsPlace) {
   }
 }
 
-// A limit that no machine can reach is a typing mistake and is refused.
+// A limit outside the possible range is a typing mistake and is rejected.
 TEST_F(CheckFiles, SenselessLimitsAreRefusedAtTheirPlace) {
   const std::string said = message_of(kHead +
                                       "[check.limits]\n"                               // 6
@@ -219,7 +219,7 @@ TEST_F(CheckFiles, ProbabilityOnAMatchCountsGames) {
   EXPECT_THAT(with("at most 0.1 %").measured.detail, HasSubstr("23960 samples or more"));
 }
 
-// The guard assumes the hottest air that it is made for, whatever air the match has.
+// The guard assumes the hottest air that it is designed for, whatever air temperature the match has.
 TEST_F(CheckFiles, GuardMadeForHotAirEngages) {
   const std::vector<Outcome> found = outcomes(
       "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"division_a_match\"\nmotor = "
@@ -323,7 +323,7 @@ TEST_F(CheckFiles, NewLimitsChangeNothingElse) {
   EXPECT_EQ(with_new_limits(after, again, 0.05), after);
 }
 
-// A limit that cannot fail, or that is above the motor's own, gates nothing.
+// A limit that always holds, or that is above the motor's own, is useless as a threshold.
 TEST_F(CheckFiles, LimitsLooserThanTheMotorsOwnAreRefused) {
   const std::string message = message_of(
       "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"maxon_ecx_flat_32l_48v\"\n"

@@ -20,8 +20,8 @@ namespace {
 using testing::HasSubstr;
 
 /// Hard driving in both forms: shares of the current that the integer form allows, speeds, air, and occasionally a faulty sensor, each held
-/// for a while. Prints the largest excess current of the integer form in mA, and its smallest and largest temperature difference in mK.
-/// Also prints its largest shortfall in per mille, where the float form allows `straight_mA` or more.
+/// for a while. Prints the largest excess current of the integer form in mA, its smallest and largest temperature difference in mK, and its
+/// largest shortfall in per mille at points at which the float form allows at least `straight_mA`.
 constexpr const char* kBoth = R"(
 #include "float_guard.h"
 #include "q15_guard.h"

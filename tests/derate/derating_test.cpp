@@ -45,8 +45,8 @@ std::vector<thermal::Interval> random_driving(const Derating& derating, unsigned
   return intervals;
 }
 
-// The search counts the motors over a limit from what it knows of other safety factors. The count is that of a check of all motors in all
-// uses, in whatever order the factors are tried.
+// The search infers whether a motor exceeds a limit from its results at other safety factors. The count must equal that of a check of all
+// motors in all uses, in any order of the factors.
 TEST(MotorVerdicts, CountIsThatOfACheckOfAllMotorsAndUses) {
   const std::string iron =
       "[effects.iron]\ntype = \"iron_loss_eddy\"\nloss = { value = \"2 W\", origin = \"estimated\", derivation = \"a test\" }\n"
@@ -68,7 +68,7 @@ TEST(MotorVerdicts, CountIsThatOfACheckOfAllMotorsAndUses) {
           << safety_factor;
       counts.insert(over);
     }
-    EXPECT_GT(counts.size(), 3U);  // the factors differ in what they decide
+    EXPECT_GT(counts.size(), 3U);  // the safety factors give different counts
   }
 }
 
@@ -166,7 +166,7 @@ exponent = { value = "0.5", origin = "estimated", derivation = "a test" }
   EXPECT_FALSE(observer.uses(observed::age));
   const thermal::Network bare = motor::datasheet_network(plain, motor::nominal_sample(plain));
   EXPECT_FALSE(Observer(bare, plain.nominal, twente(), 1.0).uses(observed::vehicle_speed));
-  // The table must not rely on cooling by air flow that nobody guarantees.
+  // The table must not rely on cooling by air flow, because no air flow is guaranteed.
   const GuardedMotor with_wind(blown, rules_for(blown), 1.0);
   const GuardedMotor without(plain, rules_for(plain), 1.0);
   EXPECT_NEAR(barrier_current_A(with_wind.observer, with_wind.rules, 100.0, 100.0, 150.0),
@@ -244,7 +244,7 @@ loss = { value = "70 W", origin = "estimated", derivation = "a test" }
   }
 }
 
-// A sufficiently hot body cools again. On the way there its own heat carries the winding over the limit without any current.
+// A sufficiently hot body cools again. Before that, its own heat takes the winding over the limit without any current.
 TEST(Derate, GuardsNoMotorThatHeatsItselfOnTheWay) {
   const std::string law = hump(R"(driver = "temperature"
 hot = "winding"

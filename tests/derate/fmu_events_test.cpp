@@ -92,7 +92,7 @@ TEST(FmuEvents, MotorStopsWhereALimitIsCrossedToAMillisecond) {
   EXPECT_NE(unit.enter_step_mode(), 0) << "the discrete states were not updated";
   end_event(unit, &next_s);
   EXPECT_TRUE(std::isnan(next_s)) << "nobody knows when the next limit is crossed";
-  // It gets hotter still, then cools down: the same the other way round.
+  // The winding heats up further and then cools down: the falling crossing must be an event, too.
   const FmuUnit::Step hotter = unit.step_to_event(up.last_s, 1.0);
   EXPECT_FALSE(hotter.is_event) << "the same crossing must not be found again";
   give(unit, 0.0);
@@ -174,7 +174,7 @@ constexpr double kPeriod_s = 0.01;
 
 double load_A(int step) { return step % 400 < 250 ? 7.0 : -1.5; }
 
-// Inputs that change in step mode only: event by event the same outputs as without events.
+// If inputs change in step mode only, the outputs with events equal those without.
 TEST(FmuEvents, GuardIsCalledAtItsPeriodWhateverTheStep) {
   FmuUnit plain(unit_bytes("fmi3_guard"), 3);
   start(plain, false);
@@ -244,7 +244,7 @@ TEST(FmuEvents, GuardSeesTheInputsOfItsEvent) {
   double next_s = 0.0;
   end_event(unit, &next_s);
   EXPECT_EQ(unit.get("guarded_winding_C"), hot_C);
-  // An event of the importer's own between two calls changes nothing.
+  // An event that only the importer has between two calls changes nothing.
   EXPECT_FALSE(unit.step_to_event(kPeriod_s, 0.4 * kPeriod_s).is_event);
   EXPECT_EQ(unit.enter_event_mode(), 0);
   end_event(unit, &next_s);
@@ -280,7 +280,7 @@ TEST(FmuEvents, StatesAreRestoredAcrossAnEvent) {
     EXPECT_EQ(unit.bring_back(before), 0);
     give(unit, kOverload_A);
     EXPECT_EQ(across(unit), once) << kind;
-    // A state of event mode, also in another instance.
+    // A state that was saved in event mode can be restored, also in another instance.
     EXPECT_EQ(unit.bring_back(before), 0);
     give(unit, kOverload_A);
     const double event_s = unit.step_to_event(first_s, long_s).last_s;

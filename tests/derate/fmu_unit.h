@@ -154,7 +154,7 @@ class FmuUnit {
     return status;
   }
 
-  /// One step of FMI 3.0 with what it says about events.
+  /// Result of one step of FMI 3.0, with its events.
   struct Step {
     int status = -1;
     bool is_event = false;
@@ -170,7 +170,7 @@ class FmuUnit {
   }
   int enter_event_mode() { return call<int>("EnterEventMode", instance_); }
   int enter_step_mode() { return call<int>("EnterStepMode", instance_); }
-  /// Returns the status; next_event_s is NaN where the unit names none.
+  /// Returns the status; next_event_s is NaN if the unit names none.
   int update_discrete_states(double* next_event_s) {
     bool again = true;
     bool terminate = true;

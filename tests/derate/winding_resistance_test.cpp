@@ -1,4 +1,4 @@
-// Winding temperature from voltage and current: within its accuracy where it is given, and not given where it cannot be determined.
+// Winding temperature from voltage and current: accurate within the stated bounds, and absent if it cannot be determined.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

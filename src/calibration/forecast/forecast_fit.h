@@ -30,7 +30,7 @@ struct ForecastFit {
   Eigen::VectorXd heat_log;                  ///< logarithm of the heat factor, per run
   std::vector<estimation::RunStart> starts;  ///< per run
   // The following values are those of the tempered cost at θ, for ordinary fits too.
-  Eigen::MatrixXd covariance;               ///< of θ: inverse curvature of the cost, with heat factors and starts free
+  Eigen::MatrixXd covariance;               ///< covariance of θ: inverse curvature of the cost, with heat factors and starts free
   double error_K = 0.0;                     ///< RMS error of the rows that count, at least the sensors' noise
   double weight = 1.0;                      ///< independent samples per sample
   double cost_nats = 0.0;                   ///< with the error and weight of the last round

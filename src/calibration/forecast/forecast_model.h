@@ -21,7 +21,7 @@ inline constexpr double kHeatFactor_sd = 0.05;
 struct FreeFault {
   const motor::SensorEffectType* type = nullptr;
   double size = 0.0;      ///< prior median, in the unit of the type's size
-  double prior_sd = 1.0;  ///< of the logarithm of the size
+  double prior_sd = 1.0;  ///< prior standard deviation of the logarithm of the size
 };
 
 /// Model with coordinates θ: those of the network, then the logarithms of the fault sizes.

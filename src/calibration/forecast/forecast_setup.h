@@ -36,6 +36,7 @@ struct Extension {
 /// Returns the extensions that are observable with the signals of these runs. Their initial sizes follow from the fitted `theta`.
 std::vector<Extension> extensions_for(const ForecastSetup& setup, const ForecastModel& model, const Eigen::VectorXd& theta,
                                       std::span<const estimation::MeasuredRun> runs);
+/// Returns the setup with the effects and sensor faults of the extension added.
 ForecastSetup with_extension(ForecastSetup setup, const Extension& extension);
 
 /// Converts θ of model `from` to the coordinates of model `to`, matched by name. Parameters that only `to` has start at its own values;

@@ -27,7 +27,7 @@ inline constexpr std::size_t kLeastToCompare = 2;
 struct PredictedPiece {
   std::size_t run = 0;
   estimation::LinearisedRun path;  ///< with logarithm 0 of the heat factor; residual_K is NaN in rows that are not scored
-  Eigen::MatrixXd covariance;      ///< of θ
+  Eigen::MatrixXd covariance;      ///< covariance of θ
   std::vector<double> values;      ///< the network's parameters
 };
 

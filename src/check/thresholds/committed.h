@@ -1,4 +1,4 @@
-// What the thresholds on a committed derating table share.
+// Shared parts of the thresholds on a committed derating table.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,7 +9,8 @@
 namespace heatsoak::check::thresholds {
 
 inline derate::TableComparison compared(const Check& check, Computations& computations) {
-  const derate::CommittedTable committed = derate::read_committed_table(check.table);  // first: a missing file needs no minute of work
+  // Read first, so that a missing file is reported before the derating, which may take a minute.
+  const derate::CommittedTable committed = derate::read_committed_table(check.table);
   if (!committed.motor_id.empty() && committed.motor_id != check.motor->id) {
     throw base::Failure(base::ExitCode::limit_exceeded, fmt::format("{}: the table is of another motor, {}; expected one of {}",
                                                                     check.table.string(), committed.motor_id, check.motor->id));

@@ -10,7 +10,7 @@ Measured measure(const Check& check, Computations& computations) {
   firmware::CoreOptions core;
   derate::DerateOptions options = check.derate;
   options.period_s = firmware::guard_period_s(core.period_s);
-  options.sensor.reset();  // the drive core has none
+  options.sensor.reset();  // the drive core has no temperature sensor
   const derate::Derating& derating = computations.derating(check, options);
   const firmware::CoreFolder folder = firmware::core_files(*check.robot, *check.motor, core, derating, "heatsoak 0.0.0");
   double size_byte = 0.0;

@@ -12,11 +12,11 @@ namespace {
 
 bool is_problem(const motor::LintFinding& finding) { return finding.level != motor::LintFinding::Level::note; }
 
-/// The check's own things, or the files that it names, as what their keys say they are.
+/// Returns the findings of the robot and the motor of the check, or of the files that it names, whose keys determine their kind.
 std::vector<motor::LintFinding> findings_of(const Check& check) {
   std::vector<motor::LintFinding> all;
   const auto take = [&all](std::vector<motor::LintFinding> findings) { std::ranges::move(findings, std::back_inserter(all)); };
-  // A robot's motor may lie anywhere, so that it is known is for `heatsoak lint` to say.
+  // The robot's motor counts as known, because its file may lie anywhere; `heatsoak lint` checks that.
   const auto of_robot = [&take](const robot::Robot& robot) { take(robot::lint(robot, std::vector{robot.drive.motor})); };
   for (const std::filesystem::path& file : check.files) {
     switch (duty::file_kind(file)) {

@@ -9,7 +9,7 @@
 
 namespace heatsoak::check::thresholds {
 
-/// No winding of this world is outside; 70 K, meant as a rise, is.
+/// Range of plausible limits. A limit of 70 K that means a rise is outside of it, because it is −203 °C.
 inline constexpr base::Range kPlausible_C = base::Range::between(-60.0, 1000.0);
 
 /// Returns the motor's own limit as the loosest one; nothing without a motor or if its file gives no such limit.
@@ -19,8 +19,8 @@ std::optional<LoosestLimit> own_limit(const Check& check, Member motor::MotorVal
   return own_C ? std::optional<LoosestLimit>({*own_C, what}) : std::nullopt;
 }
 
-/// The upper end of the 95 % interval of a peak's 95th percentile, with the air as the origin of its rise. Throws Failure where the samples
-/// are too few to have one.
+/// Returns the upper end of the 95 % interval of a peak's 95th percentile; the origin is the air temperature. Throws Failure if there are
+/// too few samples for an interval.
 inline Measured measured_peak(const Check& check, Computations& computations, select::Spread95 select::MotorEvaluation::*peak,
                               std::optional<select::Interval95> select::MotorEvaluation::*interval) {
   const select::MotorEvaluation& result = computations.feasible_evaluation(check);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kConfidence = 0.95;
 
-/// How many samples could keep the limit.
+/// Returns a phrase with the number of samples that could show the limit to be kept.
 std::string what_would_do(const Check& check, double over_share, double limit_share, int draws) {
   const std::optional<long> needed = base::draws_needed(over_share, limit_share, kConfidence);
   if (!needed) {
@@ -31,7 +31,7 @@ Measured measure(const Check& check, Computations& computations) {
   std::string detail = fmt::format("{} of {} samples over, bound of {:.0f} % confidence", std::lround(share * check.samples), check.samples,
                                    100.0 * kConfidence);
   if (is_drawn) {
-    // Samples of one game share its load: they count as one draw, which errs on the safe side.
+    // Samples of one game share its load, so they count as one draw. This errs on the safe side.
     detail += fmt::format(" by {} games", draws);
   }
   for (const Limit& limit : check.limits) {

@@ -39,7 +39,7 @@ ThresholdType rank() {
           .needs = {Setting::robot, Setting::duty, Setting::motor, Setting::against},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},
           .loosest = [](const Check& check) -> std::optional<LoosestLimit> {
-            // The last rank of all motors holds always. Without the other motors there are other problems to report.
+            // A limit at the last rank always holds. If `against` is empty, other problems are reported.
             return check.against.empty()
                        ? std::nullopt
                        : std::optional<LoosestLimit>({static_cast<double>(check.against.size()), "the number of motors in 'against'"});

@@ -9,7 +9,7 @@
 namespace heatsoak::check::thresholds {
 namespace {
 
-/// Time in which a straight line from `from_C` to `to_C` is above the temperature.
+/// Returns the time in s during which a straight line from `from_C` to `to_C` is above the limit.
 double above_s(double from_C, double to_C, double limit_C, double duration_s) {
   if (from_C > limit_C && to_C > limit_C) {
     return duration_s;

@@ -17,7 +17,7 @@ enum class FmuType { real, boolean, enumeration };
 /// A variable of the unit. Its index in the list is its value reference.
 struct FmuVariable {
   std::string name;       ///< a C identifier
-  std::string_view unit;  ///< as fmu_unit() returns it; empty if none
+  std::string_view unit;  ///< unit from fmu_unit(); empty if none
   FmuCausality causality = FmuCausality::input;
   FmuType type = FmuType::real;
   double value = 0.0;  ///< start value; ignored for outputs
@@ -25,13 +25,15 @@ struct FmuVariable {
   bool is_sampled = false;  ///< an output that changes only when the firmware is called
 };
 
+/// One value of the enumeration, such as a reason of the guard.
 struct FmuItem {
   std::string_view name;
   std::string_view description;
 };
 
+/// A file of the unit's archive.
 struct FmuFile {
-  std::string path;  ///< in the archive
+  std::string path;  ///< path in the archive
   std::string content;
 };
 
@@ -60,6 +62,7 @@ std::vector<FmuFile> fmu_tables(const FmuModel& model, std::string_view more);
 
 /// Returns the value with at most 12 digits, such as "0.5" or "25.0"; in parentheses if negative.
 std::string fmu_number(double value);
+/// Returns the unit for the suffix of a variable's name, such as "degC" for "winding_C"; empty if the suffix states none.
 std::string_view fmu_unit(std::string_view variable);
 
 /// Returns every file of the unit, sources and description, sorted by path.

@@ -15,7 +15,7 @@ inline constexpr double kThousandths_ratio = 1000.0;
 
 /// A value n·2^-bits with |n| < 2^30. `absolute` bounds its error for all plausible inputs.
 struct FixedPoint {
-  double low = 0.0;
+  double low = 0.0;  ///< bounds of the value
   double high = 0.0;
   int bits = 0;
   double absolute = 0.0;

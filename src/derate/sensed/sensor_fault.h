@@ -9,7 +9,7 @@
 namespace heatsoak::derate {
 
 /// Simulates one use with a sensor that always reads the air temperature. The current is that of the sensed table for a cold motor, at most
-/// `gain_A` above the allowance of the guard without a sensor. That guard integrates only the current that it allows itself.
+/// `gain_A` above the current that the guard without a sensor allows. That guard integrates only its own allowed current.
 UsePlayed play_sensor_fault(const SensorPlan& plan, const Derating& model_only, const motor::Motor& motor, const robot::Robot& robot,
                             const LoadPattern& use, double gain_A);
 

@@ -101,7 +101,7 @@ class PlanSearch {
     });
   }
 
-  /// A plan whose check on fresh motors shows the confidence, and the extremes of these motors.
+  /// Plan whose check on fresh motors shows the confidence, and the extremes of these motors.
   struct Promise {
     SensorPlan plan;
     std::vector<SensedPeak> peaks;

@@ -10,10 +10,10 @@
 
 namespace heatsoak::present {
 
-/// `readings` are the reports of the logs.
+/// Returns the document of a calibration. `readings` are the reports of the logs.
 Document calibration_document(const motor::Motor& motor, const calibration::CalibrationAnswer& answer,
                               std::span<const recording::LogReading> readings);
-/// `out` is the name of the model's file.
+/// Returns the answer as JSON. `out` is the name of the model's file.
 Json calibration_json(const motor::Motor& motor, const calibration::CalibrationAnswer& answer,
                       std::span<const recording::LogReading> readings, const std::string& out);
 

@@ -8,7 +8,7 @@
 
 namespace heatsoak::present {
 
-/// `readings` are the reports of the logs.
+/// Returns the document of a diagnosis. `readings` are the reports of the logs.
 Document diagnosis_document(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings);
 
 }  // namespace heatsoak::present

@@ -154,7 +154,7 @@ bool is_leaving(const diagnosis::Unexplained& heat) {
   return heat.curve_unit == "W/K" ? largest > 0.0 : largest < 0.0;
 }
 
-/// Heat of several curves over one signal.
+/// Formats the heat of several curves over one signal.
 std::string watts_in_words(std::span<const diagnosis::Unexplained* const> curves) {
   std::vector<std::string> each;
   for (const diagnosis::Unexplained* const heat : curves) {
@@ -163,7 +163,7 @@ std::string watts_in_words(std::span<const diagnosis::Unexplained* const> curves
   return curves.size() == 1 ? each.front() : fmt::format("in {} curves: {}", each.size(), fmt::join(each, "; "));
 }
 
-/// All `curves` have the node and the signals of the first one.
+/// Describes unexplained heat. All `curves` have the node and the signals of the first one.
 std::string unexplained_in_words(std::span<const diagnosis::Unexplained* const> curves, const diagnosis::Diagnosis& diagnosis) {
   const diagnosis::Unexplained& heat = *curves.front();
   if (heat.drivers.empty()) {

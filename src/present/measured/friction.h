@@ -35,7 +35,7 @@ Json friction_json(const robot::Robot& robot, const FrictionAnswer& answer, cons
 /// Returns one sentence for each wheel whose measurements contradict the assumed friction law.
 std::vector<std::string> lack_of_fit_words(const friction::FrictionFit& fit);
 
-/// `drive` must have a drag torque of 0.
+/// Returns the document of a roll-out test with this number of logs. `drive` must have a drag torque of 0.
 Document roll_out_document(const robot::Robot& robot, const friction::RollOutResult& result, const robot::DriveConstants& drive,
                            std::size_t logs);
 Json roll_out_json(const robot::Robot& robot, const friction::RollOutResult& result, const robot::DriveConstants& drive,

@@ -32,7 +32,7 @@ void add_interval(report::ChartCurve& bars, double x, const friction::Estimate& 
   }
 }
 
-/// f(θ), interrupted where its sign changes.
+/// Returns f(θ), interrupted at its changes of sign.
 report::ChartCurve fitted_curve(const friction::WheelFriction& wheel, std::size_t index) {
   report::ChartCurve curve;
   curve.color_index = static_cast<int>(index);
@@ -85,7 +85,7 @@ bool has_points(const report::ChartPanel& panel) {
   });
 }
 
-/// The legs that are drawn: those that the fit uses.
+/// Draws the legs that the fit uses.
 class Drives {
  public:
   Drives(const friction::SteadyParts& steady, const friction::FrictionFit& fit, const robot::Kinematics& kinematics,
@@ -98,7 +98,7 @@ class Drives {
     }
   }
 
-  /// Figure 4: the lines of the heading with the most legs; of equal ones the heading in which the slowest wheel turns fastest.
+  /// Returns figure 4: the lines of the heading with the most legs. Among equals, the heading on which the slowest wheel turns fastest.
   [[nodiscard]] std::optional<report::ChartPanel> of_one_heading() const {
     const int number = informative_heading();
     if (number < 0) {
@@ -134,7 +134,7 @@ class Drives {
     return has_line ? std::optional(panel) : std::nullopt;
   }
 
-  /// Legs of pure rotation, with the lines d·ω ± c.
+  /// Returns the legs of pure rotation, with the lines d·ω ± c.
   [[nodiscard]] std::optional<report::ChartPanel> of_rotation() const {
     report::ChartPanel panel;
     panel.title = "Turning on the spot: measured; lines: d ω + c sign(ω)";
@@ -167,7 +167,7 @@ class Drives {
     return panel;
   }
 
-  /// All headings together: voltage minus the fitted friction leaves d·ω.
+  /// Returns all headings together: voltage minus the fitted friction, which leaves d·ω.
   [[nodiscard]] report::ChartPanel less_friction() const {
     report::ChartPanel panel;
     panel.title = "All headings: voltage less the fitted friction; lines: d ω";

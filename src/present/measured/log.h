@@ -20,7 +20,7 @@ void add_log(Document& document, const recording::Recording& recording, const re
 /// Returns the rejected samples, one sentence per channel and reason: "798 samples of winding_C: saturated; line 12-14, 20".
 std::vector<std::string> left_out_sentences(const recording::RecordingReport& report);
 
-/// Returns what the reader did with the logs, one sentence each. Parts of one log give the same sentences; they are listed once.
+/// Returns the reader's changes and remarks, one sentence each. Parts of one log give the same sentences; they are listed once.
 std::vector<std::string> reading_words(std::span<const recording::LogReading> readings);
 
 }  // namespace heatsoak::present

@@ -12,7 +12,7 @@
 
 namespace heatsoak::present {
 
-/// `recording` holds at least the data that the assessment keeps.
+/// Returns the JSON of one log. `recording` holds at least the data that the assessment keeps.
 Json log_json(const recording::Recording& recording, const recording::RecordingReport& report, const recording::DataQuality& quality);
 
 /// Returns the answer of `log inspect`; `logs` are results of log_json().

@@ -14,7 +14,7 @@ namespace heatsoak::present {
 /// Returns the name of a predicted signal without its unit.
 std::string signal_words(const calibration::PredictedSignal& signal);
 
-/// Warnings about the model's validity come first, and the reader's remarks of `readings` last.
+/// Returns the document. Warnings about the model's validity come first, and the reader's remarks of `readings` last.
 Document prediction_document(const motor::Motor& motor, const calibration::PredictionAnswer& answer,
                              std::span<const recording::LogReading> readings);
 

@@ -6,7 +6,7 @@
 
 namespace heatsoak::present {
 
-/// Measured and predicted temperature with the 90 % band; one panel per signal and run.
+/// Returns measured and predicted temperature with the 90 % band; one panel per signal and run.
 report::Chart prediction_chart(const motor::Motor& motor, const calibration::Prediction& prediction);
 
 }  // namespace heatsoak::present

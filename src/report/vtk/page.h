@@ -56,6 +56,7 @@ inline constexpr double marker_px = 5.0;
 inline constexpr TextStyle tick_style{.size_px = 12, .is_bold = false, .color = {0x44, 0x44, 0x44}};
 inline constexpr unsigned char limit_color[3] = {0xC8, 0x10, 0x2E};
 
+/// Computes the layout of a chart.
 Page lay_out(const Chart& chart);
 
 }  // namespace heatsoak::report

@@ -25,6 +25,7 @@ std::vector<std::vector<CurvePoint>> markers(const ChartCurve& curve, const Axis
 
 /// Returns the unbroken pieces of a curve, reduced to minimum, maximum, first and last sample of each pixel column.
 std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical);
+/// Returns the unbroken pieces of a band, reduced to minimum and maximum of each pixel column.
 std::vector<std::vector<BandPoint>> reduce(const ChartBand& band, const AxisScale& horizontal, const AxisScale& vertical);
 
 /// A piece of a curve, split into lines and envelopes. Parts that oscillate within a few pixels become envelopes, because their line would
@@ -33,6 +34,7 @@ struct RippledPiece {
   std::vector<std::vector<CurvePoint>> lines;
   std::vector<std::vector<BandPoint>> envelopes;  ///< minimum and maximum of the ripple
 };
+/// Replaces the ripple of a piece by envelopes.
 RippledPiece without_ripple(const std::vector<CurvePoint>& piece);
 
 }  // namespace heatsoak::report

@@ -28,6 +28,7 @@ struct AxisScale {
   [[nodiscard]] double to_px(double value) const;
 };
 
+/// Tick of an axis with its label.
 struct AxisTick {
   double value = 0.0;
   std::string label;  ///< decimal notation with the decimals that the step needs
