@@ -151,7 +151,8 @@ struct Stop {
   double duration_s = 0.0;
 };
 
-/// Of one wheel for each direction of travel: the larger current decides, and for equal currents the faster motor.
+/// Returns the hardest full stop of a wheel for each direction of travel: that with the larger current, for equal currents the faster
+/// motor.
 std::vector<Stop> stops(const robot::Robot& robot, const robot::DriveConstants& drive, const robot::BodyConfig& body) {
   constexpr int kHeadings = 72;
   const double most_A =

@@ -123,7 +123,7 @@ struct Member {
   std::string meaning;
 };
 
-/// Of a struct, in order, up to `unused`.
+/// Returns the members of a struct in order, up to `unused`.
 std::vector<Member> members_of(const std::string& header, const std::string& name) {
   static const std::regex kMember(R"(^  ([\w:]+) (\w+)(?:\[kMostWheels\])?(?: = [^;]*)?;(?:\s*///< (.*))?$)");
   std::vector<Member> members;

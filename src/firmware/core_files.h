@@ -29,7 +29,7 @@ struct CoreFolder {
   std::vector<std::string> notes;  ///< for the user: what the core does not know, and what it assumes instead
 };
 
-/// What the generators of single files share.
+/// Inputs common to all file generators.
 struct CoreSource {
   const robot::Robot& robot;
   const motor::Motor& motor;
@@ -37,7 +37,7 @@ struct CoreSource {
   CoreOptions options;
   robot_core::Config config;  ///< its guard is the model below
   robot_core::GuardModel guard;
-  std::string version;       ///< of this program
+  std::string version;       ///< version of this program
   std::string options_text;  ///< all options that matter, as on the command line
   std::string hash;
 };

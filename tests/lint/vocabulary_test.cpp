@@ -3,6 +3,7 @@
 
 #include <map>
 #include <regex>
+#include <sstream>
 #include <string>
 
 #include "source_text.h"
@@ -108,6 +109,38 @@ TEST(Vocabulary, no_folder_gets_more_of_the_words_left_behind) {
   for (const auto& [folder, count] : counts) {
     const auto most = kMost.find(folder);
     EXPECT_LE(count, most == kMost.end() ? 0 : most->second) << "write in the words of the field in place of\n" << places[folder];
+  }
+}
+
+/// Returns "path:line: text" of each doc comment that begins without its subject. Lines that continue a comment are not its beginning.
+std::string fragments_in(const std::string& text, const std::string& path) {
+  static const std::regex kFragment(R"(///<?\s*(?:of|that|where|how|what|which|whose)\b)", std::regex::icase);
+  static const std::regex kComment(R"(^\s*///(?!<))");
+  std::istringstream lines(text);
+  std::string places;
+  bool continues = false;
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    const bool is_comment = std::regex_search(line, kComment);
+    if (!(is_comment && continues) && std::regex_search(line, kFragment)) {
+      places += path + ":" + std::to_string(number) + ": " + line + "\n";
+    }
+    continues = is_comment;
+  }
+  return places;
+}
+
+TEST(Vocabulary, planted_fragments_are_found) {
+  EXPECT_EQ(fragments_in("/// Of the motor.\n/// of which\nint a;  ///< where it is\n/// Returns what\n", "x"),
+            "x:1: /// Of the motor.\nx:3: int a;  ///< where it is\n");
+}
+
+TEST(Vocabulary, doc_comments_begin_with_their_subject) {
+  for (const SourceFile& file : files_in("")) {
+    if (is_cpp(file.path) && file.path != "tests/lint/vocabulary_test.cpp") {
+      EXPECT_EQ(fragments_in(file.text, file.path), "");
+    }
   }
 }
 

@@ -12,7 +12,7 @@ inline constexpr double kMeanInstructions = 3000.0;
 inline constexpr double kMeanInstructionsWithFaults = 3250.0;
 /// The same with one step in ten late by up to two periods, which then has more work.
 inline constexpr double kMeanInstructionsLate = 3350.0;
-/// Of every step of the tests: on time or late, with or without the faults of drive_stream.h.
+/// Worst step of the asserted streams: on time or late, with or without the faults of drive_stream.h.
 inline constexpr std::uint32_t kMostInstructions = 6000;
 /// Code and constants, with the motor's law and tables.
 inline constexpr std::uint64_t kMostCode_bytes = 24 * 1024;
