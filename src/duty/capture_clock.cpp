@@ -12,7 +12,8 @@ constexpr std::size_t kMostCameras = 64;
 
 }  // namespace
 
-/// A log without times of reception gets them from the times of capture, which may then pause but not go back.
+/// Returns the time of reception. A log without such times gets them from the times of capture, where steps back and long pauses count as
+/// zero.
 double CaptureClock::reception_s(double capture_s, std::int64_t received_ns) {
   if (received_ns > 0) {
     return static_cast<double>(received_ns) * 1e-9;

@@ -1,4 +1,4 @@
-// Times of capture, followed over jumps of the clocks that stamped them.
+// Converts times of capture to a common time base, across jumps of the capture clocks.
 #pragma once
 
 #include <cstdint>
@@ -7,36 +7,36 @@
 
 namespace heatsoak::duty {
 
-/// Frames carry the time of capture (exact, but its clock may be set anew) and a time of reception (late and
-/// uneven, but of one clock). Where the two part by more than kTolerance_s, and frames agree on it, the clock of
-/// that camera has jumped, and its times are shifted back into line with the reception.
+/// A frame has a time of capture (exact, but its clock may be reset) and a time of reception (late and uneven, but of one clock). If the
+/// difference of both changes by more than kTolerance_s in kConfirmed consecutive frames, the clock of that camera has jumped. Later
+/// capture times are then shifted to match the reception again.
 class CaptureClock {
  public:
   struct Reading {
-    double time_s = 0.0;  ///< since the first frame
-    bool jumped = false;  ///< nothing before this frame connects to it
+    double time_s = 0.0;  ///< time since the first frame
+    bool jumped = false;  ///< true if the clock jumped: earlier frames are not continuous with this one
   };
-  /// Nothing where the time of capture is not to be trusted.
+  /// Returns the time of a frame; nothing if its time of capture is not credible.
   std::optional<Reading> read(int camera, double capture_s, std::int64_t received_ns);
-  /// Unix time of the first frame.
+  /// Returns the Unix time of the first frame; 0 before it.
   [[nodiscard]] double start_unix_s() const { return start_s_.value_or(0.0); }
 
   static constexpr double kTolerance_s = 0.5;
-  static constexpr int kConfirmed = 10;  ///< so many frames in a row make a jump
+  static constexpr int kConfirmed = 10;  ///< number of consecutive frames that confirm a jump
 
  private:
   struct Camera {
-    double ahead_s = 0.0;  ///< capture before reception, negative; slowly followed
-    double shift_s = 0.0;
-    double pending_s = 0.0;
-    int pending = 0;
+    double ahead_s = 0.0;    ///< capture minus reception, slowly filtered
+    double shift_s = 0.0;    ///< correction of the capture time
+    double pending_s = 0.0;  ///< ahead_s of an unconfirmed jump
+    int pending = 0;         ///< frames that agree on the unconfirmed jump
   };
   double reception_s(double capture_s, std::int64_t received_ns);
 
   std::map<int, Camera> cameras_;
   std::optional<double> start_s_;
   double first_ahead_s_ = 0.0;
-  double reception_s_ = 0.0;  // without a time of reception: capture, less its jumps
+  double reception_s_ = 0.0;  // substitute for missing reception times: capture time without its jumps
   double last_capture_s_ = 0.0;
 };
 

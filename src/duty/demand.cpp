@@ -13,7 +13,7 @@ double direction_of(double speed_rad_per_s) {
   return std::abs(speed_rad_per_s) < kStandstill_rad_per_s ? 0.0 : std::copysign(1.0, speed_rad_per_s);
 }
 
-/// The number of steps that hold the value; std::ceil is a function call on the plainest processors.
+/// Returns the value in steps, rounded up. It avoids std::ceil, which is a function call on processors without SSE4.1.
 int cell_of(double value, double step) {
   const double steps = value / step;
   const int whole = static_cast<int>(steps);
@@ -117,7 +117,7 @@ void DemandGatherer::add(double duration_s, double torque_Nm, double speed_rad_p
       coarsen(axis);
     }
   }
-  // Away from zero, so that a cell asks at least as much as anything in it.
+  // Values are rounded away from zero, so that the load of a cell is at least that of each moment in it.
   Cell cell{cell_of(size[torque], step_[torque]), cell_of(size[speed], step_[speed]),
             current_A == 0.0 ? 0 : cell_of(size[current], step_[current])};
   const double direction = direction_of(speed_rad_per_s);
@@ -150,7 +150,7 @@ void DemandGatherer::close_stay() {
   }
 }
 
-/// Two cells become one, which stands for the edge that asks more as both did.
+/// Merges two cells into one, rounded to its edge with the larger load.
 void DemandGatherer::coarsen(Axis axis) {
   const auto halved = [axis](Cell cell) {
     cell[axis] = (cell[axis] + (cell[axis] > 0 ? 1 : -1)) / 2;
@@ -158,7 +158,7 @@ void DemandGatherer::coarsen(Axis axis) {
   };
   step_[axis] *= 2.0;
   cell_ = halved(cell_);
-  // In order, so that sums do not depend on how the cells lie in memory.
+  // The cells are sorted, so that the sums do not depend on the order in the hash table.
   const std::map<Cell, double> fine(time_at_s_.begin(), time_at_s_.end());
   time_at_s_.clear();
   for (const auto& [cell, time_s] : fine) {
@@ -185,7 +185,7 @@ void DemandGatherer::close_bin() {
 WheelDemand DemandGatherer::finish() {
   close_bin();
   close_stay();
-  // In order, so that the same load gives the same points.
+  // The cells are sorted, so that equal loads give equal points.
   for (const auto& [cell, time_s] : std::map<Cell, double>(time_at_s_.begin(), time_at_s_.end())) {
     demand_.points.push_back({cell[torque] * step_[torque], cell[speed] * step_[speed], cell[current] * step_[current], time_s});
   }

@@ -1,4 +1,4 @@
-// What the wheels of a robot have to do, in the form that a motor's heat depends on.
+// Demand of a robot's wheels, reduced to the quantities that determine the heat of a motor.
 #pragma once
 
 #include <array>
@@ -9,70 +9,71 @@
 
 namespace heatsoak::duty {
 
-/// Means over a segment of time at one wheel. With I = (M + M_drag·sign ω)/K_t the mean of I² is
-/// (⟨M²⟩ + 2·M_drag·⟨M·sign ω⟩ + M_drag²·⟨sign² ω⟩)/K_t², so that these means give the copper heat of every motor exactly,
-/// however many moments were merged into the bin.
+/// Means over a time interval at one wheel. With I = (M + M_drag·sign ω)/K_t the mean of I² is
+/// (⟨M²⟩ + 2·M_drag·⟨M·sign ω⟩ + M_drag²·⟨sign² ω⟩)/K_t². These means therefore give the exact copper heat of every motor, regardless of
+/// how many moments the bin contains.
 struct LoadBin {
   double duration_s = 0.0;
   double torque_rms_Nm = 0.0;
   double torque_along_motion_Nm = 0.0;  ///< mean of M·sign ω (see kStandstill_rad_per_s): positive drives, negative brakes
-  double moving_share = 0.0;            ///< part of the time with a direction
+  double moving_share = 0.0;            ///< share of the time with |ω| of at least kStandstill_rad_per_s
   double speed_mean_rad_per_s = 0.0;    ///< mean of |ω|
   double speed_rms_rad_per_s = 0.0;
-  double torque_mean_Nm = 0.0;           ///< signed
+  double torque_mean_Nm = 0.0;           ///< signed mean
   double velocity_mean_rad_per_s = 0.0;  ///< signed mean of ω
-  // Only of duties that are given as current:
+  // Only for duties that are given as current:
   double current_rms_A = 0.0;
   double current_along_motion_A = 0.0;   ///< mean of I·sign ω: positive drives, negative brakes
-  double current_mean_A = 0.0;           ///< signed
+  double current_mean_A = 0.0;           ///< signed mean
   double power_mean_W = 0.0;             ///< mean of M·ω
-  double acceleration_rad_per_s2 = 0.0;  ///< mean of |dω/dt|; jumps between segments of constant speed are not in it
+  double acceleration_rad_per_s2 = 0.0;  ///< mean of |dω/dt|, without jumps between segments of constant speed
 };
 
-/// A wheel that turns more slowly has no direction, 3 mm/s at a rim of 30 mm: what planners, smoothers and number formats leave of a
-/// zero has a sign, and the motor's whole drag would follow it.
+/// Below this speed a wheel counts as standing (3 mm/s at a rim of 30 mm). Planners, smoothers and number formats leave rounding errors
+/// with a random sign, and the motor's drag would follow this sign.
 inline constexpr double kStandstill_rad_per_s = 0.1;
 
-/// A segment with one torque and speed.
+/// Returns the bin of an interval with constant torque, speed and current.
 LoadBin constant_bin(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A);
 
-/// How long a wheel is asked for a torque at a speed: tells what voltage and current are needed, and how often.
+/// Total time for which a wheel needs a torque at a speed. Points determine the required voltage and current and their frequency.
 /// speed_rad_per_s ≥ 0; a torque or current < 0 brakes.
 struct LoadPoint {
   double torque_Nm = 0.0;
   double speed_rad_per_s = 0.0;
-  double current_A = 0.0;  ///< only of duties that are given as current
+  double current_A = 0.0;  ///< only for duties that are given as current
   double time_s = 0.0;
 };
 
 struct WheelDemand {
-  std::string wheel;  ///< "wheel 1 (front right)"
+  std::string wheel;  ///< name, for example "wheel 1"
   std::vector<LoadBin> bins;
   std::vector<LoadPoint> points;
-  double slip_share = 0.0;  ///< of the time: the ground cannot pass on what the robot's motion takes, and wheels would slide
+  double slip_share = 0.0;  ///< share of the time in which the ground cannot transmit the required forces
 
   [[nodiscard]] double duration_s() const;
 };
 
-/// The wheel with the largest ∫M²dt: it stands for the hottest one, which is known only for a motor. Expects at least one.
+/// Returns the wheel with the largest ∫M²dt, a proxy for the hottest one. Expects at least one wheel.
 WheelDemand hardest(std::vector<WheelDemand> wheels);
 
-/// So long are the bins into which moments are merged: short against a winding's time constant.
+/// Duration of bins. It is short compared with the time constant of a winding.
 inline constexpr double kBin_s = 0.25;
 
-/// Means over moments as they come.
+/// Accumulates moments and computes their means.
 class LoadMeans {
  public:
-  /// What is given holds for `duration_s`; torque · speed > 0 drives, and so does current · speed > 0.
+  /// Adds a moment that holds for `duration_s`. torque · speed > 0 or current · speed > 0 drives, < 0 brakes.
   void add(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A = 0.0);
+  /// Returns the duration of the open bin.
   [[nodiscard]] double time_s() const { return integrals_[time]; }
-  /// What came since the last bin; the next one begins.
+  /// Returns the means since the last call and begins the next bin.
   LoadBin close();
-  /// What comes does not follow on what came.
+  /// Starts a new segment: no acceleration is computed across this point.
   void cut() { last_speed_rad_per_s_.reset(); }
 
  private:
-  /// Time integrals over the open bin.
+  /// Indices of the time integrals over the open bin.
   enum Integral {
     time,
     torque,
@@ -93,9 +94,9 @@ class LoadMeans {
   std::optional<double> last_speed_rad_per_s_;
 };
 
-/// Merges moments into bins and points as they come; memory grows with the number of bins only.
-/// Points are gathered on a grid of torque, speed and current and stand for the edge of their cell that asks more. The grid gets
-/// coarser where loads are so large or so many that it would have more than kMostSteps to a side or kMostCells in all.
+/// Merges moments into bins and points; memory grows only with the number of bins. Points lie on a grid of torque, speed and current. A
+/// moment is rounded to the edge of its cell with the larger load. The grid becomes coarser if it would exceed kMostSteps per axis or
+/// kMostCells in total.
 class DemandGatherer {
  public:
   struct Grid {
@@ -107,9 +108,9 @@ class DemandGatherer {
   static constexpr std::size_t kMostCells = 16384;
   DemandGatherer(std::string wheel, double bin_s, Grid grid);
 
-  /// What is given holds for `duration_s`; torque · speed > 0 drives.
+  /// Adds a moment that holds for `duration_s`. torque · speed > 0 or current · speed > 0 drives, < 0 brakes.
   void add(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A = 0.0);
-  /// The same, kept as a bin and a point of its own.
+  /// Adds a bin and a point for this moment alone, without merging.
   void add_alone(double duration_s, double torque_Nm, double speed_rad_per_s, double current_A = 0.0);
   [[nodiscard]] WheelDemand finish();
 
@@ -129,7 +130,7 @@ class DemandGatherer {
   std::array<double, axis_count> step_;
   LoadMeans means_;
   std::unordered_map<Cell, double, CellHash> time_at_s_;
-  Cell cell_{};  ///< where the load is now; it seldom leaves a cell within milliseconds
+  Cell cell_{};  ///< cell of the last moment, cached because loads change slowly
   double stay_s_ = 0.0;
 };
 

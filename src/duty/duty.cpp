@@ -23,7 +23,7 @@ const std::vector<ShapeType>& all_shapes() {
 
 namespace {
 
-/// `own` over `base`: tables are merged key by key, but a parameter is replaced as a whole.
+/// Returns `base` with the values of `own`. Tables are merged key by key, but a parameter is replaced as a whole.
 input::Value merged(input::Value base, const input::Value& own) {
   for (const input::Member& member : own.members) {
     const auto same = std::ranges::find(base.members, member.key, &input::Member::key);
@@ -40,7 +40,7 @@ input::Value merged(input::Value base, const input::Value& own) {
   return base;
 }
 
-/// The file over the one that its `base` names, which stands beside it.
+/// Reads the file and merges it with the file in the same folder that its `base` names.
 input::Value read_with_base(const std::filesystem::path& path, int depth = 0) {
   constexpr int kDeepest = 4;
   input::Value own = input::read_toml(path);

@@ -1,4 +1,5 @@
-// The duty of all wheels as rows of a CSV that a recorded duty reads, put out as they come: memory does not grow with the duty.
+// Writes the demand of all wheels as CSV rows that a recorded duty can read. Rows are written immediately, so memory does not grow with the
+// duration.
 #pragma once
 
 #include <functional>
@@ -10,18 +11,18 @@
 
 namespace heatsoak::duty {
 
-/// A row holds until the next; its torque is the rms with the sign of the mean, so that the heat stays.
+/// Writer of rows. A row holds until the next; its torque is the RMS with the sign of the mean, which conserves the heat.
 class DutyRows {
  public:
   using Put = std::function<void(std::string_view text)>;
-  /// Moments are merged into rows of `every_s`.
+  /// Writes the header. Moments are merged into rows of `every_s`.
   DutyRows(std::size_t wheel_count, DutyKind kind, double every_s, Put put);
 
-  /// One value per wheel, which holds for `duration_s`.
+  /// Adds a moment that holds for `duration_s`, with one value per wheel.
   void add(double duration_s, std::span<const double> torque_Nm, std::span<const double> speed_rad_per_s);
-  /// A row as it is, one bin per wheel.
+  /// Writes one row from one bin per wheel.
   void add(std::span<const LoadBin> bins);
-  /// The last row, which only ends the duty.
+  /// Writes the last row, which only marks the end of the duty.
   void finish();
 
  private:

@@ -1,4 +1,4 @@
-// What a TOML file of a user describes.
+// Kind of a user's TOML file.
 #pragma once
 
 #include <filesystem>
@@ -13,10 +13,10 @@ enum class FileKind { motor, robot, duty };
 
 std::string_view to_string(FileKind kind);
 
-/// By its keys; nothing where they tell too little.
+/// Returns the kind determined from the keys; nothing if they do not determine it.
 std::optional<FileKind> evident_kind(const input::Value& root);
 
-/// The same of a file; what does not tell counts as a motor. Throws Failure (bad_input) where it is no TOML.
+/// Returns the kind of a file; motor if the keys do not determine it. Throws Failure (bad_input) if the file is not valid TOML.
 FileKind file_kind(const std::filesystem::path& file);
 
 }  // namespace heatsoak::duty

@@ -13,13 +13,13 @@ namespace heatsoak::duty {
 namespace {
 
 constexpr double kRate_Hz = 1000.0;
-/// No break of a game is as long: the clock of the recording jumped.
+/// Longer gaps count as a jump of the recording's clock, because no break of a game is as long.
 constexpr double kLongestAbsence_s = 3600.0;
 
-/// Fewer sights a second do not show how a robot of this league accelerates.
+/// Smallest detection rate that resolves the accelerations of a robot of this league.
 constexpr double kFewestSights_Hz = 10.0;
 
-/// What to say of a robot that is seen too seldom; nothing of the others.
+/// Returns a warning if the robot is seen too seldom, otherwise an empty text.
 std::string sparse(const ImportReport& report, const RobotName& name) {
   const auto robot = std::ranges::find(report.robots, name, &RobotSummary::robot);
   if (robot == report.robots.end() || !(static_cast<double>(robot->points) < kFewestSights_Hz * robot->seen_s)) {
@@ -30,7 +30,7 @@ std::string sparse(const ImportReport& report, const RobotName& name) {
       to_string(name), static_cast<double>(robot->points) / robot->seen_s, kFewestSights_Hz);
 }
 
-/// The robot that was asked for, or the one that worked most; nothing where the log has none at all.
+/// Returns the requested robot or, if `player` is empty, the one with the largest ∫a²; nothing if the log has no robots.
 std::optional<RobotName> choose(const ImportReport& survey, const std::string& player, const std::filesystem::path& log) {
   std::vector<std::string> known;
   for (const RobotSummary& each : survey.robots) {
@@ -48,12 +48,12 @@ std::optional<RobotName> choose(const ImportReport& survey, const std::string& p
   return busiest == survey.robots.end() ? std::nullopt : std::optional(busiest->robot);
 }
 
-/// What the motion asks of the wheels, and how much of it was seen and possible.
+/// Demand of the wheels, with the times without detection and over the grip.
 struct WheelLoads {
   std::vector<WheelDemand> wheels;
-  double slip_s = 0.0;
-  double unseen_s = 0.0;  ///< taken as standstill
-  int jumps = 0;          ///< of the clock; left out
+  double slip_s = 0.0;    ///< time in which the ground cannot transmit the forces
+  double unseen_s = 0.0;  ///< time without detection, counted as standstill
+  int jumps = 0;          ///< clock jumps, which are omitted
 };
 
 WheelLoads loads_of(const MotionTrack& motion, const robot::Robot& robot, double bin_s, const GameObserver& observer) {
@@ -117,7 +117,7 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
   if (game.tracks.empty() || game.tracks.front().segments.empty()) {
     return result;
   }
-  // What was kept of the robot is known only now.
+  // The second pass knows up to when points of this robot were kept.
   ImportReport report = first.report;
   report.full_at_s = game.report.full_at_s;
   result.sentences = sentences(report);

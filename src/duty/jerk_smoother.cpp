@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kDecibel3 = 0.8634;  // (√2 - 1)^(1/6): 1 / (1 + u^6) = 1/√2
 constexpr double kLeastWeight = 1e-9;
-// What is known before the first sample, in steps of noise: next to nothing.
+// Prior standard deviations before the first sample, as multiples of the sample noise per s and s²: practically uninformative.
 constexpr double kUnknownRate = 1e4;
 constexpr double kUnknownAcceleration = 1e5;
 
@@ -27,7 +27,7 @@ Eigen::Matrix3d transition(double step_s) {
   return f;
 }
 
-/// What white jerk of unit density adds to the covariance over a step.
+/// Returns the process noise covariance of a step for white jerk of unit density.
 Eigen::Matrix3d jerk_spread(double t) {
   const double t2 = t * t;
   const double t3 = t2 * t;
@@ -42,7 +42,7 @@ State predicted(const State& from, const Sample& sample, double step_s, double n
   return {f * from.mean, f * from.spread * f.transpose() + noise_density_s * std::pow(corner, 6.0) * jerk_spread(step_s)};
 }
 
-/// Unit noise, divided by the weight.
+/// Updates the state with a sample, whose noise variance is 1/weight.
 State updated(const State& from, const Sample& sample) {
   if (sample.weight < kLeastWeight) {
     return from;
@@ -85,7 +85,7 @@ std::vector<Smoothed> smooth_samples(std::span<const Sample> samples, double ste
 }
 
 double acceleration_noise(double value, double step_s, double bandwidth_Hz) {
-  // ∫ω⁴/(1+(ω/ω0)⁶)² dω/2π over all ω is ω0⁵/18.
+  // The integral ∫ω⁴/(1+(ω/ω0)⁶)² dω/2π over all ω is ω0⁵/18.
   return value * std::sqrt(step_s * std::pow(corner_rad_per_s(bandwidth_Hz), 5.0) / 18.0);
 }
 

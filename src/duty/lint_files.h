@@ -11,7 +11,7 @@
 namespace heatsoak::duty {
 
 struct FilesLint {
-  std::vector<std::string> files;
+  std::vector<std::string> files;            ///< checked files
   std::vector<motor::LintFinding> findings;  ///< in the order of the files
 
   [[nodiscard]] std::size_t count(motor::LintFinding::Level level) const;

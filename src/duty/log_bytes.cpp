@@ -16,7 +16,7 @@ namespace heatsoak::duty {
 namespace {
 
 constexpr std::size_t kChunk = std::size_t{1} << 18;
-constexpr int kGzipWindow = 15 + 16;  // zlib's way to ask for gzip's header and checksum
+constexpr int kGzipWindow = 15 + 16;  // zlib's code for a gzip header and checksum
 
 }  // namespace
 
@@ -28,7 +28,7 @@ struct LogBytes::State {
   std::unique_ptr<std::FILE, Close> file;
   std::uint64_t file_size = 0;
   std::uint64_t file_read = 0;
-  std::vector<unsigned char> packed;  // empty: the file is not packed
+  std::vector<unsigned char> packed;  // empty if the file is not compressed
   z_stream zip{};
   bool zip_open = false;
   bool between_members = false;
@@ -62,10 +62,10 @@ struct LogBytes::State {
     }
   }
 
-  /// Where the next input byte stands in the file.
+  /// Returns the position of the next input byte in the file.
   [[nodiscard]] std::uint64_t packed_offset() const { return file_read - zip.avail_in; }
 
-  /// Unpacks into the window; false at the end.
+  /// Decompresses into the window; returns false at the end.
   bool unpack() {
     zip.next_out = reinterpret_cast<Bytef*>(window.get() + end);
     zip.avail_out = static_cast<uInt>(kWindow - end);
@@ -82,7 +82,7 @@ struct LogBytes::State {
         }
       }
       if (between_members) {
-        // Zeros after a gzip member are padding; anything else but a new member is rubbish that gzip ignores, too.
+        // Zeros after a gzip member are padding. Other bytes that do not begin a new member are ignored, as gzip does.
         if (zip.next_in[0] != 0x1f || inflateReset2(&zip, kGzipWindow) != Z_OK) {
           return false;
         }

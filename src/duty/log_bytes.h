@@ -1,4 +1,4 @@
-// The bytes of a file, packed by gzip or not, through a window of bounded size.
+// Reads the bytes of a plain or gzip-compressed file through a window of bounded size.
 #pragma once
 
 #include <cstddef>
@@ -12,22 +12,22 @@ namespace heatsoak::duty {
 
 class LogBytes {
  public:
-  /// Throws Failure (bad_input) where the file cannot be opened or is no file.
+  /// Throws Failure (bad_input) if the file cannot be opened or is not a regular file.
   explicit LogBytes(const std::filesystem::path& file);
   LogBytes(const LogBytes&) = delete;
   LogBytes& operator=(const LogBytes&) = delete;
   ~LogBytes();
 
-  /// The next bytes: at least `wanted` of them (at most kWindow) unless the file ends before. Valid until the next call.
+  /// Returns the next bytes: at least `wanted` (at most kWindow) unless the file ends first. The view is valid until the next call.
   [[nodiscard]] std::string_view peek(std::size_t wanted);
-  /// Goes on; `count` may be larger than what is left.
+  /// Skips `count` bytes, or all remaining bytes if there are fewer.
   void skip(std::uint64_t count);
-  /// Position in the unpacked bytes.
+  /// Returns the position in the uncompressed bytes.
   [[nodiscard]] std::uint64_t offset() const;
   [[nodiscard]] bool is_packed() const;
-  /// Why the bytes end early, with the place in the file; empty where they do not.
+  /// Returns why the bytes end early, with the position in the file; empty if they do not.
   [[nodiscard]] const std::string& broken() const;
-  /// Share of the file that is read.
+  /// Returns the share of the file that has been read, 0 to 1.
   [[nodiscard]] double share() const;
 
   static constexpr std::size_t kWindow = std::size_t{1} << 22;

@@ -1,4 +1,4 @@
-// What an importer of recorded games is: one file in src/duty/logs each.
+// Interface of importers of recorded games. Each file in src/duty/logs defines one.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@
 
 namespace heatsoak::duty {
 
-/// One robot in one frame of one camera.
+/// Detection of one robot in one frame of one camera.
 struct Detection {
   RobotName robot;
-  double time_s = 0.0;  ///< any origin; the first one becomes 0
+  double time_s = 0.0;  ///< time with any origin; the first detection becomes 0
   double x_m = 0.0;
   double y_m = 0.0;
   double yaw_rad = 0.0;
   int camera = 0;
-  double confidence = 1.0;         ///< 0 … 1
-  double camera_distance_m = 0.0;  ///< along the floor; 0 where unknown
+  double confidence = 1.0;         ///< confidence of the detection, 0 to 1
+  double camera_distance_m = 0.0;  ///< horizontal distance to the camera; 0 if unknown
 };
 
-/// Where an importer puts what it finds, in the order of the file.
+/// Receiver of an importer's results, in the order of the file.
 class LogEvents {
  public:
   LogEvents() = default;
@@ -32,20 +32,21 @@ class LogEvents {
   virtual ~LogEvents() = default;
 
   virtual void see(const Detection& detection) = 0;
-  /// From the latest detection on.
+  /// Sets the phase from the latest detection on.
   virtual void phase(GamePhase phase) = 0;
-  /// Nothing before connects to what follows.
+  /// Cuts all tracks: later detections are not continuous with earlier ones.
   virtual void cut() = 0;
+  /// Reports a part of the file that could not be used, see LogProblem.
   virtual void problem(std::uint64_t at, std::string what) = 0;
-  /// Whether anything after this moment is still of use.
+  /// Returns true if later events are not needed.
   [[nodiscard]] virtual bool done() const = 0;
   virtual ImportReport& report() = 0;
 };
 
 struct LogType {
-  std::string_view name;  ///< the file's name; set by all_logs()
+  std::string_view name;  ///< name of the source file; set by all_logs()
   std::string_view summary;
-  /// Whether a file that begins with these bytes (unpacked where it was packed) is of this type.
+  /// Returns whether a file with these first (uncompressed) bytes is of this type.
   bool (*recognises)(std::string_view head) = nullptr;
   void (*read)(const std::filesystem::path& file, const ImportOptions& options, LogEvents& events) = nullptr;
 };

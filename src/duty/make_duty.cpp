@@ -13,7 +13,7 @@
 namespace heatsoak::duty {
 namespace {
 
-/// Returns the table, whose rows are put out as they are produced; nothing if the job has none.
+/// Returns the writer of the table; nothing if the job has none.
 std::optional<DutyRows> table_of(const DutyJob& job, std::size_t wheel_count, DutyKind kind) {
   return job.put_table ? std::optional<DutyRows>(std::in_place, wheel_count, kind, job.every_s, job.put_table) : std::nullopt;
 }

@@ -1,4 +1,4 @@
-// The answer of `duty`: a generated match, a prescribed load or a recorded game as demand of a robot's wheels.
+// Answer of `duty`: the demand of a robot's wheels from a generated match, a prescribed load or a recorded game.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,12 @@ namespace heatsoak::duty {
 
 struct DutyJob {
   robot::Robot robot;
-  std::optional<Duty> duty = {};  ///< nothing: the recorded game `log`
+  std::optional<Duty> duty = {};  ///< empty: the recorded game `log` is used
   std::string log = {};
-  std::string player = {};                 ///< name in the recorded game, "yellow 3"; empty: the busiest one
+  std::string player = {};                 ///< name in the recorded game, for example "yellow 3"; empty: the robot with the largest ∫a²
   double every_s = 0.01;                   ///< time between two rows of the table
-  std::optional<std::uint64_t> seed = {};  ///< seed of a match; 1 if nothing
-  std::optional<Planner> planner = {};     ///< planner of a match; jerk_limited if nothing
+  std::optional<std::uint64_t> seed = {};  ///< seed of a match; 1 if empty
+  std::optional<Planner> planner = {};     ///< planner of a match; jerk_limited if empty
   DutyRows::Put put_table = {};            ///< gets the text of the table as it is made; empty: no table
 };
 
@@ -39,13 +39,13 @@ struct GeneratedMatch {
 
 struct DutyAnswer {
   robot::Robot robot;
-  std::optional<Duty> duty;  ///< nothing for a recorded game
+  std::optional<Duty> duty;  ///< empty for a recorded game
   std::string log;           ///< file of a recorded game
   std::variant<PrescribedLoad, GeneratedMatch, GameDemand> content;
 };
 
-/// Throws Failure: bad_input if seed or planner is given for a duty that is not a match, cannot_answer if no robot of a recorded game is
-/// seen long enough.
+/// Computes the demand. Throws Failure: bad_input if seed or planner is given for a duty that is not a match, cannot_answer if no robot of
+/// a recorded game is seen long enough.
 DutyAnswer make_duty(const DutyJob& job);
 
 /// Returns the duty file that describes the table `csv` beside it, so that `evaluate --duty FILE.toml` can read it.

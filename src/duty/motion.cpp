@@ -11,18 +11,18 @@
 namespace heatsoak::duty {
 namespace {
 
-constexpr double kFramesPerPeriod = 6.0;  // less than six sights of one period say nothing about its acceleration
-constexpr double kHuber = 2.5;            // in robust standard deviations: beyond, a point pulls no harder
-constexpr double kOutlier = 6.0;          // beyond, it has no say
+constexpr double kFramesPerPeriod = 6.0;  // fewer samples per period do not determine its acceleration
+constexpr double kHuber = 2.5;            // in robust standard deviations: beyond it the influence of a point is constant
+constexpr double kOutlier = 6.0;          // in robust standard deviations: beyond it a point has weight 0
 constexpr int kReweightings = 3;
-constexpr double kNormal = 1.4826;  // standard deviation of a normal distribution in median absolute deviations
-// With more than that the acceleration says more of the camera than of the robot.
+constexpr double kNormal = 1.4826;  // ratio of standard deviation to median absolute deviation of a normal distribution
+// With a larger share of noise the acceleration describes the camera rather than the robot.
 constexpr double kMostlyNoise_share = 0.5;
-// Below this a point is never suspect: without noise, the smoother's own error at a hard start would be.
+// Lower bounds of the noise that scales residuals. Without noise the smoother's own error at a hard start would count as an outlier.
 constexpr double kNoSuspicion_m = 2e-3;
 constexpr double kNoSuspicion_rad = 1e-2;
-// A wider band would invent more heat by noise, a narrower one would lose more at the edges of the acceleration. Turns are
-// shorter than runs and lose more.
+// A wider band adds more heat by noise, a narrower one loses more at the edges of the acceleration. Turns are shorter than straight runs
+// and lose more.
 constexpr double kNoiseShareOfPlace = 0.02;
 constexpr double kNoiseShareOfTurn = 0.045;
 constexpr double kFirstBandwidth_Hz = 4.0;
@@ -30,11 +30,11 @@ constexpr double kLeastBandwidth_Hz = 2.0;
 constexpr double kMostBandwidth_Hz = 8.0;
 constexpr int kBandwidthSearch = 3;
 constexpr double kQuietBandwidth_Hz = 1.5;
-constexpr double kWindow_s = 0.25;  // to each side: where the robot is quiet is decided over half a second
-// The mean square over such a window has about ten degrees of freedom; noise alone exceeds three times its mean in one of a thousand.
+constexpr double kWindow_s = 0.25;  // half width of the window that decides whether the robot is quiet
+// The mean square over this window has about ten degrees of freedom. Noise alone exceeds three times its mean in 0.1 % of the windows.
 constexpr double kMoreThanNoise = 3.0;
 constexpr std::size_t kBlock = 4096;
-constexpr double kMemoryPeriods = 5.0;  // of the quiet bandwidth: what lies further away has no influence (e^-18)
+constexpr double kMemoryPeriods = 5.0;  // in periods of the quiet bandwidth: samples farther away have no influence (e^-18)
 
 double median(std::vector<double>& values) {
   if (values.empty()) {
@@ -45,7 +45,7 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-/// The same answer as in one go, with memory for a block only.
+/// Smooths block by block, which needs memory for one block only. The result is the same as for all samples together.
 std::vector<Smoothed> smooth_in_blocks(const std::vector<Sample>& samples, double step_s, double memory_s) {
   std::vector<Smoothed> all;
   all.reserve(samples.size());
@@ -60,7 +60,7 @@ std::vector<Smoothed> smooth_in_blocks(const std::vector<Sample>& samples, doubl
   return all;
 }
 
-/// One or two coordinates that share their weights and bandwidths.
+/// One or two coordinates with common weights and bandwidths.
 struct Channel {
   std::vector<std::vector<Sample>> samples;
   std::vector<std::vector<Smoothed>> smoothed;
@@ -88,7 +88,7 @@ class Smoother {
   Smoother(std::vector<Channel>& channels, double step_s, double no_suspicion, double noise_share)
       : channels_(channels), step_s_(step_s), no_suspicion_(no_suspicion), noise_share_(noise_share) {}
 
-  /// Noise makes an acceleration that grows with the power 2.5 of the bandwidth, so its share gives the bandwidth.
+  /// Finds the bandwidth from the share of noise: the acceleration by noise is proportional to the bandwidth to the power of 2.5.
   ChannelReport run(std::optional<double> wanted_Hz) {
     const double most_Hz = 1.0 / (kFramesPerPeriod * step_s_);
     double bandwidth_Hz = std::min(most_Hz, wanted_Hz.value_or(kFirstBandwidth_Hz));
@@ -150,7 +150,7 @@ class Smoother {
         }
       }
     }
-    // The smoother takes the share 2·f·step of the noise along with it.
+    // The smoothed track follows the share 2·f·step of the noise, which is missing in the residuals.
     const double left = std::max(0.3, 1.0 - 2.0 * report_.bandwidth_Hz * step_s_);
     report_.noise_m_or_rad = kNormal * median(off) / std::sqrt(left);
   }
@@ -170,7 +170,7 @@ class Smoother {
     }
   }
 
-  /// Narrow where the acceleration is no more than what noise makes of itself.
+  /// Sets the quiet bandwidth for samples whose acceleration does not exceed that of the noise.
   void set_bandwidths(Channel& channel) {
     const std::vector<Sample>& times = channel.samples.front();
     const double noise = acceleration_noise(report_.noise_m_or_rad, step_s_, report_.bandwidth_Hz);
@@ -208,13 +208,13 @@ class Smoother {
 
   std::vector<Channel>& channels_;
   double step_s_;
-  double no_suspicion_;  // in the unit of the channels
-  double noise_share_;   // to aim at
+  double no_suspicion_;  // lower bound of the noise that scales residuals, in the unit of the channels
+  double noise_share_;   // target share of the noise in ∫a²
   ChannelReport report_;
   double quiet_s_ = 0.0;
   double total_s_ = 0.0;
   double energy_ = 0.0;        // ∫a² where the robot is not quiet, in the channels' unit
-  double noise_energy_ = 0.0;  // expected part of the noise
+  double noise_energy_ = 0.0;  // expected ∫a² of the noise
 };
 
 double usual_step_s(const RobotTrack& track) {
@@ -242,7 +242,7 @@ std::vector<Channel> channels_of(const RobotTrack& track, const std::vector<doub
   return channels;
 }
 
-/// The polynomial of fifth degree from one state to another, a step later.
+/// Polynomial of fifth degree between two states.
 struct Quintic {
   std::array<double, 6> c{};
 
@@ -356,7 +356,7 @@ void MotionTrack::for_each(double rate_Hz, const std::function<void(const Motion
 
 std::string to_string(const SmoothingReport& r) {
   const auto channel = [](const ChannelReport& c, std::string_view name, std::string_view unit) {
-    // A share says little where there is hardly anything to take a share of.
+    // With almost only noise its share is meaningless, so the bound of the acceleration is printed instead.
     const std::string trust = c.noise_share < kMostlyNoise_share
                                   ? fmt::format("about {:.1f} % of the squared acceleration is noise", 100.0 * c.noise_share)
                                   : fmt::format("the acceleration is below the noise, which is at most {:.2g} {}/s² rms",

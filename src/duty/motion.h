@@ -1,4 +1,4 @@
-// From positions with noise to velocity and acceleration: what the wheels had to do.
+// Computes velocity and acceleration from noisy positions.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace heatsoak::duty {
 
-/// Everything in the frame of the field; yaw counts counter-clockwise.
+/// Motion in the field frame; yaw is positive counter-clockwise.
 struct Motion {
   double time_s = 0.0;
   double x_m = 0.0;
@@ -26,35 +26,35 @@ struct Motion {
 };
 
 struct SmoothingOptions {
-  /// Where the smoother lets 71 % of an amplitude through (-3 dB), while the robot accelerates. Empty: as wide as the
-  /// noise allows, so that it makes up a set share of the squared acceleration.
+  /// Bandwidth (-3 dB) of the smoother while the robot accelerates. If it is empty, it is chosen such that noise contributes a fixed share
+  /// of the squared acceleration.
   std::optional<double> bandwidth_Hz;
 };
-/// How the place or the turn of a track was smoothed. Its unit is m, or rad.
+/// Smoothing of the position (unit m) or of the yaw (unit rad) of a track.
 struct ChannelReport {
-  /// As used: never more than a sixth of the frame rate. Of motion beyond some 10 m/s² points are doubted that the smoother cannot follow:
-  /// with 13 m/s² at single frequencies the -3 dB of 8 Hz lie at 7.4 Hz.
+  /// Nominal -3 dB bandwidth, at most a sixth of the frame rate. Above about 10 m/s² some points are down-weighted, which lowers it: 7.4
+  /// instead of 8 Hz for sines of 13 m/s².
   double bandwidth_Hz = 0.0;
-  double quiet_bandwidth_Hz = 0.0;  ///< used while nothing but noise is seen: standing, or running steadily
-  double quiet_share = 0.0;         ///< of the time
-  double noise_m_or_rad = 0.0;      ///< rms of one coordinate around the smooth track
-  /// rms that this noise leaves in the acceleration of one coordinate at bandwidth_Hz.
+  double quiet_bandwidth_Hz = 0.0;  ///< bandwidth while the acceleration does not exceed the noise: at standstill or constant velocity
+  double quiet_share = 0.0;         ///< share of the time with quiet_bandwidth_Hz
+  double noise_m_or_rad = 0.0;      ///< RMS noise of one coordinate around the smoothed track
+  /// RMS acceleration of one coordinate that this noise causes at bandwidth_Hz.
   double acceleration_noise_m_or_rad_per_s2 = 0.0;
-  double noise_share = 0.0;    ///< of ∫a², as far as it can be foreseen
-  std::uint64_t outliers = 0;  ///< points that had no say
+  double noise_share = 0.0;    ///< expected share of the noise in ∫a²
+  std::uint64_t outliers = 0;  ///< number of points with weight 0
 };
 
-/// What smoothing means for the answer; said with every import.
+/// Smoothing of a track; printed with every import.
 struct SmoothingReport {
-  double frame_rate_Hz = 0.0;  ///< usual one of the track
+  double frame_rate_Hz = 0.0;  ///< usual frame rate of the track
   std::uint64_t points = 0;
   ChannelReport place;
   ChannelReport turn;
 };
 std::string to_string(const SmoothingReport& report);
 
-/// The smoothed motion between its points, by the polynomials of fifth degree that keep position, velocity and acceleration
-/// continuous: the smoother's own answer between two sights.
+/// Smoothed motion of a robot. Between points it is a polynomial of fifth degree with continuous position, velocity and acceleration, which
+/// is the smoother's estimate between two samples.
 class MotionTrack {
  public:
   using Segment = std::vector<Motion>;
@@ -65,9 +65,9 @@ class MotionTrack {
   [[nodiscard]] const RobotName& robot() const { return robot_; }
   [[nodiscard]] const std::vector<Segment>& segments() const { return segments_; }
   [[nodiscard]] const SmoothingReport& report() const { return report_; }
-  /// Nothing where the robot is not seen.
+  /// Returns the motion at a time; nothing if the robot is not seen.
   [[nodiscard]] std::optional<Motion> at(double time_s) const;
-  /// Every 1/rate_Hz through each segment, from its first point on, without storing them.
+  /// Visits the motion every 1/rate_Hz in each segment, from its first point on. The values are not stored.
   void for_each(double rate_Hz, const std::function<void(const Motion&, std::size_t segment)>& visit) const;
 
  private:

@@ -19,15 +19,15 @@ class NamedFiles {
  public:
   explicit NamedFiles(input::DataFolders folders) : folders_(std::move(folders)) {}
 
-  /// Returns nothing if there is a problem, which throw_if_any() then reports. A motor with contradicting values is a problem too
-  /// (require_sound()), because verdicts and firmware need a consistent one.
+  /// Returns nothing if there is a problem, which throw_if_any() then reports. Contradicting motor values are a problem, too
+  /// (require_sound()), because verdicts and firmware need consistent ones.
   std::optional<motor::Motor> motor(const std::string& name);
   /// Returns the motor as its file states it, even with contradicting values; for commands that measure the motor.
   std::optional<motor::Motor> motor_as_written(const std::string& name);
   std::optional<robot::Robot> robot(const std::string& name);
   std::optional<Duty> duty(const std::string& name);
   std::optional<std::filesystem::path> motor_file(const std::string& name);
-  /// Throws Failure (bad_input) with every problem.
+  /// Throws Failure (bad_input) with all problems; does nothing if there are none.
   void throw_if_any() const;
 
   [[nodiscard]] const input::DataFolders& folders() const { return folders_; }
@@ -42,7 +42,7 @@ class NamedFiles {
   std::vector<base::Failure> problems_;
 };
 
-/// Read a single file with the same checks; the motor as its file states it. Throw Failure (bad_input).
+/// Read a single file with the same checks; the motor as in motor_as_written(). Throw Failure (bad_input).
 motor::Motor motor_named(const input::DataFolders& folders, const std::string& name);
 robot::Robot robot_named(const input::DataFolders& folders, const std::string& name);
 

@@ -167,7 +167,7 @@ RobotTrack only_in(const RobotTrack& track, std::span<const PhaseSpan> phases, s
       if (begin == end) {
         continue;
       }
-      // Wanted phases that follow each other stay one piece.
+      // Consecutive wanted phases stay one segment.
       const bool goes_on =
           !cut.segments.empty() && begin != segment.begin() && cut.segments.back().back().time_s == std::prev(begin)->time_s;
       if (goes_on) {

@@ -9,12 +9,12 @@
 namespace heatsoak::duty {
 namespace {
 
-constexpr std::size_t kHeader = 16;  // of the file and of each record
+constexpr std::size_t kHeader = 16;  // size of the header of the file and of each record
 constexpr std::int32_t kLastPlausibleType = 63;
 constexpr std::int64_t kLargestDatagram = 65'535;
 constexpr std::int64_t kLargestMessage = 1 << 20;
 constexpr std::int64_t kLatest_ns = 4'102'444'800'000'000'000;  // the year 2100
-constexpr std::int64_t kNeighbours_ns = 3'600'000'000'000;      // records beside each other lie within an hour
+constexpr std::int64_t kNeighbours_ns = 3'600'000'000'000;      // largest time difference of adjacent records: one hour
 constexpr std::uint64_t kLongestDamage = std::uint64_t{1} << 28;
 
 std::uint64_t big_endian(std::string_view bytes, std::size_t at, std::size_t count) {
@@ -45,12 +45,12 @@ bool is_plausible(const Header& h) {
     return false;
   }
   if (h.type == static_cast<std::int32_t>(SslMessageType::index_2021)) {
-    return true;  // one number for each message of the log: of any size
+    return true;  // one number for each message of the log, so of any size
   }
   return h.size <= (is_datagram(h.type) ? kLargestDatagram : kLargestMessage);
 }
 
-/// A record after damage: it must be of use, and another one must follow it.
+/// Result of checking a record after damage. It must be usable, and another record must follow it.
 enum class Candidate { no, yes, needs_more };
 Candidate candidate_at(std::string_view bytes, std::size_t at, bool is_all) {
   const Header h = header_at(bytes, at);
@@ -83,7 +83,7 @@ SslLogStream::SslLogStream(LogBytes& bytes, const std::filesystem::path& file, L
   last_given_ = kHeader;
 }
 
-/// Goes to the next record after damage; false where there is none.
+/// Advances to the next record after damage; returns false if there is none.
 bool SslLogStream::find_header() {
   const std::uint64_t begin = bytes_.offset();
   std::size_t at = 1;
@@ -91,7 +91,7 @@ bool SslLogStream::find_header() {
     const std::string_view view = bytes_.peek(LogBytes::kWindow);
     const bool is_all = view.size() < LogBytes::kWindow;
     for (; at + kHeader <= view.size(); ++at) {
-      // Types and sizes of use begin with zeros; everything else is passed over quickly.
+      // Usable types and sizes begin with a zero byte, which quickly excludes most positions.
       if (view[at + 8] != 0 || view[at + 12] != 0) {
         continue;
       }
@@ -118,7 +118,7 @@ bool SslLogStream::find_header() {
   }
 }
 
-/// One number for each message of the log: may be larger than the window, and is of no use here.
+/// Skips an index record. It has one number for each message, so it may be larger than the window.
 void SslLogStream::pass_over_index(std::uint64_t whole) {
   const std::uint64_t begin = bytes_.offset();
   bytes_.skip(whole);

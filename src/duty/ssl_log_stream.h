@@ -1,4 +1,4 @@
-// The records of an SSL_LOG_FILE, one after another, over damage too.
+// Reads the records of an SSL_LOG_FILE in order and skips damaged parts.
 // Format: "SSL_LOG_FILE", int32 version 1, then records of int64 time of reception in ns, int32 type, int32 size and
 // the message; all numbers big endian (RoboCup-SSL/ssl-logtools src/common/format, RoboCup-SSL/ssl-go-tools pkg/persistence).
 #pragma once
@@ -31,12 +31,12 @@ struct SslRecord {
 
 class SslLogStream {
  public:
-  /// Reads the file's header; throws Failure (bad_input) where it is none.
+  /// Reads the file header. Throws Failure (bad_input) if it is not that of an SSL log.
   SslLogStream(LogBytes& bytes, const std::filesystem::path& file, LogEvents& events);
 
-  /// The next record. Nothing at the end of the log, which truncation and long damage make, too.
+  /// Returns the next record; nothing at the end of the log, at a truncation, or after a long damaged part.
   std::optional<SslRecord> next();
-  /// The record that next() gave cannot be decoded: its size may be wrong as well.
+  /// Reports that the last record cannot be decoded. Its size may be wrong, too, so next() may search for a new record.
   void reject(std::string_view why);
 
  private:
@@ -46,8 +46,8 @@ class SslLogStream {
 
   LogBytes& bytes_;
   LogEvents& events_;
-  std::uint64_t to_skip_ = 0;     // of the record that was given last
-  bool next_is_header_ = false;   // behind that record stands another one
+  std::uint64_t to_skip_ = 0;     // size of the last returned record
+  bool next_is_header_ = false;   // another header follows that record
   std::uint64_t last_given_ = 0;  // offset of the last record with content
 };
 

@@ -10,21 +10,21 @@ namespace {
 
 constexpr int kLargestRobotId = 255;
 constexpr double kFarthest_m = 20.0;      // the largest field is 13.4 m with its border
-constexpr double kMergeWindow_s = 0.012;  // cameras take their pictures at different moments; frames come every 10 … 17 ms
+constexpr double kMergeWindow_s = 0.012;  // cameras are not synchronous; frames come every 10 to 17 ms
 constexpr double kShortestStep_s = 0.001;
-constexpr double kSameRobot_m = 0.15;    // less than a robot's width: two of one number this near are one
-constexpr double kCameraHeight_m = 3.0;  // beyond this distance a camera looks flat at the field and is worth less
+constexpr double kSameRobot_m = 0.15;    // less than a robot's width: closer detections of one id are the same robot
+constexpr double kCameraHeight_m = 3.0;  // beyond this distance the angle of view is flat, and the weight decreases
 constexpr double kLeastConfidence = 1e-3;
-constexpr double kNoise_m = 0.05;         // of a camera at its worst
+constexpr double kNoise_m = 0.05;         // largest noise of a camera
 constexpr double kFastest_m_per_s = 8.0;  // the fastest robots of the league run 4 to 5 m/s
 constexpr double kNoise_rad = 0.7;
 constexpr double kFastest_rad_per_s = 30.0;
-constexpr std::size_t kTeleportConfirmed = 5;  // that many points in a row elsewhere, and the robot is there
+constexpr std::size_t kTeleportConfirmed = 5;  // number of consecutive points elsewhere that confirm a moved robot
 constexpr double kSeamFade_s = 2.0;
 constexpr double kOffsetMemory = 0.1;
 constexpr double kLeastTrust = 0.02;
 constexpr double kRateMemory = 0.3;
-constexpr double kMissingFrames = 3.5;  // times the usual step: three frames are missing
+constexpr double kMissingFrames = 3.5;  // in usual steps: three frames are missing
 constexpr double kShortestSegment_s = 1.0;
 constexpr std::size_t kFewestPoints = 10;
 constexpr double kSummaryBin_s = 0.1;
@@ -90,7 +90,8 @@ TrackBuilder::Pose TrackBuilder::expected(const Robot& robot, double time_s) {
           robot.last->yaw_rad + robot.rate.yaw_rad * step_s};
 }
 
-/// One sight of each camera, and only those that agree: nearest to where the robot is expected, else the surest.
+/// Keeps one detection of each camera, and only those that agree with the best one. The best is nearest to the expected position or,
+/// without one, has the largest weight.
 void TrackBuilder::choose_sights(Robot& robot) {
   if (robot.frame.size() < 2) {
     return;
@@ -117,7 +118,7 @@ void TrackBuilder::choose_sights(Robot& robot) {
   robot.frame = std::move(chosen);
 }
 
-/// Offsets fade, so that in the end the cameras' own average holds.
+/// Lets the offsets decay, so that the position converges to the average of the cameras.
 void TrackBuilder::forget_offsets(Robot& robot, double now_s) {
   if (!robot.last || now_s - robot.last->time_s > kLongestBridge_s) {
     robot.offsets.clear();
@@ -130,7 +131,7 @@ void TrackBuilder::forget_offsets(Robot& robot, double now_s) {
   }
 }
 
-/// A camera that comes in takes over without a step: a step of a centimetre would pass for an acceleration.
+/// Returns the offset of a camera. A new camera starts with its present difference, because a step of 1 cm would look like an acceleration.
 TrackBuilder::CameraOffset& TrackBuilder::offset_of(Robot& robot, const Detection& sight, const TrackPoint& reference) {
   const auto known = std::ranges::find(robot.offsets, sight.camera, &CameraOffset::camera);
   if (known != robot.offsets.end()) {
@@ -145,7 +146,7 @@ TrackBuilder::CameraOffset& TrackBuilder::offset_of(Robot& robot, const Detectio
   return robot.offsets.back();
 }
 
-/// Time is averaged with the same weights as place: exact for a robot that keeps its velocity.
+/// Averages time and position with the same weights, which is exact for a constant velocity.
 TrackPoint TrackBuilder::merge(Robot& robot) {
   const Detection& first = robot.frame.front();
   forget_offsets(robot, first.time_s);

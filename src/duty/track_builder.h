@@ -1,4 +1,4 @@
-// From single sights of robots to tracks: joins cameras, leaves out what cannot be, bridges or cuts gaps.
+// Builds tracks from single detections: merges cameras, rejects outliers, bridges or cuts gaps.
 #pragma once
 
 #include <array>
@@ -23,24 +23,24 @@ class TrackBuilder final : public LogEvents {
   [[nodiscard]] bool done() const override { return latest_s_ > options_.until_s; }
   ImportReport& report() override { return game_.report; }
 
-  /// Ends all tracks and gives them away.
+  /// Ends all tracks and returns the game. The builder must not be used afterwards.
   RecordedGame finish();
 
  private:
-  /// A vector in the plane and a turn, side by side.
+  /// Planar vector and yaw.
   struct Pose {
     double x_m = 0.0;
     double y_m = 0.0;
     double yaw_rad = 0.0;
   };
-  /// Cameras disagree by centimetres; each robot learns by how much where it stands.
+  /// Offset of a camera at the robot's position. Cameras disagree by centimetres, so it is estimated for each robot.
   struct CameraOffset {
     int camera = 0;
     Pose offset;
-    double trust_share = 0.0;  ///< 0 … 1, grows with the frames shared with another camera
-    double seen_s = 0.0;
+    double trust_share = 0.0;  ///< 0 to 1, grows with the frames shared with another camera
+    double seen_s = 0.0;       ///< time of the last detection
   };
-  /// Averages over 0.1 s; the last three give an acceleration.
+  /// Average over 0.1 s. The last three bins give an acceleration.
   struct Bin {
     std::int64_t index = -1;
     double count = 0.0;
@@ -49,13 +49,13 @@ class TrackBuilder final : public LogEvents {
   struct Robot {
     RobotTrack track;
     RobotSummary summary;
-    std::vector<Detection> frame;  ///< sights that may become one point
+    std::vector<Detection> frame;  ///< detections that may form one point
     std::vector<CameraOffset> offsets;
     TrackSegment segment;
     std::optional<TrackPoint> last;
-    Pose rate;                ///< per second, smoothed: where the next point is expected
-    double usual_step_s = 0;  ///< 0 until known
-    TrackSegment elsewhere;   ///< out of reach, but perhaps the robot was moved there
+    Pose rate;                ///< smoothed velocity, for the expected position of the next point
+    double usual_step_s = 0;  ///< usual time between points; 0 until known
+    TrackSegment elsewhere;   ///< points out of reach: outliers, or a robot that was moved
     std::array<Bin, 3> bins;
     std::uint64_t segment_points = 0;
     double segment_begin_s = 0.0;

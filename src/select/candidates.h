@@ -1,4 +1,4 @@
-// Motors to evaluate, by the names on the command line.
+// Resolves names on the command line to the motors to evaluate.
 #pragma once
 
 #include <map>
@@ -19,7 +19,7 @@ struct CandidateNames {
 /// if two files have the same id.
 std::vector<motor::Motor> named_candidates(const CandidateNames& names, duty::NamedFiles& files);
 
-/// Returns the sound motors of the data base under `conditions`. A file with problems is no candidate.
+/// Returns the motors of the data base under `conditions`. Files with problems are omitted.
 std::vector<motor::Motor> motors_of_database(const input::DataFolders& folders, const std::map<std::string, std::string>& conditions);
 
 }  // namespace heatsoak::select

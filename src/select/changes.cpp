@@ -21,7 +21,7 @@ struct Variant {
 
 double* given(std::optional<double>& value) { return value ? &*value : nullptr; }
 
-/// Steps that a team can make from one day to the next.
+/// Changes that a team can make within a day.
 constexpr std::array<Variant, 6> kVariants{
     {{ChangedQuantity::acceleration, 0.8, [](robot::Robot& robot) { return given(robot.limits.acceleration_m_per_s2); }},
      {ChangedQuantity::jerk, 0.5, [](robot::Robot& robot) { return given(robot.limits.jerk_m_per_s3); }},
@@ -30,7 +30,7 @@ constexpr std::array<Variant, 6> kVariants{
      {ChangedQuantity::mass, 0.9, [](robot::Robot& robot) { return &robot.mass_kg; }},
      {ChangedQuantity::wheel_radius, 0.9, [](robot::Robot& robot) { return &robot.wheels.radius_m; }}}};
 constexpr Variant kHigherGear{ChangedQuantity::gear_ratio, 1.25, [](robot::Robot& robot) { return &robot.drive.gear_ratio; }};
-/// A motor that lacks voltage needs less speed, not less torque.
+/// Replaces kHigherGear for a motor that lacks voltage, which needs less speed rather than less torque.
 constexpr Variant kLowerGear{ChangedQuantity::gear_ratio, 0.8, [](robot::Robot& robot) { return &robot.drive.gear_ratio; }};
 constexpr double kLongerPauses_ratio = 1.5;
 
@@ -76,7 +76,7 @@ Played played(const MotorEvaluation& result, const duty::WheelDemand& wheel) {
           .passes = result.verdict == Verdict::pass};
 }
 
-/// The same games for every change: seeds follow each other.
+/// Plays the same games for every change, with consecutive seeds.
 class Games {
  public:
   Games(const duty::Duty& duty, std::uint64_t seed)
@@ -108,7 +108,7 @@ std::vector<duty::WheelDemand> with_longer_pauses(std::vector<duty::WheelDemand>
   return wheels;
 }
 
-/// Shows jobs of different length as one work. The unit is one motor in one game; playing the game takes about eleven times that.
+/// Combines the progress of jobs of different length. The unit is one motor in one game; playing the game takes about eleven units.
 class ChangeWork {
  public:
   static constexpr std::size_t kEvaluation = 1;
@@ -149,8 +149,8 @@ ChangeEffect effect_of(ChangedQuantity quantity, double value, double factor, st
   return effect;
 }
 
-/// The motor with the largest margin among those that pass all games. A motor's margin in the first game is the most that it can have in
-/// all of them, so only motors that may still win take part in the other games.
+/// Motor with the largest margin among those that pass all games. A motor's margin in the first game is an upper bound of its margin in all
+/// games, so only motors that can still win are evaluated in the other games.
 struct OtherMotor {
   const motor::Motor* motor = nullptr;
   std::vector<Played> games;
@@ -222,7 +222,7 @@ std::vector<ChangeEffect> effects_of_changes(const robot::Robot& robot, const du
     const robot::Robot other = changed(robot, variants[job / count]);
     after[job / count][game] = games.result(other, motor, games.demand(other, game));
   });
-  // Gear, pauses and motor leave the wheels' loads as they are: the games need not be played again.
+  // Gear, pauses and motor do not change the wheels' loads, so the games need not be played again.
   const Variant gear = std::ranges::any_of(before, &Played::lacks_voltage) ? kLowerGear : kHigherGear;
   const robot::Robot geared = changed(robot, gear);
   std::vector<Played> after_gear(count);

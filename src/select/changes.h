@@ -1,4 +1,5 @@
-// Effects of changes on a motor's winding: the same games, driven by a robot with one value changed, with longer pauses or another motor.
+// Effects of single changes on the winding temperature. The same games are driven with one value of the robot changed, with longer pauses,
+// or with another motor.
 #pragma once
 
 #include <cstdint>
@@ -21,23 +22,24 @@ struct ChangeEffect {
   double before = 0.0;             ///< present value, in unit_of(quantity); 0 for another motor
   double factor = 1.0;             ///< ratio of the new to the present value
   std::string other_motor = {};    ///< id; only for another motor
-  double saved_K = 0.0;            ///< fall of the winding's peak, mean of the games; negative if it rises
+  double saved_K = 0.0;            ///< decrease of the winding's peak, mean of the games; negative if it rises
   double standard_error_K = 0.0;   ///< standard error of saved_K over the games; NaN for one game
   bool is_deliverable = true;      ///< voltage and current suffice in every game
-  bool makes_deliverable = false;  ///< they do not suffice without the change
+  bool makes_deliverable = false;  ///< voltage or current do not suffice without the change
 };
 
 inline constexpr int kChangeGames = 4;
 
 /// Returns the effects of all changes that are possible with these files, the most helpful first. All values are nominal; each game is
-/// played once for each change of the wheels' loads. A duty that fixes the wheel's load is one game, on which only gear ratio, pauses and
-/// motor act. Pauses: the time without load lasts half as long again. Motor: of `others` the motor that keeps all limits, delivers the
-/// demand in every game and has the largest margin; nothing if none does. `others` may contain `motor`, which is ignored.
+/// played once for each change of the wheels' loads. A duty with a fixed wheel load counts as one game; only gear ratio, pauses and motor
+/// act on it. Longer pauses extend the time without load by half. The other motor is the one of `others` that keeps all limits, delivers
+/// the demand in every game and has the largest margin; there is no such effect if no motor does. `others` may contain `motor`, which is
+/// ignored.
 std::vector<ChangeEffect> effects_of_changes(const robot::Robot& robot, const duty::Duty& duty, const motor::Motor& motor,
                                              std::span<const motor::Motor> others, std::uint64_t seed, int threads,
                                              const base::Progress& progress = {});
 
-/// Returns the name ("acceleration limit") and the unit of `before`.
+/// Return the name of the quantity ("acceleration limit") and the unit of ChangeEffect::before.
 std::string_view name_of(ChangedQuantity quantity);
 std::string_view unit_of(ChangedQuantity quantity);
 

@@ -17,7 +17,8 @@ namespace {
 constexpr int kFirstGames = 75;
 constexpr int kFirstSamples = 500;
 
-/// More samples for one threshold: the smallest number at which the interval around the same share lies on one side of it.
+/// Returns the smallest number of samples at which the interval around the same probability lies on one side of the threshold; nothing if
+/// it already does.
 std::optional<int> needed_for(double threshold_ratio, double probability_ratio, const Interval95& interval, int samples, bool is_drawn) {
   if (interval.low > threshold_ratio || interval.high <= threshold_ratio) {
     return std::nullopt;
@@ -30,12 +31,12 @@ std::optional<int> needed_for(double threshold_ratio, double probability_ratio, 
   const int now = (samples + per_draw - 1) / per_draw;
   const int most = most_samples_at_all(is_drawn) / per_draw;
   const int first = is_drawn ? kFirstGames : kFirstSamples;
-  // An interval that just touches the threshold still needs something more.
+  // The search starts 5 % above the present number: an interval that just touches the threshold needs more samples.
   int low = now;
   int high = now + 1 + now / 20;
   while (!decides(high) && high < most) {
     low = high;
-    // Up to the first look a smaller number may decide than behind it.
+    // Up to the first look the error share is larger, so a smaller number may decide.
     high = std::min({most, 2 * high, low < first ? first : most});
   }
   while (high - low > 1) {
@@ -76,7 +77,7 @@ std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95
     }
   }
   if (!is_nominally_bad) {
-    // One that is above for certain makes the motor marginal whatever the other is.
+    // If one probability is certainly above the threshold, the motor is marginal, whatever the other is.
     const bool is_marginal_for_certain =
         std::ranges::any_of(kinds, [](const auto& kind) { return kind.second.low > kMarginalProbability; });
     for (const auto& [probability_ratio, interval] : kinds) {
@@ -100,14 +101,15 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-/// Shows the rounds after the first look as one job. Its length follows from the time that the first look took and from the samples that
-/// are needed; it changes when a round shows that more are needed.
+/// Reports the rounds after the first look as one job. Its length is estimated from the duration of the first look and the samples needed,
+/// and is updated after each round.
 class LaterRounds {
  public:
   LaterRounds(double s_per_draw, double s_per_sample, base::Progress progress)
       : s_per_draw_(s_per_draw), s_per_sample_(s_per_sample), progress_(std::move(progress)) {}
 
-  /// A round with `draws` new draws and `samples` samples of `motors` motors, and the rounds that double them until `needed` or `most`.
+  /// Begins a round with `draws` new draws and `samples` samples of `motors` motors. Later rounds double the samples until `needed` or
+  /// `most`.
   void begin(double draws, double samples, double motors, double needed, double most) {
     done_s_ = seconds_since(begin_);
     play_s_ = s_per_draw_ * draws;

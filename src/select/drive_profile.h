@@ -1,4 +1,4 @@
-// One motor at one wheel: what the demand becomes for its thermal network, and whether it can be met at all.
+// Converts the demand of one wheel to the inputs of a motor's thermal network, and checks whether the motor can deliver it.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace heatsoak::select {
 
-/// One draw of the duty's own unknowns.
+/// Ambient temperature and load of a duty, nominal or drawn from their ranges.
 struct DutySample {
   double ambient_C = 25.0;
   double load = 1.0;  ///< factor on torque or current
@@ -18,26 +18,26 @@ struct DutySample {
 DutySample nominal_sample(const duty::Duty& duty);
 DutySample draw_sample(const duty::Duty& duty, base::Random& random);
 
-/// What the thermal network sees of a bin: the rms current that its torque takes, clamped to what voltage (at
-/// the bin's mean speed, 25 °C) and driver let through. Shaft and input power are exact means of the bin where the current is
-/// not cut, and shrink with it where it is; the modulation is that of rms current and mean speed.
+/// Returns the operating point of the thermal network for one bin. The RMS current for its torque is limited by the voltage (at the bin's
+/// mean speed, winding at 25 °C) and by the driver. Shaft and input power are exact means of the bin if the current is not limited, and are
+/// reduced with the current if it is. The modulation is calculated from RMS current and mean speed.
 thermal::OperatingPoint<double> operating_point(const motor::MotorValues& motor, const robot::Robot& robot, duty::DutyKind kind,
                                                 const duty::LoadBin& bin, const DutySample& sample);
 
 std::vector<thermal::Interval> intervals(const motor::MotorValues& motor, const robot::Robot& robot, duty::DutyKind kind,
                                          const duty::WheelDemand& demand, const DutySample& sample);
 
-/// Root mean square of the heating current over the whole of it, as far as a winding at 25 °C lets it through.
+/// Returns the RMS of the heating current over all intervals, with the voltage limit of a winding at 25 °C; 0 if the duration is 0.
 double current_rms_A(const std::vector<thermal::Interval>& intervals);
 
-/// Whether voltage and current suffice, point by point of the demand.
+/// Worst shortfall of voltage or current over the points of a demand.
 struct Feasibility {
   double least_share = 1.0;                           ///< smallest ratio of delivered to demanded current
-  robot::DriveLimit limit = robot::DriveLimit::none;  ///< what cut it there
-  double short_time_share = 0.0;                      ///< part of the time in which more than kTolerableShortage is missing
-  double highest_voltage_V = 0.0;                     ///< demanded at the terminals
+  robot::DriveLimit limit = robot::DriveLimit::none;  ///< limit that acts at that point
+  double short_time_share = 0.0;                      ///< share of the time in which the shortfall exceeds kTolerableShortage
+  double highest_voltage_V = 0.0;                     ///< largest demanded voltage at the terminals
 };
-inline constexpr double kTolerableShortage = 0.005;
+inline constexpr double kTolerableShortage = 0.005;  ///< relative shortfall of the current
 Feasibility feasibility(const motor::MotorValues& motor, const robot::Robot& robot, duty::DutyKind kind, const duty::WheelDemand& demand,
                         const DutySample& sample, double winding_C);
 

@@ -28,10 +28,10 @@ using motor::states::winding;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kBandCells = 160;
-/// Apart from those of motors, so that every motor meets the same robots.
+/// Random streams of robots are separate from those of motors, so that all motors are evaluated with the same drawn robots.
 constexpr std::uint64_t kRobotStreams = std::uint64_t{1} << 40U;
 
-/// Eight samples side by side: their parameters, and what each piece of the duty asks of them.
+/// Eight samples that are computed together: their parameters and their operating points in each bin of the duty.
 class Block {
  public:
   Block(const motor::Motor& motor, const robot::Robot& robot, const duty::Duty& duty, const duty::WheelDemand& demand,
@@ -40,7 +40,7 @@ class Block {
     std::vector<thermal::Network> networks;
     for (int lane = 0; lane < base::kLanes; ++lane) {
       base::Random random(options.seed, static_cast<std::uint64_t>(first_sample + lane));
-      // The duty first: every motor, however many parameters it has, then meets the same air and load.
+      // The duty is drawn first, so that ambient and load do not depend on the number of motor parameters.
       duties_.push_back(draw_sample(duty, random));
       base::Random of_robot(options.seed, kRobotStreams + static_cast<std::uint64_t>(first_sample + lane));
       robots_.push_back(robot::draw_sample(robot, of_robot));
@@ -55,7 +55,7 @@ class Block {
     network_ = std::move(networks.front());
   }
 
-  /// Gives `visit(time_s, state_C)` the end of every bin, and moments between no further apart than `longest_visit_s`.
+  /// Calls `visit(time_s, state_C)` at the end of every bin, and between at least every `longest_visit_s`.
   template <class Visit>
   std::vector<thermal::Lanes> peaks(double longest_visit_s, const Visit& visit) const {
     std::vector<thermal::Lanes> start_C(static_cast<std::size_t>(network_.state_count()));
@@ -94,7 +94,7 @@ class Block {
     return at;
   }
 
-  /// The step that suits every bin: the network is fastest where current or speed is highest, or where there is none.
+  /// Returns the step that suits every bin. The network is fastest at the highest current, at the highest speed or at rest.
   [[nodiscard]] double shortest_of_longest_steps_s() const {
     const auto by_current = std::ranges::max_element(
         demand_.bins, {}, [&](const duty::LoadBin& bin) { return std::max(bin.torque_rms_Nm, bin.current_rms_A); });
@@ -116,7 +116,7 @@ class Block {
                       name_, demand_.duration_s(), calm_s));
     }
     if (step_s < shortest_s) {
-      // The heat that makes the network fast goes with the square of the current.
+      // The copper loss grows with the square of the current, and so does the rate at which the network reacts to it.
       const double current_A = point(*by_current).current_rms_A.maxCoeff();
       throw base::Failure(base::ExitCode::bad_input,
                           fmt::format("{}: the duty drives {:.0f} A through it, which heats the winding by its own heat within {:.2g} s; "
@@ -136,8 +136,8 @@ class Block {
   std::vector<thermal::Lanes> parameters_;
 };
 
-/// Lowest and highest temperature of every sample in every cell of the picture's time grid, [cell][sample]:
-/// a value at grid points alone would miss the ripple of an on/off duty.
+/// Lowest and highest temperature of every sample in every cell of the chart's time grid, [cell][sample]. Values at grid points alone would
+/// miss the ripple of an on/off duty.
 struct Envelope {
   std::vector<float> low_C, high_C;
 
@@ -151,15 +151,15 @@ struct Envelope {
   }
 };
 
-/// Everything one motor needs while its samples come in from several threads, each to its own place.
+/// Inputs and results of one motor. Threads write the results of samples to separate elements.
 struct Work {
   const motor::Motor* motor = nullptr;
-  const duty::WheelDemand* wheel = nullptr;  ///< the hottest one
-  double duration_s = 0.0;                   ///< of its demand
+  const duty::WheelDemand* wheel = nullptr;  ///< wheel with the hottest winding
+  double duration_s = 0.0;                   ///< duration of its demand
   MotorEvaluation result;
   std::vector<double> winding_peak_C, stator_peak_C;  ///< per sample
   std::vector<char> over_limit;                       ///< per sample
-  std::vector<robot::DriveLimit> short_of_demand;     ///< per sample: what leaves the demand unmet, or none
+  std::vector<robot::DriveLimit> short_of_demand;     ///< limit that causes the shortfall of a sample, or none
   Envelope winding_envelope_C, stator_envelope_C;
 };
 
@@ -167,10 +167,10 @@ LimitingFactor limiting_factor_of(robot::DriveLimit limit) {
   return limit == robot::DriveLimit::current ? LimitingFactor::current : LimitingFactor::voltage;
 }
 
-/// One nominal run at one wheel, through the reference.
+/// Nominal run of one wheel with the reference solver.
 struct NominalRun {
   std::vector<thermal::Interval> intervals;
-  double current_rms_A = 0.0;  ///< that flows, which falls behind the demand where the hot winding lets less through
+  double current_rms_A = 0.0;  ///< RMS of the actual current, which the resistance of the hot winding may limit
   thermal::TransientResult transient;
   TemperatureCurves curves;
 };
@@ -204,7 +204,8 @@ NominalRun run_nominal(const thermal::Network& network, const motor::MotorSample
   return run;
 }
 
-/// As much of `most` times the load as voltage and driver let through while the winding is as hot as it may be.
+/// Returns the largest factor on the load, at most `most`, that voltage and driver can deliver with the winding at its limit.
+/// Returns `most` if it is at most 1 or if the present load cannot be delivered.
 double deliverable_factor(const motor::MotorValues& values, const robot::Robot& robot, const duty::Duty& duty,
                           const duty::WheelDemand& wheel, double most) {
   const auto is_delivered = [&](double factor) {
@@ -276,7 +277,7 @@ void evaluate_nominal(Work& work, const robot::Robot& robot, const duty::Duty& d
       first_limit = i;
     }
   }
-  // As hot as the winding may be: what a cold motor still delivers does not count, nor what a burnt one no longer does.
+  // `hot` was computed at the peak winding temperature, but not above the limit: a motor over its limit has failed, and is not infeasible.
   if (hot.short_time_share > kTolerableShortTime) {
     result.verdict = Verdict::infeasible;
     result.limiting_factor = limiting_factor_of(hot.limit);
@@ -304,7 +305,7 @@ void evaluate_samples(Work& work, const robot::Robot& robot, const duty::Duty& d
       block.peaks(options.with_bands ? cell_s : std::numeric_limits<double>::infinity(),
                   [&](double time_s, const std::vector<thermal::Lanes>& state_C) {
                     if (!options.with_bands || time_s > work.duration_s * (1.0 + 1e-9)) {
-                      return;  // the picture ends with the nominal duty, a draw may go on
+                      return;  // the chart ends with the nominal duty; a draw may be longer
                     }
                     take(state_C);
                     while (cell + 1 < kBandCells && time_s >= static_cast<double>(cell + 1) * cell_s * (1.0 - 1e-9)) {
@@ -326,7 +327,7 @@ void evaluate_samples(Work& work, const robot::Robot& robot, const duty::Duty& d
   }
 }
 
-/// A percentile over the samples in every cell that a sample has reached: draws of a duty end sooner or later.
+/// Returns the percentile over the samples in every time cell. A cell counts only samples that reach it, because draws differ in duration.
 std::vector<double> percentile(const std::vector<float>& by_cell, int samples, double share) {
   std::vector<double> result;
   for (auto first = by_cell.begin(); first != by_cell.end(); first += samples) {
@@ -358,7 +359,7 @@ LimitingFactor hotter_limit(const MotorEvaluation& result) {
                                                                              : LimitingFactor::stator_temperature;
 }
 
-/// Where the duty itself is drawn, one game is no more than one game.
+/// Replaces the nominal verdict on a duty with draws, because the nominal run is only one of many games.
 void decide_by_majority(MotorEvaluation& result) {
   result.verdict = result.short_probability > kMajority        ? Verdict::infeasible
                    : result.probability_over_limit > kMajority ? Verdict::fail
@@ -402,7 +403,7 @@ void conclude(Work& work, const EvaluateOptions& options) {
   if (!options.draws.empty()) {
     decide_by_majority(result);
   }
-  // As many games as were drawn cannot rule more out than the interval says.
+  // With few games a small observed share proves little, so the upper end of the interval decides.
   const double over = options.draws.empty() ? result.probability_over_limit : result.probability_interval->high;
   if (result.verdict == Verdict::pass && std::max(over, result.short_probability) > kMarginalProbability) {
     result.verdict = Verdict::marginal;
@@ -475,8 +476,8 @@ std::vector<MotorEvaluation> evaluate_as_stated(const robot::Robot& robot, const
     works[i].winding_envelope_C.resize(options.with_bands ? samples * kBandCells : 0);
     works[i].stator_envelope_C.resize(options.with_bands ? samples * kBandCells : 0);
   }
-  // The samples need to know the hottest wheel, so every motor's nominal run comes first. It takes another time than a block of samples,
-  // so where there are any, they alone are the progress.
+  // The samples need the hottest wheel, so the nominal runs come first. Their duration differs from that of a block of samples, so only
+  // samples count as progress if there are any.
   base::in_parallel(motors.size(), options.threads, 0, motors.size(), blocks > 0 ? base::Progress() : progress,
                     [&](std::size_t i) { evaluate_nominal(works[i], robot, duty, wheels, options); });
   const std::size_t jobs = motors.size() * blocks;

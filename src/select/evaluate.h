@@ -1,4 +1,4 @@
-// Does the motor survive the duty? Ranks candidates with every declared uncertainty.
+// Evaluates motors on a duty with all declared uncertainties and ranks them.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,18 @@
 
 namespace heatsoak::select {
 
-/// What each one means stands in verdict_meanings() of present/verdict_topic.h, in words made from the constants below.
+/// Verdict on a motor. verdict_meanings() in present/verdict_topic.h explains each value.
 enum class Verdict { pass, marginal, fail, infeasible };
 enum class LimitingFactor { none, winding_temperature, stator_temperature, voltage, current };
 std::string_view to_string(Verdict verdict);
 std::string_view to_string(LimitingFactor factor);
 
-/// A motor that would pass is marginal if samples exceed a limit, or miss the demand, with more than this probability.
+/// A passing motor becomes marginal if the probability of exceeding a limit, or of missing the demand, is larger than this.
 inline constexpr double kMarginalProbability = 0.05;
-/// On a duty with draws of its own a motor fails, or is infeasible, if more than this share of the samples says so.
+/// On a duty with draws a motor fails if a larger share of the samples exceeds a limit, and is infeasible if a larger share misses the
+/// demand.
 inline constexpr double kMajority = 0.5;
-/// A demand counts as met where it is missed for no larger part of the time: a lost centimetre, not a lost match.
+/// The demand counts as met if it is missed for at most this share of the time.
 inline constexpr double kTolerableShortTime = 0.01;
 
 struct EvaluateOptions {
@@ -33,14 +34,14 @@ struct EvaluateOptions {
   std::uint64_t seed = 1;
   int threads = 0;                  ///< 0: all cores; the result does not depend on it
   bool with_curves = false;         ///< keep the nominal temperatures over time
-  bool with_bands = false;          ///< keep the range of the samples over time too; asks for with_curves
-  bool with_current_margin = true;  ///< find margin_A, which takes a quarter of the time of a nominal run
-  /// Demands of the hardest wheel under draws of the duty's own unknowns, which blocks of samples take in turn; empty: all
-  /// samples have the nominal demand.
+  bool with_bands = false;          ///< keep the range of the samples over time; needs with_curves
+  bool with_current_margin = true;  ///< compute margin_A; adds a quarter to the time of a nominal run
+  /// Demands of the most loaded wheel for draws of the duty's unknown parameters. Blocks of samples use them in turn. If empty, all samples
+  /// have the nominal demand.
   std::span<const duty::WheelDemand> draws{};
 };
 
-/// The parameter without uncertainty and the 5th, 50th and 95th percentile of the samples (NaN without samples).
+/// Nominal value, and 5th, 50th and 95th percentile of the samples (NaN without samples).
 struct Spread95 {
   double nominal = 0.0;
   double p05 = 0.0;
@@ -48,24 +49,24 @@ struct Spread95 {
   double p95 = 0.0;
 };
 
-/// What another set of draws of the duty would give in its place, 19 times of 20.
+/// 95 % confidence interval of a statistic of the samples.
 struct Interval95 {
   double low = 0.0;
   double high = 0.0;
 };
 
 struct TemperatureCurves {
-  std::vector<double> time_s;  ///< of the nominal run, every step of the solver
+  std::vector<double> time_s;  ///< steps of the solver in the nominal run
   std::vector<double> winding_C;
   std::vector<double> stator_C;
-  std::vector<double> band_time_s;  ///< middles of the cells in which the samples' lowest and highest are taken
+  std::vector<double> band_time_s;  ///< centres of the time cells of the bands
   std::vector<double> winding_p05_C, winding_p95_C;
   std::vector<double> stator_p05_C, stator_p95_C;
 };
 
 struct MotorEvaluation {
   std::string motor_id;
-  std::string wheel;  ///< the hottest one, which all temperatures are of
+  std::string wheel;  ///< wheel with the hottest winding in the nominal run; all values refer to it
   Verdict verdict = Verdict::pass;
   LimitingFactor limiting_factor = LimitingFactor::none;
   std::string data_quality;
@@ -73,57 +74,60 @@ struct MotorEvaluation {
   std::optional<double> stator_limit_C;
   Spread95 winding_peak_C;
   Spread95 stator_peak_C;
-  int samples = 0;  ///< that this answer rests on
-  int games = 0;    ///< draws of the duty that the samples share; 0 where it has none
-  /// Samples that would decide the verdict, as samples_needed() in select/decision.h; nothing where it is decided.
+  int samples = 0;  ///< number of samples; 0: nominal only
+  int games = 0;    ///< number of draws that the samples share; 0 for a duty without draws
+  /// Number of samples that would decide the verdict, from samples_needed() in select/decision.h; empty if it is decided.
   std::optional<int> samples_needed;
-  double probability_over_limit = 0.0;  ///< of any temperature limit; NaN without samples
-  /// Of the 95th percentile and of the probability: what other samples would give or, where a duty is drawn, other draws. The probability's
-  /// holds at every look of error_share() in select/decision.h at once. Nothing without samples.
+  double probability_over_limit = 0.0;  ///< share of samples over any temperature limit; NaN without samples
+  /// Confidence intervals of the 95th percentiles and of the probability, for repeated samples or, on a duty with draws, repeated draws.
+  /// The interval of the probability holds for all looks of error_share() in select/decision.h together. Empty without samples.
   std::optional<Interval95> winding_p95_interval_C;
   std::optional<Interval95> stator_p95_interval_C;
   std::optional<Interval95> probability_interval;
-  std::optional<double> time_to_limit_s;  ///< nominal, first of the limits
-  double current_rms_A = 0.0;             ///< heating current over the whole duty
+  std::optional<double> time_to_limit_s;  ///< time in the nominal run until the first limit is exceeded; empty if none is
+  double current_rms_A = 0.0;             ///< RMS of the heating current over the duty
   double margin_K = 0.0;                  ///< winding limit minus nominal peak
-  std::optional<double> stator_margin_K;  ///< the same of the stator, where it has a limit
-  std::optional<double> margin_A;   ///< how much more rms current both bear at the same speeds, as far as voltage and driver let it through
-  double least_torque_share = 1.0;  ///< delivered over demanded, worst moment
-  double short_time_share = 0.0;    ///< part of the time in which the demand is not met, hot but within the limit
-  LimitingFactor short_limit = LimitingFactor::voltage;  ///< what cuts the current first, if anything does
-  double short_probability = 0.0;  ///< samples that miss the demand for more than kTolerableShortTime; NaN without samples
-  double highest_voltage_V = 0.0;  ///< needed at the terminals, hot
-  bool destroyed = false;          ///< runaway: the nominal run ended at 1000 °C
+  std::optional<double> stator_margin_K;  ///< stator limit minus nominal peak; empty without stator limit
+  /// Additional RMS current at the same speeds until the first node reaches its limit, bounded by voltage and driver; negative if a limit
+  /// is exceeded. Empty if no current reaches a limit or even zero current exceeds one, and without with_current_margin.
+  std::optional<double> margin_A;
+  double least_torque_share = 1.0;  ///< smallest ratio of delivered to demanded current
+  double short_time_share = 0.0;    ///< share of the time in which the demand is not met; winding at its peak, at most at its limit
+  LimitingFactor short_limit = LimitingFactor::voltage;  ///< limit that causes the shortfall, if there is one
+  double short_probability = 0.0;  ///< share of samples that miss the demand for longer than kTolerableShortTime; NaN without samples
+  double highest_voltage_V = 0.0;  ///< largest demanded voltage at the terminals with the hot winding
+  bool destroyed = false;          ///< thermal runaway: the nominal run ended at 1000 °C
   TemperatureCurves curves;
 };
 
-/// How many draws of a duty's unknowns serve `samples`: one for every eight, because playing a game takes some hundred times as long as
-/// evaluating eight samples of it. 0 for a duty without unknowns.
+/// Returns the number of draws for `samples` samples: one for every eight, because playing a game takes about a hundred times as long as
+/// evaluating eight samples of it; 0 for a duty without unknown parameters.
 int draw_count(const duty::Duty& duty, int samples);
 
-/// Of each draw the wheel that works hardest. The same for every number of threads.
+/// Returns the demand of the most loaded wheel for each draw. The result does not depend on `threads`.
 std::vector<duty::WheelDemand> draw_demands(const duty::Duty& duty, const robot::Robot& robot, std::uint64_t seed, int count, int threads,
                                             const base::Progress& progress = {});
 
-/// The same for draws draws.size() to count - 1, added at the end.
+/// Appends draws to `draws` until there are `count`, as draw_demands() would compute them.
 void add_draws(std::vector<duty::WheelDemand>& draws, const duty::Duty& duty, const robot::Robot& robot, std::uint64_t seed, int count,
                int threads, const base::Progress& progress = {});
 
-/// To the limit that is nearer.
+/// Returns the nominal margin to the nearer temperature limit in K; negative if a limit is exceeded.
 double nearest_margin_K(const MotorEvaluation& motor);
 
-/// Best first: pass, marginal, fail, infeasible; within them by margin.
+/// Sorts by verdict (pass, marginal, fail, infeasible), then by nearest_margin_K(), the largest first.
 void sort_by_verdict(std::vector<MotorEvaluation>& results);
 
-/// Sorted by sort_by_verdict(). Without draws the nominal parameters decide fail and
-/// infeasible; with draws, where the nominal run is one of many games, more than half of the samples do. `wheels` is the duty's demand;
-/// every parameter is of the wheel whose winding gets hottest. Values of a motor without a spread are drawn from a default one
-/// (motor/default_spread.h), never as exact. `progress` is called from one thread at a time.
+/// Returns one evaluation per motor, sorted by sort_by_verdict(). `wheels` is the nominal demand of the duty; the wheel with the hottest
+/// winding is evaluated. Without draws the nominal run decides fail and infeasible; with draws it is one of many games, and kMajority of
+/// the samples decides. Motor values without a spread get a default one (motor/default_spread.h). `progress` is called from one thread at a
+/// time.
 std::vector<MotorEvaluation> evaluate(const robot::Robot& robot, const duty::Duty& duty, std::span<const duty::WheelDemand> wheels,
                                       std::span<const motor::Motor> motors, const EvaluateOptions& options,
                                       const base::Progress& progress = {});
 
-/// The same with the spreads that the motors have, be they missing or narrower than anybody can know: for comparisons, not for verdicts.
+/// Does the same as evaluate(), but uses the spreads of the motor files unchanged, even if they are missing or implausibly narrow. For
+/// comparisons only, not for verdicts.
 std::vector<MotorEvaluation> evaluate_as_stated(const robot::Robot& robot, const duty::Duty& duty,
                                                 std::span<const duty::WheelDemand> wheels, std::span<const motor::Motor> motors,
                                                 const EvaluateOptions& options, const base::Progress& progress = {});

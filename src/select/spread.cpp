@@ -74,7 +74,7 @@ DrawIntervals draw_intervals(std::span<const double> samples_C, std::span<const 
     if (!drawn_C.empty()) {
       const auto place = drawn_C.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(drawn_C.size() - 1));
       std::nth_element(drawn_C.begin(), place, drawn_C.end());
-      // The next one up is the lowest of those behind.
+      // After nth_element the next order statistic is the smallest of the elements behind `place`.
       const double above_C = place + 1 == drawn_C.end() ? *place : *std::min_element(place + 1, drawn_C.end());
       const double exact = 0.95 * static_cast<double>(drawn_C.size() - 1);
       p95_C.push_back(std::lerp(*place, above_C, exact - std::floor(exact)));

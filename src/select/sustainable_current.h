@@ -1,4 +1,4 @@
-// How much more current a motor bears.
+// Finds the factor on all currents at which a node just reaches its limit.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,10 @@
 
 namespace heatsoak::select {
 
-/// The factor on all currents, at the same speeds, with which the first node just reaches its limit: eight factors at a time, each
-/// round between the two that enclose it, at last by their temperatures. Nothing where even no current is too much, or no current heats.
-/// `is_too_much` says that the currents as they are pass a limit, so that no larger ones need to be tried.
+/// Returns the factor on all currents, at unchanged speeds, at which the first node just reaches its limit. Each round simulates eight
+/// factors and continues between the two that enclose the result; the last round interpolates linearly. Returns nothing if a limit is
+/// exceeded without any current, or if no current reaches a limit. `is_too_much`: the present currents exceed a limit, so the search begins
+/// with factors up to 1.
 std::optional<double> sustainable_current_factor(const thermal::Network& network, std::span<const thermal::Interval> intervals,
                                                  std::span<const thermal::NodeLimit> limits, bool is_too_much);
 

@@ -15,7 +15,7 @@ namespace {
 using motor::states::stator;
 using motor::states::winding;
 
-/// The same demand in bins no longer than `every_s`.
+/// Returns the same demand in bins no longer than `every_s`.
 duty::WheelDemand subdivided(const duty::WheelDemand& demand, double every_s) {
   duty::WheelDemand fine{.wheel = demand.wheel, .bins = {}, .points = {}};
   for (const duty::LoadBin& bin : demand.bins) {
@@ -27,7 +27,7 @@ duty::WheelDemand subdivided(const duty::WheelDemand& demand, double every_s) {
   return fine;
 }
 
-/// What flows during a bin, with the sign of its mean.
+/// Returns speed, current and torque of a bin for a heating current. Signs are those of the bin's means.
 robot::DrivePoint point_of(const motor::MotorValues& motor, const robot::Robot& robot, const duty::LoadBin& bin, double heating_A) {
   robot::DrivePoint point;
   point.motor_speed_rad_per_s = bin.velocity_mean_rad_per_s * robot.drive.gear_ratio;
@@ -41,7 +41,7 @@ robot::DrivePoint point_of(const motor::MotorValues& motor, const robot::Robot& 
   return point;
 }
 
-/// The sensors of a motor with faults, while it warms.
+/// Simulates the readings of sensors with stated faults during a run.
 class FaultySensors {
  public:
   FaultySensors(const motor::Motor& motor, double start_C) {
@@ -79,7 +79,7 @@ std::vector<BookedHeat> balance(const thermal::Network& network, const thermal::
   std::vector<BookedHeat> booked;
   const auto nodes = static_cast<std::size_t>(network.node_count());
   for (std::size_t e = 0; e < network.effects().size(); ++e) {
-    // An effect may play several parts at one node.
+    // An effect may act on one node in several roles.
     const std::set<int> of_effect(network.effects()[e].node_index.begin(), network.effects()[e].node_index.end());
     for (const int node : of_effect) {
       booked.push_back({network.effects()[e].name, std::string(network.node_name(node)),

@@ -1,4 +1,4 @@
-// One nominal run with every signal, and the power balance of its effects.
+// Trace of a nominal run with all signals, and the power balance of its effects.
 #pragma once
 
 #include <string>
@@ -16,14 +16,14 @@ struct TraceRow {
   double ambient_C = 0.0;
   double current_A = 0.0;             ///< equivalent DC current, signed like the torque
   double speed_rad_per_s = 0.0;       ///< speed of the motor
-  double torque_Nm = 0.0;             ///< at the motor's shaft
-  double motor_V = 0.0;               ///< at the terminals, at this winding temperature
-  double power_in_W = 0.0;            ///< into the terminals
+  double torque_Nm = 0.0;             ///< torque at the motor's shaft
+  double motor_V = 0.0;               ///< voltage at the terminals at this winding temperature
+  double power_in_W = 0.0;            ///< electrical power into the terminals
   std::vector<double> own_C = {};     ///< temperatures of the nodes that effects add, in the order of own_nodes
-  std::vector<double> sensor_C = {};  ///< by the sensors for which the motor's file states a fault, as shown_at names their nodes
+  std::vector<double> sensor_C = {};  ///< readings of the sensors with a stated fault, in the order of shown_at
 };
 
-/// Heat that one effect brought into one node, as the mean over the run.
+/// Mean heat flow from one effect into one node over the run.
 struct BookedHeat {
   std::string effect;
   std::string node;
@@ -32,18 +32,18 @@ struct BookedHeat {
 
 struct Trace {
   std::vector<TraceRow> rows;
-  std::vector<std::string> own_nodes;
-  std::vector<std::string> shown_at;
+  std::vector<std::string> own_nodes;  ///< nodes that effects add
+  std::vector<std::string> shown_at;   ///< nodes whose sensor has a stated fault
   std::vector<BookedHeat> balance;
-  double stored_W = 0.0;  ///< mean rate at which the nodes took heat up
+  double stored_W = 0.0;  ///< mean rate of heat storage in all nodes
 };
 
-/// Rows stand at every change of the inputs and at most `every_s` apart.
+/// Runs the trace of one wheel. Rows are at every change of the inputs and at most `every_s` apart.
 Trace run_trace(const robot::Robot& robot, const duty::Duty& duty, const duty::WheelDemand& wheel, const motor::Motor& motor,
                 double every_s);
 
-/// The canonical log format: one header row, names end in units. Nodes of effects stand behind the ambient, then what sensors with
-/// faults show.
+/// Returns the trace as CSV in the format of logs: one header row, names end in units. Columns of nodes from effects follow the ambient
+/// temperature, then those of sensors with faults.
 std::string to_csv(const Trace& trace);
 
 }  // namespace heatsoak::select

@@ -1,4 +1,4 @@
-// Ranks motors by games that the drive core drove.
+// Ranks motors by the games that the drive core drives in closed loop.
 #pragma once
 
 #include <optional>

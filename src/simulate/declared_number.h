@@ -1,4 +1,4 @@
-// Numbers of a simulation that no robot file has: each declared once with unit, range and origin.
+// Numbers of a simulation that robot files do not contain. Each is declared once with unit, range and origin.
 #pragma once
 
 #include <span>
@@ -10,17 +10,17 @@
 
 namespace heatsoak::simulate {
 
-/// One number of a `Config`, which holds its default.
+/// One number of a `Config`. The default is the member's initial value.
 template <class Config>
 struct DeclaredNumber {
-  base::ParameterSpec spec;  ///< its range is what a run accepts
+  base::ParameterSpec spec;  ///< its range is the one that a run accepts
   double Config::*value = nullptr;
   base::Origin origin = base::Origin::estimated;
-  base::Range plausible;  ///< where the true value of a robot of this league is expected
+  base::Range plausible;  ///< expected range of the true value for robots of this league
   std::string_view derivation;
 };
 
-/// Throws Failure (bad_input) with every number of `config` that is outside of its declared range.
+/// Throws Failure (bad_input) that lists every value outside its declared range.
 void require_declared_ranges(std::span<const base::ParameterSpec> specs, std::span<const double> values);
 
 template <class Config>

@@ -9,7 +9,7 @@ namespace heatsoak::simulate {
 namespace {
 
 constexpr double kStep_s = SimulatedRobot::kPeriod_s;
-/// A plan that never gets faster has no direction to speak of.
+/// A plan that stays below this speed has no meaningful direction, so its command does not count as an arrival.
 constexpr double kLeastSpeed_m_per_s = 0.05;
 
 }  // namespace
@@ -41,7 +41,7 @@ void DriveScorer::take(const LoopMoment& moment) {
   score_.lifted_s += out.lifted ? kStep_s : 0.0;
   score_.battery_empty_s += state.battery_charge_A_s <= 0.0 ? kStep_s : 0.0;
   if (state.battery_charge_A_s <= 0.0) {
-    return;  // nothing drives any more: where it stands says nothing of planner or motor
+    return;  // the robot is not driven, so its distance from the plan depends on neither planner nor motor
   }
   score_.distance_m += std::hypot(state.velocity.x_m_per_s, state.velocity.y_m_per_s) * kStep_s;
   const robot::Pose planned = moment.plan->pose();

@@ -8,7 +8,7 @@
 namespace heatsoak::simulate {
 namespace {
 
-/// The force of the opponent on the robot: against the push, only while they touch.
+/// Computes the opponent's force on the robot. It acts against the push and only during contact.
 class Duel {
  public:
   void begin(const duty::MotionCommand& command, const robot::Pose& at, const robot::BodyConfig& body) {
@@ -21,11 +21,11 @@ class Duel {
   }
   void end() { active_ = false; }
   [[nodiscard]] bool active() const { return active_; }
-  /// What the robot is to push with, global frame.
+  /// Returns the force with which the robot must push, global frame.
   [[nodiscard]] robot::Wrench push() const {
     return active_ ? robot::Wrench{force_N_ * x_share_, force_N_ * y_share_, 0.0} : robot::Wrench{};
   }
-  /// What comes back, local frame.
+  /// Returns the opponent's reaction force, local frame.
   [[nodiscard]] robot::Wrench reaction(const SimulatedRobot& robot) const {
     if (!active_) {
       return {};

@@ -1,4 +1,4 @@
-// A script of commands, driven in a closed loop: planner, radio, sensors, drive core, plant.
+// Drives a script of commands in closed loop: planner, radio, sensors, drive core, plant.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace heatsoak::simulate {
 
-/// What the loop shows after every period of the plant.
+/// State of the loop after a plant period.
 struct LoopMoment {
-  double time_s = 0.0;  ///< at the end of the period
+  double time_s = 0.0;  ///< time at the end of the period
   const duty::ScheduledCommand* command = nullptr;
   std::size_t command_index = 0;
-  bool planned_at_rest = false;  ///< the plan of this command has ended
-  bool pushes = false;
+  bool planned_at_rest = false;  ///< true if the plan of this command has ended
+  bool pushes = false;           ///< true in a duel once the plan is at rest
   const duty::Follower* plan = nullptr;
   const robot::PlantOutput* out = nullptr;  ///< means over the period
   const SimulatedRobot* robot = nullptr;
@@ -25,15 +25,15 @@ struct LoopMoment {
 };
 using LoopObserver = std::function<void(const LoopMoment&)>;
 
-/// The robot that is pushed in a duel stands like a wall at the place where the duel began, and is somewhat soft; what it
-/// is made of has no part in the force at stall.
+/// Opponent in a duel: a fixed wall with spring and damper at the position where the duel begins. The force at stall does not depend on
+/// these values.
 struct Opponent {
   double stiffness_N_per_m = 5000.0;
   double damping_N_s_per_m = 100.0;
 };
 
-/// Drives `script` until `end_s`, from the plan's and the robot's present state on. In a duel the robot pushes from when its plan stands
-/// still. Times of the script are taken to the nearest period of the plant.
+/// Drives `script` until `end_s`, starting at the present state of plan and robot. In a duel the robot pushes as soon as its plan is at
+/// rest. Times of the script are rounded to the nearest plant period.
 void drive_script(SimulatedRobot& robot, CoreDrive& drive, duty::Follower& plan, std::span<const duty::ScheduledCommand> script,
                   double end_s, const LoopObserver& observer);
 

@@ -1,4 +1,4 @@
-// The answer of `evaluate`: motors ranked on one duty of one robot, by samples and, on request, by games in the closed loop.
+// Answer of `evaluate`: ranks motors on one duty of one robot, by samples and, on request, by games in closed loop.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace heatsoak::simulate {
 
-/// Games that the drive core drives with each motor.
+/// Number and guard mode of the games that the drive core drives with each motor.
 struct ClosedLoopJob {
   int games = 3;
   GuardUse guard = GuardUse::shadow;
@@ -26,11 +26,11 @@ struct EvaluationJob {
   duty::Duty duty;
   std::vector<motor::Motor> motors;                    ///< at least one, with different ids
   std::map<std::string, std::string> conditions = {};  ///< conditions under which the motors were read
-  std::uint64_t seed = 1;                              ///< seed of the samples and of the first game
-  std::optional<int> samples = {};  ///< nothing: first_samples(), and up to most_samples() until the verdicts are decided
-  int threads = 0;                  ///< 0: all cores; the result does not depend on it
-  bool with_bands = false;          ///< keep the range of the samples over time
-  bool suggests = false;            ///< search for changes of the robot also if its motor passes
+  std::uint64_t seed = 1;                              ///< seed of the samples; games in closed loop use consecutive seeds from it
+  std::optional<int> samples = {};                     ///< empty: first_samples(), then up to most_samples() until the verdicts are decided
+  int threads = 0;                                     ///< 0: all cores; the result does not depend on it
+  bool with_bands = false;                             ///< keep the range of the samples over time
+  bool suggests = false;                               ///< search for changes of the robot also if its motor passes
   /// Returns the motors that may replace the robot's; called only if changes are searched for. May be empty.
   std::function<std::vector<motor::Motor>()> database = {};
   std::optional<ClosedLoopJob> closed_loop = {};
@@ -43,27 +43,26 @@ struct SuggestedChanges {
 };
 
 struct EvaluationAnswer {
-  robot::Robot robot;  ///< on a match with assumed friction if its file has none
+  robot::Robot robot;  ///< robot; on a match with assumed friction if its file has none
   duty::Duty duty;
   std::vector<motor::Motor> motors;
   std::map<std::string, std::string> conditions;
   std::uint64_t seed = 1;
-  int samples = 0;             ///< samples of the first round
-  duty::WheelDemand demand;    ///< nominal demand of one of the wheels
-  std::size_t draw_count = 0;  ///< number of simulated games; 0 for a duty without random samples
-  std::vector<select::MotorEvaluation>
-      results;  ///< with nominal curves; in the order of `ranks` in a closed loop, else as evaluate() sorts them
+  int samples = 0;                               ///< samples of the first round
+  duty::WheelDemand demand;                      ///< nominal demand of one of the wheels
+  std::size_t draw_count = 0;                    ///< number of simulated games; 0 for a duty without random samples
+  std::vector<select::MotorEvaluation> results;  ///< with nominal curves; sorted like `ranks` in closed loop, else by evaluate()
   std::optional<ClosedLoopJob> closed_loop;
   std::vector<ClosedLoopRank> ranks;  ///< one for each result; empty without a closed loop
-  /// For the motor that the robot is built with if it is among the results, else for the best one. Nothing if that motor passes and no
-  /// changes were requested.
+  /// Changes for the robot's own motor if it is among the results, else for the best motor. Empty if that motor passes and no changes were
+  /// requested.
   std::optional<SuggestedChanges> changes;
 
-  /// Returns the worst verdict of all motors, that of the games in a closed loop.
+  /// Returns the worst verdict of all motors; in closed loop that of the games.
   [[nodiscard]] select::Verdict worst_verdict() const;
 };
 
-/// Throws Failure (bad_input) if more samples are requested than possible, or a closed loop for a duty that is not a match.
+/// Runs the evaluation. Throws Failure (bad_input) if too many samples are requested, or a closed loop for a duty that is not a match.
 EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::ProgressFor& progress = {});
 
 }  // namespace heatsoak::simulate

@@ -1,4 +1,4 @@
-// Motors on games in the closed loop: what `evaluate --closed-loop` ranks.
+// Drives games in closed loop with several motors, for `evaluate --closed-loop`.
 #pragma once
 
 #include <span>
@@ -12,32 +12,32 @@ namespace heatsoak::simulate {
 
 struct GameDriveOptions {
   int games = 3;
-  std::uint64_t seed = 1;  ///< of the first game; each further game has the next one
+  std::uint64_t seed = 1;  ///< seed of the first game; later games use the following seeds
   double ambient_C = 25.0;
   GuardUse guard = GuardUse::shadow;
   bool is_sensing_ideal = false;
   int threads = 0;  ///< 0: all cores; the result does not depend on it
 };
 
-/// Of one value over the games.
+/// First-game value and range of one score over all games.
 struct GameSpread {
-  double nominal = 0.0;  ///< of the first game
+  double nominal = 0.0;  ///< value of the first game
   double low = 0.0;
   double high = 0.0;
 };
 
 struct GameDrives {
   std::string motor_id;
-  std::string why_none;  ///< why nothing could be driven; empty where it was
+  std::string why_none;  ///< reason why the motor cannot be driven; empty if it was driven
   bool is_guarded = false;
   std::string why_no_guard;       ///< as MotorGuard::why_none
-  std::vector<DriveScore> games;  ///< by seed
+  std::vector<DriveScore> games;  ///< in the order of the seeds
 
   [[nodiscard]] GameSpread spread(double DriveScore::*value) const;
 };
 
-/// In the order of `motors`. Every motor gets the same games. A motor whose file lacks what motion needs is not driven and says so. Throws
-/// Failure (bad_input) where the robot's file lacks something. `progress` counts guards and games.
+/// Drives the same games with every motor; the result has the order of `motors`. A motor whose file lacks values for motion is not driven,
+/// see GameDrives::why_none. Throws Failure (bad_input) if the robot's file lacks values. `progress` counts guards and games.
 std::vector<GameDrives> drive_games(const robot::Robot& robot, const duty::MatchInputs& inputs, std::span<const motor::Motor> motors,
                                     const GameDriveOptions& options, const base::Progress& progress = {});
 

@@ -28,7 +28,7 @@ MotorGuard make_guard(const motor::Motor& motor, const robot::Robot& robot, doub
 
 namespace {
 
-/// Calls make_core_config() and names the motor in its message.
+/// Calls make_core_config() and adds motor and robot to the message of a failure.
 template <class... Arguments>
 robot_core::Config named_config(const robot::Robot& robot, const motor::Motor& motor, const Arguments&... rest) {
   try {

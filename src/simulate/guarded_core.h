@@ -1,4 +1,4 @@
-// The drive core as one robot with one motor gets it: its configuration, with or without the motor's thermal guard.
+// Configuration of the drive core for one robot with one motor, with or without the motor's thermal guard.
 #pragma once
 
 #include <optional>
@@ -13,27 +13,28 @@ namespace heatsoak::simulate {
 
 enum class GuardUse {
   off,
-  shadow,  ///< the guard counts what it would limit, and limits nothing
+  shadow,  ///< the guard counts how much it would limit, but does not limit
   on
 };
 inline constexpr std::string_view kGuardUses[]{"off", "shadow", "on"};
 
-/// derate()'s guard of a motor, or why there is none.
+/// Guard of a motor from derate(), or the reason why there is none.
 struct MotorGuard {
   std::optional<derate::Derating> derating;
   std::optional<firmware::HostGuard> guard;
-  std::string why_none;  ///< derate()'s own message; empty where there is a guard, and where none was asked for
+  std::string why_none;  ///< message of derate(); empty if there is a guard or none was requested
 };
 
-/// Runs derate() with its own defaults, in air of up to 40 degC or `ambient_C`, whichever is more. A motor that passes a limit without
-/// current, or has more nodes than the core's guard takes, gets none. Other failures are thrown.
+/// Runs derate() with its defaults, for air of up to 40 °C or `ambient_C`, whichever is larger. A motor that exceeds a limit without
+/// current, or has more nodes than the guard supports, gets no guard; `why_none` states the reason. Other failures are thrown.
 MotorGuard make_guard(const motor::Motor& motor, const robot::Robot& robot, double ambient_C, int threads,
                       const base::Progress& progress = {});
 
-/// Owns what its config() points to, so that cores of one motor can run in several threads, each with its own. Neither copied nor moved.
+/// Owns the objects that its config() points to, so it can be neither copied nor moved. Cores in several threads need one object each.
 class GuardedCore {
  public:
-  /// Without a guard in `guard` the use is off. Throws as make_core_config() does, and with the guard on as require_driving_current() does.
+  /// Without a guard in `guard` the use is off. Throws the failures of make_core_config() and, with the guard on, of
+  /// require_driving_current().
   GuardedCore(const robot::Robot& robot, const motor::Motor& motor, GuardUse use, const MotorGuard& guard);
   GuardedCore(const GuardedCore&) = delete;
   GuardedCore& operator=(const GuardedCore&) = delete;

@@ -1,4 +1,4 @@
-// One match in a closed loop: the game's commands as the ideal robot got them, driven by the real one.
+// Runs one match in closed loop: the commands of an ideally tracked game, driven by the simulated robot.
 #pragma once
 
 #include <optional>
@@ -14,13 +14,13 @@ struct MatchRunOptions {
   double ambient_C = 25.0;
   std::optional<double> start_C = {};  ///< initial temperature of the motors; the ambient if empty
   DriveOptions drive;
-  base::Progress progress;  ///< in whole seconds of the match
+  base::Progress progress;  ///< progress in whole seconds of the match
 };
 
-/// What the phases cost the motors.
+/// Duration of a phase of the match and copper heat in it.
 struct PhaseHeat {
   double time_s = 0.0;
-  double copper_J = 0.0;  ///< of all motors
+  double copper_J = 0.0;  ///< sum of all motors
 };
 
 struct MatchRun {
@@ -28,20 +28,21 @@ struct MatchRun {
   std::array<PhaseHeat, duty::kPhaseNames.size()> phases{};
 };
 
-/// What a game asks of a robot that follows the jerk-limited planner exactly, so that every planner, motor and drive core is asked the same
-/// at the same time.
+/// Commands of a game for a robot that follows the jerk-limited planner exactly. Every planner, motor and drive core then gets the same
+/// commands at the same times.
 struct Game {
   std::vector<duty::ScheduledCommand> script;
   double duration_s = 0.0;
   double aggressiveness = 1.0;
 };
+/// Plays the game with nominal inputs.
 Game play_game(const duty::MatchInputs& inputs, const robot::Robot& robot, std::uint64_t seed);
 
-/// Throws Failure (bad_input) if the motor's file has no inertia of the rotor.
+/// Throws Failure (bad_input) if the motor file has no rotor inertia.
 void require_rotor_inertia(const motor::Motor& motor);
 
-/// Drives a game. `core` is the robot's (guarded_core.h). `observer` sees every period of the plant.
-/// Throws Failure (bad_input) that names what the files of robot or motor lack.
+/// Drives a game. `core` is the core's configuration for this robot and motor (guarded_core.h). `observer` is called after every plant
+/// period. Throws Failure (bad_input) that names the values missing from the files of robot or motor.
 MatchRun run_match(const Game& game, const robot::Robot& robot, const motor::Motor& motor, const robot_core::Config& core,
                    const MatchRunOptions& options, const LoopObserver& observer = {});
 

@@ -1,4 +1,4 @@
-// The answer of `simulate` for a match: one game in the closed loop, driven once with each planner.
+// Answer of `simulate` for a match: one game in closed loop, driven once with each planner.
 #pragma once
 
 #include <cstdint>
@@ -23,32 +23,32 @@ struct MatchJob {
   bool is_sensing_ideal = false;
   bool with_table = false;  ///< make the CSV; for one planner only
   double every_s = 1.0;     ///< time between two rows of the CSV
-  bool with_rows = false;   ///< keep rows for a picture
+  bool with_rows = false;   ///< keep rows for a chart
 };
 
 struct DrivenMatch {
   duty::Planner planner = duty::Planner::jerk_limited;
   MatchRun run;
   std::string csv;
-  std::vector<MatchRow> rows;  ///< every kMatchRow_s
+  std::vector<MatchRow> rows;  ///< one row every kMatchRow_s
 };
 inline constexpr double kMatchRow_s = 2.0;
 
 struct MatchSimulation {
-  robot::Robot robot;  ///< with assumed friction if its file has none
+  robot::Robot robot;  ///< robot with assumed friction if its file has none
   motor::Motor motor;
   duty::Duty duty;
   duty::Role role = duty::Role::attacker;
   std::uint64_t seed = 1;
   GuardUse guard_use = GuardUse::shadow;
-  MotorGuard guard;  ///< empty if its use is off
+  MotorGuard guard;  ///< empty if guard_use is off
   bool is_sensing_ideal = false;
   std::vector<DrivenMatch> runs;  ///< one for each planner
-  /// Over all runs: fail (a limit exceeded) takes precedence over infeasible (not driven).
+  /// Verdict over all runs: fail (a limit exceeded) takes precedence over infeasible (not driven).
   select::Verdict verdict = select::Verdict::pass;
 };
 
-/// Throws Failure (bad_input) if the files of robot or motor lack values that motion needs, or the CSV would be too large.
+/// Simulates the match. Throws Failure (bad_input) if the files of robot or motor lack values for motion, or if the CSV would be too large.
 MatchSimulation simulate_match(const MatchJob& job, const base::ProgressFor& progress = {});
 
 }  // namespace heatsoak::simulate

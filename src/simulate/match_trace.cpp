@@ -96,7 +96,7 @@ void MatchRows::take(const LoopMoment& moment) {
   open_.battery_V += out.battery_V;
   open_.battery_A += out.battery_current_A;
   ++periods_;
-  // A row never ends between two periods: half a period is rounding.
+  // Rows end at whole plant periods; half a period covers rounding errors.
   if (moment.time_s - open_.time_s > every_s_ - 0.5 * SimulatedRobot::kPeriod_s) {
     finish();
     start(moment.time_s, *moment.robot, moment.plan->pose(), moment.command->phase, moment.pushes);

@@ -19,7 +19,7 @@ namespace {
 constexpr std::array<double, 3> kDistances_m{0.5, 1.0, 2.0};
 constexpr int kDirections = 8;
 constexpr double kAmbient_C = 25.0;
-/// Time that a robot gets to settle after its plan has ended.
+/// Simulated time after the end of the plan, for settling.
 constexpr double kAfterwards_s = 1.0;
 constexpr std::size_t kDrives = kDistances_m.size() * kDirections;
 
@@ -129,7 +129,7 @@ std::vector<StudyCase> jerk_sweep(const robot::Robot& robot) {
   const double own_m_per_s2 = std::min(robot.limits.acceleration_m_per_s2.value(), robot.limits.braking_m_per_s2.value());
   std::vector<StudyCase> cases;
   for (const double acceleration_m_per_s2 : {own_m_per_s2, sliding_m_per_s2, 1.5 * sliding_m_per_s2}) {
-    // A team that goes to the limit of its grip has one case less.
+    // A robot that already uses all of its grip has one acceleration less.
     if (!cases.empty() && std::abs(acceleration_m_per_s2 / own_m_per_s2 - 1.0) < kAlike) {
       continue;
     }

@@ -11,7 +11,7 @@ namespace heatsoak::simulate {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-/// Far below a period of the plant, far above the rounding of a time.
+/// Tolerance for comparing times: far below a plant period, far above rounding errors.
 constexpr double kInstant_s = 1e-9;
 
 constexpr DeclaredNumber<RadioConfig> kRadioNumbers[] = {
@@ -74,7 +74,7 @@ constexpr DeclaredNumber<RadioConfig> kRadioNumbers[] = {
 
 double wrapped_rad(double angle_rad) { return std::remainder(angle_rad, 2.0 * std::numbers::pi); }
 
-/// Whether entry number `count` of a stream of `rate_Hz` is due; without end every call is.
+/// Returns whether entry number `count` of a stream of `rate_Hz` is due; always true for an infinite rate.
 bool is_due(double time_s, double rate_Hz, std::int64_t count) {
   return std::isinf(rate_Hz) || time_s >= static_cast<double>(count) / rate_Hz - kInstant_s;
 }
@@ -100,7 +100,7 @@ RadioConfig ideal_radio() {
   return config;
 }
 
-// A share of loss p with bursts of mean length b: end = 1/b, begin = end·p/(1 − p).
+// For a share of loss p and a mean burst length b: end = 1/b, begin = end·p/(1 − p).
 PacketLoss::PacketLoss(double loss_share, double burst_count)
     : begin_probability_(loss_share / ((1.0 - loss_share) * burst_count)), end_probability_(1.0 / burst_count) {}
 
@@ -157,7 +157,7 @@ robot_core::Command OffBoard::command(const duty::Follower& plan, const robot::W
   const double lead_s = config_.packet_latency_s;
   const robot::BodyVelocity planned = plan.velocity_global();
   const robot::BodyAcceleration acceleration = plan.acceleration_global();
-  // Where the robot looks to when the packet arrives: what vision saw, moved on as the plan has moved since.
+  // Predicted yaw of the robot when the packet arrives: the last seen yaw, advanced by the motion of the plan.
   const double yaw_rad = plan.pose().yaw_rad - error_.yaw_rad + lead_s * planned.yaw_rad_per_s;
   double x_m_per_s = config_.position_gain_per_s * error_.x_m;
   double y_m_per_s = config_.position_gain_per_s * error_.y_m;

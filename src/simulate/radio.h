@@ -1,4 +1,4 @@
-// The team's computer beside the field: it sees the robot through cameras and commands it through a radio link.
+// Simulates the team's computer, which sees the robot through cameras and commands it through a radio link.
 #pragma once
 
 #include <array>
@@ -11,29 +11,30 @@
 
 namespace heatsoak::simulate {
 
-/// radio_numbers() has unit, origin and range of every number.
+/// Parameters of radio link and vision. radio_numbers() declares unit, origin and range of each.
 struct RadioConfig {
-  double packet_rate_Hz = 100.0;    ///< infinite: a packet in every period of the plant
-  double packet_latency_s = 0.005;  ///< from computing a command to its reception
-  double loss_share = 0.01;         ///< of the packets
-  double burst_count = 2.0;         ///< mean number of packets lost in a row
-  double vision_rate_Hz = 75.0;     ///< infinite: in every period of the plant
-  double vision_latency_s = 0.025;  ///< from exposure to the pose that the planner can use
-  double vision_noise_m = 0.0006;   ///< standard deviation of one filtered pose
-  double vision_noise_rad = 0.004;
-  double position_gain_per_s = 4.0;  ///< velocity per distance between plan and robot
-  double heading_gain_per_s = 4.0;
-  double push_speed_m_per_s = 0.05;  ///< into another robot, besides the force
+  double packet_rate_Hz = 100.0;     ///< infinite: a packet in every plant period
+  double packet_latency_s = 0.005;   ///< time from the computation of a command to its reception
+  double loss_share = 0.01;          ///< share of the packets that are lost
+  double burst_count = 2.0;          ///< mean number of packets lost in a row
+  double vision_rate_Hz = 75.0;      ///< infinite: a picture in every plant period
+  double vision_latency_s = 0.025;   ///< time from exposure to the pose
+  double vision_noise_m = 0.0006;    ///< standard deviation of a filtered position
+  double vision_noise_rad = 0.004;   ///< standard deviation of a filtered yaw
+  double position_gain_per_s = 4.0;  ///< commanded velocity per position error
+  double heading_gain_per_s = 4.0;   ///< commanded yaw rate per yaw error
+  double push_speed_m_per_s = 0.05;  ///< commanded velocity into another robot in a duel, in addition to the force
 };
 std::span<const DeclaredNumber<RadioConfig>> radio_numbers();
 
-/// The defaults with the robot's own command_rate.
+/// Returns the defaults with the robot's command_rate.
 RadioConfig radio_of(const robot::Robot& robot);
-/// A command in every period of the plant, no loss, no latency, exact poses; twice the default's gains, as nothing is late.
+/// Returns a link with a command in every plant period, without loss, latency or pose errors. The gains are twice the default, which the
+/// missing latency permits.
 RadioConfig ideal_radio();
 
-/// Which packets arrive: two states, in one of which all are lost (Gilbert, Bell System Technical Journal 39, 1960). The shares of loss
-/// and the mean length of a burst are those of the configuration.
+/// Packet loss in bursts: a Markov chain with two states, one of which loses all packets (Gilbert, Bell System Technical Journal 39, 1960).
+/// Share of loss and mean burst length are those of RadioConfig.
 class PacketLoss {
  public:
   PacketLoss(double loss_share, double burst_count);
@@ -45,24 +46,23 @@ class PacketLoss {
   bool is_lost_ = false;
 };
 
-/// Sends body velocities: the plan's, led by the link's latency, with v = v_plan + k·(p_plan − p_seen). Plan and robot are compared at
-/// the exposure of a picture, so that the latency of vision alone makes no error. In a duel the command has the force, and in its direction
-/// push_speed in place of the correction: wheels that pass on a force creep, and a speed of zero would take the force away again. Same
-/// seed, same commands.
+/// Sends body velocities v = v_plan + k·(p_plan − p_seen), with v_plan extrapolated by the latency of the link. Plan and robot are compared
+/// at the exposure of a picture, so the latency of vision alone causes no error. In a duel the command contains the force; along the force
+/// push_speed replaces the correction. Loaded wheels creep, so a speed of zero would remove the force. Equal seeds give equal commands.
 class OffBoard {
  public:
-  /// Throws Failure (bad_input) that names the numbers outside of their range.
+  /// Throws Failure (bad_input) that names the numbers outside their range.
   OffBoard(const RadioConfig& config, std::uint64_t seed);
 
-  /// What the computer has to say at `time_s`; `push` is the force on another robot, field frame. Call once per period of the plant, in
-  /// order. Returns the command that the robot receives in this period, or null.
+  /// Computes the computer's command at `time_s`; `push` is the force on another robot, field frame. Must be called once per plant period,
+  /// in order. Returns the command that the robot receives in this period, or null.
   const robot_core::Command* advance(double time_s, const duty::Follower& plan, const robot::Pose& truth, const robot::Wrench& push);
 
   [[nodiscard]] std::int64_t sent() const { return sent_; }
   [[nodiscard]] std::int64_t lost() const { return lost_; }
 
  private:
-  /// Distance between plan and robot in one picture.
+  /// Error (plan minus robot) in one picture.
   struct Picture {
     double ready_s = 0.0;
     robot::Pose error;
@@ -71,12 +71,12 @@ class OffBoard {
     double ready_s = 0.0;
     robot_core::Command command;
   };
-  /// Entries in order of their time; the oldest is dropped where there are too many.
+  /// Queue of entries in order of their time. If it is full, the oldest entry is dropped.
   template <class Entry>
   class Pipe {
    public:
     void push(const Entry& entry);
-    /// The newest entry that is ready, or null.
+    /// Removes all entries that are ready and returns the newest of them, or null.
     const Entry* take(double time_s);
 
    private:
@@ -93,7 +93,7 @@ class OffBoard {
   base::Random vision_random_;
   base::Random loss_random_;
   PacketLoss loss_;
-  robot::Pose error_;  ///< newest that is known
+  robot::Pose error_;  ///< newest known error
   Pipe<Picture> pictures_;
   Pipe<Packet> packets_;
   robot_core::Command received_;

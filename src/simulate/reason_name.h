@@ -1,4 +1,4 @@
-// Names of the drive core's reasons for traces and messages: those of the enumeration.
+// Names of the drive core's reasons for traces and messages, equal to those of the enumerators.
 #pragma once
 
 #include <string_view>
@@ -7,7 +7,7 @@
 
 namespace heatsoak::simulate {
 
-/// "wheel_speed_stuck"; "unknown" for a number that is none of them.
+/// Returns the name, for example "wheel_speed_stuck"; "unknown" for any other number.
 std::string_view to_string(robot_core::Reason reason);
 
 }  // namespace heatsoak::simulate

@@ -7,7 +7,7 @@ namespace heatsoak::simulate {
 namespace {
 
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
-/// The bias walks in steps of so many samples: a draw per sample would cost time and change nothing.
+/// Number of samples per step of the bias. A random number for every sample would cost time without a visible effect.
 constexpr int kSamplesPerDriftStep = 100;
 
 constexpr DeclaredNumber<SensingConfig> kSensingNumbers[] = {
@@ -95,7 +95,7 @@ double noise(base::Random& random) {
   for (int part = 0; part < 4; ++part, bits >>= 13) {
     sum += bits & kPart;
   }
-  // Mean 4·(2^13 − 1)/2, variance 4·(2^26 − 1)/12.
+  // The sum has the mean 4·(2^13 − 1)/2 and the variance 4·(2^26 − 1)/12.
   constexpr double kMean = 2.0 * static_cast<double>(kPart);
   constexpr double kSpread = 1.7320507940 / 8192.0;
   return (static_cast<double>(sum) - kMean) * kSpread;

@@ -21,7 +21,7 @@ std::vector<thermal::Lanes> same_in_all_lanes(const std::vector<double>& values)
   return lanes;
 }
 
-/// Cooling by speed makes a network fast, and heat by current does: the step that suits rest and the utmost of both.
+/// Returns the step that suits both rest and the highest current and speed. Cooling by speed and heating by current make a network fast.
 double shortest_of_longest_steps_s(const robot::PlantConfig& plant, const thermal::Network& network,
                                    std::span<const thermal::Lanes> parameters, double ambient_C) {
   thermal::OperatingPoint<thermal::Lanes> rest;
@@ -36,7 +36,7 @@ double shortest_of_longest_steps_s(const robot::PlantConfig& plant, const therma
 }  // namespace
 
 struct SimulatedRobot::Heating {
-  /// Sums of the plant's powers over all periods. Times kPeriod_s they are energies.
+  /// Sums of the plant's powers over all periods. Multiplied by kPeriod_s they are energies.
   struct Sums {
     robot::Wheels copper_W = robot::Wheels::Zero();
     robot::Wheels driver_W = robot::Wheels::Zero();
@@ -63,9 +63,9 @@ struct SimulatedRobot::Heating {
   Sums sums;
   thermal::Network network;
   std::vector<thermal::Lanes> parameters;
-  thermal::EnsembleRun thermal;  ///< a wheel per lane
+  thermal::EnsembleRun thermal;  ///< one wheel per lane
   double longest_step_s;
-  thermal::OperatingPoint<thermal::Lanes> means;  ///< over the last kThermalPeriod_s
+  thermal::OperatingPoint<thermal::Lanes> means;  ///< means over the last kThermalPeriod_s
   // Sums over the periods since the network was last advanced.
   robot::Wheels copper_W = robot::Wheels::Zero();
   robot::Wheels speed_rad_per_s = robot::Wheels::Zero();
@@ -121,7 +121,7 @@ void SimulatedRobot::book() {
 
 void SimulatedRobot::warm_up() {
   Heating& heat = *heating_;
-  // The plant's copper loss as the current that makes it, so that the network gets that heat.
+  // The current is calculated from the plant's copper loss, so that the network receives exactly this heat.
   const robot::Wheels resistance_ohm =
       plant_.motor.resistance_25C_ohm * base::resistance_ratio<robot::Wheels>(robot::Wheels::Constant(plant_.motor.resistance_rise_per_K),
                                                                               robot::as_wheels(input_.winding_C));

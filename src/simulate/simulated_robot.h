@@ -1,4 +1,4 @@
-// The robot that is driven: the plant, and the windings and stators that its currents heat.
+// Simulated robot: the plant and the thermal networks of its motors.
 #pragma once
 
 #include <memory>
@@ -9,10 +9,10 @@
 
 namespace heatsoak::simulate {
 
-/// Where energy went since the start. battery = losses + kinetic − external, all as integrals of the plant's powers but
-/// `battery_J`, which is what the charge has lost, and `kinetic_J`, which follows from the state.
+/// Energy balance since the start: battery = losses + kinetic − external. Losses and external_J are integrals of the plant's powers,
+/// battery_J follows from the charge, and kinetic_J from the state.
 struct EnergyAccount {
-  double battery_J = 0.0;
+  double battery_J = 0.0;  ///< energy taken from the charge
   double battery_loss_J = 0.0;
   double copper_J = 0.0;
   double driver_J = 0.0;
@@ -22,32 +22,32 @@ struct EnergyAccount {
   double friction_J = 0.0;
   double slip_J = 0.0;
   double roller_J = 0.0;
-  double kinetic_J = 0.0;   ///< gained
-  double external_J = 0.0;  ///< done on the robot from outside
+  double kinetic_J = 0.0;   ///< increase of the kinetic energy
+  double external_J = 0.0;  ///< work of external forces on the robot
 
   [[nodiscard]] double heat_J() const {
     return battery_loss_J + copper_J + driver_J + motor_drag_J + gear_J + rolling_J + friction_J + slip_J + roller_J;
   }
-  /// What is not accounted for: the error of the method.
+  /// Returns the residual of the balance, which is the error of the integration method.
   [[nodiscard]] double residual_J() const { return battery_J + external_J - heat_J() - kinetic_J; }
 };
 
-/// One motor per wheel, all alike. Starts at rest with a full battery, all motors at one temperature.
-/// R and K_t follow winding and stator (the magnets are taken to be as warm as the stator); both are computed by the
-/// motor's thermal network, which gets the means of the currents every kThermalPeriod_s.
+/// One motor per wheel, all of the same type. The robot starts at rest with a full battery and all motors at one temperature. R follows the
+/// winding temperature and K_t the stator temperature, which the magnets are assumed to have. The motor's thermal network advances every
+/// kThermalPeriod_s with the mean load of this period.
 class SimulatedRobot {
  public:
   static constexpr double kPeriod_s = 0.001;
   static constexpr double kThermalPeriod_s = 0.01;
 
-  /// Motors start at `start_C`, or at ambient temperature without it. Throws Failure (bad_input) that names what the robot's or
-  /// the motor's file lacks.
+  /// Motors start at `start_C`; if it is empty, at ambient temperature. Throws Failure (bad_input) that names the values missing from the
+  /// robot or motor file.
   SimulatedRobot(const robot::Robot& robot, const motor::Motor& motor, double ambient_C, std::optional<double> start_C = {});
   ~SimulatedRobot();
   SimulatedRobot(const SimulatedRobot&) = delete;
   SimulatedRobot& operator=(const SimulatedRobot&) = delete;
 
-  /// One period of the plant. `external` acts on the body from outside at the height of its centre of gravity, local axes.
+  /// Advances by one plant period. The force `external` acts at the height of the centre of gravity, local frame.
   const robot::PlantOutput& advance(const std::array<robot::MotorCommand, robot::kMostWheels>& command, const robot::Wrench& external);
 
   [[nodiscard]] double ambient_C() const { return ambient_C_; }
@@ -57,7 +57,7 @@ class SimulatedRobot {
   [[nodiscard]] int wheel_count() const { return plant_.body.kinematics.wheel_count; }
   [[nodiscard]] double winding_C(int wheel) const { return body_C(kWinding, wheel); }
   [[nodiscard]] double stator_C(int wheel) const { return body_C(kStator, wheel); }
-  /// Of the state of that place in the motor's network.
+  /// Returns the temperature of network state `state` at `wheel` in °C.
   [[nodiscard]] double body_C(std::size_t state, int wheel) const;
   [[nodiscard]] double winding_peak_C(int wheel) const { return peak_C(kWinding, wheel); }
   [[nodiscard]] double stator_peak_C(int wheel) const { return peak_C(kStator, wheel); }
@@ -66,7 +66,7 @@ class SimulatedRobot {
  private:
   static constexpr std::size_t kWinding = 0;
   static constexpr std::size_t kStator = 1;
-  /// Powers summed over time and the motors' networks; in the .cpp file because they need Eigen.
+  /// Sums of powers and the motors' networks. Defined in the .cpp file because they need Eigen.
   struct Heating;
 
   [[nodiscard]] double peak_C(std::size_t state, int wheel) const;

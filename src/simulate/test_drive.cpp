@@ -9,7 +9,7 @@
 namespace heatsoak::simulate {
 namespace {
 
-/// The planner's way to a constant velocity.
+/// Plan that accelerates to a constant velocity.
 class StraightPlan final : public duty::Follower {
  public:
   explicit StraightPlan(const StraightDrive& drive) : x_share_(std::cos(drive.direction_rad)), y_share_(std::sin(drive.direction_rad)) {

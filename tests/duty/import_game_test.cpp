@@ -1,5 +1,5 @@
-// A complete recording of a tournament game: overlapping cameras that disagree, a tracker, a referee, a robot that is lost twice,
-// compressed, and truncated at the end. The motion is defined by formulas, so the wheel loads are known.
+// Imports a complete recording of a tournament game, compressed and truncated at the end. It has overlapping cameras that disagree, a
+// tracker, a referee and a robot that is lost twice. The motion is defined by formulas, so the wheel loads are known.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

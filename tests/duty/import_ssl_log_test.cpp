@@ -134,7 +134,7 @@ TEST(ImportSslLog, KeepsOneRobotOrASpanOfTimeOnDemandButSummarisesAll) {
 
 TEST(ImportSslLog, FollowsThePhasesOfTheReferee) {
   LogWriter log;
-  // Published values: stage 0 before the first half, 1 the first half, 2 half time; commands likewise.
+  // Published numbers of stages and commands: stage 0 is before the first half, 1 the first half, 2 half time.
   const std::vector<std::array<int, 3>> calls{{0, 0, 0},  {1, 0, 1}, {2, 0, 4},  {3, 1, 2}, {4, 1, 1},
                                               {5, 1, 17}, {6, 1, 9}, {7, 1, 12}, {8, 2, 0}, {9, 1, 99}};
   for (int i = 0; i < 750; ++i) {

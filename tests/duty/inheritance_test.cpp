@@ -1,4 +1,4 @@
-// A duty file that contains only its differences from another one.
+// Duty files with `base`, which contain only the differences from another file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// The call behind `duty`: the table and its duty file give the same load when they are read back.
+// Tests make_duty(): the table and its duty file must give the same load when they are read back.
 #include "duty/make_duty.h"
 
 #include <gtest/gtest.h>

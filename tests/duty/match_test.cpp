@@ -176,7 +176,7 @@ TEST(Behaviour, distances_and_duels_are_those_of_the_inputs) {
   }
 }
 
-// Every input must change the commands of a robot.
+// Each input must change the commands of a robot.
 TEST(Behaviour, every_input_matters) {
   MatchInputs inputs = division_a();
   inputs.role = Role::defender;

@@ -245,7 +245,8 @@ TEST(ClosedLoop, a_duel_pushes_at_stall) {
   EXPECT_LT(fastest_rad_per_s * robot.wheels.radius_m, 2.0 * robot.traction.slip_speed_m_per_s.value());
 }
 
-// At 1.2 m/s², because two of three wheels carry the whole acceleration. At Twente's own 2 m/s² the core's traction limit would act.
+// The acceleration is limited to 1.2 m/s², because two of three wheels carry all of it. At Twente's own 2 m/s² the core's traction limit
+// would act.
 TEST(ClosedLoop, three_wheels_follow_as_well) {
   robot::Robot robot = three_wheels();
   robot.limits.acceleration_m_per_s2 = robot.limits.braking_m_per_s2 = 1.2;

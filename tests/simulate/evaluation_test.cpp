@@ -1,4 +1,4 @@
-// The call behind `evaluate`: order of results and ranks, changes only on request or where the motor does not pass.
+// Tests run_evaluation(): order of results and ranks, and changes only on request or if the motor does not pass.
 #include "simulate/evaluation.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Both planners in the closed loop: cases in which they must agree, and cases with a physically known result.
+// Compares both planners in closed loop: cases in which they must agree, and cases with a physically known result.
 #include "simulate/planner_study.h"
 
 #include <gtest/gtest.h>

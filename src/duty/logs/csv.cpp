@@ -25,7 +25,7 @@ const std::array<std::string, 6> kColumns{"t_s", "team", "robot_id", "x_m", "y_m
 enum Column { time, team, robot_id, x, y, yaw };
 constexpr double kLargestRobotId = 255.0;
 
-/// A header row that names most of the columns; which one is missing is said when the file is read.
+/// Returns true for a header row with most of the columns. Reading the file reports missing ones.
 bool recognises(std::string_view head) {
   const std::string_view header = head.substr(0, head.find('\n'));
   std::size_t found = 0;
@@ -35,13 +35,13 @@ bool recognises(std::string_view head) {
   return found >= 3;
 }
 
-/// What a robot was last seen doing.
+/// Last detection of a robot.
 struct Before {
   Detection sight;
-  Detection window;  ///< its turn is taken over some frames, to which noise matters less
+  Detection window;  ///< earlier detection; the turn over several frames is less sensitive to noise
 };
 
-/// Tells metres from millimetres, radians from degrees and seconds from milliseconds by what a robot can do.
+/// Detects wrong units (mm, degrees, ms) by the limits of a robot's motion.
 class Units {
  public:
   void take(Before& before, const Detection& sight, const input::CsvRow& row) {
@@ -66,7 +66,7 @@ class Units {
       problems.add({file.string(), 1, 1}, "x_m, y_m",
                    fmt::format("reach {} m, and most positions are outside any field: are they in millimetres?", far));
     }
-    // Radians seldom leave one turn, and degrees seldom stay within 6.
+    // Radians seldom exceed one turn; degrees seldom stay within ±2π.
     if (10 * beyond_a_turn_ > sights_) {
       say_degrees(file, problems);
     }
@@ -94,7 +94,7 @@ class Units {
     if (!is_lost && std::abs(turn - kFullTurn) < 30.0 && wrap_.line == 0) {
       wrap_ = {{}, row.line, row.cells[yaw]};
     }
-    if (is_lost || turn > 0.5 * kFullTurn) {  // a turn that wraps says nothing
+    if (is_lost || turn > 0.5 * kFullTurn) {  // a wrapped turn is not usable
       before.window = sight;
     } else if (const double span_s = sight.time_s - before.window.time_s; span_s >= kWindow_s) {
       turned_ += std::abs(sight.yaw_rad - before.window.yaw_rad);
@@ -124,27 +124,27 @@ class Units {
 
   double log_steps_ = 0.0;
   std::uint64_t steps_ = 0;
-  double turned_ = 0.0;  ///< over segments of kWindow_s
+  double turned_ = 0.0;  ///< sum of turns over windows of kWindow_s
   double turned_s_ = 0.0;
   double lowest_yaw_ = std::numeric_limits<double>::infinity();
   double highest_yaw_ = -std::numeric_limits<double>::infinity();
   std::uint64_t beyond_a_turn_ = 0;
-  base::Location wrap_;  ///< the first step of 360; its column counts cells
+  base::Location wrap_;  ///< location of the first step of about 360; its column counts cells
   double farthest_m_ = 0.0;
   std::uint64_t outside_ = 0;
   std::uint64_t sights_ = 0;
 };
 
-/// Takes the rows of one robot in the order of the file. Rows that go back in time are left out, but for a clock that starts again:
-/// some rows that follow each other make it one, and they are taken as a pause later.
+/// Handles the rows of one robot in the order of the file. Rows that go back in time are omitted. If several consecutive rows are in order
+/// among themselves, the clock has restarted, and their times are shifted to after a pause.
 class RobotClock {
  public:
   struct Row {
     Detection sight;
     int line = 0;
-    double written_s = 0.0;  ///< as the file has it
+    double written_s = 0.0;  ///< time as in the file
   };
-  /// Who hears of it; `after_s` is the latest time before, as the file has it.
+  /// Callbacks for rows. `after_s` is the latest earlier time, as in the file.
   struct Listener {
     std::function<void(const Detection& in_time)> see;
     std::function<void(const Row& row, double after_s)> left_out;
@@ -208,7 +208,7 @@ RobotName robot_of(const std::filesystem::path& file, const input::CsvRow& row) 
   return {row.values[team] == 0.0 ? Team::yellow : Team::blue, static_cast<int>(id)};
 }
 
-/// All rows of a file, to where they belong.
+/// Distributes the rows of a file to the clocks of their robots.
 class Rows {
  public:
   Rows(const std::filesystem::path& file, LogEvents& events) : file_(file), events_(events) {}
@@ -250,7 +250,7 @@ class Rows {
                     fmt::format("{} at {} s, after {} s{}", to_string(row.sight.robot), row.written_s, after_s, what));
   }
 
-  /// Robots that cannot be followed are said elsewhere; this is why.
+  /// Adds the probable reason why robots could not be tracked: the unit, rounding or order of the times.
   void say_times() const {
     ImportReport& report = events_.report();
     if (2 * report.out_of_order <= report.messages) {
@@ -266,11 +266,11 @@ class Rows {
   const std::filesystem::path& file_;
   LogEvents& events_;
   std::uint64_t blank_ = 0;
-  std::uint64_t repeated_ = 0;  ///< of the rows that are left out, those with the time of the one before
+  std::uint64_t repeated_ = 0;  ///< omitted rows with the time of the previous row
   std::map<RobotName, Robot> robots_;
   Units units_;
   const input::CsvRow* row_ = nullptr;
-  Robot* robot_ = nullptr;  ///< that the row is of
+  Robot* robot_ = nullptr;  ///< robot of the present row
   RobotClock::Listener listener_{
       .see =
           [this](const Detection& in_time) {

@@ -15,7 +15,7 @@ namespace heatsoak::duty::logs {
 namespace {
 
 constexpr double kMillimetre_m = 1e-3;
-constexpr std::int64_t kProbe_ns = 5'000'000'000;  // of the log, to find out which sources it has
+constexpr std::int64_t kProbe_ns = 5'000'000'000;  // duration that probe() reads to find the sources of the log
 constexpr std::size_t kMostTrackers = 64;
 constexpr std::size_t kMostCameras = 64;
 constexpr std::uint64_t kProgressBytes = std::uint64_t{1} << 24;
@@ -23,12 +23,12 @@ constexpr std::uint64_t kProgressBytes = std::uint64_t{1} << 24;
 bool is_vision(SslMessageType type) { return type == SslMessageType::vision_2010 || type == SslMessageType::vision_2014; }
 
 GamePhase phase_of_stage(std::uint32_t stage) {
-  // Half times, breaks and the time after the game; the stages before a kick-off have commands of their own.
+  // Stages of half times, breaks and after the game. Stages before a kick-off are covered by their commands.
   constexpr std::array<std::uint32_t, 5> kOffPlay{2, 5, 8, 11, 13};
   return std::ranges::find(kOffPlay, stage) != kOffPlay.end() ? GamePhase::off_play : GamePhase::unknown;
 }
 
-/// By number, as published: HALT, STOP, NORMAL_START, FORCE_START, PREPARE_KICKOFF and _PENALTY (each yellow, blue),
+/// Phases by published command number: HALT, STOP, NORMAL_START, FORCE_START, PREPARE_KICKOFF and _PENALTY (each yellow, blue),
 /// DIRECT_FREE, INDIRECT_FREE, TIMEOUT, GOAL (to be treated as STOP), BALL_PLACEMENT.
 constexpr std::array<GamePhase, 18> kPhaseOfCommand{
     GamePhase::halt,        GamePhase::stop,           GamePhase::running,       GamePhase::running, GamePhase::preparation,
@@ -37,7 +37,7 @@ constexpr std::array<GamePhase, 18> kPhaseOfCommand{
     GamePhase::stop,        GamePhase::ball_placement, GamePhase::ball_placement};
 constexpr std::uint32_t kLastStage = 13;
 
-/// Which source of positions is used.
+/// Source of positions that is used.
 struct Source {
   bool tracked = false;
   std::string uuid;
@@ -49,7 +49,7 @@ struct Sources {
   std::map<std::string, std::pair<std::string, std::uint64_t>> trackers;  ///< uuid -> name, frames
 };
 
-/// For a first look: nothing is kept.
+/// Receiver for probe(), which keeps nothing.
 class NoEvents final : public LogEvents {
  public:
   void see(const Detection& /*detection*/) override {}
@@ -68,7 +68,7 @@ bool decode(Message& message, std::string_view bytes) {
   return message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()));
 }
 
-/// Looks at the log until robots were seen for a few seconds.
+/// Reads the log until robots were seen for a few seconds and returns its sources.
 Sources probe(const std::filesystem::path& file) {
   LogBytes bytes(file);
   NoEvents nobody;
@@ -177,7 +177,7 @@ class Import {
     }
   }
 
-  /// The time of the frame in the recording; nothing where it is not to be trusted.
+  /// Returns the time of the frame since the start of the recording; nothing if it is not credible.
   std::optional<double> frame_time_s(int camera, double capture_s, const SslRecord& record) {
     ++events_.report().frames;
     const std::optional<CaptureClock::Reading> reading = clock_.read(camera, capture_s, record.received_ns);

@@ -8,13 +8,13 @@
 namespace heatsoak::duty {
 namespace {
 
-/// How a role differs from an attacker: shorter ways, fewer duels, a zone of its own.
+/// Differences of a role from an attacker: factors on distances and duels, and its zone.
 struct RoleShape {
   double distance_factor = 1.0;
   double duel_factor = 1.0;
-  double zone_from = -0.5;  ///< part of the field's length, from the centre
-  double zone_to = 0.5;
-  double zone_width = 1.0;  ///< part of the field's width
+  double zone_from = -0.5;  ///< start of the zone, as a share of the field length from the centre
+  double zone_to = 0.5;     ///< end of the zone
+  double zone_width = 1.0;  ///< share of the field width
 };
 
 RoleShape shape_of(Role role, const MatchValues& values) {
@@ -59,7 +59,7 @@ FieldPose Behaviour::near(const FieldPose& now, double distance_m) {
   const double half_width_m = 0.5 * shape.zone_width * field_.width_m;
   double x_m = 0.0;
   double y_m = 0.0;
-  // Another direction where the zone ends, so that the distance stays what was drawn, if there is one.
+  // A direction that leaves the zone is replaced by another one, so that the drawn distance is kept if possible.
   constexpr int kMostDirections = 32;
   for (int i = 0; i < kMostDirections; ++i) {
     const double direction_rad = 2.0 * std::numbers::pi * random_.uniform();
@@ -94,7 +94,7 @@ MotionCommand Behaviour::play(double into_phase_s, double left_s, const FieldPos
     duel.push_share = values_.duel_push_share;
     return duel;
   }
-  // Sum of twelve uniform numbers, less six: normal enough, and the same on every machine.
+  // The sum of twelve uniform numbers minus six is approximately normal and the same on every machine.
   double normal = -6.0;
   for (int i = 0; i < 12; ++i) {
     normal += random_.uniform();
@@ -122,7 +122,7 @@ MotionCommand Behaviour::next(Phase phase, double into_phase_s, double left_s, c
     case Phase::stop:
       return walk(left_s, now, 0.7, std::min(rule.speed_limit_m_per_s, brisk_m_per_s));
     case Phase::ball_placement:
-      // The attacker carries the ball, slowly; the others keep half a metre off its way.
+      // The attacker carries the ball slowly; the others move 0.5 m out of its way.
       return role_ == Role::attacker ? walk(left_s, now, 2.0, calm_m_per_s) : walk(left_s, now, 0.5, brisk_m_per_s);
     case Phase::half_time:
       return into_phase_s == 0.0 ? walk(left_s, now, 0.5 * field_.length_m, calm_m_per_s) : stand(left_s);

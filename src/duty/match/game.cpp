@@ -12,12 +12,12 @@ constexpr double kOvertimeHalf_s = 150.0;
 constexpr double kBeforeOvertime_s = 300.0;
 constexpr double kOvertimeBreak_s = 120.0;
 constexpr double kTimeoutBudget_s = 300.0;
-constexpr int kTimeouts = 8;  // of both teams, in two halves
+constexpr int kTimeouts = 8;  // number of timeouts of both teams in two halves
 constexpr double kLongestPlacement_s = 30.0;
 
 double exponential(double mean, base::Random& random) { return -mean * std::log(random.uniform()); }
 
-/// Times of a Poisson process with `mean` of them on average.
+/// Draws a number of events from a Poisson distribution.
 int poisson(double mean, base::Random& random) {
   int count = 0;
   for (double left = mean + std::log(random.uniform()); left > 0.0; left += std::log(random.uniform())) {
@@ -26,7 +26,7 @@ int poisson(double mean, base::Random& random) {
   return count;
 }
 
-/// Of an exponential distribution that has the mean `mean_s` once it is cut at `longest_s`.
+/// Returns the mean of the exponential distribution that has the mean `mean_s` after clipping at `longest_s`.
 double mean_before_the_cut(double mean_s, double longest_s) {
   const auto when_cut_s = [longest_s](double uncut_s) { return -uncut_s * std::expm1(-longest_s / uncut_s); };
   double low_s = mean_s;
@@ -52,7 +52,7 @@ class Game {
   void half(double length_s) {
     std::vector<Interruption> half = segments(length_s);
     hand_out(half, length_s / kHalf_s);
-    // The rules give ten seconds for a kick-off once it is called.
+    // The rules allow ten seconds for a kick-off after the command.
     add(Phase::kick_off_preparation, 5.0 + 5.0 * random_.uniform());
     for (const Interruption& each : half) {
       add(Phase::running, each.play_before_s);
@@ -75,7 +75,7 @@ class Game {
     }
   }
   void rest(double length_s) { add(Phase::half_time, length_s); }
-  /// Has timeouts of its own, half as many and as long.
+  /// Resets the time for timeouts: overtime has half as many, of half the total duration.
   void begin_overtime() { timeout_left_s_ = kTimeoutBudget_s; }
   std::vector<MatchPhase> spans() { return std::move(spans_); }
 
@@ -90,7 +90,7 @@ class Game {
 
   void add(Phase phase, double duration_s) { spans_.push_back({phase, duration_s}); }
 
-  /// Returns the interruptions that the clock of one half counts. None follows the last segment of play, except a free kick.
+  /// Returns the interruptions of one half with `left_s` on the clock. Only a free kick can follow its last segment of play.
   std::vector<Interruption> segments(double left_s) {
     std::vector<Interruption> half;
     while (left_s > 0.0) {
@@ -104,7 +104,7 @@ class Game {
     return half;
   }
 
-  /// Halts and timeouts have their number first and their places then: however many interruptions a half has, the mean holds.
+  /// Draws the numbers of halts and timeouts first and then their places, so that the means do not depend on the number of interruptions.
   void hand_out(std::vector<Interruption>& half, double halves) {
     const std::size_t places = half.size() - (half.back().ends_the_half && half.size() > 1 ? 1 : 0);
     const auto anywhere = [&]() -> Interruption& {

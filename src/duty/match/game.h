@@ -1,4 +1,4 @@
-// The phases of a game by the rules of the RoboCup Small Size League (ssl-rules @4300196), lengths drawn from the inputs.
+// Generates the phases of a game by the rules of the RoboCup Small Size League (ssl-rules @4300196). Durations are drawn from the inputs.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ struct MatchPhase {
   double duration_s = 0.0;
 };
 
-/// What the rules say of a phase: the clock stands except while play runs or a free kick is awaited; robots
-/// are below 1.5 m/s 2 s into a stop and stand 2 s into a halt.
+/// Rules of a phase. The clock runs only during play and before free kicks. Robots must be below 1.5 m/s 2 s after the start of a stop, and
+/// stand 2 s after the start of a halt.
 struct PhaseRule {
   bool clock_runs = false;
   double speed_limit_m_per_s = std::numeric_limits<double>::infinity();
@@ -35,8 +35,8 @@ struct FieldSize {
 };
 FieldSize field_of(Division division);
 
-/// Two halves of 300 s of play with 300 s between them (and two of 150 s in overtime). The last segment of
-/// a half is cut where its clock ends, so that play adds up exactly.
+/// Returns the phases of two halves of 300 s of play with a break of 300 s (and two of 150 s in overtime). The last segment of a half ends
+/// with its clock, so the time of play is exact.
 std::vector<MatchPhase> generate_game(Division division, bool overtime, const MatchValues& values, base::Random& random);
 
 }  // namespace heatsoak::duty

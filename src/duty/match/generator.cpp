@@ -14,7 +14,7 @@
 namespace heatsoak::duty {
 namespace {
 
-/// 2 % of the nominal torque of a 50 W motor, 0.1 m/s at the rim: finer than any verdict.
+/// Grid of load points: 2 % of the nominal torque of a 50 W motor, and 0.1 m/s at the rim. Finer steps do not change a verdict.
 constexpr DemandGatherer::Grid kGrid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0};
 
 using robot_core::AxisLimits;
@@ -47,7 +47,7 @@ std::string_view in_words(PlanResult result) {
 
 double least(double a, double b) { return std::isfinite(b) ? std::min(a, b) : a; }
 
-/// The planner's trajectory, followed exactly.
+/// Follows the planner's trajectory exactly.
 class IdealTracking final : public Follower {
  public:
   IdealTracking(const robot::Robot& robot, double aggressiveness, Planner planner) : planner_(planner) {
@@ -56,7 +56,7 @@ class IdealTracking final : public Follower {
     plane_ = {limits.speed_m_per_s.value_or(0.0) * aggressiveness,
               std::min(acceleration_m_per_s2, limits.braking_m_per_s2.value_or(acceleration_m_per_s2)) * aggressiveness,
               limits.jerk_m_per_s3.value_or(0.0) * aggressiveness};
-    // No team publishes a jerk of yaw: a tenth of a second to full angular acceleration.
+    // No team publishes a yaw jerk. The assumed one reaches full angular acceleration in 0.1 s.
     yaw_ = AxisLimits<double>::symmetric(limits.yaw_rate_rad_per_s.value_or(0.0) * aggressiveness,
                                          limits.yaw_acceleration_rad_per_s2.value_or(0.0) * aggressiveness,
                                          10.0 * limits.yaw_acceleration_rad_per_s2.value_or(0.0) * aggressiveness);
@@ -179,8 +179,8 @@ class Match {
     }
   }
 
-  /// In steps, or at one go where nothing moves any more. A duel lasts from when the robot has come to a stand, but
-  /// no longer than the `left_s` of the phase. Returns how long it took.
+  /// Executes a command in steps, or in one step while nothing moves. A duel starts when the robot stands and lasts at most the rest
+  /// `left_s` of the phase. Returns the duration.
   double follow(Phase phase, const MotionCommand& command, double left_s) {
     motion_->take(command);
     load_.script.push_back({load_.duration_s, phase, command});
@@ -218,7 +218,7 @@ class Match {
       const double force_N = command.push_share * robot::largest_push_N(body_, direction_rad, motion.external_height_m);
       motion.external = {-force_N * std::cos(direction_rad), -force_N * std::sin(direction_rad), 0.0};
     }
-    // At constant speed every moment asks the same of the wheels.
+    // At constant velocity the wheel demands do not change, so they are reused.
     if (!(motion == motion_of_wheels_)) {
       motion_of_wheels_ = motion;
       wheels_ = robot::inverse_dynamics(body_, motion);
@@ -246,14 +246,15 @@ class Match {
     }
   }
 
-  /// Merging loads into bins and points takes a third of a game's time, so they are kept until it is known which wheel counts.
+  /// Loads are kept until the most loaded wheel is known, because merging them into bins and points takes a third of a game's computing
+  /// time.
   struct Step {
     double duration_s = 0.0;
     robot::PerWheel torque_Nm{};
     robot::PerWheel speed_rad_per_s{};
   };
 
-  /// Fresh memory for every game would cost as much as the robot's dynamics.
+  /// The memory is reused, because allocating it for every game would take as long as the robot's dynamics.
   static std::vector<Step>& steps_of_thread() {
     thread_local std::vector<Step> steps;
     return steps;

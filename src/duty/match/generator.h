@@ -1,4 +1,4 @@
-// A game, played: phases and roles through the planner and the robot's dynamics to what each wheel has to do.
+// Plays a game: computes the demand of each wheel from phases, role, planner and the robot's dynamics.
 #pragma once
 
 #include <array>
@@ -14,29 +14,29 @@
 
 namespace heatsoak::duty {
 
-/// How the robot gets from target to target. The seam where the drive core takes its place: anything that turns a
-/// motion command into body motion over time fits here.
+/// Interface that converts motion commands to body motion over time. The ideal tracker implements it.
 class Follower {
  public:
   virtual ~Follower() = default;
-  /// From now on go for the command's target (or stand and push).
+  /// Starts to execute the command from the present state.
   virtual void take(const MotionCommand& command) = 0;
-  /// Advance by `step_s`.
+  /// Advances by `step_s`.
   virtual void advance(double step_s) = 0;
   [[nodiscard]] virtual robot::Pose pose() const = 0;
   [[nodiscard]] virtual robot::BodyVelocity velocity_global() const = 0;
   [[nodiscard]] virtual robot::BodyAcceleration acceleration_global() const = 0;
-  /// Nothing moves and nothing will until the next command.
+  /// Returns true if nothing moves until the next command.
   [[nodiscard]] virtual bool at_rest() const = 0;
 };
 
 enum class Planner { jerk_limited, bang_bang };
 std::string_view to_string(Planner planner);
 
-/// Follows the planner exactly: re-planned at every command from the state of the moment.
+/// Returns a follower that tracks the plan exactly. It plans at every command from the present state. `aggressiveness` scales the robot's
+/// limits.
 std::unique_ptr<Follower> ideal_tracking(const robot::Robot& robot, double aggressiveness, Planner planner);
 
-/// One step of the game at one robot. Torques and speeds as in WheelDemands.
+/// One step of the game for one robot.
 struct MatchMoment {
   double time_s = 0.0;
   double step_s = 0.0;
@@ -47,26 +47,26 @@ struct MatchMoment {
   const robot::WheelDemands* wheels = nullptr;
 };
 
-/// A command and when the game gave it.
+/// Command with the time and phase at which the game gives it.
 struct ScheduledCommand {
   double time_s = 0.0;
   Phase phase = Phase::halt;
   MotionCommand command;
 };
 
-/// What the phases ask, for the table of where heat comes from.
+/// Load in one phase, for the table of heat by phase.
 struct PhaseLoad {
   double time_s = 0.0;
   double duel_s = 0.0;
   robot::PerWheel torque_squared_Nm2_s{};  ///< ∫M²dt per wheel: copper heat is this times R/K_t²
-  double duel_torque_squared_Nm2_s = 0.0;  ///< part of it, all wheels, that comes from duels
-  double slip_s = 0.0;                     ///< time in which the ground cannot pass on what is demanded
+  double duel_torque_squared_Nm2_s = 0.0;  ///< ∫M²dt in duels, sum of all wheels
+  double slip_s = 0.0;                     ///< time in which the ground cannot transmit the demanded forces
 };
 
 struct MatchLoad {
   std::vector<WheelDemand> wheels;
   std::array<PhaseLoad, kPhaseNames.size()> phases{};
-  std::vector<ScheduledCommand> script;  ///< so that another way of driving can be asked the same; ends at duration_s
+  std::vector<ScheduledCommand> script;  ///< commands of the game, for driving it with other methods; ends at duration_s
   double duration_s = 0.0;
   double play_s = 0.0;
   double distance_m = 0.0;
@@ -76,16 +76,16 @@ using MatchObserver = std::function<void(const MatchMoment&)>;
 
 /// Step of a single game.
 inline constexpr double kGameStep_s = 1e-3;
-/// Step of a game that is one of many draws, because playing games takes nearly all of the time of a verdict. Rounded times let the game
-/// take another course than in steps of 1 ms; its mean copper heat is the same.
+/// Step of a drawn game. It is longer because games take nearly all of the time of a verdict. Rounded times change the course of a game,
+/// but not its mean copper heat.
 inline constexpr double kDrawnGameStep_s = 4e-3;
 
-/// Runs one game in steps of `step_s` into bins of `bin_s`. The rotor's inertia is left out, so that the
-/// demand is the same for every motor. Throws Failure (bad_input) where the robot's file lacks what motion needs.
+/// Plays one game in steps of `step_s` and returns its load in bins of `bin_s`. The rotor inertia is omitted, so the demand is the same for
+/// every motor. Throws Failure (bad_input) if the robot's file lacks values for motion.
 MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const robot::Robot& robot, std::uint64_t seed, Planner planner,
                      double bin_s = kBin_s, const MatchObserver& observer = {}, double step_s = kGameStep_s);
 
-/// The demand of the wheel with the largest ∫M²dt of the same game, in less time.
+/// Returns the demand of the wheel with the largest ∫M²dt of the same game; faster than play_match().
 WheelDemand hardest_wheel_of_match(const MatchInputs& inputs, const MatchValues& values, const robot::Robot& robot, std::uint64_t seed,
                                    Planner planner, double bin_s, double step_s);
 

@@ -1,4 +1,4 @@
-// The match as a duty.
+// Duty whose demand is that of a generated match.
 #pragma once
 
 #include <utility>
@@ -18,7 +18,7 @@ class MatchDuty final : public DutyShape {
   }
   [[nodiscard]] bool depends_on_robot() const override { return true; }
   [[nodiscard]] bool has_unknowns() const override { return true; }
-  /// Another game with other inputs by a robot with other parameters.
+  /// Plays another game with drawn inputs and a drawn robot.
   [[nodiscard]] WheelDemand draw(const robot::Robot& robot, std::uint64_t seed, std::uint64_t draw) const override {
     constexpr std::uint64_t kBehindTheSamples = std::uint64_t{1} << 32;
     base::Random random(seed, kBehindTheSamples + draw);

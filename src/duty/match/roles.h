@@ -1,4 +1,4 @@
-// One match played in every role: how the torque divides among phases and duels.
+// Plays one match in every role, and sums its torque by phase and duel.
 #pragma once
 
 #include <array>
@@ -11,17 +11,17 @@ namespace heatsoak::duty {
 using RoleLoads = std::array<MatchLoad, kRoleNames.size()>;
 RoleLoads play_roles(const MatchInputs& inputs, const robot::Robot& robot, std::uint64_t seed, Planner planner);
 
-/// Returns ∫M²dt summed over all wheels, in N²m²s. It is proportional to the copper heat of the motors without the part for their own drag.
+/// Returns ∫M²dt summed over all wheels. It is proportional to the copper heat of motors without drag.
 double effort_Nm2_s(const PhaseLoad& phase);
 double effort_Nm2_s(const MatchLoad& load);
 
-/// Returns the part of ∫M²dt that falls into duels, summed over all wheels.
+/// Returns ∫M²dt in duels, summed over all wheels.
 double duel_effort_Nm2_s(const MatchLoad& load);
 
 /// Returns the largest effort_Nm2_s() of the roles.
 double most_effort_Nm2_s(const RoleLoads& roles);
 
-/// Returns the rms torque of a mean wheel.
+/// Returns the RMS torque over all wheels and the whole match.
 double torque_rms_Nm(const MatchLoad& load);
 
 /// Returns the time spent in duels.

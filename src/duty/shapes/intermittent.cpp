@@ -6,7 +6,7 @@
 namespace heatsoak::duty::shapes {
 namespace {
 
-/// The spread of a parameter as a spread of a factor around 1.
+/// Returns the spread of a parameter as the spread of a factor around 1.
 base::ParameterValue as_factor(const base::ParameterValue& parameter) {
   base::ParameterValue factor = parameter;
   factor.value = 1.0;

@@ -10,10 +10,10 @@
 namespace heatsoak::duty::shapes {
 namespace {
 
-constexpr double kMostPieces = 2e6;  ///< more would fill the memory
+constexpr double kMostPieces = 2e6;  ///< limits the memory
 
-/// Rows are merged up to here. Shorter than a match's bins, because limits of voltage and current cut single rows, but of merged ones the
-/// mean: the less that smooths, the less heat is added.
+/// Longest duration of merged rows. It is shorter than the bins of a match: voltage and current limits act on the mean of merged rows
+/// instead of single rows, which overestimates the heat.
 constexpr double kMerged_s = 0.1;
 
 constexpr int kMostWheels = 4;
@@ -21,18 +21,18 @@ constexpr double kLongest_s = 1e6;
 constexpr double kLargest = 1e5;  ///< N m, A or rad/s
 constexpr std::size_t kMostProblems = 20;
 
-/// "torque_Nm, speed_rad_per_s" of one wheel, or "torque_1_Nm, speed_1_rad_per_s, torque_2_Nm, …" of several.
+/// Returns the name of a column: "torque_Nm" or "speed_rad_per_s" for a single wheel (`wheel` 0), "torque_1_Nm" etc. for several.
 std::string column(DutyKind kind, int wheel, bool demand) {
   const std::string number = wheel > 0 ? fmt::format("_{}", wheel) : "";
   return demand ? fmt::format("{}{}_{}", kind == DutyKind::torque ? "torque" : "current", number, kind == DutyKind::torque ? "Nm" : "A")
                 : fmt::format("speed{}_rad_per_s", number);
 }
 
-/// Finer than any verdict, as in a match.
+/// Grid of load points. As for a match, finer steps do not change a verdict.
 constexpr DemandGatherer::Grid kGrid{.torque_step_Nm = 0.002, .speed_step_rad_per_s = 3.0, .current_step_A = 0.02};
 
-/// The duty of one wheel or several, as rows come in. A row holds until the next one; the last row only ends the duty. Rows
-/// shorter than kMerged_s are merged.
+/// Builds the demand of one or several wheels from rows. A row holds until the next one; the last row only marks the end. Rows shorter than
+/// kMerged_s are merged.
 class Recording {
  public:
   Recording(std::filesystem::path file, DutyKind kind) : file_(std::move(file)), kind_(kind) {}
@@ -50,7 +50,7 @@ class Recording {
           {}, [this](const input::CsvRow& row) { take(row); });
     } catch (const base::Failure& failure) {
       if (pieces_ > kMostPieces) {
-        throw;  // whatever else is wrong with it
+        throw;  // too many rows; other problems are not reported
       }
       for (const base::Diagnostic& each : failure.diagnostics()) {
         all.add(each.at, each.key, each.message);
@@ -71,7 +71,7 @@ class Recording {
   }
 
  private:
-  /// Numbered columns up to the last wheel that the header knows, else those of the only wheel.
+  /// Returns the expected columns: numbered ones up to the last wheel in the header, otherwise those of a single wheel.
   [[nodiscard]] input::CsvColumns columns(std::span<const std::string> header) const {
     const auto has = [&](const std::string& name) { return std::ranges::find(header, name) != header.end(); };
     int wheels = kMostWheels;
@@ -86,7 +86,7 @@ class Recording {
     return wanted;
   }
 
-  /// Whose load it is that would be passed over, the header does not say.
+  /// Rejects a header with numbered and unnumbered columns, because the unnumbered load would be ignored.
   void refuse_both_kinds(std::span<const std::string> header) const {
     const auto has = [&](int wheel) { return std::ranges::find(header, column(kind_, wheel, true)) != header.end(); };
     if (names_.size() > 1 && names_[1] != column(kind_, 0, true) && has(0)) {
@@ -129,7 +129,7 @@ class Recording {
     before_.assign(row.values.begin(), row.values.end());
   }
 
-  /// The row before lasted so long.
+  /// Adds the previous row, which lasted `duration_s`.
   void hold(double duration_s) {
     for (std::size_t i = 1; i + 1 < before_.size(); i += 2) {
       const std::size_t wheel = (i - 1) / 2;
@@ -154,7 +154,7 @@ class Recording {
 
   std::filesystem::path file_;
   DutyKind kind_;
-  std::vector<std::string> names_;  ///< of the columns that are read, as they are given
+  std::vector<std::string> names_;  ///< names of the columns that are read
   std::vector<DemandGatherer> wheels_;
   std::vector<base::Diagnostic> problems_;
   std::vector<double> before_;  ///< values of the row that still holds
