@@ -32,7 +32,6 @@
 #ifndef HEATSOAK_CURRENT_TABLE_H
 #define HEATSOAK_CURRENT_TABLE_H
 
-#include <stdint.h>
 #ifndef __GNUC__
 #include <math.h>
 #endif
@@ -158,6 +157,28 @@ static inline float heatsoak_current_A(const heatsoak_current_table *table, cons
 
 static inline float heatsoak_allowed_A(const heatsoak_current_table *table, const heatsoak_row *row, float winding_C) {
   return heatsoak_current_A(table, row, heatsoak_allowed_A2(table, row, winding_C));
+}
+
+#endif
+
+/* CRC-32 of bytes: IEEE 802.3, reflected, with all bits inverted before and after. Plain C99: the drive core and the exported C header
+   share this text. Without a table, because it runs only at start-up and when temperatures are saved. */
+#ifndef HEATSOAK_CRC_32_H
+#define HEATSOAK_CRC_32_H
+
+
+/* CRC-32 of `count` bytes; 0 for none. */
+static inline uint32_t heatsoak_crc_32(const uint8_t *bytes, int32_t count) {
+  uint32_t crc = 0xffffffffu;
+  int32_t i;
+  int bit;
+  for (i = 0; i < count; ++i) {
+    crc ^= bytes[i];
+    for (bit = 0; bit < 8; ++bit) {
+      crc = (crc >> 1) ^ ((crc & 1u) != 0u ? 0xedb88320u : 0u);
+    }
+  }
+  return ~crc;
 }
 
 #endif
@@ -363,19 +384,6 @@ typedef enum {
   maxon_ecx_flat_42m_24v_nothing_restored /* not saved, damaged or of another guard: starts as hot as the limit */
 } maxon_ecx_flat_42m_24v_restored_from;
 
-static inline uint32_t maxon_ecx_flat_42m_24v_crc_32(const uint8_t *bytes, int count) {
-  uint32_t crc = 0xffffffffu;
-  int i;
-  int bit;
-  for (i = 0; i < count; ++i) {
-    crc ^= bytes[i];
-    for (bit = 0; bit < 8; ++bit) {
-      crc = (crc & 1u) != 0u ? (crc >> 1) ^ 0xedb88320u : crc >> 1;
-    }
-  }
-  return ~crc;
-}
-
 static inline void maxon_ecx_flat_42m_24v_pack(uint8_t *to, uint32_t word) {
   to[0] = (uint8_t)(word & 0xffu);
   to[1] = (uint8_t)((word >> 8) & 0xffu);
@@ -421,7 +429,7 @@ static inline void maxon_ecx_flat_42m_24v_save(const maxon_ecx_flat_42m_24v_stat
     maxon_ecx_flat_42m_24v_pack(&buffer[4 + 4 * node], maxon_ecx_flat_42m_24v_bits(state->state_C[node]));
     maxon_ecx_flat_42m_24v_pack(&buffer[4 + 4 * (2 + node)], maxon_ecx_flat_42m_24v_bits(state->nominal_C[node]));
   }
-  maxon_ecx_flat_42m_24v_pack(&buffer[MAXON_ECX_FLAT_42M_24V_SAVED_SIZE - 4], maxon_ecx_flat_42m_24v_crc_32(buffer, MAXON_ECX_FLAT_42M_24V_SAVED_SIZE - 4));
+  maxon_ecx_flat_42m_24v_pack(&buffer[MAXON_ECX_FLAT_42M_24V_SAVED_SIZE - 4], heatsoak_crc_32(buffer, MAXON_ECX_FLAT_42M_24V_SAVED_SIZE - 4));
 }
 
 typedef void (*maxon_ecx_flat_42m_24v_law)(const maxon_ecx_flat_42m_24v_input *, const float *, float *);
@@ -527,7 +535,7 @@ static inline maxon_ecx_flat_42m_24v_restored_from maxon_ecx_flat_42m_24v_restor
   const bool is_known = elapsed_s >= 0.0f;
   int node;
   bool is_whole = maxon_ecx_flat_42m_24v_unpack(buffer) == MAXON_ECX_FLAT_42M_24V_SIGNATURE &&
-                       maxon_ecx_flat_42m_24v_unpack(&buffer[MAXON_ECX_FLAT_42M_24V_SAVED_SIZE - 4]) == maxon_ecx_flat_42m_24v_crc_32(buffer, MAXON_ECX_FLAT_42M_24V_SAVED_SIZE - 4);
+                       maxon_ecx_flat_42m_24v_unpack(&buffer[MAXON_ECX_FLAT_42M_24V_SAVED_SIZE - 4]) == heatsoak_crc_32(buffer, MAXON_ECX_FLAT_42M_24V_SAVED_SIZE - 4);
   for (node = 0; node < 2; ++node) {
     state->state_C[node] = maxon_ecx_flat_42m_24v_number(maxon_ecx_flat_42m_24v_unpack(&buffer[4 + 4 * node]));
     state->nominal_C[node] = maxon_ecx_flat_42m_24v_number(maxon_ecx_flat_42m_24v_unpack(&buffer[4 + 4 * (2 + node)]));
