@@ -132,7 +132,8 @@ static_assert(logged_signal_count() == kSignalCount, "kSignalCount is the number
 
 /// Members for the columns of a log.
 template <class S, class P = OperatingPoint<S>>
-inline constexpr std::array<S P::*, kLogColumns> kColumns{&P::first_column, &P::second_column, &P::third_column};
+inline constexpr std::array kColumns{&P::first_column, &P::second_column, &P::third_column};
+static_assert(kColumns<double>.size() == kLogColumns);
 
 /// Returns the index of a quantity in the table; kQuantityCount if there is none of that name.
 constexpr std::size_t quantity_row(std::string_view name) {
