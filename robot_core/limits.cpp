@@ -2,9 +2,9 @@
 //
 // The limits act on currents: I = (V − K_e·n·ω)/R with the lowest R that the motor can have, so that the true current is not larger. One
 // factor scales the currents of all wheels, which keeps the direction of the force on the body. Finally each voltage must keep the current
-// limit for every speed that the wheel may have, by its own sensor and by the others (speed_range()), and by the sensed current. A wheel
-// that this holds back lowers the common factor from the next period on (State::kept_share). If no voltage keeps the limit, the bridge
-// opens.
+// limit for every speed that the wheel may have, by its own sensor and by the others (speed_range()), and by the sensed current. If one
+// wheel has to be limited here, all wheels are scaled from the next period on (State::kept_share). If no voltage keeps the limit, the
+// bridge opens.
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
@@ -254,8 +254,8 @@ Reason strongest(const WheelState& wheel, Reason limit) {
   return (wheel.speed_fault | wheel.current_fault | wheel.guard_fault) == 0 ? limit : fault_of(wheel);
 }
 
-/// Limits a wheel whose voltage may exceed the current limit. Returns false if its bridge has to open, else lowers `kept` to the fraction
-/// of its wanted current that is left.
+/// Limits a wheel whose voltage may exceed the current limit. Returns false if its bridge has to open. Else it lowers `kept` to the
+/// remaining fraction of the wanted current.
 [[gnu::noinline]] bool hold_wheel(const Config& config, State& state, const Validated& validated, const WheelDemand& demand, int i,
                                   float most_V, LimitedWheel& end, float& kept) {
   WheelState& wheel = state.wheel[i];

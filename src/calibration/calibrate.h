@@ -1,5 +1,5 @@
-// Calibrates a motor from measured runs: parameter values with intervals, combinations that the data do not determine, and the experiment
-// that would determine them.
+// Calibrates a motor from measured runs: parameter values with intervals, combinations that the data do not determine, and the cheapest
+// experiment for each.
 #pragma once
 
 #include <filesystem>

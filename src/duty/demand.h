@@ -10,8 +10,8 @@
 namespace heatsoak::duty {
 
 /// Means over a time interval at one wheel. With I = (M + M_drag·sign ω)/K_t the mean of I² is
-/// (⟨M²⟩ + 2·M_drag·⟨M·sign ω⟩ + M_drag²·⟨sign² ω⟩)/K_t². These means therefore give the exact copper heat of every motor, regardless of
-/// how many moments the bin contains.
+/// (⟨M²⟩ + 2·M_drag·⟨M·sign ω⟩ + M_drag²·⟨sign² ω⟩)/K_t². These means therefore give the exact copper heat of every motor, with
+/// any number of moments in the bin.
 struct LoadBin {
   double duration_s = 0.0;
   double torque_rms_Nm = 0.0;

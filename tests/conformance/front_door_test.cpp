@@ -42,25 +42,42 @@ void fill(std::string& text, const std::string& key, const std::string& value) {
   text = std::regex_replace(text, std::regex("(\n" + key + " = [^\n?]*)\\?"), "$01" + value, std::regex_constants::format_first_only);
 }
 
+using Values = std::vector<std::pair<std::string, std::string>>;
+
+std::string filled(std::string text, const Values& values) {
+  for (const auto& [key, value] : values) {
+    fill(text, key, value);
+  }
+  return text;
+}
+
+const Values kRobotValues{{"name", "mine"},
+                          {"mass", "2.6"},
+                          {"radius", "28"},
+                          {"contact_radius", "80"},
+                          {"axis_angles", "-30"},
+                          {"axis_angles", "30"},
+                          {"axis_angles", "135"},
+                          {"axis_angles", "-135"},
+                          {"motor", "maxon_ecx_flat_32l_48v"},
+                          {"gear_ratio", "1"},
+                          {"nominal_voltage", "22.2"}};
+
 // The values come from the data sheet of the EC 45 flat.
 TEST_F(FrontDoor, motor_template_passes_lint_once_it_is_filled_in) {
   ASSERT_EQ(run_here("heatsoak new motor mine.toml").exit_code, 0);
-  std::string text = file("mine.toml");
-  for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{{"manufacturer", "maxon"},
-                                                                                   {"name", "EC 45 flat"},
-                                                                                   {"sheet", "catalogue page"},
-                                                                                   {"nominal_voltage", "24"},
-                                                                                   {"terminal_resistance", "0.608"},
-                                                                                   {"torque_constant", "36.9"},
-                                                                                   {"no_load_current", "234"},
-                                                                                   {"thermal_resistance_winding_stator", "4.1"},
-                                                                                   {"thermal_resistance_stator_ambient", "3.56"},
-                                                                                   {"thermal_time_constant_winding", "29.6"},
-                                                                                   {"thermal_time_constant_stator", "178"},
-                                                                                   {"winding_limit", "125"}}) {
-    fill(text, key, value);
-  }
-  write(folder_.path() / "mine.toml", text);
+  write(folder_.path() / "mine.toml", filled(file("mine.toml"), {{"manufacturer", "maxon"},
+                                                                 {"name", "EC 45 flat"},
+                                                                 {"sheet", "catalogue page"},
+                                                                 {"nominal_voltage", "24"},
+                                                                 {"terminal_resistance", "0.608"},
+                                                                 {"torque_constant", "36.9"},
+                                                                 {"no_load_current", "234"},
+                                                                 {"thermal_resistance_winding_stator", "4.1"},
+                                                                 {"thermal_resistance_stator_ambient", "3.56"},
+                                                                 {"thermal_time_constant_winding", "29.6"},
+                                                                 {"thermal_time_constant_stator", "178"},
+                                                                 {"winding_limit", "125"}}));
   const ProgramRun lint = run_here("heatsoak lint mine.toml");
   EXPECT_EQ(lint.exit_code, 0) << lint.out << lint.err;
   EXPECT_LE(run_here("heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors mine.toml").exit_code, 1);
@@ -76,22 +93,7 @@ TEST_F(FrontDoor, motor_template_works_with_its_optional_lines_too) {
 
 TEST_F(FrontDoor, robot_template_passes_lint_once_it_is_filled_in) {
   ASSERT_EQ(run_here("heatsoak new robot mine.toml").exit_code, 0);
-  std::string text = file("mine.toml");
-  for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{{"name", "mine"},
-                                                                                   {"source", "measured"},
-                                                                                   {"mass", "2.6"},
-                                                                                   {"radius", "28"},
-                                                                                   {"contact_radius", "80"},
-                                                                                   {"axis_angles", "-30"},
-                                                                                   {"axis_angles", "30"},
-                                                                                   {"axis_angles", "135"},
-                                                                                   {"axis_angles", "-135"},
-                                                                                   {"motor", "maxon_ecx_flat_32l_48v"},
-                                                                                   {"gear_ratio", "1"},
-                                                                                   {"nominal_voltage", "22.2"}}) {
-    fill(text, key, value);
-  }
-  write(folder_.path() / "mine.toml", text);
+  write(folder_.path() / "mine.toml", filled(filled(file("mine.toml"), kRobotValues), {{"source", "measured"}}));
   const ProgramRun lint = run_here("heatsoak lint mine.toml");
   EXPECT_EQ(lint.exit_code, 0) << lint.out << lint.err;
 }
@@ -100,42 +102,29 @@ TEST_F(FrontDoor, robot_template_passes_lint_with_its_optional_lines_too) {
   ASSERT_EQ(run_here("heatsoak new robot mine.toml").exit_code, 0);
   std::string text = std::regex_replace(file("mine.toml"), std::regex("\n# (\\[[a-z]+\\]|[a-z_]+ = )"), "\n$1");
   text = std::regex_replace(text, std::regex(R"re((source|derivation) = "\?")re"), "$1 = \"bench\"");
-  for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{{"name", "mine"},
-                                                                                   {"mass", "2.6"},
-                                                                                   {"radius", "28"},
-                                                                                   {"contact_radius", "80"},
-                                                                                   {"axis_angles", "-30"},
-                                                                                   {"axis_angles", "30"},
-                                                                                   {"axis_angles", "135"},
-                                                                                   {"axis_angles", "-135"},
-                                                                                   {"inertia", "220"},
-                                                                                   {"motor", "maxon_ecx_flat_32l_48v"},
-                                                                                   {"gear_ratio", "1"},
-                                                                                   {"voltage_limit", "12.5"},
-                                                                                   {"current_limit", "8"},
-                                                                                   {"driver_resistance", "10"},
-                                                                                   {"driver_standby_power", "0.5"},
-                                                                                   {"nominal_voltage", "22.2"},
-                                                                                   {"full_voltage", "25.2"},
-                                                                                   {"empty_voltage", "19.8"},
-                                                                                   {"internal_resistance", "40"},
-                                                                                   {"capacity", "1300"},
-                                                                                   {"yaw_inertia", "0.011"},
-                                                                                   {"center_of_gravity_height", "50"},
-                                                                                   {"wheel_torque", "1"},
-                                                                                   {"wheel_damping", "0.1"},
-                                                                                   {"roller_drag", "0.16"},
-                                                                                   {"coefficient", "0.7"},
-                                                                                   {"slip_speed", "0.05"},
-                                                                                   {"speed", "2"},
-                                                                                   {"acceleration", "2"},
-                                                                                   {"braking", "2"},
-                                                                                   {"jerk", "6"},
-                                                                                   {"yaw_rate", "6"},
-                                                                                   {"yaw_acceleration", "30"}}) {
-    fill(text, key, value);
-  }
-  write(folder_.path() / "mine.toml", text);
+  const Values optional{{"inertia", "220"},
+                        {"voltage_limit", "12.5"},
+                        {"current_limit", "8"},
+                        {"driver_resistance", "10"},
+                        {"driver_standby_power", "0.5"},
+                        {"full_voltage", "25.2"},
+                        {"empty_voltage", "19.8"},
+                        {"internal_resistance", "40"},
+                        {"capacity", "1300"},
+                        {"yaw_inertia", "0.011"},
+                        {"center_of_gravity_height", "50"},
+                        {"wheel_torque", "1"},
+                        {"wheel_damping", "0.1"},
+                        {"roller_drag", "0.16"},
+                        {"coefficient", "0.7"},
+                        {"slip_speed", "0.05"},
+                        {"speed", "2"},
+                        {"acceleration", "2"},
+                        {"braking", "2"},
+                        {"jerk", "6"},
+                        {"yaw_rate", "6"},
+                        {"yaw_acceleration", "30"}};
+  write(folder_.path() / "mine.toml", filled(filled(text, kRobotValues), optional));
   const ProgramRun lint = run_here("heatsoak lint mine.toml");
   EXPECT_EQ(lint.exit_code, 0) << lint.out << lint.err;
   EXPECT_THAT(lint.out + lint.err, Not(HasSubstr("warning")));

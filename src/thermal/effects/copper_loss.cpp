@@ -1,4 +1,4 @@
-#include "base/copper.h"
+#include "thermal/drive_stage.h"
 #include "thermal/law.h"
 
 namespace heatsoak::thermal::effects {
@@ -10,9 +10,8 @@ enum Parameter { terminal_resistance, temperature_coefficient };
 struct CopperLoss {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S hot_ratio = base::resistance_ratio(x.parameter(temperature_coefficient), x.temperature_C(winding));
-    const S resistance_ohm = x.parameter(terminal_resistance) * hot_ratio;
-    heat.source(winding, x.at.current_rms_A * x.at.current_rms_A * resistance_ohm);
+    heat.source(winding, DriveStage::copper_loss_W(x.at.current_rms_A, x.parameter(terminal_resistance),
+                                                   x.parameter(temperature_coefficient), x.temperature_C(winding)));
   }
 };
 
