@@ -208,8 +208,10 @@ struct HeldReference {
 /// check sum covers all other members.
 struct alignas(8) ComparisonState {
   std::uint64_t check_sum = 0;
-  float disagreement_s[kMostWheels] = {};   ///< time for which the speed sample has contradicted the other evidence
-  float agreement_s[kMostWheels] = {};      ///< time for which a sensor that counts as faulty has agreed with the others
+  float disagreement_s[kMostWheels] = {};  ///< time for which the speed sample has contradicted the other evidence
+  /// Evidence against the present verdict on the speed sensor: time for which an accepted sensor alone has contradicted all others, minus
+  /// other times; or time for which a rejected sensor has agreed with the others.
+  float evidence_s[kMostWheels] = {};
   float current_error_s[kMostWheels] = {};  ///< time for which the current sensor has contradicted voltage and speed
   float last_rad_per_s[kMostWheels] = {};   ///< speed samples at the last comparison of pairs
   float with_V_rad_per_s[6] = {};           ///< per pair of wheels: leaky sum of evidence that its currents accelerate its speed difference
@@ -247,14 +249,14 @@ struct alignas(8) State {
   Vector3 velocity_reference;      ///< reference of the body, local frame
   Vector3 acceleration_reference;  ///< smoothed reference of the body, local frame
   float yaw_integral_rad = 0.0F;
-  float speed_share = 1.0F;         ///< fraction of the commanded velocity that the limits allow
-  float yaw_rate_rad_per_s = 0.0F;  ///< last validated yaw rate
-  float raw_yaw_rate_rad_per_s = 0.0F;
-  float battery_current_A = 0.0F;  ///< estimate for the last period
-  float battery_source_V = 0.0F;   ///< open-circuit voltage estimated from samples; sinks slowly between them
-  float late_periods = 0.0F;       ///< sum of delays below a tenth of a period each
-  float kept_share = 1.0F;         ///< fraction of their wanted currents that the most held-back wheel leaves to all wheels; rises slowly
-  Vector3 plan_velocity;           ///< velocity of the pose target's plan, field frame
+  float speed_share = 1.0F;             ///< fraction of the commanded velocity that the limits allow
+  std::uint32_t unused = 0;             ///< keeps the size a multiple of 8 bytes
+  float raw_yaw_rate_rad_per_s = 0.0F;  ///< last sample of the yaw rate, or 0 if it was impossible
+  float battery_current_A = 0.0F;       ///< estimate for the last period
+  float battery_source_V = 0.0F;        ///< open-circuit voltage estimated from samples; sinks slowly between them
+  float late_periods = 0.0F;            ///< sum of delays below a tenth of a period each
+  float kept_share = 1.0F;  ///< fraction of their wanted currents that the most held-back wheel leaves to all wheels; rises slowly
+  Vector3 plan_velocity;    ///< velocity of the pose target's plan, field frame
   Vector3 plan_acceleration;
   std::uint32_t shadow_steps = 0;   ///< steps in which the guard would have limited
   float shadow_deficit_A_s = 0.0F;  ///< time integral of the current that the guard would have taken away

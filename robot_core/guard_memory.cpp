@@ -2,6 +2,9 @@
 
 #include "robot_core/drive_stages.h"
 
+// Optimised for size; runs at power-off and at the start.
+#pragma GCC optimize("Os")
+
 namespace robot_core {
 namespace {
 

@@ -324,14 +324,13 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, V
   }
   state.is_yaw_same = sample == state.raw_yaw_rate_rad_per_s ? 1 : 0;
   state.raw_yaw_rate_rad_per_s = is_possible ? sample : 0.0F;
-  state.yaw_rate_rad_per_s = state.raw_yaw_rate_rad_per_s;
+  validated.yaw_rate_rad_per_s = state.raw_yaw_rate_rad_per_s;
   if (state.yaw_fault != 0) {
     const float from_wheels = yaw_rate_of_wheels(config, validated);
-    state.yaw_rate_rad_per_s =
+    validated.yaw_rate_rad_per_s =
         validated.are_all_sensed ? clamped(from_wheels, -kFastestYaw_rad_per_s, kFastestYaw_rad_per_s) : state.velocity_reference.yaw;
     validated.robot_fault = validated.robot_fault == Reason::none ? static_cast<Reason>(state.yaw_fault) : validated.robot_fault;
   }
-  validated.yaw_rate_rad_per_s = state.yaw_rate_rad_per_s;
 }
 
 [[gnu::always_inline]] inline void count_same(WheelState& wheel, float change_rad_per_s) {

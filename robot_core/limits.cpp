@@ -256,8 +256,8 @@ Reason strongest(const WheelState& wheel, Reason limit) {
 
 /// Limits a wheel whose voltage may exceed the current limit. Returns false if its bridge has to open. Else it lowers `kept` to the
 /// remaining fraction of the wanted current.
-[[gnu::noinline]] bool hold_wheel(const Config& config, State& state, const Validated& validated, const WheelDemand& demand, int i,
-                                  float most_V, LimitedWheel& end, float& kept) {
+[[gnu::cold, gnu::noinline]] bool hold_wheel(const Config& config, State& state, const Validated& validated, const WheelDemand& demand,
+                                             int i, float most_V, LimitedWheel& end, float& kept) {
   WheelState& wheel = state.wheel[i];
   const ValidatedWheel& sensed = validated.wheel[i];
   const float asked_V = end.voltage_V;

@@ -39,6 +39,9 @@
 // | 116 R  | wheels turn for kRunaway_s without slowing down although    | all bridges open                                  | the wheels stand, or a body     |
 // |        | the robot should stand, before swapped sensors are ruled    |                                                   | velocity is commanded           |
 // |        | out: swapped sensors, or a push                             |                                                   |                                 |
+// | 117 W  | one of four wheel speeds alone contradicts the others and   | as 110; also an opposite wheel that contradicts   | kSteadyAgain_s of agreement     |
+// |        | the gyro for a second: wrong sign, scale or offset, or a    | the rest as much, until it agrees with the rest   | while the wheel turns           |
+// |        | wheel that slips for so long                                |                                                   |                                 |
 // | 120 W  | motor current seen once, also before a restart; now not     | current from voltage, speed and guard temperature | next valid sample               |
 // |        | finite or more than the battery can drive                   |                                                   |                                 |
 // | 121 W  | motor current contradicts voltage and speed (stuck sensor)  | as 120; the guard uses the larger magnitude       | kSteadyAgain_s of agreement     |
@@ -77,8 +80,10 @@
 //     0.15 s for wheels 1 and 3 or 2 and 4, 0.7 s for 2 and 3, 2.8 s for 1 and 4, 4.9 s for 3 and 4, not within 6 s for 1 and 2. Swapped
 //     samples of opposite wheels, or of any two of three wheels, fit another motion of the robot equally well. Only the reaction to
 //     currents shows the swap.
-//   - One wheel sensor with a wrong scale, sign or offset, or stuck with noise: the robot turns and its wheels work against each other.
-//     Sliding wheels look the same. A slipping wheel with a faulty speed sensor and no current sensor may exceed its limit.
+//   - One wheel sensor with a wrong scale, sign or offset, or stuck with noise, until fault 117: after 1 to 3 s of driving with a wrong
+//     sign, 3 to 11 s with a scale of a half (tests/robot_core/wrong_wheel_sensor_test.cpp). Errors below 0.1 m/s plus 5 % of the speed
+//     limit are not found, and none on three wheels. The robot then turns and its wheels work against each other. A slipping wheel with a
+//     faulty speed sensor and no current sensor may exceed its limit.
 //   - More faulty speed sensors than spare ones: the current may exceed its limit for some periods. If all wheel sensors show 0, the robot
 //     accelerates for kStanding_s before the limp current limits it (115).
 //   - Pushes on a moving robot can look like swapped sensors until these are ruled out: two wheels then keep the limp current until
@@ -128,6 +133,7 @@ enum class Reason : std::uint8_t {
   wheel_speed_unknown = 114,
   wheel_speeds_dead = 115,
   runaway = 116,
+  wheel_speed_wrong = 117,
   current_missing = 120,
   current_implausible = 121,
   battery_voltage_missing = 130,

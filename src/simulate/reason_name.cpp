@@ -37,6 +37,7 @@ constexpr NamedReason kNames[] = {
     {Reason::wheel_speed_unknown, "wheel_speed_unknown"},
     {Reason::wheel_speeds_dead, "wheel_speeds_dead"},
     {Reason::runaway, "runaway"},
+    {Reason::wheel_speed_wrong, "wheel_speed_wrong"},
     {Reason::current_missing, "current_missing"},
     {Reason::current_implausible, "current_implausible"},
     {Reason::battery_voltage_missing, "battery_voltage_missing"},

@@ -301,6 +301,22 @@ TEST(FaultTable, wheel_speed_stuck) {
   }
 }
 
+TEST(FaultTable, wheel_speed_wrong) {
+  for (const bool are_currents_fitted : {true, false}) {
+    const Case test{.code = Reason::wheel_speed_wrong,
+                    .are_currents_fitted = are_currents_fitted,
+                    .periods = 2500,
+                    .spoil = [](Input& input, State&, int) { input.wheel_speed_rad_per_s[kWheel] *= -1.0F; },
+                    .until = 4500};
+    const Record record = run(test, false);
+    EXPECT_EQ(run(test, true).first_period, -1);
+    EXPECT_GE(record.first_period, kFrom + 1000);
+    EXPECT_LE(record.first_period, kFrom + 2000);
+    EXPECT_LE(record.last_period, kFrom + test.periods + kSteadyAgain);
+    EXPECT_LE(record.peak_A, run(test, true).peak_A + margin_A(make_config(4)));
+  }
+}
+
 TEST(FaultTable, wheel_speed_swapped) {
   const Case test{.code = Reason::wheel_speed_swapped,
                   .periods = 3000,

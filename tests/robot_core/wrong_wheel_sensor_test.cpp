@@ -1,0 +1,128 @@
+// One wheel sensor that is wired or scaled wrongly: time until the core rejects it, and the same drives with correct sensors.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <string>
+
+#include "test_robot.h"
+
+namespace heatsoak::test_robot {
+namespace {
+
+using robot_core::Config;
+using robot_core::Input;
+using robot_core::Mode;
+using robot_core::Output;
+using robot_core::Reason;
+using robot_core::State;
+
+/// Wrong sample of a sensor: (true speed, noise) to sample, rad/s.
+using Lie = std::function<float(float, float)>;
+
+/// The thresholds of the core were chosen with the drives 9000 to 9039.
+constexpr unsigned kFirstSeed = 5000;
+constexpr int kDrives = 40;
+constexpr int kPeriods = 12000;
+
+struct Score {
+  int found = 0;         ///< drives in which any wheel was rejected
+  int good_at_end = 0;   ///< correct sensors that are rejected at the end
+  int bad_accepted = 0;  ///< drives whose wrong sensor is accepted at the end although a sensor was rejected before
+  double mean_s = 0.0;   ///< time until the first rejection, mean over these drives
+  double worst_s = 0.0;
+};
+
+Score drive_all(const Lie& lie, bool are_currents_fitted, float push_N) {
+  const Config config = make_config(4);
+  Score score;
+  for (unsigned drive = 0; drive < kDrives; ++drive) {
+    Random random(kFirstSeed + drive);
+    Plant plant(config, {});
+    State state;
+    robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F});
+    const int bad = static_cast<int>(drive % 4);
+    const auto is_rejected = [&](int i) { return state.wheel[i].speed_fault == static_cast<std::uint8_t>(Reason::wheel_speed_wrong); };
+    robot_core::Vector3 velocity;
+    int until_command = 0, until_push = 0, first = -1;
+    for (int k = 0; k < kPeriods; ++k) {
+      if (--until_command <= 0) {
+        velocity = {random.between(-2.0F, 2.0F), random.between(-2.0F, 2.0F), random.between(-5.0F, 5.0F)};
+        until_command = 200 + random.below(600);
+      }
+      if (push_N > 0.0F && --until_push <= 0) {
+        until_push = 100 + random.below(900);
+        const float most_N = random.happens(0.5F) ? push_N : 0.0F;
+        const auto force_N = [&](float most) { return static_cast<double>(random.between(-most, most)); };
+        plant.set_push(force_N(most_N), force_N(most_N), force_N(most_N / 30.0F));
+      }
+      Input input = plant.sense(random, kNoise_rad_per_s, are_currents_fitted);
+      float& sample = input.wheel_speed_rad_per_s[bad];
+      sample = lie(sample, random.between(-kNoise_rad_per_s, kNoise_rad_per_s));
+      input.command.mode = Mode::body_velocity;
+      input.command.velocity = velocity;
+      const Output out = robot_core::step(config, state, input);
+      for (int i = 0; i < config.wheel_count; ++i) {
+        first = first < 0 && is_rejected(i) ? k : first;
+      }
+      plant.move(out);
+    }
+    if (first >= 0) {
+      ++score.found;
+      score.mean_s += 1e-3 * first;
+      score.worst_s = std::max(score.worst_s, 1e-3 * first);
+      score.bad_accepted += is_rejected(bad) ? 0 : 1;
+    }
+    for (int i = 0; i < config.wheel_count; ++i) {
+      score.good_at_end += i != bad && is_rejected(i) ? 1 : 0;
+    }
+  }
+  score.mean_s /= std::max(1, score.found);
+  return score;
+}
+
+struct WrongSensor {
+  const char* name;
+  Lie lie;
+  int least_found;  ///< smallest accepted number of drives, of 40
+};
+
+TEST(WrongWheelSensor, IsRejectedWithinSeconds) {
+  const WrongSensor sensors[] = {
+      {"wrong sign", [](float speed, float) { return -speed; }, 38},
+      {"half", [](float speed, float) { return 0.5F * speed; }, 30},
+      {"double", [](float speed, float) { return 2.0F * speed; }, 34},
+      {"offset of 60 rad/s", [](float speed, float) { return speed + 60.0F; }, 38},
+      {"0 with noise", [](float, float noise) { return noise; }, 38},
+      {"40 rad/s with noise", [](float, float noise) { return 40.0F + noise; }, 38},
+  };
+  std::printf("sensor | currents sensed | found | mean s | worst s | accepted at the end | correct ones rejected at the end\n");
+  for (const WrongSensor& sensor : sensors) {
+    for (const bool are_currents_fitted : {true, false}) {
+      const Score score = drive_all(sensor.lie, are_currents_fitted, 0.0F);
+      std::printf("%s | %d | %d | %.1f | %.1f | %d | %d\n", sensor.name, are_currents_fitted, score.found, score.mean_s, score.worst_s,
+                  score.bad_accepted, score.good_at_end);
+      EXPECT_GE(score.found, sensor.least_found) << sensor.name;
+      EXPECT_LE(score.bad_accepted, 1) << sensor.name;
+      EXPECT_LE(score.good_at_end, 10) << sensor.name;
+    }
+  }
+}
+
+TEST(WrongWheelSensor, IsSeldomSeenWhereAllAreCorrect) {
+  std::printf("push N | currents sensed | drives with a rejected wheel | rejected wheels at the end\n");
+  for (const float push_N : {0.0F, 15.0F}) {
+    for (const bool are_currents_fitted : {true, false}) {
+      const Score score = drive_all([](float speed, float) { return speed; }, are_currents_fitted, push_N);
+      const int at_end = score.good_at_end + score.found - score.bad_accepted;
+      std::printf("%.0f | %d | %d | %d\n", static_cast<double>(push_N), are_currents_fitted, score.found, at_end);
+      EXPECT_LE(score.found, push_N > 0.0F ? 4 : 0);
+      EXPECT_LE(at_end, push_N > 0.0F ? 1 : 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak::test_robot
