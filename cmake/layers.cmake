@@ -44,8 +44,6 @@ function(add_layer name)
     list(FILTER in_rooms INCLUDE REGEX "/src/${name}/${folder}/.+/[^/]+\\.cpp$")
     list(APPEND entries ${in_rooms})
     list(SORT entries COMPARE FILE_BASENAME)
-    # Registry files use the same local names, so they cannot share a translation unit.
-    set_source_files_properties(${entries} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     generate_registry(${name} ${folder} ${type} ${entries})
   endforeach()
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")

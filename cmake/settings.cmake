@@ -43,15 +43,16 @@ if(HEATSOAK_COVERAGE)
   target_link_options(heatsoak_settings INTERFACE --coverage)
 endif()
 
-# add_headers(name header FILES file… LIBRARIES library…): a precompiled header for these libraries. It is parsed once for all
-# targets that call use_headers(target name). FILES instantiate the templates that the header declares extern.
+# add_headers(name header FILES file… LIBRARIES library… OPTIONS option…): a precompiled header for these libraries. It is parsed once for
+# all targets that call use_headers(target name). FILES instantiate the templates that the header declares extern. OPTIONS are those of the
+# targets: GCC optimises a file as it was told for the header.
 function(add_headers name header)
-  cmake_parse_arguments(HEADERS "" "" "FILES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(HEADERS "" "" "FILES;LIBRARIES;OPTIONS" ${ARGN})
   if(HEATSOAK_PRECOMPILE)
     add_library(${name} STATIC ${HEADERS_FILES})
     target_link_libraries(${name} PRIVATE heatsoak_settings ${HEADERS_LIBRARIES})
     target_precompile_headers(${name} PRIVATE "${header}")
-    target_compile_options(${name} PRIVATE ${HEATSOAK_PRECOMPILED_OPTIONS})
+    target_compile_options(${name} PRIVATE ${HEATSOAK_PRECOMPILED_OPTIONS} ${HEADERS_OPTIONS})
   endif()
 endfunction()
 

@@ -278,7 +278,7 @@ class Calibrating {
         squares_V2 += voltage_V * voltage_V;
       }
     }
-    const Eigen::Vector2d found = products.completeOrthogonalDecomposition().solve(with_voltage);
+    const Eigen::VectorXd found = Eigen::MatrixXd(products).completeOrthogonalDecomposition().solve(Eigen::VectorXd(with_voltage));
     const double stated_ohm = motor.nominal.terminal_resistance_ohm;
     // Means over rows with load steps do not follow the law, so require residuals that are small against R·I.
     constexpr double kFollows_share = 0.02;

@@ -50,9 +50,11 @@ std::size_t end_of_token(std::string_view text, std::size_t i) {
 
 /// True for "#define …VERSION …", which changes with the program, and "…_SIGNATURE …", which changes with the safety factor's last digit.
 bool is_version_line(std::string_view line) {
+  if (!line.starts_with("#define")) {
+    return false;
+  }
   line = line.substr(0, line.find('\n'));
-  return line.starts_with("#define") &&
-         (line.find("VERSION") != std::string_view::npos || line.find("_SIGNATURE ") != std::string_view::npos);
+  return line.find("VERSION") != std::string_view::npos || line.find("_SIGNATURE ") != std::string_view::npos;
 }
 
 /// Splits a header into tokens. Skips comments and version lines, and skips derating tables because compare() evaluates them.

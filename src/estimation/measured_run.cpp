@@ -292,6 +292,13 @@ class Builder {
 
 }  // namespace
 
+MeasuredRun::MeasuredRun() = default;
+MeasuredRun::MeasuredRun(const MeasuredRun&) = default;
+MeasuredRun::MeasuredRun(MeasuredRun&&) noexcept = default;
+MeasuredRun& MeasuredRun::operator=(const MeasuredRun&) = default;
+MeasuredRun& MeasuredRun::operator=(MeasuredRun&&) noexcept = default;
+MeasuredRun::~MeasuredRun() = default;
+
 bool MeasuredRun::has(thermal::Signal signal) const { return std::ranges::find(signals, signal) != signals.end(); }
 
 bool MeasuredRun::has(const std::map<std::string, std::string>& of_conditions) const {

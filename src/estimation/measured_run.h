@@ -43,6 +43,14 @@ struct MeasuredRun {
   std::map<std::string, std::string> conditions;
   std::map<std::string, Eigen::VectorXd> columns;  ///< result of columns_along()
 
+  // Copies and the destructor are large, so they are compiled once.
+  MeasuredRun();
+  MeasuredRun(const MeasuredRun&);
+  MeasuredRun(MeasuredRun&&) noexcept;
+  MeasuredRun& operator=(const MeasuredRun&);
+  MeasuredRun& operator=(MeasuredRun&&) noexcept;
+  ~MeasuredRun();
+
   [[nodiscard]] Eigen::Index samples() const { return static_cast<Eigen::Index>(time_s.size()); }
   [[nodiscard]] bool has(thermal::Signal signal) const;
   /// True if the run has all these conditions.

@@ -208,6 +208,13 @@ std::vector<std::pair<const base::ParameterValue*, double*>> places(const Motor&
 
 }  // namespace
 
+Motor::Motor() = default;
+Motor::Motor(const Motor&) = default;
+Motor::Motor(Motor&&) noexcept = default;
+Motor& Motor::operator=(const Motor&) = default;
+Motor& Motor::operator=(Motor&&) noexcept = default;
+Motor::~Motor() = default;
+
 double drag_torque_Nm(const MotorValues& motor) { return motor.torque_constant_Nm_per_A * motor.no_load_current_A; }
 
 base::ParameterValue* find_parameter(Motor& motor, std::string_view key) {

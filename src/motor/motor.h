@@ -118,6 +118,14 @@ struct Motor {
   std::vector<MotorSensor> sensors;
   std::optional<MotorFit> fit;  ///< present if a calibration wrote the file
   MotorValues nominal;
+
+  // Copies and the destructor are large, so they are compiled once.
+  Motor();
+  Motor(const Motor&);
+  Motor(Motor&&) noexcept;
+  Motor& operator=(const Motor&);
+  Motor& operator=(Motor&&) noexcept;
+  ~Motor();
 };
 
 /// Reads a motor file. Throws Failure (bad_input) with every problem of the file.

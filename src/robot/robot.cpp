@@ -281,6 +281,13 @@ void read_drive(input::Reader& top, Robot& robot) {
 
 }  // namespace
 
+Robot::Robot() = default;
+Robot::Robot(const Robot&) = default;
+Robot::Robot(Robot&&) noexcept = default;
+Robot& Robot::operator=(const Robot&) = default;
+Robot& Robot::operator=(Robot&&) noexcept = default;
+Robot::~Robot() = default;
+
 std::span<const RobotParameterSpec> robot_parameter_specs() { return kSpecs; }
 std::span<const WheelParameterSpec> wheel_parameter_specs() { return kWheelSpecs; }
 

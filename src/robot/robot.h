@@ -117,6 +117,14 @@ struct Robot {
   RobotLimits limits;
   std::map<std::string, base::ParameterValue, std::less<>> parameters;  ///< by "table.key" or "friction.heading.wheel[0].key"
 
+  // Copies and the destructor are large, so they are compiled once.
+  Robot();
+  Robot(const Robot&);
+  Robot(Robot&&) noexcept;
+  Robot& operator=(const Robot&);
+  Robot& operator=(Robot&&) noexcept;
+  ~Robot();
+
   [[nodiscard]] double available_V() const;
   /// Resistance between the battery and a motor's terminals in ohm; 0 if the file does not give it.
   [[nodiscard]] double series_resistance_ohm() const;

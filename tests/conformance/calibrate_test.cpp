@@ -238,20 +238,14 @@ TEST(Calibrate, HeldOutLogsAreLookedAtToo) {
 /// Model of the README's example.
 class CalibratedModel : public testing::Test {
  protected:
-  ProgramRun calibrate(const std::string& more) const {
-    const std::string logs =
-        (kSoak / "bench.csv").string() + ' ' + (kSoak / "match_1.csv").string() + ' ' + (kSoak / "match_2.csv").string();
-    return run_line("heatsoak calibrate --motor " + std::string(kMotor) + ' ' + logs + " --holdout " + (kSoak / "match_3.csv").string() +
-                        " --out measured_motor.toml " + more,
-                    in(folder_.path()));
-  }
+  CalibratedModel() { write(folder_.path() / "measured_motor.toml", example_calibration().motor_file); }
   ProgramRun line(const std::string& text) const { return run_line("heatsoak " + text, in(folder_.path())); }
 
   const TemporaryFolder folder_;
 };
 
 TEST_F(CalibratedModel, AnswersAsTheInterfaceSays) {
-  const nlohmann::json answer = calibrate("--json -").json();
+  const nlohmann::json& answer = example_calibration().answer;
   EXPECT_EQ(answer["schema"], "heatsoak.calibration/1");
   ASSERT_GE(answer["parameters"].size(), 6U);
   for (const nlohmann::json& each : answer["parameters"]) {
@@ -274,14 +268,12 @@ TEST_F(CalibratedModel, AnswersAsTheInterfaceSays) {
 }
 
 TEST_F(CalibratedModel, IsTheSameForOneSeedWhateverTheNumberOfThreads) {
-  ASSERT_EQ(calibrate("--seed 5 --threads 1").exit_code, 0);
-  const std::string one = content_of(folder_.path() / "measured_motor.toml");
-  ASSERT_EQ(calibrate("--seed 5 --threads 3").exit_code, 0);
-  EXPECT_EQ(content_of(folder_.path() / "measured_motor.toml"), one);
+  const Calibrated again("3");
+  EXPECT_EQ(again.motor_file, example_calibration().motor_file);
+  EXPECT_EQ(again.answer, example_calibration().answer);
 }
 
 TEST_F(CalibratedModel, IsReadByEveryOtherVerb) {
-  ASSERT_EQ(calibrate("").exit_code, 0);
   const std::string motor = "measured_motor.toml";
   EXPECT_EQ(line("lint " + motor).exit_code, 0) << line("lint " + motor).out;
   EXPECT_THAT(line("describe " + motor).out, HasSubstr("fit to measured temperatures"));

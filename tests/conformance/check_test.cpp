@@ -196,9 +196,17 @@ TEST(Thresholds, AreListedAndDescribed) {
 // Exit codes of single verbs.
 
 TEST(FailOn, ChangesTheExitCodeOnly) {
-  const Words marginal{
-      "evaluate", "--robot", "roboteam_twente_v2024", "--duty", "division_a_match", "--motors", "maxon_ecx_flat_42m_24v", "--samples", "8",
-      "--json",   "-"};
+  const Words marginal{"evaluate",
+                       "--robot",
+                       "roboteam_twente_v2024",
+                       "--duty",
+                       "paper_intermittent",
+                       "--motors",
+                       "maxon_ec45_flat_70w_36v_402686",
+                       "--samples",
+                       "8",
+                       "--json",
+                       "-"};
   const ProgramRun usual = run(marginal);
   ASSERT_EQ(usual.json().at("motors").at(0).at("verdict"), "marginal");
   EXPECT_EQ(usual.exit_code, 0);

@@ -38,7 +38,19 @@ const Words kSimulate{"simulate", "--motor", "maxon_ec45_flat_70w_24v", "--robot
 
 const fs::path kFrictionLog = kSource / "reports/friction_test/steady_state_test.csv";
 
+/// Returns the verbs that have a reference page. Tests are listed from these names, which need no run of the program.
 std::vector<std::string> verbs() {
+  std::vector<std::string> names;
+  for (const std::string& page : files_of(kSource / "docs" / "reference", "", ".md")) {
+    if (page != "README.md") {
+      names.push_back(fs::path(page).stem().string());
+    }
+  }
+  return names;
+}
+
+/// Returns the verbs that the help lists.
+std::vector<std::string> verbs_of_the_help() {
   std::istringstream help(run({"--help"}).out);
   std::vector<std::string> result;
   bool listed = false;
@@ -53,6 +65,8 @@ std::vector<std::string> verbs() {
   }
   return result;
 }
+
+TEST(Verbs, have_a_reference_page_each) { EXPECT_THAT(verbs_of_the_help(), testing::UnorderedElementsAreArray(verbs())); }
 
 /// Returns the lines below "Example:" in the help.
 std::vector<std::string> examples(const std::string& verb) {

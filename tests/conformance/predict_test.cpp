@@ -47,18 +47,16 @@ TEST(Predict, DrawsAPngWhereItsNameSaysSo) {
 /// A calibrated model has a smaller hold-out error, which equals the value of `calibrate --holdout`.
 TEST(Predict, IsWhereHoldoutErrorsComeFrom) {
   const TemporaryFolder folder;
-  const ProgramRun fitted = run({"calibrate", "--motor", kMotor, log("match_1.csv"), log("match_2.csv"), log("bench.csv"), "--holdout",
-                                 log("match_3.csv"), "--out", "model.toml", "--json", "-"},
-                                in(folder));
-  ASSERT_EQ(fitted.exit_code, 0) << fitted.err;
+  const nlohmann::json& fitted = example_calibration().answer;
+  write(folder.path() / "model.toml", example_calibration().motor_file);
   const ProgramRun before = run({"predict", "--model", kMotor, log("match_3.csv"), "--json", "-"}, in(folder));
   const ProgramRun after = run({"predict", "--model", "model.toml", log("match_3.csv"), "--json", "-"}, in(folder));
   ASSERT_EQ(after.exit_code, 0) << after.err;
   for (const char* signal : {"winding_C", "stator_C"}) {
     const auto rmse_K = [&](const ProgramRun& done) { return done.json()["runs"][0]["error"][signal]["rmse_K"].get<double>(); };
     EXPECT_LT(rmse_K(after), rmse_K(before)) << signal;
-    EXPECT_NEAR(rmse_K(after), fitted.json()["holdout"]["after"][0]["error"][signal]["rmse_K"].get<double>(), 0.02) << signal;
-    EXPECT_NEAR(rmse_K(before), fitted.json()["holdout"]["before"][0]["error"][signal]["rmse_K"].get<double>(), 1e-4) << signal;
+    EXPECT_NEAR(rmse_K(after), fitted["holdout"]["after"][0]["error"][signal]["rmse_K"].get<double>(), 0.02) << signal;
+    EXPECT_NEAR(rmse_K(before), fitted["holdout"]["before"][0]["error"][signal]["rmse_K"].get<double>(), 1e-4) << signal;
   }
   const ProgramRun own = run({"predict", "--model", "model.toml", log("match_1.csv")}, in(folder));
   EXPECT_THAT(own.out, HasSubstr("the error of match_1 is not a forecast error"));

@@ -22,4 +22,14 @@ inline RunOptions in(const TemporaryFolder& folder) {
   return options;
 }
 
+/// The calibration of the README's example with the match that it holds out.
+struct Calibrated {
+  explicit Calibrated(const std::string& threads);
+
+  std::string motor_file;  ///< text of the calibrated motor's file
+  nlohmann::json answer;
+};
+/// Calibrates once for all tests of the process, in one thread.
+const Calibrated& example_calibration();
+
 }  // namespace heatsoak

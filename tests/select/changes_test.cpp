@@ -60,25 +60,6 @@ TEST_F(Changes, a_motor_that_lacks_voltage_gets_a_lower_gear) {
   EXPECT_LT(of(all, ChangedQuantity::gear_ratio).factor, 1.0);
 }
 
-TEST_F(Changes, a_match_heats_less_with_less_mass_jerk_and_wheel) {
-  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/division_b_match.toml");
-  const std::vector<ChangeEffect> all = effects_of_changes(robot_, duty, motor_, {}, 1, 0);
-  EXPECT_EQ(all.size(), 8U);
-  for (const ChangedQuantity each :
-       {ChangedQuantity::mass, ChangedQuantity::wheel_radius, ChangedQuantity::gear_ratio, ChangedQuantity::pauses}) {
-    EXPECT_GT(of(all, each).saved_K, 0.0) << name_of(each);
-  }
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    if (all[i].is_deliverable == all[i - 1].is_deliverable) {
-      EXPECT_LE(all[i].saved_K, all[i - 1].saved_K);
-    }
-  }
-  const std::vector<ChangeEffect> again = effects_of_changes(robot_, duty, motor_, {}, 1, 1);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    EXPECT_EQ(all[i].saved_K, again[i].saved_K) << "does not depend on threads";
-  }
-}
-
 /// Counts how often a match is played.
 class CountedMatch final : public duty::DutyShape {
  public:
@@ -95,33 +76,65 @@ class CountedMatch final : public duty::DutyShape {
   std::shared_ptr<const duty::DutyShape> match_;
 };
 
-// Games take most of the time. Six changes act on the wheels' loads: acceleration, jerk, speed, yaw acceleration, mass and wheel radius.
-TEST_F(Changes, games_are_played_again_only_for_changes_of_the_loads) {
+/// Changes for a match. Games take most of the time, so they are computed once for all tests of the process.
+struct ChangesOfAMatch {
+  ChangesOfAMatch() {
+    for (const std::string_view id :
+         {"maxon_ecx_flat_42m_24v", "nanotec_df45l024048_a2", "maxon_ecx_flat_32l_48v", "maxon_ecx_flat_42m_48v"}) {
+      others.push_back(motor::read_motor(kSource / "motor_db" / (std::string(id) + ".toml")));
+    }
+    duty::Duty counted = duty;
+    const auto match = std::make_shared<CountedMatch>(duty.shape_data);
+    counted.shape_data = match;
+    all = effects_of_changes(robot, counted, motor, others, 1, 0);
+    played = match->played;
+  }
+
+  robot::Robot robot = robot::read_robot(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+  motor::Motor motor = motor::read_motor(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml");
   duty::Duty duty = duty::read_duty(kSource / "duty_profiles/division_b_match.toml");
-  const auto counted = std::make_shared<CountedMatch>(duty.shape_data);
-  duty.shape_data = counted;
-  const motor::Motor other = motor::read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
-  const std::vector<ChangeEffect> all = effects_of_changes(robot_, duty, motor_, std::span(&other, 1), 1, 0);
-  EXPECT_EQ(all.size(), 9U);
-  EXPECT_EQ(counted->played, kChangeGames * (1 + 6));
+  std::vector<motor::Motor> others;
+  std::vector<ChangeEffect> all;
+  int played = 0;
+};
+
+const ChangesOfAMatch& changes_of_a_match() {
+  static const ChangesOfAMatch kOnce;
+  return kOnce;
 }
+
+TEST_F(Changes, a_match_heats_less_with_less_mass_jerk_and_wheel) {
+  const auto& [robot, motor, duty, others, all, played] = changes_of_a_match();
+  EXPECT_EQ(all.size(), 9U);
+  for (const ChangedQuantity each :
+       {ChangedQuantity::mass, ChangedQuantity::wheel_radius, ChangedQuantity::gear_ratio, ChangedQuantity::pauses}) {
+    EXPECT_GT(of(all, each).saved_K, 0.0) << name_of(each);
+  }
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    if (all[i].is_deliverable == all[i - 1].is_deliverable) {
+      EXPECT_LE(all[i].saved_K, all[i - 1].saved_K);
+    }
+  }
+  const std::vector<ChangeEffect> again = effects_of_changes(robot, duty, motor, others, 1, 1);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].saved_K, again[i].saved_K) << "does not depend on threads";
+  }
+}
+
+// Six changes act on the wheels' loads: acceleration, jerk, speed, yaw acceleration, mass and wheel radius.
+TEST_F(Changes, games_are_played_again_only_for_changes_of_the_loads) { EXPECT_EQ(changes_of_a_match().played, kChangeGames * (1 + 6)); }
 
 // Only a motor that can still have the largest margin is evaluated in all games; the result is that of all motors in all games.
 TEST_F(Changes, the_best_other_motor_is_that_of_a_full_search) {
-  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/division_b_match.toml");
-  std::vector<motor::Motor> others;
-  for (const std::string_view id :
-       {"maxon_ecx_flat_42m_24v", "nanotec_df45l024048_a2", "maxon_ecx_flat_32l_48v", "maxon_ecx_flat_42m_48v"}) {
-    others.push_back(motor::read_motor(kSource / "motor_db" / (std::string(id) + ".toml")));
-  }
+  const auto& [robot, motor, duty, others, all, played] = changes_of_a_match();
   std::string best;
   double most_K = -1e9;
   for (const motor::Motor& each : others) {
     double margin_K = 1e9;
     bool passes = true;
     for (int game = 0; game < kChangeGames; ++game) {
-      const std::vector<duty::WheelDemand> wheels = duty.demand(robot_, 1 + static_cast<std::uint64_t>(game));
-      const MotorEvaluation result = evaluate(robot_, duty, wheels, std::span(&each, 1), {.samples = 0}).front();
+      const std::vector<duty::WheelDemand> wheels = duty.demand(robot, 1 + static_cast<std::uint64_t>(game));
+      const MotorEvaluation result = evaluate(robot, duty, wheels, std::span(&each, 1), {.samples = 0}).front();
       margin_K = std::min(margin_K, nearest_margin_K(result));
       passes = passes && result.verdict == Verdict::pass;
     }
@@ -130,7 +143,7 @@ TEST_F(Changes, the_best_other_motor_is_that_of_a_full_search) {
       most_K = margin_K;
     }
   }
-  EXPECT_EQ(of(effects_of_changes(robot_, duty, motor_, others, 1, 0), ChangedQuantity::motor).other_motor, best);
+  EXPECT_EQ(of(all, ChangedQuantity::motor).other_motor, best);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace heatsoak::check::thresholds {
 namespace {
 
-Measured measure(const Check& check, Computations& computations) {
+Measured measure_core_size(const Check& check, Computations& computations) {
   firmware::CoreOptions core;
   derate::DerateOptions options = check.derate;
   options.period_s = firmware::guard_period_s(core.period_s);
@@ -30,7 +30,7 @@ ThresholdType core_size() {
           .example = "at most 400 kbyte",
           .needs = {Setting::robot, Setting::motor},
           .takes = {Setting::conditions, Setting::derate},
-          .measure = measure};
+          .measure = measure_core_size};
 }
 
 }  // namespace heatsoak::check::thresholds

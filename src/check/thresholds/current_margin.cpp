@@ -5,7 +5,7 @@
 namespace heatsoak::check::thresholds {
 namespace {
 
-Measured measure(const Check& check, Computations& computations) {
+Measured measure_current_margin(const Check& check, Computations& computations) {
   const select::MotorEvaluation& result = computations.feasible_evaluation(check);
   if (!result.margin_A) {
     throw base::Failure(base::ExitCode::cannot_answer,
@@ -30,7 +30,7 @@ ThresholdType current_margin() {
           .loosest = [](const Check&) -> std::optional<LoosestLimit> {
             return LoosestLimit{0.0, "the motor's own limits"};
           },
-          .measure = measure};
+          .measure = measure_current_margin};
 }
 
 }  // namespace heatsoak::check::thresholds

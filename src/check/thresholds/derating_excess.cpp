@@ -3,7 +3,7 @@
 namespace heatsoak::check::thresholds {
 namespace {
 
-Measured measure(const Check& check, Computations& computations) {
+Measured measure_derating_excess(const Check& check, Computations& computations) {
   const derate::TableComparison found = compared(check, computations);
   if (found.differing_line > 0) {
     throw base::Failure(
@@ -34,7 +34,7 @@ ThresholdType derating_excess() {
           .example = "at most 0 A",
           .needs = {Setting::robot, Setting::motor, Setting::table},
           .takes = {Setting::conditions, Setting::derate},
-          .measure = measure};
+          .measure = measure_derating_excess};
 }
 
 }  // namespace heatsoak::check::thresholds

@@ -5,7 +5,7 @@
 namespace heatsoak::check::thresholds {
 namespace {
 
-Measured measure(const Check& check, Computations& computations) {
+Measured measure_guard_active_share(const Check& check, Computations& computations) {
   const GuardedDrive& drive = computations.guarded_drive(check);
   return {drive.score.guard_limited_s / drive.duration_s, 0.0,
           fmt::format("{:.1f} of {:.0f} s; its observer reached {:.1f} °C, the winding {:.1f} °C", drive.score.guard_limited_s,
@@ -26,7 +26,7 @@ ThresholdType guard_active_share() {
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::seed, Setting::conditions, Setting::derate},
           .loosest = [](const Check&) -> std::optional<LoosestLimit> { return largest_share_limit(); },
-          .measure = measure};
+          .measure = measure_guard_active_share};
 }
 
 }  // namespace heatsoak::check::thresholds

@@ -5,7 +5,7 @@
 namespace heatsoak::check::thresholds {
 namespace {
 
-Measured measure(const Check& check, Computations& computations) {
+Measured measure_guard_missing_charge(const Check& check, Computations& computations) {
   const GuardedDrive& drive = computations.guarded_drive(check);
   return {drive.score.guard_missing_A_s, 0.0,
           fmt::format("the guard would limit for {:.1f} of {:.0f} s", drive.score.guard_limited_s, drive.duration_s)};
@@ -23,7 +23,7 @@ ThresholdType guard_missing_charge() {
           .example = "at most 0 A s",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::seed, Setting::conditions, Setting::derate},
-          .measure = measure};
+          .measure = measure_guard_missing_charge};
 }
 
 }  // namespace heatsoak::check::thresholds

@@ -41,7 +41,7 @@ std::vector<motor::LintFinding> findings_of(const Check& check) {
   return all;
 }
 
-Measured measure(const Check& check, Computations& /*computations*/) {
+Measured measure_lint_problems(const Check& check, Computations& /*computations*/) {
   const std::vector<motor::LintFinding> all = findings_of(check);
   const auto count = std::ranges::count_if(all, is_problem);
   const auto first = std::ranges::find_if(all, is_problem);
@@ -63,7 +63,7 @@ ThresholdType lint_problems() {
           .example = "at most 0",
           .needs = {},
           .takes = {Setting::robot, Setting::duty, Setting::motor, Setting::conditions, Setting::files},
-          .measure = measure};
+          .measure = measure_lint_problems};
 }
 
 }  // namespace heatsoak::check::thresholds

@@ -22,7 +22,7 @@ std::string what_would_do(const Check& check, double over_share, double limit_sh
   return fmt::format("{} samples or more could meet {} % with this share", *needed * per_draw, base::significant(100.0 * limit_share, 3));
 }
 
-Measured measure(const Check& check, Computations& computations) {
+Measured measure_probability_over_limit(const Check& check, Computations& computations) {
   const select::MotorEvaluation& result = computations.feasible_evaluation(check);
   const int draws = Computations::independent_draws(check);
   const bool is_drawn = draws != check.samples;
@@ -58,7 +58,7 @@ ThresholdType probability_over_limit() {
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},
           .loosest = [](const Check&) -> std::optional<LoosestLimit> { return largest_share_limit(); },
-          .measure = measure};
+          .measure = measure_probability_over_limit};
 }
 
 }  // namespace heatsoak::check::thresholds

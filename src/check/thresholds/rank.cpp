@@ -8,7 +8,7 @@
 namespace heatsoak::check::thresholds {
 namespace {
 
-Measured measure(const Check& check, Computations& computations) {
+Measured measure_rank(const Check& check, Computations& computations) {
   const select::MotorEvaluation& own = computations.feasible_evaluation(check);
   const auto order = [](const select::MotorEvaluation& each) { return std::tuple(each.verdict, -select::nearest_margin_K(each)); };
   std::string better;
@@ -44,7 +44,7 @@ ThresholdType rank() {
                        ? std::nullopt
                        : std::optional<LoosestLimit>({static_cast<double>(check.against.size()), "the number of motors in 'against'"});
           },
-          .measure = measure};
+          .measure = measure_rank};
 }
 
 }  // namespace heatsoak::check::thresholds

@@ -20,7 +20,7 @@ double above_s(double from_C, double to_C, double limit_C, double duration_s) {
   return duration_s * (std::max(from_C, to_C) - limit_C) / std::abs(to_C - from_C);
 }
 
-Measured measure(const Check& check, Computations& computations) {
+Measured measure_time_above(const Check& check, Computations& computations) {
   const select::MotorEvaluation& result = computations.feasible_evaluation(check);
   const std::vector<duty::WheelDemand>& wheels = computations.demand(check);
   const duty::WheelDemand& hottest = *std::ranges::find(wheels, result.wheel, &duty::WheelDemand::wheel);
@@ -65,7 +65,7 @@ ThresholdType time_above() {
           .needs = {Setting::robot, Setting::duty, Setting::motor, Setting::temperature},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},
           .loosest = duration,
-          .measure = measure};
+          .measure = measure_time_above};
 }
 
 }  // namespace heatsoak::check::thresholds

@@ -16,7 +16,7 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-struct Options {
+struct CheckOptions {
   check::CheckJob job;
   std::string junit;
 };
@@ -42,7 +42,7 @@ void write_github(const std::vector<check::Outcome>& outcomes, Session& session)
   }
 }
 
-base::ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const CheckOptions& options, Session& session) {
   const check::CheckAnswer answer = check::run_check_job(options.job, session.folders(), progress_bar);
   for (const check::RewrittenFile& each : answer.rewritten) {
     session.rewrite(each.path, each.text);
@@ -65,7 +65,7 @@ Command check_command() {
           .summary = "Compares what is computed with limits of your own, for CI; exit 1 if one does not hold or cannot be evaluated",
           .example = "heatsoak check reports/check/twente.check.toml --junit check.xml",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-            const auto options = std::make_shared<Options>();
+            const auto options = std::make_shared<CheckOptions>();
             app.add_option("files", options->job.files, "check files (`heatsoak list thresholds` shows what can have a limit)")
                 ->required()
                 ->type_name("FILE.toml");

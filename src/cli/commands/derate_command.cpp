@@ -18,7 +18,7 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-struct Options {
+struct DerateOptions {
   GuardOptions guard;
   std::string robot;
   std::string to = "c_header";
@@ -42,7 +42,7 @@ const derate::ExporterType& exporter_named(const std::string& name) {
                       fmt::format("--to {}: expected one of {}{}", name, expected, base::did_you_mean(name, names)));
 }
 
-base::ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const DerateOptions& options, Session& session) {
   const derate::ExporterType& exporter = exporter_named(options.to);
   derate::DerateOptions derate_options = options.guard.derate;
   derate_options.sensor = sensor_options(options.sensor);
@@ -93,7 +93,7 @@ Command derate_command() {
               "Writes how much current the firmware may allow: observer and derating table, checked on motors of every declared tolerance",
           .example = "heatsoak derate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --to c_header --out motor_guard.h",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-            const auto options = std::make_shared<Options>();
+            const auto options = std::make_shared<DerateOptions>();
             add_motor_options(app, options->guard);
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
             app.add_option("--to", options->to, "output format (see `heatsoak list formats`)")->capture_default_str()->type_name("FORM");

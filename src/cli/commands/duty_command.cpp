@@ -20,7 +20,7 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-struct Options {
+struct DutyOptions {
   std::string duty;
   std::string log;
   std::string player;
@@ -32,10 +32,12 @@ struct Options {
   std::vector<std::string> given;  ///< options given on the command line
 };
 
-bool is_given(const Options& options, std::string_view option) { return std::ranges::find(options.given, option) != options.given.end(); }
+bool is_given(const DutyOptions& options, std::string_view option) {
+  return std::ranges::find(options.given, option) != options.given.end();
+}
 
 /// Throws if an option was given that has no effect in this case, because the user expects it to have one.
-void refuse(const Options& options, std::initializer_list<std::string_view> unused, const std::string& why) {
+void refuse(const DutyOptions& options, std::initializer_list<std::string_view> unused, const std::string& why) {
   for (const std::string_view option : unused) {
     if (is_given(options, option)) {
       throw base::Failure(base::ExitCode::bad_input, fmt::format("{} {}", option, why));
@@ -43,7 +45,7 @@ void refuse(const Options& options, std::initializer_list<std::string_view> unus
   }
 }
 
-base::ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const DutyOptions& options, Session& session) {
   if (options.duty.empty() == options.log.empty()) {
     throw base::Failure(base::ExitCode::bad_input, "expected one of --duty and --import (`heatsoak duty --help` shows examples)");
   }
@@ -93,7 +95,7 @@ Command duty_command() {
           .summary = "Generates a duty (a match with its phases and where heat comes from), or turns a recorded game into one",
           .example = "heatsoak duty --duty division_a_match --robot roboteam_twente_v2024 --seed 1 --out match.csv",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-            const auto options = std::make_shared<Options>();
+            const auto options = std::make_shared<DutyOptions>();
             app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->type_name("D");
             app.add_option("--import", options->log,
                            "recorded game: CSV (t_s, team, robot_id, x_m, y_m, yaw_rad) or SSL_LOG_FILE (.log, .log.gz)")

@@ -25,7 +25,7 @@ namespace {
 /// Values of --fail-on in the order of Verdict, without pass. Exit code 1 from the given verdict on.
 const std::vector<std::string> kFailOn{"marginal", "fail", "infeasible"};
 
-struct Options {
+struct EvaluateOptions {
   std::string robot;
   std::string duty;
   std::optional<std::string> motors;
@@ -40,7 +40,7 @@ struct Options {
 };
 
 /// An existing file whose name contains commas is one motor, not a list. A model without --motors is evaluated alone.
-std::vector<std::string> listed_motors(const Options& options) {
+std::vector<std::string> listed_motors(const EvaluateOptions& options) {
   if (!options.motors) {
     return options.model.empty() ? std::vector<std::string>{"all"} : std::vector<std::string>{};
   }
@@ -59,8 +59,8 @@ std::vector<std::string> listed_motors(const Options& options) {
   return names;
 }
 
-simulate::EvaluationJob job_of(const Options& options, const input::DataFolders& folders) {
-  if (!options.is_closed_loop && options.guard != Options{}.guard) {
+simulate::EvaluationJob job_of(const EvaluateOptions& options, const input::DataFolders& folders) {
+  if (!options.is_closed_loop && options.guard != EvaluateOptions{}.guard) {
     throw base::Failure(base::ExitCode::bad_input, "--guard is for --closed-loop; expected both or none");
   }
   duty::NamedFiles named(folders);
@@ -84,7 +84,7 @@ simulate::EvaluationJob job_of(const Options& options, const input::DataFolders&
   return job;
 }
 
-base::ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const EvaluateOptions& options, Session& session) {
   const simulate::EvaluationAnswer answer = simulate::run_evaluation(job_of(options, session.folders()), progress_bar);
   present::Document document = present::evaluation_document(answer);
   if (!options.plot.empty()) {
@@ -107,7 +107,7 @@ Command evaluate_command() {
           "heatsoak evaluate --robot roboteam_twente_v2024 --duty division_a_match --motors "
           "maxon_ecx_flat_42m_24v,nanotec_df45l024048_a2 --plot verdict.svg",
       .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-        const auto options = std::make_shared<Options>();
+        const auto options = std::make_shared<EvaluateOptions>();
         app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
         app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
         app.add_option("--motors", options->motors, "ids or files separated by commas, or all")->type_name("M,M")->default_str("all");

@@ -17,7 +17,7 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-struct Options {
+struct GenerateOptions {
   std::string what;
   GuardOptions guard;
   std::string robot;
@@ -26,7 +26,7 @@ struct Options {
   bool force = false;
 };
 
-base::ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const GenerateOptions& options, Session& session) {
   check_derate_options(options.guard.derate);
   firmware::check_target_folder(options.out, options.force);
   duty::NamedFiles named(session.folders());
@@ -49,7 +49,7 @@ Command generate_command() {
           .summary = "Writes the drive core with configuration and thermal guard of a robot as source files, ready to compile",
           .example = "heatsoak generate core --robot roboteam_twente_v2024 --motor maxon_ecx_flat_32l_48v --out drive_core",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-            const auto options = std::make_shared<Options>();
+            const auto options = std::make_shared<GenerateOptions>();
             app.add_option("what", options->what, "core: the drive core")->required()->check([](const std::string& word) {
               return word == "core" ? "" : fmt::format("'{}' is not known; expected core", word);
             });

@@ -11,12 +11,12 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-struct Options {
+struct ManualOptions {
   std::string format;
   std::string folder;
 };
 
-base::ExitCode run(const Options& options, const CLI::App& program, Session& session) {
+base::ExitCode run(const ManualOptions& options, const CLI::App& program, Session& session) {
   const std::vector<HelpPage> pages = help_pages(program);
   const std::filesystem::path folder = options.folder;
   session.make_folder(folder);
@@ -38,7 +38,7 @@ Command manual() {
           .summary = "Writes the help of every verb as man pages or as Markdown",
           .example = "heatsoak manual --to man --out man1",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-            const auto options = std::make_shared<Options>();
+            const auto options = std::make_shared<ManualOptions>();
             app.add_option("--to", options->format, "format of the pages")
                 ->required()
                 ->check(CLI::IsMember({"man", "markdown"}))

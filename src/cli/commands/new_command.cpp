@@ -13,7 +13,7 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-struct Options {
+struct NewOptions {
   std::string kind;
   std::string file;
 };
@@ -31,7 +31,7 @@ std::string quoted(const std::string& word) {
   return result + "'";
 }
 
-base::ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const NewOptions& options, Session& session) {
   std::error_code unreadable;
   if (std::filesystem::exists(options.file, unreadable)) {
     throw base::Failure(base::ExitCode::bad_input, fmt::format("{} exists; give the new file another name", options.file));
@@ -53,7 +53,7 @@ Command new_command() {
           .summary = "Writes a commented motor or robot file to fill in",
           .example = "heatsoak new motor my_motor.toml",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-            const auto options = std::make_shared<Options>();
+            const auto options = std::make_shared<NewOptions>();
             app.add_option("kind", options->kind, "motor or robot")->required()->check(CLI::IsMember({"motor", "robot"}));
             app.add_option("file", options->file, "name of the new file, which is the id")->required()->check([](const std::string& file) {
               const bool is_named = file.ends_with(".toml") && !std::filesystem::path(file).stem().string().starts_with(".");

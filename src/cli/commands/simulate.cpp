@@ -23,7 +23,7 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-struct Options {
+struct SimulateOptions {
   std::string motor;
   std::string model;
   std::string robot;
@@ -39,18 +39,18 @@ struct Options {
   std::map<std::string, std::string> conditions;
 };
 
-void show(present::Document document, const Options& options, Session& session) {
+void show(present::Document document, const SimulateOptions& options, Session& session) {
   document.add_file(options.out);
   document.add_file(options.plot);
   session.show(document);
 }
 
 /// Simulates a prescribed load of one wheel.
-base::ExitCode run_load(const Options& options, select::LoadJob job, Session& session) {
+base::ExitCode run_load(const SimulateOptions& options, select::LoadJob job, Session& session) {
   if (options.planner != "jerk_limited") {
     throw base::Failure(base::ExitCode::bad_input, fmt::format("--planner is for matches; {} is {}", job.duty.id, job.duty.shape));
   }
-  const Options usual;
+  const SimulateOptions usual;
   if (options.guard != usual.guard || options.sensing != usual.sensing) {
     throw base::Failure(
         base::ExitCode::bad_input,
@@ -72,7 +72,7 @@ base::ExitCode run_load(const Options& options, select::LoadJob job, Session& se
   return simulation.result.verdict == select::Verdict::pass ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
 
-base::ExitCode run_match(const Options& options, simulate::MatchJob job, Session& session) {
+base::ExitCode run_match(const SimulateOptions& options, simulate::MatchJob job, Session& session) {
   job.planners.clear();
   if (options.planner != "bang_bang") {
     job.planners.push_back(duty::Planner::jerk_limited);
@@ -98,7 +98,7 @@ base::ExitCode run_match(const Options& options, simulate::MatchJob job, Session
   return match.verdict == select::Verdict::pass ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
 
-base::ExitCode run_sweep(const Options& options, const robot::Robot& robot, const motor::Motor& motor, Session& session) {
+base::ExitCode run_sweep(const SimulateOptions& options, const robot::Robot& robot, const motor::Motor& motor, Session& session) {
   if (!options.out.empty()) {
     throw base::Failure(base::ExitCode::bad_input, "--jerk-sweep has no signals to write; expected --plot or --json in place of --out");
   }
@@ -111,7 +111,7 @@ base::ExitCode run_sweep(const Options& options, const robot::Robot& robot, cons
   return base::ExitCode::done;
 }
 
-base::ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const SimulateOptions& options, Session& session) {
   if (options.duty.empty() != options.jerk_sweep) {
     throw base::Failure(base::ExitCode::bad_input, "expected one of --duty and --jerk-sweep (`heatsoak simulate --help` shows examples)");
   }
@@ -142,7 +142,7 @@ Command simulate() {
               "  heatsoak simulate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --duty division_a_match --planner both\n"
               "  heatsoak simulate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --jerk-sweep --plot sweep.svg",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-            const auto options = std::make_shared<Options>();
+            const auto options = std::make_shared<SimulateOptions>();
             app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->type_name("M");
             app.add_option("--model", options->model, "a calibrated motor (`heatsoak calibrate --out FILE`) in its place")
                 ->type_name("FILE.toml");

@@ -17,13 +17,13 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-struct Options {
+struct SteadyOptions {
   std::string motor;
   std::map<std::string, std::string> conditions;
   thermal::OnOffCurrent current;
 };
 
-base::ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const SteadyOptions& options, Session& session) {
   duty::NamedFiles named(session.folders());
   const std::optional<motor::Motor> motor = named.motor(options.motor);
   named.throw_if_any();
@@ -43,7 +43,7 @@ Command steady() {
           "(copper loss only)",
       .example = "heatsoak steady --motor maxon_ec45_flat_70w_24v --current-on 6A --time-on 4s --time-off 6s --ambient 25degC",
       .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-        const auto options = std::make_shared<Options>();
+        const auto options = std::make_shared<SteadyOptions>();
         app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->required()->type_name("M");
         add_conditions(app, options->conditions);
         add_quantity(app, "--current-on", options->current.current_on_A,

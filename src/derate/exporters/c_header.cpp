@@ -31,7 +31,7 @@ std::string shared_text(std::string_view file) {
   return text.erase(text.find(kInclude), kInclude.size());
 }
 
-std::string write(const Derating& derating) {
+std::string write_c_header(const Derating& derating) {
   require_finite(derating);
   const std::string prefix = identifier(derating.motor_id);
   const c_header::Source source{derating, prefix, c_header::in_capitals(prefix), c_header::used_signals(derating.observer)};
@@ -54,7 +54,9 @@ std::string write(const Derating& derating) {
 }  // namespace
 
 ExporterType c_header() {
-  return {.name = {}, .summary = "C99 header without dependencies: observer, table, one step per period; single precision", .write = write};
+  return {.name = {},
+          .summary = "C99 header without dependencies: observer, table, one step per period; single precision",
+          .write = write_c_header};
 }
 
 }  // namespace heatsoak::derate::exporters

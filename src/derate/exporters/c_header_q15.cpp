@@ -313,7 +313,7 @@ std::vector<std::int64_t> candidates(const Derating& derating, observed::Signal 
   return values;
 }
 
-std::string write(const Derating& derating) {
+std::string write_c_header_q15(const Derating& derating) {
   require_finite(derating);
   require_three_signals("c_header_q15", derating);
   const std::string prefix = identifier(derating.motor_id) + "_q15";
@@ -349,7 +349,9 @@ std::string write(const Derating& derating) {
 }  // namespace
 
 ExporterType c_header_q15() {
-  return {.name = {}, .summary = "C99 header in integers (16-bit table, 32-bit observer) for controllers without an FPU", .write = write};
+  return {.name = {},
+          .summary = "C99 header in integers (16-bit table, 32-bit observer) for controllers without an FPU",
+          .write = write_c_header_q15};
 }
 
 }  // namespace heatsoak::derate::exporters

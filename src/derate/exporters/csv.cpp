@@ -19,7 +19,7 @@ std::vector<double> sampled(const std::vector<double>& axis, int parts) {
   return points;
 }
 
-std::string write(const Derating& derating) {
+std::string write_csv(const Derating& derating) {
   constexpr int kParts = 4;
   const CurrentTable& table = derating.table;
   require_finite(derating);
@@ -46,7 +46,7 @@ std::string write(const Derating& derating) {
 ExporterType csv() {
   return {.name = {},
           .summary = "the table, one grid point per row, for plots and other tools; lines that begin with # state its origin",
-          .write = write};
+          .write = write_csv};
 }
 
 }  // namespace heatsoak::derate::exporters

@@ -5,7 +5,7 @@
 namespace heatsoak::derate::exporters {
 namespace {
 
-std::string write(const Derating& derating) {
+std::string write_json(const Derating& derating) {
   require_finite(derating);
   return derating_json(derating).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
@@ -13,8 +13,9 @@ std::string write(const Derating& derating) {
 }  // namespace
 
 ExporterType json() {
-  return {
-      .name = {}, .summary = "table with axes and units, observer parameters, limit and confidence (heatsoak.derating/1)", .write = write};
+  return {.name = {},
+          .summary = "table with axes and units, observer parameters, limit and confidence (heatsoak.derating/1)",
+          .write = write_json};
 }
 
 }  // namespace heatsoak::derate::exporters

@@ -12,7 +12,7 @@ namespace {
 /// moteus limits i_q and i_d to
 ///   max(0, max_current_A + f·(derate_current_A − max_current_A)), f = (T − motor_fault_temperature + margin)/margin,
 /// at most max_current_A, and stops with a fault above motor_fault_temperature. The same derate_current_A ends the ramp of its switches.
-std::string write(const Derating& derating) {
+std::string write_moteus(const Derating& derating) {
   require_brushless("moteus", derating);
   const CurrentRamp ramp = ramp_for("moteus", derating, RampSignal::stator);
   return provenance_lines(derating, "#") + ramp_lines(derating, RampSignal::stator, ramp, 1.0 / kDcPerIq_ratio, "#") +
@@ -33,8 +33,9 @@ std::string write(const Derating& derating) {
 }  // namespace
 
 ExporterType moteus() {
-  return {
-      .name = {}, .summary = "moteus configuration: current and ramp over a stator thermistor, fitted on the safe side", .write = write};
+  return {.name = {},
+          .summary = "moteus configuration: current and ramp over a stator thermistor, fitted on the safe side",
+          .write = write_moteus};
 }
 
 }  // namespace heatsoak::derate::exporters

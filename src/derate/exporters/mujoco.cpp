@@ -41,7 +41,7 @@ void require_datasheet_alone(const Derating& derating) {
 }
 
 /// MuJoCo: dT/dt = (R·i² − T/R_th)/C with R growing with the temperature. A safety factor r on heat becomes R_th·r and C/r.
-std::string write(const Derating& derating) {
+std::string write_mujoco(const Derating& derating) {
   require_finite(derating);
   require_datasheet_alone(derating);
   const motor::MotorValues& motor = derating.nominal;
@@ -83,7 +83,7 @@ std::string write(const Derating& derating) {
 ExporterType mujoco() {
   return {.name = {},
           .summary = "MuJoCo defaults of a <dcmotor> with its thermal attributes; copper loss only, see its first lines",
-          .write = write};
+          .write = write_mujoco};
 }
 
 }  // namespace heatsoak::derate::exporters

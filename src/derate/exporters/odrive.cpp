@@ -10,7 +10,7 @@ namespace {
 
 /// ODrive limits the current vector to current_lim·(upper − T)/(upper − lower), from 0 to current_lim, and disarms with an error 5 K above
 /// the upper limit. A temperature that is not a number gives 0 A.
-std::string write(const Derating& derating) {
+std::string write_odrive(const Derating& derating) {
   require_brushless("odrive", derating);
   const CurrentRamp ramp = ramp_for("odrive", derating, RampSignal::stator);
   return provenance_lines(derating, "#") + ramp_lines(derating, RampSignal::stator, ramp, 1.0 / kDcPerIq_ratio, "#") +
@@ -31,7 +31,7 @@ std::string write(const Derating& derating) {
 ExporterType odrive() {
   return {.name = {},
           .summary = "ODrive 0.5 commands for odrivetool: current and ramp over a stator thermistor, fitted on the safe side",
-          .write = write};
+          .write = write_odrive};
 }
 
 }  // namespace heatsoak::derate::exporters

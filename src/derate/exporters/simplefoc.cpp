@@ -8,7 +8,7 @@
 namespace heatsoak::derate::exporters {
 namespace {
 
-std::string write(const Derating& derating) {
+std::string write_simplefoc(const Derating& derating) {
   require_finite(derating);
   require_brushless("simplefoc", derating);
   require_three_signals("simplefoc", derating);
@@ -48,7 +48,8 @@ std::string write(const Derating& derating) {
 }  // namespace
 
 ExporterType simplefoc() {
-  return {.name = {}, .summary = "Arduino code that limits a SimpleFOC motor with the C header of the same motor", .write = write};
+  return {
+      .name = {}, .summary = "Arduino code that limits a SimpleFOC motor with the C header of the same motor", .write = write_simplefoc};
 }
 
 }  // namespace heatsoak::derate::exporters

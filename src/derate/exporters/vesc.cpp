@@ -108,7 +108,7 @@ std::string limits(const CurrentRamp& ramp, double phase_per_dc_ratio) {
 }
 
 /// The observer runs in the script, the ramp in the controller: the script overrides the controller's motor temperature.
-std::string write(const Derating& derating) {
+std::string write_vesc(const Derating& derating) {
   const CurrentRamp ramp = ramp_for("vesc", derating, RampSignal::winding, kFullBeyond_K);
   require_three_signals("vesc", derating);
   const double dc_per_phase_ratio = derating.is_brushless ? kDcPerIq_ratio : 1.0;
@@ -151,7 +151,7 @@ std::string write(const Derating& derating) {
 ExporterType vesc() {
   return {.name = {},
           .summary = "LispBM script for VESC: limits, and the observer's winding temperature in place of the motor's sensor",
-          .write = write};
+          .write = write_vesc};
 }
 
 }  // namespace heatsoak::derate::exporters

@@ -41,7 +41,7 @@ class Intermittent final : public DutyShape {
   LoadPoint point_;
 };
 
-void read(input::Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
+void read_intermittent(input::Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   constexpr double kLongest_s = 1e6;
   const base::ParameterSpec torque{"torque_on", "N m", base::Range::positive(), "at one wheel, while it is on"};
   const base::ParameterSpec current{"current_on", "A", base::Range::positive(), "through the motor, while it is on"};
@@ -97,7 +97,7 @@ time_on = "4 s"
 time_off = "6 s"
 repeats = "240"
 )",
-          .read = read};
+          .read = read_intermittent};
 }
 
 }  // namespace heatsoak::duty::shapes

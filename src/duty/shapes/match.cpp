@@ -4,7 +4,7 @@
 namespace heatsoak::duty::shapes {
 namespace {
 
-void read(input::Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
+void read_match(input::Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   duty.kind = DutyKind::torque;
   duty.shape_data = std::make_shared<MatchDuty>(read_match_inputs(table));
 }
@@ -20,7 +20,7 @@ division = "A"
 role = "attacker"   # or "defender", "keeper"
 # and the named inputs of duty_profiles/division_a_match.toml, each with its range
 )",
-          .read = read};
+          .read = read_match};
 }
 
 }  // namespace heatsoak::duty::shapes

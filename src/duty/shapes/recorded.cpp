@@ -190,7 +190,7 @@ class Recorded final : public DutyShape {
   int repeats_;
 };
 
-void read(input::Reader& table, const std::filesystem::path& folder, Duty& duty) {
+void read_recorded(input::Reader& table, const std::filesystem::path& folder, Duty& duty) {
   const std::optional<std::string> file = table.text("file", input::Need::required);
   constexpr std::array<std::string_view, 2> kQuantities{"torque", "current"};
   const std::optional<std::string> quantity = table.choice("quantity", kQuantities, input::Need::required);
@@ -238,7 +238,7 @@ file = "my_game.csv"
 quantity = "torque"   # or "current"
 repeats = "1"
 )",
-          .read = read};
+          .read = read_recorded};
 }
 
 }  // namespace heatsoak::duty::shapes

@@ -46,7 +46,7 @@ std::string table_of(const Table& table) {
   return text + "</table>\n";
 }
 
-std::string render(const Document& document, const RenderOptions& /*options*/) {
+std::string render_html(const Document& document, const RenderOptions& /*options*/) {
   std::string text =
       fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{}</title><style>{}</style></head>\n<body>\n",
                   document.headline.empty() ? "Heatsoak" : in_html(document.headline.front().words), kStyle);
@@ -78,7 +78,7 @@ std::string render(const Document& document, const RenderOptions& /*options*/) {
 }  // namespace
 
 Renderer html() {
-  return {.name = {}, .file_ending = ".html", .summary = "one HTML page with every column and every note", .render = render};
+  return {.name = {}, .file_ending = ".html", .summary = "one HTML page with every column and every note", .render = render_html};
 }
 
 }  // namespace heatsoak::present::renderers

@@ -37,7 +37,7 @@ std::string text_of(const Table& table) {
   return text + "\n";
 }
 
-std::string render(const Document& document, const RenderOptions& /*options*/) {
+std::string render_markdown(const Document& document, const RenderOptions& /*options*/) {
   std::string text;
   for (const Text& sentence : document.headline) {
     text += fmt::format("**{}**\n\n", escaped(sentence.words));
@@ -63,6 +63,8 @@ std::string render(const Document& document, const RenderOptions& /*options*/) {
 
 }  // namespace
 
-Renderer markdown() { return {.name = {}, .file_ending = ".md", .summary = "Markdown with every column and every note", .render = render}; }
+Renderer markdown() {
+  return {.name = {}, .file_ending = ".md", .summary = "Markdown with every column and every note", .render = render_markdown};
+}
 
 }  // namespace heatsoak::present::renderers

@@ -211,7 +211,7 @@ std::string text_of(const std::vector<Text>& headline, const RenderOptions& opti
   return text;
 }
 
-std::string render(const Document& document, const RenderOptions& given) {
+std::string render_terminal(const Document& document, const RenderOptions& given) {
   RenderOptions options = given;
   options.width = std::max(options.width, kLeastWidth);
   std::string text = text_of(document.headline, options);
@@ -237,6 +237,6 @@ std::string render(const Document& document, const RenderOptions& given) {
 
 }  // namespace
 
-Renderer terminal() { return {.name = {}, .file_ending = {}, .summary = "plain text, as wide as the terminal", .render = render}; }
+Renderer terminal() { return {.name = {}, .file_ending = {}, .summary = "plain text, as wide as the terminal", .render = render_terminal}; }
 
 }  // namespace heatsoak::present::renderers

@@ -4,10 +4,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { winding };
-enum Parameter { share };
-
 struct AcCopperLoss {
+  enum Node { winding };
+  enum Parameter { share };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S speed_ratio = x.at.speed_rms_rad_per_s / kReferenceSpeed_rad_per_s;
@@ -18,6 +18,7 @@ struct AcCopperLoss {
 }  // namespace
 
 EffectType ac_copper_loss() {
+  using enum AcCopperLoss::Parameter;
   return {
       .name = {},
       .summary = "Skin and proximity effect: the current crowds in the wire, so copper loss grows with the square of the frequency.",

@@ -4,10 +4,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { hot, cold };
-enum Parameter { conductance };
-
 struct AirGapStirring {
+  enum Node { hot, cold };
+  enum Parameter { conductance };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S conductance_W_per_K = x.parameter(conductance) * (x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s);
@@ -18,6 +18,7 @@ struct AirGapStirring {
 }  // namespace
 
 EffectType air_gap_stirring() {
+  using enum AirGapStirring::Parameter;
   return {
       .name = {},
       .summary = "The rotor stirs the air in the gap, which carries heat from the winding to the stator and housing.",

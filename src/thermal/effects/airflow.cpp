@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { hot, cold };
-enum Parameter { conductance };
-
 struct Airflow {
+  enum Node { hot, cold };
+  enum Parameter { conductance };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     heat.flow(hot, cold, x.parameter(conductance) * (x.temperature_C(hot) - x.temperature_C(cold)));
@@ -16,6 +16,7 @@ struct Airflow {
 }  // namespace
 
 EffectType airflow() {
+  using enum Airflow::Parameter;
   return {
       .name = {},
       .summary =

@@ -4,10 +4,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { stator };
-enum Parameter { loss };
-
 struct ArmatureIronLoss {
+  enum Node { stator };
+  enum Parameter { loss };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S speed_ratio = x.at.speed_rms_rad_per_s / kReferenceSpeed_rad_per_s;
@@ -18,6 +18,7 @@ struct ArmatureIronLoss {
 }  // namespace
 
 EffectType armature_iron_loss() {
+  using enum ArmatureIronLoss::Parameter;
   return {
       .name = {},
       .summary = "The current's own field distorts that of the magnets, so iron loss grows with load.",

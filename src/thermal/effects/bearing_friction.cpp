@@ -4,10 +4,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { stator };
-enum Parameter { loss, viscous_share, thinning };
-
 struct BearingFriction {
+  enum Node { stator };
+  enum Parameter { loss, viscous_share, thinning };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S speed_ratio = x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s;
@@ -20,6 +20,7 @@ struct BearingFriction {
 }  // namespace
 
 EffectType bearing_friction() {
+  using enum BearingFriction::Parameter;
   return {
       .name = {},
       .summary = "Friction of bearings and seals: a dry part ∝ |ω| and a viscous part ∝ ω² that falls as the grease warms.",

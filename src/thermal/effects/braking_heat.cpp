@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { heated };
-enum Parameter { share };
-
 struct BrakingHeat {
+  enum Node { heated };
+  enum Parameter { share };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     heat.source(heated, x.parameter(share) * positive_part(-x.at.shaft_power_W));
@@ -16,6 +16,7 @@ struct BrakingHeat {
 }  // namespace
 
 EffectType braking_heat() {
+  using enum BrakingHeat::Parameter;
   return {
       .name = {},
       .summary = "Braking power that does not return to the battery: it becomes heat in the motor or in a brake on it.",

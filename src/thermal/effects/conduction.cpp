@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { hot, cold };
-enum Parameter { thermal_resistance };
-
 struct Conduction {
+  enum Node { hot, cold };
+  enum Parameter { thermal_resistance };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     heat.flow(hot, cold, (x.temperature_C(hot) - x.temperature_C(cold)) / x.parameter(thermal_resistance));

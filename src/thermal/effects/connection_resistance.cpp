@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { stator };
-enum Parameter { resistance };
-
 struct ConnectionResistance {
+  enum Node { stator };
+  enum Parameter { resistance };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     heat.source(stator, x.parameter(resistance) * x.at.current_rms_A * x.at.current_rms_A);
@@ -16,6 +16,7 @@ struct ConnectionResistance {
 }  // namespace
 
 EffectType connection_resistance() {
+  using enum ConnectionResistance::Parameter;
   return {
       .name = {},
       .summary =

@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { heated };
-enum Parameter { power };
-
 struct ConstantHeat {
+  enum Node { heated };
+  enum Parameter { power };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     heat.source(heated, x.parameter(power));
@@ -16,6 +16,7 @@ struct ConstantHeat {
 }  // namespace
 
 EffectType constant_heat() {
+  using enum ConstantHeat::Parameter;
   return {
       .name = {},
       .summary = "A constant heat from outside: electronics in standby, a lamp, the sun, a hot neighbour that is not measured.",

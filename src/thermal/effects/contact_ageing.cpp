@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { hot, cold };
-enum Parameter { conductance, time_constant, fresh_share };
-
 struct ContactAgeing {
+  enum Node { hot, cold };
+  enum Parameter { conductance, time_constant, fresh_share };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S fresh = exponential(-x.at.age_h / x.parameter(time_constant));
@@ -18,6 +18,7 @@ struct ContactAgeing {
 }  // namespace
 
 EffectType contact_ageing() {
+  using enum ContactAgeing::Parameter;
   return {
       .name = {},
       .summary =

@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { hot, cold };
-enum Parameter { conductance, mean_ratio, difference_ratio };
-
 struct ContactLaw {
+  enum Node { hot, cold };
+  enum Parameter { conductance, mean_ratio, difference_ratio };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     constexpr double kMean_C = 60.0;

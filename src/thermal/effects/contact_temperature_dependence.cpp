@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { hot, cold };
-enum Parameter { conductance, midpoint, steepness };
-
 struct ContactTemperatureDependence {
+  enum Node { hot, cold };
+  enum Parameter { conductance, midpoint, steepness };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S mean_C = 0.5 * (x.temperature_C(hot) + x.temperature_C(cold));
@@ -18,6 +18,7 @@ struct ContactTemperatureDependence {
 }  // namespace
 
 EffectType contact_temperature_dependence() {
+  using enum ContactTemperatureDependence::Parameter;
   return {
       .name = {},
       .summary =

@@ -4,10 +4,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { winding };
-enum Parameter { terminal_resistance, temperature_coefficient };
-
 struct CopperLoss {
+  enum Node { winding };
+  enum Parameter { terminal_resistance, temperature_coefficient };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     heat.source(winding, DriveStage::copper_loss_W(x.at.current_rms_A, x.parameter(terminal_resistance),

@@ -4,10 +4,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { stator };
-enum Parameter { loss, quadratic_share };
-
 struct DriverHeat {
+  enum Node { stator };
+  enum Parameter { loss, quadratic_share };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S current_ratio = x.at.current_rms_A / kReferenceCurrent_A;
@@ -19,6 +19,7 @@ struct DriverHeat {
 }  // namespace
 
 EffectType driver_heat() {
+  using enum DriverHeat::Parameter;
   return {
       .name = {},
       .summary =

@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { stator, enclosure, ambient };
-enum Parameter { conductance, leak_ratio, heat_ratio, heat_capacity };
-
 struct EnclosureWarmUp {
+  enum Node { stator, enclosure, ambient };
+  enum Parameter { conductance, leak_ratio, heat_ratio, heat_capacity };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S air_W_per_K = x.parameter(conductance);
@@ -19,6 +19,7 @@ struct EnclosureWarmUp {
 }  // namespace
 
 EffectType enclosure_warm_up() {
+  using enum EnclosureWarmUp::Parameter;
   return {
       .name = {},
       .summary = "The air in a closed body warms over a match, by this motor and by the other motors and electronics that work as hard.",

@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { heated };
-enum Parameter { share };
-
 struct InputPowerLoss {
+  enum Node { heated };
+  enum Parameter { share };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     heat.source(heated, x.parameter(share) * positive_part(x.at.input_power_W - x.at.shaft_power_W));

@@ -4,10 +4,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { stator };
-enum Parameter { loss, exponent };
-
 struct IronLossEddy {
+  enum Node { stator };
+  enum Parameter { loss, exponent };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S speed_ratio = x.at.speed_rms_rad_per_s / kReferenceSpeed_rad_per_s;
@@ -18,6 +18,7 @@ struct IronLossEddy {
 }  // namespace
 
 EffectType iron_loss_eddy() {
+  using enum IronLossEddy::Parameter;
   return {
       .name = {},
       .summary =

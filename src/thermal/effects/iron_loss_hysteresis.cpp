@@ -4,10 +4,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { stator };
-enum Parameter { loss };
-
 struct IronLossHysteresis {
+  enum Node { stator };
+  enum Parameter { loss };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     heat.source(stator, x.parameter(loss) * (x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s));
@@ -17,6 +17,7 @@ struct IronLossHysteresis {
 }  // namespace
 
 EffectType iron_loss_hysteresis() {
+  using enum IronLossHysteresis::Parameter;
   return {
       .name = {},
       .summary = "Hysteresis of the iron: the same energy for every reversal of the field, so the loss is proportional to speed.",

@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { stator };
-enum Parameter { share };
-
 struct LoadFriction {
+  enum Node { stator };
+  enum Parameter { share };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     heat.source(stator, x.parameter(share) * magnitude(x.at.shaft_power_W));
@@ -16,6 +16,7 @@ struct LoadFriction {
 }  // namespace
 
 EffectType load_friction() {
+  using enum LoadFriction::Parameter;
   return {
       .name = {},
       .summary = "Friction that grows with load, of gear teeth, wheel bearings and rollers: a share of the power transmitted through them.",

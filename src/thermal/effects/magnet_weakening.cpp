@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { winding, magnet };
-enum Parameter { temperature_coefficient };
-
 struct MagnetWeakening {
+  enum Node { winding, magnet };
+  enum Parameter { temperature_coefficient };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     constexpr double kWidth_K = 2.0;
@@ -18,6 +18,7 @@ struct MagnetWeakening {
 }  // namespace
 
 EffectType magnet_weakening() {
+  using enum MagnetWeakening::Parameter;
   return {
       .name = {},
       .summary =

@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { hot, cold };
-enum Parameter { conductance, exponent };
-
 struct NaturalConvection {
+  enum Node { hot, cold };
+  enum Parameter { conductance, exponent };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     constexpr double kReference_K = 40.0;
@@ -19,6 +19,7 @@ struct NaturalConvection {
 }  // namespace
 
 EffectType natural_convection() {
+  using enum NaturalConvection::Parameter;
   return {
       .name = {},
       .summary = "Buoyancy-driven convection: cooling grows more than in proportion to the temperature difference.",

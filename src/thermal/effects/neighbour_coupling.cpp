@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { node, surroundings };
-enum Parameter { conductance };
-
 struct NeighbourCoupling {
+  enum Node { node, surroundings };
+  enum Parameter { conductance };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     if (x.at.knows(kNeighbour)) {
@@ -18,6 +18,7 @@ struct NeighbourCoupling {
 }  // namespace
 
 EffectType neighbour_coupling() {
+  using enum NeighbourCoupling::Parameter;
   return {
       .name = {},
       .summary =

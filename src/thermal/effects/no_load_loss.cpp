@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { stator };
-enum Parameter { drag_torque };
-
 struct NoLoadLoss {
+  enum Node { stator };
+  enum Parameter { drag_torque };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     heat.source(stator, x.parameter(drag_torque) * x.at.speed_mean_rad_per_s);

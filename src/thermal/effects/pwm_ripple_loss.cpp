@@ -4,10 +4,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { winding, stator };
-enum Parameter { loss, stator_share };
-
 struct PwmRippleLoss {
+  enum Node { winding, stator };
+  enum Parameter { loss, stator_share };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S duty = magnitude(x.at.modulation_ratio);
@@ -21,6 +21,7 @@ struct PwmRippleLoss {
 }  // namespace
 
 EffectType pwm_ripple_loss() {
+  using enum PwmRippleLoss::Parameter;
   return {
       .name = {},
       .summary =

@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { hot, cold };
-enum Parameter { emissive_area };
-
 struct Radiation {
+  enum Node { hot, cold };
+  enum Parameter { emissive_area };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     constexpr double kStefanBoltzmann_W_per_m2_K4 = 5.670374419e-8;
@@ -22,6 +22,7 @@ struct Radiation {
 }  // namespace
 
 EffectType radiation() {
+  using enum Radiation::Parameter;
   return {
       .name = {},
       .summary = "Thermal radiation to surroundings at ambient temperature.",

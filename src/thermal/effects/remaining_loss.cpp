@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { winding, stator };
-enum Parameter { share, winding_share };
-
 struct RemainingLoss {
+  enum Node { winding, stator };
+  enum Parameter { share, winding_share };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S remaining_W = x.parameter(share) * positive_part(x.at.input_power_W - x.at.shaft_power_W - x.at.copper_loss_W);

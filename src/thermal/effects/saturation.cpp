@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { winding };
-enum Parameter { excess, knee_current, knee_width };
-
 struct Saturation {
+  enum Node { winding };
+  enum Parameter { excess, knee_current, knee_width };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S saturated = soft_step((x.at.current_rms_A / x.parameter(knee_current) - 1.0) / x.parameter(knee_width));
@@ -17,6 +17,7 @@ struct Saturation {
 }  // namespace
 
 EffectType saturation() {
+  using enum Saturation::Parameter;
   return {
       .name = {},
       .summary = "Above the knee of the iron an ampere gives less torque: for a demanded torque more current flows than K_t gives.",

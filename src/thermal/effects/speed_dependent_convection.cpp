@@ -4,10 +4,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { hot, cold };
-enum Parameter { conductance, exponent };
-
 struct SpeedDependentConvection {
+  enum Node { hot, cold };
+  enum Parameter { conductance, exponent };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S speed_ratio = x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s;
@@ -19,6 +19,7 @@ struct SpeedDependentConvection {
 }  // namespace
 
 EffectType speed_dependent_convection() {
+  using enum SpeedDependentConvection::Parameter;
   return {
       .name = {},
       .summary = "The turning rotor (or the propeller or fan on its shaft) stirs the air: the motor cools better with speed.",

@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { winding };
-enum Parameter { excess, stall_speed };
-
 struct StallPhaseImbalance {
+  enum Node { winding };
+  enum Parameter { excess, stall_speed };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     constexpr double kStepsPerSpeed = 5.0;
@@ -18,6 +18,7 @@ struct StallPhaseImbalance {
 }  // namespace
 
 EffectType stall_phase_imbalance() {
+  using enum StallPhaseImbalance::Parameter;
   return {
       .name = {},
       .summary = "A motor that holds without turning heats its phases unevenly: the hottest one gets up to twice the mean copper loss.",

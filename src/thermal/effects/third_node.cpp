@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { node, body, ambient };
-enum Parameter { conductance, leak_ratio, heat_capacity };
-
 struct ThirdNode {
+  enum Node { node, body, ambient };
+  enum Parameter { conductance, leak_ratio, heat_capacity };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S& coupling_W_per_K = x.parameter(conductance);
@@ -18,6 +18,7 @@ struct ThirdNode {
 }  // namespace
 
 EffectType third_node() {
+  using enum ThirdNode::Parameter;
   return {
       .name = {},
       .summary = "A body of its own that the motor warms: mount, chassis, rotor, end winding. It makes the tail of a cool-down long.",

@@ -3,10 +3,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { hot, cold };
-enum Parameter { conductance, exponent };
-
 struct VehicleAirflow {
+  enum Node { hot, cold };
+  enum Parameter { conductance, exponent };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S conductance_W_per_K = x.parameter(conductance) * power(x.at.vehicle_speed_m_per_s, x.parameter(exponent));
@@ -17,6 +17,7 @@ struct VehicleAirflow {
 }  // namespace
 
 EffectType vehicle_airflow() {
+  using enum VehicleAirflow::Parameter;
   return {
       .name = {},
       .summary = "Cooling by the air that flows past because the vehicle moves.",

@@ -4,10 +4,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { stator };
-enum Parameter { loss };
-
 struct Windage {
+  enum Node { stator };
+  enum Parameter { loss };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S mean_ratio = x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s;
@@ -19,6 +19,7 @@ struct Windage {
 }  // namespace
 
 EffectType windage() {
+  using enum Windage::Parameter;
   return {
       .name = {},
       .summary = "Air drag of the rotor (or of a fan on its shaft): the torque grows with ω², so the loss grows with ω³.",

@@ -4,10 +4,10 @@
 namespace heatsoak::thermal::effects {
 namespace {
 
-enum Node { hot, cold };
-enum Parameter { conductance };
-
 struct WindingThroughFlow {
+  enum Node { hot, cold };
+  enum Parameter { conductance };
+
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S conductance_W_per_K = x.parameter(conductance) * (x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s);
@@ -18,6 +18,7 @@ struct WindingThroughFlow {
 }  // namespace
 
 EffectType winding_through_flow() {
+  using enum WindingThroughFlow::Parameter;
   return {
       .name = {},
       .summary = "Open motors pump air through the winding: it cools to ambient directly, with speed.",

@@ -22,7 +22,7 @@ std::vector<recording::Recording> recordings_of(const Check& check) {
   return all;
 }
 
-Measured measure(const Check& check, Computations& /*computations*/) {
+Measured measure_forecast_error(const Check& check, Computations& /*computations*/) {
   const calibration::Prediction prediction = calibration::predict(*check.motor, recordings_of(check), {.ambient_C = check.air_C});
   std::string detail;
   double worst_K = std::numeric_limits<double>::quiet_NaN();
@@ -53,7 +53,7 @@ ThresholdType forecast_error() {
           .example = "at most 5 K",
           .needs = {Setting::motor, Setting::logs},
           .takes = {Setting::conditions, Setting::mapping, Setting::air},
-          .measure = measure};
+          .measure = measure_forecast_error};
 }
 
 }  // namespace heatsoak::check::thresholds

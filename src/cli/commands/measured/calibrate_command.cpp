@@ -15,7 +15,7 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-struct Options {
+struct CalibrateOptions {
   std::string motor;
   std::vector<std::string> logs;
   std::vector<std::string> holdout;
@@ -27,7 +27,7 @@ struct Options {
   bool writes_innovations = false;
 };
 
-base::ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const CalibrateOptions& options, Session& session) {
   calibration::CalibrationJob job{duty::motor_named(session.folders(), options.motor),
                                   recording::read_named_logs(options.logs, options.holdout, choice_of(options.how, session)), options.fit};
   job.written = options.writes_forecast      ? calibration::WrittenFit::forecast
@@ -59,7 +59,7 @@ Command calibrate_command() {
               "heatsoak simulate --motor maxon_ec45_flat_70w_24v --robot roboteam_twente_v2024 --duty paper_intermittent --out log.csv && "
               "heatsoak calibrate --motor maxon_ec45_flat_70w_24v log.csv --out model.toml --plot calibration.svg",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-            const auto options = std::make_shared<Options>();
+            const auto options = std::make_shared<CalibrateOptions>();
             app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file: start of the fit and prior knowledge")
                 ->required()
                 ->type_name("M");

@@ -17,7 +17,7 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-struct Options {
+struct DiagnoseOptions {
   std::string model;
   std::vector<std::string> train;
   std::vector<std::string> holdout;
@@ -25,8 +25,8 @@ struct Options {
   recording::LogChoice logs;
 };
 
-void write_folder(const Options& options, const diagnosis::DiagnosisAnswer& answer, const std::vector<recording::LogReading>& readings,
-                  Session& session) {
+void write_folder(const DiagnoseOptions& options, const diagnosis::DiagnosisAnswer& answer,
+                  const std::vector<recording::LogReading>& readings, Session& session) {
   const std::filesystem::path folder(options.out);
   session.make_folder(folder);
   std::vector<std::pair<std::string, std::string>> svg;
@@ -39,7 +39,7 @@ void write_folder(const Options& options, const diagnosis::DiagnosisAnswer& answ
   session.write(folder / "diagnosis.html", present::diagnosis_page(answer, readings, svg));
 }
 
-base::ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const DiagnoseOptions& options, Session& session) {
   const diagnosis::DiagnosisJob job{duty::motor_named(session.folders(), options.model),
                                     recording::read_named_logs(options.train, options.holdout, choice_of(options.logs, session))};
   std::shared_ptr<void> line = elapsed_line("searching for missing effects");
@@ -68,7 +68,7 @@ Command diagnose_command() {
           "heatsoak diagnose --model maxon_ec45_flat_70w_24v --train reports/soak/match_1.csv reports/soak/match_2.csv "
           "reports/soak/bench.csv --holdout reports/soak/match_3.csv --out diagnosis",
       .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-        const auto options = std::make_shared<Options>();
+        const auto options = std::make_shared<DiagnoseOptions>();
         app.add_option("--model", options->model, "motor file, best from `heatsoak calibrate`, or an id")
             ->required()
             ->type_name("MODEL.toml");

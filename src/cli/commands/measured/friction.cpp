@@ -15,7 +15,7 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-struct Options {
+struct FrictionOptions {
   std::string robot;
   std::string motor;
   std::vector<std::string> logs;
@@ -36,7 +36,7 @@ struct Input {
 
 /// Finds the motor. The robot's own motor may be missing from the data base: fits from modulation do not need it, and
 /// present::friction_remarks() reports it.
-void find_motor(const Options& options, const input::DataFolders& folders, Input& input) {
+void find_motor(const FrictionOptions& options, const input::DataFolders& folders, Input& input) {
   input.motor_id = options.motor.empty() ? input.job.robot.drive.motor : options.motor;
   try {
     input.job.motor = duty::motor_named(folders, input.motor_id).nominal;
@@ -47,7 +47,7 @@ void find_motor(const Options& options, const input::DataFolders& folders, Input
   }
 }
 
-Input input_of(const Options& options, const Session& session) {
+Input input_of(const FrictionOptions& options, const Session& session) {
   const input::DataFolders folders = session.folders();
   Input input{.job = {.robot = duty::robot_named(folders, options.robot), .logs = options.logs, .folders = folders, .map = options.map},
               .motor_id = {}};
@@ -64,7 +64,7 @@ Input input_of(const Options& options, const Session& session) {
   return input;
 }
 
-void draw(const Options& options, const robot::Robot& robot, const friction::SteadyFriction& found, present::Document& document,
+void draw(const FrictionOptions& options, const robot::Robot& robot, const friction::SteadyFriction& found, present::Document& document,
           Session& session) {
   const friction::FrictionFit& fit = found.fit;
   const std::string of_headings = fmt::format("{} legs on {} headings", found.steady.parts.size(), fit.headings);
@@ -81,7 +81,7 @@ void draw(const Options& options, const robot::Robot& robot, const friction::Ste
   document.add_file(second);
 }
 
-void write_robot_file(const Options& options, const friction::FrictionRun& run, present::Document& document, Session& session) {
+void write_robot_file(const FrictionOptions& options, const friction::FrictionRun& run, present::Document& document, Session& session) {
   if (!options.out.empty()) {
     session.write(options.out, run.robot_text);
     for (const friction::WrittenAsZero& each : run.notes) {
@@ -91,7 +91,7 @@ void write_robot_file(const Options& options, const friction::FrictionRun& run, 
   }
 }
 
-base::ExitCode steady_state(const Options& options, const Input& input, Session& session) {
+base::ExitCode steady_state(const FrictionOptions& options, const Input& input, Session& session) {
   const robot::Robot& robot = input.job.robot;
   const friction::SteadyFriction found = friction::steady_friction(input.job, progress_bar("reading"));
   const present::FrictionRemarks remarks =
@@ -109,7 +109,7 @@ base::ExitCode steady_state(const Options& options, const Input& input, Session&
   return base::ExitCode::done;
 }
 
-base::ExitCode by_roll_out(const Options& options, const Input& input, Session& session) {
+base::ExitCode by_roll_out(const FrictionOptions& options, const Input& input, Session& session) {
   const friction::RollOutFriction found = friction::roll_out_friction(input.job, progress_bar("reading"));
   const present::FrictionRemarks remarks = present::friction_remarks(input.motor_id, input.job.motor.has_value(), found, {});
   present::Document document = present::roll_out_document(input.job.robot, found.result, found.drive, options.logs.size());
@@ -120,7 +120,7 @@ base::ExitCode by_roll_out(const Options& options, const Input& input, Session& 
   return base::ExitCode::done;
 }
 
-base::ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const FrictionOptions& options, Session& session) {
   if (options.method == "roll_out" && !options.plot.empty()) {
     throw base::Failure(base::ExitCode::bad_input, "--plot draws the steady-state test; a roll-out has no picture");
   }
@@ -142,7 +142,7 @@ Command friction() {
               "heatsoak friction --robot roboteam_twente_v2024 reports/friction_test/steady_state_test.csv --out my_robot.toml "
               "--plot friction.svg",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-            const auto options = std::make_shared<Options>();
+            const auto options = std::make_shared<FrictionOptions>();
             app.add_option("logs", options->logs,
                            "logs of the drives: wheel_speed_rad_per_s_1 …, wheel_pwm_ratio_1 … with battery_V (or "
                            "wheel_current_A_1 …), heading_rad or another signal of the direction")

@@ -17,7 +17,7 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-struct Options {
+struct LogOptions {
   std::string action;
   std::vector<std::string> files;
   std::string map;
@@ -25,7 +25,7 @@ struct Options {
   std::string out;
 };
 
-void check(const Options& options) {
+void check(const LogOptions& options) {
   const bool converts = options.action == "convert";
   if (converts && (options.files.size() != 1 || options.out.empty() || !options.plot.empty())) {
     throw base::Failure(base::ExitCode::bad_input, "log convert: expected one FILE and --out FILE.csv");
@@ -39,7 +39,7 @@ void check(const Options& options) {
   }
 }
 
-base::ExitCode inspect(const Options& options, Session& session) {
+base::ExitCode inspect(const LogOptions& options, Session& session) {
   base::ExitCode code = base::ExitCode::done;
   present::Document document;
   std::vector<present::Json> logs;
@@ -69,7 +69,7 @@ base::ExitCode inspect(const Options& options, Session& session) {
   return code;
 }
 
-base::ExitCode convert(const Options& options, Session& session) {
+base::ExitCode convert(const LogOptions& options, Session& session) {
   const std::filesystem::path file = input::log_named(session.folders(), options.files.front());
   recording::RecordingReport report;
   const recording::Recording recording = recording::read_recording(file, recording::mapping_for(file, options.map), report);
@@ -82,7 +82,7 @@ base::ExitCode convert(const Options& options, Session& session) {
   return base::ExitCode::done;
 }
 
-base::ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const LogOptions& options, Session& session) {
   check(options);
   return options.action == "inspect" ? inspect(options, session) : convert(options, session);
 }
@@ -98,7 +98,7 @@ Command log_command() {
           "heatsoak simulate --motor maxon_ec45_flat_70w_24v --robot roboteam_twente_v2024 --duty paper_intermittent --out log.csv && "
           "heatsoak log inspect log.csv --plot log.svg",
       .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-        const auto options = std::make_shared<Options>();
+        const auto options = std::make_shared<LogOptions>();
         app.add_option("action", options->action, "inspect or convert")->required()->check(CLI::IsMember({"inspect", "convert"}));
         app.add_option("file", options->files, "logs: canonical CSV (time_s, winding_C, current_A, …), or any table with a mapping")
             ->required()

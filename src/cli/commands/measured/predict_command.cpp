@@ -13,14 +13,14 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-struct Options {
+struct PredictOptions {
   std::string model;
   std::vector<std::string> logs;
   std::string plot;
   recording::LogChoice how;
 };
 
-base::ExitCode run(const Options& options, Session& session) {
+base::ExitCode run(const PredictOptions& options, Session& session) {
   const calibration::PredictionJob job{duty::motor_named(session.folders(), options.model),
                                        recording::read_named_logs({}, options.logs, choice_of(options.how, session))};
   const calibration::PredictionAnswer answer = calibration::run_prediction(job);
@@ -44,7 +44,7 @@ Command predict_command() {
           "and coverage",
       .example = "heatsoak predict --model maxon_ec45_flat_70w_24v reports/soak/match_1.csv reports/soak/bench.csv --plot prediction.svg",
       .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-        const auto options = std::make_shared<Options>();
+        const auto options = std::make_shared<PredictOptions>();
         app.add_option("--model", options->model, "motor file, best from `heatsoak calibrate`, or an id (see `heatsoak list motors`)")
             ->required()
             ->type_name("FILE");
