@@ -10,7 +10,7 @@ namespace heatsoak::cli {
 
 void add_motor_options(CLI::App& app, GuardOptions& options) {
   app.add_option("--motor", options.motor, "id (see `heatsoak list motors`) or file")->type_name("M");
-  app.add_option("--model", options.model, "a motor file that `calibrate` or `diagnose` wrote, in its place")->type_name("FILE.toml");
+  app.add_option("--model", options.model, "motor file that `calibrate` or `diagnose` wrote, in place of --motor")->type_name("FILE.toml");
   add_conditions(app, options.conditions);
 }
 
@@ -36,11 +36,11 @@ void add_derate_options(CLI::App& app, derate::DerateOptions& options) {
       ->check(CLI::Range(std::size_t{64}, std::size_t{1} << 20U))
       ->capture_default_str();
   app.add_option("--samples", guarantee.samples,
-                 "motors drawn to find the safety factor on heat, and as many fresh ones to show the confidence")
+                 "number of motors drawn to find the safety factor on heat; as many fresh ones show the confidence")
       ->check(whole_number(100'000))
       ->capture_default_str();
-  add_seed(app, guarantee.seed, "of the draws; same seed, same bytes");
-  app.add_option("--threads", guarantee.threads, "0: all cores; the result does not depend on it")
+  add_seed(app, guarantee.seed, "seed of the draws; the same seed gives the same bytes");
+  app.add_option("--threads", guarantee.threads, "number of threads, 0 for all cores; the result does not depend on it")
       ->check(whole_number(1024))
       ->capture_default_str();
 }

@@ -36,7 +36,7 @@ void require_all(const robot::Robot& robot, const motor::MotorValues& motor) {
     }
   }
   if (!motor.rotor_inertia_kg_m2) {
-    diagnostics.add({}, "figures.rotor_inertia", "of the motor is missing: without it no acceleration of a wheel can be calculated");
+    diagnostics.add({}, "figures.rotor_inertia", "is missing in the motor file: it is needed for the acceleration of a wheel");
   }
   diagnostics.throw_if_any();
 }

@@ -23,7 +23,7 @@ void add_settings(Document& document, std::string title, const std::vector<check
 }
 
 std::string example_of(const check::ThresholdType& type) {
-  std::string text = "[[check]]\nname = \"what this check is for\"\n";
+  std::string text = "[[check]]\nname = \"purpose of this check\"\n";
   for (const check::Setting setting : type.needs) {
     const std::string_view key = setting_text(setting).key;
     text += setting == check::Setting::temperature                                  ? fmt::format("{} = \"100 degC\"\n", key)
