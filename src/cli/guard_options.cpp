@@ -23,9 +23,8 @@ void add_derate_options(CLI::App& app, derate::DerateOptions& options) {
                 "coldest air; a sensor that reads less is treated as faulty; 0degC unless given"});
   add_quantity(app, "--approach", options.approach_s,
                {"approach", "s", base::Range::between(0.01, 100.0),
-                "time in which the winding approaches its limit under full use: a shorter time allows higher peaks while it is cold, a "
-                "longer one leaves more current "
-                "later in a long load, because the safety factor on heat falls; a quarter of the winding's time constant unless given"});
+                "time in which the winding approaches its limit under full use; a shorter time allows higher peaks of a cold winding, a "
+                "longer one more current late in a long load; a quarter of the winding's time constant unless given"});
   add_quantity(app, "--confidence", guarantee.confidence,
                {"confidence", "", base::Range::between(0.5, 0.999),
                 "least share of motors that keep their limits, shown with 95 % certainty; 0.95 unless given"});

@@ -65,8 +65,8 @@ Document verdict_description() {
   add_labelled(table, "undecided", undecided_meaning());
   document.tables.push_back(std::move(table));
   document.add_note(Severity::note,
-                    "With --closed-loop: fail means that the first game or more than half of the games exceed a limit; infeasible, that a "
-                    "game was not driven; marginal, that any other game exceeds a limit.");
+                    "With --closed-loop: fail if the first game or more than half of the games exceed a limit; infeasible if a game was "
+                    "not driven; marginal if any other game exceeds a limit.");
   return document;
 }
 

@@ -62,7 +62,7 @@ base::ExitCode run(const Options& options, Session& session) {
 
 Command check_command() {
   return {.name = {},
-          .summary = "Compares what is computed with limits of your own, for CI; exit 1 if one does not hold or cannot be evaluated",
+          .summary = "Compares computed values with your own limits, for CI; exit 1 if a limit does not hold or cannot be evaluated",
           .example = "heatsoak check reports/check/twente.check.toml --junit check.xml",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<Options>();

@@ -90,7 +90,7 @@ base::ExitCode run(const Options& options, Session& session) {
 
 Command duty_command() {
   return {.name = {},
-          .summary = "Generates a duty (a match with its phases and where heat comes from), or turns a recorded game into one",
+          .summary = "Generates a duty (a match with its phases and sources of heat), or turns a recorded game into a duty",
           .example = "heatsoak duty --duty division_a_match --robot roboteam_twente_v2024 --seed 1 --out match.csv",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<Options>();

@@ -102,7 +102,9 @@ base::ExitCode run(const Options& options, Session& session) {
 Command evaluate_command() {
   return {
       .name = {},
-      .summary = "Ranks motors on one duty of one robot: peak temperatures with uncertainty, what limits each; exit 1 if one of them fails",
+      .summary =
+          "Ranks motors on one duty of one robot: peak temperatures with uncertainty, and the limit that each motor reaches first; exit 1 "
+          "if a motor fails",
       .example =
           "heatsoak evaluate --robot roboteam_twente_v2024 --duty division_a_match --motors "
           "maxon_ecx_flat_42m_24v,nanotec_df45l024048_a2 --plot verdict.svg",
@@ -132,9 +134,9 @@ Command evaluate_command() {
         app.add_option("--games", options->closed_loop.games, "number of games with --closed-loop, with successive seeds")
             ->check(CLI::Range(1, 1000))
             ->capture_default_str();
-        app.add_flag(
-            "--suggest", options->job.suggests,
-            "list the changes of the robot that cool its motor most also if it passes: acceleration, jerk, speed, mass, wheels, gear");
+        app.add_flag("--suggest", options->job.suggests,
+                     "list the changes of the robot that cool its motor most, even if the motor passes: acceleration, jerk, speed, mass, "
+                     "wheels, gear");
         app.add_option("--fail-on", options->fail_on, "exit 1 if a motor's verdict is this or worse: marginal, fail, infeasible")
             ->check(CLI::IsMember(kFailOn))
             ->type_name("VERDICT")

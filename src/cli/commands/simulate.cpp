@@ -135,7 +135,8 @@ base::ExitCode run(const Options& options, Session& session) {
 
 Command simulate() {
   return {.name = {},
-          .summary = "One match in a closed loop, or one motor under a prescribed load: every signal over time, and where the energy goes",
+          .summary =
+              "Simulates one match in a closed loop, or one motor under a prescribed load: every signal over time, and the energy balance",
           .example =
               "heatsoak simulate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --duty division_a_match --out trace.csv "
               "--plot trace.svg\n"

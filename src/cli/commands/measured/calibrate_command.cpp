@@ -68,8 +68,8 @@ Command calibrate_command() {
             app.add_option("--out", options->out, "motor file of the calibrated motor")->required()->type_name("FILE.toml");
             CLI::Option* const forecast = app.add_flag(
                 "--forecast", options->writes_forecast,
-                "always write the model that predicts left-out runs best, even if it needs effects that no diagnosis named; default: only "
-                "if it predicts left-out runs, or quarters of one run, better than the innovations fit, by 5 % and by 0.1 K");
+                "always write the model that predicts left-out runs best, even if it contains effects that no diagnosis named; default: "
+                "only if its error on left-out runs, or quarters of one run, is 5 % and 0.1 K below that of the innovations fit");
             app.add_flag("--innovations", options->writes_innovations,
                          "always write the fit that explains the response within seconds of a load change, for `heatsoak diagnose`")
                 ->excludes(forecast);

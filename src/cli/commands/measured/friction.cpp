@@ -136,8 +136,8 @@ base::ExitCode run(const Options& options, Session& session) {
 Command friction() {
   return {.name = {},
           .summary =
-              "Damping and friction of every wheel over the direction of travel, from logs of a steady-state test; exit 3 if nothing is "
-              "identifiable",
+              "Determines damping and friction of every wheel over the direction of travel, from logs of a steady-state test; exit 3 if "
+              "nothing is identifiable",
           .example =
               "heatsoak friction --robot roboteam_twente_v2024 reports/friction_test/steady_state_test.csv --out my_robot.toml "
               "--plot friction.svg",
