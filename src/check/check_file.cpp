@@ -307,7 +307,7 @@ class CheckReader {
         const bool comes_with_robot = (check_.robot && check_.robot->drive.motor != "none") || check_.unreadable.contains(Setting::robot);
         const bool is_there = has(text.key) || (setting == Setting::motor && comes_with_robot);
         if (!is_there && missing.insert(setting).second) {
-          table_.problem("limits", fmt::format("{} needs '{}' in this check: {}", limit.type->name, text.key, text.meaning));
+          table_.problem("limits", fmt::format("{} needs '{}' in this check ({})", limit.type->name, text.key, text.meaning));
         }
       }
     }
