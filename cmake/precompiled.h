@@ -59,8 +59,8 @@ extern template class nlohmann::basic_json<nlohmann::ordered_map>;
 extern template class nlohmann::detail::serializer<nlohmann::json>;
 extern template class nlohmann::detail::serializer<nlohmann::ordered_json>;
 
-// Members of std::regex that are not inline take seconds to compile in every file that uses one.
-#ifdef __GLIBCXX__
+// Members of std::regex that are not inline take seconds to compile in every file that uses one. The internal names are those of GCC 12.
+#if defined(__GLIBCXX__) && _GLIBCXX_RELEASE == 12
 extern template class std::basic_regex<char>;
 extern template class std::__detail::_Scanner<char>;
 extern template class std::__detail::_StateSeq<std::regex_traits<char>>;

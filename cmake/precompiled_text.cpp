@@ -6,7 +6,7 @@ template class nlohmann::basic_json<nlohmann::ordered_map>;
 template class nlohmann::detail::serializer<nlohmann::json>;
 template class nlohmann::detail::serializer<nlohmann::ordered_json>;
 
-#ifdef __GLIBCXX__
+#if defined(__GLIBCXX__) && _GLIBCXX_RELEASE == 12
 template class std::basic_regex<char>;
 template class std::__detail::_Scanner<char>;
 template class std::__detail::_StateSeq<std::regex_traits<char>>;

@@ -98,7 +98,7 @@ Answer loss_hidden(const Look& seen) {
           "10 minutes at no load and full speed", 15.0};
 }
 Answer not_excited() {
-  return {"the runs do not excite it: the measured temperatures hardly change when these parameters change together",
+  return {"the runs do not excite these parameters: the measured temperatures hardly change when they change together",
           "one run from cold with a constant current up to the steady state, then the cool-down", 90.0};
 }
 Answer speed_unlogged() {

@@ -163,16 +163,17 @@ class CheckReader {
 
   void read_numbers() {
     constexpr double kMostExact = 9007199254740992.0;
-    if (const auto samples = whole(table_, {"samples", "", base::Range::between(1.0, 1e6), "draws of every declared tolerance"})) {
+    if (const auto samples =
+            whole(table_, {"samples", "", base::Range::between(1.0, 1e6), "number of draws of every declared tolerance"})) {
       check_.samples = static_cast<int>(*samples);
     }
-    if (const auto seed = whole(table_, {"seed", "", base::Range::between(0.0, kMostExact), "of draws and games"})) {
+    if (const auto seed = whole(table_, {"seed", "", base::Range::between(0.0, kMostExact), "seed of draws and games"})) {
       check_.seed = static_cast<std::uint64_t>(*seed);
     }
-    check_.temperature_C =
-        table_.quantity({"temperature", "degC", base::Range::between(-60.0, 1000.0), "above which time is counted"}, input::Need::optional);
-    check_.air_C =
-        table_.quantity({"air", "degC", base::Range::between(-60.0, 200.0), "of a log that has no air temperature"}, input::Need::optional);
+    check_.temperature_C = table_.quantity(
+        {"temperature", "degC", base::Range::between(-60.0, 1000.0), "temperature above which time is counted"}, input::Need::optional);
+    check_.air_C = table_.quantity({"air", "degC", base::Range::between(-60.0, 200.0), "air temperature of a log that has none"},
+                                   input::Need::optional);
   }
 
   void read_artefacts() {
@@ -224,14 +225,14 @@ class CheckReader {
     take({"ambient", "degC", base::Range::between(-40.0, 120.0), "hottest air at the motor"}, options.hottest_ambient_C);
     take({"coldest", "degC", base::Range::between(-60.0, 120.0), "coldest air"}, options.coldest_ambient_C);
     options.approach_s = table->quantity(
-        {"approach", "s", base::Range::between(0.01, 100.0), "in which the winding may approach its limit"}, input::Need::optional);
-    take({"period", "s", base::Range::between(1e-3, 1.0), "between two calls of the firmware"}, options.period_s);
+        {"approach", "s", base::Range::between(0.01, 100.0), "time in which the winding may approach its limit"}, input::Need::optional);
+    take({"period", "s", base::Range::between(1e-3, 1.0), "time between two calls of the firmware"}, options.period_s);
     take({"confidence", "", base::Range::between(0.5, 0.999), "share of motors that keep their limits"}, options.guarantee.confidence);
     if (const auto samples =
-            whole(*table, {"samples", "", base::Range::between(1.0, 1e5), "motors drawn to find the safety factor on heat"})) {
+            whole(*table, {"samples", "", base::Range::between(1.0, 1e5), "number of motors drawn to find the safety factor on heat"})) {
       options.guarantee.samples = static_cast<int>(*samples);
     }
-    if (const auto seed = whole(*table, {"seed", "", base::Range::between(0.0, 9007199254740992.0), "of the draws"})) {
+    if (const auto seed = whole(*table, {"seed", "", base::Range::between(0.0, 9007199254740992.0), "seed of the draws"})) {
       options.guarantee.seed = static_cast<std::uint64_t>(*seed);
     }
     options.sensor = sensor_of(*table);
@@ -306,7 +307,7 @@ class CheckReader {
         const bool comes_with_robot = (check_.robot && check_.robot->drive.motor != "none") || check_.unreadable.contains(Setting::robot);
         const bool is_there = has(text.key) || (setting == Setting::motor && comes_with_robot);
         if (!is_there && missing.insert(setting).second) {
-          table_.problem("limits", fmt::format("{} needs '{}' in this check: {}", limit.type->name, text.key, text.meaning));
+          table_.problem("limits", fmt::format("{} needs '{}' in this check ({})", limit.type->name, text.key, text.meaning));
         }
       }
     }

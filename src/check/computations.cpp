@@ -91,9 +91,8 @@ const GuardedDrive& Computations::guarded_drive(const Check& check) {
                                     check.duty->shape));
   }
   if (!check.motor->nominal.rotor_inertia_kg_m2) {
-    throw base::Failure(
-        base::ExitCode::bad_input,
-        fmt::format("{} has no rotor_inertia: without it no acceleration of a wheel can be calculated", check.motor->file.string()));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("{} has no rotor_inertia, which is needed for the acceleration of a wheel",
+                                                               check.motor->file.string()));
   }
   derate::DerateOptions options = check.derate;
   options.hottest_ambient_C = std::max(options.hottest_ambient_C, check.duty->ambient_C.value);

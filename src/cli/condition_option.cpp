@@ -19,8 +19,8 @@ CLI::Option* add_conditions(CLI::App& app, std::map<std::string, std::string>& c
               conditions[each.substr(0, equals)] = each.substr(equals + 1);
             }
           },
-          "condition that holds, such as cooling=fan, for effects that were found only under it; if not given, their heat counts, but not "
-          "their cooling")
+          "condition that holds, such as cooling=fan, for effects that were found only under this condition; unless given, such effects "
+          "may heat, but not cool")
       ->type_name("KEY=VALUE...");
 }
 

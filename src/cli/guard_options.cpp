@@ -10,7 +10,7 @@ namespace heatsoak::cli {
 
 void add_motor_options(CLI::App& app, GuardOptions& options) {
   app.add_option("--motor", options.motor, "id (see `heatsoak list motors`) or file")->type_name("M");
-  app.add_option("--model", options.model, "a motor file that `calibrate` or `diagnose` wrote, in its place")->type_name("FILE.toml");
+  app.add_option("--model", options.model, "motor file that `calibrate` or `diagnose` wrote, in place of --motor")->type_name("FILE.toml");
   add_conditions(app, options.conditions);
 }
 
@@ -23,9 +23,8 @@ void add_derate_options(CLI::App& app, derate::DerateOptions& options) {
                 "coldest air; a sensor that reads less is treated as faulty; 0degC unless given"});
   add_quantity(app, "--approach", options.approach_s,
                {"approach", "s", base::Range::between(0.01, 100.0),
-                "time in which the winding approaches its limit under full use: a shorter time allows higher peaks while it is cold, a "
-                "longer one leaves more current "
-                "later in a long load, because the safety factor on heat falls; a quarter of the winding's time constant unless given"});
+                "time in which the winding approaches its limit under full use; a shorter time allows higher peaks of a cold winding, a "
+                "longer one more current late in a long load; a quarter of the winding's time constant unless given"});
   add_quantity(app, "--confidence", guarantee.confidence,
                {"confidence", "", base::Range::between(0.5, 0.999),
                 "least share of motors that keep their limits, shown with 95 % certainty; 0.95 unless given"});
@@ -36,11 +35,11 @@ void add_derate_options(CLI::App& app, derate::DerateOptions& options) {
       ->check(CLI::Range(std::size_t{64}, std::size_t{1} << 20U))
       ->capture_default_str();
   app.add_option("--samples", guarantee.samples,
-                 "motors drawn to find the safety factor on heat, and as many fresh ones to show the confidence")
+                 "number of motors drawn to find the safety factor on heat; as many fresh ones show the confidence")
       ->check(whole_number(100'000))
       ->capture_default_str();
-  add_seed(app, guarantee.seed, "of the draws; same seed, same bytes");
-  app.add_option("--threads", guarantee.threads, "0: all cores; the result does not depend on it")
+  add_seed(app, guarantee.seed, "seed of the draws; the same seed gives the same bytes");
+  app.add_option("--threads", guarantee.threads, "number of threads, 0 for all cores; the result does not depend on it")
       ->check(whole_number(1024))
       ->capture_default_str();
 }

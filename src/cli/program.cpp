@@ -215,7 +215,7 @@ void Session::add_answer_options(CLI::App& app) {
     return is_output(word) ? "" : fmt::format("{} is not the name of a file; expected one, or - for stdout", word);
   };
   app.add_flag("--explain", explains_, "show every note, not only the three most important ones");
-  app.add_flag("--quiet", is_quiet_, "show the first lines alone, the answer in short; a list shows only its names");
+  app.add_flag("--quiet", is_quiet_, "show only the first lines, which contain the answer; a list shows only its names");
   app.add_option("--report", report_,
                  "write the whole answer as a document, with every column and note, as Markdown or HTML by the file's ending; - is stdout, "
                  "in place of the text")

@@ -24,12 +24,13 @@ void add_parameters(CLI::App& app, derate::SensorOptions& sensor, CLI::Option* n
 
 void add_sensor_options(CLI::App& app, SensorFlags& flags) {
   add_parameters(app, flags.thermistor,
-                 app.add_option("--thermistor", flags.thermistor_node, "the guard reads a thermistor at the stator or at the winding")
+                 app.add_option("--thermistor", flags.thermistor_node, "node with a thermistor that the guard reads")
                      ->check(CLI::IsMember({"stator", "winding"}))
                      ->type_name("NODE"));
-  add_parameters(app, flags.resistance,
-                 app.add_flag("--winding-resistance", flags.reads_resistance,
-                              "the guard reads the winding's temperature from its resistance: voltage and current at the terminals"));
+  add_parameters(
+      app, flags.resistance,
+      app.add_flag("--winding-resistance", flags.reads_resistance,
+                   "let the guard find the winding's temperature from its resistance, with voltage and current at the terminals"));
 }
 
 std::optional<derate::SensorOptions> sensor_options(const SensorFlags& flags) {

@@ -85,7 +85,7 @@ void check_words(const CLI::App& app, std::span<const char* const> words) {
   for (const std::string_view word : words) {
     const std::string name(word.substr(0, word.find('=')));
     if (word.empty() || word.size() == name.size() + 1) {
-      unknown.push_back(fmt::format("the value of {} is empty; check whether a shell variable is not set", word.empty() ? before : name));
+      unknown.push_back(fmt::format("the value of {} is empty; check whether a shell variable is unset", word.empty() ? before : name));
       continue;
     }
     before = word;

@@ -8,7 +8,7 @@
 namespace heatsoak::cli {
 
 Topic verdict_topic() {
-  return {"verdict", "what pass, marginal, fail, infeasible and undecided mean", present::verdict_description, present::verdict_json};
+  return {"verdict", "meaning of pass, marginal, fail, infeasible and undecided", present::verdict_description, present::verdict_json};
 }
 
 }  // namespace heatsoak::cli

@@ -26,7 +26,7 @@ bool is_contact(const thermal::Network& network, const thermal::EffectInPlace& e
 const std::vector<RunDeviationType>& all_run_deviations() {
   static const std::vector<RunDeviationType> all{
       {.name = "heat_share",
-       .size = {"deviation", "", base::Range::between(-0.9, 3.0), "deviation of the heat input from the logged value, as a fraction of it"},
+       .size = {"deviation", "", base::Range::between(-0.9, 3.0), "relative deviation of the heat input from the logged value"},
        .usual = 0.1,
        .node = "winding",
        .summary = "The heat input differs from the log: another phase carries the current, or the motor driver takes another share.",
@@ -38,7 +38,7 @@ const std::vector<RunDeviationType>& all_run_deviations() {
        .concerns = turns_input_into_heat,
        .part_ratio = [](double d_share) { return d_share / std::max(0.01, 1.0 + d_share); }},
       {.name = "hindered_cooling",
-       .size = {"resistance_rise", "", base::Range::between(0.0, 20.0), "increase of the resistance to ambient, as a fraction of it"},
+       .size = {"resistance_rise", "", base::Range::between(0.0, 20.0), "relative increase of the resistance to ambient"},
        .usual = 0.3,
        .node = "stator",
        .summary = "Less heat leaves than the model predicts: a cover, a loose mount, or a missing fan or draught.",
@@ -49,8 +49,7 @@ const std::vector<RunDeviationType>& all_run_deviations() {
        .concerns = is_resistance_to_ambient,
        .part_ratio = [](double d_share) { return -d_share; }},
       {.name = "changed_contact",
-       .size = {"resistance_change", "", base::Range::between(-0.9, 20.0),
-                "change of the resistance between winding and stator, as a fraction of it"},
+       .size = {"resistance_change", "", base::Range::between(-0.9, 20.0), "relative change of the resistance between winding and stator"},
        .usual = 0.2,
        .node = "winding",
        .summary =

@@ -36,7 +36,7 @@ void require_all(const robot::Robot& robot, const motor::MotorValues& motor) {
     }
   }
   if (!motor.rotor_inertia_kg_m2) {
-    diagnostics.add({}, "figures.rotor_inertia", "of the motor is missing: without it no acceleration of a wheel can be calculated");
+    diagnostics.add({}, "figures.rotor_inertia", "is missing in the motor file: it is needed for the acceleration of a wheel");
   }
   diagnostics.throw_if_any();
 }
@@ -208,10 +208,9 @@ robot_core::Config make_core_config(const robot::Robot& robot, const motor::Moto
   with_cold.coldest_ambient_C = derating.options.coldest_ambient_C;
   const double periods = derating.options.period_s / options.period_s;
   if (std::round(periods) < 1.0 || std::abs(periods - std::round(periods)) > 1e-3 * periods) {
-    throw base::Failure(
-        base::ExitCode::bad_input,
-        fmt::format("the guard's period of {:.6g} ms is not a whole number of control periods of {:.6g} ms: choose one that is",
-                    1e3 * derating.options.period_s, 1e3 * options.period_s));
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("the guard's period of {:.6g} ms is not a whole number of control periods "
+                                                               "of {:.6g} ms: choose a multiple of the control period",
+                                                               1e3 * derating.options.period_s, 1e3 * options.period_s));
   }
   robot_core::Config config = make_core_config(robot, motor.nominal, with_cold);
   config.guard = &guard.model();
@@ -231,9 +230,9 @@ void require_driving_current(const robot::Robot& robot, const motor::Motor& moto
   }
   throw base::Failure(
       base::ExitCode::bad_input,
-      fmt::format("{} in {}: one full stop from {:.3g} m/s at {:.3g} m/s2 heats the winding by {:.0f} K; expected less than the "
-                  "{:.0f} K between air of {:.0f} degC and the limit of {:.0f} degC, or the thermal guard could never let the "
-                  "robot drive; lower limits.speed or limits.braking in the robot file, or choose a stronger motor or a gear",
+      fmt::format("{} in {}: one full stop from {:.3g} m/s at {:.3g} m/s2 heats the winding by {:.0f} K; expected less than the {:.0f} K "
+                  "between air of {:.0f} degC and the limit of {:.0f} degC. Otherwise the thermal guard never lets the robot drive. Lower "
+                  "limits.speed or limits.braking in the robot file, or choose a stronger motor or a gear",
                   motor.id, robot.id, robot.limits.speed_m_per_s.value(), robot.limits.braking_m_per_s2.value(), reserve_K,
                   limit_C - hottest_C, hottest_C, limit_C));
 }

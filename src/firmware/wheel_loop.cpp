@@ -61,9 +61,8 @@ WheelLoopGains wheel_loop_gains(const WheelLoopPlant& plant, double period_s) {
   if (period_s > gains.longest_period_s) {
     throw base::Failure(
         base::ExitCode::bad_input,
-        fmt::format("a control period of {:.3g} ms is too long for the wheel-speed loop of this robot: expected at most {:.3g} ms; "
-                    "`generate core --period` accepts a shorter one, the simulation has 1 ms; a motor with more inertia at the wheel "
-                    "allows a longer one",
+        fmt::format("a control period of {:.3g} ms is too long for the wheel-speed loop of this robot: expected at most {:.3g} ms. Shorten "
+                    "it with `generate core --period` (the simulation has 1 ms), or choose a motor with more inertia at the wheel",
                     1e3 * period_s, 1e3 * gains.longest_period_s));
   }
   const double by_delay = 2.0 * kDamping * kDelayShare / (kDelay_periods * period_s) * loaded_s - 1.0;

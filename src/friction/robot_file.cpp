@@ -100,6 +100,18 @@ Lines::iterator end_of_friction(Lines& lines, const robot::Robot& robot) {
   return end;
 }
 
+/// Returns the end of the entry that begins at `first`; its value in braces may continue over several lines. Returns `first` if the value
+/// is not in braces.
+Lines::iterator end_of_entry(Lines& lines, Lines::iterator first) {
+  static const std::regex kOpening(R"(=\s*\{)");
+  static const std::regex kClosing(R"(\}\s*(#.*)?$)");
+  if (!std::regex_search(*first, kOpening)) {
+    return first;
+  }
+  const auto last = std::find_if(first, lines.end(), [](const std::string& line) { return std::regex_search(line, kClosing); });
+  return last == lines.end() ? first : last + 1;
+}
+
 void set_damping(Lines& lines, const robot::Robot& robot, const std::string& value) {
   const std::string line = "wheel_damping = " + value;
   const auto place = robot.parameters.find("friction.wheel_damping");
@@ -107,11 +119,13 @@ void set_damping(Lines& lines, const robot::Robot& robot, const std::string& val
     lines.insert(end_of_friction(lines, robot), line);
     return;
   }
-  std::string& old = lines[static_cast<std::size_t>(place->second.at.line - 1)];
-  if (!std::regex_search(old, std::regex(R"(^\s*wheel_damping\s*=\s*\{.*\}\s*(#.*)?$)"))) {
+  const auto first = lines.begin() + (place->second.at.line - 1);
+  const auto end = end_of_entry(lines, first);
+  if (end == first || !std::regex_search(*first, std::regex(R"(^\s*wheel_damping\s*=)"))) {
     throw other_form(robot, "friction");
   }
-  old = line;
+  *first = line;
+  lines.erase(first + 1, end);
 }
 
 /// Mean of the wheels; the interval covers the intervals of all wheels.
@@ -200,8 +214,12 @@ std::string with_measured_friction(const std::string& text, const robot::Robot& 
     throw other_form(robot, "friction.heading");
   }
   const auto old_rotation = robot.parameters.find("friction.heading.rotation");
-  const std::string rotation_line =
-      old_rotation == robot.parameters.end() ? "" : lines[static_cast<std::size_t>(old_rotation->second.at.line - 1)];
+  Lines rotation_lines;
+  if (old_rotation != robot.parameters.end()) {
+    const auto first = lines.begin() + (old_rotation->second.at.line - 1);
+    const auto end = end_of_entry(lines, first);
+    rotation_lines.assign(first, end == first ? first + 1 : end);
+  }
   const std::string conversion =
       fmt::format("as voltage at the driver, / {:.4g} ohm x {:.4g} mN m/A{}", drive.resistance_ohm, 1e3 * drive.torque_constant_Nm_per_A,
                   drive.gear_ratio == 1.0 ? "" : fmt::format(" x {:.4g} of the gear", drive.gear_ratio * drive.gear_efficiency));
@@ -228,8 +246,8 @@ std::string with_measured_friction(const std::string& text, const robot::Robot& 
   if (const Estimate all = over_wheels(rotations); std::isfinite(all.value)) {
     table.push_back("rotation = " +
                     parameter(all, 1e3, "mN m", 0.0, source, "mean of the wheels; " + conversion + ", less the motor's drag"));
-  } else if (!rotation_line.empty()) {
-    table.push_back(rotation_line);
+  } else {
+    table.insert(table.end(), rotation_lines.begin(), rotation_lines.end());
   }
   for (const WheelFriction& wheel : fit.wheels) {
     const Lines more = wheel_table(wheel, drive, conversion, source);

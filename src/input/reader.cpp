@@ -127,7 +127,7 @@ const Value* Reader::find(const base::ParameterSpec& spec, Need need) {
   asked_.insert(std::string(spec.key));
   const Value* value = table_->find(spec.key);
   if (!value && need == Need::required) {
-    problem(spec.key, fmt::format("is missing: {}", spec.meaning));
+    problem(spec.key, fmt::format("is missing ({})", spec.meaning));
   }
   return value;
 }

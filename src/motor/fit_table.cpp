@@ -73,7 +73,8 @@ std::optional<ForecastBand> read_band(input::Reader& table) {
   const auto heat = share("forecast_heat_factor", "standard deviation of the logarithm of a factor on all heat of a run");
   const auto time_s =
       table.quantity({"forecast_time_scale", "s", base::Range::positive(), "correlation time of the unknown heat"}, input::Need::optional);
-  const auto width = table.quantity({"forecast_width", "", base::Range::between(0.01, 100.0), "factor on the band"}, input::Need::optional);
+  const auto width =
+      table.quantity({"forecast_width", "", base::Range::between(0.01, 100.0), "factor on the width of the band"}, input::Need::optional);
   if (!winding || !stator || !heat || !time_s || !width) {
     return std::nullopt;
   }
@@ -95,7 +96,7 @@ TrainingRange read_training(input::Reader& table) {
   }
   for (const RangeKey& each : kRangeKeys) {
     const std::vector<double> ends = table.quantities(
-        {each.key, each.unit, base::Range::between(-kLargestInput, kLargestInput), "lowest and highest of the fitted runs"},
+        {each.key, each.unit, base::Range::between(-kLargestInput, kLargestInput), "lowest and highest value in the fitted runs"},
         input::Need::optional);
     if (ends.size() == 2 && ends[0] <= ends[1]) {
       range.inputs.emplace(each.channel, InputRange{ends[0], ends[1]});
@@ -150,8 +151,8 @@ MotorFit read_fit(input::Reader& table, std::span<const std::string> parameters)
   fit.correlation = read_correlation(table, fit.parameters.size());
   for (const std::string_view node : kHeatedNodes) {
     const std::string noise = fmt::format("noise_{}", node);
-    if (const std::optional<double> noise_K =
-            table.quantity({noise, "K", base::Range::non_negative(), "of one sample"}, input::Need::optional)) {
+    if (const std::optional<double> noise_K = table.quantity(
+            {noise, "K", base::Range::non_negative(), "standard deviation of the noise of one sample"}, input::Need::optional)) {
       fit.noise_K.emplace_back(node, *noise_K);
     }
     const std::string flux = fmt::format("latent_flux_{}", node);
@@ -159,7 +160,9 @@ MotorFit read_fit(input::Reader& table, std::span<const std::string> parameters)
         table.quantity({flux, "W", base::Range::between(0.0, kLargest_W), "rms of the unknown heat"}, input::Need::optional).value_or(0.0));
   }
   fit.latent_flux_time_scale_s =
-      table.quantity({"latent_flux_time_scale", "s", base::Range::positive(), "its correlation time"}, input::Need::optional).value_or(0.0);
+      table
+          .quantity({"latent_flux_time_scale", "s", base::Range::positive(), "correlation time of the unknown heat"}, input::Need::optional)
+          .value_or(0.0);
   fit.unmodelled_heat_share = table.quantity(
       {"unmodelled_heat", "", base::Range::between(0.0, kMostShare), "rms of the heat that the model lacks, per mean heat of the runs"},
       input::Need::optional);

@@ -41,10 +41,11 @@ void sources(const Motor& motor, Findings& findings) {
     // The derivation of an estimate replaces its source.
     const bool is_derived = parameter.origin == base::Origin::estimated && !parameter.derivation.empty();
     if (parameter.source.empty() && !is_derived) {
-      findings.error_at(parameter.at,
-                        fmt::format("{} of {} names no source; expected the ids of what it was derived from, or one whose text "
-                                    "says that it is your own judgement",
-                                    key, parameter.printed));
+      findings.error_at(
+          parameter.at,
+          fmt::format(
+              "{} of {} names no source; expected the ids of the sources of its derivation, or a source that states your own judgement",
+              key, parameter.printed));
     }
   });
 }
@@ -126,8 +127,8 @@ void heat_counted_twice(const Motor& motor, Findings& findings) {
   for (const MotorEffect& effect : motor.effects) {
     if (is_loss_of_every_motor(*effect.type)) {
       findings.warning_at(effect.parameters.front().at,
-                          fmt::format("effects.{} is a {}, which the file's own parameters already contain, so that it counts twice; "
-                                      "expected none, or effects that the network does not have",
+                          fmt::format("effects.{} is a {}, which the file's own parameters already contain, so its heat counts twice; "
+                                      "expected only effects that the network does not have",
                                       effect.name, effect.type->name));
     }
   }

@@ -59,7 +59,7 @@ Document check_document(std::span<const check::Outcome> outcomes, bool is_update
   const auto loosened = std::ranges::count(outcomes, true, &check::Outcome::failed_before);
   if (loosened > 0) {
     document.add_note(Severity::warning, fmt::format("{} of the rewritten limits did not hold before. Read the difference before you "
-                                                     "commit the file: a limit that follows the value gates nothing.",
+                                                     "commit the file: a limit that follows every value detects no change.",
                                                      loosened));
   }
   return document;

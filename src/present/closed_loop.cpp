@@ -99,8 +99,8 @@ void add_closed_loop(Document& document, const robot::Robot& robot, const std::v
       "drive core works with noisy, delayed sensors and lost packets, wheels slip, and the battery sags. Corrections add heat; grip, "
       "voltage and current limits take heat away.");
   document.add_note(Severity::background,
-                    "In the closed loop motors are nominal; tolerances are in the other table. guard limits: time in which the "
-                    "thermal guard would have limited a motor; here it only counts.");
+                    "The closed loop uses nominal motors; the other table includes tolerances. guard limits: time in which the thermal "
+                    "guard would have limited a motor; it limits nothing here.");
 }
 
 }  // namespace heatsoak::present

@@ -24,9 +24,8 @@ double current_at_A(const derate::UsePlayed& played, double time_s) {
 }
 
 Table allowed_currents(const derate::Derating& derating) {
-  Table table{.title = "Allowed current in A over time if it is always fully used, from a start at air temperature",
-              .columns = {{"speed", "rad/s", 0}},
-              .rows = {}};
+  Table table{
+      .title = "Allowed current in A over time, always fully used, from air temperature", .columns = {{"speed", "rad/s", 0}}, .rows = {}};
   for (const double time_s : kMoments_s) {
     table.columns.push_back({fmt::format("at {}", duration_text(time_s)), "", 0});
   }
@@ -74,10 +73,11 @@ void add_table_notes(Document& document, const derate::Derating& derating) {
   const derate::TableBound& bound = derating.table.bound;
   document.add_note(
       Severity::background,
-      fmt::format("Table: {} bytes, never above the exact answer of the network and at most {:.1f} % below it from {:.2g} A up; it changes "
-                  "by at most {:.2g} A per K of the winding, {:.2g} A per K of the stator and {:.2g} A per rad/s.",
-                  derating.table.size_bytes(), 100.0 * bound.shortfall_ratio, derating.table.straight_below_A, bound.winding_slope_A_per_K,
-                  bound.stator_slope_A_per_K, bound.speed_slope_A_s_per_rad));
+      fmt::format(
+          "Table: {} bytes. Its current is never above the exact answer of the network, and at most {:.1f} % below it from {:.2g} A up. "
+          "The current changes by at most {:.2g} A per K of the winding, {:.2g} A per K of the stator and {:.2g} A per rad/s.",
+          derating.table.size_bytes(), 100.0 * bound.shortfall_ratio, derating.table.straight_below_A, bound.winding_slope_A_per_K,
+          bound.stator_slope_A_per_K, bound.speed_slope_A_s_per_rad));
 }
 
 /// Adds the benefit and the possible faults of the sensor, if there is one.
@@ -95,11 +95,10 @@ void add_sensor(Document& document, const derate::Derating& derating) {
       plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(),
       derating.observer.heat_safety_factor(), derate::confidence_text(derating, plan.guarantee), plan.guarantee.winding_p95_C,
       plan.guarantee.winding_most_C, plan.dropped));
-  document.add_note(
-      Severity::warning,
-      fmt::format("A plausible but wrong sensor allows at most {:.2f} A more than without one: the nominal motor then reaches "
-                  "{:.0f} °C, and {} of {} drawn motors exceed a limit.",
-                  plan.most_gain_A, plan.sensor_fault_nominal_C, plan.sensor_fault_over, derating.options.guarantee.samples));
+  document.add_note(Severity::warning,
+                    fmt::format("With a plausible but wrong sensor the guard allows at most {:.2f} A more than without a sensor: the "
+                                "nominal motor then reaches {:.0f} °C, and {} of {} drawn motors exceed a limit.",
+                                plan.most_gain_A, plan.sensor_fault_nominal_C, plan.sensor_fault_over, derating.options.guarantee.samples));
   if (plan.resistance) {
     document.add_note(Severity::note, fmt::format("Readings need {:.2f} A at rest and {:.3f} A more per rad/s.",
                                                   plan.resistance->least_current_A, plan.resistance->current_per_speed_A_s_per_rad));
@@ -162,31 +161,32 @@ void add_table_check(Document& document, const derate::Derating& derating, const
                                            check.found.holds() ? "still holds" : "no longer holds; write it again with --out"),
                                check.found.holds() ? Tone::good : Tone::bad});
   if (found.is_other_motor) {
-    document.add_note(Severity::warning, fmt::format("Unsafe: it is the table of another motor, {}; expected one of {}.",
+    document.add_note(Severity::warning, fmt::format("Unsafe: the table is for another motor, {}; expected a table for {}.",
                                                      check.committed.motor_id, derating.motor_id));
   }
   if (found.excess.difference_A > 0.0) {
-    document.add_note(Severity::warning, fmt::format("Unsafe: it allows up to {:.3f} A more than a fresh table, {}.",
+    document.add_note(Severity::warning, fmt::format("Unsafe: the table allows up to {:.3f} A more than a fresh table, {}.",
                                                      found.excess.difference_A, place_text(found.excess)));
   }
   if (found.differing_line > 0) {
     document.add_note(Severity::warning,
-                      fmt::format("Unsafe: its observer differs from that of a fresh header, so the table has another meaning. Line {} is "
-                                  "\"{}\", of a fresh header \"{}\".",
+                      fmt::format("Unsafe: the observer differs from that of a fresh header, so the table has another meaning. Line {} is "
+                                  "\"{}\"; a fresh header has \"{}\".",
                                   found.differing_line, found.differing_text, found.differing_fresh_text));
   }
   if (found.lost.difference_A > 0.0) {
     document.add_note(Severity::note,
-                      fmt::format("{} it allows up to {:.3f} A less than a fresh table, {}.",
+                      fmt::format("{} the table allows up to {:.3f} A less than a fresh table, {}.",
                                   check.found.holds() ? "Safe, but" : "At other places", found.lost.difference_A, place_text(found.lost)));
   }
   if (!check.committed.robot_id.empty() && check.committed.robot_id != derating.robot_id) {
     document.add_note(Severity::note,
-                      fmt::format("It was written for the robot {}, this is {}.", check.committed.robot_id, derating.robot_id));
+                      fmt::format("The table was written for the robot {}, this is {}.", check.committed.robot_id, derating.robot_id));
   }
   if (!check.found.holds() && !check.committed.version.empty() && check.committed.version != base::program_version()) {
-    document.add_note(Severity::note, fmt::format("It was written by heatsoak {}, this is {}: an upgrade may explain the difference.",
-                                                  check.committed.version, base::program_version()));
+    document.add_note(Severity::note,
+                      fmt::format("The table was written by heatsoak {}, this program is {}: an upgrade may explain the difference.",
+                                  check.committed.version, base::program_version()));
   }
 }
 

@@ -38,7 +38,7 @@ Table parameters_of(const thermal::EffectType& effect) {
   }
   for (const thermal::NodeRole& role : effect.nodes) {
     add_key(table, role.role, "node",
-            role.own_capacity ? "of its own, named after the effect in the file" : fmt::format("'{}' unless named", role.default_node));
+            role.own_capacity ? "own node, named after the effect in the file" : fmt::format("'{}' unless named", role.default_node));
   }
   return table;
 }

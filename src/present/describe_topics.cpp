@@ -23,7 +23,7 @@ void add_settings(Document& document, std::string title, const std::vector<check
 }
 
 std::string example_of(const check::ThresholdType& type) {
-  std::string text = "[[check]]\nname = \"what this check is for\"\n";
+  std::string text = "[[check]]\nname = \"purpose of this check\"\n";
   for (const check::Setting setting : type.needs) {
     const std::string_view key = setting_text(setting).key;
     text += setting == check::Setting::temperature                                  ? fmt::format("{} = \"100 degC\"\n", key)
@@ -65,8 +65,8 @@ Document verdict_description() {
   add_labelled(table, "undecided", undecided_meaning());
   document.tables.push_back(std::move(table));
   document.add_note(Severity::note,
-                    "With --closed-loop: fail means that the first game or more than half of the games exceed a limit; infeasible, that a "
-                    "game was not driven; marginal, that any other game exceeds a limit.");
+                    "With --closed-loop: fail if the first game or more than half of the games exceed a limit; infeasible if a game was "
+                    "not driven; marginal if any other game exceeds a limit.");
   return document;
 }
 

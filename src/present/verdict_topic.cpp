@@ -12,28 +12,28 @@ std::vector<VerdictMeaning> verdict_meanings() {
       {select::Verdict::pass,
        fmt::format("With nominal values the motor stays within every temperature limit and delivers the demand. At most {:.0f} % of the "
                    "samples exceed a limit, and at most {:.0f} % miss the demand. On a duty that is drawn, such as a match, most samples "
-                   "stay within, and the upper end of the 95 % interval of the share over a limit is at most {:.0f} %.",
+                   "stay within the limits, and the upper end of the 95 % interval of the share over a limit is at most {:.0f} %.",
                    rare_percent, rare_percent, rare_percent)},
       {select::Verdict::marginal,
-       fmt::format("As pass, but more samples exceed a limit or miss the demand than the {:.0f} % allowed there.", rare_percent)},
+       fmt::format("As pass, but more than {:.0f} % of the samples exceed a limit or miss the demand.", rare_percent)},
       {select::Verdict::fail,
        fmt::format("With nominal values the winding or the stator exceeds its limit. On a duty that is drawn: more than "
                    "{:.0f} % of the samples do.",
                    most_percent)},
       {select::Verdict::infeasible,
-       fmt::format("Voltage or current do not suffice for the demanded torque for more than {:.0f} % of the time, the winding being hot. "
-                   "On a duty that is drawn: in more than {:.0f} % of the samples.",
+       fmt::format("With a hot winding, voltage or current is too low for the demanded torque for more than {:.0f} % of the time. On a "
+                   "duty that is drawn, this is so in more than {:.0f} % of the samples.",
                    short_percent, most_percent)}};
 }
 
 std::string undecided_meaning() {
   return fmt::format(
-      "The interval of the share of samples over a limit covers the threshold between two verdicts ({:.0f} %, and {:.0f} % on a duty that "
-      "is drawn). Without --samples the program doubles the samples up to five times, on a duty that is drawn once, and only if that can "
-      "decide the verdict. --samples continues with the number that the answer gives. Looking several times is part of the interval: the "
-      "first may err with a probability of 2.5 %, each later one with 0.36 %, so a verdict is wrong with a "
-      "probability of 5 % at most (Clopper and Pearson 1934; alpha spending, Jennison and Turnbull 2000). Samples of one game count as "
-      "one. Exit code and JSON then use the verdict of the samples so far.",
+      "The interval of the share of samples over a limit contains the threshold of two verdicts ({:.0f} %, and {:.0f} % on a duty that "
+      "is drawn). Without --samples the program doubles the samples if that can decide the verdict: up to five times, or once on a duty "
+      "that is drawn. To continue, give --samples the number that the answer states. The interval allows for the repeated tests: the "
+      "first may err with a probability of 2.5 %, each later one with 0.36 %, so a verdict is wrong with a probability of at most 5 % "
+      "(Clopper and Pearson 1934; alpha spending, Jennison and Turnbull 2000). Samples of one game count as one. Until the verdict is "
+      "decided, exit code and JSON use that of the samples so far.",
       100.0 * select::kMarginalProbability, 100.0 * select::kMajority);
 }
 

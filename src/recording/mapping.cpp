@@ -53,7 +53,7 @@ input::TableFormat read_format(input::Reader& file) {
     }
   }
   format.comment = file.text("comment", input::Need::optional).value_or(format.comment);
-  format.header_rows = whole_number(file, "header_rows", 1, 20, "rows of the header").value_or(format.header_rows);
+  format.header_rows = whole_number(file, "header_rows", 1, 20, "number of rows of the header").value_or(format.header_rows);
   format.names_row = whole_number(file, "names_row", 1, 20, "row of the header that names the columns").value_or(1);
   if (format.names_row > format.header_rows) {
     file.problem("names_row", fmt::format("{} is not one of the {} header rows", format.names_row, format.header_rows));
@@ -128,7 +128,7 @@ std::optional<QuantityMapping> read_quantity(const std::string& key, input::Read
   }
   mapping.clock_offset_s = reader
                                .quantity({"clock_offset", "s", base::Range::between(-3600.0, 3600.0),
-                                          "added to the row's time gives the moment of this channel's sample"},
+                                          "offset of this channel's clock: time of its sample minus time of the row"},
                                          input::Need::optional)
                                .value_or(0.0);
   read_fills(reader, mapping);
@@ -221,7 +221,7 @@ Mapping read_mapping(const fs::path& file, const fs::path& log) {
     mapping.run_column = runs->text("column", input::Need::optional).value_or("");
     mapping.run_column_at = runs->at("column");
     mapping.longest_gap_s =
-        runs->quantity({"longest_gap", "s", base::Range::positive(), "a longer gap between rows splits the run"}, input::Need::optional);
+        runs->quantity({"longest_gap", "s", base::Range::positive(), "longest gap between two rows of one run"}, input::Need::optional);
     runs->finish();
   }
   const std::string convention = root.choice("inputs", kConventions, input::Need::optional).value_or("held");

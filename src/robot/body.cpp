@@ -47,7 +47,7 @@ BodyConfig make_body(const Robot& robot, const motor::MotorValues& motor) {
   constexpr std::array<std::string_view, 4> kTables{"body", "wheels", "friction", "traction"};
   require_parameters(robot, kTables);
   if (!motor.rotor_inertia_kg_m2) {
-    throw base::bad_input({}, "figures.rotor_inertia", "of the motor is missing: without it no acceleration of a wheel can be calculated");
+    throw base::bad_input({}, "figures.rotor_inertia", "is missing in the motor file: it is needed for the acceleration of a wheel");
   }
   BodyConfig body;
   body.kinematics = make_kinematics(robot);

@@ -16,24 +16,26 @@ namespace {
 constexpr std::array<RobotParameterSpec, 29> kSpecs{
     {{"body",
       {"yaw_inertia", "kg m2", base::Range::between(1e-5, 200.0),
-       "about the vertical axis through the centre of gravity; check the unit, g cm2 or kg m2"},
+       "moment of inertia about the vertical axis through the centre of gravity; check the unit, g cm2 or kg m2"},
       [](auto& robot) -> auto& {return robot.body.yaw_inertia_kg_m2;
 }  // namespace
 }  // namespace heatsoak::robot
-, {"body", {"center_of_gravity_height", "m", base::Range::between(0.0, 2.0), "above the ground"},
+, {"body", {"center_of_gravity_height", "m", base::Range::between(0.0, 2.0), "height of the centre of gravity above the ground"},
    [](auto& robot) -> auto& {return robot.body.center_of_gravity_height_m;
 }
 }
-, {"body", {"center_of_gravity_x", "m", base::Range::between(-1.0, 1.0), "ahead of the robot's axis"},
+, {"body", {"center_of_gravity_x", "m", base::Range::between(-1.0, 1.0), "distance of the centre of gravity ahead of the robot's axis"},
    [](auto& robot) -> auto& {return robot.body.center_of_gravity_x_m;
 }
 }
-, {"body", {"center_of_gravity_y", "m", base::Range::between(-1.0, 1.0), "left of the robot's axis"},
+, {"body",
+   {"center_of_gravity_y", "m", base::Range::between(-1.0, 1.0), "distance of the centre of gravity to the left of the robot's axis"},
    [](auto& robot) -> auto& {return robot.body.center_of_gravity_y_m;
 }
 }
 , {"wheels",
-   {"inertia", "kg m2", base::Range::between(1e-9, 1.0), "of one wheel about its axle, without the rotor; check the unit, g cm2 or kg m2"},
+   {"inertia", "kg m2", base::Range::between(1e-9, 1.0),
+    "moment of inertia of one wheel about its axle, without the rotor; check the unit, g cm2 or kg m2"},
    [](auto& robot) -> auto& {return robot.wheels.inertia_kg_m2;
 }
 }
@@ -57,11 +59,13 @@ constexpr std::array<RobotParameterSpec, 29> kSpecs{
    [](auto& robot) -> auto& {return robot.friction.heading.constant_Nm;
 }
 }
-, {"friction.heading", {"sine", "N m", base::Range::between(-20.0, 20.0), "part that grows with the wheel's share of rolling"},
+, {"friction.heading",
+   {"sine", "N m", base::Range::between(-20.0, 20.0), "part of the friction that grows with the wheel's share of rolling"},
    [](auto& robot) -> auto& {return robot.friction.heading.sine_Nm;
 }
 }
-, {"friction.heading", {"double_angle", "N m", base::Range::between(0.0, 20.0), "amplitude of the part with twice the direction"},
+, {"friction.heading",
+   {"double_angle", "N m", base::Range::between(0.0, 20.0), "amplitude of the friction that varies with twice the direction"},
    [](auto& robot) -> auto& {return robot.friction.heading.double_angle_Nm;
 }
 }
@@ -73,15 +77,15 @@ constexpr std::array<RobotParameterSpec, 29> kSpecs{
    [](auto& robot) -> auto& {return robot.traction.coefficient_ratio;
 }
 }
-, {"traction", {"slip_speed", "m/s", base::Range::between(1e-4, 10.0), "slip at which 0.71 of it is used"},
+, {"traction", {"slip_speed", "m/s", base::Range::between(1e-4, 10.0), "slip speed at which 0.71 of the largest rolling force is used"},
    [](auto& robot) -> auto& {return robot.traction.slip_speed_m_per_s;
 }
 }
-, {"drive", {"driver_resistance", "ohm", base::Range::between(0.0, 10.0), "of switches and traces in series with one motor"},
+, {"drive", {"driver_resistance", "ohm", base::Range::between(0.0, 10.0), "resistance of switches and traces in series with one motor"},
    [](auto& robot) -> auto& {return robot.drive.driver_resistance_ohm;
 }
 }
-, {"drive", {"driver_standby_power", "W", base::Range::between(0.0, 100.0), "of one motor's driver without current"},
+, {"drive", {"driver_standby_power", "W", base::Range::between(0.0, 100.0), "power of one motor's driver without current"},
    [](auto& robot) -> auto& {return robot.drive.driver_standby_W;
 }
 }
@@ -93,19 +97,19 @@ constexpr std::array<RobotParameterSpec, 29> kSpecs{
    [](auto& robot) -> auto& {return robot.drive.command_rate_Hz;
 }
 }
-, {"battery", {"full_voltage", "V", base::Range::between(1.0, 5000.0), "open circuit, full"},
+, {"battery", {"full_voltage", "V", base::Range::between(1.0, 5000.0), "open-circuit voltage of the full battery"},
    [](auto& robot) -> auto& {return robot.battery.full_V;
 }
 }
-, {"battery", {"empty_voltage", "V", base::Range::between(1.0, 5000.0), "open circuit, empty"},
+, {"battery", {"empty_voltage", "V", base::Range::between(1.0, 5000.0), "open-circuit voltage of the empty battery"},
    [](auto& robot) -> auto& {return robot.battery.empty_V;
 }
 }
-, {"battery", {"internal_resistance", "ohm", base::Range::between(0.0, 10.0), "of the pack with its leads"},
+, {"battery", {"internal_resistance", "ohm", base::Range::between(0.0, 10.0), "resistance of the battery pack with its leads"},
    [](auto& robot) -> auto& {return robot.battery.resistance_ohm;
 }
 }
-, {"battery", {"capacity", "A s", base::Range::between(30.0, 4e6), "from full to empty"},
+, {"battery", {"capacity", "A s", base::Range::between(30.0, 4e6), "charge of the battery from full to empty"},
    [](auto& robot) -> auto& {return robot.battery.capacity_A_s;
 }
 }
@@ -113,16 +117,17 @@ constexpr std::array<RobotParameterSpec, 29> kSpecs{
    [](auto& robot) -> auto& {return robot.limits.speed_m_per_s;
 }
 }
-, {"limits", {"acceleration", "m/s2", base::Range::between(0.1, 200.0), "when speeding up"},
+, {"limits", {"acceleration", "m/s2", base::Range::between(0.1, 200.0), "largest acceleration when speeding up"},
    [](auto& robot) -> auto& {return robot.limits.acceleration_m_per_s2;
 }
 }
 , {"limits",
-   {"braking", "m/s2", base::Range::between(0.1, 200.0), "when slowing down; a match plans with the smaller of this and acceleration"},
+   {"braking", "m/s2", base::Range::between(0.1, 200.0),
+    "largest deceleration when slowing down; a match plans with the smaller of this and acceleration"},
    [](auto& robot) -> auto& {return robot.limits.braking_m_per_s2;
 }
 }
-, {"limits", {"jerk", "m/s3", base::Range::between(0.1, 1e5), "change of the acceleration"},
+, {"limits", {"jerk", "m/s3", base::Range::between(0.1, 1e5), "largest rate of change of the acceleration"},
    [](auto& robot) -> auto& {return robot.limits.jerk_m_per_s3;
 }
 }
@@ -130,7 +135,7 @@ constexpr std::array<RobotParameterSpec, 29> kSpecs{
    [](auto& robot) -> auto& {return robot.limits.yaw_rate_rad_per_s;
 }
 }
-, {"limits", {"yaw_acceleration", "rad/s2", base::Range::between(0.01, 1e4), "change of the rate of turning"},
+, {"limits", {"yaw_acceleration", "rad/s2", base::Range::between(0.01, 1e4), "largest rate of change of the rate of turning"},
    [](auto& robot) -> auto& {return robot.limits.yaw_acceleration_rad_per_s2;
 }
 }
@@ -141,8 +146,9 @@ constexpr std::array<RobotParameterSpec, 29> kSpecs{
 
 constexpr std::array<WheelParameterSpec, 3> kWheelSpecs{{
     {{"constant", "N m", base::Range::between(0.0, 20.0), "friction of this wheel in translation"}, &HeadingWheel::constant_Nm},
-    {{"sine", "N m", base::Range::between(-20.0, 20.0), "part that grows with the wheel's share of rolling"}, &HeadingWheel::sine_Nm},
-    {{"phase", "rad", base::Range::any(), "phase of that part and of the sign, near the negative angle of the wheel's axle"},
+    {{"sine", "N m", base::Range::between(-20.0, 20.0), "part of the friction that grows with the wheel's share of rolling"},
+     &HeadingWheel::sine_Nm},
+    {{"phase", "rad", base::Range::any(), "phase of the sine and of the sign, near the negative angle of the wheel's axle"},
      &HeadingWheel::phase_rad},
 }};
 
@@ -202,8 +208,9 @@ void read_heading(input::Reader& heading, Robot& robot) {
     }
   }
   const bool has_double_angle = robot.friction.heading.double_angle_Nm.has_value();
-  robot.friction.heading.double_angle_phase_rad = heading.quantities({"double_angle_phases", "rad", base::Range::any(), "one per wheel"},
-                                                                     has_double_angle ? input::Need::required : input::Need::optional);
+  robot.friction.heading.double_angle_phase_rad = heading.quantities(
+      {"double_angle_phases", "rad", base::Range::any(), "phases of the friction that varies with twice the direction, one per wheel"},
+      has_double_angle ? input::Need::required : input::Need::optional);
   if (has_double_angle && robot.friction.heading.double_angle_phase_rad.size() != robot.wheels.axis_rad.size()) {
     heading.problem("double_angle_phases", "expected one phase per wheel");
   }
@@ -235,14 +242,16 @@ void read_wheels(input::Reader& top, Robot& robot) {
     return;
   }
   robot.wheels.radius_m =
-      wheels->quantity({"radius", "m", base::Range::between(0.005, 0.5), "of a wheel; check the unit, mm or m"}, input::Need::required)
+      wheels
+          ->quantity({"radius", "m", base::Range::between(0.005, 0.5), "radius of a wheel; check the unit, mm or m"}, input::Need::required)
           .value_or(1.0);
   robot.wheels.contact_radius_m = wheels
                                       ->quantity({"contact_radius", "m", base::Range::between(0.01, 2.0),
-                                                  "from the robot's axis to the contact points; check the unit, mm or m"},
+                                                  "distance from the robot's axis to the contact points; check the unit, mm or m"},
                                                  input::Need::required)
                                       .value_or(1.0);
-  robot.wheels.axis_rad = wheels->quantities({"axis_angles", "rad", base::Range::any(), "of the wheels' axes"}, input::Need::required);
+  robot.wheels.axis_rad =
+      wheels->quantities({"axis_angles", "rad", base::Range::any(), "angles of the wheels' axes"}, input::Need::required);
   if (robot.wheels.axis_rad.size() < 3) {
     wheels->problem("axis_angles", "names fewer than three wheels; an omni-directional robot has at least three");
   }
@@ -257,7 +266,7 @@ void read_drive(input::Reader& top, Robot& robot) {
   }
   robot.drive.motor = drive->text("motor", input::Need::required).value_or("");
   robot.drive.gear_ratio =
-      drive->quantity({"gear_ratio", "", base::Range::between(0.1, 500.0), "motor turns per wheel turn"}, input::Need::required)
+      drive->quantity({"gear_ratio", "", base::Range::between(0.1, 500.0), "number of motor turns per wheel turn"}, input::Need::required)
           .value_or(1.0);
   robot.drive.gear_efficiency =
       drive
@@ -298,7 +307,7 @@ void require_parameters(const Robot& robot, std::span<const std::string_view> ta
     const bool optional = std::ranges::find(kOptionalKeys, each.spec.key) != kOptionalKeys.end();
     if (asked && !optional && !each.value.in(robot)) {
       diagnostics.add({robot.file.string()}, fmt::format("{}.{}", each.table, each.spec.key),
-                      fmt::format("is missing: {}", each.spec.meaning));
+                      fmt::format("is missing ({})", each.spec.meaning));
     }
   }
   diagnostics.throw_if_any();
@@ -338,14 +347,15 @@ Robot robot_of(const input::Value& root, const std::filesystem::path& path) {
   robot.name = top.text("name", input::Need::required).value_or("");
   robot.source = top.text("source", input::Need::required).value_or("");
   top.texts("notes", input::Need::optional);
-  robot.mass_kg = top.quantity({"mass", "kg", base::Range::between(0.1, 200.0), "of the robot with battery; check the unit, g or kg"},
+  robot.mass_kg = top.quantity({"mass", "kg", base::Range::between(0.1, 200.0), "mass of the robot with battery; check the unit, g or kg"},
                                input::Need::required)
                       .value_or(1.0);
   read_wheels(top, robot);
   read_drive(top, robot);
   if (std::optional<input::Reader> battery = top.table("battery", input::Need::required)) {
     robot.battery.nominal_V =
-        battery->quantity({"nominal_voltage", "V", base::Range::between(1.0, 5000.0), "of the battery"}, input::Need::required)
+        battery
+            ->quantity({"nominal_voltage", "V", base::Range::between(1.0, 5000.0), "nominal voltage of the battery"}, input::Need::required)
             .value_or(1.0);
     read_file_parameters(*battery, "battery", robot);
     battery->finish();

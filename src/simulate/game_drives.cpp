@@ -25,7 +25,7 @@ namespace {
 /// Returns why the drive core cannot drive this motor, or an empty text. A robot file without a needed table is an error for all motors.
 std::string why_not_driven(const robot::Robot& robot, const motor::Motor& motor, GuardUse use, const MotorGuard& guard) {
   if (!motor.nominal.rotor_inertia_kg_m2) {
-    return "the motor's file has no rotor_inertia: without it no acceleration of a wheel can be calculated";
+    return "the motor's file has no rotor_inertia, which is needed for the acceleration of a wheel";
   }
   try {
     const GuardedCore core(robot, motor, use, guard);

@@ -42,7 +42,7 @@ MatchRun run_match(const Game& game, const robot::Robot& robot, const motor::Mot
 void require_rotor_inertia(const motor::Motor& motor) {
   if (!motor.nominal.rotor_inertia_kg_m2) {
     throw base::bad_input({motor.file.string()}, "figures.rotor_inertia",
-                          "is missing: without it no acceleration of a wheel can be calculated");
+                          "is missing in the motor file: it is needed for the acceleration of a wheel");
   }
 }
 

@@ -11,7 +11,7 @@ constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr int kSamplesPerDriftStep = 100;
 
 constexpr DeclaredNumber<SensingConfig> kSensingNumbers[] = {
-    {{"encoder_turn", "1", base::Range::between(0.0, 1e6), "counts per turn of the motor's shaft; 0: the true speed"},
+    {{"encoder_turn", "1", base::Range::between(0.0, 1e6), "number of counts per turn of the motor's shaft; 0: the true speed"},
      &SensingConfig::encoder_turn_count,
      base::Origin::third_party,
      base::Range::between(1024.0, 16384.0),
@@ -26,7 +26,7 @@ constexpr DeclaredNumber<SensingConfig> kSensingNumbers[] = {
      base::Origin::estimated,
      base::Range::between(0.0002, 0.01),
      "0.1 deg/s: mean of 1 s at rest, and a board that vibrates; engineering judgement"},
-    {{"gyro_drift", "rad s-1 s-0.5", base::Range::between(0.0, 0.1), "random walk of the bias: its standard deviation after 1 s"},
+    {{"gyro_drift", "rad s-1 s-0.5", base::Range::between(0.0, 0.1), "standard deviation of the random walk of the bias after 1 s"},
      &SensingConfig::gyro_drift_rad_per_s_per_root_s,
      base::Origin::estimated,
      base::Range::between(1e-5, 5e-4),
@@ -61,7 +61,7 @@ constexpr DeclaredNumber<SensingConfig> kSensingNumbers[] = {
      base::Origin::estimated,
      base::Range::between(0.02, 0.5),
      "half a step; engineering judgement"},
-    {{"delay", "1", base::Range::between(0.0, 1.0), "control periods from sampling to actuation"},
+    {{"delay", "1", base::Range::between(0.0, 1.0), "number of control periods from sampling to actuation"},
      &SensingConfig::delay_periods_count,
      base::Origin::derived,
      base::Range::between(1.0, 1.0),

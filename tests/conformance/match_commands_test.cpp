@@ -85,7 +85,7 @@ TEST(SimulateMatch, an_empty_battery_is_no_pass) {
   std::string text = content_of(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
   const std::size_t at = text.find("capacity = { value = \"1300 mA h\"");
   ASSERT_NE(at, std::string::npos);
-  const std::size_t end = text.find('\n', at);
+  const std::size_t end = text.find(" }\n", at) + 2;  // the derivation continues over several lines
   text.replace(at, end - at, R"(capacity = { value = "20 mA h", origin = "estimated", derivation = "a battery that was not charged" })");
   write(folder.path() / "flat.toml", text);
   const ProgramRun result = run({"simulate", "--motor", "maxon_ecx_flat_42m_24v", "--robot", "flat.toml", "--duty", "division_b_match",

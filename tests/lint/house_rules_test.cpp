@@ -173,14 +173,16 @@ TEST(Files, AreShortEnoughToRead) {
   }
 }
 
-TEST(Files, OfMotorsHaveNoLongLines) {
+TEST(Files, OfMotorsRobotsAndDutiesHaveNoLongLines) {
   constexpr std::size_t kLongestLine = 160;
-  for (const SourceFile& file : files_in("motor_db")) {
-    int line = 1;
-    for (std::size_t begin = 0; file.path.ends_with(".toml") && begin < file.text.size(); ++line) {
-      const std::size_t end = std::min(file.text.find('\n', begin), file.text.size());
-      EXPECT_LE(end - begin, kLongestLine) << file.path << ":" << line << ": break the longest text as \"\"\"\\";
-      begin = end + 1;
+  for (const char* folder : {"motor_db", "robot_core/robots", "duty_profiles"}) {
+    for (const SourceFile& file : files_in(folder)) {
+      int line = 1;
+      for (std::size_t begin = 0; file.path.ends_with(".toml") && begin < file.text.size(); ++line) {
+        const std::size_t end = std::min(file.text.find('\n', begin), file.text.size());
+        EXPECT_LE(end - begin, kLongestLine) << file.path << ":" << line << ": break the longest text as \"\"\"\\";
+        begin = end + 1;
+      }
     }
   }
 }

@@ -52,8 +52,8 @@ ThresholdType probability_over_limit() {
           .range = base::Range::between(0.0, 1.0),
           .meaning =
               "probability that winding or stator exceeds its limit: the exact upper confidence bound (Clopper and Pearson, 95 %, "
-              "one-sided) of the share of samples that do, so that few samples cannot meet a tight limit. If the duty is drawn at random, "
-              "as a match is, its draws count instead of the samples",
+              "one-sided) of the share of samples over a limit. A tight limit therefore needs many samples. On a duty that is drawn at "
+              "random, such as a match, its draws count instead of the samples",
           .example = "at most 5 %",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},

@@ -8,9 +8,9 @@ ThresholdType stator_peak_p95() {
       .unit = "degC",
       .range = kPlausible_C,
       .meaning =
-          "95th percentile over the samples of the stator's highest temperature, of the wheel whose winding gets hottest: its upper "
-          "confidence bound (97.5 %, one-sided) by order statistics, or by bootstrap over the draws if the duty is drawn at random; 72 "
-          "samples or more, 160 for such a duty",
+          "95th percentile over the samples of the stator's highest temperature, of the wheel whose winding gets hottest: the upper "
+          "confidence bound (97.5 %, one-sided) by order statistics, from at least 72 samples. On a duty that is drawn at random: the "
+          "bound by bootstrap over the draws, from at least 160 samples",
       .example = "at most 80 degC",
       .needs = {Setting::robot, Setting::duty, Setting::motor},
       .takes = {Setting::samples, Setting::seed, Setting::conditions},

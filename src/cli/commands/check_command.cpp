@@ -62,7 +62,7 @@ base::ExitCode run(const CheckOptions& options, Session& session) {
 
 Command check_command() {
   return {.name = {},
-          .summary = "Compares what is computed with limits of your own, for CI; exit 1 if one does not hold or cannot be evaluated",
+          .summary = "Compares computed values with your own limits, for CI; exit 1 if a limit does not hold or cannot be evaluated",
           .example = "heatsoak check reports/check/twente.check.toml --junit check.xml",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<CheckOptions>();
@@ -73,11 +73,12 @@ Command check_command() {
             app.add_flag(
                 "--update", options->job.updates,
                 "rewrite the limits in the files to the present values with some room; limits that cannot be evaluated stay unchanged");
-            add_quantity(app, "--margin", options->job.margin_share,
-                         {"margin", "", base::Range::between(0.0, 10.0),
-                          "of --update: room as a share of the value, or of the rise over the air for a temperature; 5 % unless given"})
+            add_quantity(
+                app, "--margin", options->job.margin_share,
+                {"margin", "", base::Range::between(0.0, 10.0),
+                 "room that --update leaves, as a share of the value, or of the rise over the air for a temperature; 5 % unless given"})
                 ->type_name("SHARE");
-            app.add_option("--threads", options->job.threads, "0: all cores; the result does not depend on it")
+            app.add_option("--threads", options->job.threads, "number of threads, 0 for all cores; the result does not depend on it")
                 ->check(whole_number(1024))
                 ->capture_default_str();
             session.add_data_option(app);

@@ -159,7 +159,7 @@ Command completion() {
           .example = "source <(heatsoak completion bash)",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto shell = std::make_shared<std::string>("bash");
-            app.add_option("shell", *shell, "bash, zsh or fish")->check(CLI::IsMember({"bash", "zsh", "fish"}));
+            app.add_option("shell", *shell, "shell that reads the script")->check(CLI::IsMember({"bash", "zsh", "fish"}));
             return [shell, &app, &session] {
               const std::vector<HelpPage> pages = pages_with_formats(help_pages(*app.get_parent()));
               session.say(*shell == "zsh" ? zsh_script(pages) : *shell == "fish" ? fish_script(pages) : bash_script(pages));

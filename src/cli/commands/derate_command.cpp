@@ -103,10 +103,10 @@ Command derate_command() {
                 ->type_name("CC");
             app.add_option(
                    "--check", options->committed,
-                   "a C header or CSV table that was written earlier, with the same options: exit 1 if it allows more than a fresh one")
+                   "C header or CSV table that was written earlier with the same options; exit 1 if it allows more than a fresh one")
                 ->type_name("FILE");
             add_quantity(app, "--period", options->guard.derate.period_s,
-                         {"period", "s", base::Range::between(1e-3, 1.0), "between two calls of the firmware; 10 ms unless given"});
+                         {"period", "s", base::Range::between(1e-3, 1.0), "time between two calls of the firmware; 10 ms unless given"});
             add_derate_options(app, options->guard.derate);
             add_sensor_options(app, options->sensor);
             session.add_data_option(app);

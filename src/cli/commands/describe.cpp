@@ -115,7 +115,7 @@ Command describe() {
             const auto name = std::make_shared<std::string>();
             const auto diagram = std::make_shared<std::string>();
             app.add_option("name", *name, "id, as `heatsoak list` shows it, a motor, robot or duty file, or robot_core")->required();
-            app.add_option("--diagram", *diagram, "draw the block diagram of robot_core")
+            app.add_option("--diagram", *diagram, "picture of the block diagram of robot_core")
                 ->check([](const std::string& file) { return file.ends_with(".svg") ? "" : "expected a name that ends in .svg"; })
                 ->type_name("FILE.svg");
             session.add_data_option(app);

@@ -92,7 +92,7 @@ base::ExitCode run(const DutyOptions& options, Session& session) {
 
 Command duty_command() {
   return {.name = {},
-          .summary = "Generates a duty (a match with its phases and where heat comes from), or turns a recorded game into one",
+          .summary = "Generates a duty (a match with its phases and sources of heat), or turns a recorded game into a duty",
           .example = "heatsoak duty --duty division_a_match --robot roboteam_twente_v2024 --seed 1 --out match.csv",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<DutyOptions>();
@@ -100,13 +100,14 @@ Command duty_command() {
             app.add_option("--import", options->log,
                            "recorded game: CSV (t_s, team, robot_id, x_m, y_m, yaw_rad) or SSL_LOG_FILE (.log, .log.gz)")
                 ->type_name("LOG");
-            app.add_option("--player", options->player, "of the recorded game, \"yellow 3\"; the busiest one unless given")->type_name("P");
+            app.add_option("--player", options->player, "player of the recorded game, such as \"yellow 3\"; the busiest one unless given")
+                ->type_name("P");
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
-            add_table(app, options->out, "torque and speed of every wheel, and FILE.toml beside it to evaluate");
+            add_table(app, options->out, "table of torque and speed of every wheel; FILE.toml beside it is the duty for `evaluate`");
             add_quantity(app, "--every", options->every_s,
                          {"every", "s", base::Range::between(1e-3, 10.0), "time between two rows; 0.01 s unless given"});
-            add_seed(app, options->seed, "of a match; same seed, same game");
-            app.add_option("--planner", options->planner, "of a match")
+            add_seed(app, options->seed, "seed of a match; the same seed gives the same game");
+            app.add_option("--planner", options->planner, "planner of a match")
                 ->check(CLI::IsMember({"jerk_limited", "bang_bang"}))
                 ->type_name("P")
                 ->capture_default_str();

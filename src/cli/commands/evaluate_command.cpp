@@ -102,7 +102,9 @@ base::ExitCode run(const EvaluateOptions& options, Session& session) {
 Command evaluate_command() {
   return {
       .name = {},
-      .summary = "Ranks motors on one duty of one robot: peak temperatures with uncertainty, what limits each; exit 1 if one of them fails",
+      .summary =
+          "Ranks motors on one duty of one robot: peak temperatures with uncertainty, and the limit that each motor reaches first; exit 1 "
+          "if a motor fails",
       .example =
           "heatsoak evaluate --robot roboteam_twente_v2024 --duty division_a_match --motors "
           "maxon_ecx_flat_42m_24v,nanotec_df45l024048_a2 --plot verdict.svg",
@@ -112,36 +114,35 @@ Command evaluate_command() {
         app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
         app.add_option("--motors", options->motors, "ids or files separated by commas, or all")->type_name("M,M")->default_str("all");
         app.add_option("--model", options->model,
-                       "a calibrated motor (`heatsoak calibrate --out FILE`) in place of the one it was fitted from")
+                       "calibrated motor (`heatsoak calibrate --out FILE`), in place of the motor that it was fitted from")
             ->type_name("FILE.toml");
         add_conditions(app, options->conditions);
         app.add_option("--samples", options->job.samples,
-                       "draws of every declared tolerance and range, one game for every eight on a match; 0: nominal only; if not given, "
-                       "as many as decide the verdicts, at most 16000, or 1200 on a match")
+                       "number of draws of every declared tolerance and range; a match has one game for every eight; 0: nominal only; "
+                       "unless given, as many as decide the verdicts, at most 16000, or 1200 on a match")
             ->check(whole_number(1'000'000))
             ->type_name("N");
         app.add_flag("--closed-loop", options->is_closed_loop,
-                     "on a match: the drive core drives games with each motor, with slip, battery sag and real sensing; ranks by them, and "
-                     "exit 1 follows them");
-        app.add_option(
-               "--guard", options->guard,
-               "with --closed-loop: shadow counts for how long the motor's thermal guard would have limited it; off leaves that out, "
-               "which saves some seconds per motor")
+                     "play games of a match in a closed loop: the drive core drives each motor, with slip, battery sag and real sensing; "
+                     "ranking and exit 1 follow these games");
+        app.add_option("--guard", options->guard,
+                       "thermal guard with --closed-loop; shadow: counts for how long it would have limited the motor; off: leaves it out, "
+                       "which saves some seconds per motor")
             ->check(CLI::IsMember({"off", "shadow"}))
             ->type_name("G")
             ->capture_default_str();
         app.add_option("--games", options->closed_loop.games, "number of games with --closed-loop, with successive seeds")
             ->check(CLI::Range(1, 1000))
             ->capture_default_str();
-        app.add_flag(
-            "--suggest", options->job.suggests,
-            "list the changes of the robot that cool its motor most also if it passes: acceleration, jerk, speed, mass, wheels, gear");
+        app.add_flag("--suggest", options->job.suggests,
+                     "list the changes of the robot that cool its motor most, even if the motor passes: acceleration, jerk, speed, mass, "
+                     "wheels, gear");
         app.add_option("--fail-on", options->fail_on, "exit 1 if a motor's verdict is this or worse: marginal, fail, infeasible")
             ->check(CLI::IsMember(kFailOn))
             ->type_name("VERDICT")
             ->capture_default_str();
-        add_seed(app, options->job.seed, "of the draws and games; same seed, same bytes");
-        app.add_option("--threads", options->job.threads, "0: all cores; the result does not depend on it")
+        add_seed(app, options->job.seed, "seed of the draws and games; the same seed gives the same bytes");
+        app.add_option("--threads", options->job.threads, "number of threads, 0 for all cores; the result does not depend on it")
             ->check(whole_number(1024))
             ->capture_default_str();
         add_picture(app, options->plot, "picture of stator and winding temperature over time");

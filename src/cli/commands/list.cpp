@@ -159,7 +159,7 @@ base::ExitCode run(const std::string& what, Session& session) {
 Command list() {
   return {
       .name = {},
-      .summary = "Lists what there is: motors, robots, duties, effects, formats, thresholds of checks, or topics of describe",
+      .summary = "Lists motors, robots, duties, effects, formats, thresholds of checks, or topics of describe",
       .example = "heatsoak list motors",
       .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
         const auto what = std::make_shared<std::string>();

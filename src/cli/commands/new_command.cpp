@@ -54,7 +54,7 @@ Command new_command() {
           .example = "heatsoak new motor my_motor.toml",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<NewOptions>();
-            app.add_option("kind", options->kind, "motor or robot")->required()->check(CLI::IsMember({"motor", "robot"}));
+            app.add_option("kind", options->kind, "kind of the new file")->required()->check(CLI::IsMember({"motor", "robot"}));
             app.add_option("file", options->file, "name of the new file, which is the id")->required()->check([](const std::string& file) {
               const bool is_named = file.ends_with(".toml") && !std::filesystem::path(file).stem().string().starts_with(".");
               return is_named ? "" : "expected a name that ends in .toml; the part before .toml is the id";

@@ -135,7 +135,8 @@ base::ExitCode run(const SimulateOptions& options, Session& session) {
 
 Command simulate() {
   return {.name = {},
-          .summary = "One match in a closed loop, or one motor under a prescribed load: every signal over time, and where the energy goes",
+          .summary =
+              "Simulates one match in a closed loop, or one motor under a prescribed load: every signal over time, and the energy balance",
           .example =
               "heatsoak simulate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --duty division_a_match --out trace.csv "
               "--plot trace.svg\n"
@@ -144,35 +145,35 @@ Command simulate() {
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<SimulateOptions>();
             app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->type_name("M");
-            app.add_option("--model", options->model, "a calibrated motor (`heatsoak calibrate --out FILE`) in its place")
+            app.add_option("--model", options->model, "calibrated motor (`heatsoak calibrate --out FILE`), in place of --motor")
                 ->type_name("FILE.toml");
             add_conditions(app, options->conditions);
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
             app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file; a match is driven in a closed loop")
                 ->type_name("D");
             add_table(app, options->out,
-                      "every signal; names end in units, a row's inputs hold until the next row; reasons are the drive core's codes "
-                      "(robot_core/reason.h)");
-            app.add_option("--planner", options->planner, "of a match; both: the two side by side")
+                      "table of every signal; names end in units, a row's inputs hold until the next row; reasons are the drive core's "
+                      "codes (robot_core/reason.h)");
+            app.add_option("--planner", options->planner, "planner of a match; both: the two side by side")
                 ->check(CLI::IsMember({"jerk_limited", "bang_bang", "both"}))
                 ->type_name("P")
                 ->capture_default_str();
             app.add_flag("--jerk-sweep", options->jerk_sweep,
-                         "instead of a duty: short drives with several jerk limits, compared with bang-bang: slip, time, precision, heat");
+                         "run short drives instead of a duty, with several jerk limits and bang-bang; compare slip, time, precision, heat");
             add_picture(app, options->plot, "picture of temperatures and heat sources");
             app.add_option("--guard", options->guard,
-                           "of a match: the motor's thermal guard as `heatsoak derate` makes it. shadow: counts what it would limit and "
+                           "thermal guard of the motor in a match, as `heatsoak derate` makes it; shadow: counts what it would limit and "
                            "limits nothing; on: limits the currents")
                 ->check(CLI::IsMember({"off", "shadow", "on"}))
                 ->type_name("G")
                 ->capture_default_str();
             app.add_option("--sensing", options->sensing,
-                           "of a match or jerk sweep: real has encoder steps, gyro drift, lost and late radio packets, noisy poses; "
-                           "ideal has none of them")
+                           "sensing in a match or jerk sweep; real: encoder steps, gyro drift, lost and late radio packets, noisy poses; "
+                           "ideal: none of them")
                 ->check(CLI::IsMember({"ideal", "real"}))
                 ->type_name("S")
                 ->capture_default_str();
-            add_seed(app, options->seed, "of a generated match, sensors and radio; same seed, same bytes");
+            add_seed(app, options->seed, "seed of a generated match, of sensors and radio; the same seed gives the same bytes");
             add_quantity(app, "--every", options->every_s,
                          {"every", "s", base::Range::between(1e-3, 1e5), "longest time between two rows; 1 s unless given"});
             session.add_data_option(app);

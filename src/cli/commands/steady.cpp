@@ -36,31 +36,30 @@ base::ExitCode run(const SteadyOptions& options, Session& session) {
 }  // namespace
 
 Command steady() {
-  return {
-      .name = {},
-      .summary =
-          "Temperatures in the steady state of an on/off current, mean and highest; and equations (8) to (12) of the RoboTeam Twente paper "
-          "(copper loss only)",
-      .example = "heatsoak steady --motor maxon_ec45_flat_70w_24v --current-on 6A --time-on 4s --time-off 6s --ambient 25degC",
-      .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-        const auto options = std::make_shared<SteadyOptions>();
-        app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->required()->type_name("M");
-        add_conditions(app, options->conditions);
-        add_quantity(app, "--current-on", options->current.current_on_A,
-                     {"current-on", "A", base::Range::between(0.0, 1e5), "current while on"})
-            ->required();
-        add_quantity(app, "--time-on", options->current.time_on_s,
-                     {"time-on", "s", base::Range::between(1e-9, 1e9), "time of a cycle with current"})
-            ->required();
-        add_quantity(app, "--time-off", options->current.time_off_s,
-                     {"time-off", "s", base::Range::between(0.0, 1e9), "time of a cycle without current"})
-            ->required();
-        add_quantity(app, "--ambient", options->current.ambient_C,
-                     {"ambient", "degC", base::Range::between(-60.0, 200.0), "temperature of the air; 25degC unless given"});
-        session.add_data_option(app);
-        session.add_answer_options(app);
-        return [options, &session] { return run(*options, session); };
-      }};
+  return {.name = {},
+          .summary =
+              "Computes mean and highest temperature in the steady state of an on/off current; also equations (8) to (12) of the RoboTeam "
+              "Twente paper (copper loss only)",
+          .example = "heatsoak steady --motor maxon_ec45_flat_70w_24v --current-on 6A --time-on 4s --time-off 6s --ambient 25degC",
+          .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
+            const auto options = std::make_shared<SteadyOptions>();
+            app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->required()->type_name("M");
+            add_conditions(app, options->conditions);
+            add_quantity(app, "--current-on", options->current.current_on_A,
+                         {"current-on", "A", base::Range::between(0.0, 1e5), "current while on"})
+                ->required();
+            add_quantity(app, "--time-on", options->current.time_on_s,
+                         {"time-on", "s", base::Range::between(1e-9, 1e9), "time of a cycle with current"})
+                ->required();
+            add_quantity(app, "--time-off", options->current.time_off_s,
+                         {"time-off", "s", base::Range::between(0.0, 1e9), "time of a cycle without current"})
+                ->required();
+            add_quantity(app, "--ambient", options->current.ambient_C,
+                         {"ambient", "degC", base::Range::between(-60.0, 200.0), "temperature of the air; 25degC unless given"});
+            session.add_data_option(app);
+            session.add_answer_options(app);
+            return [options, &session] { return run(*options, session); };
+          }};
 }
 
 }  // namespace heatsoak::cli::commands

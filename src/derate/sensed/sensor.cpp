@@ -27,12 +27,15 @@ double half_width_ratio(const motor::Motor& motor, std::string_view key, double 
 std::span<const SensorParameter> sensor_parameters() {
   using enum SensorKind;
   static constexpr std::array<SensorParameter, 5> kAll{{
-      {{"thermistor_accuracy", "K", base::Range::between(0.05, 50.0), "its largest error, mounting included; 2 K unless given"},
+      {{"thermistor_accuracy", "K", base::Range::between(0.05, 50.0),
+        "largest error of the thermistor, mounting included; 2 K unless given"},
        thermistor,
        &SensorOptions::accuracy_K},
-      {{"thermistor_lag", "s", base::Range::between(0.0, 600.0), "its time constant; 0 s unless given"}, thermistor, &SensorOptions::lag_s},
+      {{"thermistor_lag", "s", base::Range::between(0.0, 600.0), "time constant of the thermistor; 0 s unless given"},
+       thermistor,
+       &SensorOptions::lag_s},
       {{"resistance_accuracy", "K", base::Range::between(0.5, 50.0),
-        "readings are used if current and speed permit this accuracy; 10 K unless given"},
+        "accuracy that current and speed must permit before a reading is used; 10 K unless given"},
        winding_resistance,
        &SensorOptions::accuracy_K},
       {{"voltage_error", "V", base::Range::between(0.0, 10.0), "offset of the terminal voltage; 20 mV unless given"},

@@ -43,14 +43,14 @@ class Intermittent final : public DutyShape {
 
 void read_intermittent(input::Reader& table, const std::filesystem::path& /*folder*/, Duty& duty) {
   constexpr double kLongest_s = 1e6;
-  const base::ParameterSpec torque{"torque_on", "N m", base::Range::positive(), "at one wheel, while it is on"};
-  const base::ParameterSpec current{"current_on", "A", base::Range::positive(), "through the motor, while it is on"};
+  const base::ParameterSpec torque{"torque_on", "N m", base::Range::positive(), "torque at one wheel while the load is on"};
+  const base::ParameterSpec current{"current_on", "A", base::Range::positive(), "current through the motor while the load is on"};
   const std::optional<base::ParameterValue> torque_on = table.parameter(torque, input::Need::optional);
   const std::optional<base::ParameterValue> current_on = table.parameter(current, input::Need::optional);
-  const base::ParameterSpec speed{"speed_on", "rad/s", base::Range::non_negative(), "of the wheel, while it is on"};
-  const base::ParameterSpec time_on{"time_on", "s", base::Range::positive(), "of one cycle"};
-  const base::ParameterSpec time_off{"time_off", "s", base::Range::non_negative(), "of one cycle"};
-  const base::ParameterSpec cycles{"repeats", "", base::Range::between(1.0, 1e6), "how many cycles"};
+  const base::ParameterSpec speed{"speed_on", "rad/s", base::Range::non_negative(), "speed of the wheel while the load is on"};
+  const base::ParameterSpec time_on{"time_on", "s", base::Range::positive(), "time with load in one cycle"};
+  const base::ParameterSpec time_off{"time_off", "s", base::Range::non_negative(), "time without load in one cycle"};
+  const base::ParameterSpec cycles{"repeats", "", base::Range::between(1.0, 1e6), "number of cycles"};
   const std::optional<double> speed_on = table.quantity(speed, input::Need::required);
   const std::optional<double> on_s = table.quantity(time_on, input::Need::required);
   const std::optional<double> off_s = table.quantity(time_off, input::Need::required);

@@ -195,7 +195,7 @@ void read_recorded(input::Reader& table, const std::filesystem::path& folder, Du
   constexpr std::array<std::string_view, 2> kQuantities{"torque", "current"};
   const std::optional<std::string> quantity = table.choice("quantity", kQuantities, input::Need::required);
   const double repeats =
-      table.quantity({"repeats", "", base::Range::between(1.0, 1e4), "how often the recording is run"}, input::Need::optional)
+      table.quantity({"repeats", "", base::Range::between(1.0, 1e4), "number of runs of the recording"}, input::Need::optional)
           .value_or(1.0);
   if (repeats != std::floor(repeats)) {
     table.problem("repeats", "is not a whole number");

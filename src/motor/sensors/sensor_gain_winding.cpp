@@ -9,7 +9,7 @@ SensorEffectType sensor_gain_winding() {
       .equation = "shown = T_winding + ε·(T_winding − 25 °C)",
       .reference = "JCGM 100 (GUM), systematic error of an instrument; wrong beta of a thermistor",
       .signal = "winding_C",
-      .size = {"relative_error", "", base::Range::between(-0.5, 0.5), "of the rise above 25 °C"},
+      .size = {"relative_error", "", base::Range::between(-0.5, 0.5), "relative error of the rise above 25 °C"},
       .typical_size = 0.03,
       .typical = "0.01 to 0.05 for a thermistor with a nominal beta",
       .confounded_with =

@@ -9,7 +9,7 @@ SensorEffectType sensor_lag_stator() {
       .equation = "τ·d shown/dt = T_stator − shown",
       .reference = "first-order response of a temperature probe, ASTM E839",
       .signal = "stator_C",
-      .size = {"time_constant", "s", base::Range::between(0.0, 300.0), "after which 63 % of a step is shown"},
+      .size = {"time_constant", "s", base::Range::between(0.0, 300.0), "time after which the reading shows 63 % of a step"},
       .typical_size = 8.0,
       .typical = "2 to 20 s for a probe glued or taped on",
       .confounded_with =

@@ -9,7 +9,7 @@ SensorEffectType sensor_lag_winding() {
       .equation = "τ·d shown/dt = T_winding − shown",
       .reference = "first-order response of a temperature probe, ASTM E839",
       .signal = "winding_C",
-      .size = {"time_constant", "s", base::Range::between(0.0, 120.0), "after which 63 % of a step is shown"},
+      .size = {"time_constant", "s", base::Range::between(0.0, 120.0), "time after which the reading shows 63 % of a step"},
       .typical_size = 4.0,
       .typical = "1 to 5 s for a bead between the wires, more on top of tape",
       .confounded_with =

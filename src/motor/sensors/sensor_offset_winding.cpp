@@ -9,7 +9,7 @@ SensorEffectType sensor_offset_winding() {
       .equation = "shown = T_winding + ΔT",
       .reference = "JCGM 100 (GUM), systematic error of an instrument",
       .signal = "winding_C",
-      .size = {"offset", "K", base::Range::between(-30.0, 30.0), "shown above true"},
+      .size = {"offset", "K", base::Range::between(-30.0, 30.0), "reading minus true temperature"},
       .typical_size = 1.0,
       .typical = "0.5 to 2 K for thermistors and thermocouples",
       .confounded_with =

@@ -140,7 +140,7 @@ std::string say(const calibration::FilePredictsBest& of) {
   return of.is_written ? "no fit predicts left-out pieces better than the file: its values are written as they are"
          : of.is_better_than_fit
              ? "for forecasts the values of the file are better than the written ones: they predict left-out pieces better"
-             : "no fit predicts left-out pieces better than the file, but the written values predict them as well";
+             : "no fit predicts left-out pieces better than the file, but the written values predict them equally well";
 }
 
 std::string say(const calibration::FreeRunsPredictBest& of) {

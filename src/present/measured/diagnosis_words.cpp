@@ -242,9 +242,9 @@ std::string reason_in_words(const attribution::Refusal& refused) {
     case attribution::RefusalReason::curve_is_better:
       return fmt::format("a curve over {} explains the runs better", refused.signal);
     case attribution::RefusalReason::unknown_heat_remains:
-      return "material unknown heat remains, and it does not reduce the error of whole runs enough";
+      return "much unknown heat remains, and the effect does not reduce the error of whole runs enough";
     case attribution::RefusalReason::hardly_improves_whole_runs:
-      return "it hardly improves the prediction of whole runs";
+      return "the effect hardly improves the prediction of whole runs";
   }
   return "";
 }
@@ -253,13 +253,13 @@ std::string_view it_or_them(std::size_t count) { return count == 1 ? "it" : "the
 
 std::string say(const diagnosis::ExtensionsMayImitate& of) {
   return fmt::format(
-      "an effect that {} imitates may stay unfound, because the file has {} for better forecasts only; calibrate with --innovations for a "
+      "an effect similar to {} may not be found, because the file has {} for better forecasts only; calibrate with --innovations for a "
       "diagnosis",
       fmt::join(of.effects, " and "), it_or_them(of.effects.size()));
 }
 
 std::string say(const diagnosis::ColumnsTakenAsZero& of) {
-  return fmt::format("no log has {}, which {} depends on: it is taken as 0", fmt::join(of.columns, " and "), of.effect);
+  return fmt::format("no log has {}, on which {} depends; the value 0 is used", fmt::join(of.columns, " and "), of.effect);
 }
 
 std::string say(const diagnosis::ConditionNotApplied& of) {
@@ -274,7 +274,8 @@ std::string say(const diagnosis::ConditionNeverMet& of) {
 }
 
 std::string say(const diagnosis::IntervalsOfDataSheet& /*of*/) {
-  return "the file's intervals are replaced by those of a data sheet: it was fitted to some of these runs, which would count twice";
+  return "the file's intervals are replaced by those of a data sheet, because the file was fitted to some of these runs, which would count "
+         "twice";
 }
 
 std::string say(const diagnosis::LossInUnknownHeat& of) {

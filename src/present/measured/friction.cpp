@@ -182,8 +182,8 @@ std::vector<std::string> lack_of_fit_words(const friction::FrictionFit& fit) {
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     if (const friction::LackOfFit& lack = fit.wheels[i].lack; lack.is_found) {
       found.push_back(
-          fmt::format("the residual of wheel {} depends on θ: {} V rms beyond the {} V by which {} differ; a sin(θ+φ) + b sign does not "
-                      "hold there, and the intervals are wider by the part that may be in a and b",
+          fmt::format("the residual of wheel {} depends on θ: {} V rms beyond the {} V by which {} differ. The law a sin(θ+φ) + b sign "
+                      "does not hold there; the intervals of a and b are wider to allow for this error",
                       i + 1, base::significant(lack.left_V, 2), base::significant(lack.repeats_V, 2), lack.repeats));
     }
   }

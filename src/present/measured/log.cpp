@@ -96,7 +96,7 @@ Table channel_table(const recording::DataQuality& quality) {
          {base::significant(channel.high, kDigits)},
          {channel.step > 0.0 ? base::significant(channel.step, 2) : "–"},
          {base::significant(channel.noise, 2)},
-         {channel.quantity.key.starts_with("wheel_") ? "of a robot's wheel" : std::string(recording::to_string(channel.quantity.kind))}});
+         {channel.quantity.key.starts_with("wheel_") ? "robot's wheel" : std::string(recording::to_string(channel.quantity.kind))}});
   }
   return table;
 }

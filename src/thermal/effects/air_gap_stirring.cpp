@@ -27,7 +27,7 @@ EffectType air_gap_stirring() {
           "K. M. Becker, J. Kaye, Measurements of diabatic flow in an annulus with an inner rotating cylinder, J. Heat Transfer 84 (1962); "
           "linear in speed as the simplest of its regimes",
       .nodes = {{"hot", "winding"}, {"cold", "stator"}},
-      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "at 500 rad/s, in addition to that at rest"}},
+      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "conductance at 500 rad/s, in addition to that at rest"}},
       .typical = "0.02 to 0.08 W/K at 500 rad/s: 10 to 25 % smaller difference between winding and stator",
       .confounded_with =
           "Confounded with winding_through_flow, which takes the heat to ambient instead. The stator's temperature separates them.",

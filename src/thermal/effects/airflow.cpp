@@ -25,7 +25,7 @@ EffectType airflow() {
       .equation = "P_hot→cold = G · (T_hot − T_cold)",
       .reference = "Newton's law of cooling; VDI Heat Atlas, forced convection at a constant speed of the air",
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
-      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "in addition to the conductance in still air"}},
+      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "conductance in addition to that in still air"}},
       .typical = "0.05 to 0.3 W/K for a motor of 0.1 kg; a fan on a large one some W/K",
       .confounded_with =
           "Confounded with the resistance to ambient itself: only runs with and without the air, all else equal, separate them. At the "

@@ -27,7 +27,7 @@ EffectType armature_iron_loss() {
           "P. H. Mellor, R. Wrobel, D. Holliday, A computationally efficient iron loss model for brushless AC machines that caters for "
           "rated flux and field weakened operation, IEMDC 2009",
       .nodes = {{"stator", "stator"}},
-      .parameters = {{"loss", "W", base::Range::non_negative(), "at 5 A and 500 rad/s"}},
+      .parameters = {{"loss", "W", base::Range::non_negative(), "loss at 5 A and 500 rad/s"}},
       .typical = "0.5 to 2 W at 5 A and 500 rad/s",
       .confounded_with = "Confounded with load_friction (|I·ω|) at the same node and ac_copper_loss (I²·ω²) in the winding.",
       // 2 W · 2.5/5 · (250/500)² = 0.25 W

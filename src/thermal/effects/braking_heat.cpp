@@ -23,7 +23,7 @@ EffectType braking_heat() {
       .equation = "P_node = k · max(0, −P_shaft)",
       .reference = "conservation of energy",
       .nodes = {{"heated", "stator"}},
-      .parameters = {{"share", "", base::Range::between(0.0, 1.0), "of the braking power that heats the node"}},
+      .parameters = {{"share", "", base::Range::between(0.0, 1.0), "share of the braking power that heats the node"}},
       .typical = "0.1 to 1 of the braking power: hard stops make more heat than driving",
       .confounded_with =
           "Confounded with load_friction, which acts while driving too. The copper loss of the braking current is already in copper_loss.",

@@ -23,7 +23,7 @@ EffectType conduction() {
       .reference = "Fourier's law; the R_th1 and R_th2 of maxon's data sheets",
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
       .parameters = {{"thermal_resistance", "K/W", base::Range::between(1e-3, std::numeric_limits<double>::infinity()),
-                      "between the two nodes"}},
+                      "thermal resistance between the two nodes"}},
       .typical = "winding to stator 1 to 8 K/W, stator to ambient 1.5 to 18 K/W",
       .confounded_with =
           "Confounded with natural_convection and radiation, which over a narrow temperature range act as a resistance too. A cool-down "

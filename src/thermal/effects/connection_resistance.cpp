@@ -24,7 +24,8 @@ EffectType connection_resistance() {
       .equation = "P_stator = R_connection · I²",
       .reference = "Joule's law; R. Holm, Electric Contacts, 4th edition (1967)",
       .nodes = {{"stator", "stator"}},
-      .parameters = {{"resistance", "ohm", base::Range::non_negative(), "of both leads and their contacts, outside the winding"}},
+      .parameters = {{"resistance", "ohm", base::Range::non_negative(),
+                      "resistance of both leads and their contacts, outside the winding"}},
       .typical = "5 to 20 mΩ: 0.3 to 1.3 W at 8 A",
       .confounded_with =
           "Confounded with a lag of the stator's sensor and with driver_heat (|I|). If it is only a few per cent of the heat, also with a "

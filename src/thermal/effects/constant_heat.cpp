@@ -23,7 +23,7 @@ EffectType constant_heat() {
       .equation = "P_node = P",
       .reference = "definition",
       .nodes = {{"heated", "stator"}},
-      .parameters = {{"power", "W", base::Range::non_negative(), "that the node absorbs"}},
+      .parameters = {{"power", "W", base::Range::non_negative(), "heat that the node absorbs"}},
       .typical = "0.5 to 3 W",
       .confounded_with =
           "Confounded with an offset of the node's sensor or of the ambient sensor. The first minutes before power separate them.",

@@ -31,10 +31,10 @@ EffectType contact_ageing() {
           "Convers. 20 (2005): gaps between parts determine the contact; the exponential is a modelling choice",
       .nodes = {{"hot", "winding"}, {"cold", "stator"}},
       .parameters = {{"conductance", "W/K", base::Range::non_negative(),
-                      "part that appears or disappears, in parallel to the settled contact"},
-                     {"time_constant", "h", base::Range::positive(), "of the change"},
+                      "conductance that appears or disappears, in parallel to the settled contact"},
+                     {"time_constant", "h", base::Range::positive(), "time constant of the change"},
                      {"fresh_share", "", base::Range::between(0.0, 1.0),
-                      "1: present when fresh, lost with age; 0: absent when fresh, appears with age"}},
+                      "share that is present when fresh; 1: lost with age, 0: appears with age"}},
       .typical = "0.03 to 0.1 W/K: 10 to 30 % of the conductance between winding and stator, over hours to hundreds of hours",
       .confounded_with =
           "Confounded with contact_temperature_dependence if each run is hotter than the one before. A repeated run at equal temperature "

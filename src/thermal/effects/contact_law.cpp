@@ -33,9 +33,10 @@ EffectType contact_law() {
           "an empirical law; D. Staton, A. Boglietti, A. Cavagnino, Solving the more difficult aspects of electric motor thermal analysis, "
           "IEEE Trans. Energy Convers. 20 (2005): gaps between parts determine the contact and change with temperature",
       .nodes = {{"hot", "winding"}, {"cold", "stator"}},
-      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "at a mean of 60 °C and a difference of 30 K"},
-                     {"mean_ratio", "", base::Range::between(0.01, 100.0), "of the conductance, per 100 K more of the mean temperature"},
-                     {"difference_ratio", "", base::Range::between(0.01, 100.0), "of the conductance, per 100 K more of the difference"}},
+      .parameters =
+          {{"conductance", "W/K", base::Range::non_negative(), "conductance at a mean temperature of 60 °C and a difference of 30 K"},
+           {"mean_ratio", "", base::Range::between(0.01, 100.0), "factor on the conductance, per 100 K more of the mean temperature"},
+           {"difference_ratio", "", base::Range::between(0.01, 100.0), "factor on the conductance, per 100 K more of the difference"}},
       .typical = "half of the conductance between winding and stator, with ratios of 0.3 to 3",
       .confounded_with =
           "Confounded with contact_temperature_dependence, a contact that appears in one step, and with a winding of several bodies. This "

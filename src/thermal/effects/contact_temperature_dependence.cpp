@@ -30,10 +30,11 @@ EffectType contact_temperature_dependence() {
           "Energy "
           "Convers. 20 (2005): gaps between parts determine the contact; the step is a modelling choice",
       .nodes = {{"hot", "winding"}, {"cold", "stator"}},
-      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "part that appears or disappears"},
-                     {"midpoint", "degC", base::Range::between(-60.0, 400.0), "mean temperature at which half of it is present"},
+      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "conductance that appears or disappears"},
+                     {"midpoint", "degC", base::Range::between(-60.0, 400.0),
+                      "mean temperature at which half of the conductance is present"},
                      {"steepness", "1/K", base::Range::between(-1.0, 1.0),
-                      "above 0: appears with rising temperature, below 0: disappears; 1/κ is the width of the step"}},
+                      "steepness κ of the step, whose width is 1/κ; above 0: appears with rising temperature, below 0: disappears"}},
       .typical = "0.03 to 0.1 W/K with 1/κ of 20 K: 5 to 15 % of the conductance between winding and stator over 30 K",
       .confounded_with =
           "Confounded with a wrong temperature coefficient of the copper and with contact_ageing. Alternating hot and cold runs separate "

@@ -24,8 +24,9 @@ EffectType copper_loss() {
       .equation = "P_winding = I² · R25 · (1 + α · (T_winding − 25 °C))",
       .reference = "IEC 60034-2-1; maxon, key information on motor data",
       .nodes = {{"winding", "winding"}},
-      .parameters = {{"terminal_resistance", "ohm", base::Range::positive(), "between two terminals at 25 °C"},
-                     {"temperature_coefficient", "1/K", base::Range::between(0.0, 0.01), "of the resistance, at 25 °C; copper 0.0039 1/K"}},
+      .parameters = {{"terminal_resistance", "ohm", base::Range::positive(), "resistance between two terminals at 25 °C"},
+                     {"temperature_coefficient", "1/K", base::Range::between(0.0, 0.01),
+                      "temperature coefficient of the resistance at 25 °C; copper 0.0039 1/K"}},
       .typical = "5 to 10 W at nominal current",
       .confounded_with =
           "Confounded with all heat capacities and thermal resistances together: a wrong resistance or current gain scales all heat. A "

@@ -28,8 +28,8 @@ EffectType driver_heat() {
       .equation = "P_stator = P_5 · ((1 − q)·|I|/(5 A) + q·(I/(5 A))²)",
       .reference = "N. Mohan, T. Undeland, W. Robbins, Power Electronics: conduction and switching loss of semiconductors",
       .nodes = {{"stator", "stator"}},
-      .parameters = {{"loss", "W", base::Range::non_negative(), "that reaches the node at 5 A"},
-                     {"quadratic_share", "", base::Range::between(0.0, 1.0), "of it that grows with I²"}},
+      .parameters = {{"loss", "W", base::Range::non_negative(), "heat that reaches the node at 5 A"},
+                     {"quadratic_share", "", base::Range::between(0.0, 1.0), "share of the heat that grows with I²"}},
       .typical = "0.5 to 2 W at 5 A",
       .confounded_with =
           "Confounded with connection_resistance (I²) at the same node. Constant standby power is constant_heat. A driver with a large "

@@ -28,12 +28,12 @@ EffectType enclosure_warm_up() {
           "P_enclosure→ambient = r·G·(T_enclosure − T_ambient)",
       .reference = "energy balance of the enclosed air; the other motors' heat is assumed in proportion to this one's copper loss",
       .nodes = {{"stator", "stator"}, {"enclosure", "enclosure_warm_up", heat_capacity}, {"ambient", "ambient"}},
-      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "between stator and enclosed air"},
+      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "conductance between stator and enclosed air"},
                      {"leak_ratio", "", base::Range::between(0.0, 100.0),
                       "conductance from enclosure to ambient per conductance from stator to enclosure"},
                      {"heat_ratio", "K/W", base::Range::non_negative(),
-                      "the others' heat per this motor's copper loss, over the conductance"},
-                     {"heat_capacity", "J/K", base::Range::positive(), "of enclosed air and shell"}},
+                      "heat of the other sources per copper loss of this motor, divided by the conductance"},
+                     {"heat_capacity", "J/K", base::Range::positive(), "heat capacity of enclosed air and shell"}},
       .typical = "0.05 to 0.2 W/K, r = 5, h = 10 K/W: the air rises 5 to 20 K within some ten minutes",
       .confounded_with =
           "Confounded with third_node (the same without the others' heat), with I² heat that reaches the stator late through a driver or "

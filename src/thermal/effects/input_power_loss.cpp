@@ -23,7 +23,7 @@ EffectType input_power_loss() {
       .reference = "conservation of energy; IEC 60034-2-1, direct measurement of input and output",
       .nodes = {{"heated", "stator"}},
       .parameters = {{"share", "", base::Range::between(0.0, 1.0),
-                      "of the lost power that heats the node; the rest heats the driver or another node"}},
+                      "share of the lost power that heats the node; the rest heats the driver or another node"}},
       .typical = "0.2 to 1; the power of a propeller or a wheel counts as shaft power",
       .confounded_with = "Confounded with copper_loss and the speed losses, which are its parts: use either them or this at one node.",
       // 0.8 · (30 W − 20 W) = 8 W

@@ -28,8 +28,8 @@ EffectType iron_loss_eddy() {
           "G. Bertotti, General properties of power losses in soft ferromagnetic materials, IEEE Trans. Magn. 24 (1988): classical loss "
           "∝ f², excess loss ∝ f^1.5",
       .nodes = {{"stator", "stator"}},
-      .parameters = {{"loss", "W", base::Range::non_negative(), "at 500 rad/s"},
-                     {"exponent", "", base::Range::between(1.2, 3.0), "of the speed; 2 for eddy currents, 1.5 for excess loss"}},
+      .parameters = {{"loss", "W", base::Range::non_negative(), "loss at 500 rad/s"},
+                     {"exponent", "", base::Range::between(1.2, 3.0), "exponent of the speed; 2 for eddy currents, 1.5 for excess loss"}},
       .typical = "1 to 3 W at 500 rad/s",
       .confounded_with =
           "Confounded with iron_loss_hysteresis and dry friction (linear in speed) and windage (ω³); the total loss of a machine may "

@@ -26,7 +26,7 @@ EffectType iron_loss_hysteresis() {
           "C. P. Steinmetz, On the law of hysteresis, Trans. AIEE 9 (1892): energy per cycle at one induction; G. Bertotti, General "
           "properties of power losses in soft ferromagnetic materials, IEEE Trans. Magn. 24 (1988)",
       .nodes = {{"stator", "stator"}},
-      .parameters = {{"loss", "W", base::Range::non_negative(), "at 500 rad/s"}},
+      .parameters = {{"loss", "W", base::Range::non_negative(), "loss at 500 rad/s"}},
       .typical = "1 to 3 W at 500 rad/s",
       .confounded_with =
           "Confounded with the dry part of bearing_friction, which is the same term and cannot be separated by temperatures, and with "

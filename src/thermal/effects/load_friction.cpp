@@ -23,7 +23,7 @@ EffectType load_friction() {
       .equation = "P_stator = k · |P_shaft|",
       .reference = "Coulomb friction: a force in proportion to the load; 1 − efficiency of a gear stage in the catalogues",
       .nodes = {{"stator", "stator"}},
-      .parameters = {{"share", "", base::Range::between(0.0, 1.0), "of the shaft's power that heats the node"}},
+      .parameters = {{"share", "", base::Range::between(0.0, 1.0), "share of the shaft's power that heats the node"}},
       .typical = "0.03 to 0.08 of the mechanical power",
       .confounded_with = "Confounded with speed_dependent_convection of the opposite sign and armature_iron_loss (|I|·ω²).",
       // 0.05 · |−40 W| = 2 W; braking counts like driving

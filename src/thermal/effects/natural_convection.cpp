@@ -26,8 +26,8 @@ EffectType natural_convection() {
       .equation = "P_hot→cold = G_40 · (|T_hot − T_cold|/(40 K))^p · (T_hot − T_cold), p = 1/4",
       .reference = "W. H. McAdams, Heat Transmission (1954): h ∝ ΔT^¼ laminar, ΔT^⅓ turbulent; VDI Heat Atlas, natural convection",
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
-      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "at a difference of 40 K"},
-                     {"exponent", "", base::Range::between(0.1, 0.5), "of the difference; 1/4 laminar, 1/3 turbulent"}},
+      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "conductance at a difference of 40 K"},
+                     {"exponent", "", base::Range::between(0.1, 0.5), "exponent of the difference; 1/4 laminar, 1/3 turbulent"}},
       .typical = "0.03 to 0.1 W/K at 40 K: ±8 % of the resistance to ambient between 20 and 60 K",
       .confounded_with =
           "Confounded with a smaller resistance to ambient and with radiation: over one temperature range such a resistance reproduces 99 "

@@ -27,7 +27,7 @@ EffectType neighbour_coupling() {
       .equation = "P_node→surroundings = G·(T_node − T_neighbour)",
       .reference = "Newton's law of cooling; the neighbour's temperature is given and is part of the surroundings",
       .nodes = {{"node", "stator"}, {"surroundings", "ambient"}},
-      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "between the two motors"}},
+      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "conductance between the two motors"}},
       .typical = "0.02 to 0.1 W/K between motors on one plate",
       .confounded_with = "Confounded with third_node and enclosure_warm_up. Running the neighbour alone separates them.",
       // 0.05 W/K · (40 − 60) K = −1 W: the hotter neighbour adds 1 W to the node

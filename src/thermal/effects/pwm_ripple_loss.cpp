@@ -31,8 +31,9 @@ EffectType pwm_ripple_loss() {
           "variance D·(1 − D)·V² of a chopped voltage, see N. Mohan, T. Undeland, W. Robbins, Power Electronics, chapter on dc choppers; "
           "eddy currents take its square",
       .nodes = {{"winding", "winding"}, {"stator", "stator"}},
-      .parameters = {{"loss", "W", base::Range::non_negative(), "at half modulation of 24 V"},
-                     {"stator_share", "", base::Range::between(0.0, 1.0), "of it that heats the stator; 0: all in the winding"}},
+      .parameters = {{"loss", "W", base::Range::non_negative(), "loss at half modulation of 24 V"},
+                     {"stator_share", "", base::Range::between(0.0, 1.0),
+                      "share of the loss that heats the stator; 0: all in the winding"}},
       .typical = "0.3 to 2 W at half modulation of 24 V",
       .confounded_with =
           "Confounded with iron_loss_hysteresis at a single supply voltage, where modulation follows speed. Another supply voltage at the "

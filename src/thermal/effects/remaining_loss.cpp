@@ -27,8 +27,9 @@ EffectType remaining_loss() {
       .reference = "conservation of energy; IEC 60034-2-1, direct measurement of input and output",
       .nodes = {{"winding", "winding"}, {"stator", "stator"}},
       .parameters = {{"share", "", base::Range::between(0.0, 2.0),
-                      "of the measured remaining loss: 1 except for errors of the power measurement"},
-                     {"winding_share", "", base::Range::between(0.0, 1.0), "of it that heats the winding; 0.5 if nothing is known"}},
+                      "share of the measured remaining loss: 1 except for errors of the power measurement"},
+                     {"winding_share", "", base::Range::between(0.0, 1.0),
+                      "share of this loss that heats the winding; 0.5 if nothing is known"}},
       .typical = "share 1; 0.3 to 0.7 of it near the winding",
       .confounded_with =
           "Confounded with input_power_loss, which puts the whole balance into one node. Iron and friction losses are parts of this "

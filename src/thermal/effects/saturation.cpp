@@ -25,7 +25,7 @@ EffectType saturation() {
       .reference = "J. R. Hendershot, T. J. E. Miller, Design of Brushless Permanent-Magnet Machines: torque constant over current",
       .nodes = {{"winding", "winding"}},
       .parameters = {{"excess", "", base::Range::between(0.0, 5.0), "extra copper loss per copper loss, well above the knee"},
-                     {"knee_current", "A", base::Range::between(0.01, 1e4), "equivalent DC current at which half of it is reached"},
+                     {"knee_current", "A", base::Range::between(0.01, 1e4), "equivalent DC current at which half of the excess is reached"},
                      {"knee_width", "", base::Range::between(0.01, 1.0),
                       "width of the knee as a share of the knee current; an ordinary knee: 0.1"}},
       .typical = "0.1 to 0.5 above two to four times the nominal current",

@@ -26,8 +26,8 @@ EffectType speed_dependent_convection() {
       .equation = "P_hot→cold = G_500 · (|ω|/(500 rad/s))^p · (T_hot − T_cold)",
       .reference = "Nu ∝ Re^p with p from 0.5 (laminar) to 0.8 (turbulent): VDI Heat Atlas, forced convection; R. Hilpert (1933)",
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
-      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "at 500 rad/s, in addition to the cooling at rest"},
-                     {"exponent", "", base::Range::between(0.2, 1.2), "of the speed; 0.5 laminar, 0.8 turbulent"}},
+      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "conductance at 500 rad/s, in addition to the cooling at rest"},
+                     {"exponent", "", base::Range::between(0.2, 1.2), "exponent of the speed; 0.5 laminar, 0.8 turbulent"}},
       .typical = "0.05 to 0.2 W/K at 500 rad/s: 20 to 60 % less resistance to ambient",
       .confounded_with =
           "Confounded with a speed loss of the opposite sign: only the growth with the temperature difference separates them, so the runs "

@@ -25,8 +25,8 @@ EffectType stall_phase_imbalance() {
       .equation = "P_winding = P_copper · k / (1 + e^(−5·(1 − |ω|/ω_s))): a step as wide as a fifth of ω_s",
       .reference = "sinusoidal currents at standstill: peak² against mean square is 2; block commutation: two of three phases carry all",
       .nodes = {{"winding", "winding"}},
-      .parameters = {{"excess", "", base::Range::between(0.0, 1.0), "of the hottest phase over the mean copper loss, at standstill"},
-                     {"stall_speed", "rad/s", base::Range::between(0.1, 1000.0), "below which phases no longer share the heat"}},
+      .parameters = {{"excess", "", base::Range::between(0.0, 1.0), "excess of the hottest phase over the mean copper loss, at standstill"},
+                     {"stall_speed", "rad/s", base::Range::between(0.1, 1000.0), "speed below which the phases no longer share the heat"}},
       .typical = "0.3 to 1 below about 10 rad/s",
       .confounded_with =
           "Confounded with third_node if runs begin with a stall. Turning the rotor by 60 electrical degrees between stalls separates "

@@ -40,10 +40,10 @@ constexpr std::array<base::Choice, driver_count> kDrivers = [] {
     const OperatingQuantity<double>& quantity = kQuantities<double>[kRows[i]];
     choices[i] = {quantity.name, quantity.unit, quantity.meaning};
   }
-  choices[current_speed_squared] = {"current_speed_squared", "A rad2/s2", "|I|·ω²"};
-  choices[temperature] = {"temperature", "degC", "of the node 'watched'"};
-  choices[temperature_difference] = {"temperature_difference", "K", "of the node 'watched' above 'reference'"};
-  choices[neighbour_difference] = {"neighbour_difference", "K", "of the next motor above the node 'watched'"};
+  choices[current_speed_squared] = {"current_speed_squared", "A rad2/s2", "product |I|·ω²"};
+  choices[temperature] = {"temperature", "degC", "temperature of the node 'watched'"};
+  choices[temperature_difference] = {"temperature_difference", "K", "temperature difference of the node 'watched' above 'reference'"};
+  choices[neighbour_difference] = {"neighbour_difference", "K", "temperature difference of the next motor above the node 'watched'"};
   for (std::size_t place = 0; place < kLogColumns; ++place) {
     choices[column + place] = {kColumnChoices[place], "",
                                place == 0 ? "column of a log, named by 'column'; if it is not known, the hottest value of the curve is used"
@@ -56,11 +56,11 @@ static_assert(kDrivers[speed].name == "speed");
 
 enum Form { heat_into, per_copper_loss, per_difference, per_current, per_speed };
 constexpr std::array kForms{
-    base::Choice{"heat", "W", "the curve is the heat into 'hot'"},
-    base::Choice{"per_copper_loss", "", "the curve times the copper loss is the heat into 'hot'"},
-    base::Choice{"per_difference", "W/K", "the curve is a conductance from 'hot' to 'cold'"},
-    base::Choice{"per_current", "W/A", "the curve times the current (rms) is the heat into 'hot'"},
-    base::Choice{"per_speed", "W s/rad", "the curve times the mean of |ω| is the heat into 'hot'"},
+    base::Choice{"heat", "W", "curve of the heat into 'hot'"},
+    base::Choice{"per_copper_loss", "", "curve of the heat into 'hot' per copper loss"},
+    base::Choice{"per_difference", "W/K", "curve of the conductance from 'hot' to 'cold'"},
+    base::Choice{"per_current", "W/A", "curve of the heat into 'hot' per rms current"},
+    base::Choice{"per_speed", "W s/rad", "curve of the heat into 'hot' per mean of |ω|"},
 };
 
 template <class S>
@@ -161,7 +161,7 @@ std::vector<base::ParameterSpec> parameters() {
       {"last_knot", "", base::Range::any(), "input signal at value_7; the others are evenly spaced between", {}, driver}};
   constexpr std::array<std::string_view, kKnots> kKeys{"value_1", "value_2", "value_3", "value_4", "value_5", "value_6", "value_7"};
   for (const std::string_view key : kKeys) {
-    specs.push_back({key, "", base::Range::non_negative(), "of the curve", {}, form});
+    specs.push_back({key, "", base::Range::non_negative(), "value of the curve", {}, form});
   }
   return specs;
 }

@@ -28,10 +28,10 @@ EffectType third_node() {
           "P. H. Mellor, D. Roberts, D. R. Turner, Lumped parameter thermal model for electrical machines of TEFC design, IEE Proc. B 138 "
           "(1991)",
       .nodes = {{"node", "stator"}, {"body", "third_node", heat_capacity}, {"ambient", "ambient"}},
-      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "between node and body"},
+      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "conductance between node and body"},
                      {"leak_ratio", "", base::Range::between(0.0, 100.0),
                       "conductance from body to ambient per conductance from node to body"},
-                     {"heat_capacity", "J/K", base::Range::positive(), "of the body"}},
+                     {"heat_capacity", "J/K", base::Range::positive(), "heat capacity of the body"}},
       .typical = "0.05 to 0.3 W/K and 30 to 500 J/K (aluminium 900 J/(kg K), steel 460 J/(kg K))",
       .confounded_with =
           "Confounded with enclosure_warm_up, a drift of a sensor, and a body of another heat capacity. A long soak with cool-down and "

@@ -24,8 +24,8 @@ EffectType vehicle_airflow() {
       .equation = "P_hot→cold = G_1 · (v/(1 m/s))^p · (T_hot − T_cold), p = 0.6",
       .reference = "Nu ∝ Re^p for bodies in cross flow: VDI Heat Atlas, forced convection; R. Hilpert (1933)",
       .nodes = {{"hot", "stator"}, {"cold", "ambient"}},
-      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "at 1 m/s, in addition to the cooling at rest"},
-                     {"exponent", "", base::Range::between(0.2, 1.2), "of the vehicle's speed"}},
+      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "conductance at 1 m/s, in addition to the cooling at rest"},
+                     {"exponent", "", base::Range::between(0.2, 1.2), "exponent of the vehicle's speed"}},
       .typical = "0.02 to 0.05 W/K at 1 m/s: 30 % less resistance to ambient at full speed",
       .confounded_with = "Confounded with speed_dependent_convection. The same drive with the wheels off the ground separates them.",
       // 0.03 W/K · (4 m/s)^0.5 = 0.06 W/K; · (60 − 20) K = 2.4 W

@@ -26,7 +26,7 @@ EffectType windage() {
       .equation = "P_stator = P_500 · |ω|·ω_rms² / (500 rad/s)³",
       .reference = "J. E. Vrancik, Prediction of windage power loss in alternators, NASA TN D-4849 (1968)",
       .nodes = {{"stator", "stator"}},
-      .parameters = {{"loss", "W", base::Range::non_negative(), "at 500 rad/s"}},
+      .parameters = {{"loss", "W", base::Range::non_negative(), "loss at 500 rad/s"}},
       .typical = "below 0.1 W at 500 rad/s for a smooth rotor, 0.5 W with a fan",
       .confounded_with =
           "Confounded with iron_loss_eddy (ω²): only the highest speeds separate them. A cover over the rotor's openings changes windage "

@@ -25,7 +25,7 @@ EffectType winding_through_flow() {
       .equation = "P_hot→cold = G_500 · |ω|/(500 rad/s) · (T_hot − T_cold)",
       .reference = "Newton's law of cooling; the flow of a centrifugal fan is linear in its speed (fan laws)",
       .nodes = {{"hot", "winding"}, {"cold", "ambient"}},
-      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "at 500 rad/s"}},
+      .parameters = {{"conductance", "W/K", base::Range::non_negative(), "conductance at 500 rad/s"}},
       .typical = "0.03 to 0.1 W/K at 500 rad/s in outrunners, none in closed motors",
       .confounded_with =
           "Confounded with air_gap_stirring, which takes the heat to the stator instead, and with ac_copper_loss, which heats the winding "

@@ -64,19 +64,19 @@ Command calibrate_command() {
                 ->required()
                 ->type_name("M");
             app.add_option("logs", options->logs, "measured runs (CSV)")->required()->type_name("LOG");
-            app.add_option("--holdout", options->holdout, "runs to test on, not fitted to")->type_name("LOG");
-            app.add_option("--out", options->out, "the calibrated motor, a motor file")->required()->type_name("FILE.toml");
+            app.add_option("--holdout", options->holdout, "runs for a test; the fit does not use them")->type_name("LOG");
+            app.add_option("--out", options->out, "motor file of the calibrated motor")->required()->type_name("FILE.toml");
             CLI::Option* const forecast = app.add_flag(
                 "--forecast", options->writes_forecast,
-                "always write the model that predicts left-out runs best, even if it needs effects that no diagnosis named; default: only "
-                "if it predicts left-out runs, or quarters of one run, better than the innovations fit, by 5 % and by 0.1 K");
+                "always write the model that predicts left-out runs best, even if it contains effects that no diagnosis named; default: "
+                "only if its error on left-out runs, or quarters of one run, is 5 % and 0.1 K below that of the innovations fit");
             app.add_flag("--innovations", options->writes_innovations,
                          "always write the fit that explains the response within seconds of a load change, for `heatsoak diagnose`")
                 ->excludes(forecast);
             add_picture(app, options->plot, "picture of measured and fitted temperatures");
             add_log_options(app, options->how);
-            add_seed(app, options->fit.seed, "of the starting points; same seed, same bytes");
-            app.add_option("--threads", options->fit.threads, "0: all cores; the result does not depend on it")
+            add_seed(app, options->fit.seed, "seed of the starting points; the same seed gives the same bytes");
+            app.add_option("--threads", options->fit.threads, "number of threads, 0 for all cores; the result does not depend on it")
                 ->check(whole_number(1024))
                 ->capture_default_str();
             session.add_data_option(app);

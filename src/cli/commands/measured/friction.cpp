@@ -136,8 +136,8 @@ base::ExitCode run(const FrictionOptions& options, Session& session) {
 Command friction() {
   return {.name = {},
           .summary =
-              "Damping and friction of every wheel over the direction of travel, from logs of a steady-state test; exit 3 if nothing is "
-              "identifiable",
+              "Determines damping and friction of every wheel over the direction of travel, from logs of a steady-state test; exit 3 if "
+              "nothing is identifiable",
           .example =
               "heatsoak friction --robot roboteam_twente_v2024 reports/friction_test/steady_state_test.csv --out my_robot.toml "
               "--plot friction.svg",
@@ -151,19 +151,20 @@ Command friction() {
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
             app.add_option("--motor", options->motor, "motor in the robot during the test; the robot's own unless given")->type_name("M");
             app.add_option("--map", options->map, "mapping of foreign logs (see `heatsoak log --help`)")->type_name("FILE.toml");
-            app.add_option("--method", options->method, "steady_state, or roll_out: damping alone, from decelerations with open motors")
+            app.add_option("--method", options->method, "method of the test; roll_out: damping alone, from decelerations with open motors")
                 ->check(CLI::IsMember({"steady_state", "roll_out"}))
                 ->capture_default_str();
             app.add_option("--direction", options->direction, "source of the direction of travel; best: the first that the logs have")
                 ->check(CLI::IsMember({"best", "commanded", "measured", "wheels"}))
                 ->capture_default_str();
-            app.add_option("--return-legs", options->return_legs, "legs that bring the robot back")
+            app.add_option("--return-legs", options->return_legs, "treatment of the legs that bring the robot back")
                 ->check(CLI::IsMember({"leave_out", "use"}))
                 ->capture_default_str();
             app.add_flag("--as-is", options->takes_logs_as_they_are, "continue although units, signs or the order of wheels look wrong");
-            app.add_flag("--lifted", options->is_lifted, "roll_out: the wheels were off the ground");
-            app.add_option("--out", options->out, "the robot's file with the friction found in it")->type_name("ROBOT.toml");
-            add_picture(app, options->plot, "offset and damping over the headings; voltage over speed goes beside it, FILE_voltage.svg");
+            app.add_flag("--lifted", options->is_lifted, "take the wheels as off the ground, with --method roll_out");
+            app.add_option("--out", options->out, "robot file that contains the friction found")->type_name("ROBOT.toml");
+            add_picture(app, options->plot,
+                        "picture of offset and damping over the headings; voltage over speed is beside it, in FILE_voltage.svg");
             session.add_data_option(app);
             session.add_answer_options(app);
             return [options, &session] { return run(*options, session); };

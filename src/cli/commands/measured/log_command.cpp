@@ -99,15 +99,15 @@ Command log_command() {
           "heatsoak log inspect log.csv --plot log.svg",
       .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
         const auto options = std::make_shared<LogOptions>();
-        app.add_option("action", options->action, "inspect or convert")->required()->check(CLI::IsMember({"inspect", "convert"}));
+        app.add_option("action", options->action, "action on the logs")->required()->check(CLI::IsMember({"inspect", "convert"}));
         app.add_option("file", options->files, "logs: canonical CSV (time_s, winding_C, current_A, …), or any table with a mapping")
             ->required()
             ->type_name("FILE...");
         app.add_option("--map", options->map,
                        "mapping of columns to quantities; FILE.map.toml beside the log is found automatically (README, \"Measured logs\")")
             ->type_name("FILE.toml");
-        add_picture(app, options->plot, "all channels over time, rejected samples marked");
-        add_table(app, options->out, "of convert: the canonical form");
+        add_picture(app, options->plot, "picture of all channels over time, rejected samples marked");
+        add_table(app, options->out, "log in the canonical form, written by convert");
         session.add_answer_options(app);
         return [options, &session] { return run(*options, session); };
       }};
