@@ -23,12 +23,14 @@ unsigned signature_of(const Derating& derating) {
   return sum.checksum();
 }
 
-/// Text without its include of <stdint.h>, which the header has at its top.
+/// Text without its include of <stdint.h>, which the header has at its top, and without the empty line after it.
 std::string shared_text(std::string_view file) {
   constexpr std::string_view kInclude = "#include <stdint.h>\n";
   const std::span<const embedded::Text> all = embedded::shared_c_text();
   std::string text(std::ranges::find_if(all, [file](const embedded::Text& each) { return each.path.ends_with(file); })->text);
-  return text.erase(text.find(kInclude), kInclude.size());
+  const std::size_t at = text.find(kInclude);
+  const bool is_alone = text.compare(at - 2, 2, "\n\n") == 0;
+  return text.erase(at, kInclude.size() + (is_alone ? 1 : 0));
 }
 
 std::string write_c_header(const Derating& derating) {
