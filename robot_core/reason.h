@@ -81,9 +81,9 @@
 //     samples of opposite wheels, or of any two of three wheels, fit another motion of the robot equally well. Only the reaction to
 //     currents shows the swap.
 //   - One wheel sensor with a wrong scale, sign or offset, or stuck with noise, until fault 117: after 1 to 3 s of driving with a wrong
-//     sign, 3 to 11 s with a scale of a half (tests/robot_core/wrong_wheel_sensor_test.cpp). Errors below 0.1 m/s plus 5 % of the speed
-//     limit are not found, and none on three wheels. The robot then turns and its wheels work against each other. A slipping wheel with a
-//     faulty speed sensor and no current sensor may exceed its limit.
+//     sign, 3 to 11 s with a scale of a half (tests/robot_core/wrong_wheel_sensor_test.cpp). The robot then turns and its wheels work
+//     against each other. Errors below 0.1 m/s plus 5 % of the speed limit are not found, and none on three wheels. Where opposite wheels
+//     are parallel, both stay rejected. A slipping wheel with a faulty speed sensor and no current sensor may exceed its limit.
 //   - More faulty speed sensors than spare ones: the current may exceed its limit for some periods. If all wheel sensors show 0, the robot
 //     accelerates for kStanding_s before the limp current limits it (115).
 //   - Pushes on a moving robot can look like swapped sensors until these are ruled out: two wheels then keep the limp current until
