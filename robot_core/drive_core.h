@@ -209,8 +209,8 @@ struct HeldReference {
 struct alignas(8) ComparisonState {
   std::uint64_t check_sum = 0;
   float disagreement_s[kMostWheels] = {};  ///< time for which the speed sample has contradicted the other evidence
-  /// Evidence against the present verdict on the speed sensor: time for which an accepted sensor alone has contradicted all others, minus
-  /// other times; or time for which a rejected sensor has agreed with the others.
+  /// Evidence against the present verdict on the speed sensor, reset when the verdict changes. Accepted sensor: time for which it alone has
+  /// contradicted all others, minus the time for which it has not, at least 0. Rejected sensor: time of its agreement with the others.
   float evidence_s[kMostWheels] = {};
   float current_error_s[kMostWheels] = {};  ///< time for which the current sensor has contradicted voltage and speed
   float last_rad_per_s[kMostWheels] = {};   ///< speed samples at the last comparison of pairs

@@ -13,13 +13,12 @@ constexpr float kStuck_s = 0.05F;
 // Sliding contacts make wheels disagree for a while. A disagreement above this share of the fastest speed is not sliding.
 constexpr float kDisagreement_share = 0.06F;
 constexpr float kSameDisagreement_share = 0.02F;  // limit for a sample that does not change at all
-// A sensor that is wrong by more than the first sum, as a rim speed, while all others agree, is not one on a sliding wheel after kWrong_s:
-// in 40 drives with jumps of the command, wheels slid for up to 0.5 s, and with pushes of 15 N for up to 1.1 s.
+// Smallest error of a wrong wheel sensor, as a rim speed: kWrong_m_per_s plus kWrong_share of the speed limit. A sliding wheel exceeded it
+// alone for up to 0.5 s (40 drives with jumps of the command), pushed with 15 N for up to 1.1 s.
 constexpr float kWrong_s = 1.0F;
-constexpr float kWrong_m_per_s = 0.1F;
-constexpr float kWrong_share = 0.05F;      // of the speed limit
-constexpr float kAlone_share = 0.85F;      // of the residual must disappear without the sensor
-constexpr float kRecovered_share = 0.25F;  // largest error of a sensor that was wrong, once the wheel turns again
+constexpr float kWrong_m_per_s = 0.125F;
+constexpr float kWrong_share = 0.04F;
+constexpr float kAlone_share = 0.875F;  // of the residual must disappear without the sensor
 constexpr float kYawDisagreement_rad_per_s = 2.0F;
 // Upper bound of winding resistance over coldest resistance: 2 is copper at 280 degC.
 constexpr float kHotResistance_ratio = 2.0F;
@@ -219,13 +218,25 @@ void find_responses(const Config& config, State& state, const Validated& validat
   return larger(0.0F, all - explained) / static_cast<float>(config.wheel_count);
 }
 
-/// Returns true if one wheel sensor alone contradicts the others, for example because its sign or scale is wrong. Leaving the sensor out of
-/// the fit lowers the sum of squared residuals by d²·(1 − leverage), where d is its difference from the others' estimate.
-bool is_alone(const Config& config, const State& state, const Validated& validated, float apart_m_per_s, int i) {
-  return absolute(apart_m_per_s) > kWrong_m_per_s + kWrong_share * config.speed_limit_m_per_s && !validated.is_redundancy_reduced &&
-         is_controlled(validated.mode) &&
+/// Returns true if the share of the residual that disappears without one wheel's sensor shows that it alone contradicts the others. Leaving
+/// it out of the fit lowers the sum of squared residuals by d²·(1 − leverage), where d is its difference from the others' estimate.
+bool is_alone(const Config& config, const State& state, const Validated& validated, float apart_rad_per_s, int i) {
+  const float apart_m_per_s = rim_speed_m_per_s(config, i, apart_rad_per_s);
+  return !validated.is_redundancy_reduced && is_controlled(validated.mode) &&
          apart_m_per_s * apart_m_per_s > kAlone_share * static_cast<float>(kMostWheels) * config.wheel[i].others_factor *
                                              contradiction_m2_per_s2(config, state, validated, 0, 0);
+}
+
+/// Rejects the wrong sensor, and that of an opposite wheel, which contradicts the others almost equally. The right one then agrees with the
+/// rest and recovers. No sensor has been rejected before.
+[[gnu::noinline]] void reject_wrong(State& state) {
+  for (int i = 0; i < kMostWheels; ++i) {
+    float& evidence_s = state.comparison.evidence_s[i];
+    if (evidence_s > 0.5F * kWrong_s) {
+      state.wheel[i].speed_fault = code(Reason::wheel_speed_wrong);
+      evidence_s = 0.0F;
+    }
+  }
 }
 
 /// Compares speed and current sensor of one wheel with the other wheels and the motor equation.
@@ -235,6 +246,7 @@ bool is_alone(const Config& config, const State& state, const Validated& validat
   const float sample = wheel.raw_speed_rad_per_s;
   const float implied_rad_per_s = validated.wheel[i].implied_rad_per_s;
   const float apart_rad_per_s = sample - implied_rad_per_s;
+  const float wrong_rad_per_s = (kWrong_m_per_s + kWrong_share * config.speed_limit_m_per_s) * config.wheel[i].speed_per_rim_per_m;
   const bool is_same = static_cast<float>(wheel.same_steps) * config.period_s > kStuck_s;
   const float most_apart_rad_per_s = (is_same ? kSameDisagreement_share : kDisagreement_share) * config.fastest_wheel_rad_per_s;
   const bool contradicts = current_contradicts(config, wheel, input.motor_current_A[i], sample);
@@ -247,15 +259,13 @@ bool is_alone(const Config& config, const State& state, const Validated& validat
   const std::uint8_t fault = wheel.speed_fault;
   if (fault == 0) {
     comparison.disagreement_s[i] = agrees ? 0.0F : comparison.disagreement_s[i] + since_s;
-    const bool is_odd = is_alone(config, state, validated, rim_speed_m_per_s(config, i, apart_rad_per_s), i);
-    if (is_odd || evidence_s > 0.0F) {
-      evidence_s = larger(0.0F, is_odd ? evidence_s + since_s : evidence_s - since_s);
-      // Opposite wheels contradict the others almost equally, so both are rejected. The right one then agrees with the rest and recovers.
-      const float most_s = validated.is_redundancy_reduced ? 0.5F * kWrong_s : kWrong_s;
-      if (evidence_s > most_s) {
-        wheel.speed_fault = code(Reason::wheel_speed_wrong);
-        evidence_s = 0.0F;
+    if (absolute(apart_rad_per_s) > wrong_rad_per_s && is_alone(config, state, validated, apart_rad_per_s, i)) {
+      evidence_s += since_s;
+      if (evidence_s > kWrong_s) {
+        reject_wrong(state);
       }
+    } else {
+      evidence_s = larger(0.0F, evidence_s - since_s);
     }
     if (is_same && comparison.disagreement_s[i] > kStuck_s) {
       wheel.speed_fault = code(Reason::wheel_speed_stuck);
@@ -263,15 +273,19 @@ bool is_alone(const Config& config, const State& state, const Validated& validat
     }
   } else if (fault != code(Reason::wheel_speed_swapped)) {
     const bool is_comparable = validated.wheel[i].is_speed_known || validated.are_samples_compared;
-    // A wrong scale or sign does not show while the wheel stands.
-    const bool is_right =
-        fault != code(Reason::wheel_speed_wrong) || absolute(apart_rad_per_s) < kRecovered_share * absolute(implied_rad_per_s);
-    const bool is_confirmed = agrees && is_right && is_comparable && wheel.has_spoken_wrongly == 0;
-    evidence_s = is_confirmed ? evidence_s + since_s : 0.0F;
+    bool is_confirmed = agrees && is_comparable && wheel.has_spoken_wrongly == 0;
+    float more_s = since_s;
+    if (fault == code(Reason::wheel_speed_wrong)) {
+      is_confirmed = is_confirmed && absolute(apart_rad_per_s) < wrong_rad_per_s;
+      // A wrong scale or sign does not show while the wheel hardly turns. An error of an eighth is within slip and noise.
+      more_s = absolute(implied_rad_per_s) > 0.125F * wrong_rad_per_s + 8.0F * absolute(apart_rad_per_s) ? since_s : 0.0F;
+    }
+    evidence_s = is_confirmed ? evidence_s + more_s : 0.0F;
     // A sensor with a constant sample may recover only while no current flows.
     if (evidence_s >= kSteadyAgain_s && (!is_same || wheel.is_open != 0)) {
       wheel.speed_fault = 0;  // accepted from the next step on
-      comparison.disagreement_s[i] = evidence_s = 0.0F;
+      comparison.disagreement_s[i] = 0.0F;
+      evidence_s = 0.0F;
     }
   }
   wheel.has_spoken_wrongly = 0;
@@ -390,6 +404,7 @@ float yaw_rate_of_wheels(const Config& config, const Validated& validated) {
   if (recall_sensors(known, state)) {
     state.comparison = known;
     for (int i = 0; i < kMostWheels; ++i) {
+      state.wheel[i].has_spoken_wrongly = 1;  // a fault since the last comparison has changed the meaning of evidence_s
       state.wheel[i].speed_fault = known.speed_fault[i];
       state.wheel[i].is_current_distrusted = known.current_error_s[i] > kStuck_s ? 1 : 0;
     }

@@ -312,8 +312,10 @@ TEST(FaultTable, wheel_speed_wrong) {
     EXPECT_EQ(run(test, true).first_period, -1);
     EXPECT_GE(record.first_period, kFrom + 1000);
     EXPECT_LE(record.first_period, kFrom + 2000);
-    EXPECT_LE(record.last_period, kFrom + test.periods + kSteadyAgain);
+    EXPECT_LE(record.last_period, kFrom + test.periods + kSteadyAgain + 100);
     EXPECT_LE(record.peak_A, run(test, true).peak_A + margin_A(make_config(4)));
+    // The fault begins with a jump of the sample.
+    EXPECT_EQ(record.others, std::set<Reason>{Reason::wheel_speed_jump});
   }
 }
 

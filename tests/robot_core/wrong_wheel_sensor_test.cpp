@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "test_robot.h"
 
@@ -86,17 +87,18 @@ Score drive_all(const Lie& lie, bool are_currents_fitted, float push_N) {
 struct WrongSensor {
   const char* name;
   Lie lie;
-  int least_found;  ///< smallest accepted number of drives, of 40
+  int least_found;     ///< smallest accepted number of drives, of 40
+  double most_mean_s;  ///< largest accepted mean time until the rejection
 };
 
 TEST(WrongWheelSensor, IsRejectedWithinSeconds) {
   const WrongSensor sensors[] = {
-      {"wrong sign", [](float speed, float) { return -speed; }, 38},
-      {"half", [](float speed, float) { return 0.5F * speed; }, 30},
-      {"double", [](float speed, float) { return 2.0F * speed; }, 34},
-      {"offset of 60 rad/s", [](float speed, float) { return speed + 60.0F; }, 38},
-      {"0 with noise", [](float, float noise) { return noise; }, 38},
-      {"40 rad/s with noise", [](float, float noise) { return 40.0F + noise; }, 38},
+      {"wrong sign", [](float speed, float) { return -speed; }, 38, 2.0},
+      {"half", [](float speed, float) { return 0.5F * speed; }, 33, 5.5},
+      {"double", [](float speed, float) { return 2.0F * speed; }, 37, 5.0},
+      {"offset of 60 rad/s", [](float speed, float) { return speed + 60.0F; }, 39, 1.5},
+      {"0 with noise", [](float, float noise) { return noise; }, 39, 3.0},
+      {"40 rad/s with noise", [](float, float noise) { return 40.0F + noise; }, 39, 1.5},
   };
   std::printf("sensor | currents sensed | found | mean s | worst s | accepted at the end | correct ones rejected at the end\n");
   for (const WrongSensor& sensor : sensors) {
@@ -106,9 +108,98 @@ TEST(WrongWheelSensor, IsRejectedWithinSeconds) {
                   score.bad_accepted, score.good_at_end);
       EXPECT_GE(score.found, sensor.least_found) << sensor.name;
       EXPECT_LE(score.bad_accepted, 1) << sensor.name;
-      EXPECT_LE(score.good_at_end, 10) << sensor.name;
+      EXPECT_LE(score.mean_s, sensor.most_mean_s) << sensor.name;
+      EXPECT_LE(score.good_at_end, 3) << sensor.name;
     }
   }
+}
+
+/// Drives with a fault of the sensors from 1 to 5 s, then without one.
+struct Cured {
+  int rejections = 0;        ///< times that a wheel got fault 117
+  double recovered_s = 0.0;  ///< time from the end of the fault until no wheel is rejected for the last time
+};
+
+Cured drive_cured(const std::function<void(Input&, int)>& spoil, const std::function<robot_core::Vector3(int)>& command, int periods) {
+  const Config config = make_config(4);
+  Random random(kFirstSeed);
+  Plant plant(config, {});
+  State state;
+  robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F});
+  Cured cured;
+  bool was_rejected[4] = {};
+  for (int k = 0; k < periods; ++k) {
+    Input input = plant.sense(random, kNoise_rad_per_s, false);
+    spoil(input, k);
+    input.command.mode = Mode::body_velocity;
+    input.command.velocity = command(k);
+    plant.move(robot_core::step(config, state, input));
+    for (int i = 0; i < config.wheel_count; ++i) {
+      const bool is_rejected = state.wheel[i].speed_fault != 0;
+      cured.rejections += is_rejected && !was_rejected[i] ? 1 : 0;
+      cured.recovered_s = is_rejected ? std::max(0.0, 1e-3 * (k - 5000)) : cured.recovered_s;
+      was_rejected[i] = is_rejected;
+    }
+  }
+  return cured;
+}
+
+TEST(WrongWheelSensor, RecoversInAnyMotionOnceItIsRight) {
+  const auto wrong_sign = [](Input& input, int k) { input.wheel_speed_rad_per_s[1] *= k >= 1000 && k < 5000 ? -1.0F : 1.0F; };
+  const auto turning = [](int k, float period_s) { return 6.2832F * 1e-3F * static_cast<float>(k) / period_s; };
+  const std::pair<const char*, std::function<robot_core::Vector3(int)>> commands[] = {
+      {"straight",
+       [](int) {
+         return robot_core::Vector3{1.2F, 0.4F, 0.0F};
+       }},
+      {"diagonal",
+       [](int) {
+         return robot_core::Vector3{0.7F, -0.7F, 0.0F};
+       }},
+      {"reversing",
+       [](int k) {
+         return robot_core::Vector3{k / 250 % 2 == 0 ? 1.5F : -1.5F, 0.3F, 0.0F};
+       }},
+      {"oscillating",
+       [&](int k) {
+         return robot_core::Vector3{1.5F * std::sin(turning(k, 0.45F)), 0.0F, 1.0F};
+       }},
+      {"circling",
+       [&](int k) {
+         return robot_core::Vector3{std::cos(turning(k, 0.6F)), std::sin(turning(k, 0.6F)), 0.0F};
+       }},
+  };
+  for (const auto& [name, later] : commands) {
+    const auto command = [&later](int k) { return k < 5000 ? robot_core::Vector3{1.2F, 0.4F, 1.0F} : later(k); };
+    const Cured cured = drive_cured(wrong_sign, command, 25'000);
+    EXPECT_GE(cured.rejections, 1) << name;
+    EXPECT_LE(cured.recovered_s, 3.0) << name;
+  }
+}
+
+/// A sensor that is off now and then is not rejected because another one fails for a moment.
+TEST(WrongWheelSensor, IsNotBlamedForAnotherSensor) {
+  const auto dropout = [](Input& input, int k) {
+    input.wheel_speed_rad_per_s[1] += k >= 1000 && k < 1900 ? 10.0F : 0.0F;
+    input.wheel_speed_rad_per_s[2] = k == 1950 ? kNone : input.wheel_speed_rad_per_s[2];
+  };
+  EXPECT_EQ(drive_cured(
+                dropout,
+                [](int) {
+                  return robot_core::Vector3{1.2F, 0.4F, 1.0F};
+                },
+                4000)
+                .rejections,
+            1);
+}
+
+/// An error near the threshold may come and go with the speed, but not many times in a steady motion.
+TEST(WrongWheelSensor, IsNotRejectedAndAcceptedInTurns) {
+  const auto fast = [](int) { return robot_core::Vector3{2.4F, 0.6F, 0.0F}; };
+  const auto offset = [](Input& input, int) { input.wheel_speed_rad_per_s[1] += 12.0F; };
+  const auto scale = [](Input& input, int) { input.wheel_speed_rad_per_s[1] *= 1.22F; };
+  EXPECT_LE(drive_cured(offset, fast, 60'000).rejections, 4);
+  EXPECT_LE(drive_cured(scale, fast, 60'000).rejections, 8);
 }
 
 TEST(WrongWheelSensor, IsSeldomSeenWhereAllAreCorrect) {
@@ -118,7 +209,7 @@ TEST(WrongWheelSensor, IsSeldomSeenWhereAllAreCorrect) {
       const Score score = drive_all([](float speed, float) { return speed; }, are_currents_fitted, push_N);
       const int at_end = score.good_at_end + score.found - score.bad_accepted;
       std::printf("%.0f | %d | %d | %d\n", static_cast<double>(push_N), are_currents_fitted, score.found, at_end);
-      EXPECT_LE(score.found, push_N > 0.0F ? 4 : 0);
+      EXPECT_LE(score.found, push_N > 0.0F ? 3 : 0);
       EXPECT_LE(at_end, push_N > 0.0F ? 1 : 0);
     }
   }
