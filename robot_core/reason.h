@@ -83,7 +83,7 @@
 //     currents shows the swap.
 //   - One wheel sensor with a wrong scale, sign or offset, or stuck with noise, until fault 117. In 77 of 80 drives of 12 s a wrong sign
 //     was found, after 1.4 s on average; a scale of a half in 70, after 4.5 s (tests/robot_core/wrong_wheel_sensor_test.cpp). The robot
-//     then turns and its wheels work against each other. Errors below 0.125 m/s plus 4 % of the speed limit are not found, larger ones of a
+//     then turns and its wheels work against each other. Errors below 0.06 m/s plus 6 % of the speed limit are not found, larger ones of a
 //     fifth come and go with the speed, and none is found on three wheels. Where opposite wheels are parallel, nothing tells which one is
 //     wrong: both stay rejected until the robot turns, without current sensors with open bridges (114). A slipping wheel with a faulty
 //     speed sensor and no current sensor may exceed its limit.

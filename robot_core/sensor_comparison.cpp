@@ -16,8 +16,8 @@ constexpr float kSameDisagreement_share = 0.02F;  // limit for a sample that doe
 // Smallest error of a wrong wheel sensor, as a rim speed: kWrong_m_per_s plus kWrong_share of the speed limit. A sliding wheel exceeded it
 // alone for up to 0.5 s (40 drives with jumps of the command), pushed with 15 N for up to 1.1 s.
 constexpr float kWrong_s = 1.0F;
-constexpr float kWrong_m_per_s = 0.125F;
-constexpr float kWrong_share = 0.04F;
+constexpr float kWrong_m_per_s = 0.0625F;
+constexpr float kWrong_share = 0.0625F;
 constexpr float kAlone_share = 0.875F;  // of the residual must disappear without the sensor
 constexpr float kYawDisagreement_rad_per_s = 2.0F;
 // Upper bound of winding resistance over coldest resistance: 2 is copper at 280 degC.
