@@ -166,7 +166,6 @@ static inline float heatsoak_allowed_A(const heatsoak_current_table *table, cons
 #ifndef HEATSOAK_CRC_32_H
 #define HEATSOAK_CRC_32_H
 
-
 /* CRC-32 of `count` bytes; 0 for none. */
 static inline uint32_t heatsoak_crc_32(const uint8_t *bytes, int32_t count) {
   uint32_t crc = 0xffffffffu;

@@ -29,7 +29,7 @@ std::string shared_text(std::string_view file) {
   const std::span<const embedded::Text> all = embedded::shared_c_text();
   std::string text(std::ranges::find_if(all, [file](const embedded::Text& each) { return each.path.ends_with(file); })->text);
   const std::size_t at = text.find(kInclude);
-  const bool is_alone = text.compare(at - 2, 2, "\n\n") == 0;
+  const bool is_alone = text.compare(at - 2, 2, "\n\n") == 0 && text[at + kInclude.size()] == '\n';
   return text.erase(at, kInclude.size() + (is_alone ? 1 : 0));
 }
 
