@@ -13,12 +13,15 @@ constexpr float kStuck_s = 0.05F;
 // Sliding contacts make wheels disagree for a while. A disagreement above this share of the fastest speed is not sliding.
 constexpr float kDisagreement_share = 0.06F;
 constexpr float kSameDisagreement_share = 0.02F;  // limit for a sample that does not change at all
-// Smallest error of a wrong wheel sensor, as a rim speed: kWrong_m_per_s plus kWrong_share of the speed limit. A sliding wheel exceeded it
-// alone for up to 0.5 s (40 drives with jumps of the command), pushed with 15 N for up to 1.1 s.
+// A wheel sensor counts as wrong if it alone is off by kWrong_m_per_s plus kWrong_share of the speed limit for kWrong_s. In simulation a
+// sliding wheel is off by 0.24 m/s for up to 0.5 s (40 drives with jumps of the command), pushed with 15 N for up to 1.1 s.
 constexpr float kWrong_s = 1.0F;
 constexpr float kWrong_m_per_s = 0.0625F;
 constexpr float kWrong_share = 0.0625F;
-constexpr float kAlone_share = 0.875F;  // of the residual must disappear without the sensor
+constexpr float kAlone_share = 0.875F;  // smallest share of the residual that one wrong sensor explains
+// A wrong sensor recovers while the implied speed exceeds this multiple of its error plus this share of the threshold.
+constexpr float kRecovery_ratio = 8.0F;
+constexpr float kTurning_share = 0.125F;
 constexpr float kYawDisagreement_rad_per_s = 2.0F;
 // Upper bound of winding resistance over coldest resistance: 2 is copper at 280 degC.
 constexpr float kHotResistance_ratio = 2.0F;
@@ -278,7 +281,8 @@ bool is_alone(const Config& config, const State& state, const Validated& validat
     if (fault == code(Reason::wheel_speed_wrong)) {
       is_confirmed = is_confirmed && absolute(apart_rad_per_s) < wrong_rad_per_s;
       // A wrong scale or sign does not show while the wheel hardly turns. An error of an eighth is within slip and noise.
-      more_s = absolute(implied_rad_per_s) > 0.125F * wrong_rad_per_s + 8.0F * absolute(apart_rad_per_s) ? since_s : 0.0F;
+      more_s =
+          absolute(implied_rad_per_s) > kTurning_share * wrong_rad_per_s + kRecovery_ratio * absolute(apart_rad_per_s) ? since_s : 0.0F;
     }
     evidence_s = is_confirmed ? evidence_s + more_s : 0.0F;
     // A sensor with a constant sample may recover only while no current flows.

@@ -29,10 +29,7 @@ class Drive {
   }
 
   const Output& period(int a, int b) {
-    if (--until_command_ <= 0) {
-      velocity_ = {random_.between(-2.0F, 2.0F), random_.between(-2.0F, 2.0F), random_.between(-5.0F, 5.0F)};
-      until_command_ = 200 + random_.below(600);
-    }
+    const robot_core::Vector3& velocity = command_.next(random_);
     Input input = plant_.sense(random_, 0.3F, are_currents_fitted_);
     if (--until_push_ <= 0) {
       until_push_ = 100 + random_.below(900);
@@ -42,7 +39,7 @@ class Drive {
     }
     std::swap(input.wheel_speed_rad_per_s[a], input.wheel_speed_rad_per_s[b]);
     input.command.mode = Mode::body_velocity;
-    input.command.velocity = is_standing_ ? robot_core::Vector3{} : velocity_;
+    input.command.velocity = is_standing_ ? robot_core::Vector3{} : velocity;
     output_ = robot_core::step(config_, state_, input);
     for (int i = 0; i < config_.wheel_count; ++i) {
       largest_A_ = std::max(largest_A_, std::abs(plant_.coldest_current_A(output_, i)));
@@ -83,8 +80,7 @@ class Drive {
   Plant plant_;
   State state_;
   Output output_;
-  robot_core::Vector3 velocity_;
-  int until_command_ = 0;
+  ChangingVelocity command_;
   int until_push_ = 0;
   bool is_pushed_ = false;
   bool is_standing_ = false;

@@ -161,6 +161,14 @@ float Random::between(float low, float high) { return low + (high - low) * stati
 
 float Random::any_float() { return std::bit_cast<float>(static_cast<std::uint32_t>(bits() >> 32U)); }
 
+const robot_core::Vector3& ChangingVelocity::next(Random& random) {
+  if (--periods_left_ <= 0) {
+    velocity_ = {random.between(-2.0F, 2.0F), random.between(-2.0F, 2.0F), random.between(-5.0F, 5.0F)};
+    periods_left_ = 200 + random.below(600);
+  }
+  return velocity_;
+}
+
 int mirror_of(int wheel_count, int wheel) { return wheel_count - 1 - wheel; }
 
 double formula_current_A(double speed_rad_per_s, double stator_C, double winding_C) {

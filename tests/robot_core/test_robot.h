@@ -30,6 +30,16 @@ class Random {
   std::uint64_t state_;
 };
 
+/// Commands as on the field: a new velocity every 0.2 to 0.8 s, in periods of 1 ms.
+class ChangingVelocity {
+ public:
+  const robot_core::Vector3& next(Random& random);
+
+ private:
+  robot_core::Vector3 velocity_;
+  int periods_left_ = 0;
+};
+
 /// True parameters of the robot that the Config does not contain, or contains with a tolerance.
 struct Truth {
   double winding_ohm = 1.0;      ///< at 25 °C; the lowest resistance within the tolerance is kLowestResistance_ratio of the nominal one

@@ -46,13 +46,10 @@ Score drive_all(const Lie& lie, bool are_currents_fitted, float push_N) {
     robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F});
     const int bad = static_cast<int>(drive % 4);
     const auto is_rejected = [&](int i) { return state.wheel[i].speed_fault == static_cast<std::uint8_t>(Reason::wheel_speed_wrong); };
-    robot_core::Vector3 velocity;
-    int until_command = 0, until_push = 0, first = -1;
+    ChangingVelocity command;
+    int until_push = 0, first = -1;
     for (int k = 0; k < kPeriods; ++k) {
-      if (--until_command <= 0) {
-        velocity = {random.between(-2.0F, 2.0F), random.between(-2.0F, 2.0F), random.between(-5.0F, 5.0F)};
-        until_command = 200 + random.below(600);
-      }
+      const robot_core::Vector3& velocity = command.next(random);
       if (push_N > 0.0F && --until_push <= 0) {
         until_push = 100 + random.below(900);
         const float most_N = random.happens(0.5F) ? push_N : 0.0F;
