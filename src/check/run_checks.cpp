@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "check/computations.h"
 #include "check/limit.h"
+#include "robot/robot_lint.h"
 
 namespace heatsoak::check {
 namespace {
@@ -38,6 +39,9 @@ void evaluate_one(Outcome& outcome, Computations& computations) {
   outcome.measured.value = std::numeric_limits<double>::quiet_NaN();
   try {
     require_readable(*outcome.check, *outcome.limit.type);
+    if (outcome.check->robot && std::ranges::find(outcome.limit.type->needs, Setting::robot) != outcome.limit.type->needs.end()) {
+      robot::require_sound(*outcome.check->robot);
+    }
     outcome.measured = outcome.limit.type->measure(*outcome.check, computations);
     outcome.is_evaluated = std::isfinite(outcome.measured.value);
     outcome.reason = outcome.is_evaluated ? "" : "the result is not a number";

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "motor/default_spread.h"
+#include "robot/robot_lint.h"
 
 namespace heatsoak::duty {
 
@@ -30,7 +31,7 @@ std::optional<motor::Motor> NamedFiles::motor_as_written(const std::string& name
 }
 
 std::optional<robot::Robot> NamedFiles::robot(const std::string& name) {
-  return attempt([&] { return robot::read_robot(file(FileKind::robot, name)); });
+  return attempt([&] { return robot::read_sound_robot(file(FileKind::robot, name)); });
 }
 
 std::optional<Duty> NamedFiles::duty(const std::string& name) {

@@ -19,7 +19,7 @@ class NamedFiles {
  public:
   explicit NamedFiles(input::DataFolders folders) : folders_(std::move(folders)) {}
 
-  /// Returns nothing if there is a problem, which throw_if_any() then reports. Contradicting motor values are a problem, too
+  /// Returns nothing if there is a problem, which throw_if_any() then reports. Contradicting values of a motor or robot are a problem, too
   /// (require_sound()), because verdicts and firmware need consistent ones.
   std::optional<motor::Motor> motor(const std::string& name);
   /// Returns the motor as its file states it, even with contradicting values; for commands that measure the motor.

@@ -105,6 +105,10 @@ std::string_view to_string(LintFinding::Level level) {
   return "note";
 }
 
+std::string words_of(const LintFinding& finding) {
+  return fmt::format("{}: {}", finding.key.empty() ? finding.check : finding.key, finding.message);
+}
+
 std::vector<LintFinding> lint(const Motor& motor) {
   std::vector<LintFinding> list;
   for (const NamedCheck& check : kChecks) {

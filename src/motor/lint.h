@@ -20,9 +20,12 @@ struct LintFinding {
   std::string check;    ///< name of the check, "constants"
   std::string message;  ///< finding, expected value and advice
   base::Location at;
+  std::string key = {};  ///< dotted path of the value that the message is about; empty if the check's name states enough
 };
 
 std::string_view to_string(LintFinding::Level level);
+/// Returns the message after the key or, without a key, after the name of the check.
+std::string words_of(const LintFinding& finding);
 
 /// Runs all checks; each uses only values that the file gives. A motor passes if there are no errors.
 std::vector<LintFinding> lint(const Motor& motor);

@@ -17,8 +17,8 @@ Document lint_document(const duty::FilesLint& lint) {
                     .paragraphs = {}};
   Listing listing{.title = {}, .lines = {}, .is_prose = true};
   for (const motor::LintFinding& each : lint.findings) {
-    listing.lines += fmt::format("{}:{}:{}: {}: {}: {}\n", each.at.file, each.at.line, each.at.column, motor::to_string(each.level),
-                                 each.check, each.message);
+    listing.lines +=
+        fmt::format("{}:{}:{}: {}: {}\n", each.at.file, each.at.line, each.at.column, motor::to_string(each.level), motor::words_of(each));
   }
   if (!listing.lines.empty()) {
     document.listings.push_back(std::move(listing));

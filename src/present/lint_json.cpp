@@ -12,6 +12,7 @@ Json lint_json(const duty::FilesLint& lint) {
                         {"column", each.at.column},
                         {"level", motor::to_string(each.level)},
                         {"check", each.check},
+                        {"key", each.key},
                         {"message", each.message}});
   }
   return {{"schema", "heatsoak.lint/1"},

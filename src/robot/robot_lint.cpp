@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "input/document.h"
@@ -11,6 +12,11 @@
 
 namespace heatsoak::robot {
 namespace {
+
+motor::LintFinding finding(const Robot& robot, motor::LintFinding::Level level, std::string_view check, std::string_view key,
+                           std::string message) {
+  return {level, std::string(check), std::move(message), input::place_of(robot.file, std::string(key)), std::string(key)};
+}
 
 std::string in_mm(double length_m) { return fmt::format("{:.0f} mm", 1e3 * length_m); }
 
@@ -36,18 +42,16 @@ void check_wheels(const Robot& robot, std::vector<motor::LintFinding>& findings)
   const bool is_overlap = robot.wheels.radius_m > room_m;
   if (is_overlap || robot.wheels.radius_m > kLargestShare * robot.wheels.contact_radius_m) {
     findings.push_back(
-        {is_overlap ? motor::LintFinding::Level::error : motor::LintFinding::Level::warning, "wheels",
-         fmt::format("wheels.radius: wheels with a radius of {} {} on a circle of {}; expected at most {}. Is {} the diameter?",
-                     in_mm(robot.wheels.radius_m), is_overlap ? "overlap" : "are large", in_mm(robot.wheels.contact_radius_m),
-                     in_mm(std::min(room_m, kLargestShare * robot.wheels.contact_radius_m)), in_mm(robot.wheels.radius_m)),
-         input::place_of(robot.file, "wheels.radius")});
+        finding(robot, is_overlap ? motor::LintFinding::Level::error : motor::LintFinding::Level::warning, "wheels", "wheels.radius",
+                fmt::format("wheels with a radius of {} {} on a circle of {}; expected at most {}. Is {} the diameter?",
+                            in_mm(robot.wheels.radius_m), is_overlap ? "overlap" : "are large", in_mm(robot.wheels.contact_radius_m),
+                            in_mm(std::min(room_m, kLargestShare * robot.wheels.contact_radius_m)), in_mm(robot.wheels.radius_m))));
   }
 }
 
 void check_battery(const Robot& robot, std::vector<motor::LintFinding>& findings) {
   const auto add = [&](const char* key, std::string message) {
-    findings.push_back(
-        {motor::LintFinding::Level::error, "battery", fmt::format("{}: {}", key, message), input::place_of(robot.file, key)});
+    findings.push_back(finding(robot, motor::LintFinding::Level::error, "battery", key, std::move(message)));
   };
   const RobotBattery& battery = robot.battery;
   if (battery.full_V && battery.nominal_V > *battery.full_V) {
@@ -66,8 +70,7 @@ void check_battery(const Robot& robot, std::vector<motor::LintFinding>& findings
 
 void check_drive(const Robot& robot, std::vector<motor::LintFinding>& findings) {
   const auto add = [&](const char* key, std::string message) {
-    findings.push_back(
-        {motor::LintFinding::Level::warning, "drive", fmt::format("{}: {}", key, message), input::place_of(robot.file, key)});
+    findings.push_back(finding(robot, motor::LintFinding::Level::warning, "drive", key, std::move(message)));
   };
   if (std::isfinite(robot.drive.voltage_limit_V) && robot.battery.full_V && robot.drive.voltage_limit_V > 1.1 * *robot.battery.full_V) {
     add("drive.voltage_limit", fmt::format("{:.4g} V is more than the full battery's {:.4g} V; expected at most that; check the unit",
@@ -90,20 +93,17 @@ void check_inertia(const Robot& robot, std::vector<motor::LintFinding>& findings
   }
   const double share = *robot.body.yaw_inertia_kg_m2 / (robot.mass_kg * robot.wheels.contact_radius_m * robot.wheels.contact_radius_m);
   if (share < kLeast || share > kMost) {
-    findings.push_back(
-        {motor::LintFinding::Level::warning, "inertia",
-         fmt::format("body.yaw_inertia: is {:.3g} times mass times contact radius squared; expected {} to {} times. Check the "
-                     "unit (1 kg m2 is 10 000 000 g cm2), mass and wheels.contact_radius",
-                     share, kLeast, kMost),
-         input::place_of(robot.file, "body.yaw_inertia")});
+    findings.push_back(finding(robot, motor::LintFinding::Level::warning, "inertia", "body.yaw_inertia",
+                               fmt::format("is {:.3g} times mass times contact radius squared; expected {} to {} times. Check the "
+                                           "unit (1 kg m2 is 10 000 000 g cm2), mass and wheels.contact_radius",
+                                           share, kLeast, kMost)));
   }
 }
 
 /// Values that are possible, but far from those of small robots, and so probably in another unit.
 void check_motion(const Robot& robot, std::vector<motor::LintFinding>& findings) {
   const auto add = [&](const char* key, std::string message) {
-    findings.push_back(
-        {motor::LintFinding::Level::warning, "motion", fmt::format("{}: {}", key, message), input::place_of(robot.file, key)});
+    findings.push_back(finding(robot, motor::LintFinding::Level::warning, "motion", key, std::move(message)));
   };
   constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
   if (std::ranges::any_of(robot.wheels.axis_rad, [](double each_rad) { return std::abs(each_rad) > kFullTurn_rad; })) {
@@ -133,19 +133,40 @@ void check_motion(const Robot& robot, std::vector<motor::LintFinding>& findings)
 
 }  // namespace
 
-std::vector<motor::LintFinding> lint(const Robot& robot, std::span<const std::string> known_motors) {
+std::vector<motor::LintFinding> implausible_values(const Robot& robot) {
   std::vector<motor::LintFinding> findings;
-  if (robot.drive.motor != "none" && std::ranges::find(known_motors, robot.drive.motor) == known_motors.end()) {
-    findings.push_back(
-        {motor::LintFinding::Level::warning, "motor",
-         fmt::format("drive.motor: there is no motor '{}'{}", robot.drive.motor, base::did_you_mean(robot.drive.motor, known_motors)),
-         input::place_of(robot.file, "drive.motor")});
-  }
   check_wheels(robot, findings);
   check_battery(robot, findings);
   check_drive(robot, findings);
   check_inertia(robot, findings);
   check_motion(robot, findings);
+  return findings;
+}
+
+void require_sound(const Robot& robot) {
+  base::Diagnostics diagnostics;
+  for (const motor::LintFinding& each : implausible_values(robot)) {
+    if (each.level == motor::LintFinding::Level::error) {
+      diagnostics.add(each.at, each.key, each.message);
+    }
+  }
+  diagnostics.throw_if_any();
+}
+
+Robot read_sound_robot(const std::filesystem::path& path) {
+  Robot robot = read_robot(path);
+  require_sound(robot);
+  return robot;
+}
+
+std::vector<motor::LintFinding> lint(const Robot& robot, std::span<const std::string> known_motors) {
+  std::vector<motor::LintFinding> findings;
+  if (robot.drive.motor != "none" && std::ranges::find(known_motors, robot.drive.motor) == known_motors.end()) {
+    findings.push_back(
+        finding(robot, motor::LintFinding::Level::warning, "motor", "drive.motor",
+                fmt::format("there is no motor '{}'{}", robot.drive.motor, base::did_you_mean(robot.drive.motor, known_motors))));
+  }
+  std::ranges::move(implausible_values(robot), std::back_inserter(findings));
   try {
     motor::MotorValues any;
     any.rotor_inertia_kg_m2 = 0.0;
@@ -156,9 +177,8 @@ std::vector<motor::LintFinding> lint(const Robot& robot, std::span<const std::st
     }
     for (const base::Diagnostic& each : failure.diagnostics()) {
       findings.push_back(
-          {motor::LintFinding::Level::note, "motion",
-           each.key + " " + each.message + "; a match needs it (friction is assumed where it is missing), a prescribed duty does not",
-           input::place_of(robot.file, each.key)});
+          finding(robot, motor::LintFinding::Level::note, "motion", each.key,
+                  each.message + "; a match needs it (friction is assumed where it is missing), a prescribed duty does not"));
     }
   }
   return findings;

@@ -75,6 +75,31 @@ TEST(RobotPlausibility, values_in_other_units_get_a_warning) {
   EXPECT_THAT(findings_with("acceleration = \\{ value = \"2 m/s2\"", "acceleration = { value = \"200 m/s2\""), Contains("motion warning"));
 }
 
+// The computations refuse such a robot like a file with an error, at the same place and in the words of lint.
+TEST(RobotPlausibility, errors_are_refused_with_their_place_and_warnings_are_not) {
+  const std::string text = content_of_robot("roboteam_twente_v2024.toml");
+  const auto with = [&](const std::string& pattern, const std::string& by) {
+    return parse_robot(std::regex_replace(text, std::regex(pattern), by, std::regex_constants::format_first_only), "robot.toml");
+  };
+  Robot wrong = with("\nradius = \"28 mm\"", "\nradius = \"62 mm\"");
+  wrong.battery.nominal_V = 222.0;
+  try {
+    require_sound(wrong);
+    FAIL() << "is not refused";
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
+    std::vector<std::string> keys;
+    for (const base::Diagnostic& each : failure.diagnostics()) {
+      keys.push_back(each.key);
+      EXPECT_EQ(each.at.file, "robot.toml");
+    }
+    EXPECT_THAT(keys, testing::UnorderedElementsAre("wheels.radius", "battery.nominal_voltage"));
+  }
+  const Robot doubtful = with("acceleration = \\{ value = \"2 m/s2\"", "acceleration = { value = \"200 m/s2\"");
+  EXPECT_THAT(implausible_values(doubtful), testing::Not(IsEmpty()));
+  EXPECT_NO_THROW(require_sound(doubtful));
+}
+
 TEST(RobotPlausibility, robots_of_the_project_pass) {
   for (const auto& entry : std::filesystem::directory_iterator(kRobotFiles)) {
     if (entry.path().extension() != ".toml") {

@@ -46,9 +46,8 @@ Measured measure_lint_problems(const Check& check, Computations& /*computations*
   const auto count = std::ranges::count_if(all, is_problem);
   const auto first = std::ranges::find_if(all, is_problem);
   return {static_cast<double>(count), 0.0,
-          first == all.end()
-              ? std::string()
-              : fmt::format("{}:{}:{}: {}: {}", first->at.file, first->at.line, first->at.column, first->check, first->message)};
+          first == all.end() ? std::string()
+                             : fmt::format("{}:{}:{}: {}", first->at.file, first->at.line, first->at.column, motor::words_of(*first))};
 }
 
 }  // namespace
