@@ -10,7 +10,9 @@ namespace heatsoak::base {
 
 std::string to_string(const Range& range, std::string_view unit) {
   const auto with_unit = [unit](double value) {
-    return unit.empty() ? significant(value, 6) : fmt::format("{} {}", significant(value, 6), unit_for_display(unit));
+    constexpr double kLargestInDigits = 1e7;
+    const std::string number = std::abs(value) > kLargestInDigits ? fmt::format("{:.6g}", value) : significant(value, 6);
+    return unit.empty() ? number : fmt::format("{} {}", number, unit_for_display(unit));
   };
   const bool below = std::isfinite(range.high);
   if (!std::isfinite(range.low)) {

@@ -30,8 +30,8 @@ std::vector<fs::path> plugin_folders() {
   return folders;
 }
 
-fs::path find_plugin() {
-  std::string searched;
+/// Returns the path of the drawing library; empty if it is missing. `searched` receives the folders.
+fs::path find_plugin(std::string& searched) {
   for (const fs::path& folder : plugin_folders()) {
     std::error_code ignored;
     if (fs::exists(folder / chart_plugin_file, ignored)) {
@@ -39,14 +39,23 @@ fs::path find_plugin() {
     }
     searched += "\n  " + folder.string();
   }
-  throw base::Failure(
-      base::ExitCode::bad_input,
-      fmt::format("the drawing library {} is missing; HEATSOAK_PLUGINS names its folder; searched:{}", chart_plugin_file, searched));
+  return {};
+}
+
+fs::path found_plugin(const std::string& what_and_remedy) {
+  std::string searched;
+  fs::path plugin = find_plugin(searched);
+  if (plugin.empty()) {
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("{}the drawing library {} is missing; HEATSOAK_PLUGINS names its folder; searched:{}", what_and_remedy,
+                                    chart_plugin_file, searched));
+  }
+  return plugin;
 }
 
 /// The library is never closed: VTK's object factories do not survive unloading. Opening it again is cheap.
 void* plugin_function(const char* name) {
-  const fs::path plugin = find_plugin();
+  const fs::path plugin = found_plugin("");
   void* library = dlopen(plugin.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* function = library != nullptr ? dlsym(library, name) : nullptr;
   if (function == nullptr) {
@@ -75,6 +84,8 @@ void check_lengths(const Chart& chart) {
 }
 
 }  // namespace
+
+void require_drawing(std::string_view what, std::string_view remedy) { found_plugin(fmt::format("{}: {}; ", what, remedy)); }
 
 std::string draw_svg(const Chart& chart) {
   check_lengths(chart);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace heatsoak::report {
@@ -50,6 +51,9 @@ struct Chart {
   int width_px = 1000;
   int panel_height_px = 360;  ///< includes title and tick labels
 };
+
+/// Throws Failure (bad_input) if the drawing library is missing. `what` needs it; `remedy` states how to do without.
+void require_drawing(std::string_view what, std::string_view remedy);
 
 /// Draws `chart` as SVG; needs no display. Throws Failure (bug) if the drawing library is missing or fails.
 std::string draw_svg(const Chart& chart);

@@ -311,6 +311,55 @@ TEST_F(ChartTest, NameOfALimitInARippleStandsBesideThePlot) {
   EXPECT_GT(name->number("y"), last->number("y") + 12.0);
 }
 
+/// On/off load with a period of 10 s over 40 min: a warm-up with a ripple of 40 K.
+Chart rippled_warm_up() {
+  Chart chart = warm_up();
+  chart.panels.erase(chart.panels.begin());
+  ChartCurve& curve = chart.panels[0].curves[0];
+  curve.x.clear();
+  curve.y.clear();
+  for (int second = 0; second <= 2400; ++second) {
+    const double on_share = second % 10 < 4 ? second % 10 / 4.0 : (10 - second % 10) / 6.0;
+    curve.x.push_back(second / 60.0);
+    curve.y.push_back(25.0 + 80.0 * (1.0 - std::exp(-second / 300.0)) + 40.0 * on_share);
+  }
+  curve.has_ripple = true;
+  chart.panels[0].curves.resize(1);
+  chart.panels[0].bands.clear();
+  return chart;
+}
+
+// A change from line to area within one picture, with a jump to the area's edge, looks like a defect.
+TEST_F(ChartTest, RippleIsOneAreaFromItsFirstPointOn) {
+  const auto elements = drawn(rippled_warm_up());
+  const auto edges = lines(elements, blue);
+  ASSERT_EQ(edges.size(), 2U) << "only the lower and the upper edge";
+  const SeenPanel seen = seen_panels(elements).at(0);
+  for (const std::vector<Point>& edge : edges) {
+    EXPECT_NEAR(edge.front().x_px, seen.x.px(0.0), 1.0);
+    EXPECT_NEAR(edge.front().y_px, seen.y.px(25.0), 1.0) << "both edges begin at the curve's first point";
+    EXPECT_NEAR(edge.back().x_px, seen.x.px(40.0), 10.0);
+  }
+}
+
+TEST_F(ChartTest, RippleThatBeginsLaterIsJoinedToItsLine) {
+  Chart chart = rippled_warm_up();
+  ChartCurve& curve = chart.panels[0].curves[0];
+  curve.name.clear();
+  for (std::size_t i = 0; i < 1200; ++i) {
+    curve.y[i] = curve.y[1200];
+  }
+  const auto pieces = lines(drawn(chart), blue, 2);
+  ASSERT_EQ(pieces.size(), 3U);
+  const auto line = std::ranges::min_element(pieces, {}, [](const std::vector<Point>& each) { return each.back().x_px; });
+  for (const std::vector<Point>& piece : pieces) {
+    if (&piece != &*line) {
+      EXPECT_NEAR(piece.front().x_px, line->back().x_px, 1.0);
+      EXPECT_NEAR(piece.front().y_px, line->back().y_px, 1.0);
+    }
+  }
+}
+
 TEST_F(ChartTest, NamesOfCloseLimitsStandApart) {
   Chart chart = warm_up();
   const std::vector<std::string> names{

@@ -132,11 +132,17 @@ std::optional<Box> free_place(Box box, double left_end_px, const std::vector<Box
   return std::nullopt;
 }
 
-/// Returns all unbroken pieces of all curves.
+/// Returns all unbroken pieces of all curves, with the edges of a ripple in its place.
 std::vector<std::vector<CurvePoint>> curves_px(const ChartPanel& panel, const AxisScale& horizontal, const AxisScale& vertical) {
   std::vector<std::vector<CurvePoint>> all;
   for (const ChartCurve& curve : panel.curves) {
-    std::ranges::move(reduce(curve, horizontal, vertical), std::back_inserter(all));
+    for (std::vector<CurvePoint>& piece : reduce(curve, horizontal, vertical)) {
+      if (curve.has_ripple) {
+        std::ranges::move(drawn_lines(without_ripple(piece)), std::back_inserter(all));
+      } else {
+        all.push_back(std::move(piece));
+      }
+    }
   }
   return all;
 }

@@ -56,6 +56,22 @@ struct Window {
   bool is_ripple = false;  ///< oscillates more than once, by more than a line width
 };
 
+/// Ripple lasts for several windows: a few windows alone are noise or a peak, and a few without ripple beside a ripple, such as the steep
+/// first cycles of a warm-up, belong to it. Otherwise the picture would change between line and area.
+void unify(std::vector<Window>& windows) {
+  constexpr std::ptrdiff_t kLeastWindows = 6;
+  for (const bool is_ripple : {true, false}) {
+    for (auto first = windows.begin(); first != windows.end();) {
+      const auto last = std::find_if(first, windows.end(), [&](const Window& each) { return each.is_ripple != first->is_ripple; });
+      const bool is_whole = first == windows.begin() && last == windows.end();
+      if (first->is_ripple == is_ripple && last - first < kLeastWindows && (is_ripple || !is_whole)) {
+        std::for_each(first, last, [is_ripple](Window& each) { each.is_ripple = !is_ripple; });
+      }
+      first = last;
+    }
+  }
+}
+
 std::vector<Window> windows_of(const std::vector<CurvePoint>& piece) {
   constexpr double kSwings = 2.5;
   constexpr double kLeast_px = 5.0;
@@ -74,15 +90,15 @@ std::vector<Window> windows_of(const std::vector<CurvePoint>& piece) {
     window.is_ripple = range_px > kLeast_px && travel_px > kSwings * range_px;
     windows.push_back(window);
   }
-  // Ripple lasts for several windows; a few windows alone are noise or a peak.
-  constexpr std::ptrdiff_t kLeastWindows = 6;
-  for (auto first = windows.begin(); first != windows.end();) {
-    const auto last = std::find_if(first, windows.end(), [&](const Window& each) { return each.is_ripple != first->is_ripple; });
-    if (last - first < kLeastWindows) {
-      std::for_each(first, last, [](Window& each) { each.is_ripple = false; });
-    }
-    first = last;
+  // A last window that ends early contains no whole cycle.
+  if (windows.size() > 1 && piece.back().x_px - piece[windows.back().begin].x_px < 0.5 * window_px) {
+    const Window last = windows.back();
+    windows.pop_back();
+    windows.back().end = last.end;
+    windows.back().low_px = std::min(windows.back().low_px, last.low_px);
+    windows.back().high_px = std::max(windows.back().high_px, last.high_px);
   }
+  unify(windows);
   return windows;
 }
 
@@ -97,7 +113,9 @@ RippledPiece without_ripple(const std::vector<CurvePoint>& piece) {
     const double end_px = piece[window.end - 1].x_px;
     if (window.is_ripple) {
       if (is_first || !was_ripple) {
-        result.envelopes.push_back({{begin_px, window.low_px, window.high_px}});
+        // The envelope opens from the curve's own point, so that it does not jump.
+        const CurvePoint& from = piece[window.begin > 0 ? window.begin - 1 : 0];
+        result.envelopes.push_back({{from.x_px, from.y_px, from.y_px}});
       }
       result.envelopes.back().push_back({0.5 * (begin_px + end_px), window.low_px, window.high_px});
       if (window.end == piece.size()) {
@@ -107,11 +125,10 @@ RippledPiece without_ripple(const std::vector<CurvePoint>& piece) {
       if (is_first || was_ripple) {
         result.lines.emplace_back();
         if (window.begin > 0) {
-          // The envelope extends to the point where the line continues.
-          BandPoint end = result.envelopes.back().back();
-          end.x_px = piece[window.begin - 1].x_px;
-          result.envelopes.back().push_back(end);
-          result.lines.back().push_back(piece[window.begin - 1]);
+          // The envelope closes at the point where the line continues.
+          const CurvePoint& to = piece[window.begin - 1];
+          result.envelopes.back().push_back({to.x_px, to.y_px, to.y_px});
+          result.lines.back().push_back(to);
         }
       }
       result.lines.back().insert(result.lines.back().end(), piece.begin() + static_cast<std::ptrdiff_t>(window.begin),
@@ -121,6 +138,19 @@ RippledPiece without_ripple(const std::vector<CurvePoint>& piece) {
     is_first = false;
   }
   return result;
+}
+
+std::vector<std::vector<CurvePoint>> drawn_lines(const RippledPiece& piece) {
+  std::vector<std::vector<CurvePoint>> lines = piece.lines;
+  for (const std::vector<BandPoint>& ripple : piece.envelopes) {
+    for (const auto edge : {&BandPoint::low_px, &BandPoint::high_px}) {
+      lines.emplace_back();
+      for (const BandPoint& at : ripple) {
+        lines.back().push_back({at.x_px, at.*edge});
+      }
+    }
+  }
+  return lines;
 }
 
 std::vector<std::vector<CurvePoint>> markers(const ChartCurve& curve, const AxisScale& horizontal, const AxisScale& vertical,

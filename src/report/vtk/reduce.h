@@ -36,5 +36,7 @@ struct RippledPiece {
 };
 /// Replaces the ripple of a piece by envelopes.
 RippledPiece without_ripple(const std::vector<CurvePoint>& piece);
+/// Returns all lines that are drawn for the piece: its lines, and both edges of its envelopes.
+std::vector<std::vector<CurvePoint>> drawn_lines(const RippledPiece& piece);
 
 }  // namespace heatsoak::report
