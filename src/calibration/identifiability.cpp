@@ -14,6 +14,9 @@
 namespace heatsoak::calibration {
 namespace {
 
+/// Experiment that determines the stator, and any value that other runs do not excite.
+constexpr std::string_view kLongRun = "one run from cold with a constant current up to the steady state, then the cool-down";
+
 /// A direction is open if the data leave more than this fraction of its prior variance.
 constexpr double kIdentifiableShare = 0.5;
 
@@ -97,10 +100,7 @@ Answer loss_hidden(const Look& seen) {
   return {seen.is_ever_at_speed ? "the loss at speed is small against the copper loss" : "the motor hardly turns in these runs",
           "10 minutes at no load and full speed", 15.0};
 }
-Answer not_excited() {
-  return {"the runs do not excite these parameters: the measured temperatures hardly change when they change together",
-          "one run from cold with a constant current up to the steady state, then the cool-down", 90.0};
-}
+Answer not_excited() { return {"the measured temperatures of these runs hardly depend on it", std::string(kLongRun), 90.0}; }
 Answer speed_unlogged() {
   return {
       "the runs do not contain the speed: the loss may be anything from none to that at no-load speed, and the stator's values depend on "
@@ -132,6 +132,7 @@ double likeness_to_scale(const Eigen::VectorXd& direction, const Roles& roles) {
 }
 
 std::string movement(const estimation::Model& model, const Eigen::VectorXd& direction) {
+  std::vector<std::string> names;
   std::vector<std::string> parts;
   const double largest = direction.cwiseAbs().maxCoeff();
   Eigen::Index first = 0;
@@ -139,10 +140,11 @@ std::string movement(const estimation::Model& model, const Eigen::VectorXd& dire
   const double sign = direction[first] > 0.0 ? 1.0 : -1.0;
   for (Eigen::Index i = 0; i < direction.size(); ++i) {
     if (std::abs(direction[i]) > 0.3 * largest) {
-      parts.push_back(fmt::format("{} {}", model.name(i), sign * direction[i] > 0.0 ? "up" : "down"));
+      names.emplace_back(model.name(i));
+      parts.push_back(fmt::format("{} {}", names.back(), sign * direction[i] > 0.0 ? "raised" : "lowered"));
     }
   }
-  return fmt::format("{}", fmt::join(parts, ", "));
+  return names.size() == 1 ? names.front() : fmt::format("{} together", fmt::join(parts, ", "));
 }
 
 Answer answer_to(const MotorModel& motor, const Eigen::VectorXd& direction, const Look& seen) {
@@ -196,7 +198,7 @@ Answer answer_to(const MotorModel& motor, const CalibratedValue& parameter, cons
     return {fmt::format("the runs neither reach a steady state nor cool down far enough: the longest lasts {} min, the stator's time "
                         "constant is about {} min",
                         base::significant(seen.longest_s / 60.0, 2), base::significant(stator_s / 60.0, 1)),
-            "one run from cold with a constant current up to the steady state, then the cool-down", 90.0};
+            std::string(kLongRun), 90.0};
   }
   if ((holds(roles.winding_capacity) || holds(roles.winding_stator)) && !seen.winding_is_sensed) {
     return winding_unseen();

@@ -37,6 +37,10 @@ class Session {
   void show(const present::Document& document);
   /// Adds a file that the user requested.
   void write(const std::filesystem::path& path, std::string content) { files_.push_back({path, std::move(content)}); }
+  /// Returns whether the chart of an answer is requested: for the file of --plot, which may be empty, or for an HTML report.
+  [[nodiscard]] bool draws(const std::string& plot) const { return !plot.empty() || report_.ends_with(".html"); }
+  /// Adds the chart to the document, and its picture to the file of --plot.
+  void draw(present::Document& document, const std::string& plot, report::Chart chart);
   /// Adds a file of the user that this command was asked to change in place.
   void rewrite(const std::filesystem::path& path, std::string content) { rewritten_.push_back({path, std::move(content)}); }
   /// Returns a requested file whose content is written piece by piece. It lives as long as the session.

@@ -21,7 +21,7 @@ CLI::Option* add_conditions(CLI::App& app, std::map<std::string, std::string>& c
           },
           "condition that holds, such as cooling=fan, for effects that were found only under this condition; unless given, such effects "
           "may heat, but not cool")
-      ->type_name("KEY=VALUE...");
+      ->type_name("KEY=VALUE");
 }
 
 }  // namespace heatsoak::cli

@@ -6,13 +6,15 @@
 #include <CLI/Formatter.hpp>
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 namespace heatsoak::cli {
 
 class HelpText final : public CLI::Formatter {
  public:
-  explicit HelpText(std::size_t width) : width_(width) {}
+  explicit HelpText(std::size_t width);
 
+  std::string make_option_opts(const CLI::Option* option) const override;
   std::string make_option_desc(const CLI::Option* option) const override;
   std::string make_subcommand(const CLI::App* verb) const override;
   std::string make_description(const CLI::App* app) const override;
@@ -21,5 +23,8 @@ class HelpText final : public CLI::Formatter {
   [[nodiscard]] std::string beside_names(const std::string& text) const;
   std::size_t width_;
 };
+
+/// Breaks command lines, one in each line of `commands`, before options and with a backslash, so that they fit and can be pasted.
+std::string folded_commands(std::string_view commands, std::size_t width);
 
 }  // namespace heatsoak::cli

@@ -25,17 +25,18 @@
 #include "present/json.h"
 #include "present/renderer.h"
 #include "present/wrap.h"
+#include "report/chart.h"
 
 namespace heatsoak::cli {
 namespace {
 
 constexpr std::string_view kFooter =
-    "\nExit codes: 0 done and within limits, 1 a limit is exceeded, 2 bad input or usage,\n"
-    "3 the data cannot answer the question, 4 the numerics failed, 70 a bug.\n\n"
-    "Start here:\n  heatsoak evaluate --robot roboteam_twente_v2024 --duty division_a_match --plot verdict.svg\n";
+    "\nExit codes: 0 done and within limits, 1 a limit is exceeded, 2 bad input or\n"
+    "usage, 3 the data cannot answer the question, 4 the numerics failed, 70 a bug.\n\n"
+    "Start here:\n  heatsoak evaluate --robot roboteam_twente_v2024 --duty division_a_match\n";
 
 constexpr std::string_view kWithoutMeasured =
-    "\nThis program was built without log, friction, calibrate, predict and diagnose; `./bootstrap build` adds them.\n";
+    "\nThis program was built without log, friction, calibrate, predict and diagnose;\n`./bootstrap build` adds them.\n";
 
 /// Options that name an output file of a command.
 constexpr std::array kOutputs{"--out", "--plot", "--json", "--junit", "--report"};
@@ -169,21 +170,36 @@ void refuse_one_file_for_two(const CLI::App& verb, Session& session) {
   }
 }
 
+/// Called before any computation: an answer that takes minutes must not be lost because its picture cannot be drawn.
+void require_drawing_for(const CLI::App& verb) {
+  const CLI::Option* const plot = verb.get_option_no_throw("--plot");
+  const CLI::Option* const report = verb.get_option_no_throw("--report");
+  if (plot && !plot->empty()) {
+    report::require_drawing("--plot", "leave out --plot for the answer without a picture");
+  } else if (plot && report && !report->empty() && report->results().front().ends_with(".html")) {
+    report::require_drawing("--report", "expected a name that ends in .md for the report without a picture");
+  }
+}
+
 int parse_and_run(int argc, const char* const* argv, Session& session) {
   CLI::App app("Predicts whether a motor survives a match, and the current that its firmware may allow.", "heatsoak");
-  app.set_version_flag("--version", fmt::format("heatsoak {}", base::program_version()));
+  app.set_help_flag("-h,--help", "show this help");
+  app.set_version_flag("--version", fmt::format("heatsoak {}", base::program_version()), "show the version of the program");
   app.require_subcommand(1);
-  app.formatter(std::make_shared<HelpText>(terminal_width(STDOUT_FILENO)));
+  const std::size_t width = terminal_width(STDOUT_FILENO);
+  app.formatter(std::make_shared<HelpText>(width));
   const std::vector<Command> commands = all_commands();
   const bool reads_logs = std::ranges::find(commands, "log", &Command::name) != commands.end();
   app.footer(fmt::format("{}{}", kFooter, reads_logs ? "" : kWithoutMeasured));
   base::ExitCode code = base::ExitCode::done;
   for (const Command& command : commands) {
     CLI::App* verb = app.add_subcommand(std::string(command.name), std::string(command.summary));
-    verb->footer(fmt::format("\nExample:\n  {}\n", command.example));
+    verb->group("Verbs");
+    verb->footer(fmt::format("\nExample:\n{}", folded_commands(command.example, width)));
     const std::function<base::ExitCode()> run = command.declare(*verb, session);
     verb->callback([run, verb, &session, &code] {
       refuse_one_file_for_two(*verb, session);
+      require_drawing_for(*verb);
       code = run();
     });
   }
@@ -241,6 +257,14 @@ void Session::show(const present::Document& document) {
   if (!report_.empty()) {
     write(report_, present::rendered_for(report_, document));
   }
+}
+
+void Session::draw(present::Document& document, const std::string& plot, report::Chart chart) {
+  if (!plot.empty()) {
+    write(plot, report::draw_picture(chart, plot));
+    document.add_file(plot);
+  }
+  document.charts.push_back(std::move(chart));
 }
 
 input::DataFolders Session::folders() const { return input::DataFolders::find(database_); }
@@ -325,6 +349,7 @@ std::vector<Command> all_commands() {
 int run_program(int argc, const char* const* argv) {
   // With SIGXFSZ ignored, a file beyond the user's size limit fails like a full disk, with a message.
   (void)std::signal(SIGXFSZ, SIG_IGN);
+  announce_interrupts();
   Session session;
   try {
     const int code = parse_and_run(argc, argv, session);

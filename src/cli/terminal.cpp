@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -134,6 +135,24 @@ class ElapsedLine {
 };
 
 }  // namespace
+
+namespace {
+
+/// Only functions that are safe in a signal handler may be called here.
+void end_by(int signal) {
+  constexpr std::string_view kWords = "\r\x1b[Kinterrupted\n";
+  (void)!write(STDERR_FILENO, kWords.data(), kWords.size());
+  (void)std::signal(signal, SIG_DFL);
+  (void)std::raise(signal);
+}
+
+}  // namespace
+
+void announce_interrupts() {
+  if (isatty(STDERR_FILENO) == 1 && std::signal(SIGINT, end_by) == SIG_IGN) {
+    (void)std::signal(SIGINT, SIG_IGN);
+  }
+}
 
 std::shared_ptr<void> elapsed_line(std::string what) {
   return isatty(STDERR_FILENO) == 0 ? nullptr : std::make_shared<ElapsedLine>(std::move(what));

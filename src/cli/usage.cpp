@@ -8,7 +8,11 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <map>
+#include <tuple>
+
+#include "input/data_folders.h"
 
 namespace heatsoak::cli {
 namespace {
@@ -45,6 +49,31 @@ std::string complaint(const Command& command, Group group) {
   } catch (const CLI::ParseError&) {
   }
   return {};
+}
+
+/// Returns a complaint about each motor, robot and duty that has no file, so that it is reported together with other mistakes.
+std::vector<std::string> unknown_ids(const CLI::App& verb) {
+  const auto value_of = [&verb](const char* name) {
+    const CLI::Option* const option = verb.get_option_no_throw(name);
+    return option && option->count() > 0 ? option->results().front() : std::string();
+  };
+  std::vector<std::string> complaints;
+  try {
+    const input::DataFolders folders = input::DataFolders::find(value_of("--db"));
+    for (const auto& [option, kind, folder] :
+         {std::tuple("--motor", "motor", folders.motors), std::tuple("--robot", "robot", folders.robots),
+          std::tuple("--duty", "duty", folders.duties)}) {
+      const std::string name = value_of(option);
+      try {
+        name.empty() ? std::filesystem::path() : input::file_of(folder, kind, name);
+      } catch (const base::Failure& failure) {
+        complaints.emplace_back(failure.what());
+      }
+    }
+  } catch (const base::Failure&) {
+    // Without data folders no id is known; the other mistakes are reported first.
+  }
+  return complaints;
 }
 
 /// Returns the command that the words begin with; null if there is none.
@@ -126,6 +155,7 @@ std::string all_mistakes(const CLI::ParseError& error, const CLI::App& app, std:
   for (const CLI::Option* option : verb->get_options()) {
     add(option->get_required() && option->count() == 0 ? CLI::RequiredError(option->get_name()).what() : "");
   }
+  std::ranges::for_each(unknown_ids(*verb), add);
   return fmt::format("{}", fmt::join(all, "\n"));
 }
 

@@ -6,6 +6,7 @@
 
 #include "check/check_text.h"
 #include "check/limit.h"
+#include "present/robot_notes.h"
 
 namespace heatsoak::present {
 namespace {
@@ -55,6 +56,11 @@ Document check_document(std::span<const check::Outcome> outcomes, bool is_update
                                            {check::limit_text(each)},
                                            {check::margin_text(each)},
                                            {std::move(why)}});
+  }
+  for (const check::Outcome& each : outcomes) {
+    if (each.check->robot) {
+      add_robot_notes(document, *each.check->robot);
+    }
   }
   const auto loosened = std::ranges::count(outcomes, true, &check::Outcome::failed_before);
   if (loosened > 0) {

@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "present/evaluation.h"
+#include "present/verdict_words.h"
 #include "simulate/sensing.h"
 
 namespace heatsoak::present {
 namespace {
 
 std::string spread_text(const simulate::GameSpread& spread, double scale, int decimals) {
+  if (spread.low == spread.high) {
+    return fmt::format("{:.{}f}", scale * spread.nominal, decimals);
+  }
   return fmt::format("{:.{}f} [{:.{}f}…{:.{}f}]", scale * spread.nominal, decimals, scale * spread.low, decimals, scale * spread.high,
                      decimals);
 }
@@ -30,6 +35,66 @@ std::vector<Text> closed_loop_row(std::size_t rank, const simulate::ClosedLoopRa
           {drives.is_guarded ? spread_text(drives.spread(&simulate::DriveScore::guard_limited_s), 1.0, 0) : "no guard"},
           {spread_text(drives.spread(&simulate::DriveScore::tracking_rms_m), 1e3, 0)},
           {spread_text(drives.spread(&simulate::DriveScore::distance_m), 1.0, 0)}};
+}
+
+/// Returns the sentence about one motor: its peak in the games, or why it was not driven.
+Text sentence(const simulate::ClosedLoopRank& rank, std::string_view prefix) {
+  const simulate::GameDrives& drives = rank.drives;
+  const Tone tone = tone_of(rank.verdict);
+  if (drives.games.empty()) {
+    return {fmt::format("{}{} was not driven: {}.", prefix, drives.motor_id, drives.why_none), tone};
+  }
+  const bool is_stator = rank.stator_limit_C && drives.spread(&simulate::DriveScore::stator_peak_C).high > *rank.stator_limit_C;
+  const double peak_C = drives.spread(is_stator ? &simulate::DriveScore::stator_peak_C : &simulate::DriveScore::winding_peak_C).high;
+  const std::string reaches = fmt::format("the hottest {} reaches {:.0f} °C (limit {:.0f} °C)", is_stator ? "stator" : "winding", peak_C,
+                                          is_stator ? *rank.stator_limit_C : rank.winding_limit_C);
+  const auto bad = std::ranges::find_if(drives.games, [](const auto& game) { return simulate::drive_problem(game).has_value(); });
+  const bool is_driven = rank.verdict != select::Verdict::infeasible;
+  return {fmt::format("{}{} {}: {}.", prefix, drives.motor_id,
+                      !is_driven                                  ? "cannot drive this match"
+                      : rank.verdict == select::Verdict::fail     ? "fails"
+                      : rank.verdict == select::Verdict::marginal ? "is marginal"
+                                                                  : "passes",
+                      is_driven || bad == drives.games.end() ? reaches : words_of(*simulate::drive_problem(*bad), *bad)),
+          tone};
+}
+
+void add_closed_loop_headline(Document& document, const simulate::EvaluationAnswer& answer) {
+  const std::vector<simulate::ClosedLoopRank>& ranks = answer.ranks;
+  const auto passed = std::ranges::count(ranks, select::Verdict::pass, &simulate::ClosedLoopRank::verdict);
+  document.headline.push_back({fmt::format("Driven in a closed loop, {} {}; this decides ranking and exit code.",
+                                           passing_text(passed, ranks.size(), "motor"), answer.duty.id),
+                               passed == 0 ? Tone::bad : Tone::good});
+  document.headline.push_back(sentence(ranks.front(), ranks.size() > 1 ? "Best: " : ""));
+  const auto own = std::ranges::find(ranks, answer.robot.drive.motor, [](const auto& each) { return each.drives.motor_id; });
+  if (own != ranks.end() && own != ranks.begin()) {
+    document.headline.push_back(sentence(*own, "The robot's own "));
+  }
+}
+
+/// States for the motor with the largest difference how far the two calculations of the same game are apart, and why.
+void add_difference(Document& document, const simulate::EvaluationAnswer& answer) {
+  const select::MotorEvaluation* widest = nullptr;
+  double difference_K = 0.0;
+  for (std::size_t i = 0; i < answer.ranks.size(); ++i) {
+    if (answer.ranks[i].drives.games.empty()) {
+      continue;
+    }
+    const double here_K = answer.ranks[i].drives.games.front().winding_peak_C - answer.results[i].winding_peak_C.nominal;
+    if (widest == nullptr || std::abs(here_K) > std::abs(difference_K)) {
+      widest = &answer.results[i];
+      difference_K = here_K;
+    }
+  }
+  if (widest == nullptr) {
+    return;
+  }
+  const bool is_cut = widest->verdict == select::Verdict::infeasible;
+  document.add_note(is_cut ? Severity::warning : Severity::note,
+                    fmt::format("The first game heats {} to {:.0f} °C in the closed loop and to {:.0f} °C without it: {}.",
+                                widest->motor_id, widest->winding_peak_C.nominal + difference_K, widest->winding_peak_C.nominal,
+                                is_cut ? "without it the whole demanded current flows, which the driver or the voltage does not allow"
+                                       : "corrections and slip add heat; grip, voltage and current limits take heat away"));
 }
 
 }  // namespace
@@ -58,11 +123,14 @@ void add_missing_sensors(Document& document, const robot::Robot& robot) {
   }
 }
 
-void add_closed_loop(Document& document, const robot::Robot& robot, const std::vector<simulate::ClosedLoopRank>& ranks, int games,
-                     std::uint64_t seed) {
+void add_closed_loop(Document& document, const simulate::EvaluationAnswer& answer) {
+  const std::vector<simulate::ClosedLoopRank>& ranks = answer.ranks;
+  const int games = answer.closed_loop->games;
   Table table{
-      .title = fmt::format("Closed loop: {} driven by the drive core, seeds {} to {}; first game [lowest…highest of all]",
-                           fmt::format("{} game{}", games, games == 1 ? "" : "s"), seed, seed + static_cast<std::uint64_t>(games) - 1),
+      .title = games == 1
+                   ? fmt::format("Closed loop: one game driven by the drive core, seed {}", answer.seed)
+                   : fmt::format("Closed loop: {} games driven by the drive core, seeds {} to {}; first game [lowest…highest of all]",
+                                 games, answer.seed, answer.seed + static_cast<std::uint64_t>(games) - 1),
       .columns = {{"", "", 0},
                   {"motor", "", 0, Alignment::left},
                   {"verdict", "", 0, Alignment::left},
@@ -86,21 +154,15 @@ void add_closed_loop(Document& document, const robot::Robot& robot, const std::v
       document.add_note(Severity::note, fmt::format("{} has no thermal guard: {}", drives.motor_id, drives.why_no_guard));
     }
   }
-  add_missing_sensors(document, robot);
-  const auto passed = std::ranges::count(ranks, select::Verdict::pass, &simulate::ClosedLoopRank::verdict);
-  document.headline.insert(document.headline.begin(),
-                           {fmt::format("Driven in a closed loop, {} of {} pass. The ranking below follows these games.", passed,
-                                        fmt::format("{} motor{}", ranks.size(), ranks.size() == 1 ? "" : "s")),
-                            passed == 0 ? Tone::bad : Tone::good});
+  add_missing_sensors(document, answer.robot);
+  add_closed_loop_headline(document, answer);
   document.tables.insert(document.tables.begin(), std::move(table));
+  add_difference(document, answer);
   document.add_note(
-      Severity::note,
-      "The two tables differ: the one without a closed loop uses the torque that an exactly followed plan needs. In the closed loop the "
-      "drive core works with noisy, delayed sensors and lost packets, wheels slip, and the battery sags. Corrections add heat; grip, "
-      "voltage and current limits take heat away.");
-  document.add_note(Severity::background,
-                    "The closed loop uses nominal motors; the other table includes tolerances. guard limits: time in which the thermal "
-                    "guard would have limited a motor; it limits nothing here.");
+      Severity::background,
+      "The closed loop uses nominal motors, noisy, delayed sensors, lost packets, slip and a sagging battery; the other table uses "
+      "the torque that an exactly followed plan needs, with tolerances. guard limits: time in which the thermal "
+      "guard would have limited a motor; it limits nothing here.");
 }
 
 }  // namespace heatsoak::present

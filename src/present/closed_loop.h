@@ -1,19 +1,16 @@
 // Adds the games of `evaluate --closed-loop` to the document of the evaluation.
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <vector>
 
 #include "present/document.h"
 #include "robot/robot.h"
-#include "simulate/closed_loop_rank.h"
+#include "simulate/evaluation.h"
 
 namespace heatsoak::present {
 
-/// Puts the verdicts of the driven games first and adds their table and notes to those of the evaluation.
-void add_closed_loop(Document& document, const robot::Robot& robot, const std::vector<simulate::ClosedLoopRank>& ranks, int games,
-                     std::uint64_t seed);
+/// Adds the verdicts of the driven games to the headline, puts their table first, and adds their notes. Requires answer.closed_loop.
+void add_closed_loop(Document& document, const simulate::EvaluationAnswer& answer);
 
 /// Adds a note if the robot has no sensors of the motor currents.
 void add_missing_sensors(Document& document, const robot::Robot& robot);

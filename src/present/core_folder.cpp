@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "derate/export_text.h"
+#include "present/derating.h"
 #include "present/parameter_table.h"
 
 namespace heatsoak::present {
@@ -20,8 +21,8 @@ Document core_folder_document(const firmware::CoreFolder& folder, const derate::
                                    fmt::format("Next: `make -C {0} host` and `make -C {0} firmware`.", out)}};
   Table table = labelled_table("");
   add_labelled(table, "winding limit",
-               fmt::format("{:.0f} °C in air up to {:.0f} °C, {} thermal data", derating.rules.limits.winding_C,
-                           derating.rules.hottest_ambient_C, derating.data_quality));
+               fmt::format("{:.0f} °C{} in air up to {:.0f} °C, {} thermal data", derating.rules.limits.winding_C,
+                           limit_range_words(derating), derating.rules.hottest_ambient_C, derating.data_quality));
   add_labelled(table, "control period", fmt::format("{:.6g} ms, guard {:.6g} ms", 1e3 * options.period_s, 1e3 * derating.options.period_s));
   add_labelled(table, "unknown speed", fmt::format("a wheel whose speed is unknown gets at most {:.2f} A", folder.limp_current_A));
   add_labelled(table, "full stop", fmt::format("{:.1f} K are kept as a margin for one full stop", folder.braking_reserve_K));

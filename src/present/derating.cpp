@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/version.h"
 #include "derate/export_text.h"
@@ -63,7 +64,7 @@ void add_table_notes(Document& document, const derate::Derating& derating) {
     document.add_note(Severity::warning,
                       fmt::format("Besides current, speed and air temperature the firmware must supply {}.", fmt::join(asked, ", ")));
   }
-  if (derating.rules.limits.winding_C < derating.nominal.winding_limit_C) {
+  if (!limit_range_words(derating).empty()) {
     document.add_note(
         Severity::note,
         fmt::format("The file gives the winding limit as a range around {:.0f} °C. Its lower end counts here, because the true "
@@ -120,19 +121,29 @@ std::string place_text(const derate::TablePlace& place) {
 
 }  // namespace
 
+std::string limit_range_words(const derate::Derating& derating) {
+  return derating.rules.limits.winding_C < derating.nominal.winding_limit_C
+             ? fmt::format(" (lower end of the limit's range around {:.0f} °C)", derating.nominal.winding_limit_C)
+             : "";
+}
+
 Document derating_document(const derate::Derating& derating, const motor::Motor& motor) {
   const derate::Guarantee& checked = derating.guarantee;
   Document document{
       .headline = {{fmt::format(
-                       "{} in {}: winding below {:.0f} °C{} in air of {:.0f} °C, {} thermal data.", derating.motor_id, derating.robot_id,
-                       derating.rules.limits.winding_C,
-                       derating.rules.limits.stator_C ? fmt::format(", stator below {:.0f} °C", *derating.rules.limits.stator_C) : "",
+                       "{} in {}: with {:.0f} % certainty {:.1f} % of the motors within their tolerances keep the winding below "
+                       "{:.0f} °C{}{} in air of {:.0f} °C, {} thermal data.",
+                       derating.motor_id, derating.robot_id, 100.0 * derate::kCertainty_share,
+                       std::floor(1000.0 * checked.least_kept_share) / 10.0, derating.rules.limits.winding_C, limit_range_words(derating),
+                       derating.rules.limits.stator_C ? fmt::format(", the stator below {:.0f} °C", *derating.rules.limits.stator_C) : "",
                        derating.rules.hottest_ambient_C, derating.data_quality)},
                    {fmt::format("Safety factor on heat {:.2f}; current {:.1f} A from cold, {:.2f} A lasting.",
                                 derating.observer.heat_safety_factor(),
                                 derating.table.allowed_A(0.0, derating.rules.hottest_ambient_C, derating.rules.hottest_ambient_C),
                                 derate::limp_current_A(derating))}},
-      .paragraphs = {fmt::format("{} At least {} draws are needed for this.", derate::confidence_text(derating, checked),
+      .paragraphs = {fmt::format("Confidence {:.6g}: {} of {} fresh draws exceeded a limit in the {} hardest uses. At least {} draws are "
+                                 "needed for this.",
+                                 derating.options.guarantee.confidence, checked.over, checked.samples, derating.uses.size(),
                                  derate::least_samples(derating.options.guarantee)),
                      fmt::format("The windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C "
                                  "(the hottest).",

@@ -9,6 +9,9 @@
 
 namespace heatsoak::present {
 
+/// Returns " (lower end of the limit's range around 155 °C)" if the motor's file gives the winding limit as a range; else nothing.
+std::string limit_range_words(const derate::Derating& derating);
+
 Document derating_document(const derate::Derating& derating, const motor::Motor& motor);
 
 /// Adds what changed since the file was written: unsafe changes are warnings, the others notes.

@@ -33,6 +33,9 @@ Table parameters_of(const thermal::EffectType& effect) {
     add_key(table, spec.key, unit,
             fmt::format("{}; {}", spec.meaning, spec.choices.empty() ? base::to_string(spec.range, spec.unit) : "one of"));
     for (const base::Choice& choice : spec.choices) {
+      if (choice.meaning.empty()) {
+        continue;  // not for motor files
+      }
       add_key(table, fmt::format("  {}", choice.name), base::unit_for_display(choice.unit), std::string(choice.meaning));
     }
   }

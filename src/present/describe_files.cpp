@@ -127,8 +127,9 @@ Document robot_description(const robot::Robot& robot) {
 }
 
 Document duty_description(const duty::Duty& duty) {
-  Document document{.headline = {{fmt::format("{}: {}", duty.id, duty.summary)}},
-                    .paragraphs = {fmt::format("Shape {}, ambient {:.0f} °C. Load: {}.", duty.shape, duty.ambient_C.value, duty.origin)}};
+  Document document{
+      .headline = {{fmt::format("{}: {}", duty.id, duty.summary)}},
+      .paragraphs = {fmt::format("Shape {}, ambient {:.0f} °C. The load is {}.", duty.shape, duty.ambient_C.value, duty.origin)}};
   for (const std::string& note : duty.notes) {
     document.add_note(Severity::note, note);
   }

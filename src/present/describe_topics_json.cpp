@@ -32,6 +32,9 @@ Json network_effect_json(const thermal::EffectType& effect) {
   for (const base::ParameterSpec& spec : effect.parameters) {
     Json json{{"key", spec.key}, {"unit", spec.unit}, {"meaning", spec.meaning}};
     for (const base::Choice& choice : spec.choices) {
+      if (choice.meaning.empty()) {
+        continue;  // not for motor files
+      }
       json["choices"].push_back({{"name", choice.name}, {"unit", choice.unit}, {"meaning", choice.meaning}});
     }
     result["parameters"].push_back(json);

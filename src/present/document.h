@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "report/chart.h"
+
 namespace heatsoak::present {
 
 /// Rating of a piece of text; renderers may colour it.
@@ -59,8 +61,9 @@ struct Document {
   std::vector<std::string> paragraphs = {};  ///< computed quantities and their inputs
   std::vector<Table> tables = {};
   std::vector<Note> notes = {};
-  std::vector<std::string> files = {};  ///< names of the files that the command writes
-  std::vector<Listing> listings = {};   ///< shown last
+  std::vector<std::string> files = {};     ///< names of the files that the command writes
+  std::vector<Listing> listings = {};      ///< shown last
+  std::vector<report::Chart> charts = {};  ///< only HTML contains them
 
   /// Adds a note unless the same one exists already.
   void add_note(Severity severity, std::string_view words);

@@ -49,7 +49,7 @@ Table role_table(const duty::RoleLoads& roles) {
 Document document_of(const duty::DutyAnswer& answer, const duty::PrescribedLoad& load) {
   const duty::Duty& duty = *answer.duty;
   return {.headline = {{fmt::format("{}: {}, {:.0f} s.", duty.id, duty.summary, load.duration_s)}},
-          .paragraphs = {fmt::format("Load: {}.", duty.origin)}};
+          .paragraphs = {fmt::format("The load is {}.", duty.origin)}};
 }
 
 Document document_of(const duty::DutyAnswer& answer, const duty::GeneratedMatch& match) {
@@ -59,7 +59,7 @@ Document document_of(const duty::DutyAnswer& answer, const duty::GeneratedMatch&
   Document document{.headline = {{fmt::format("{} of {} as {}: {}, {:.0f} s of them play, {:.2f} km.", duty.id, robot.id,
                                               duty::kRoleNames.at(static_cast<std::size_t>(match.role)), duration_text(load.duration_s),
                                               load.play_s, load.distance_m / 1e3)}},
-                    .paragraphs = {fmt::format("Seed {}. Load: {}.", match.seed, duty.origin)},
+                    .paragraphs = {fmt::format("Seed {}. The load is {}.", match.seed, duty.origin)},
                     .tables = {role_table(match.roles)}};
   add_lines(document.notes, slip_text(load.wheels.front()), Severity::note);
   const std::optional<double> acceleration_m_per_s2 = robot.limits.acceleration_m_per_s2;

@@ -7,9 +7,10 @@
 #include <cmath>
 
 #include "base/lanes.h"
-#include "base/quantity.h"
+#include "present/changes.h"
 #include "present/closed_loop.h"
 #include "present/motor_notes.h"
+#include "present/robot_notes.h"
 #include "present/verdict_words.h"
 #include "robot/assumed_friction.h"
 #include "select/decision.h"
@@ -26,12 +27,9 @@ std::string peak_text(const select::MotorEvaluation& motor) {
                                           : fmt::format("{:.0f}", peak.nominal);
 }
 
-std::string percent_range(const select::Interval95& range) {
-  return fmt::format("{:.0f}…{:.0f}", std::floor(100.0 * range.low), std::ceil(100.0 * range.high));
-}
-
 Text verdict_cell(const select::MotorEvaluation& motor) {
-  return {std::string(verdict_word(motor)), motor.samples_needed ? Tone::undecided : tone_of(motor.verdict)};
+  const ShownVerdict verdict = shown_verdict(motor);
+  return {std::string(to_string(verdict)), tone_of(verdict)};
 }
 
 std::string_view factor_text(const select::MotorEvaluation& motor) {
@@ -56,16 +54,16 @@ std::vector<Column> columns() {
           {"motor", "", 0, kLeft},
           {"verdict", "", 0, kLeft},
           {"peak", "°C", 0},
-          {"limit", "", 0, Alignment::right, kLeastForLimit},
+          {"limit", "°C", 0, Alignment::right, kLeastForLimit},
           {"margin", "K", 0, Alignment::right, kLeastForLimit},
           {"winding", "", 1, kLeft},
           {"P over", "%", 2},
-          {"reached", "", 3},
+          {"reached after", "", 3},
           {"limited by", "", 4, kLeft},
-          {"A rms", "", 5},
-          {"more A", "", 6},
+          {"rms", "A", 5},
+          {"spare rms", "A", 6},
           {"stator", "°C", 7},
-          {"limit", "", 8},
+          {"stator limit", "°C", 8},
           {"data", "", 9, kLeft},
           {"P interval", "%", 10},
           {"p95 interval", "°C", 11}};
@@ -80,7 +78,7 @@ std::string p95_text(const select::MotorEvaluation& motor) {
 }
 
 std::vector<Text> row(std::size_t rank, const select::MotorEvaluation& motor, double ambient_C) {
-  const Tone tone = tone_of(motor.verdict);
+  const Tone tone = tone_of(shown_verdict(motor));
   return {{fmt::format("{}", rank)},
           {motor.motor_id},
           verdict_cell(motor),
@@ -100,33 +98,43 @@ std::vector<Text> row(std::size_t rank, const select::MotorEvaluation& motor, do
           {p95_text(motor)}};
 }
 
-/// Formats as "fails: the winding reaches 162 °C (limit 155 °C, exceeded after 5 min)".
-std::string what_happens(const select::MotorEvaluation& motor, bool is_drawn) {
-  if (motor.verdict == select::Verdict::infeasible) {
-    return fmt::format("cannot drive this duty: {} does not suffice", select::to_string(motor.limiting_factor));
-  }
-  if (motor.samples_needed) {
-    return fmt::format("is undecided: it exceeds a limit with a probability of {} %", percent_range(*motor.probability_interval));
-  }
+std::string nominal_words(const select::MotorEvaluation& motor) { return motor.samples == 0 ? " with nominal values" : ""; }
+
+/// Formats as "the winding reaches 162 °C (limit 155 °C, exceeded after 5 min)". On a duty that is drawn the nominal run is one of many
+/// games, so the percentile of all of them is stated.
+std::string peak_words(const select::MotorEvaluation& motor) {
   const bool is_stator = motor.limiting_factor == select::LimitingFactor::stator_temperature;
+  const select::Spread95& peak_C = is_stator ? motor.stator_peak_C : motor.winding_peak_C;
+  const double limit_C = is_stator ? motor.stator_limit_C.value_or(motor.winding_limit_C) : motor.winding_limit_C;
+  const std::string_view node = is_stator ? "stator" : "winding";
+  if (motor.games > 0 && motor.samples >= kFewestForRange) {
+    return fmt::format("the {} reaches at most {:.0f} °C in 95 % of the samples (limit {:.0f} °C)", node, peak_C.p95, limit_C);
+  }
   const std::string when = motor.verdict == select::Verdict::fail && motor.time_to_limit_s
                                ? fmt::format(", exceeded after {}", duration_text(*motor.time_to_limit_s))
                                : "";
-  const std::string reaches = fmt::format("the {} reaches {:.0f} °C (limit {:.0f} °C{})", is_stator ? "stator" : "winding",
-                                          is_stator ? motor.stator_peak_C.nominal : motor.winding_peak_C.nominal,
-                                          is_stator ? motor.stator_limit_C.value_or(motor.winding_limit_C) : motor.winding_limit_C, when);
+  return fmt::format("the {} reaches {:.0f} °C (limit {:.0f} °C{})", node, peak_C.nominal, limit_C, when);
+}
+
+/// Formats as "fails: the winding reaches 162 °C (limit 155 °C, exceeded after 5 min)".
+std::string what_happens(const select::MotorEvaluation& motor) {
   const std::string over = fmt::format("{:.0f} % of the samples exceed a limit", 100.0 * motor.probability_over_limit);
-  switch (motor.verdict) {
-    case select::Verdict::fail:
-      return fmt::format("fails: {}", is_drawn ? over : reaches);
-    case select::Verdict::marginal:
+  switch (shown_verdict(motor)) {
+    case ShownVerdict::infeasible:
+      return fmt::format("cannot drive this duty{}: {} does not suffice", nominal_words(motor), select::to_string(motor.limiting_factor));
+    case ShownVerdict::undecided:
+      return fmt::format("is undecided: {}", words_of(*open_share(motor), motor.samples));
+    case ShownVerdict::fail:
+      return fmt::format("fails{}: {}", nominal_words(motor), motor.games > 0 ? over : peak_words(motor));
+    case ShownVerdict::marginal:
       return fmt::format("is marginal: {}",
                          motor.short_probability > std::max(motor.probability_over_limit, select::kMarginalProbability)
                              ? fmt::format("{:.0f} % of the samples cannot deliver the demand", 100.0 * motor.short_probability)
                              : over);
-    default:
-      return fmt::format("passes{}: {}", motor.samples == 0 ? " with nominal values" : "", reaches);
+    case ShownVerdict::pass:
+      break;
   }
+  return fmt::format("passes{}: {}", nominal_words(motor), peak_words(motor));
 }
 
 /// Adds the remark that mass and wheels of the robot do not matter if the duty states torque and speed itself.
@@ -136,20 +144,23 @@ std::string load_words(const duty::Duty& duty) {
              : fmt::format("{} (a fixed wheel load: mass and wheel size of the robot do not matter)", duty.id);
 }
 
+/// Formats "1 of 3 motors passes division_a_match; 1 undecided.".
+std::string counted_verdicts(const simulate::EvaluationAnswer& answer, const std::string& load) {
+  const auto with = [&](ShownVerdict verdict) {
+    return std::ranges::count_if(answer.results, [verdict](const auto& each) { return shown_verdict(each) == verdict; });
+  };
+  const auto undecided = with(ShownVerdict::undecided);
+  return fmt::format("{} {}{}", passing_text(with(ShownVerdict::pass), answer.results.size(), "motor"), load,
+                     undecided > 0 ? fmt::format("; {} undecided", undecided) : "");
+}
+
 std::vector<Text> headline(const simulate::EvaluationAnswer& answer) {
   const std::vector<select::MotorEvaluation>& results = answer.results;
-  const auto sentence = [&](const select::MotorEvaluation& motor, std::string_view prefix) {
-    const Tone tone = motor.samples_needed ? Tone::undecided : tone_of(motor.verdict);
-    return Text{fmt::format("{}{} {}.", prefix, motor.motor_id, what_happens(motor, answer.draw_count > 0)), tone};
+  const auto sentence = [](const select::MotorEvaluation& motor, std::string_view prefix) {
+    return Text{fmt::format("{}{} {}.", prefix, motor.motor_id, what_happens(motor)), tone_of(shown_verdict(motor))};
   };
-  const auto good = std::ranges::count_if(
-      results, [](const select::MotorEvaluation& each) { return each.verdict == select::Verdict::pass && !each.samples_needed; });
-  const auto undecided =
-      std::ranges::count_if(results, [](const select::MotorEvaluation& each) { return each.samples_needed.has_value(); });
-  std::vector<Text> sentences{{fmt::format("{} of {} motor{} pass{} {}{}.", good, results.size(), results.size() == 1 ? "" : "s",
-                                           good == 1 || results.size() == 1 ? "es" : "", load_words(answer.duty),
-                                           undecided > 0 ? fmt::format("; {} undecided", undecided) : ""),
-                               good == 0 ? Tone::bad : Tone::good}};
+  const bool any_passes = std::ranges::any_of(results, [](const auto& each) { return shown_verdict(each) == ShownVerdict::pass; });
+  std::vector<Text> sentences{{fmt::format("{}.", counted_verdicts(answer, load_words(answer.duty))), any_passes ? Tone::good : Tone::bad}};
   sentences.push_back(sentence(results.front(), results.size() > 1 ? "Best: " : ""));
   const auto own = std::ranges::find(results, answer.robot.drive.motor, &select::MotorEvaluation::motor_id);
   if (own != results.end() && own != results.begin()) {
@@ -173,21 +184,18 @@ std::string sampling_error(std::span<const select::MotorEvaluation> results) {
 
 std::string undecided_note(const select::MotorEvaluation& motor) {
   const bool is_drawn = motor.games > 0;
-  const bool is_short = motor.short_probability > motor.probability_over_limit;
-  const auto number = [&](int samples) { return is_drawn ? samples / base::kLanes : samples; };
   const std::string_view unit = is_drawn ? "games" : "samples";
-  const std::string so_far =
-      fmt::format("{} is undecided after {} {}: the share of samples that {} may lie on either side of a threshold.", motor.motor_id,
-                  is_drawn ? motor.games : motor.samples, unit,
-                  is_short ? "miss the demand" : fmt::format("exceed a limit ({} %)", percent_range(*motor.probability_interval)));
+  const int done = is_drawn ? motor.games : motor.samples;
   const int most = select::most_samples_at_all(is_drawn);
-  if (*motor.samples_needed >= most) {
-    return fmt::format("{} If the share stays as it is, over {} more {} needed, and --samples takes {} at most: count it as {}.", so_far,
-                       number(most), unit, most, select::to_string(motor.verdict));
-  }
-  return fmt::format("{} If the share stays as it is, about {} more {} needed (--samples {}); until then count it as {}.", so_far,
-                     number(*motor.samples_needed) - (is_drawn ? motor.games : motor.samples), unit, *motor.samples_needed,
-                     select::to_string(motor.verdict));
+  const auto number = [&](int samples) { return is_drawn ? samples / base::kLanes : samples; };
+  const OpenShare open = *open_share(motor);
+  const std::string needed =
+      *motor.samples_needed >= most
+          ? fmt::format("over {} more {}; --samples takes {} at most", number(most), unit, most)
+          : fmt::format("about {} more {} (--samples {})", number(*motor.samples_needed) - done, unit, *motor.samples_needed);
+  return fmt::format("{} counts as {} until more {} decide: {}{}. If the share of {:.1f} % stays, this takes {}.", motor.motor_id,
+                     select::to_string(motor.verdict), unit, is_drawn ? fmt::format("in {} games ", done) : "",
+                     words_of(open, motor.samples), 100.0 * open.share, needed);
 }
 
 void add_notes(Document& document, const select::MotorEvaluation& motor, const simulate::EvaluationAnswer& answer) {
@@ -197,6 +205,11 @@ void add_notes(Document& document, const select::MotorEvaluation& motor, const s
   }
   if (motor.destroyed) {
     document.add_note(Severity::warning, fmt::format("{}: thermal runaway, the calculation ended at 1000 °C", motor.motor_id));
+  }
+  if (motor.verdict == select::Verdict::infeasible && !answer.closed_loop) {
+    document.add_note(Severity::note, fmt::format("{}: the peak of {:.0f} °C is too high, because it assumes the whole demanded current. "
+                                                  "`heatsoak simulate` limits the current, and its temperatures are lower.",
+                                                  motor.motor_id, motor.winding_peak_C.nominal));
   }
   if (motor.verdict != select::Verdict::infeasible && motor.short_probability > select::kMarginalProbability) {
     document.add_note(Severity::note, fmt::format("{}: {:.0f} % of the samples cannot deliver what is demanded ({})", motor.motor_id,
@@ -221,8 +234,10 @@ std::vector<std::string> paragraphs(const simulate::EvaluationAnswer& answer) {
                                                            counted(results, &select::MotorEvaluation::samples, "sample"), answer.seed)
                                              : "nominal values only");
   if (answer.draw_count > 0) {
-    first += fmt::format(" {} with other inputs and robot parameters; verdict and range cover all of them.",
-                         counted(results, &select::MotorEvaluation::games, "game"));
+    first += fmt::format(
+        " {} with other inputs and robot parameters: verdict and range cover all of them; peak, margin and curve are of one, that of the "
+        "seed.",
+        counted(results, &select::MotorEvaluation::games, "game"));
   }
   const auto most = std::ranges::max_element(results, {}, &select::MotorEvaluation::samples);
   if (most->samples != std::ranges::min(results, {}, &select::MotorEvaluation::samples).samples) {
@@ -231,86 +246,7 @@ std::vector<std::string> paragraphs(const simulate::EvaluationAnswer& answer) {
   return {first};
 }
 
-std::string shown_value(double value, std::string_view unit) {
-  return unit.empty() ? base::significant(value, 3) : fmt::format("{} {}", base::significant(value, 3), unit);
-}
-
-/// Formats a change: "jerk limit from 20 m/s³ to 10 m/s³", "motor to nanotec_df45l024048_a2".
-std::string change_words(const select::ChangeEffect& change) {
-  return change.other_motor.empty() ? fmt::format("{} from {} to {}", select::name_of(change.quantity),
-                                                  shown_value(change.before, select::unit_of(change.quantity)),
-                                                  shown_value(change.before * change.factor, select::unit_of(change.quantity)))
-                                    : fmt::format("motor to {}", change.other_motor);
-}
-
-/// Returns whether the motor needs the change to deliver the demand, or whether its effect is larger than its own scatter.
-bool counts(const select::ChangeEffect& change) {
-  const double error_K = std::isfinite(change.standard_error_K) ? change.standard_error_K : 0.0;
-  return change.makes_deliverable || (change.is_deliverable && change.saved_K > std::max(0.5, 2.0 * error_K));
-}
-
-/// States the most helpful change; `change` is null if none counts.
-std::string best_change_words(const select::ChangeEffect* change, std::span<const select::ChangeEffect> effects,
-                              const std::string& motor_id) {
-  if (change != nullptr) {
-    return change->makes_deliverable
-               ? fmt::format("This change lets {} deliver what the duty demands: {}.", change->other_motor.empty() ? motor_id : "the robot",
-                             change_words(*change))
-               : fmt::format("Largest improvement for {}: {}, {:.0f} K cooler{}.", motor_id, change_words(*change), change->saved_K,
-                             change->other_motor.empty() ? "" : " (its mass and size are not compared)");
-  }
-  const auto largest = std::ranges::max_element(effects, {}, &select::ChangeEffect::saved_K);
-  if (largest == effects.end() || largest->is_deliverable || !(largest->saved_K > 0.5)) {
-    return fmt::format("No change of the robot by a usual step cools {} by more than its scatter from game to game.", motor_id);
-  }
-  return fmt::format(
-      "No change of the robot by a usual step cools {} and lets it deliver what the duty demands. The largest effect has {}: {:.0f} K "
-      "less.",
-      motor_id, change_words(*largest), largest->saved_K);
-}
-
-/// Adds a table of the changes that cool the winding most, three at most.
-void add_changes(Document& document, const simulate::SuggestedChanges& changes) {
-  const auto& [motor_id, effects] = changes;
-  constexpr std::size_t kMost = 3;
-  Table table{.title = fmt::format("Changes that help {} most", motor_id),
-              .columns = {{"change", "", 0, Alignment::left},
-                          {"from", "", 1, Alignment::right, kLeastForLimit},
-                          {"to", "", 1, Alignment::right, kLeastForLimit},
-                          {"saves", "K", 0},
-                          {"±", "K", 2}},
-              .rows = {}};
-  const select::ChangeEffect* best = nullptr;
-  for (const select::ChangeEffect& each : effects) {
-    if (table.rows.size() == kMost || !counts(each)) {
-      continue;
-    }
-    best = best == nullptr ? &each : best;
-    const std::string_view unit = select::unit_of(each.quantity);
-    const bool is_value = each.other_motor.empty();
-    table.rows.push_back({{is_value ? std::string(select::name_of(each.quantity)) : fmt::format("motor {}", each.other_motor)},
-                          {is_value ? shown_value(each.before, unit) : ""},
-                          {is_value ? shown_value(each.before * each.factor, unit) : ""},
-                          {fmt::format("{:.0f}", each.saved_K)},
-                          {std::isfinite(each.standard_error_K) ? fmt::format("{:.0f}", std::ceil(2.0 * each.standard_error_K)) : "–"}});
-  }
-  document.headline.push_back({best_change_words(best, effects, motor_id)});
-  if (best == nullptr) {
-    return;
-  }
-  document.tables.push_back(std::move(table));
-  document.add_note(
-      Severity::background,
-      fmt::format("Changes: mean of {} games with nominal values, each driven with and without the change; ± is two standard errors. The "
-                  "motor is the one of the data base with the largest margin; its mass and size are not compared.",
-                  select::kChangeGames));
-}
-
 }  // namespace
-
-Tone tone_of(select::Verdict verdict) {
-  return verdict == select::Verdict::pass ? Tone::good : verdict == select::Verdict::marginal ? Tone::undecided : Tone::bad;
-}
 
 void add_lines(std::vector<Note>& notes, std::string_view text, Severity severity) {
   while (!text.empty()) {
@@ -344,10 +280,6 @@ std::string sparkline(const select::MotorEvaluation& motor, double ambient_C) {
   return line;
 }
 
-std::string_view verdict_word(const select::MotorEvaluation& motor) {
-  return motor.samples_needed ? "undecided" : select::to_string(motor.verdict);
-}
-
 namespace {
 
 /// Returns the ranking by samples with its notes.
@@ -362,30 +294,27 @@ Document ranking_document(const simulate::EvaluationAnswer& answer) {
   for (const select::MotorEvaluation& each : results) {
     add_notes(document, each, answer);
   }
-  if (std::ranges::any_of(results, [](const select::MotorEvaluation& each) { return each.data_quality == "estimated"; })) {
-    document.add_note(Severity::note,
-                      "The temperatures may be wrong by tens of kelvins where the thermal values of a motor are estimates: no manufacturer "
-                      "publishes them "
-                      "(`heatsoak describe MOTOR` shows each derivation). Calibrate on a bench before you rely on them.");
-  }
   add_lines(document.notes, slip_text(answer.demand), Severity::note);
   if (answer.duty.shape_data->depends_on_robot()) {
     document.add_note(
         Severity::background,
-        "`heatsoak simulate` gives other temperatures: it adds slip, noisy sensors and the sag of the battery, while here the plan "
-        "is followed exactly at the nominal voltage. --closed-loop ranks motors with all that.");
+        "`heatsoak simulate` gives other temperatures, because here the plan is followed exactly at the nominal voltage: corrections and "
+        "slip add heat there; grip, voltage and current limits take heat away. --closed-loop ranks motors with all that.");
   }
-  document.add_note(Severity::background, fmt::format("Load: {}.", answer.duty.origin));
+  document.add_note(Severity::background, fmt::format("The load is {}.", answer.duty.origin));
   if (answer.draw_count > 0) {
-    document.add_note(Severity::background, "The nominal peak, margin, reached, A rms and more A are of one game, that of the seed.");
+    document.add_note(
+        Severity::background,
+        "The columns peak (before the brackets), margin, reached after, rms and spare rms are of one game, that of the seed.");
   } else if (results.front().samples > 0) {
     document.add_note(Severity::background, sampling_error(results));
   }
-  document.add_note(Severity::background,
-                    "Columns: peak of the winding, nominal [5th…95th percentile]; margin to the nearer limit; winding over time, from "
-                    "ambient to limit; P over, share of samples over a limit; reached, time until the first limit; more A, remaining rms "
-                    "current; P interval and p95 interval, the range that other samples would give (P: 95 % for all looks at the games "
-                    "together, 97.5 % or more for each). `heatsoak describe verdict` defines the verdicts.");
+  document.add_note(
+      Severity::background,
+      "Columns: peak of the winding, nominal [5th…95th percentile]; margin to the nearer limit; winding over time, from "
+      "ambient to limit; P over, share of samples over a limit; reached after, time until the first limit; rms, heating current; spare "
+      "rms, how much it may rise; P interval and p95 interval, the range that other samples would give (P: 95 % for all looks at the games "
+      "together, 97.5 % or more for each). `heatsoak describe verdict` defines the verdicts.");
   return document;
 }
 
@@ -393,14 +322,26 @@ Document ranking_document(const simulate::EvaluationAnswer& answer) {
 
 Document evaluation_document(const simulate::EvaluationAnswer& answer) {
   Document document = ranking_document(answer);
+  add_robot_notes(document, answer.robot);
   add_motor_notes(document, answer.motors);
   add_lines(document.notes, default_spreads_text(answer.motors), Severity::note);
+  if (answer.closed_loop) {
+    document.headline.clear();
+    document.tables.front().title = "Without a closed loop, with all tolerances";
+    document.paragraphs.insert(
+        document.paragraphs.begin(),
+        fmt::format("For comparison, without a closed loop and with all tolerances: {}.", counted_verdicts(answer, answer.duty.id)));
+    add_closed_loop(document, answer);
+  }
   if (answer.changes) {
-    add_changes(document, *answer.changes);
+    add_changes(document, *answer.changes, answer.duty.shape_data->has_unknowns());
   }
   add_lines(document.notes, robot::assumed_friction_text(answer.robot), Severity::warning);
-  if (answer.closed_loop) {
-    add_closed_loop(document, answer.robot, answer.ranks, answer.closed_loop->games, answer.seed);
+  // This note is the same for most motors, so it follows those that are about this answer.
+  if (std::ranges::any_of(answer.results, [](const select::MotorEvaluation& each) { return each.data_quality == "estimated"; })) {
+    document.add_note(Severity::note,
+                      "The temperatures may be wrong by tens of kelvins where the thermal values of a motor are estimates: no manufacturer "
+                      "publishes them (`heatsoak describe MOTOR` shows each derivation). Calibrate on a bench before you rely on them.");
   }
   return document;
 }

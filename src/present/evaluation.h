@@ -18,12 +18,6 @@ Json evaluation_json(const simulate::EvaluationAnswer& answer);
 /// shows the maximum of an eighth of the time. Empty without curves.
 std::string sparkline(const select::MotorEvaluation& motor, double ambient_C);
 
-/// Returns the verdict, or "undecided" if more samples could decide it. The JSON output then keeps the more cautious verdict.
-std::string_view verdict_word(const select::MotorEvaluation& motor);
-
-/// Returns the tone (colour) of a verdict.
-Tone tone_of(select::Verdict verdict);
-
 /// Adds a note for each line of `text`.
 void add_lines(std::vector<Note>& notes, std::string_view text, Severity severity);
 

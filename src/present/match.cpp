@@ -8,6 +8,7 @@
 #include "present/closed_loop.h"
 #include "present/evaluation.h"
 #include "present/motor_notes.h"
+#include "present/robot_notes.h"
 #include "present/verdict_words.h"
 #include "robot/assumed_friction.h"
 
@@ -32,21 +33,21 @@ struct ScoreRow {
 constexpr ScoreRow kScores[] = {
     {"driven", "m", [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", s.distance_m); }},
     {"slip of a mean wheel", "mm per m", [](const simulate::DriveScore& s) { return per_metre(1e3 * s.slip_m, s); }},
-    {"  of it sliding", "", [](const simulate::DriveScore& s) { return per_metre(1e3 * s.sliding_m, s); }},
+    {"slip of a mean wheel, sliding", "mm per m", [](const simulate::DriveScore& s) { return per_metre(1e3 * s.sliding_m, s); }},
     {"time in which a wheel slides", "s", [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", s.sliding_s); }},
     {"time in which a wheel is lifted", "s", [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", s.lifted_s); }},
-    {"tracking error", "mm rms", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.tracking_rms_m); }},
-    {"  largest", "mm", [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", 1e3 * s.tracking_most_m); }},
-    {"overshoot, mean of arrivals", "mm",
-     [](const simulate::DriveScore& s) { return fmt::format("{:.1f} of {:.0f}", 1e3 * s.overshoot_mean_m, s.arrivals_count); }},
-    {"  largest", "mm", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.overshoot_most_m); }},
+    {"tracking error, rms", "mm", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.tracking_rms_m); }},
+    {"tracking error, largest", "mm", [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", 1e3 * s.tracking_most_m); }},
+    {"arrivals", "", [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", s.arrivals_count); }},
+    {"overshoot, mean of arrivals", "mm", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.overshoot_mean_m); }},
+    {"overshoot, largest", "mm", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", 1e3 * s.overshoot_most_m); }},
     {"peak current", "A", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", s.peak_current_A); }},
     {"rms current, hottest motor", "A", [](const simulate::DriveScore& s) { return fmt::format("{:.2f}", s.current_rms_A); }},
     {"driver or battery falls short", "s", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", s.short_s); }},
     {"lowest battery voltage", "V", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", s.lowest_battery_V); }},
     {"core limits by traction", "s",
      [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", limited_s(s, robot_core::Reason::traction)); }},
-    {"  by voltage, current or sag", "s",
+    {"core limits by voltage, current or sag", "s",
      [](const simulate::DriveScore& s) {
        return fmt::format("{:.1f}", limited_s(s, robot_core::Reason::voltage) + limited_s(s, robot_core::Reason::driver_current) +
                                         limited_s(s, robot_core::Reason::battery_sag));
@@ -55,8 +56,9 @@ constexpr ScoreRow kScores[] = {
     {"radio packets lost", "%", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", 100.0 * s.lost_packets_share); }},
     {"battery empty", "s", [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", s.battery_empty_s); }},
     {"copper heat, all motors", "kJ", [](const simulate::DriveScore& s) { return fmt::format("{:.2f}", 1e-3 * s.energy.copper_J); }},
-    {"  per metre", "J", [](const simulate::DriveScore& s) { return per_metre(s.energy.copper_J, s); }},
-    {"  of it in duels", "%", [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", 100.0 * s.duel_copper_share); }},
+    {"copper heat per metre", "J per m", [](const simulate::DriveScore& s) { return per_metre(s.energy.copper_J, s); }},
+    {"share of copper heat in duels", "%",
+     [](const simulate::DriveScore& s) { return fmt::format("{:.0f}", 100.0 * s.duel_copper_share); }},
     {"winding peak", "°C", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", s.winding_peak_C); }},
     {"stator peak", "°C", [](const simulate::DriveScore& s) { return fmt::format("{:.1f}", s.stator_peak_C); }},
 };
@@ -130,8 +132,24 @@ void add_guard_notes(Document& document, const simulate::MatchSimulation& answer
   }
 }
 
-std::string passes_or(select::Verdict verdict) {
-  return verdict == select::Verdict::pass ? "passes" : verdict == select::Verdict::fail ? "fails" : "cannot drive this match";
+/// Returns the sentence about one planner: the verdict with its reason, then the hottest winding.
+Text sentence(const simulate::MatchSimulation& answer, const simulate::DrivenMatch& driven) {
+  const simulate::DriveScore& score = driven.run.score;
+  const motor::MotorValues& limits = answer.motor.nominal;
+  const std::string winding = fmt::format("the hottest winding, of wheel {}, reaches {:.1f} °C (limit {:.0f} °C)", score.hottest_wheel + 1,
+                                          score.winding_peak_C, limits.winding_limit_C);
+  const bool is_of_stator = driven.verdict == select::Verdict::fail && score.winding_peak_C <= limits.winding_limit_C;
+  const std::string what = driven.verdict == select::Verdict::infeasible
+                               ? "cannot drive this match: " + words_of(*simulate::drive_problem(score), score)
+                           : driven.verdict == select::Verdict::fail ? "fails: "
+                                                                     : "passes: ";
+  const std::string peak = driven.verdict == select::Verdict::infeasible ? fmt::format(". It is not too hot: {}", winding)
+                           : is_of_stator
+                               ? fmt::format("the stator reaches {:.1f} °C (limit {:.0f} °C)", score.stator_peak_C, *limits.stator_limit_C)
+                               : winding;
+  return {fmt::format("{} {}{}{}.", answer.motor.id, answer.runs.size() > 1 ? fmt::format("with {} ", duty::to_string(driven.planner)) : "",
+                      what, peak),
+          tone_of(driven.verdict)};
 }
 
 }  // namespace
@@ -150,27 +168,24 @@ std::span<const EnergyPart> energy_parts() {
 }
 
 Document match_document(const simulate::MatchSimulation& answer) {
-  const simulate::DrivenMatch& hottest =
-      *std::ranges::max_element(answer.runs, {}, [](const simulate::DrivenMatch& each) { return each.run.score.winding_peak_C; });
-  Document document{
-      .headline = {{fmt::format("{} {}: the hottest winding, of wheel {}{}, reaches {:.1f} °C (limit {:.0f} °C).", answer.motor.id,
-                                passes_or(answer.verdict), hottest.run.score.hottest_wheel + 1,
-                                answer.runs.size() > 1 ? fmt::format(" with {}", duty::to_string(hottest.planner)) : "",
-                                hottest.run.score.winding_peak_C, answer.motor.nominal.winding_limit_C),
-                    tone_of(answer.verdict)}},
-      .paragraphs = {fmt::format("{} on {} as {}, seed {}: closed loop of {} at 1 kHz with the drive core, {}, {} thermal data. Load: {}.",
-                                 answer.robot.id, answer.duty.id, duty::kRoleNames.at(static_cast<std::size_t>(answer.role)), answer.seed,
-                                 duration_text(answer.runs.front().run.score.time_s),
-                                 answer.is_sensing_ideal ? std::string("exact sensors and no delays")
-                                                         : fmt::format("real sensing and {:.0f} radio packets per second",
-                                                                       simulate::radio_of(answer.robot).packet_rate_Hz),
-                                 motor::data_quality(answer.motor), answer.duty.origin)},
-      .tables = {score_table(answer), energy_table(answer)}};
+  Document document{.headline = {},
+                    .paragraphs = {fmt::format(
+                        "{} on {} as {}, seed {}: closed loop of {} at 1 kHz with the drive core, {}, {} thermal data. The load is {}.",
+                        answer.robot.id, answer.duty.id, duty::kRoleNames.at(static_cast<std::size_t>(answer.role)), answer.seed,
+                        duration_text(answer.runs.front().run.score.time_s),
+                        answer.is_sensing_ideal ? std::string("exact sensors and no delays")
+                                                : fmt::format("real sensing and {:.0f} radio packets per second",
+                                                              simulate::radio_of(answer.robot).packet_rate_Hz),
+                        motor::data_quality(answer.motor), answer.duty.origin)},
+                    .tables = {score_table(answer), energy_table(answer)}};
   for (const simulate::DrivenMatch& each : answer.runs) {
-    if (const std::optional<simulate::DriveProblem> problem = simulate::drive_problem(each.run.score)) {
+    document.headline.push_back(sentence(answer, each));
+    if (const std::optional<simulate::DriveProblem> problem = simulate::drive_problem(each.run.score);
+        problem && each.verdict != select::Verdict::infeasible) {
       document.add_note(Severity::warning, fmt::format("{}: {}", duty::to_string(each.planner), words_of(*problem, each.run.score)));
     }
   }
+  add_robot_notes(document, answer.robot);
   add_guard_notes(document, answer);
   if (!answer.is_sensing_ideal) {
     add_missing_sensors(document, answer.robot);
@@ -185,12 +200,13 @@ Document match_document(const simulate::MatchSimulation& answer) {
 
 Document load_simulation_document(const select::LoadSimulation& simulation) {
   const auto& [robot, motor, duty, duration_s, result, trace] = simulation;
-  Document document{.headline = {{fmt::format("{} {}: winding peak {:.1f} °C (limit {:.0f} °C).", motor.id,
-                                              select::to_string(result.verdict), result.winding_peak_C.nominal, result.winding_limit_C),
-                                  tone_of(result.verdict)}},
-                    .paragraphs = {fmt::format("{} on {} ({}, {}): stator peak {:.1f} °C, rms current {:.2f} A, {} thermal data. Load: {}.",
-                                               robot.id, duty.id, duration_text(duration_s), result.wheel, result.stator_peak_C.nominal,
-                                               result.current_rms_A, result.data_quality, duty.origin)}};
+  Document document{
+      .headline = {{fmt::format("{} {}: winding peak {:.1f} °C (limit {:.0f} °C).", motor.id, select::to_string(result.verdict),
+                                result.winding_peak_C.nominal, result.winding_limit_C),
+                    tone_of(result.verdict)}},
+      .paragraphs = {fmt::format("{} on {} ({}, {}): stator peak {:.1f} °C, rms current {:.2f} A, {} thermal data. The load is {}.",
+                                 robot.id, duty.id, duration_text(duration_s), result.wheel, result.stator_peak_C.nominal,
+                                 result.current_rms_A, result.data_quality, duty.origin)}};
   Table table{.title = "Mean heat into the nodes (positive: into)",
               .columns = {{"effect", "", 0, Alignment::left}, {"node", "", 0, Alignment::left}, {"heat", "W", 0}},
               .rows = {}};
@@ -200,6 +216,7 @@ Document load_simulation_document(const select::LoadSimulation& simulation) {
   table.rows.push_back({{"stored in the motor"}, {""}, {fmt::format("{:+.3f}", trace.stored_W)}});
   document.tables.push_back(std::move(table));
   add_lines(document.notes, why_infeasible(result, robot), Severity::warning);
+  add_robot_notes(document, robot);
   add_motor_notes(document, {&motor, 1});
   return document;
 }

@@ -78,20 +78,20 @@ std::vector<report::ChartPanel> comparison(const simulate::MatchSimulation& matc
   return panels;
 }
 
-/// Formats as "winding 62 °C, within the limit of 155 °C", for the hottest run.
-std::string peak_words(const simulate::MatchSimulation& match) {
+/// Formats as "pass, winding 62 °C (limit 155 °C)", for the hottest run; the verdict is that of the deciding one.
+std::string verdict_and_peak(const simulate::MatchSimulation& match) {
   double peak_C = 0.0;
   for (const simulate::DrivenMatch& each : match.runs) {
     peak_C = std::max(peak_C, each.run.score.winding_peak_C);
   }
   const double limit_C = match.motor.nominal.winding_limit_C;
-  return fmt::format("winding {:.0f} °C, {} the limit of {:.0f} °C", peak_C, peak_C > limit_C ? "over" : "within", limit_C);
+  return fmt::format("{}, winding {:.0f} °C (limit {:.0f} °C)", select::to_string(match.verdict()), peak_C, limit_C);
 }
 
 }  // namespace
 
 report::Chart match_chart(const simulate::MatchSimulation& match) {
-  return {.title = fmt::format("{}: {}, {} on {}", match.motor.id, peak_words(match), match.robot.name, match.duty.id),
+  return {.title = fmt::format("{}: {}, {} on {}", match.motor.id, verdict_and_peak(match), match.robot.name, match.duty.id),
           .subtitle = fmt::format("closed loop, synthetic match, seed {}{}", match.seed,
                                   motor::data_quality(match.motor) == "estimated" ? "; thermal data partly estimated" : ""),
           .x_label = "time / min",

@@ -40,6 +40,7 @@ Json json(const simulate::DrivenMatch& driven) {
                       {"copper_J", rounded(driven.run.phases[i].copper_J, 3)}});
   }
   return {{"planner", duty::to_string(driven.planner)},
+          {"verdict", select::to_string(driven.verdict)},
           {"distance_m", rounded(s.distance_m, 2)},
           {"slip_m", rounded(s.slip_m, 4)},
           {"sliding_m", rounded(s.sliding_m, 4)},
@@ -79,7 +80,8 @@ Json balance_json(const select::Trace& trace) {
 }  // namespace
 
 Json match_json(const simulate::MatchSimulation& match) {
-  const simulate::DriveScore& first = match.runs.front().run.score;
+  const simulate::DrivenMatch& deciding = match.deciding();
+  const simulate::DriveScore& score = deciding.run.score;
   Json planners = Json::array();
   for (const simulate::DrivenMatch& each : match.runs) {
     planners.push_back(json(each));
@@ -91,13 +93,14 @@ Json match_json(const simulate::MatchSimulation& match) {
           {"duty", match.duty.id},
           {"duty_origin", match.duty.origin},
           {"seed", match.seed},
-          {"duration_s", rounded(first.time_s, 3)},
-          {"wheel", fmt::format("wheel {}", first.hottest_wheel + 1)},
-          {"winding_peak_C", rounded(first.winding_peak_C, 3)},
-          {"stator_peak_C", rounded(first.stator_peak_C, 3)},
+          {"planner", duty::to_string(deciding.planner)},
+          {"duration_s", rounded(score.time_s, 3)},
+          {"wheel", fmt::format("wheel {}", score.hottest_wheel + 1)},
+          {"winding_peak_C", rounded(score.winding_peak_C, 3)},
+          {"stator_peak_C", rounded(score.stator_peak_C, 3)},
           {"winding_limit_C", rounded(match.motor.nominal.winding_limit_C, 2)},
-          {"current_rms_A", rounded(first.current_rms_A, 4)},
-          {"verdict", select::to_string(match.verdict)},
+          {"current_rms_A", rounded(score.current_rms_A, 4)},
+          {"verdict", select::to_string(deciding.verdict)},
           {"data_quality", motor::data_quality(match.motor)},
           {"is_friction_assumed", match.robot.friction.is_assumed},
           {"sensing", match.is_sensing_ideal ? "ideal" : "real"},

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/quantity.h"
 #include "motor/datasheet_network.h"
 #include "present/motor_notes.h"
 #include "thermal/transient.h"
@@ -53,8 +54,10 @@ void add_temperatures(Document& document, const motor::OnOffAnswer& answer) {
 Document steady_document(const motor::OnOffAnswer& answer) {
   Document document{
       .headline = {headline(answer)},
-      .paragraphs = {fmt::format("{} thermal data, rms current {:.2f} A, ambient {:.0f} °C.", motor::data_quality(answer.motor),
-                                 answer.under_rms.current_rms_A, answer.current.ambient_C)}};
+      .paragraphs = {fmt::format("{} A for {} s, then 0 A for {} s: rms current {:.2f} A, ambient {:.0f} °C, {} thermal data.",
+                                 base::significant(answer.current.current_on_A, 4), base::significant(answer.current.time_on_s, 4),
+                                 base::significant(answer.current.time_off_s, 4), answer.under_rms.current_rms_A, answer.current.ambient_C,
+                                 motor::data_quality(answer.motor))}};
   if (!answer.is_runaway() && !answer.periodic.destroyed_s) {
     add_temperatures(document, answer);
   }

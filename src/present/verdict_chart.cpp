@@ -8,6 +8,7 @@
 #include <string>
 
 #include "present/evaluation.h"
+#include "present/verdict_words.h"
 
 namespace heatsoak::present {
 namespace {
@@ -60,16 +61,20 @@ report::ChartPanel panel(const std::vector<const select::MotorEvaluation*>& show
   std::map<double, std::vector<std::string>> limits_C;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const select::TemperatureCurves& curves = shown[i]->curves;
-    const std::string name =
-        of_winding ? fmt::format("{}, {:.0f} °C, {}", shown[i]->motor_id, shown[i]->winding_peak_C.nominal, verdict_word(*shown[i]))
-                   : std::string();
+    std::string name = of_winding ? fmt::format("{}, {:.0f} °C, {}", shown[i]->motor_id, shown[i]->winding_peak_C.nominal,
+                                                to_string(shown_verdict(*shown[i])))
+                                  : std::string();
     const int color = static_cast<int>(i);
     const auto values_of = [of_winding](const select::TemperatureCurves& c) -> const std::vector<double>& {
       return of_winding ? c.winding_C : c.stator_C;
     };
-    const bool is_hidden = std::any_of(shown.begin(), shown.begin() + color, [&](const select::MotorEvaluation* before) {
+    const auto hides = std::find_if(shown.begin(), shown.begin() + color, [&](const select::MotorEvaluation* before) {
       return coincide(curves, values_of(curves), before->curves, values_of(before->curves));
     });
+    const bool is_hidden = hides != shown.begin() + color;
+    if (is_hidden && of_winding) {
+      name += fmt::format(" (as {})", (*hides)->motor_id);
+    }
     result.curves.push_back({name, in_minutes(curves.time_s), values_of(curves), color, is_hidden, false, true});
     if (!curves.band_time_s.empty() && i < bands_of(shown.size())) {
       result.bands.push_back({"", in_minutes(curves.band_time_s), of_winding ? curves.winding_p05_C : curves.stator_p05_C,
@@ -91,12 +96,14 @@ report::ChartPanel panel(const std::vector<const select::MotorEvaluation*>& show
 }
 
 std::string title_of(const std::vector<select::MotorEvaluation>& results, const robot::Robot& robot, const duty::Duty& duty) {
-  const auto good = std::ranges::count_if(
-      results, [](const select::MotorEvaluation& each) { return each.verdict == select::Verdict::pass && !each.samples_needed; });
-  const auto open = std::ranges::count_if(results, [](const select::MotorEvaluation& each) { return each.samples_needed.has_value(); });
-  const std::string verdict = results.size() == 1 ? fmt::format("{}: {}", results.front().motor_id, verdict_word(results.front()))
-                                                  : fmt::format("{} of {} motors pass{}", good, results.size(),
-                                                                open > 0 ? fmt::format(", {} undecided", open) : "");
+  const auto count = [&](ShownVerdict verdict) {
+    return std::ranges::count_if(results, [verdict](const auto& each) { return shown_verdict(each) == verdict; });
+  };
+  const auto open = count(ShownVerdict::undecided);
+  const std::string verdict = results.size() == 1
+                                  ? fmt::format("{}: {}", results.front().motor_id, to_string(shown_verdict(results.front())))
+                                  : fmt::format("{}{}", passing_text(count(ShownVerdict::pass), results.size(), "motor"),
+                                                open > 0 ? fmt::format(", {} undecided", open) : "");
   return fmt::format("{}, {} on {}", verdict, robot.name, duty.id);
 }
 
@@ -106,16 +113,17 @@ report::Chart verdict_chart(const std::vector<select::MotorEvaluation>& results,
   const std::vector<const select::MotorEvaluation*> shown = chosen(results, robot);
   const bool sampled = std::ranges::any_of(shown, [](const select::MotorEvaluation* each) { return !each->curves.band_time_s.empty(); });
   const bool estimated = std::ranges::any_of(shown, [](const select::MotorEvaluation* each) { return each->data_quality == "estimated"; });
-  return {.title = title_of(results, robot, duty),
-          .subtitle = fmt::format(
-              "{}{}{}{}", shown.size() < results.size() ? fmt::format("the robot's motor and the best of {}, ", results.size()) : "",
-              duty.summary,
-              sampled ? fmt::format("; lines: nominal, highest and lowest of each load cycle; areas without lines{}: 5\u00a0% to 95\u00a0% of samples",
-                                    bands_of(shown.size()) < shown.size() ? " of the first two motors" : "")
-                      : "; nominal values",
-              estimated ? "; thermal data partly estimated" : ""),
-          .x_label = "time / min",
-          .panels = {panel(shown, true), panel(shown, false)}};
+  return {
+      .title = title_of(results, robot, duty),
+      .subtitle = fmt::format(
+          "{}{}{}{}", shown.size() < results.size() ? fmt::format("the robot's motor and the best of {}, ", results.size()) : "",
+          duty.summary,
+          sampled ? fmt::format("; lines: nominal, highest and lowest of each load cycle; pale areas{}: 5\u00a0% to 95\u00a0% of samples",
+                                bands_of(shown.size()) < shown.size() ? " of the first two motors" : "")
+                  : "; nominal values",
+          estimated ? "; thermal data partly estimated" : ""),
+      .x_label = "time / min",
+      .panels = {panel(shown, true), panel(shown, false)}};
 }
 
 }  // namespace heatsoak::present

@@ -33,7 +33,8 @@ std::string undecided_meaning() {
       "that is drawn. To continue, give --samples the number that the answer states. The interval allows for the repeated tests: the "
       "first may err with a probability of 2.5 %, each later one with 0.36 %, so a verdict is wrong with a probability of at most 5 % "
       "(Clopper and Pearson 1934; alpha spending, Jennison and Turnbull 2000). Samples of one game count as one. Until the verdict is "
-      "decided, exit code and JSON use that of the samples so far.",
+      "decided, exit code and JSON use that of the samples so far; the JSON key samples_needed is then a number, and --fail-on undecided "
+      "makes the exit code 1.",
       100.0 * select::kMarginalProbability, 100.0 * select::kMajority);
 }
 

@@ -2,7 +2,68 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
+
 namespace heatsoak::present {
+
+ShownVerdict shown_verdict(const select::MotorEvaluation& motor) {
+  if (motor.verdict == select::Verdict::infeasible) {
+    return ShownVerdict::infeasible;
+  }
+  if (motor.samples_needed) {
+    return ShownVerdict::undecided;
+  }
+  return motor.verdict == select::Verdict::pass       ? ShownVerdict::pass
+         : motor.verdict == select::Verdict::marginal ? ShownVerdict::marginal
+                                                      : ShownVerdict::fail;
+}
+
+std::string_view to_string(ShownVerdict verdict) {
+  constexpr std::array<std::string_view, 5> kWords{"pass", "undecided", "marginal", "fail", "infeasible"};
+  return kWords.at(static_cast<std::size_t>(verdict));
+}
+
+Tone tone_of(ShownVerdict verdict) {
+  constexpr std::array<Tone, 5> kTones{Tone::good, Tone::undecided, Tone::undecided, Tone::bad, Tone::bad};
+  return kTones.at(static_cast<std::size_t>(verdict));
+}
+
+Tone tone_of(select::Verdict verdict) {
+  return verdict == select::Verdict::pass ? Tone::good : verdict == select::Verdict::marginal ? Tone::undecided : Tone::bad;
+}
+
+std::string passing_text(std::ptrdiff_t passing, std::size_t all, std::string_view what) {
+  return fmt::format("{} of {} {}{} pass{}", passing, all, what, all == 1 ? "" : "s", passing == 1 || all == 1 ? "es" : "");
+}
+
+std::string percent_range(const select::Interval95& range) {
+  return fmt::format("{:.0f}…{:.0f}", std::floor(100.0 * range.low), std::ceil(100.0 * range.high));
+}
+
+std::optional<OpenShare> open_share(const select::MotorEvaluation& motor) {
+  if (!motor.samples_needed) {
+    return std::nullopt;
+  }
+  const std::array kinds{OpenShare{false, motor.probability_over_limit, motor.probability_interval.value_or(select::Interval95{}), 0.0},
+                         OpenShare{true, motor.short_probability, motor.short_interval.value_or(select::Interval95{}), 0.0}};
+  const bool is_bad = motor.verdict == select::Verdict::fail || motor.verdict == select::Verdict::infeasible;
+  for (const double threshold : {select::kMajority, select::kMarginalProbability}) {
+    for (OpenShare open : kinds) {
+      const bool counts = threshold == select::kMajority ? motor.games > 0 : !is_bad;
+      if (counts && open.interval.low <= threshold && open.interval.high > threshold) {
+        open.threshold_ratio = threshold;
+        return open;
+      }
+    }
+  }
+  return kinds.front();
+}
+
+std::string words_of(const OpenShare& open, int samples) {
+  return fmt::format("{:.0f} of {} samples {} (share {} %; the verdict changes at {:.0f} %)", open.share * samples, samples,
+                     open.is_of_demand ? "miss the demand" : "exceed a limit", percent_range(open.interval), 100.0 * open.threshold_ratio);
+}
 
 std::string duration_text(double duration_s) {
   return duration_s < 120.0 ? fmt::format("{:.0f} s", duration_s) : fmt::format("{:.0f} min", duration_s / 60.0);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "select/evaluate.h"
@@ -248,8 +249,9 @@ std::vector<ChangeEffect> effects_of_changes(const robot::Robot& robot, const du
     effects.push_back(effect_of(ChangedQuantity::motor, 0.0, 1.0, before, best.games));
     effects.back().other_motor = best.motor->id;
   }
-  std::ranges::stable_sort(effects, std::ranges::greater(),
-                           [](const ChangeEffect& each) { return std::pair(each.is_deliverable, each.saved_K); });
+  std::ranges::stable_sort(effects, std::ranges::greater(), [](const ChangeEffect& each) {
+    return std::tuple(each.other_motor.empty(), each.is_deliverable, each.saved_K);
+  });
   return effects;
 }
 

@@ -30,11 +30,11 @@ struct ChangeEffect {
 
 inline constexpr int kChangeGames = 4;
 
-/// Returns the effects of all changes that are possible with these files, the most helpful first. All values are nominal; each game is
-/// played once for each change of the wheels' loads. A duty with a fixed wheel load counts as one game; only gear ratio, pauses and motor
-/// act on it. Longer pauses extend the time without load by half. The other motor is the one of `others` that keeps all limits, delivers
-/// the demand in every game and has the largest margin; there is no such effect if no motor does. `others` may contain `motor`, which is
-/// ignored.
+/// Returns the effects of all changes that are possible with these files: those of the robot, the most helpful first, then another motor.
+/// All values are nominal; each game is played once for each change of the wheels' loads. A duty with a fixed wheel load counts as one
+/// game; only gear ratio, pauses and motor act on it. Longer pauses extend the time without load by half. The other motor is the one of
+/// `others` that keeps all limits, delivers the demand in every game and has the largest margin; there is no such effect if no motor does.
+/// `others` may contain `motor`, which is ignored.
 std::vector<ChangeEffect> effects_of_changes(const robot::Robot& robot, const duty::Duty& duty, const motor::Motor& motor,
                                              std::span<const motor::Motor> others, std::uint64_t seed, int threads,
                                              const base::Progress& progress = {});

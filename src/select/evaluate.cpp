@@ -383,7 +383,6 @@ void conclude(Work& work, const EvaluateOptions& options) {
   if (result.verdict != Verdict::infeasible) {
     result.short_limit = by_current > by_voltage ? LimitingFactor::current : LimitingFactor::voltage;
   }
-  Interval95 short_interval;
   if (options.samples > 0) {
     const bool is_drawn = !options.draws.empty();
     const double wrong = error_share(is_drawn ? result.games : result.samples, is_drawn);
@@ -398,7 +397,7 @@ void conclude(Work& work, const EvaluateOptions& options) {
     std::vector<char> is_short;
     std::ranges::transform(work.short_of_demand, std::back_inserter(is_short),
                            [](robot::DriveLimit limit) { return limit == robot::DriveLimit::none ? char{0} : char{1}; });
-    short_interval = intervals_of(work.winding_peak_C, is_short).probability;
+    result.short_interval = intervals_of(work.winding_peak_C, is_short).probability;
   }
   if (!options.draws.empty()) {
     decide_by_majority(result);
@@ -409,7 +408,7 @@ void conclude(Work& work, const EvaluateOptions& options) {
     result.verdict = Verdict::marginal;
     result.limiting_factor = result.short_probability > result.probability_over_limit ? result.short_limit : hotter_limit(result);
   }
-  result.samples_needed = samples_needed(result, short_interval, !options.draws.empty());
+  result.samples_needed = samples_needed(result, result.short_interval.value_or(Interval95{}), !options.draws.empty());
   if (options.with_bands && options.samples > 0) {
     finish_band(work, options.samples);
   }

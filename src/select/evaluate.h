@@ -95,8 +95,9 @@ struct MotorEvaluation {
   double short_time_share = 0.0;    ///< share of the time in which the demand is not met; winding at its peak, at most at its limit
   LimitingFactor short_limit = LimitingFactor::voltage;  ///< limit that causes the shortfall, if there is one
   double short_probability = 0.0;  ///< share of samples that miss the demand for longer than kTolerableShortTime; NaN without samples
-  double highest_voltage_V = 0.0;  ///< largest demanded voltage at the terminals with the hot winding
-  bool destroyed = false;          ///< thermal runaway: the nominal run ended at 1000 °C
+  std::optional<Interval95> short_interval;  ///< confidence interval of short_probability, like probability_interval
+  double highest_voltage_V = 0.0;            ///< largest demanded voltage at the terminals with the hot winding
+  bool destroyed = false;                    ///< thermal runaway: the nominal run ended at 1000 °C
   TemperatureCurves curves;
 };
 

@@ -33,7 +33,10 @@ std::optional<SuggestedChanges> changes_for(const EvaluationJob& job, const Eval
     return std::nullopt;
   }
   const motor::Motor& motor = *std::ranges::find(job.motors, subject.motor_id, &motor::Motor::id);
-  const std::vector<motor::Motor> others = job.database ? job.database() : std::vector<motor::Motor>();
+  const bool none_passes =
+      std::ranges::none_of(answer.results, [](const select::MotorEvaluation& each) { return each.verdict == select::Verdict::pass; });
+  const bool offers_motor = job.database && (!job.has_chosen_motors || none_passes);
+  const std::vector<motor::Motor> others = offers_motor ? job.database() : std::vector<motor::Motor>();
   return SuggestedChanges{subject.motor_id, select::effects_of_changes(answer.robot, job.duty, motor, others, job.seed, job.threads,
                                                                        base::progress_of(progress, "trying changes"))};
 }
@@ -43,6 +46,10 @@ std::optional<SuggestedChanges> changes_for(const EvaluationJob& job, const Eval
 select::Verdict EvaluationAnswer::worst_verdict() const {
   return ranks.empty() ? std::ranges::max_element(results, {}, &select::MotorEvaluation::verdict)->verdict
                        : std::ranges::max_element(ranks, {}, &ClosedLoopRank::verdict)->verdict;
+}
+
+bool EvaluationAnswer::is_undecided() const {
+  return ranks.empty() && std::ranges::any_of(results, [](const select::MotorEvaluation& each) { return each.samples_needed.has_value(); });
 }
 
 EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::ProgressFor& progress) {

@@ -31,7 +31,8 @@ struct EvaluationJob {
   int threads = 0;                                     ///< 0: all cores; the result does not depend on it
   bool with_bands = false;                             ///< keep the range of the samples over time
   bool suggests = false;                               ///< search for changes of the robot also if its motor passes
-  /// Returns the motors that may replace the robot's; called only if changes are searched for. May be empty.
+  bool has_chosen_motors = false;                      ///< the user chose `motors`: another one is suggested only if none of them passes
+  /// Returns the motors that may replace the robot's; called only if one of them may be suggested. May be empty.
   std::function<std::vector<motor::Motor>()> database = {};
   std::optional<ClosedLoopJob> closed_loop = {};
 };
@@ -60,6 +61,8 @@ struct EvaluationAnswer {
 
   /// Returns the worst verdict of all motors; in closed loop that of the games.
   [[nodiscard]] select::Verdict worst_verdict() const;
+  /// Returns whether more samples could change the verdict of a motor; false in closed loop, whose games decide.
+  [[nodiscard]] bool is_undecided() const;
 };
 
 /// Runs the evaluation. Throws Failure (bad_input) if too many samples are requested, or a closed loop for a duty that is not a match.

@@ -25,7 +25,7 @@ void check_table(const MatchJob& job) {
 
 DrivenMatch drive_once(const MatchJob& job, const robot::Robot& robot, const Game& game, const robot_core::Config& core,
                        duty::Planner planner, base::Progress progress) {
-  DrivenMatch driven{planner, {}, {}, {}};
+  DrivenMatch driven{.planner = planner, .run = {}, .csv = {}, .rows = {}};
   const double ambient_C = job.duty.ambient_C.value;
   const auto wheels = static_cast<int>(robot.wheels.axis_rad.size());
   const MatchAdditions added = additions_of(job.motor);
@@ -52,19 +52,26 @@ DrivenMatch drive_once(const MatchJob& job, const robot::Robot& robot, const Gam
   return driven;
 }
 
-select::Verdict verdict_of(const std::vector<DrivenMatch>& runs, const motor::MotorValues& limits) {
-  const auto is_too_hot = [&](const DrivenMatch& each) {
-    return each.run.score.winding_peak_C > limits.winding_limit_C ||
-           (limits.stator_limit_C && each.run.score.stator_peak_C > *limits.stator_limit_C);
-  };
-  if (std::ranges::any_of(runs, is_too_hot)) {
+select::Verdict verdict_of(const DriveScore& score, const motor::MotorValues& limits) {
+  if (score.winding_peak_C > limits.winding_limit_C || (limits.stator_limit_C && score.stator_peak_C > *limits.stator_limit_C)) {
     return select::Verdict::fail;
   }
-  return std::ranges::all_of(runs, [](const DrivenMatch& each) { return !drive_problem(each.run.score); }) ? select::Verdict::pass
-                                                                                                           : select::Verdict::infeasible;
+  return drive_problem(score) ? select::Verdict::infeasible : select::Verdict::pass;
 }
 
 }  // namespace
+
+const DrivenMatch& MatchSimulation::deciding() const {
+  for (const select::Verdict verdict : {select::Verdict::fail, select::Verdict::infeasible}) {
+    const auto found = std::ranges::find(runs, verdict, &DrivenMatch::verdict);
+    if (found != runs.end()) {
+      return *found;
+    }
+  }
+  return runs.front();
+}
+
+select::Verdict MatchSimulation::verdict() const { return deciding().verdict; }
 
 MatchSimulation simulate_match(const MatchJob& job, const base::ProgressFor& progress) {
   require_rotor_inertia(job.motor);
@@ -87,8 +94,8 @@ MatchSimulation simulate_match(const MatchJob& job, const base::ProgressFor& pro
     const GuardedCore core(answer.robot, job.motor, job.guard, answer.guard);
     answer.runs.push_back(drive_once(job, answer.robot, game, core.config(), planner,
                                      base::progress_of(progress, fmt::format("driving, {}", duty::to_string(planner)))));
+    answer.runs.back().verdict = verdict_of(answer.runs.back().run.score, job.motor.nominal);
   }
-  answer.verdict = verdict_of(answer.runs, job.motor.nominal);
   return answer;
 }
 

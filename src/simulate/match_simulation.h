@@ -29,6 +29,7 @@ struct MatchJob {
 struct DrivenMatch {
   duty::Planner planner = duty::Planner::jerk_limited;
   MatchRun run;
+  select::Verdict verdict = select::Verdict::pass;  ///< fail: a limit is exceeded; infeasible: drive_problem()
   std::string csv;
   std::vector<MatchRow> rows;  ///< one row every kMatchRow_s
 };
@@ -44,8 +45,12 @@ struct MatchSimulation {
   MotorGuard guard;  ///< empty if guard_use is off
   bool is_sensing_ideal = false;
   std::vector<DrivenMatch> runs;  ///< one for each planner
-  /// Verdict over all runs: fail (a limit exceeded) takes precedence over infeasible (not driven).
-  select::Verdict verdict = select::Verdict::pass;
+
+  /// Returns the run that decides the verdict: the first that fails (a limit exceeded), else the first that is infeasible (not driven),
+  /// else the first.
+  [[nodiscard]] const DrivenMatch& deciding() const;
+  /// Returns the verdict of deciding().
+  [[nodiscard]] select::Verdict verdict() const;
 };
 
 /// Simulates the match. Throws Failure (bad_input) if the files of robot or motor lack values for motion, or if the CSV would be too large.

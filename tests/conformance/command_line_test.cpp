@@ -55,7 +55,7 @@ std::vector<std::string> verbs_of_the_help() {
   std::vector<std::string> result;
   bool listed = false;
   for (std::string line; std::getline(help, line);) {
-    if (line == "Subcommands:") {
+    if (line == "Verbs:") {
       listed = true;
     } else if (listed && line.starts_with("  ") && !line.starts_with("   ")) {
       result.push_back(line.substr(2, line.find(' ', 2) - 2));
@@ -76,6 +76,9 @@ std::vector<std::string> examples(const std::string& verb) {
   for (std::string line; std::getline(help, line);) {
     if (line.starts_with("Example")) {
       listed = true;
+    } else if (listed && !result.empty() && result.back().ends_with('\\')) {
+      result.back().back() = ' ';
+      result.back() += line;
     } else if (listed && line.starts_with("  ")) {
       result.push_back(line.substr(2));
     }

@@ -170,6 +170,55 @@ TEST_P(Document, links_to_files_that_exist) {
 
 INSTANTIATE_TEST_SUITE_P(pages, Document, testing::ValuesIn(documents()), [](const auto& instance) { return test_name(instance.param); });
 
+std::string with_single_blanks(const std::string& text) { return std::regex_replace(text, std::regex("[ \n]+"), " "); }
+
+/// A row of the table of verbs in README.md: a verb, and the line of output that the table shows for it.
+struct VerbCell {
+  std::string verb;
+  std::string output;
+};
+
+std::vector<VerbCell> verb_cells() {
+  const std::string text = content_of(kSource / "README.md");
+  // The verb may have a word after it ("generate core"). Cells that show a command instead of output are checked as commands.
+  static const std::regex row("\n\\| `([a-z]+)[a-z ]*` \\| [^|]* \\| `([^`]*)` \\|");
+  std::vector<VerbCell> cells;
+  for (auto at = std::sregex_iterator(text.begin(), text.end(), row); at != std::sregex_iterator(); ++at) {
+    const std::string output = (*at)[2];
+    if (!output.starts_with("heatsoak ") && !output.starts_with("source ")) {
+      cells.push_back({(*at)[1], output});
+    }
+  }
+  return cells;
+}
+
+class VerbTable : public Document {};
+
+TEST_P(VerbTable, shows_output_of_the_example_in_the_help) {
+  const std::string verb = GetParam();
+  const std::string page = content_of(kSource / "docs" / "reference" / (verb + ".md"));
+  const std::vector<Block> blocks = blocks_of(page);
+  ASSERT_EQ(blocks.size(), 1U);
+  const ProgramRun result = run_line(blocks.front().lines.front(), options_);
+  for (const VerbCell& each : verb_cells()) {
+    if (each.verb == verb) {
+      EXPECT_THAT(with_single_blanks(result.out), HasSubstr(with_single_blanks(each.output))) << result.err;
+    }
+  }
+}
+
+std::vector<std::string> shown_verbs() {
+  std::vector<std::string> verbs;
+  for (const VerbCell& each : verb_cells()) {
+    verbs.push_back(each.verb);
+  }
+  return verbs;
+}
+
+INSTANTIATE_TEST_SUITE_P(verbs, VerbTable, testing::ValuesIn(shown_verbs()), [](const auto& instance) { return instance.param; });
+
+TEST(Documents, every_verb_with_output_is_in_the_table) { EXPECT_GE(shown_verbs().size(), 13U); }
+
 TEST(Documents, readme_is_short) {
   const std::string text = content_of(kSource / "README.md");
   EXPECT_LE(std::ranges::count(text, '\n'), 150);

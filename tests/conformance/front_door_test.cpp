@@ -311,13 +311,49 @@ TEST_F(FrontDoor, an_interrupted_command_leaves_nothing) {
   }
 }
 
+TEST_F(FrontDoor, an_interrupt_on_a_terminal_ends_the_progress_line) {
+  const ProgramRun result = run_here(
+      "script -qec 'timeout --foreground -s INT 2 heatsoak evaluate --robot roboteam_twente_v2024 --duty "
+      "division_a_match --samples 4000' /dev/null");
+  EXPECT_TRUE(result.out.ends_with("interrupted\r\n")) << result.out;
+}
+
+// A team whose CI must not accept a verdict that more samples could change.
+TEST_F(FrontDoor, fail_on_undecided_refuses_an_undecided_verdict) {
+  const std::string line =
+      "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors nanotec_df45l024048_a2 --samples 60";
+  EXPECT_EQ(run_here(line).exit_code, 0);
+  EXPECT_EQ(run_here(line + " --fail-on undecided").exit_code, 1);
+}
+
+// The computation takes seconds to minutes, so the user learns first that there will be no picture.
+TEST_F(FrontDoor, a_missing_drawing_library_is_reported_before_the_computation) {
+  fs::create_directory(folder_.path() / "bin");
+  fs::copy_file(HEATSOAK_PROGRAM, folder_.path() / "bin" / "heatsoak");
+  const std::string words = " evaluate --robot roboteam_twente_v2024 --duty division_a_match --samples 80000 --db " + kSource.string();
+  const ProgramRun result = run_here("timeout 20 bin/heatsoak" + words + " --plot verdict.svg", {"HEATSOAK_PLUGINS"});
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_THAT(result.err, AllOf(HasSubstr("--plot"), HasSubstr("without a picture")));
+  EXPECT_EQ(run_here("timeout 20 bin/heatsoak" + words + " --report verdict.html", {"HEATSOAK_PLUGINS"}).exit_code, 2);
+}
+
+TEST_F(FrontDoor, help_fits_the_terminal) {
+  for (const std::string& verb : std::vector<std::string>{"", "evaluate", "calibrate", "log", "diagnose"}) {
+    std::istringstream lines(run_here("heatsoak " + verb + " --help").out);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(std::ranges::count_if(line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }), 80) << line;
+      EXPECT_THAT(line, Not(HasSubstr("... ..."))) << verb;
+    }
+  }
+}
+
 TEST_F(FrontDoor, undecided_verdicts_ask_for_more_samples) {
   // The probability of exceeding the limit is near the threshold of 5 %.
   const std::string line = "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors nanotec_df45l024048_a2";
   const ProgramRun few = run_here(line + " --samples 60 --json -");
   const nlohmann::json before = few.json().at("motors").at(0);
   ASSERT_TRUE(before.at("samples_needed").is_number()) << few.err;
-  EXPECT_THAT(few.err, AllOf(HasSubstr("undecided"), HasSubstr("more samples needed")));
+  EXPECT_THAT(few.err, AllOf(HasSubstr("undecided"), HasSubstr("more samples")));
   const nlohmann::json after = run_here(line + " --json -").json().at("motors").at(0);
   EXPECT_TRUE(after.at("samples_needed").is_null());
   EXPECT_GT(after.at("samples"), 500);

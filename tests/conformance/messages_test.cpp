@@ -38,6 +38,48 @@ TEST(AllAtOnce, wrong_ids_beside_wrong_files) {
               AllOf(HasSubstr("no duty 'nosuch'"), HasSubstr("no motor 'foo'"), HasSubstr("robot.toml:3:10: error: wheels.radius")));
 }
 
+// Whoever misspells a motor and an option's value corrects both at once.
+TEST(AllAtOnce, wrong_ids_beside_wrong_options) {
+  const ProgramRun result =
+      run({"steady", "--motor", "maxon_ec45_flat_70w_24", "--current-on", "6V", "--time-on", "1s", "--time-off", "1s"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("no motor 'maxon_ec45_flat_70w_24'"), HasSubstr("--current-on")));
+}
+
+// Contradicting values of a robot are refused by every verb that computes with them, at the same place.
+TEST(ImplausibleRobot, is_refused_by_every_verb) {
+  const TemporaryFolder folder;
+  std::string text = content_of(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+  const std::string radius = "\nradius = \"28 mm\"";
+  text.replace(text.find(radius), radius.size(), "\nradius = \"62 mm\"");
+  const std::string robot = (folder.path() / "robot.toml").string();
+  write(robot, text);
+  const auto line =
+      std::to_string(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("radius = \"62")), '\n') + 1);
+  const std::string place = robot + ":" + line + ":";
+  const std::string motor = "maxon_ecx_flat_32l_48v";
+  const std::string out = (folder.path() / "out").string();
+  for (const Words& words :
+       std::vector<Words>{{"evaluate", "--robot", robot, "--duty", "paper_intermittent", "--motors", motor, "--json", "-"},
+                          {"simulate", "--robot", robot, "--duty", "paper_intermittent", "--motor", motor, "--json", "-"},
+                          {"derate", "--robot", robot, "--motor", motor, "--out", out, "--json", "-"},
+                          {"generate", "core", "--robot", robot, "--motor", motor, "--out", out, "--json", "-"},
+                          {"duty", "--robot", robot, "--duty", "paper_intermittent", "--json", "-"}}) {
+    const ProgramRun result = run(words);
+    EXPECT_EQ(result.exit_code, 2) << words.front();
+    EXPECT_THAT(result.err, HasSubstr(place)) << words.front();
+    const nlohmann::json diagnostics = result.json().at("error").at("diagnostics");
+    ASSERT_EQ(diagnostics.size(), 1U) << words.front();
+    EXPECT_EQ(diagnostics.at(0).at("key"), "wheels.radius") << words.front();
+  }
+  EXPECT_EQ(run({"lint", robot}).exit_code, 1);
+  write(folder.path() / "check.toml", "[[check]]\nname = \"a\"\nrobot = \"robot.toml\"\nduty = \"paper_intermittent\"\nmotor = \"" + motor +
+                                          "\"\n[check.limits]\nwinding_peak_p95 = \"at most 150 degC\"\n");
+  const ProgramRun checked = run({"check", (folder.path() / "check.toml").string()});
+  EXPECT_EQ(checked.exit_code, 1) << checked.err;
+  EXPECT_THAT(checked.out, HasSubstr("wheels.radius"));
+}
+
 TEST(AllMotors, may_stand_beside_a_file) {
   const TemporaryFolder folder;
   write(folder.path() / "mine.toml", content_of(kMotorFile));

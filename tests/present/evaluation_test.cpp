@@ -4,9 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <set>
+
 #include "base/binomial_bound.h"
 #include "present/verdict_topic.h"
+#include "present/verdict_words.h"
 #include "select/decision.h"
+#include "support/shipped.h"
 
 namespace heatsoak::present {
 namespace {
@@ -86,6 +91,117 @@ TEST(SamplesNeeded, demand_that_is_missed_counts_too) {
   select::MotorEvaluation motor = sampled(0.0, {0.0, 0.01}, 500);
   motor.short_probability = 0.05;
   EXPECT_TRUE(select::samples_needed(motor, {0.03, 0.07}, false));
+}
+
+// What lacks current is infeasible even while more samples could change that: every place shows the same verdict.
+TEST(ShownVerdict, infeasible_comes_before_undecided) {
+  select::MotorEvaluation motor = sampled(0.9, {0.8, 0.99}, 600);
+  EXPECT_EQ(shown_verdict(motor), ShownVerdict::pass);
+  motor.samples_needed = 4352;
+  EXPECT_EQ(shown_verdict(motor), ShownVerdict::undecided);
+  motor.verdict = select::Verdict::infeasible;
+  EXPECT_EQ(shown_verdict(motor), ShownVerdict::infeasible);
+}
+
+TEST(OpenShare, is_the_share_whose_interval_covers_a_threshold) {
+  select::MotorEvaluation motor = sampled(0.9, {0.88, 1.0}, 600);
+  motor.games = 75;
+  motor.verdict = select::Verdict::infeasible;
+  motor.short_probability = 0.55;
+  motor.short_interval = select::Interval95{0.42, 0.68};
+  EXPECT_FALSE(open_share(motor)) << "decided";
+  motor.samples_needed = 4352;
+  ASSERT_TRUE(open_share(motor));
+  EXPECT_TRUE(open_share(motor)->is_of_demand);
+  EXPECT_EQ(open_share(motor)->threshold_ratio, select::kMajority);
+  select::MotorEvaluation warm = sampled(0.03, {0.01, 0.11}, 600);
+  warm.games = 75;
+  warm.samples_needed = 1200;
+  ASSERT_TRUE(open_share(warm));
+  EXPECT_FALSE(open_share(warm)->is_of_demand);
+  EXPECT_EQ(open_share(warm)->threshold_ratio, select::kMarginalProbability);
+  EXPECT_EQ(words_of(*open_share(warm), 600), "18 of 600 samples exceed a limit (share 1…11 %; the verdict changes at 5 %)");
+}
+
+TEST(PassingText, agrees_in_number) {
+  EXPECT_EQ(passing_text(1, 1, "motor"), "1 of 1 motor passes");
+  EXPECT_EQ(passing_text(0, 1, "motor"), "0 of 1 motor passes");
+  EXPECT_EQ(passing_text(1, 2, "motor"), "1 of 2 motors passes");
+  EXPECT_EQ(passing_text(0, 2, "motor"), "0 of 2 motors pass");
+}
+
+simulate::EvaluationAnswer answer_with(std::vector<select::MotorEvaluation> results, const std::string& duty = "paper_intermittent") {
+  simulate::EvaluationAnswer answer{.robot = twente(),
+                                    .duty = duty::read_duty(kSource / "duty_profiles" / (duty + ".toml")),
+                                    .motors = {},
+                                    .conditions = {},
+                                    .demand = {},
+                                    .results = std::move(results),
+                                    .closed_loop = {},
+                                    .ranks = {},
+                                    .changes = {}};
+  return answer;
+}
+
+// Both columns of limits have a unit, and no two columns the same name.
+TEST(EvaluationDocument, columns_have_different_names) {
+  const Document document = evaluation_document(answer_with({sampled(0.0, {0.0, 0.01}, 500)}));
+  std::set<std::string> names;
+  for (const Column& each : document.tables.front().columns) {
+    EXPECT_TRUE(names.insert(each.name + each.unit).second || each.name.empty()) << each.name;
+    if (each.name.ends_with("limit")) {
+      EXPECT_EQ(each.unit, "°C");
+    }
+  }
+}
+
+TEST(EvaluationDocument, a_closed_loop_has_one_headline) {
+  select::MotorEvaluation motor = sampled(0.03, {0.01, 0.11}, 600);
+  motor.motor_id = "m";
+  motor.games = 75;
+  motor.samples_needed = 1200;
+  motor.winding_p95_interval_C = select::Interval95{40.0, 50.0};
+  simulate::EvaluationAnswer answer = answer_with({motor}, "division_b_match");
+  answer.draw_count = 75;
+  answer.closed_loop = simulate::ClosedLoopJob{.games = 1};
+  simulate::ClosedLoopRank rank;
+  rank.drives.motor_id = "m";
+  rank.drives.games.resize(1);
+  rank.verdict = select::Verdict::pass;
+  answer.ranks = {rank};
+  const Document document = evaluation_document(answer);
+  const auto counts =
+      std::ranges::count_if(document.headline, [](const Text& each) { return each.words.find("1 motor passes") != std::string::npos; });
+  EXPECT_EQ(counts, 1);
+  EXPECT_EQ(document.headline.front().tone, Tone::good);
+  EXPECT_EQ(document.tables.size(), 2U);
+  EXPECT_FALSE(document.tables.back().title.empty()) << "states which of both it is";
+}
+
+// An implausible value that is no error must reach the reader of every answer.
+TEST(EvaluationDocument, warns_of_implausible_values_of_the_robot) {
+  simulate::EvaluationAnswer answer = answer_with({sampled(0.0, {0.0, 0.01}, 500)});
+  const auto warnings = [&] {
+    const Document document = evaluation_document(answer);
+    return std::ranges::count_if(document.notes, [](const Note& each) { return each.severity == Severity::warning; });
+  };
+  const auto before = warnings();
+  answer.robot.drive.gear_ratio = 36.0;
+  EXPECT_EQ(warnings(), before + 1);
+}
+
+TEST(EvaluationDocument, changes_of_the_robot_come_before_another_motor) {
+  simulate::EvaluationAnswer answer = answer_with({sampled(0.0, {0.0, 0.01}, 500)});
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  answer.changes = simulate::SuggestedChanges{
+      "m",
+      {{.quantity = select::ChangedQuantity::gear_ratio, .before = 1.0, .factor = 1.25, .saved_K = 20.0, .standard_error_K = nothing},
+       {.quantity = select::ChangedQuantity::motor, .other_motor = "other", .saved_K = 100.0, .standard_error_K = nothing}}};
+  const Document document = evaluation_document(answer);
+  const Table& table = document.tables.back();
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_EQ(table.rows.front().front().words, select::name_of(select::ChangedQuantity::gear_ratio));
+  EXPECT_EQ(table.columns.size(), 4U) << "one calculation has no standard error";
 }
 
 TEST(VerdictTopic, states_the_thresholds_that_decide) {

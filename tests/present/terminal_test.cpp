@@ -105,10 +105,29 @@ TEST(Html, holds_everything_and_escapes_it) {
   document.tables[0].rows[0][1] = {"<b>&"};
   document.listings = {{"", "a < b\n"}};
   const std::string text = rendered_for("x.html", document);
-  for (const char* said :
-       {"<td class=\" \">&lt;b&gt;&amp;</td>", "<th>motor</th>", "rms / A", "<b>warning:</b> urgent", "<pre>a &lt; b\n</pre>"}) {
+  for (const char* said : {"<td>&lt;b&gt;&amp;</td>", "<th>motor</th>", "rms / A", "<b>warning:</b> urgent", "<pre>a &lt; b\n</pre>"}) {
     EXPECT_THAT(text, HasSubstr(said));
   }
+}
+
+TEST(Html, commands_are_code_and_charts_are_inside) {
+  Document document = example();
+  document.add_note(Severity::note, "`a < b` and a lone ` sign");
+  document.charts.push_back({.title = "Chart <1>", .x_label = "time / min", .panels = {{.title = "Panel"}}});
+  const std::string text = rendered_for("x.html", document);
+  EXPECT_THAT(text, HasSubstr("<code>a &lt; b</code> and a lone ` sign"));
+  EXPECT_THAT(text, HasSubstr("<div class=\"picture\"><svg"));
+  EXPECT_THAT(text, HasSubstr("Chart &lt;1&gt;"));
+  EXPECT_THAT(text, Not(HasSubstr("<?xml")));
+  EXPECT_THAT(text, Not(HasSubstr("class=\" ")));
+}
+
+TEST(Terminal, hidden_warnings_are_counted) {
+  Document document = example();
+  for (const char* words : {"a", "b", "c", "d"}) {
+    document.add_note(Severity::warning, words);
+  }
+  EXPECT_THAT(terminal_text(document, {}), HasSubstr("5 more notes, 2 of them warnings: add --explain"));
 }
 
 TEST(Terminal, a_long_name_keeps_its_beginning) {

@@ -64,5 +64,29 @@ TEST(Evaluation, reads_the_data_base_only_to_search_changes) {
   EXPECT_EQ(reads, 1);
 }
 
+// Who names candidates wants to know which of them to take. Another motor is suggested only if none of them passes.
+TEST(Evaluation, another_motor_is_suggested_only_if_no_chosen_one_passes) {
+  const auto suggests_motor = [](std::vector<motor::Motor> motors) {
+    EvaluationJob job = nominal_job("paper_intermittent", std::move(motors));
+    job.has_chosen_motors = true;
+    job.database = [] { return std::vector<motor::Motor>{shipped_motor("maxon_ecx_flat_42m_48v")}; };
+    const EvaluationAnswer answer = run_evaluation(job);
+    return answer.changes && std::ranges::find(answer.changes->effects, select::ChangedQuantity::motor, &select::ChangeEffect::quantity) !=
+                                 answer.changes->effects.end();
+  };
+  ASSERT_EQ(run_evaluation(nominal_job("paper_intermittent", {ecx_32()})).worst_verdict(), select::Verdict::fail);
+  EXPECT_TRUE(suggests_motor({ecx_32()}));
+  EXPECT_FALSE(suggests_motor({ecx_32(), shipped_motor("maxon_ecx_flat_42m_24v")}));
+}
+
+TEST(Evaluation, is_undecided_while_more_samples_could_change_a_verdict) {
+  EvaluationAnswer answer = run_evaluation(nominal_job("paper_intermittent", {shipped_motor("maxon_ecx_flat_42m_24v")}));
+  EXPECT_FALSE(answer.is_undecided());
+  answer.results.front().samples_needed = 1000;
+  EXPECT_TRUE(answer.is_undecided());
+  answer.ranks.resize(1);
+  EXPECT_FALSE(answer.is_undecided()) << "games in closed loop decide";
+}
+
 }  // namespace
 }  // namespace heatsoak::simulate

@@ -14,6 +14,7 @@
 #include "derate/derating_json.h"
 #include "duty/named_files.h"
 #include "present/derating.h"
+#include "present/robot_notes.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -71,6 +72,7 @@ base::ExitCode run(const DerateOptions& options, Session& session) {
   job.committed = options.committed;
   const derate::DeratingAnswer answer = derate::run_derating(job, progress_bar("searching the safety factor on heat"));
   present::Document document = present::derating_document(answer.derating, job.motor);
+  present::add_robot_notes(document, job.robot);
   if (!options.out.empty()) {
     session.write(options.out, answer.text);
     document.add_file(options.out);

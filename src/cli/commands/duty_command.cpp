@@ -16,6 +16,7 @@
 #include "duty/make_duty.h"
 #include "duty/named_files.h"
 #include "present/duty.h"
+#include "present/robot_notes.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -77,6 +78,7 @@ base::ExitCode run(const DutyOptions& options, Session& session) {
   }
   const duty::DutyAnswer answer = duty::make_duty(job);
   present::Document document = present::duty_document(answer);
+  present::add_robot_notes(document, *robot);
   if (!options.out.empty()) {
     std::filesystem::path description = options.out;
     description.replace_extension(".toml");

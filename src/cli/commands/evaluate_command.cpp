@@ -22,8 +22,8 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-/// Values of --fail-on in the order of Verdict, without pass. Exit code 1 from the given verdict on.
-const std::vector<std::string> kFailOn{"marginal", "fail", "infeasible"};
+/// Values of --fail-on: undecided, then those of Verdict without pass. Exit code 1 from the given one on.
+const std::vector<std::string> kFailOn{"undecided", "marginal", "fail", "infeasible"};
 
 struct EvaluateOptions {
   std::string robot;
@@ -59,7 +59,8 @@ std::vector<std::string> listed_motors(const EvaluateOptions& options) {
   return names;
 }
 
-simulate::EvaluationJob job_of(const EvaluateOptions& options, const input::DataFolders& folders) {
+simulate::EvaluationJob job_of(const EvaluateOptions& options, const Session& session) {
+  const input::DataFolders folders = session.folders();
   if (!options.is_closed_loop && options.guard != EvaluateOptions{}.guard) {
     throw base::Failure(base::ExitCode::bad_input, "--guard is for --closed-loop; expected both or none");
   }
@@ -76,7 +77,8 @@ simulate::EvaluationJob job_of(const EvaluateOptions& options, const input::Data
   job.duty = *duty;
   job.conditions = options.conditions;
   job.database = [folders, conditions = options.conditions] { return select::motors_of_database(folders, conditions); };
-  job.with_bands = !options.plot.empty();
+  job.has_chosen_motors = !options.model.empty() || (options.motors && *options.motors != "all");
+  job.with_bands = session.draws(options.plot);
   if (options.is_closed_loop) {
     job.closed_loop = options.closed_loop;
     job.closed_loop->guard = options.guard == "off" ? simulate::GuardUse::off : simulate::GuardUse::shadow;
@@ -85,16 +87,17 @@ simulate::EvaluationJob job_of(const EvaluateOptions& options, const input::Data
 }
 
 base::ExitCode run(const EvaluateOptions& options, Session& session) {
-  const simulate::EvaluationAnswer answer = simulate::run_evaluation(job_of(options, session.folders()), progress_bar);
+  const simulate::EvaluationAnswer answer = simulate::run_evaluation(job_of(options, session), progress_bar);
   present::Document document = present::evaluation_document(answer);
-  if (!options.plot.empty()) {
-    session.write(options.plot, report::draw_picture(present::verdict_chart(answer.results, answer.robot, answer.duty), options.plot));
-    document.add_file(options.plot);
+  if (session.draws(options.plot)) {
+    session.draw(document, options.plot, present::verdict_chart(answer.results, answer.robot, answer.duty));
   }
   session.show(document);
   session.answer(present::evaluation_json(answer));
-  const select::Verdict least_bad = static_cast<select::Verdict>(std::ranges::find(kFailOn, options.fail_on) - kFailOn.begin() + 1);
-  return answer.worst_verdict() >= least_bad ? base::ExitCode::limit_exceeded : base::ExitCode::done;
+  const auto place = std::ranges::find(kFailOn, options.fail_on) - kFailOn.begin();
+  const bool fails = place == 0 ? answer.worst_verdict() != select::Verdict::pass || answer.is_undecided()
+                                : answer.worst_verdict() >= static_cast<select::Verdict>(place);
+  return fails ? base::ExitCode::limit_exceeded : base::ExitCode::done;
 }
 
 }  // namespace
@@ -137,7 +140,7 @@ Command evaluate_command() {
         app.add_flag("--suggest", options->job.suggests,
                      "list the changes of the robot that cool its motor most, even if the motor passes: acceleration, jerk, speed, mass, "
                      "wheels, gear");
-        app.add_option("--fail-on", options->fail_on, "exit 1 if a motor's verdict is this or worse: marginal, fail, infeasible")
+        app.add_option("--fail-on", options->fail_on, "exit 1 if a motor's verdict is this or worse: undecided, marginal, fail, infeasible")
             ->check(CLI::IsMember(kFailOn))
             ->type_name("VERDICT")
             ->capture_default_str();

@@ -13,6 +13,7 @@
 #include "firmware/core_files.h"
 #include "firmware/staged_folder.h"
 #include "present/core_folder.h"
+#include "present/robot_notes.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -37,7 +38,9 @@ base::ExitCode run(const GenerateOptions& options, Session& session) {
                               progress_bar("searching the safety factor on heat"));
   const auto staged = std::make_shared<firmware::StagedFolder>(options.out, core.folder.files, options.force);
   session.complete_with([staged] { staged->commit(); });
-  session.show(present::core_folder_document(core.folder, core.derating, options.core, options.out));
+  present::Document document = present::core_folder_document(core.folder, core.derating, options.core, options.out);
+  present::add_robot_notes(document, *robot);
+  session.show(document);
   session.answer(present::core_folder_json(core.folder, core.derating, motor, options.core, options.out));
   return base::ExitCode::done;
 }

@@ -39,9 +39,13 @@ struct SimulateOptions {
   std::map<std::string, std::string> conditions;
 };
 
-void show(present::Document document, const SimulateOptions& options, Session& session) {
+/// `make` returns the chart; it is called only if the chart is requested.
+template <class Make>
+void show(present::Document document, const SimulateOptions& options, Session& session, const Make& make) {
   document.add_file(options.out);
-  document.add_file(options.plot);
+  if (session.draws(options.plot)) {
+    session.draw(document, options.plot, make());
+  }
   session.show(document);
 }
 
@@ -58,16 +62,13 @@ base::ExitCode run_load(const SimulateOptions& options, select::LoadJob job, Ses
   }
   job.seed = options.seed;
   job.every_s = options.every_s;
-  job.with_curves = !options.plot.empty();
+  job.with_curves = session.draws(options.plot);
   const select::LoadSimulation simulation = select::simulate_load(job);
   if (!options.out.empty()) {
     session.write(options.out, select::to_csv(simulation.trace));
   }
-  if (!options.plot.empty()) {
-    session.write(options.plot,
-                  report::draw_picture(present::verdict_chart({simulation.result}, simulation.robot, simulation.duty), options.plot));
-  }
-  show(present::load_simulation_document(simulation), options, session);
+  show(present::load_simulation_document(simulation), options, session,
+       [&] { return present::verdict_chart({simulation.result}, simulation.robot, simulation.duty); });
   session.answer(present::load_simulation_json(simulation));
   return simulation.result.verdict == select::Verdict::pass ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
@@ -85,17 +86,14 @@ base::ExitCode run_match(const SimulateOptions& options, simulate::MatchJob job,
   job.is_sensing_ideal = options.sensing == "ideal";
   job.with_table = !options.out.empty();
   job.every_s = options.every_s;
-  job.with_rows = !options.plot.empty();
+  job.with_rows = session.draws(options.plot);
   simulate::MatchSimulation match = simulate::simulate_match(job, progress_bar);
   if (job.with_table) {
     session.write(options.out, std::move(match.runs.front().csv));
   }
-  if (job.with_rows) {
-    session.write(options.plot, report::draw_picture(present::match_chart(match), options.plot));
-  }
-  show(present::match_document(match), options, session);
+  show(present::match_document(match), options, session, [&] { return present::match_chart(match); });
   session.answer(present::match_json(match));
-  return match.verdict == select::Verdict::pass ? base::ExitCode::done : base::ExitCode::limit_exceeded;
+  return match.verdict() == select::Verdict::pass ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
 
 base::ExitCode run_sweep(const SimulateOptions& options, const robot::Robot& robot, const motor::Motor& motor, Session& session) {
@@ -103,10 +101,7 @@ base::ExitCode run_sweep(const SimulateOptions& options, const robot::Robot& rob
     throw base::Failure(base::ExitCode::bad_input, "--jerk-sweep has no signals to write; expected --plot or --json in place of --out");
   }
   const simulate::JerkSweep sweep = simulate::sweep_jerk(robot, motor, options.sensing == "ideal", options.seed, progress_bar("driving"));
-  if (!options.plot.empty()) {
-    session.write(options.plot, report::draw_picture(present::jerk_sweep_chart(sweep), options.plot));
-  }
-  show(present::jerk_sweep_document(sweep), options, session);
+  show(present::jerk_sweep_document(sweep), options, session, [&] { return present::jerk_sweep_chart(sweep); });
   session.answer(present::jerk_sweep_json(sweep));
   return base::ExitCode::done;
 }

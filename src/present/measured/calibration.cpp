@@ -26,7 +26,7 @@ Table fitted_parameters(const calibration::Calibration& result) {
                           {"fit", "", 0},
                           {"95 % interval", "", 0},
                           {"unit", "", 1, Alignment::left},
-                          {"identifiable", "", 3, Alignment::left}},
+                          {"identifiable", "", 0, Alignment::left}},
               .rows = {}};
   for (const calibration::CalibratedParameter& each : result.parameters) {
     const double half = 0.5 * (each.high - each.low);
@@ -108,9 +108,9 @@ Document calibration_document(const motor::Motor& motor, const calibration::Cali
                .columns = {{"runs", "", 0, Alignment::left},
                            {"signal", "", 0, Alignment::left},
                            {"rms: file", "", 0},
-                           {"fit", "", 0},
+                           {"rms: fit", "", 0},
                            {"largest: file", "", 0},
-                           {"fit", "", 0},
+                           {"largest: fit", "", 0},
                            {"samples", "", 1}},
                .rows = {}};
   add_errors(errors, "fit", result.fit_error);
@@ -124,7 +124,9 @@ Document calibration_document(const motor::Motor& motor, const calibration::Cali
     document.add_note(Severity::warning, words_of(each));
   }
   for (const calibration::OpenDirection& each : result.open) {
-    document.add_note(Severity::note, fmt::format("Not identifiable: {} ({}). To determine it: {}.", each.what, each.why, each.experiment));
+    document.add_note(Severity::note,
+                      fmt::format("Not identifiable: {} ({}). To determine it: {}.", each.what, each.why,
+                                  each.experiment == result.next_experiment ? "the next experiment above" : each.experiment));
   }
   for (const calibration::CalibrationFinding& each : result.findings) {
     document.add_note(severity_of(each), words_of(each));

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -55,6 +56,26 @@ bool is_temperature(const recording::Channel& channel) {
   return channel.quantity.kind == recording::QuantityKind::temperature || channel.quantity.kind == recording::QuantityKind::surroundings;
 }
 
+/// Returns quantity and unit: "current / A"; the unit alone if its quantity has no name here.
+std::string axis_title(std::string_view unit) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kNames{{{"degC", "temperature"},
+                                                                                  {"A", "current"},
+                                                                                  {"V", "voltage"},
+                                                                                  {"W", "power"},
+                                                                                  {"Nm", "torque"},
+                                                                                  {"rad/s", "speed"},
+                                                                                  {"m/s", "speed"},
+                                                                                  {"rad/s2", "acceleration"},
+                                                                                  {"rad", "angle"},
+                                                                                  {"h", "time"}}};
+  const auto found = std::ranges::find(kNames, unit, &std::pair<std::string_view, std::string_view>::first);
+  if (unit.empty()) {
+    return "ratio";
+  }
+  const std::string shown = base::unit_for_display(unit);
+  return found == kNames.end() ? shown : fmt::format("{} / {}", found->second, shown);
+}
+
 std::vector<ChannelGroup> groups_of(const recording::Recording& recording) {
   std::vector<ChannelGroup> groups;
   std::vector<std::string> names;
@@ -73,8 +94,12 @@ std::vector<ChannelGroup> groups_of(const recording::Recording& recording) {
       const auto found = std::ranges::find(names, name);
       if (found == names.end()) {
         names.push_back(name);
-        const std::string unit = channel.quantity.unit.empty() ? "ratio" : base::unit_for_display(channel.quantity.unit);
-        groups.push_back({is_temperature(channel) ? "temperatures" : is_wheel ? stem : "", unit, is_wheel, {place}});
+        groups.push_back({is_temperature(channel) ? "temperatures"
+                          : is_wheel              ? stem
+                                                  : "",
+                          axis_title(channel.quantity.unit),
+                          is_wheel,
+                          {place}});
       } else {
         groups[static_cast<std::size_t>(found - names.begin())].channels.push_back(place);
       }
@@ -149,7 +174,7 @@ class LogChart {
   }
 
   [[nodiscard]] report::ChartCurve curve(std::size_t place, const std::string& name, int color, bool dashed) const {
-    report::ChartCurve result{name, {}, {}, color, dashed};
+    report::ChartCurve result{.name = name, .color_index = color, .dashed = dashed, .has_ripple = true};
     const std::vector<double>& low = condensed_.low(place);
     const std::vector<double>& high = condensed_.high(place);
     const auto add = [&](std::size_t row, double value) {

@@ -44,6 +44,8 @@ std::vector<std::string> warning_words(const calibration::PredictionAnswer& answ
   return all;
 }
 
+std::string fitted_motor(const motor::Motor& motor) { return motor.fit ? motor.fit->motor : motor.id; }
+
 std::string signal_words(const calibration::PredictedSignal& signal) { return signal.signal.substr(0, signal.signal.rfind('_')); }
 
 Document prediction_document(const motor::Motor& motor, const calibration::PredictionAnswer& answer,
@@ -63,8 +65,8 @@ Document prediction_document(const motor::Motor& motor, const calibration::Predi
     for (const calibration::PredictedSignal& each : run.signals) {
       table.rows.push_back({{run.name},
                             {signal_words(each)},
-                            {fmt::format("{:.2f}", each.rmse_K)},
-                            {fmt::format("{:.2f}", each.max_abs_K)},
+                            {base::significant(each.rmse_K, 2)},
+                            {base::significant(each.max_abs_K, 2)},
                             {fmt::format("{:.0f}", 100.0 * each.coverage_share)},
                             {fmt::format("{}", each.samples)}});
       if (worst == nullptr || each.rmse_K > worst->rmse_K) {
@@ -74,9 +76,10 @@ Document prediction_document(const motor::Motor& motor, const calibration::Predi
     }
   }
   if (worst != nullptr) {
-    document.headline.push_back(
-        {fmt::format("{} forecasts {} run{}; the largest error is {} K rms, of the {} in {}.", motor.id, prediction.runs.size(),
-                     prediction.runs.size() == 1 ? "" : "s", base::significant(worst->rmse_K, 2), signal_words(*worst), worst_run->name)});
+    document.headline.push_back({fmt::format(
+        "{} forecasts {} run{}; the largest error is {} K rms, of the {} in {}.",
+        motor.fit ? fmt::format("The model {} of {}", motor.file.filename().string(), motor.fit->motor) : motor.id, prediction.runs.size(),
+        prediction.runs.size() == 1 ? "" : "s", base::significant(worst->rmse_K, 2), signal_words(*worst), worst_run->name)});
   }
   document.paragraphs.emplace_back(
       "Each run is predicted from its first temperatures and its measured inputs. A correct 90 % band contains 90 % of the samples.");

@@ -14,6 +14,9 @@ namespace heatsoak::present {
 /// Returns the name of a predicted signal without its unit.
 std::string signal_words(const calibration::PredictedSignal& signal);
 
+/// Returns the id of the motor: a model names the motor that it was fitted from, not its own file.
+std::string fitted_motor(const motor::Motor& motor);
+
 /// Returns the document. Warnings about the model's validity come first, and the reader's remarks of `readings` last.
 Document prediction_document(const motor::Motor& motor, const calibration::PredictionAnswer& answer,
                              std::span<const recording::LogReading> readings);

@@ -9,7 +9,7 @@ namespace heatsoak::present {
 
 report::Chart prediction_chart(const motor::Motor& motor, const calibration::Prediction& prediction) {
   report::Chart chart{
-      .title = fmt::format("{}: prediction", motor.name),
+      .title = fmt::format("{}: prediction", fitted_motor(motor)),
       .subtitle = "from the first temperatures and the measured inputs of each run; 90 % of the samples are expected in the band",
       .x_label = "time / min"};
   for (const calibration::PredictedRun& run : prediction.runs) {
@@ -23,7 +23,7 @@ report::Chart prediction_chart(const motor::Motor& motor, const calibration::Pre
                                 base::significant(each.rmse_K, 2), 100.0 * each.coverage_share);
       panel.y_label = signal_words(each) + " temperature / °C";
       panel.bands = {{.name = "90 % band", .x = time_min, .low = each.low_C, .high = each.high_C, .color_index = 1}};
-      panel.curves = {{.name = "measured", .x = time_min, .y = each.measured_C, .color_index = 0},
+      panel.curves = {{.name = "measured", .x = time_min, .y = each.measured_C, .color_index = 4, .dots = true},
                       {.name = "predicted", .x = time_min, .y = each.predicted_C, .color_index = 1}};
       chart.panels.push_back(std::move(panel));
     }

@@ -25,7 +25,11 @@ Json prediction_json(const motor::Motor& motor, const calibration::PredictionAns
   for (const std::vector<std::string>& more : {reading_words(readings), answer.admission.notes, answer.prediction.notes}) {
     notes.insert(notes.end(), more.begin(), more.end());
   }
-  return {{"schema", "heatsoak.prediction/1"}, {"motor", motor.id}, {"runs", runs_json(answer.prediction.runs)}, {"notes", notes}};
+  return {{"schema", "heatsoak.prediction/1"},
+          {"motor", fitted_motor(motor)},
+          {"model", motor.file.string()},
+          {"runs", runs_json(answer.prediction.runs)},
+          {"notes", notes}};
 }
 
 }  // namespace heatsoak::present

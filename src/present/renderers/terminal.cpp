@@ -195,9 +195,11 @@ std::string text_of(const std::vector<Note>& notes, const RenderOptions& options
     text += wrapped((is_warning ? "warning: " : "") + printable(sorted[i].words), "- ", options.width) + "\n";
   }
   if (most < sorted.size()) {
-    text += wrapped(fmt::format("{} more note{}: add --explain", sorted.size() - most, sorted.size() - most == 1 ? "" : "s"), "- ",
-                    options.width) +
-            "\n";
+    const std::size_t more = sorted.size() - most;
+    const auto warnings = std::count_if(sorted.begin() + static_cast<std::ptrdiff_t>(most), sorted.end(),
+                                        [](const Note& each) { return each.severity == Severity::warning; });
+    const std::string of_warnings = warnings > 0 ? fmt::format(", {} of them warning{}", warnings, warnings == 1 ? "" : "s") : "";
+    text += wrapped(fmt::format("{} more note{}{}: add --explain", more, more == 1 ? "" : "s", of_warnings), "- ", options.width) + "\n";
   }
   return text;
 }

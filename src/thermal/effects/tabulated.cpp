@@ -44,10 +44,11 @@ constexpr std::array<base::Choice, driver_count> kDrivers = [] {
   choices[temperature] = {"temperature", "degC", "temperature of the node 'watched'"};
   choices[temperature_difference] = {"temperature_difference", "K", "temperature difference of the node 'watched' above 'reference'"};
   choices[neighbour_difference] = {"neighbour_difference", "K", "temperature difference of the next motor above the node 'watched'"};
+  // The further places distinguish several columns of one network; a motor file always writes 'column', so they have no description.
   for (std::size_t place = 0; place < kLogColumns; ++place) {
-    choices[column + place] = {kColumnChoices[place], "",
-                               place == 0 ? "column of a log, named by 'column'; if it is not known, the hottest value of the curve is used"
-                                          : "another column of a log; a motor file writes 'column'"};
+    choices[column + place] = {
+        kColumnChoices[place], "",
+        place == 0 ? "column of a log, named by 'column'; if it is not known, the hottest value of the curve is used" : ""};
   }
   return choices;
 }();

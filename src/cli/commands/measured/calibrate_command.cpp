@@ -37,12 +37,11 @@ base::ExitCode run(const CalibrateOptions& options, Session& session) {
   const calibration::CalibrationAnswer answer = calibration::run_calibration(job);
   line.reset();
   session.write(options.out, motor::to_toml(answer.motor));
-  if (!options.plot.empty()) {
-    session.write(options.plot, report::draw_picture(present::calibration_chart(job.motor, answer.calibration), options.plot));
-  }
   present::Document document = present::calibration_document(job.motor, answer, job.logs.readings);
   document.add_file(options.out);
-  document.add_file(options.plot);
+  if (session.draws(options.plot)) {
+    session.draw(document, options.plot, present::calibration_chart(job.motor, answer.calibration));
+  }
   session.show(document);
   session.answer(present::calibration_json(job.motor, answer, job.logs.readings, options.out));
   return base::ExitCode::done;

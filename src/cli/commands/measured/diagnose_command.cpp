@@ -40,6 +40,9 @@ void write_folder(const DiagnoseOptions& options, const diagnosis::DiagnosisAnsw
 }
 
 base::ExitCode run(const DiagnoseOptions& options, Session& session) {
+  if (!options.out.empty()) {
+    report::require_drawing("--out", "leave out --out for the answer without its folder");
+  }
   const diagnosis::DiagnosisJob job{duty::motor_named(session.folders(), options.model),
                                     recording::read_named_logs(options.train, options.holdout, choice_of(options.logs, session))};
   std::shared_ptr<void> line = elapsed_line("searching for missing effects");
@@ -74,9 +77,9 @@ Command diagnose_command() {
             ->type_name("MODEL.toml");
         app.add_option("--train", options->train, "logs that the extended model is fitted to; LOG@0-60% takes the first 60 % of its time")
             ->required()
-            ->type_name("LOG...");
+            ->type_name("LOG");
         app.add_option("--holdout", options->holdout, "hold-out logs that the fit does not use; for the error before and after")
-            ->type_name("LOG...");
+            ->type_name("LOG");
         app.add_option("--out", options->out, "folder for the extended model, page, pictures and JSON")->type_name("DIR");
         add_log_options(app, options->logs);
         session.add_data_option(app);

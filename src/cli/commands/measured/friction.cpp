@@ -11,6 +11,7 @@
 #include "duty/named_files.h"
 #include "friction/friction_job.h"
 #include "present/measured/friction_chart.h"
+#include "present/robot_notes.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -68,17 +69,16 @@ void draw(const FrictionOptions& options, const robot::Robot& robot, const frict
           Session& session) {
   const friction::FrictionFit& fit = found.fit;
   const std::string of_headings = fmt::format("{} legs on {} headings", found.steady.parts.size(), fit.headings);
-  std::filesystem::path voltage = options.plot;
-  voltage.replace_filename(voltage.stem().string() + "_voltage" + voltage.extension().string());
-  const report::Chart chart = present::friction_chart(fit, robot.name, of_headings);
+  report::Chart chart = present::friction_chart(fit, robot.name, of_headings);
+  std::string second = options.plot;
   if (!chart.panels.empty()) {
-    session.write(options.plot, report::draw_picture(chart, options.plot));
-    document.add_file(options.plot);
+    session.draw(document, options.plot, std::move(chart));
+    const std::filesystem::path first = options.plot;
+    second = first.empty()
+                 ? ""
+                 : std::filesystem::path(first).replace_filename(first.stem().string() + "_voltage" + first.extension().string()).string();
   }
-  const std::string second = chart.panels.empty() ? options.plot : voltage.string();
-  session.write(second, report::draw_picture(
-                            present::voltage_chart(found.steady, fit, robot::make_kinematics(robot), robot.name, found.settings), second));
-  document.add_file(second);
+  session.draw(document, second, present::voltage_chart(found.steady, fit, robot::make_kinematics(robot), robot.name, found.settings));
 }
 
 void write_robot_file(const FrictionOptions& options, const friction::FrictionRun& run, present::Document& document, Session& session) {
@@ -100,8 +100,9 @@ base::ExitCode steady_state(const FrictionOptions& options, const Input& input, 
                                        found.has_expectation, found.expected_from, options.logs.size()};
   present::Document document = present::friction_document(robot, answer);
   present::add_findings(document, remarks.findings, remarks.suspicions);
+  present::add_robot_notes(document, robot);
   write_robot_file(options, found, document, session);
-  if (!options.plot.empty()) {
+  if (session.draws(options.plot)) {
     draw(options, robot, found, document, session);
   }
   session.show(document);
@@ -114,6 +115,7 @@ base::ExitCode by_roll_out(const FrictionOptions& options, const Input& input, S
   const present::FrictionRemarks remarks = present::friction_remarks(input.motor_id, input.job.motor.has_value(), found, {});
   present::Document document = present::roll_out_document(input.job.robot, found.result, found.drive, options.logs.size());
   present::add_findings(document, remarks.findings, remarks.suspicions);
+  present::add_robot_notes(document, input.job.robot);
   write_robot_file(options, found, document, session);
   session.show(document);
   session.answer(present::roll_out_json(input.job.robot, found.result, found.drive, remarks));

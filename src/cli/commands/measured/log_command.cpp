@@ -59,9 +59,8 @@ base::ExitCode inspect(const LogOptions& options, Session& session) {
     if (!quality.thermal.is_good() && !quality.drive.is_good()) {
       code = base::ExitCode::cannot_answer;
     }
-    if (!options.plot.empty()) {
-      session.write(options.plot, report::draw_picture(present::log_chart(assessment.condensed(), quality, report), options.plot));
-      document.add_file(options.plot);
+    if (session.draws(options.plot)) {
+      session.draw(document, options.plot, present::log_chart(assessment.condensed(), quality, report));
     }
   }
   session.show(document);
@@ -102,9 +101,9 @@ Command log_command() {
         app.add_option("action", options->action, "action on the logs")->required()->check(CLI::IsMember({"inspect", "convert"}));
         app.add_option("file", options->files, "logs: canonical CSV (time_s, winding_C, current_A, …), or any table with a mapping")
             ->required()
-            ->type_name("FILE...");
+            ->type_name("FILE");
         app.add_option("--map", options->map,
-                       "mapping of columns to quantities; FILE.map.toml beside the log is found automatically (README, \"Measured logs\")")
+                       "mapping of columns to quantities; FILE.map.toml beside the log is found automatically (docs/file_formats.md)")
             ->type_name("FILE.toml");
         add_picture(app, options->plot, "picture of all channels over time, rejected samples marked");
         add_table(app, options->out, "log in the canonical form, written by convert");

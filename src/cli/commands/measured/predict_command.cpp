@@ -24,11 +24,10 @@ base::ExitCode run(const PredictOptions& options, Session& session) {
   const calibration::PredictionJob job{duty::motor_named(session.folders(), options.model),
                                        recording::read_named_logs({}, options.logs, choice_of(options.how, session))};
   const calibration::PredictionAnswer answer = calibration::run_prediction(job);
-  if (!options.plot.empty()) {
-    session.write(options.plot, report::draw_picture(present::prediction_chart(job.motor, answer.prediction), options.plot));
-  }
   present::Document document = present::prediction_document(job.motor, answer, job.logs.readings);
-  document.add_file(options.plot);
+  if (session.draws(options.plot)) {
+    session.draw(document, options.plot, present::prediction_chart(job.motor, answer.prediction));
+  }
   session.show(document);
   session.answer(present::prediction_json(job.motor, answer, job.logs.readings));
   return base::ExitCode::done;

@@ -1,0 +1,12 @@
+// Notes about a robot that every answer which rests on it must contain.
+#pragma once
+
+#include "present/document.h"
+#include "robot/robot.h"
+
+namespace heatsoak::present {
+
+/// Adds a warning for each implausible value of the robot. Errors are refused when the file is read (robot::require_sound()).
+void add_robot_notes(Document& document, const robot::Robot& robot);
+
+}  // namespace heatsoak::present

@@ -1,0 +1,70 @@
+// Answer of `simulate` for a match that two planners drive: verdict, reason and temperature belong to one run.
+#include "present/match.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/shipped.h"
+
+namespace heatsoak::present {
+namespace {
+
+simulate::DrivenMatch driven(duty::Planner planner, select::Verdict verdict, double winding_peak_C) {
+  simulate::DrivenMatch match{.planner = planner, .run = {}, .verdict = verdict, .csv = {}, .rows = {}};
+  match.run.score.time_s = 1000.0;
+  match.run.score.winding_peak_C = winding_peak_C;
+  match.run.score.tracking_rms_m = verdict == select::Verdict::infeasible ? 0.2 : 0.01;
+  return match;
+}
+
+simulate::MatchSimulation both(simulate::DrivenMatch first, simulate::DrivenMatch second) {
+  simulate::MatchSimulation match{.robot = twente(),
+                                  .motor = ecx_32(),
+                                  .duty = duty::read_duty(kSource / "duty_profiles/division_a_match.toml"),
+                                  .guard_use = simulate::GuardUse::off,
+                                  .guard = {},
+                                  .runs = {}};
+  match.runs.push_back(std::move(first));
+  match.runs.push_back(std::move(second));
+  return match;
+}
+
+TEST(MatchAnswer, verdict_and_temperature_are_of_the_same_planner) {
+  const simulate::MatchSimulation match = both(driven(duty::Planner::jerk_limited, select::Verdict::pass, 71.5),
+                                               driven(duty::Planner::bang_bang, select::Verdict::infeasible, 73.5));
+  EXPECT_EQ(match.verdict(), select::Verdict::infeasible);
+  const Json json = match_json(match);
+  EXPECT_EQ(json.at("planner"), "bang_bang");
+  EXPECT_EQ(json.at("verdict"), "infeasible");
+  EXPECT_EQ(json.at("winding_peak_C"), 73.5);
+  EXPECT_EQ(json.at("planners").at(0).at("verdict"), "pass");
+  EXPECT_EQ(json.at("planners").at(1).at("verdict"), "infeasible");
+}
+
+TEST(MatchAnswer, has_one_sentence_per_planner_with_its_own_verdict) {
+  const Document document = match_document(both(driven(duty::Planner::jerk_limited, select::Verdict::pass, 71.5),
+                                                driven(duty::Planner::bang_bang, select::Verdict::infeasible, 73.5)));
+  ASSERT_EQ(document.headline.size(), 2U);
+  EXPECT_EQ(document.headline[0].tone, Tone::good);
+  EXPECT_EQ(document.headline[1].tone, Tone::bad);
+}
+
+TEST(MatchAnswer, an_exceeded_limit_decides_before_a_match_that_was_not_driven) {
+  const simulate::MatchSimulation match = both(driven(duty::Planner::jerk_limited, select::Verdict::infeasible, 71.5),
+                                               driven(duty::Planner::bang_bang, select::Verdict::fail, 173.5));
+  EXPECT_EQ(match.verdict(), select::Verdict::fail);
+  EXPECT_EQ(match.deciding().planner, duty::Planner::bang_bang);
+}
+
+// A row is read alone in JSON, in a report, or by a screen reader.
+TEST(MatchAnswer, no_row_leans_on_the_row_above) {
+  const Document document = match_document(both(driven(duty::Planner::jerk_limited, select::Verdict::pass, 71.5),
+                                                driven(duty::Planner::bang_bang, select::Verdict::pass, 73.5)));
+  for (const std::vector<Text>& row : document.tables.front().rows) {
+    EXPECT_NE(row.front().words.front(), ' ') << row.front().words;
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak::present
