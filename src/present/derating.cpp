@@ -131,7 +131,7 @@ Document derating_document(const derate::Derating& derating, const motor::Motor&
   const derate::Guarantee& checked = derating.guarantee;
   Document document{
       .headline = {{fmt::format(
-                       "{} in {}: with {:.0f} % certainty {:.1f} % of the motors within their tolerances keep the winding below "
+                       "{} in {}: with {:.0f} % certainty at least {:.1f} % of the motors within their tolerances keep the winding below "
                        "{:.0f} °C{}{} in air of {:.0f} °C, {} thermal data.",
                        derating.motor_id, derating.robot_id, 100.0 * derate::kCertainty_share,
                        std::floor(1000.0 * checked.least_kept_share) / 10.0, derating.rules.limits.winding_C, limit_range_words(derating),

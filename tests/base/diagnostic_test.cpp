@@ -74,6 +74,7 @@ TEST(Range, is_written_for_people) {
   EXPECT_EQ(to_string(Range::positive(), "A"), "more than 0 A");
   EXPECT_EQ(to_string(Range::non_negative(), ""), "at least 0");
   EXPECT_EQ(to_string(Range::between(-60.0, 400.0), "degC"), "-60 °C to 400 °C");
+  EXPECT_EQ(to_string(Range::between(0.0, 1e9), "s"), "0 s to 1e+09 s") << "zeros cannot be counted";
   EXPECT_EQ(to_string(Range::any(), "A"), "any value");
 }
 

@@ -273,6 +273,13 @@ TEST_F(CalibratedModel, IsTheSameForOneSeedWhateverTheNumberOfThreads) {
   EXPECT_EQ(again.answer, example_calibration().answer);
 }
 
+TEST_F(CalibratedModel, ForecastsUnderTheNameOfItsMotor) {
+  const ProgramRun predicted = line("predict --model measured_motor.toml " + (kSoak / "match_3.csv").string() + " --json -");
+  ASSERT_EQ(predicted.exit_code, 0) << predicted.err;
+  EXPECT_EQ(predicted.json().at("motor"), "maxon_ec45_flat_70w_24v");
+  EXPECT_EQ(predicted.json().at("model"), "measured_motor.toml");
+}
+
 TEST_F(CalibratedModel, IsReadByEveryOtherVerb) {
   const std::string motor = "measured_motor.toml";
   EXPECT_EQ(line("lint " + motor).exit_code, 0) << line("lint " + motor).out;

@@ -55,8 +55,20 @@ TEST(DerateCommand, TellsWhatItGuarantees) {
   EXPECT_LE(answer["guarantee"]["over"].get<int>(), 0.05 * answer["guarantee"]["samples"].get<int>());
   const nlohmann::json& table = answer["table"];
   EXPECT_EQ(table["current_A"].size(), table["speed_rad_per_s"].size() * table["stator_C"].size() * table["winding_C"].size());
-  EXPECT_THAT(done.err, HasSubstr("with 95 % certainty at least 95"));
+  EXPECT_THAT(done.err, HasSubstr("fresh draws exceeded a limit"));
   EXPECT_THAT(content_of(folder.path() / "guard.h"), HasSubstr("maxon_ecx_flat_32l_48v_step"));
+}
+
+// Some motors of a sample exceed every limit, so the headline states the share that keeps it; and why the limit is lower than elsewhere.
+TEST(DerateCommand, HeadlineIsTrueForTheGuaranteedShareAndExplainsTheLimit) {
+  const TemporaryFolder folder;
+  RunOptions options = here(folder);
+  options.environment.emplace_back("COLUMNS=400");
+  const ProgramRun done =
+      run(kDerateEcx + Words{"--motor", "maxon_ecx_flat_42m_24v", "--out", "guard.h", "--quiet", "--samples", "60"}, options);
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const std::string first = done.out.substr(0, done.out.find('\n'));
+  EXPECT_THAT(first, testing::AllOf(HasSubstr("at least 95"), HasSubstr("125 °C"), HasSubstr("range around 155 °C")));
 }
 
 // Complete chain: logs, diagnosis of a missing effect, firmware that includes it.

@@ -181,6 +181,8 @@ TEST(Evaluate, an_absurd_current_is_bad_input) {
   };
   replace("voltage_limit = \"12.5 V\"\n", "");
   replace("nominal_voltage = \"22.2 V\"", "nominal_voltage = \"2220 V\"");
+  replace("full_voltage = { value = \"25.2 V\", origin = \"derived\", derivation = \"six cells of 4.2 V\" }",
+          "full_voltage = { value = \"2520 V\", origin = \"derived\", derivation = \"six cells of 4.2 V\" }");
   write(folder.path() / "robot.toml", robot);
   write(folder.path() / "duty.toml",
         "summary = \"x\"\norigin = \"x\"\nshape = \"intermittent\"\nambient = { value = \"25 degC\", origin = \"estimated\", derivation = "

@@ -131,6 +131,9 @@ TEST(PassingText, agrees_in_number) {
 }
 
 simulate::EvaluationAnswer answer_with(std::vector<select::MotorEvaluation> results, const std::string& duty = "paper_intermittent") {
+  for (select::MotorEvaluation& each : results) {
+    each.winding_p95_interval_C = each.winding_p95_interval_C.value_or(select::Interval95{40.0, 50.0});
+  }
   simulate::EvaluationAnswer answer{.robot = twente(),
                                     .duty = duty::read_duty(kSource / "duty_profiles" / (duty + ".toml")),
                                     .motors = {},
@@ -176,6 +179,34 @@ TEST(EvaluationDocument, a_closed_loop_has_one_headline) {
   EXPECT_EQ(document.headline.front().tone, Tone::good);
   EXPECT_EQ(document.tables.size(), 2U);
   EXPECT_FALSE(document.tables.back().title.empty()) << "states which of both it is";
+}
+
+// Without the note a reader takes the peak of a motor whose current is cut for a temperature that occurs.
+TEST(EvaluationDocument, a_closed_loop_states_the_difference_of_a_motor_whose_current_is_cut) {
+  select::MotorEvaluation motor = sampled(0.9, {0.8, 1.0}, 600);
+  motor.games = 75;
+  motor.winding_peak_C.nominal = 450.0;
+  motor.winding_p95_interval_C = select::Interval95{400.0, 500.0};
+  motor.verdict = select::Verdict::infeasible;
+  simulate::EvaluationAnswer answer = answer_with({motor}, "division_a_match");
+  answer.closed_loop = simulate::ClosedLoopJob{.games = 1};
+  answer.ranks.resize(1);
+  answer.ranks[0].drives.games.resize(1);
+  answer.ranks[0].drives.games[0].winding_peak_C = 202.0;
+  const Document document = evaluation_document(answer);
+  EXPECT_TRUE(std::ranges::any_of(document.notes, [](const Note& each) {
+    return each.severity == Severity::warning && each.words.find("202 °C") != std::string::npos &&
+           each.words.find("450 °C") != std::string::npos;
+  }));
+}
+
+TEST(EvaluationDocument, nominal_values_are_named_whatever_the_verdict) {
+  for (const select::Verdict verdict : {select::Verdict::pass, select::Verdict::fail, select::Verdict::infeasible}) {
+    select::MotorEvaluation motor;
+    motor.verdict = verdict;
+    motor.probability_over_limit = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_NE(evaluation_document(answer_with({motor})).headline.at(1).words.find("nominal values"), std::string::npos);
+  }
 }
 
 // An implausible value that is no error must reach the reader of every answer.
