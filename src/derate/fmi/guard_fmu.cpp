@@ -11,7 +11,7 @@ namespace heatsoak::derate {
 namespace {
 
 /// Reasons of the C header, in its order.
-constexpr FmuItem kReasons[] = {{"full", "the driver's largest current"},
+constexpr FmuItem kReasons[] = {{"full", "all that a cold motor may draw at this speed, or the driver's largest current"},
                                 {"derated", "less, because the winding or the stator is hot"},
                                 {"no_current", "at the limit, or above the highest speed of the table"},
                                 {"input_unknown", "an input was NaN or implausible: its hottest case was used"},
