@@ -87,10 +87,11 @@
 //   - One wheel sensor with a wrong scale, sign or offset, or stuck with noise, until fault 117. In 77 of 80 drives of 12 s a wrong sign
 //     was found, after 1.4 s on average; a scale of a half in 70, after 4.5 s (tests/robot_core/wrong_wheel_sensor_test.cpp). The robot
 //     then turns and its wheels work against each other. In the modes wheel_speed and wheel_torque fault 117 is not searched for. With a
-//     torque command the wheel of a sensor that reads too much then accelerates up to its current limit. Errors below 0.06 m/s plus 6 % of
-//     the speed limit are not found, larger ones of a fifth come and go with the speed, and none is found on three wheels. Where opposite
-//     wheels are parallel, nothing tells which one is wrong: both stay rejected until the robot turns, without current sensors with open
-//     bridges (114). A slipping wheel with a faulty speed sensor and no current sensor may exceed its limit.
+//     torque command the wheel of a sensor that reads too much then accelerates up to its current limit. On three wheels its current
+//     exceeds the limit for some periods at a time, because a bridge that its correct current sensor (121) opens closes again. Errors below
+//     0.06 m/s plus 6 % of the speed limit are not found, larger ones of a fifth come and go with the speed, and none is found on three
+//     wheels. Where opposite wheels are parallel, nothing tells which one is wrong: both stay rejected until the robot turns, without
+//     current sensors with open bridges (114). A slipping wheel with a faulty speed sensor and no current sensor may exceed its limit.
 //   - More faulty speed sensors than spare ones: the current may exceed its limit for some periods. If all wheel sensors show 0, the robot
 //     accelerates for kStanding_s before the limp current limits it (115). Rolling, it may then brake with up to twice the limp current.
 //   - Pushes on a moving robot can look like swapped sensors until these are ruled out: two wheels then keep the limp current until
