@@ -9,7 +9,8 @@ namespace robot_core {
 namespace {
 
 constexpr float kStep_share = 0.05F;
-// An Euler step of a twentieth of a time constant cools as much as (1/20 + 1/800) time constants.
+// An Euler step of a twentieth of a time constant cools as much as (1/20 + 1/800) time constants. A node that cools takes its temperature
+// after this share of the time, and one that warms its highest since then.
 constexpr float kCounted_share = 0.97F;
 constexpr float kVeryLong_s = 1e9F;
 
@@ -51,8 +52,8 @@ float cooling_step_s(const GuardModel& model, const float* signal, const float* 
   return fastest_per_s > 0.0F ? kStep_share / fastest_per_s : model.period_s;
 }
 
-/// Cools the nodes; `peak_C` becomes the highest temperature of each node. Ignores the time beyond kMostCoolingSteps steps.
-void cool(const GuardModel& model, float elapsed_s, float* state_C, float* peak_C) {
+/// Cools the nodes; `peak_C` becomes the highest temperature of each node in this time. Ignores the time beyond kMostCoolingSteps steps.
+void cool_guard(const GuardModel& model, float elapsed_s, float* state_C, float* peak_C) {
   float signal[kGuardSignals];
   signals_without_power(model, signal);
   const float step_s = cooling_step_s(model, signal, state_C);
@@ -60,7 +61,7 @@ void cool(const GuardModel& model, float elapsed_s, float* state_C, float* peak_
   for (int node = 0; node < model.node_count; ++node) {
     peak_C[node] = state_C[node];
   }
-  float left_s = kCounted_share * elapsed_s;
+  float left_s = elapsed_s;
   for (int step = 0; step < kMostCoolingSteps && left_s > 0.0F; ++step) {
     const float this_s = smaller(left_s, step_s);
     float rate_K_per_s[kMostGuardNodes];
@@ -91,10 +92,13 @@ Restored restore_guard(const GuardModel& model, GuardState& state, const GuardSt
   for (int node = 0; node < model.node_count; ++node) {
     now_C[node] = saved.state_C[node];
   }
-  cool(model, is_known ? elapsed_s : kVeryLong_s, now_C, peak_C);
+  if (is_known) {
+    cool_guard(model, kCounted_share * elapsed_s, now_C, peak_C);
+  }
+  cool_guard(model, is_known ? (1.0F - kCounted_share) * elapsed_s : kVeryLong_s, now_C, peak_C);
   start_guard(model, state, model.winding_limit_C);
   for (int node = 0; node < model.node_count; ++node) {
-    state.state_C[node] = larger(is_known ? now_C[node] : peak_C[node], least_C);
+    state.state_C[node] = larger(peak_C[node], least_C);
   }
   set_gap(state, gap_s(saved));
   seal(state);

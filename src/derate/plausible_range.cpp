@@ -41,11 +41,12 @@ PlausibleRange plausible_range(const Derating& derating, observed::Signal signal
   if (!derating.observer.uses(signal)) {
     return {};
   }
-  BarrierRules reachable = derating.rules;
-  reachable.most_speed_rad_per_s = derating.reachable_speed_rad_per_s;
   const Bounds validated = bounds(derating, signal);
+  // A speed that is not known may be any accepted one.
+  BarrierRules accepted = derating.rules;
+  accepted.most_speed_rad_per_s = bounds(derating, observed::speed).high;
   PlausibleRange made{.is_used = true, .low = validated.low, .high = validated.high, .values = {}};
-  for (const double value : values_if_unknown(derating.observer, reachable, signal)) {
+  for (const double value : values_if_unknown(derating.observer, accepted, signal)) {
     made.values.push_back(static_cast<float>(value));
   }
   return made;

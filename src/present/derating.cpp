@@ -98,8 +98,10 @@ void add_sensor(Document& document, const derate::Derating& derating) {
       plan.guarantee.winding_most_C, plan.dropped));
   document.add_note(Severity::warning,
                     fmt::format("With a plausible but wrong sensor the guard allows at most {:.2f} A more than without a sensor: the "
-                                "nominal motor then reaches {:.0f} °C, and {} of {} drawn motors exceed a limit.",
-                                plan.most_gain_A, plan.sensor_fault_nominal_C, plan.sensor_fault_over, derating.options.guarantee.samples));
+                                "nominal motor then reaches {:.0f} °C ({:.0f} °C from a warm start), and {} of {} drawn motors exceed a "
+                                "limit.",
+                                plan.most_gain_A, plan.sensor_fault_nominal_C, plan.sensor_fault_warm_C, plan.sensor_fault_over,
+                                derating.options.guarantee.samples));
   if (plan.resistance) {
     document.add_note(Severity::note, fmt::format("Readings need {:.2f} A at rest and {:.3f} A more per rad/s.",
                                                   plan.resistance->least_current_A, plan.resistance->current_per_speed_A_s_per_rad));

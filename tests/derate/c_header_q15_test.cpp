@@ -256,6 +256,51 @@ TEST_F(Q15Header, HasTheSameBitsOnACortexM0WithoutAnyFloatingPoint) {
 }
 
 // Laws with operations that the integer form lacks are refused with the effect's name.
+/// Prints the stored stator temperature after 200 s at an impossible and at the fastest accepted speed, and the reasons of a cold and of a
+/// warm motor.
+constexpr const char* kExtremes = R"(
+#include "q15_guard.h"
+#include <stdio.h>
+#include <stdlib.h>
+static long stored_after(int32_t speed) {
+  MOTOR_q15_state state;
+  MOTOR_q15_input in = {0, speed, 40000};
+  int i;
+  MOTOR_q15_start(&state, 40000);
+  for (i = 0; i < 20000; ++i) {
+    (void)MOTOR_q15_step(&state, &in);
+  }
+  return (long)(state.stored[1] / 65536);
+}
+static int reason_at(int32_t body_mC) {
+  MOTOR_q15_state state;
+  MOTOR_q15_input in = {0, 100000, 20000};
+  MOTOR_q15_start(&state, body_mC);
+  return (int)MOTOR_q15_step(&state, &in).reason;
+}
+int main(int argc, char **argv) {
+  (void)argc;
+  printf("%ld %ld %d %d", stored_after(2000000000), stored_after((int32_t)atol(argv[1])), reason_at(20000), reason_at(90000));
+  return 0;
+}
+)";
+
+TEST_F(Q15Header, TakesTheHottestAcceptedSpeedAndCallsAColdMotorsCurrentFull) {
+  const Derating derating = derating_of(shipped_motor("maxon_ecx_flat_32l_48v"));
+  write_headers(derating);
+  write("extremes.c", kExtremes, derating);
+  const auto accepted = static_cast<long>(999.0 * derating.table.no_current_speed_rad_per_s);
+  std::istringstream answers(output_of(fmt::format("cc -std=c99 {} -o extremes extremes.c && ./extremes {}", kWarnings, accepted)));
+  long impossible = 0;
+  long fastest = 0;
+  int cold = -1;
+  int warm = -1;
+  answers >> impossible >> fastest >> cold >> warm;
+  EXPECT_GE(impossible, fastest);
+  EXPECT_EQ(cold, 0) << "full";
+  EXPECT_EQ(warm, 1) << "derated";
+}
+
 TEST(Q15HeaderText, RefusesLawsThatItCannotCompute) {
   const Derating derating = derating_of(ecx_32_with(R"([effects.air]
 type = "natural_convection"

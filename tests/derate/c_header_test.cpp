@@ -327,6 +327,34 @@ conductance = { value = "0.1 W/K", origin = "estimated", derivation = "a test" }
   }
 }
 
+TEST_P(CHeader, takes_the_hottest_accepted_speed_for_an_impossible_one) {
+  const auto after = [&](double speed_rad_per_s) {
+    std::string lines = "start 40\n";
+    for (int i = 0; i < 20'000; ++i) {
+      lines += fmt::format("in 0 {} 40\n", speed_rad_per_s);
+    }
+    return ask(lines).back();
+  };
+  const double last_rad_per_s = rules_for(ecx_32()).no_current_speed_rad_per_s;
+  const Answer fastest = after(0.999 * last_rad_per_s);
+  EXPECT_NE(fastest.reason, input_unknown);
+  for (const double speed_rad_per_s : {std::nan(""), 1.001 * last_rad_per_s, -1e5}) {
+    const Answer unknown = after(speed_rad_per_s);
+    EXPECT_EQ(unknown.reason, input_unknown) << speed_rad_per_s;
+    EXPECT_GE(unknown.stator_C, fastest.stator_C) << speed_rad_per_s;
+  }
+}
+
+// Telemetry distinguishes a cold motor from a warm one.
+TEST_P(CHeader, calls_the_current_of_a_cold_motor_full) {
+  for (const double speed_rad_per_s : {0.0, 200.0, 1.2 * rules_for(ecx_32()).most_speed_rad_per_s}) {
+    EXPECT_EQ(ask(fmt::format("start 20\nin 0 {} 20\n", speed_rad_per_s))[0].reason, full) << speed_rad_per_s;
+    const Answer warm = ask(fmt::format("start 90\nin 0 {} 20\n", speed_rad_per_s))[0];
+    EXPECT_EQ(warm.reason, derated) << speed_rad_per_s;
+    EXPECT_LT(warm.allowed_A, ask(fmt::format("start 20\nin 0 {} 20\n", speed_rad_per_s))[0].allowed_A);
+  }
+}
+
 // An open thermistor reads far below 0 °C.
 TEST_P(CHeader, does_not_accept_air_colder_than_declared) {
   std::string lines = "start 40\n";

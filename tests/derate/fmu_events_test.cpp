@@ -151,7 +151,11 @@ TEST_P(WithoutEvents, GuardSaysThatItLimits) {
   FmuUnit unit(unit_bytes(fmt::format("fmi{}_guard", GetParam())), GetParam());
   start(unit, false);
   constexpr int kFull = 0;
-  double now_s = 0.0;
+  give(unit, 0.0);
+  EXPECT_EQ(unit.step(0.0, 0.05), 0);
+  EXPECT_EQ(unit.get_item("reason"), kFull) << "a cold motor without current";
+  EXPECT_FALSE(unit.get_boolean("is_limiting"));
+  double now_s = 0.05;
   for (int i = 0; i < 300; ++i) {
     give(unit, kOverload_A);
     EXPECT_EQ(unit.step(now_s, 0.05), 0);

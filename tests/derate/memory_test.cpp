@@ -5,6 +5,7 @@
 
 #include <boost/crc.hpp>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "compiled_guard.h"
@@ -130,6 +131,72 @@ TEST_F(Memory, UnsavedTimeCountsAsTheHardestDriving) {
   ModelGuard after(guard());
   after.restore(driven(10).saved(2), 0.0F, kUnknown_s, 25.0F);
   EXPECT_FLOAT_EQ(after.temperatures_C(2)[1], 155.0F);
+}
+
+/// Returns a buffer with these temperatures of guard and nominal motor and a valid check sum, from the buffer of the same guard.
+std::vector<unsigned char> with_temperatures(std::vector<unsigned char> buffer, const std::vector<float>& state_C) {
+  for (std::size_t node = 0; node < state_C.size(); ++node) {
+    std::memcpy(&buffer[4 + 4 * node], &state_C[node], sizeof(float));
+    std::memcpy(&buffer[4 + 4 * (state_C.size() + node)], &state_C[node], sizeof(float));
+  }
+  boost::crc_32_type sum;
+  sum.process_bytes(buffer.data(), buffer.size() - 4);
+  const std::uint32_t word = sum.checksum();
+  std::memcpy(&buffer[buffer.size() - 4], &word, sizeof(word));
+  return buffer;
+}
+
+// More unsaved time never makes a node colder, also above the limit and at any time without power.
+TEST_F(Memory, UnsavedTimeOnlyHeats) {
+  const std::vector<unsigned char> whole = driven(10).saved(2);
+  std::mt19937 engine(7);
+  std::uniform_real_distribution<float> temperature_C(10.0F, 260.0F);
+  for (int draw = 0; draw < 200; ++draw) {
+    const std::vector<unsigned char> buffer = with_temperatures(whole, {temperature_C(engine), temperature_C(engine)});
+    for (const float elapsed_s : {0.0F, 2.0F, 60.0F, kUnknown_s}) {
+      std::vector<float> before_C = {0.0F, 0.0F};
+      for (const float unsaved_s : {0.0F, 1e-3F, 0.1F, 1.0F, 5.0F, 60.0F, 1e8F}) {
+        ModelGuard after(guard());
+        ASSERT_NE(after.restore(buffer, elapsed_s, unsaved_s, 20.0F), CompiledGuard::nothing_restored);
+        for (std::size_t node = 0; node < 2; ++node) {
+          // The length of the cooling steps depends on the temperatures.
+          EXPECT_GE(after.temperatures_C(2)[node], before_C[node] - (elapsed_s == 0.0F ? 0.0F : 0.02F))
+              << draw << ": node " << node << ", " << elapsed_s << " s without power, " << unsaved_s << " s unsaved";
+        }
+        before_C = after.temperatures_C(2);
+      }
+    }
+  }
+}
+
+// A chassis warms after the save while winding and stator cool.
+TEST(MemoryOfThreeNodes, NoNodeIsColderThanTheNetwork) {
+  const auto estimated = [](const char* key, const char* value) {
+    return fmt::format("{} = {{ value = \"{}\", origin = \"estimated\", derivation = \"a test\" }}\n", key, value);
+  };
+  const motor::Motor motor = ecx_32_with("[effects.chassis]\ntype = \"third_node\"\n" + estimated("heat_capacity", "60 J/K") +
+                                         estimated("conductance", "0.3 W/K") + estimated("leak_ratio", "0.2"));
+  const CompiledGuard guard(derating_of(motor), "three_nodes");
+  const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
+  ASSERT_EQ(network.state_count(), 3);
+  ModelGuard cold(guard);
+  cold.start(40.0F);
+  for (const std::vector<float>& saved_C : {std::vector<float>{120.0F, 80.0F, 42.0F}, {150.0F, 60.0F, 40.0F}, {60.0F, 58.0F, 50.0F}}) {
+    for (const double elapsed_s : {0.5, 2.0, 10.0, 30.0, 60.0, 120.0, 300.0, 1000.0, 5000.0}) {
+      thermal::OperatingPoint<double> at;
+      at.ambient_C = 40.0;
+      thermal::TransientOptions options;
+      options.start_C.assign(saved_C.begin(), saved_C.end());
+      const thermal::TransientResult exact =
+          thermal::run_transient(network, network.values(), std::vector<thermal::Interval>{{elapsed_s, at}}, options);
+      ModelGuard after(guard);
+      after.restore(with_temperatures(cold.saved(3), saved_C), static_cast<float>(elapsed_s), 0.0F, 20.0F);
+      for (std::size_t node = 0; node < 3; ++node) {
+        EXPECT_GE(after.temperatures_C(3)[node], exact.end_C[node] - 0.001) << elapsed_s << " s, node " << node;
+        EXPECT_LE(after.temperatures_C(3)[node], exact.end_C[node] + 1.5) << elapsed_s << " s, node " << node;
+      }
+    }
+  }
 }
 
 TEST_F(Memory, EveryFlippedBitCountsAsAtTheLimit) {

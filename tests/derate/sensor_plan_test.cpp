@@ -45,9 +45,13 @@ TEST(SensorPlan, ThermistorLowersTheSafetyFactor) {
   EXPECT_GT(plan.lasting[0].with_A, plan.lasting[0].without_A);
   EXPECT_GT(plan.most_gain_A, 0.1);
   EXPECT_LE(plan.sensor_fault_nominal_C, derating.rules.limits.winding_C);
+  // A motor that starts at its limit gets the gain at once.
+  EXPECT_GT(plan.sensor_fault_warm_C, derating.rules.limits.winding_C);
+  EXPECT_LT(plan.sensor_fault_warm_C, derating.rules.limits.winding_C + 10.0);
   EXPECT_GE(plan.guarantee.least_kept_share, derating.options.guarantee.confidence);
   RecordProperty("safety_factor_without", fmt::format("{:.3f}", derating.observer.heat_safety_factor()));
   RecordProperty("safety_factor_with", fmt::format("{:.3f}", plan.observer.heat_safety_factor()));
+  RecordProperty("sensor_fault_warm_C", fmt::format("{:.1f}", plan.sensor_fault_warm_C));
   RecordProperty("most_gain_A", fmt::format("{:.2f}", plan.most_gain_A));
   RecordProperty("honest_dropped", std::to_string(plan.dropped));
 }

@@ -100,15 +100,14 @@ static inline float @_cooling_step_s(@_law law, const @_input *off, const float 
   return fastest_per_s > 0.0f ? 0.05f / fastest_per_s : @CAP@_PERIOD_S;
 }
 
-/* Cool-down without current in the hottest air, in at most @CAP@_MOST_COOLING_STEPS steps. Time beyond them is ignored: no cooling. An
-   Euler step of 1/20 of a time constant cools as 1/20 + 1/800 of one would, so only 97 % of the time is used. peak_C: highest
-   temperature of each node during the cool-down. */
+/* Cool-down without current in the hottest air, in at most @CAP@_MOST_COOLING_STEPS steps. Time beyond them is ignored: no cooling.
+   peak_C: highest temperature of each node during this time. */
 static inline void @_cool(@_law law, float elapsed_s, float *state_C, float *peak_C) {
   @_input off;
   float rate_K_per_s[@NODES@];
   float carry_K[@NODES@];
   float step_s;
-  float left_s = 0.97f * elapsed_s;
+  float left_s = elapsed_s;
   int node;
   int step;
   @_clear((unsigned char *)&off, (int)sizeof off);
@@ -132,35 +131,61 @@ static inline void @_cool(@_law law, float elapsed_s, float *state_C, float *pea
   }
 }
 
+/* Highest temperature that each node can have after elapsed_s; negative or NaN: unknown, so at any time since the save. An Euler step of
+   1/20 of a time constant cools as 1/20 + 1/800 of one would. A node that cools therefore takes its temperature after 97 % of the time,
+   and one that warms its highest since then. */
+static inline void @_rest(@_law law, float elapsed_s, float *state_C) {
+  float peak_C[@NODES@];
+  const bool is_known = elapsed_s >= 0.0f;
+  int node;
+  if (is_known) {
+    @_cool(law, 0.97f * elapsed_s, state_C, peak_C);
+  }
+  @_cool(law, is_known ? 0.03f * elapsed_s : 1e9f, state_C, peak_C);
+  for (node = 0; node < @NODES@; ++node) {
+    state_C[node] = peak_C[node];
+  }
+}
+
 )";
 
 /// With saves at regular intervals the motor may have run since the last one. Assumes the highest load that the guard can have allowed.
 constexpr std::string_view kUnsaved =
-    R"(/* Worst-case heating: the driver's largest current at the highest speed, up to the limit that the guard has kept. */
+    R"(/* Worst-case heating: the driver's largest current at the accepted speed that heats most, up to the limit that the guard has kept, or up to the
+   hottest node if that is hotter. No node cools. */
 static inline void @_heat(@_law law, float unsaved_s, float *state_C) {
+  const float hottest_rad_per_s[@SPEEDS@] = {@SPEED_LIST@};
   @_input on;
-  float drive_K_per_s[@NODES@];
-  float brake_K_per_s[@NODES@];
+  float rate_K_per_s[@NODES@];
+  float most_K_per_s[@NODES@];
+  float most_C = @CAP@_WINDING_LIMIT_C;
   float left_s = unsaved_s;
   int node;
+  int load;
   int step;
+  for (node = 0; node < @NODES@; ++node) {
+    most_C = state_C[node] > most_C ? state_C[node] : most_C;
+  }
   @_clear((unsigned char *)&on, (int)sizeof on);
   on.ambient_C = @CAP@_HOTTEST_AMBIENT_C;
-  on.speed_rad_per_s = @CAP@_MOST_SPEED_RAD_PER_S;
 @ON@  for (step = 0; step < @CAP@_MOST_COOLING_STEPS && left_s > 0.0f; ++step) {
-    on.current_A = @CAP@_MOST_CURRENT_A;
-    law(&on, state_C, drive_K_per_s);
-    on.current_A = -@CAP@_MOST_CURRENT_A;
-    law(&on, state_C, brake_K_per_s);
+    @_clear((unsigned char *)most_K_per_s, (int)sizeof most_K_per_s);
+    for (load = 0; load < @LOADS@; ++load) {
+      on.current_A = (load % 2) == 0 ? @CAP@_MOST_CURRENT_A : -@CAP@_MOST_CURRENT_A;
+      on.speed_rad_per_s = hottest_rad_per_s[load / 2];
+      law(&on, state_C, rate_K_per_s);
+      for (node = 0; node < @NODES@; ++node) {
+        most_K_per_s[node] = rate_K_per_s[node] > most_K_per_s[node] ? rate_K_per_s[node] : most_K_per_s[node];
+      }
+    }
     for (node = 0; node < @NODES@; ++node) {
-      const float most_K_per_s = drive_K_per_s[node] > brake_K_per_s[node] ? drive_K_per_s[node] : brake_K_per_s[node];
-      const float next_C = state_C[node] + @CAP@_PERIOD_S * (most_K_per_s > 0.0f ? most_K_per_s : 0.0f);
-      state_C[node] = next_C < @CAP@_WINDING_LIMIT_C ? next_C : @CAP@_WINDING_LIMIT_C;
+      const float next_C = state_C[node] + @CAP@_PERIOD_S * most_K_per_s[node];
+      state_C[node] = next_C < most_C ? next_C : most_C;
     }
     left_s -= @CAP@_PERIOD_S;
   }
   for (node = 0; node < @NODES@ && left_s > 0.0f; ++node) {
-    state_C[node] = @CAP@_WINDING_LIMIT_C;
+    state_C[node] = most_C;
   }
 }
 
@@ -172,10 +197,7 @@ constexpr std::string_view kRestore =
    unsaved_s: longest time from the last save to the loss of power; 0 if the falling supply triggers the save; NaN counts as very long.
    board_C: lower bound of every node, because the motor was in the same surroundings; an implausible value counts as the hottest air. */
 static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, float elapsed_s, float unsaved_s, float board_C) {
-  float peak_C[@NODES@];
-  float nominal_peak_C[@NODES@];
   const float least_C = @_is_temperature(board_C) ? board_C : @CAP@_HOTTEST_AMBIENT_C;
-  const bool is_known = elapsed_s >= 0.0f;
   int node;
   bool is_whole = @_unpack(buffer) == @CAP@_SIGNATURE &&
                        @_unpack(&buffer[@CAP@_SAVED_SIZE - 4]) == heatsoak_crc_32(buffer, @CAP@_SAVED_SIZE - 4);
@@ -192,18 +214,16 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, f
     @_heat(@_rates, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->state_C);
     @_heat(@_nominal_rates, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->nominal_C);
   }
-  @_cool(@_rates, is_known ? elapsed_s : 1e9f, state->state_C, peak_C);
-  @_cool(@_nominal_rates, is_known ? elapsed_s : 1e9f, state->nominal_C, nominal_peak_C);
+  @_rest(@_rates, elapsed_s, state->state_C);
+  @_rest(@_nominal_rates, elapsed_s, state->nominal_C);
   for (node = 0; node < @NODES@; ++node) {
-    const float guarded_C = is_known ? state->state_C[node] : peak_C[node];
-    const float nominal_C = is_known ? state->nominal_C[node] : nominal_peak_C[node];
-    state->state_C[node] = guarded_C > least_C ? guarded_C : least_C;
-    state->nominal_C[node] = nominal_C > least_C ? nominal_C : least_C;
+    state->state_C[node] = state->state_C[node] > least_C ? state->state_C[node] : least_C;
+    state->nominal_C[node] = state->nominal_C[node] > least_C ? state->nominal_C[node] : least_C;
     state->carry_K[node] = 0.0f;
     state->nominal_carry_K[node] = 0.0f;
   }
   state->started = @CAP@_STARTED;
-  return is_known ? @_restored : @_time_unknown;
+  return elapsed_s >= 0.0f ? @_restored : @_time_unknown;
 }
 
 )";
@@ -227,8 +247,16 @@ std::string unwatched_signals(const Source& source, std::string_view input) {
 std::string memory_functions(const Source& source, unsigned signature) {
   const std::size_t nodes = source.derating.observer.state_count();
   constexpr int kMostCoolingSteps = 4096;
+  const std::vector<float> speeds = plausible_range(source.derating, observed::speed).values;
+  std::string speed_list;
+  for (const float speed_rad_per_s : speeds) {
+    speed_list += (speed_list.empty() ? "" : ", ") + literal(speed_rad_per_s);
+  }
   const Words words{{"@OFF@", unwatched_signals(source, "off")},
                     {"@ON@", unwatched_signals(source, "on")},
+                    {"@SPEEDS@", std::to_string(speeds.size())},
+                    {"@LOADS@", std::to_string(2 * speeds.size())},
+                    {"@SPEED_LIST@", speed_list},
                     {"@SIZE@", std::to_string(4 * (2 + 2 * nodes))},
                     {"@CAP@", source.capital},
                     {"@NODES@", std::to_string(nodes)},

@@ -193,7 +193,8 @@ static inline void @_advance_sensed(@_sensed_state *state, const @_input *measur
   @_advance(state->state_C, state->carry_K, rate_K_per_s);
 @ADVANCE_LAG@}
 
-/* Replaces @_step. reading_C: reading of the sensor; NAN if there is none in this period. */
+/* Replaces @_step. reading_C: reading of the sensor; NAN if there is none in this period. While ambient_C is not measured (the hottest
+   declared air), a sensor stuck near ambient_C may never be dropped; SENSOR_MOST_GAIN_A then still bounds its effect. */
 static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_input *measured, float reading_C) {
   @_sensed_output out;
   float speed_rad_per_s;
@@ -233,10 +234,9 @@ static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_
   }
   out.guard.allowed_current_A = sensed_A > 0.0f ? sensed_A : 0.0f;
   out.guard.guarded_winding_C = state->state_C[0];
-  if (sensed_A >= @CAP@_MOST_CURRENT_A) {
-    out.guard.reason = @_full;
-  } else {
-    out.guard.reason = sensed_A > 0.0f ? @_derated : @_no_current;
+  out.guard.reason = @_reason_for(sensed_A, @_hottest_body_C(state->state_C), state->state_C[0]);
+  if (out.guard.reason == @_full) {
+    out.guard.reason = @_reason_for(sensed_A, @_hottest_body_C(state->capped_C), state->capped_C[0]);
   }
   return out;
 }
@@ -311,15 +311,17 @@ std::string comment(const SensorPlan& plan) {
       " * With {:.0f} % certainty at least {:.1f} % of the motors, each with a drawn sensor error, keep every limit; {} of {} fresh draws\n"
       " * exceeded one. The cross-check drops the correct sensor of {}.\n"
       " * A PLAUSIBLE BUT WRONG SENSOR allows at most SENSOR_MOST_GAIN_A more than without one: the nominal motor then reaches {:.0f} "
-      "degC,\n"
-      " * and {} of {} drawn motors exceed a limit. Options of the sensor:\n"
+      "degC\n"
+      " * from a start at the hottest air, and {:.0f} degC from a warmer start, all nodes equally warm up to the winding limit; {} of {} "
+      "drawn\n"
+      " * motors exceed a limit. Options of the sensor:\n"
       " * {}\n"
       " */\n",
       plan.resistance ? "the resistance from voltage and current" : "a thermistor",
       plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
       plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(),
       100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0, checked.over, checked.samples, plan.dropped,
-      plan.sensor_fault_nominal_C, plan.sensor_fault_over, checked.samples, sensor_flags(plan.options));
+      plan.sensor_fault_nominal_C, plan.sensor_fault_warm_C, plan.sensor_fault_over, checked.samples, sensor_flags(plan.options));
 }
 
 /// The table for the lower safety factor, computed with the same rules.

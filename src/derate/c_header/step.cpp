@@ -63,6 +63,14 @@ static inline void @_advance(float *state_C, float *carry_K, const float *rate_K
   }
 }
 
+/* stator_C: the hottest node other than the winding. Below the first points of their axes, temperatures do not reduce the current. */
+static inline @_reason @_reason_for(float allowed_A, float stator_C, float winding_C) {
+  if (!(allowed_A > 0.0f)) {
+    return @_no_current;
+  }
+  return allowed_A >= @CAP@_MOST_CURRENT_A || (stator_C <= @_stator_C[0] && winding_C <= @_winding_C[0]) ? @_full : @_derated;
+}
+
 static inline @_output @_step(@_state *state, const @_input *measured) {
   @_output out;
   @_input in = *measured;
@@ -93,10 +101,8 @@ static inline @_output @_step(@_state *state, const @_input *measured) {
     out.reason = @_not_started;
   } else if (unknown != 0u) {
     out.reason = @_input_unknown;
-  } else if (out.allowed_current_A >= @CAP@_MOST_CURRENT_A) {
-    out.reason = @_full;
   } else {
-    out.reason = out.allowed_current_A > 0.0f ? @_derated : @_no_current;
+    out.reason = @_reason_for(out.allowed_current_A, hottest_body_C, out.guarded_winding_C);
   }
   return out;
 }

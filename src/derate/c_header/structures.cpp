@@ -36,7 +36,7 @@ std::string structures(const Source& source) {
       "}} {0}_state;\n"
       "\n"
       "typedef enum {{\n"
-      "  {0}_full,          /* the driver's largest current */\n"
+      "  {0}_full,          /* all that a cold motor may draw at this speed, or the driver's largest current */\n"
       "  {0}_derated,       /* less, because the winding or the stator is hot */\n"
       "  {0}_no_current,    /* at the limit, or above the highest speed of the table */\n"
       "  {0}_input_unknown, /* an input was NaN or implausible: its hottest case was used */\n"

@@ -39,6 +39,14 @@ std::int64_t thousandths_outward(double value) {
   return static_cast<std::int64_t>(value < 0.0 ? std::floor(1000.0 * value) : std::ceil(1000.0 * value));
 }
 
+/// Accepted integers, all within the plausible range.
+struct AcceptedRange {
+  explicit AcceptedRange(const PlausibleRange& range)
+      : least(static_cast<std::int64_t>(std::ceil(1000.0 * range.low))), most(static_cast<std::int64_t>(std::floor(1000.0 * range.high))) {}
+  std::int64_t least;
+  std::int64_t most;
+};
+
 std::string integers(std::string_view type, const std::string& name, const std::vector<std::int64_t>& values) {
   std::string text = fmt::format("static const {} {}[{}] = {{", type, name, values.size());
   constexpr std::size_t kInLine = 12;
@@ -185,7 +193,8 @@ static inline @_output @_step(@_state *state, const @_input *measured) {
     out.reason = @_not_started;
   } else if (is_current_unknown || is_speed_unknown || is_ambient_unknown) {
     out.reason = @_input_unknown;
-  } else if (out.allowed_current_mA >= @_table.most_current_mA) {
+  } else if ((out.allowed_current_mA >= @_table.most_current_mA) ||
+             ((out.allowed_current_mA > 0) && (hottest_body_mC <= @_stator_mC[0]) && (out.guarded_winding_mC <= @_winding_mC[0]))) {
     out.reason = @_full;
   } else {
     out.reason = (out.allowed_current_mA > 0) ? @_derated : @_no_current;
@@ -239,8 +248,8 @@ std::string structures(const Derating& derating, const std::string& prefix) {
                     "}} {0}_state;\n"
                     "\n"
                     "typedef enum {{\n"
-                    "  {0}_full,\n"
-                    "  {0}_derated,\n"
+                    "  {0}_full, /* all that a cold motor may draw at this speed */\n"
+                    "  {0}_derated, /* less, because the winding or the stator is hot */\n"
                     "  {0}_no_current,\n"
                     "  {0}_input_unknown,\n"
                     "  {0}_not_started\n"
@@ -290,27 +299,27 @@ std::string changes_function(const Derating& derating, const std::string& prefix
   return text + "}\n\n";
 }
 
+std::vector<std::int64_t> candidates(const Derating& derating, observed::Signal signal) {
+  const PlausibleRange range = plausible_range(derating, signal);
+  const AcceptedRange accepted(range);
+  std::vector<std::int64_t> values;
+  for (const float value : range.values) {
+    values.push_back(std::clamp(thousandths_outward(value), accepted.least, accepted.most));
+  }
+  return values;
+}
+
 std::string plausible_ranges(const Derating& derating) {
   std::string text;
   for (const InputField& field : kInputs) {
-    const PlausibleRange validated = plausible_range(derating, field.signal);
+    const AcceptedRange accepted(plausible_range(derating, field.signal));
     const std::string_view flag = field.signal == observed::current ? "is_current_unknown"
                                   : field.signal == observed::speed ? "is_speed_unknown"
                                                                     : "is_ambient_unknown";
-    text +=
-        fmt::format("  if ((in.{0} < {1}) || (in.{0} > {2})) {{\n    in.{0} = {3};\n    {4} = true;\n  }}\n", field.name,
-                    static_cast<std::int64_t>(std::ceil(1000.0 * validated.low)),
-                    static_cast<std::int64_t>(std::floor(1000.0 * validated.high)), thousandths_outward(validated.values.front()), flag);
+    text += fmt::format("  if ((in.{0} < {1}) || (in.{0} > {2})) {{\n    in.{0} = {3};\n    {4} = true;\n  }}\n", field.name,
+                        accepted.least, accepted.most, candidates(derating, field.signal).front(), flag);
   }
   return text;
-}
-
-std::vector<std::int64_t> candidates(const Derating& derating, observed::Signal signal) {
-  std::vector<std::int64_t> values;
-  for (const float value : plausible_range(derating, signal).values) {
-    values.push_back(thousandths_outward(value));
-  }
-  return values;
 }
 
 std::string write_c_header_q15(const Derating& derating) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "derate/c_header/c_text.h"
 #include "derate/export_text.h"
 #include "derate/exporter.h"
 #include "derate/fmi/fmu.h"
@@ -11,7 +10,7 @@ namespace heatsoak::derate {
 namespace {
 
 /// Reasons of the C header, in its order.
-constexpr FmuItem kReasons[] = {{"full", "the driver's largest current"},
+constexpr FmuItem kReasons[] = {{"full", "all that a cold motor may draw at this speed, or the driver's largest current"},
                                 {"derated", "less, because the winding or the stator is hot"},
                                 {"no_current", "at the limit, or above the highest speed of the table"},
                                 {"input_unknown", "an input was NaN or implausible: its hottest case was used"},
@@ -39,7 +38,7 @@ std::vector<FmuVariable> guard_variables(const Derating& derating) {
   output("guarded_winding_C", FmuType::real, "pessimistic; sets the allowed current");
   output("nominal_winding_C", FmuType::real, "motor with nominal values; for display only");
   output("reason", FmuType::enumeration, "reason for the allowed current");
-  output("is_limiting", FmuType::boolean, "whether the allowed current is below the driver's largest");
+  output("is_limiting", FmuType::boolean, "whether the guard allows less than to a cold motor, and less than the driver's largest current");
   all.push_back({"limp_current_A", "A", FmuCausality::constant, FmuType::real, limp_current_A(derating),
                  "continuous current at every speed, for a wheel of unknown speed"});
   return all;
@@ -49,12 +48,12 @@ std::string bindings(const Derating& derating) {
   const std::string prefix = identifier(derating.motor_id);
   std::string text = fmt::format(
       "#include \"motor_guard.h\"\n\n#define MODEL_TAKES_UNKNOWN 1 /* an input that is not a number is replaced by its worst case */\n"
-      "#define GUARD_PERIOD_S {1}\n#define GUARD_MOST_CURRENT_A {2}_MOST_CURRENT_A\n#define guard_start {0}_start\n#define guard_step "
+      "#define GUARD_PERIOD_S {1}\n#define guard_full {0}_full\n#define guard_start {0}_start\n#define guard_step "
       "{0}_step\n\n"
       "typedef {0}_state guard_state;\ntypedef {0}_input guard_input;\ntypedef {0}_output guard_output;\n\n"
       "typedef struct {{\n  guard_state guard;\n  double calls;\n  double start_s;\n}} model_part;\n\n"
       "static inline void guard_read(const double *value, guard_input *input) {{\n",
-      prefix, fmu_number(derating.options.period_s), c_header::in_capitals(prefix));
+      prefix, fmu_number(derating.options.period_s));
   for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
     if (derating.observer.uses(static_cast<observed::Signal>(i))) {
       text += fmt::format("  input->{0} = (float)value[at_{0}];\n", observed::signals()[i].name);

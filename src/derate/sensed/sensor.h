@@ -100,7 +100,8 @@ struct SensorPlan {
   Guarantee guarantee = {};             ///< check on fresh drawn motors, each with a drawn sensor error
   int dropped = 0;                      ///< drawn motors of that check whose correct sensor is rejected by the cross-check
   int sensor_fault_over = 0;            ///< drawn motors that exceed a limit with the worst undetected sensor fault
-  double sensor_fault_nominal_C = 0.0;  ///< hottest winding of the nominal motor with that fault
+  double sensor_fault_nominal_C = 0.0;  ///< hottest winding of the nominal motor with that fault, from the hottest air temperature
+  double sensor_fault_warm_C = 0.0;     ///< the same from any start up to the winding limit, all nodes equally warm
 };
 
 }  // namespace heatsoak::derate

@@ -14,7 +14,7 @@ static void show(model_state *state, guard_output output) {
   state->value[at_guarded_winding_C] = (double)output.guarded_winding_C;
   state->value[at_nominal_winding_C] = (double)output.nominal_winding_C;
   state->value[at_reason] = (double)output.reason;
-  state->value[at_is_limiting] = output.allowed_current_A < GUARD_MOST_CURRENT_A ? 1.0 : 0.0;
+  state->value[at_is_limiting] = output.reason != guard_full ? 1.0 : 0.0;
 }
 
 /* Calls the guard until `calls`. Outputs are those of the last call. */
