@@ -59,11 +59,14 @@ class Rounds {
   /// Records the effects whose expected gain at typical size is below `seen_nats`.
   void note_sight();
   [[nodiscard]] estimation::PosteriorOptions final_options(const estimation::FluxPlace& place) const;
-  /// Sensor drift means that the network lacks bodies, and whitened residuals may then not give the most predictive parameters. Refits to
-  /// the free runs if that predicts the ends of the runs better; the change is added to the covariance.
+  /// Returns a fit to the free `runs` if that predicts the ends of the runs better, otherwise `fit`. The change is added to the covariance.
+  [[nodiscard]] estimation::Posterior more_predictive(estimation::Posterior fit, const std::vector<estimation::MeasuredRun>& runs) const;
+  /// Sensor drift means that the network lacks bodies, and whitened residuals may then not give the most predictive parameters. Returns
+  /// more_predictive() for such a fit, otherwise `fit`.
   [[nodiscard]] estimation::Posterior to_predict(estimation::Posterior fit) const;
   /// Fits the first two thirds of all runs and returns the RMS error in K of the predicted last thirds; ∞ if the fit fails.
-  [[nodiscard]] double error_of_ends_K(const estimation::Posterior& start, estimation::PosteriorOptions options) const;
+  [[nodiscard]] double error_of_ends_K(const estimation::Posterior& start, const std::vector<estimation::MeasuredRun>& runs,
+                                       estimation::PosteriorOptions options) const;
   /// Returns options for plain least squares of the free runs, without unknown heat.
   [[nodiscard]] estimation::PosteriorOptions plain_options() const;
   /// Fits the model without effects: once with the file's priors (`before`), once with wider priors for the contradicted parameters

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "attribution/rounds.h"
+#include "calibration/contradicting_runs.h"
 #include "calibration/motor_model.h"
 #include "estimation/free_run_errors.h"
 #include "estimation/log_columns.h"
@@ -58,7 +59,8 @@ class Selector : Rounds {
         refuse({id_of(best.members[m]), RefusalReason::improbable, probability, rules_.named_probability});
       }
     }
-    if (rules_.scans_drivers && !is_speed_open_ && (out_.is_material() || !named.empty())) {
+    const bool is_something_missing = out_.is_material() || out_.nothing_probability < 1.0 - rules_.named_probability;
+    if (rules_.scans_drivers && !is_speed_open_ && (is_something_missing || !named.empty())) {
       scan(judged, best);
     }
     if (are_runs_as_usual()) {
@@ -68,12 +70,12 @@ class Selector : Rounds {
     }
     const std::vector<ScanResult>& scan = out_.rounds.back().scan;
     if (!scan.empty() && scan.front().gain_nats > rules_.curve_gain_nats) {
-      const ScanResult curve = scan.front();
-      if (const std::optional<std::size_t> same = same_effect(best, curve)) {
+      if (const std::optional<std::size_t> same = same_effect(best, scan.front())) {
         if (std::ranges::find(named, *same) == named.end()) {
           named.push_back(*same);
         }
-      } else if (follow_curve(judged, best, named, curve)) {
+      } else if (predicts_better(judged, best, named, scan.front())) {
+        follow_curve(judged, best, named, ScanResult(scan.front()));
         return;
       }
     }
@@ -153,33 +155,40 @@ class Selector : Rounds {
     return std::nullopt;
   }
 
-  /// Replaces the effects that the curve explains better by the curve. Returns false, without a change, if the curve does not improve the
-  /// prediction of left-out training runs.
-  bool follow_curve(const Judged& judged, const EffectSet& best, const std::vector<std::size_t>& named, const ScanResult& curve) {
-    const auto stays = [&](std::size_t m) { return std::ranges::find(curve.beside, static_cast<int>(m)) != curve.beside.end(); };
-    std::vector<std::size_t> beside;
-    std::ranges::copy_if(named, std::back_inserter(beside), stays);
-    const std::vector<Refusal> refused = out_.refused;
-    if (input_.usual.flux_W > 0.0) {
-      keep_what_helps(best, beside);
-    }
-    build(judged, best, beside);
-    if (!adopt_curve(judged, curve)) {
-      out_.terms.clear();
-      out_.after = out_.own;
-      out_.refused = refused;
-      out_.is_unexplained = false;
-      return false;
-    }
+  /// Returns the members with a name that stay beside the curve.
+  static std::vector<std::size_t> beside(const ScanResult& curve, const std::vector<std::size_t>& named) {
+    std::vector<std::size_t> stay;
+    std::ranges::copy_if(named, std::back_inserter(stay),
+                         [&](std::size_t m) { return std::ranges::find(curve.beside, static_cast<int>(m)) != curve.beside.end(); });
+    return stay;
+  }
+
+  /// Returns true if the model with the curve predicts left-out training runs clearly better than the model with the names. Evidence has
+  /// already preferred the curve to the names that it replaces; a curve in addition to all names must reduce the error further.
+  [[nodiscard]] bool predicts_better(const Judged& judged, const EffectSet& best, const std::vector<std::size_t>& named,
+                                     const ScanResult& curve) const {
+    const std::vector<std::size_t> stay = beside(curve, named);
+    const bool replaces = stay.size() < named.size();
+    return left_out_share(fit_with(judged, best, stay), fit_with(judged, best, named), curve) <
+           (replaces ? rules_.plainly_better_share : rules_.curve_left_out_share);
+  }
+
+  /// Replaces the effects that the curve explains better by the curve.
+  void follow_curve(const Judged& judged, const EffectSet& best, const std::vector<std::size_t>& named, const ScanResult& curve) {
+    std::vector<std::size_t> stay = beside(curve, named);
     for (const std::size_t m : named) {
-      if (!stays(m)) {
+      if (std::ranges::find(stay, m) == stay.end()) {
         refuse({.id = id_of(best.members[m]),
                 .reason = RefusalReason::curve_is_better,
                 .signal = out_.drivers[static_cast<std::size_t>(curve.term.driver)].name});
       }
     }
+    if (input_.usual.flux_W > 0.0) {
+      keep_what_helps(best, stay);
+    }
+    build(judged, best, stay);
+    add_curve(judged, curve);
     out_.is_unexplained = true;
-    return true;
   }
 
   [[nodiscard]] double free_run_error_K(const estimation::Model& model) const {
@@ -237,28 +246,40 @@ class Selector : Rounds {
                             RefusalReason::hardly_improves_whole_runs);
   }
 
-  /// Fits the model with the named effects and the changed parameters.
-  void build(const Judged& judged, const EffectSet& best, std::vector<std::size_t> named) {
-    std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
-    out_.after = out_.own;
-    if (named.empty()) {
-      return;
-    }
+  /// Returns the named members and the changed parameters, ascending.
+  [[nodiscard]] std::vector<int> kept_members(const EffectSet& best, const std::vector<std::size_t>& named) const {
     std::vector<int> kept;
     for (std::size_t m = 0; m < best.members.size(); ++m) {
       if (is_parameter(best.members[m]) || std::ranges::find(named, m) != named.end()) {
         kept.push_back(best.members[m]);
       }
     }
-    const SetSearch::AtBest at = search_->at_best(kept);
-    const estimation::Model model = with_members(kept, at, ShapesAre::free);
-    estimation::Posterior fit = estimation::try_posterior_of(model, input_.runs, starts_of(model), final_options(judged.best_place));
+    return kept;
+  }
+
+  /// Fits the model with the named effects and the changed parameters. The evidence is not finite if the fit fails.
+  [[nodiscard]] estimation::Posterior fit_with(const Judged& judged, const EffectSet& best, const std::vector<std::size_t>& named) const {
+    if (named.empty()) {
+      return out_.own;
+    }
+    const std::vector<int> kept = kept_members(best, named);
+    const estimation::Model model = with_members(kept, search_->at_best(kept), ShapesAre::free);
+    return estimation::try_posterior_of(model, input_.runs, starts_of(model), final_options(judged.best_place));
+  }
+
+  void build(const Judged& judged, const EffectSet& best, std::vector<std::size_t> named) {
+    std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
+    out_.after = out_.own;
+    if (named.empty()) {
+      return;
+    }
+    estimation::Posterior fit = fit_with(judged, best, named);
     if (!std::isfinite(fit.evidence_nats)) {
       out_.is_unexplained = true;
       return;
     }
     out_.after = to_predict(std::move(fit));
-    add_terms(best, named, kept);
+    add_terms(best, named, kept_members(best, named));
   }
 
   void add_terms(const EffectSet& best, const std::vector<std::size_t>& named, const std::vector<int>& kept) {
@@ -292,51 +313,35 @@ class Selector : Rounds {
     }
   }
 
-  /// Returns the mean square error in K² of each training run, predicted from a fit to all other runs.
-  [[nodiscard]] std::vector<double> left_out_errors_K2(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs,
-                                                       const estimation::LatentFlux& flux) const {
-    std::vector<double> errors_K2;
-    for (std::size_t left_out = 0; left_out < runs.size(); ++left_out) {
-      std::vector<estimation::MeasuredRun> others;
-      std::vector<std::vector<double>> start_C;
-      estimation::PosteriorOptions own;
-      own.flux = flux;
-      for (std::size_t r = 0; r < runs.size(); ++r) {
-        if (r != left_out) {
-          others.push_back(runs[r]);
-          start_C.push_back(out_.after.start_C[r]);
-          own.weights.push_back(out_.weights[r]);
-          own.merged.push_back(merged_[r]);
-        }
-      }
-      const estimation::Posterior fit = estimation::try_posterior_of(model, others, start_C, own);
-      errors_K2.push_back(std::isfinite(fit.evidence_nats)
-                              ? std::pow(estimation::rms_K(estimation::open_loop_errors(fit.model, {runs[left_out]}, others)), 2)
-                              : std::numeric_limits<double>::infinity());
-    }
-    return errors_K2;
-  }
-
-  /// Adds the curve to the model if that improves the prediction of left-out training runs. Returns true if it did.
-  bool adopt_curve(const Judged& judged, const ScanResult& curve) {
+  /// Returns the error of left-out training runs of `beside` with the curve divided by that of `without`, as the geometric mean over the
+  /// runs, so that one run outside the range of the others does not decide. ∞ if there is only one run, or if the curve cannot become part
+  /// of the model.
+  [[nodiscard]] double left_out_share(const estimation::Posterior& beside, const estimation::Posterior& without,
+                                      const ScanResult& curve) const {
     const Regressor& driver = out_.drivers[static_cast<std::size_t>(curve.term.driver)];
-    const std::optional<estimation::Model> curved = with_curve(out_.after.model, curve, driver);
+    const bool are_fitted = std::isfinite(beside.evidence_nats) && std::isfinite(without.evidence_nats);
+    const std::optional<estimation::Model> curved = are_fitted ? with_curve(beside.model, curve, driver) : std::nullopt;
     if (!curved || input_.runs.size() < 2 || driver.name == kTimeDriver) {
-      return false;
+      return std::numeric_limits<double>::infinity();
     }
     std::vector<estimation::MeasuredRun> runs = input_.runs;
     estimation::set_columns(runs, curved->columns);
-    const auto sum_K2 = [&](const estimation::Model& model, const estimation::LatentFlux& flux) {
-      const std::vector<double> errors_K2 = left_out_errors_K2(model, runs, flux);
-      return std::accumulate(errors_K2.begin(), errors_K2.end(), 0.0);
-    };
-    if (!(sum_K2(*curved, final_options(judged.best_place).flux) < sum_K2(out_.after.model, out_.after.flux))) {
-      return false;
+    const std::vector<estimation::Errors> with = calibration::errors_by_others(*curved, runs, beside.start_C, plain_options());
+    const std::vector<estimation::Errors> own = calibration::errors_by_others(without.model, runs, without.start_C, plain_options());
+    double sum = 0.0;
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+      sum += with[r].empty() ? std::numeric_limits<double>::infinity() : std::log(estimation::rms_K(with[r]) / estimation::rms_K(own[r]));
     }
-    estimation::Posterior fit = estimation::try_posterior_of(*curved, runs, out_.after.start_C, final_options(judged.best_place));
-    if (!std::isfinite(fit.evidence_nats)) {
-      return false;
-    }
+    return std::exp(sum / static_cast<double>(runs.size()));
+  }
+
+  /// Adds the curve to the model.
+  void add_curve(const Judged& judged, const ScanResult& curve) {
+    const Regressor& driver = out_.drivers[static_cast<std::size_t>(curve.term.driver)];
+    const estimation::Model curved = with_curve(out_.after.model, curve, driver).value();
+    std::vector<estimation::MeasuredRun> runs = input_.runs;
+    estimation::set_columns(runs, curved.columns);
+    estimation::Posterior fit = estimation::posterior_of(curved, runs, out_.after.start_C, final_options(judged.best_place));
     AcceptedTerm term;
     term.curve = curve;
     term.effect_name = fit.model.network.effects().back().name;
@@ -349,12 +354,12 @@ class Selector : Rounds {
         term.confusable_with.push_back(other);
       }
     }
-    out_.after = std::move(fit);
+    // With material unknown heat, whitened residuals determine the parameters less well than whole runs.
+    out_.after = out_.is_material() ? more_predictive(std::move(fit), runs) : std::move(fit);
     // The terms are in order of evidence.
     const auto behind =
         std::ranges::find_if(out_.terms, [&](const AcceptedTerm& other) { return other.loss_without_nats < term.loss_without_nats; });
     out_.terms.insert(behind, std::move(term));
-    return true;
   }
 };
 

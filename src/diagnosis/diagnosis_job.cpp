@@ -42,6 +42,17 @@ void refuse_where_nothing_follows(const Diagnosis& diagnosis, const DiagnosisInp
   }
 }
 
+/// Adds a finding if one of the runs contradicts the others under the extended model.
+void add_contradiction(const attribution::Selection& selection, const std::vector<estimation::MeasuredRun>& train,
+                       std::vector<DiagnosisFinding>& findings) {
+  constexpr int kMostSteps = 20;
+  estimation::PosteriorOptions plain = estimation::least_squares_options(selection.after.model, kMostSteps);
+  plain.weights = selection.weights;
+  if (const auto run = calibration::contradicting_run(selection.after.model, train, selection.after.start_C, plain)) {
+    findings.emplace_back(RunContradicts{*run});
+  }
+}
+
 /// Adds the remark that hold-out logs lack columns of curves, unless the training logs already gave it.
 void add_lacking_columns(std::span<const std::string> columns, const std::vector<recording::Recording>& holdout,
                          std::vector<DiagnosisFinding>& findings) {
@@ -83,6 +94,7 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job) {
   answer.diagnosis = diagnose(input, {});
   const std::vector<std::string>& columns = answer.diagnosis.selection.after.model.columns;
   estimation::set_columns(input.train, columns);
+  add_contradiction(answer.diagnosis.selection, input.train, findings);
   refuse_where_nothing_follows(answer.diagnosis, input);
   answer.motor = extended_motor(job.motor, model, answer.diagnosis);
   answer.score = score_holdout(input, answer.diagnosis, runs_of(held_out, how, findings));

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "calibration/contradicting_runs.h"
 #include "calibration/findings.h"
 #include "estimation/run_deviation.h"
 
@@ -43,8 +44,13 @@ struct ColumnsNotSearched {
   std::vector<std::string> columns;
 };
 
+/// A run contradicts the others even with the effects that were found: a sensor was moved, or the mounting was changed.
+struct RunContradicts {
+  calibration::ContradictingRun run;
+};
+
 using DiagnosisFinding =
-    std::variant<ExtensionsMayImitate, ColumnsTakenAsZero, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet, LossInUnknownHeat,
+    std::variant<ExtensionsMayImitate, RunContradicts, ColumnsTakenAsZero, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet, LossInUnknownHeat,
                  TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn, calibration::Remark>;
 
 /// Signal that is outside the range of the training runs for more than a quarter of the time of the hold-out runs.

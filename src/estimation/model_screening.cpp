@@ -16,14 +16,16 @@ struct EqualReadings {
   std::vector<Eigen::Index> samples;
 };
 
-std::vector<EqualReadings> equal_readings(const MeasuredRun& run, int least) {
+std::vector<EqualReadings> equal_readings(const MeasuredRun& run, const ModelScreeningRules& rules) {
   // Averages of equal values may differ by rounding.
   constexpr double kEqual_K = 1e-9;
   std::vector<EqualReadings> all;
   for (Eigen::Index sensor = 0; sensor < run.measured_C.cols(); ++sensor) {
     EqualReadings now{sensor, {}};
     double value_C = 0.0;
-    const auto close = [&] {
+    const double jump_K = rules.jump_sd * run.sensors[static_cast<std::size_t>(sensor)].noise_K;
+    const auto close = [&](double next_C) {
+      const int least = std::abs(next_C - value_C) > jump_K ? rules.least_before_jump : rules.least_equal;
       if (static_cast<int>(now.samples.size()) >= least) {
         all.push_back(now);
       }
@@ -35,12 +37,12 @@ std::vector<EqualReadings> equal_readings(const MeasuredRun& run, int least) {
         continue;
       }
       if (!now.samples.empty() && std::abs(reading_C - value_C) > kEqual_K) {
-        close();
+        close(reading_C);
       }
       value_C = reading_C;
       now.samples.push_back(k);
     }
-    close();
+    close(value_C);
   }
   return all;
 }
@@ -134,7 +136,7 @@ std::vector<Eigen::VectorXd> weights_by_model(const std::vector<LinearisedRun>& 
       noise.noise_K.push_back(sensor.noise_K);
     }
     noise.weight = Eigen::VectorXd::Ones(path.residual_K.size());
-    const std::vector<EqualReadings> equal = equal_readings(run, rules.least_equal);
+    const std::vector<EqualReadings> equal = equal_readings(run, rules);
     for (const EqualReadings& each : equal) {
       hide(each, path.sensors(), 0.0, noise.weight);
     }

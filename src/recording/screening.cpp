@@ -43,6 +43,8 @@ struct ChannelStatistics {
   NoiseLevel noise;
   double repeats_share = 0.0;      ///< share of equal neighbours, without long constant segments
   std::size_t longest_chance = 0;  ///< longest constant segment that noise explains, in samples; 0 if unknown
+  /// The same for one given segment, such as the one before a jump; 0 if unknown.
+  std::size_t longest_before_jump = 0;
 };
 
 /// Sufficient number of samples for a noise estimate.
@@ -78,8 +80,9 @@ ChannelStatistics statistics_of(std::span<const double> values, std::span<const 
   if (samples >= kEnoughSamples && share < kTooCoarse_share) {
     // n equal neighbours occur by chance in one of 1000 logs of this length: rows · share^n = 1/1000.
     constexpr double kLogOfThousand = 6.9;
-    statistics.longest_chance =
-        1 + static_cast<std::size_t>(std::ceil((std::log(static_cast<double>(values.size())) + kLogOfThousand) / -std::log(share)));
+    const auto longest = [share](double nats) { return 1 + static_cast<std::size_t>(std::ceil(nats / -std::log(share))); };
+    statistics.longest_chance = longest(std::log(static_cast<double>(values.size())) + kLogOfThousand);
+    statistics.longest_before_jump = longest(kLogOfThousand);
   }
   return statistics;
 }
@@ -94,7 +97,7 @@ bool ends_in_isolated_jump(const std::vector<Segment>& run, std::size_t at, cons
   constexpr std::size_t kLongHold = 30;
   constexpr double kIsolated_ratio = 4.0;
   constexpr std::size_t kAfter = 5;
-  const std::size_t long_hold = statistics.longest_chance > 0 ? statistics.longest_chance : kLongHold;
+  const std::size_t long_hold = statistics.longest_before_jump > 0 ? statistics.longest_before_jump : kLongHold;
   if (run[at].samples <= long_hold || at + 2 >= run.size()) {
     return false;
   }

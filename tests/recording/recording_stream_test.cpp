@@ -106,6 +106,34 @@ TEST(RecordingStream, StaysFrozenForMoreThanAPart) {
   EXPECT_EQ(frozen->count, 150'000U);
 }
 
+/// A heating winding with noise of 0.12 K and steps of 0.1 K: 12 equal samples alone are possible, but not with a jump of 8 K behind them.
+TEST(RecordingStream, ShortHoldBeforeAJumpIsFrozen) {
+  for (const bool holds : {false, true}) {
+    int found = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      base::Random random(seed, 0);
+      std::string text = "time_s,winding_C,current_A\n";
+      double held_C = 0.0;
+      for (int i = 0; i < 600; ++i) {
+        const double noise_K = 0.12 * std::sqrt(12.0) * (random.uniform() - 0.5);
+        double winding_C = std::round(10.0 * (30.0 + 60.0 * (1.0 - std::exp(-i / 60.0)) + noise_K)) / 10.0;
+        held_C = i == 20 ? winding_C : held_C;
+        winding_C = holds && i > 20 && i < 32 ? held_C : winding_C;
+        fmt::format_to(std::back_inserter(text), "{},{:.1f},8\n", i, winding_C);
+      }
+      const LogFile file("log.csv", text);
+      RecordingReport report;
+      read_recording(file.path(), {}, report);
+      const LeftOut* const frozen = report.find("winding_C", LeftOutReason::frozen);
+      found += frozen != nullptr ? 1 : 0;
+      if (holds && frozen != nullptr) {
+        EXPECT_EQ(frozen->count, 12U) << seed;
+      }
+    }
+    EXPECT_EQ(found, holds ? 20 : 0);
+  }
+}
+
 TEST(RecordingStream, GapSplitsAtTheBorderOnly) {
   const int border = static_cast<int>(first_border());
   const LogFile file("log.csv", log_text([&](int i, Row& row) { row.time_s += i >= border ? 5.0 : 0.0; }));

@@ -15,17 +15,23 @@ std::string headline_of(const diagnosis::Diagnosis& diagnosis) {
   std::vector<std::string> names;
   bool is_class = false;
   for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
+    if (!effect.is_from_catalogue) {
+      continue;
+    }
     is_class = is_class || !effect.confusable_with.empty();
     names.push_back(effect.confusable_with.empty() ? effect.id
                                                    : fmt::format("{} or {}", effect.id, fmt::join(effect.confusable_with, " or ")));
   }
+  const std::string lacks =
+      fmt::format("The model lacks {}{}", fmt::join(names, " and "), is_class ? ", which these runs do not distinguish" : "");
   switch (diagnosis.verdict) {
     case diagnosis::DiagnosisVerdict::nothing_missing:
       return "No effect is missing.";
     case diagnosis::DiagnosisVerdict::effect_found:
-      return fmt::format("The model lacks {}{}.", fmt::join(names, " and "), is_class ? ", which these runs do not distinguish" : "");
+      return lacks + ".";
     case diagnosis::DiagnosisVerdict::unexplained:
-      return "Heat is missing that no effect of the catalogue explains.";
+      return names.empty() ? "Heat is missing that no effect of the catalogue explains."
+                           : lacks + ", and further heat that no effect of the catalogue explains.";
     case diagnosis::DiagnosisVerdict::not_identifiable:
       break;
   }

@@ -119,7 +119,8 @@ std::string verdict_in_words(const diagnosis::Diagnosis& diagnosis) {
                    "smooth unknown heat."
                  : "These runs show no missing effect, but they contradict some of the file's parameters.";
     case diagnosis::DiagnosisVerdict::unexplained:
-      return "The runs show unmodelled heat, and no law of the catalogue explains it.";
+      return diagnosis.effects.empty() ? "The runs show unmodelled heat, and no law of the catalogue explains it."
+                                       : "The runs show unmodelled heat. Laws of the catalogue explain only a part of it.";
     case diagnosis::DiagnosisVerdict::not_identifiable:
       break;
   }
@@ -237,7 +238,8 @@ std::string beyond_in_words(const diagnosis::BeyondTraining& beyond) {
 std::string reason_in_words(const attribution::Refusal& refused) {
   switch (refused.reason) {
     case attribution::RefusalReason::improbable:
-      return fmt::format("its probability is {:.0f} %, but a name requires {:.0f} %", 100.0 * refused.probability,
+      // Rounded down, so that 94.6 % does not read as the required 95 %.
+      return fmt::format("its probability is {:.0f} %, but a name requires {:.0f} %", std::floor(100.0 * refused.probability),
                          100.0 * refused.needed_probability);
     case attribution::RefusalReason::curve_is_better:
       return fmt::format("a curve over {} explains the runs better", refused.signal);
@@ -256,6 +258,16 @@ std::string say(const diagnosis::ExtensionsMayImitate& of) {
       "an effect similar to {} may not be found, because the file has {} for better forecasts only; calibrate with --innovations for a "
       "diagnosis",
       fmt::join(of.effects, " and "), it_or_them(of.effects.size()));
+}
+
+std::string say(const diagnosis::RunContradicts& of) {
+  const calibration::ContradictingRun& run = of.run;
+  return fmt::format(
+      "{0} contradicts the other runs: with parameters that follow the others to {1} K RMS, its {2} is wrong by {3} K, although {0} alone "
+      "can "
+      "be followed to {4} K. Check whether a sensor was moved or the mounting was changed before {0}; if so, leave it out",
+      run.run, base::significant(run.usual_K, 2), run.signal.substr(0, run.signal.rfind('_')), base::significant(run.by_others_K, 2),
+      base::significant(run.alone_K, 2));
 }
 
 std::string say(const diagnosis::ColumnsTakenAsZero& of) {
@@ -386,7 +398,7 @@ std::vector<DiagnosisNote> diagnosis_notes(const diagnosis::DiagnosisAnswer& ans
     notes.push_back({Severity::background, std::move(each)});
   }
   const auto is_warning = [](const diagnosis::DiagnosisFinding& finding) {
-    return std::holds_alternative<diagnosis::ExtensionsMayImitate>(finding);
+    return std::holds_alternative<diagnosis::ExtensionsMayImitate>(finding) || std::holds_alternative<diagnosis::RunContradicts>(finding);
   };
   const auto add_findings = [&](bool warnings) {
     for (const diagnosis::DiagnosisFinding& each : answer.findings) {

@@ -1,0 +1,110 @@
+#include "calibration/contradicting_runs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/parallel.h"
+
+namespace heatsoak::calibration {
+namespace {
+
+/// Smallest error of a run that contradicts the others; smaller ones are expected of an incomplete model.
+constexpr double kContradicts_K = estimation::kIncompleteModel_K;
+/// Smallest ratio of the error of a run, predicted with the parameters of the others, to the errors of both fits: 7 to 14 if a sensor was
+/// moved, at most 4 otherwise (18 synthetic motors).
+constexpr double kContradicts_ratio = 5.0;
+
+/// Some of the runs, with what belongs to them.
+struct Part {
+  std::vector<estimation::MeasuredRun> runs;
+  std::vector<std::vector<double>> start_C;
+  estimation::PosteriorOptions options;
+};
+
+template <class Predicate>
+Part part_of(const std::vector<estimation::MeasuredRun>& runs, const std::vector<std::vector<double>>& start_C,
+             const estimation::PosteriorOptions& options, Predicate belongs) {
+  Part part{{}, {}, options};
+  part.options.weights.clear();
+  part.options.merged.clear();
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    if (belongs(runs[r])) {
+      part.runs.push_back(runs[r]);
+      part.start_C.push_back(start_C[r]);
+      if (!options.weights.empty()) {
+        part.options.weights.push_back(options.weights[r]);
+      }
+      if (!options.merged.empty()) {
+        part.options.merged.push_back(options.merged[r]);
+      }
+    }
+  }
+  return part;
+}
+
+estimation::Posterior fit_of(const estimation::Model& model, const Part& part) {
+  return estimation::try_posterior_of(model, part.runs, part.start_C, part.options);
+}
+
+/// Returns the name of the recording that a run is a part of.
+std::string recording_of(const estimation::MeasuredRun& run) {
+  const auto found = run.conditions.find("run");
+  return found == run.conditions.end() ? run.name : found->second;
+}
+
+}  // namespace
+
+std::vector<estimation::Errors> errors_by_others(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs,
+                                                 const std::vector<std::vector<double>>& start_C,
+                                                 const estimation::PosteriorOptions& options) {
+  std::vector<estimation::Errors> errors(runs.size());
+  base::in_parallel(runs.size(), 0, [&](std::size_t r) {
+    const Part others = part_of(runs, start_C, options, [&](const estimation::MeasuredRun& run) { return &run != &runs[r]; });
+    const estimation::Posterior fit = fit_of(model, others);
+    if (std::isfinite(fit.evidence_nats)) {
+      errors[r] = estimation::open_loop_errors(fit.model, {runs[r]}, others.runs);
+    }
+  });
+  return errors;
+}
+
+std::optional<ContradictingRun> contradicting_run(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs,
+                                                  const std::vector<std::vector<double>>& start_C,
+                                                  const estimation::PosteriorOptions& options) {
+  // Parts of one recording belong together: nobody moves a sensor during a gap of the log.
+  std::vector<std::string> recordings;
+  for (const estimation::MeasuredRun& run : runs) {
+    const std::string name = recording_of(run);
+    if (std::ranges::find(recordings, name) == recordings.end()) {
+      recordings.push_back(name);
+    }
+  }
+  std::vector<ContradictingRun> found;
+  if (recordings.size() < 3) {
+    return std::nullopt;
+  }
+  for (const std::string& recording : recordings) {
+    const Part own = part_of(runs, start_C, options, [&](const estimation::MeasuredRun& run) { return recording_of(run) == recording; });
+    const Part others = part_of(runs, start_C, options, [&](const estimation::MeasuredRun& run) { return recording_of(run) != recording; });
+    const estimation::Posterior alone = fit_of(model, own);
+    const estimation::Posterior rest = fit_of(model, others);
+    if (!std::isfinite(alone.evidence_nats) || !std::isfinite(rest.evidence_nats)) {
+      continue;
+    }
+    const estimation::Errors alone_K = estimation::open_loop_errors(alone.model, own.runs, {});
+    const estimation::Errors rest_K = estimation::open_loop_errors(rest.model, others.runs, {});
+    for (const auto& [signal, error] : estimation::open_loop_errors(rest.model, own.runs, others.runs)) {
+      const ContradictingRun each{recording, signal, error.rmse_K, alone_K.at(signal).rmse_K,
+                                  rest_K.contains(signal) ? rest_K.at(signal).rmse_K : error.rmse_K};
+      if (each.by_others_K > kContradicts_K && each.by_others_K > kContradicts_ratio * std::max(each.alone_K, each.usual_K)) {
+        found.push_back(each);
+      }
+    }
+  }
+  const auto ratio = [](const ContradictingRun& each) { return each.by_others_K / std::max(each.alone_K, each.usual_K); };
+  const auto largest = std::ranges::max_element(found, {}, ratio);
+  return largest == found.end() ? std::nullopt : std::optional(*largest);
+}
+
+}  // namespace heatsoak::calibration
