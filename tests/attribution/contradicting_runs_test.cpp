@@ -32,7 +32,7 @@ std::optional<calibration::ContradictingRun> contradiction(std::uint64_t seed, d
 
 TEST(ContradictingRuns, AMovedSensorIsReportedWithItsRun) {
   for (std::uint64_t seed = 90000; seed < 90004; ++seed) {
-    const auto run = contradiction(seed, 0.4);
+    const auto run = contradiction(seed, 0.7);
     ASSERT_TRUE(run) << seed;
     EXPECT_EQ(run->run, "run2") << seed;
     EXPECT_EQ(run->signal, "winding_C") << seed;
