@@ -95,16 +95,9 @@ void compare_heat(const Config& config, State& state, const Validated& validated
   const WheelState& wheel = state.wheel[i];
   ComparisonState& comparison = state.comparison;
   const float back_V = config.derived.geared_constant_V_s_per_rad * validated.wheel[i].speed_rad_per_s;
-  float driven_V = wheel.is_open != 0 ? 0.0F : wheel.voltage_V - back_V;
+  const float driven_V = wheel.is_open != 0 ? 0.0F : wheel.voltage_V - back_V;
   const bool is_counted = absolute(sensed_A) <= config.derived.most_sensed_A && wheel.is_current_distrusted == 0;
-  float counted_A = sensed_A;
-  if (!is_counted) {
-    counted_A = driven_V * wheel.conductance_A_per_V;
-    // A wrong wheel speed would hide heat.
-    constexpr float kSliding_m_per_s = 0.25F;
-    const float doubtful_m_per_s = larger(0.0F, validated.disagreement_m_per_s - kSliding_m_per_s);
-    driven_V = wheel.is_open != 0 ? 0.0F : absolute(driven_V) + config.derived.spread_V_s_per_m * doubtful_m_per_s;
-  }
+  const float counted_A = is_counted ? sensed_A : driven_V * wheel.conductance_A_per_V;
   const float share = smaller(1.0F, since_s / kHeat_s);
   comparison.driven_V2[i] += share * (driven_V * driven_V - comparison.driven_V2[i]);
   comparison.counted_A2[i] += share * (counted_A * counted_A - comparison.counted_A2[i]);
@@ -190,7 +183,7 @@ struct WheelResponse {
 };
 
 void find_responses(const Config& config, State& state, const Validated& validated, float since_s, WheelResponse* response) {
-  const float turning_rad = validated.velocity.yaw * since_s;
+  const float turning_rad = validated.yaw_rate_rad_per_s * since_s;
   const float gripping_m_per_s =
       kGripping_ratio * since_s * (config.acceleration_limit_m_per_s2 + config.contact_radius_m * config.yaw_acceleration_limit_rad_per_s2);
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -211,7 +204,7 @@ void find_responses(const Config& config, State& state, const Validated& validat
 /// exchanged. It is 0 for three wheels, whose speeds fit some motion with the gyro even after two samples were exchanged.
 [[gnu::cold, gnu::noinline]] float contradiction_m2_per_s2(const Config& config, const State& state, const Validated& validated, int a,
                                                            int b) {
-  const float turning_m_per_s = config.contact_radius_m * validated.velocity.yaw;
+  const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
   float x = 0.0F;
   float y = 0.0F;
   float all = 0.0F;
@@ -330,7 +323,7 @@ void compare_pairs(const Config& config, State& state, const Input& input, const
   const float keep = 1.0F - smaller(1.0F, since_s / kSwap_s);
   // If wheels and gyro disagree about the rotation, one of them is wrong.
   const bool is_turning_known =
-      state.yaw_fault == 0 && absolute(yaw_rate_of_wheels(config, validated) - validated.velocity.yaw) < kYawDisagreement_rad_per_s;
+      state.yaw_fault == 0 && absolute(yaw_rate_of_wheels(config, validated) - validated.yaw_rate_rad_per_s) < kYawDisagreement_rad_per_s;
   // Pushes on a standing robot look like swapped sensors.
   const bool is_driven = is_asked_to_move(config, state.velocity_reference, validated);
   const bool is_wheelwise = validated.mode == Mode::wheel_speed || validated.mode == Mode::wheel_torque;
@@ -430,12 +423,17 @@ namespace {
 /// Speeds before a gap in time cannot be compared with those after it. Earlier findings stay.
 [[gnu::cold, gnu::noinline]] void restart_comparisons(State& state) {
   ComparisonState& comparison = state.comparison;
-  constexpr unsigned kFirst = __builtin_offsetof(ComparisonState, disagreement_s);
-  constexpr unsigned kEnd = __builtin_offsetof(ComparisonState, current_error_s);
-  __builtin_memset(reinterpret_cast<unsigned char*>(&comparison) + kFirst, 0, kEnd - kFirst);
+  PerWheel current_error_s;
+  __builtin_memcpy(current_error_s, comparison.current_error_s, sizeof(current_error_s));
+  const float standing_s = comparison.standing_s;
+  const std::uint8_t is_checked = comparison.is_checked;
+  comparison = {};
   for (int i = 0; i < kMostWheels; ++i) {
+    comparison.current_error_s[i] = current_error_s[i];
     comparison.last_rad_per_s[i] = state.wheel[i].raw_speed_rad_per_s;
   }
+  comparison.standing_s = standing_s;
+  comparison.is_checked = is_checked;
   copy_faults(state);
   seal(state.comparison);
 }
