@@ -226,7 +226,7 @@ typedef struct {
 } maxon_ecx_flat_42m_24v_state;
 
 typedef enum {
-  maxon_ecx_flat_42m_24v_full,          /* the driver's largest current */
+  maxon_ecx_flat_42m_24v_full,          /* all that a cold motor may draw at this speed, or the driver's largest current */
   maxon_ecx_flat_42m_24v_derated,       /* less, because the winding or the stator is hot */
   maxon_ecx_flat_42m_24v_no_current,    /* at the limit, or above the highest speed of the table */
   maxon_ecx_flat_42m_24v_input_unknown, /* an input was NaN or implausible: its hottest case was used */
@@ -323,6 +323,14 @@ static inline void maxon_ecx_flat_42m_24v_advance(float *state_C, float *carry_K
   }
 }
 
+/* stator_C: the hottest node other than the winding. Below the first points of their axes, temperatures do not reduce the current. */
+static inline maxon_ecx_flat_42m_24v_reason maxon_ecx_flat_42m_24v_reason_for(float allowed_A, float stator_C, float winding_C) {
+  if (!(allowed_A > 0.0f)) {
+    return maxon_ecx_flat_42m_24v_no_current;
+  }
+  return allowed_A >= MAXON_ECX_FLAT_42M_24V_MOST_CURRENT_A || (stator_C <= maxon_ecx_flat_42m_24v_stator_C[0] && winding_C <= maxon_ecx_flat_42m_24v_winding_C[0]) ? maxon_ecx_flat_42m_24v_full : maxon_ecx_flat_42m_24v_derated;
+}
+
 static inline maxon_ecx_flat_42m_24v_output maxon_ecx_flat_42m_24v_step(maxon_ecx_flat_42m_24v_state *state, const maxon_ecx_flat_42m_24v_input *measured) {
   maxon_ecx_flat_42m_24v_output out;
   maxon_ecx_flat_42m_24v_input in = *measured;
@@ -345,7 +353,7 @@ static inline maxon_ecx_flat_42m_24v_output maxon_ecx_flat_42m_24v_step(maxon_ec
     unknown |= 1u;
   }
   if (!maxon_ecx_flat_42m_24v_is_between((-982.9787f), in.speed_rad_per_s, 982.9787f)) {
-    in.speed_rad_per_s = 487.58865f;
+    in.speed_rad_per_s = 982.9787f;
     unknown |= 2u;
   }
   if (!maxon_ecx_flat_42m_24v_is_between(0.05f, in.ambient_C, 300.0f)) {
@@ -365,10 +373,8 @@ static inline maxon_ecx_flat_42m_24v_output maxon_ecx_flat_42m_24v_step(maxon_ec
     out.reason = maxon_ecx_flat_42m_24v_not_started;
   } else if (unknown != 0u) {
     out.reason = maxon_ecx_flat_42m_24v_input_unknown;
-  } else if (out.allowed_current_A >= MAXON_ECX_FLAT_42M_24V_MOST_CURRENT_A) {
-    out.reason = maxon_ecx_flat_42m_24v_full;
   } else {
-    out.reason = out.allowed_current_A > 0.0f ? maxon_ecx_flat_42m_24v_derated : maxon_ecx_flat_42m_24v_no_current;
+    out.reason = maxon_ecx_flat_42m_24v_reason_for(out.allowed_current_A, hottest_body_C, out.guarded_winding_C);
   }
   return out;
 }
@@ -463,15 +469,14 @@ static inline float maxon_ecx_flat_42m_24v_cooling_step_s(maxon_ecx_flat_42m_24v
   return fastest_per_s > 0.0f ? 0.05f / fastest_per_s : MAXON_ECX_FLAT_42M_24V_PERIOD_S;
 }
 
-/* Cool-down without current in the hottest air, in at most MAXON_ECX_FLAT_42M_24V_MOST_COOLING_STEPS steps. Time beyond them is ignored: no cooling. An
-   Euler step of 1/20 of a time constant cools as 1/20 + 1/800 of one would, so only 97 % of the time is used. peak_C: highest
-   temperature of each node during the cool-down. */
+/* Cool-down without current in the hottest air, in at most MAXON_ECX_FLAT_42M_24V_MOST_COOLING_STEPS steps. Time beyond them is ignored: no cooling.
+   peak_C: highest temperature of each node during this time. */
 static inline void maxon_ecx_flat_42m_24v_cool(maxon_ecx_flat_42m_24v_law law, float elapsed_s, float *state_C, float *peak_C) {
   maxon_ecx_flat_42m_24v_input off;
   float rate_K_per_s[2];
   float carry_K[2];
   float step_s;
-  float left_s = 0.97f * elapsed_s;
+  float left_s = elapsed_s;
   int node;
   int step;
   maxon_ecx_flat_42m_24v_clear((unsigned char *)&off, (int)sizeof off);
@@ -495,31 +500,57 @@ static inline void maxon_ecx_flat_42m_24v_cool(maxon_ecx_flat_42m_24v_law law, f
   }
 }
 
-/* Worst-case heating: the driver's largest current at the highest speed, up to the limit that the guard has kept. */
+/* Highest temperature that each node can have after elapsed_s; negative or NaN: unknown, so at any time since the save. An Euler step of
+   1/20 of a time constant cools as 1/20 + 1/800 of one would. A node that cools therefore takes its temperature after 97 % of the time,
+   and one that warms its highest since then. */
+static inline void maxon_ecx_flat_42m_24v_rest(maxon_ecx_flat_42m_24v_law law, float elapsed_s, float *state_C) {
+  float peak_C[2];
+  const bool is_known = elapsed_s >= 0.0f;
+  int node;
+  if (is_known) {
+    maxon_ecx_flat_42m_24v_cool(law, 0.97f * elapsed_s, state_C, peak_C);
+  }
+  maxon_ecx_flat_42m_24v_cool(law, is_known ? 0.03f * elapsed_s : 1e9f, state_C, peak_C);
+  for (node = 0; node < 2; ++node) {
+    state_C[node] = peak_C[node];
+  }
+}
+
+/* Worst-case heating: the driver's largest current at the accepted speed that heats most, up to the limit that the guard has kept, or up to the
+   hottest node if that is hotter. No node cools. */
 static inline void maxon_ecx_flat_42m_24v_heat(maxon_ecx_flat_42m_24v_law law, float unsaved_s, float *state_C) {
+  const float hottest_rad_per_s[1] = {982.9787f};
   maxon_ecx_flat_42m_24v_input on;
-  float drive_K_per_s[2];
-  float brake_K_per_s[2];
+  float rate_K_per_s[2];
+  float most_K_per_s[2];
+  float most_C = MAXON_ECX_FLAT_42M_24V_WINDING_LIMIT_C;
   float left_s = unsaved_s;
   int node;
+  int load;
   int step;
+  for (node = 0; node < 2; ++node) {
+    most_C = state_C[node] > most_C ? state_C[node] : most_C;
+  }
   maxon_ecx_flat_42m_24v_clear((unsigned char *)&on, (int)sizeof on);
   on.ambient_C = MAXON_ECX_FLAT_42M_24V_HOTTEST_AMBIENT_C;
-  on.speed_rad_per_s = MAXON_ECX_FLAT_42M_24V_MOST_SPEED_RAD_PER_S;
   for (step = 0; step < MAXON_ECX_FLAT_42M_24V_MOST_COOLING_STEPS && left_s > 0.0f; ++step) {
-    on.current_A = MAXON_ECX_FLAT_42M_24V_MOST_CURRENT_A;
-    law(&on, state_C, drive_K_per_s);
-    on.current_A = -MAXON_ECX_FLAT_42M_24V_MOST_CURRENT_A;
-    law(&on, state_C, brake_K_per_s);
+    maxon_ecx_flat_42m_24v_clear((unsigned char *)most_K_per_s, (int)sizeof most_K_per_s);
+    for (load = 0; load < 2; ++load) {
+      on.current_A = (load % 2) == 0 ? MAXON_ECX_FLAT_42M_24V_MOST_CURRENT_A : -MAXON_ECX_FLAT_42M_24V_MOST_CURRENT_A;
+      on.speed_rad_per_s = hottest_rad_per_s[load / 2];
+      law(&on, state_C, rate_K_per_s);
+      for (node = 0; node < 2; ++node) {
+        most_K_per_s[node] = rate_K_per_s[node] > most_K_per_s[node] ? rate_K_per_s[node] : most_K_per_s[node];
+      }
+    }
     for (node = 0; node < 2; ++node) {
-      const float most_K_per_s = drive_K_per_s[node] > brake_K_per_s[node] ? drive_K_per_s[node] : brake_K_per_s[node];
-      const float next_C = state_C[node] + MAXON_ECX_FLAT_42M_24V_PERIOD_S * (most_K_per_s > 0.0f ? most_K_per_s : 0.0f);
-      state_C[node] = next_C < MAXON_ECX_FLAT_42M_24V_WINDING_LIMIT_C ? next_C : MAXON_ECX_FLAT_42M_24V_WINDING_LIMIT_C;
+      const float next_C = state_C[node] + MAXON_ECX_FLAT_42M_24V_PERIOD_S * most_K_per_s[node];
+      state_C[node] = next_C < most_C ? next_C : most_C;
     }
     left_s -= MAXON_ECX_FLAT_42M_24V_PERIOD_S;
   }
   for (node = 0; node < 2 && left_s > 0.0f; ++node) {
-    state_C[node] = MAXON_ECX_FLAT_42M_24V_WINDING_LIMIT_C;
+    state_C[node] = most_C;
   }
 }
 
@@ -528,10 +559,7 @@ static inline void maxon_ecx_flat_42m_24v_heat(maxon_ecx_flat_42m_24v_law law, f
    unsaved_s: longest time from the last save to the loss of power; 0 if the falling supply triggers the save; NaN counts as very long.
    board_C: lower bound of every node, because the motor was in the same surroundings; an implausible value counts as the hottest air. */
 static inline maxon_ecx_flat_42m_24v_restored_from maxon_ecx_flat_42m_24v_restore(maxon_ecx_flat_42m_24v_state *state, const uint8_t *buffer, float elapsed_s, float unsaved_s, float board_C) {
-  float peak_C[2];
-  float nominal_peak_C[2];
   const float least_C = maxon_ecx_flat_42m_24v_is_temperature(board_C) ? board_C : MAXON_ECX_FLAT_42M_24V_HOTTEST_AMBIENT_C;
-  const bool is_known = elapsed_s >= 0.0f;
   int node;
   bool is_whole = maxon_ecx_flat_42m_24v_unpack(buffer) == MAXON_ECX_FLAT_42M_24V_SIGNATURE &&
                        maxon_ecx_flat_42m_24v_unpack(&buffer[MAXON_ECX_FLAT_42M_24V_SAVED_SIZE - 4]) == heatsoak_crc_32(buffer, MAXON_ECX_FLAT_42M_24V_SAVED_SIZE - 4);
@@ -548,18 +576,16 @@ static inline maxon_ecx_flat_42m_24v_restored_from maxon_ecx_flat_42m_24v_restor
     maxon_ecx_flat_42m_24v_heat(maxon_ecx_flat_42m_24v_rates, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->state_C);
     maxon_ecx_flat_42m_24v_heat(maxon_ecx_flat_42m_24v_nominal_rates, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->nominal_C);
   }
-  maxon_ecx_flat_42m_24v_cool(maxon_ecx_flat_42m_24v_rates, is_known ? elapsed_s : 1e9f, state->state_C, peak_C);
-  maxon_ecx_flat_42m_24v_cool(maxon_ecx_flat_42m_24v_nominal_rates, is_known ? elapsed_s : 1e9f, state->nominal_C, nominal_peak_C);
+  maxon_ecx_flat_42m_24v_rest(maxon_ecx_flat_42m_24v_rates, elapsed_s, state->state_C);
+  maxon_ecx_flat_42m_24v_rest(maxon_ecx_flat_42m_24v_nominal_rates, elapsed_s, state->nominal_C);
   for (node = 0; node < 2; ++node) {
-    const float guarded_C = is_known ? state->state_C[node] : peak_C[node];
-    const float nominal_C = is_known ? state->nominal_C[node] : nominal_peak_C[node];
-    state->state_C[node] = guarded_C > least_C ? guarded_C : least_C;
-    state->nominal_C[node] = nominal_C > least_C ? nominal_C : least_C;
+    state->state_C[node] = state->state_C[node] > least_C ? state->state_C[node] : least_C;
+    state->nominal_C[node] = state->nominal_C[node] > least_C ? state->nominal_C[node] : least_C;
     state->carry_K[node] = 0.0f;
     state->nominal_carry_K[node] = 0.0f;
   }
   state->started = MAXON_ECX_FLAT_42M_24V_STARTED;
-  return is_known ? maxon_ecx_flat_42m_24v_restored : maxon_ecx_flat_42m_24v_time_unknown;
+  return elapsed_s >= 0.0f ? maxon_ecx_flat_42m_24v_restored : maxon_ecx_flat_42m_24v_time_unknown;
 }
 
 #endif
