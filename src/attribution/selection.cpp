@@ -9,9 +9,9 @@
 #include <numeric>
 
 #include "attribution/rounds.h"
-#include "calibration/contradicting_runs.h"
 #include "calibration/motor_model.h"
 #include "estimation/free_run_errors.h"
+#include "estimation/left_out_runs.h"
 #include "estimation/log_columns.h"
 #include "estimation/smoothed_path.h"
 
@@ -75,7 +75,7 @@ class Selector : Rounds {
           named.push_back(*same);
         }
       } else if (predicts_better(judged, best, named, scan.front())) {
-        follow_curve(judged, best, named, ScanResult(scan.front()));
+        follow_curve(judged, best, named, scan.front());
         return;
       }
     }
@@ -313,9 +313,9 @@ class Selector : Rounds {
     }
   }
 
-  /// Returns the error of left-out training runs of `beside` with the curve divided by that of `without`, as the geometric mean over the
-  /// runs, so that one run outside the range of the others does not decide. ∞ if there is only one run, or if the curve cannot become part
-  /// of the model.
+  /// Returns the ratio of two errors of left-out training runs: `beside` with the curve, divided by `without`. The ratio is the geometric
+  /// mean over the runs, so that one run outside the range of the others does not decide. Returns ∞ for a single run, and for a curve that
+  /// the model cannot contain.
   [[nodiscard]] double left_out_share(const estimation::Posterior& beside, const estimation::Posterior& without,
                                       const ScanResult& curve) const {
     const Regressor& driver = out_.drivers[static_cast<std::size_t>(curve.term.driver)];
@@ -326,8 +326,8 @@ class Selector : Rounds {
     }
     std::vector<estimation::MeasuredRun> runs = input_.runs;
     estimation::set_columns(runs, curved->columns);
-    const std::vector<estimation::Errors> with = calibration::errors_by_others(*curved, runs, beside.start_C, plain_options());
-    const std::vector<estimation::Errors> own = calibration::errors_by_others(without.model, runs, without.start_C, plain_options());
+    const std::vector<estimation::Errors> with = estimation::errors_by_others(*curved, runs, beside.start_C, plain_options());
+    const std::vector<estimation::Errors> own = estimation::errors_by_others(without.model, runs, without.start_C, plain_options());
     double sum = 0.0;
     for (std::size_t r = 0; r < runs.size(); ++r) {
       sum += with[r].empty() ? std::numeric_limits<double>::infinity() : std::log(estimation::rms_K(with[r]) / estimation::rms_K(own[r]));

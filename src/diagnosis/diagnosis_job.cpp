@@ -48,8 +48,8 @@ void add_contradiction(const attribution::Selection& selection, const std::vecto
   constexpr int kMostSteps = 20;
   estimation::PosteriorOptions plain = estimation::least_squares_options(selection.after.model, kMostSteps);
   plain.weights = selection.weights;
-  if (const auto run = calibration::contradicting_run(selection.after.model, train, selection.after.start_C, plain)) {
-    findings.emplace_back(RunContradicts{*run});
+  if (const auto run = contradicting_run(selection.after.model, train, selection.after.start_C, plain)) {
+    findings.emplace_back(*run);
   }
 }
 

@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
-#include "calibration/contradicting_runs.h"
 #include "calibration/findings.h"
+#include "diagnosis/contradicting_run.h"
 #include "estimation/run_deviation.h"
 
 namespace heatsoak::diagnosis {
@@ -44,14 +44,9 @@ struct ColumnsNotSearched {
   std::vector<std::string> columns;
 };
 
-/// A run contradicts the others even with the effects that were found: a sensor was moved, or the mounting was changed.
-struct RunContradicts {
-  calibration::ContradictingRun run;
-};
-
 using DiagnosisFinding =
-    std::variant<ExtensionsMayImitate, RunContradicts, ColumnsTakenAsZero, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet, LossInUnknownHeat,
-                 TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn, calibration::Remark>;
+    std::variant<ExtensionsMayImitate, ContradictingRun, ColumnsTakenAsZero, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet,
+                 LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn, calibration::Remark>;
 
 /// Signal that is outside the range of the training runs for more than a quarter of the time of the hold-out runs.
 struct BeyondTraining {

@@ -38,7 +38,7 @@ TEST(AllAtOnce, wrong_ids_beside_wrong_files) {
               AllOf(HasSubstr("no duty 'nosuch'"), HasSubstr("no motor 'foo'"), HasSubstr("robot.toml:3:10: error: wheels.radius")));
 }
 
-// Whoever misspells a motor and an option's value corrects both at once.
+// The program reports a misspelt motor and a wrong option value together, so that a user corrects both at once.
 TEST(AllAtOnce, wrong_ids_beside_wrong_options) {
   const ProgramRun result =
       run({"steady", "--motor", "maxon_ec45_flat_70w_24", "--current-on", "6V", "--time-on", "1s", "--time-off", "1s"});

@@ -93,7 +93,7 @@ TEST(SamplesNeeded, demand_that_is_missed_counts_too) {
   EXPECT_TRUE(select::samples_needed(motor, {0.03, 0.07}, false));
 }
 
-// What lacks current is infeasible even while more samples could change that: every place shows the same verdict.
+// A motor without enough current is shown as infeasible, even if more samples could change its verdict.
 TEST(ShownVerdict, infeasible_comes_before_undecided) {
   select::MotorEvaluation motor = sampled(0.9, {0.8, 0.99}, 600);
   EXPECT_EQ(shown_verdict(motor), ShownVerdict::pass);

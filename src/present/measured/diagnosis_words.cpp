@@ -260,8 +260,7 @@ std::string say(const diagnosis::ExtensionsMayImitate& of) {
       fmt::join(of.effects, " and "), it_or_them(of.effects.size()));
 }
 
-std::string say(const diagnosis::RunContradicts& of) {
-  const calibration::ContradictingRun& run = of.run;
+std::string say(const diagnosis::ContradictingRun& run) {
   return fmt::format(
       "{0} contradicts the other runs: with parameters that follow the others to {1} K RMS, its {2} is wrong by {3} K, although {0} alone "
       "can "
@@ -398,7 +397,7 @@ std::vector<DiagnosisNote> diagnosis_notes(const diagnosis::DiagnosisAnswer& ans
     notes.push_back({Severity::background, std::move(each)});
   }
   const auto is_warning = [](const diagnosis::DiagnosisFinding& finding) {
-    return std::holds_alternative<diagnosis::ExtensionsMayImitate>(finding) || std::holds_alternative<diagnosis::RunContradicts>(finding);
+    return std::holds_alternative<diagnosis::ExtensionsMayImitate>(finding) || std::holds_alternative<diagnosis::ContradictingRun>(finding);
   };
   const auto add_findings = [&](bool warnings) {
     for (const diagnosis::DiagnosisFinding& each : answer.findings) {

@@ -1,12 +1,11 @@
-#include "calibration/contradicting_runs.h"
+#include "diagnosis/contradicting_run.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
-#include "base/parallel.h"
+#include "estimation/left_out_runs.h"
 
-namespace heatsoak::calibration {
+namespace heatsoak::diagnosis {
 namespace {
 
 /// Smallest error of a run that contradicts the others; smaller ones are expected of an incomplete model.
@@ -15,38 +14,6 @@ constexpr double kContradicts_K = estimation::kIncompleteModel_K;
 /// moved, at most 4 otherwise (18 synthetic motors).
 constexpr double kContradicts_ratio = 5.0;
 
-/// Some of the runs, with what belongs to them.
-struct Part {
-  std::vector<estimation::MeasuredRun> runs;
-  std::vector<std::vector<double>> start_C;
-  estimation::PosteriorOptions options;
-};
-
-template <class Predicate>
-Part part_of(const std::vector<estimation::MeasuredRun>& runs, const std::vector<std::vector<double>>& start_C,
-             const estimation::PosteriorOptions& options, Predicate belongs) {
-  Part part{{}, {}, options};
-  part.options.weights.clear();
-  part.options.merged.clear();
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    if (belongs(runs[r])) {
-      part.runs.push_back(runs[r]);
-      part.start_C.push_back(start_C[r]);
-      if (!options.weights.empty()) {
-        part.options.weights.push_back(options.weights[r]);
-      }
-      if (!options.merged.empty()) {
-        part.options.merged.push_back(options.merged[r]);
-      }
-    }
-  }
-  return part;
-}
-
-estimation::Posterior fit_of(const estimation::Model& model, const Part& part) {
-  return estimation::try_posterior_of(model, part.runs, part.start_C, part.options);
-}
-
 /// Returns the name of the recording that a run is a part of.
 std::string recording_of(const estimation::MeasuredRun& run) {
   const auto found = run.conditions.find("run");
@@ -54,20 +21,6 @@ std::string recording_of(const estimation::MeasuredRun& run) {
 }
 
 }  // namespace
-
-std::vector<estimation::Errors> errors_by_others(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs,
-                                                 const std::vector<std::vector<double>>& start_C,
-                                                 const estimation::PosteriorOptions& options) {
-  std::vector<estimation::Errors> errors(runs.size());
-  base::in_parallel(runs.size(), 0, [&](std::size_t r) {
-    const Part others = part_of(runs, start_C, options, [&](const estimation::MeasuredRun& run) { return &run != &runs[r]; });
-    const estimation::Posterior fit = fit_of(model, others);
-    if (std::isfinite(fit.evidence_nats)) {
-      errors[r] = estimation::open_loop_errors(fit.model, {runs[r]}, others.runs);
-    }
-  });
-  return errors;
-}
 
 std::optional<ContradictingRun> contradicting_run(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs,
                                                   const std::vector<std::vector<double>>& start_C,
@@ -85,10 +38,12 @@ std::optional<ContradictingRun> contradicting_run(const estimation::Model& model
     return std::nullopt;
   }
   for (const std::string& recording : recordings) {
-    const Part own = part_of(runs, start_C, options, [&](const estimation::MeasuredRun& run) { return recording_of(run) == recording; });
-    const Part others = part_of(runs, start_C, options, [&](const estimation::MeasuredRun& run) { return recording_of(run) != recording; });
-    const estimation::Posterior alone = fit_of(model, own);
-    const estimation::Posterior rest = fit_of(model, others);
+    const estimation::SomeRuns own =
+        estimation::some_of(runs, start_C, options, [&](const estimation::MeasuredRun& run) { return recording_of(run) == recording; });
+    const estimation::SomeRuns others =
+        estimation::some_of(runs, start_C, options, [&](const estimation::MeasuredRun& run) { return recording_of(run) != recording; });
+    const estimation::Posterior alone = estimation::fit_of(model, own);
+    const estimation::Posterior rest = estimation::fit_of(model, others);
     if (!std::isfinite(alone.evidence_nats) || !std::isfinite(rest.evidence_nats)) {
       continue;
     }
@@ -107,4 +62,4 @@ std::optional<ContradictingRun> contradicting_run(const estimation::Model& model
   return largest == found.end() ? std::nullopt : std::optional(*largest);
 }
 
-}  // namespace heatsoak::calibration
+}  // namespace heatsoak::diagnosis

@@ -1,5 +1,5 @@
 // A sensor that was moved between the runs of one motor is reported with the run, and nothing is reported for runs that agree.
-#include "calibration/contradicting_runs.h"
+#include "diagnosis/contradicting_run.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::size_t kMovedIn = 1;
 
-/// Returns the run that contradicts the others after a diagnosis. With `moved_share` the winding's sensor of one run reads between winding and
-/// stator.
-std::optional<calibration::ContradictingRun> contradiction(std::uint64_t seed, double moved_share) {
+/// Returns the run that contradicts the others after a diagnosis. With `moved_share` the winding's sensor of one run reads between winding
+/// and stator.
+std::optional<diagnosis::ContradictingRun> contradiction(std::uint64_t seed, double moved_share) {
   Case one;
   one.seed = seed;
   Runs runs = record(one);
@@ -27,10 +27,10 @@ std::optional<calibration::ContradictingRun> contradiction(std::uint64_t seed, d
   estimation::set_columns(train, selection.after.model.columns);
   estimation::PosteriorOptions plain = estimation::least_squares_options(selection.after.model, 20);
   plain.weights = selection.weights;
-  return calibration::contradicting_run(selection.after.model, train, selection.after.start_C, plain);
+  return diagnosis::contradicting_run(selection.after.model, train, selection.after.start_C, plain);
 }
 
-TEST(ContradictingRuns, AMovedSensorIsReportedWithItsRun) {
+TEST(ContradictingRun, AMovedSensorIsReportedWithItsRun) {
   for (std::uint64_t seed = 90000; seed < 90004; ++seed) {
     const auto run = contradiction(seed, 0.7);
     ASSERT_TRUE(run) << seed;
@@ -40,7 +40,7 @@ TEST(ContradictingRuns, AMovedSensorIsReportedWithItsRun) {
   }
 }
 
-TEST(ContradictingRuns, RunsOfAnUnchangedMotorAgree) {
+TEST(ContradictingRun, RunsOfAnUnchangedMotorAgree) {
   for (std::uint64_t seed = 90000; seed < 90004; ++seed) {
     EXPECT_FALSE(contradiction(seed, 0.0)) << seed;
   }
