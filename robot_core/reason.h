@@ -34,7 +34,7 @@
 // | 114 W  | speed unknown: too few other wheels to estimate it          | voltage at most limp_current_A times resistance;  | as 110                          |
 // |        |                                                             | bridge open if the current is not sensed          |                                 |
 // | 115 W  | no wheel speed changes for kStanding_s while more than      | every current at most Config::limp_current_A,     | a wheel speed changes           |
-// |        | limp_current_A would flow through standing motors: all      | calculated for standing motors: no runaway        |                                 |
+// |        | limp_current_A would flow through standing motors: all      | calculated for standing motors (exception below)  |                                 |
 // |        | sensors dead, or the robot is held                          |                                                   |                                 |
 // | 116 R  | wheels turn for kRunaway_s without slowing down although    | all bridges open                                  | the wheels stand, or a body     |
 // |        | the robot should stand, before swapped sensors are ruled    |                                                   | velocity is commanded           |
@@ -89,6 +89,11 @@
 //     speed sensor and no current sensor may exceed its limit.
 //   - More faulty speed sensors than spare ones: the current may exceed its limit for some periods. If all wheel sensors show 0, the robot
 //     accelerates for kStanding_s before the limp current limits it (115).
+//   - Without current sensors, while wheel torques or wheel speeds are commanded, fault 117 does not run and a wrong wheel speed hides heat.
+//     In simulation a sensor with twice the speed let a winding reach 167 degC (limit 155 degC) while the guard computed 93 degC. If all
+//     wheel sensors are dead then (115), wheels with the code 111 or 112 took up to 2.6 times limp_current_A.
+//   - One of three wheel speeds with twice its value while the current sensors are right: a right current sensor is rejected (121), and its
+//     wheel took up to three times limp_current_A for seconds.
 //   - Pushes on a moving robot can look like swapped sensors until these are ruled out: two wheels then keep the limp current until
 //     start(). Of robots pushed with three quarters of their grip for half of the first 10 s, fewer than 5 % with current sensors and 33 %
 //     without (tests/robot_core/swapped_sensors_test.cpp). Of 10 000 robots pushed while they should stand, none.
