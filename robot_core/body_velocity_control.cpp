@@ -50,7 +50,7 @@ void follow_command(const Config& config, State& state, const Input& input, cons
     const float age_s = input.command_age_s;
     const Vector3 continued{command.velocity.x + command.acceleration.x * age_s, command.velocity.y + command.acceleration.y * age_s,
                             command.velocity.yaw + command.acceleration.yaw * age_s};
-    const SineCosine turn = sine_cosine(-validated.yaw_rate_rad_per_s * age_s);
+    const SineCosine turn = sine_cosine(-validated.velocity.yaw * age_s);
     body.velocity = turned(continued, turn);
     body.acceleration = turned(command.acceleration, turn);
     body.push = turned(command.push, turn);
@@ -86,7 +86,7 @@ void hold_back(State& state, const Vector3& wanted, const Validated& validated, 
 /// Turns the last reference into the robot's present heading and moves it towards the wanted one.
 void approach(const Config& config, const State& state, const Validated& validated, float since_s, BodyReference& body) {
   // Within a period the robot turns by at most a tenth of a radian; after a gap the reference has been set anew.
-  const float angle_rad = clamped(-validated.yaw_rate_rad_per_s * since_s, -0.3F, 0.3F);
+  const float angle_rad = clamped(-validated.velocity.yaw * since_s, -0.3F, 0.3F);
   const Vector3 last = turned(state.velocity_reference, {angle_rad, 1.0F - 0.5F * angle_rad * angle_rad});
   Vector3 change{body.velocity.x - last.x, body.velocity.y - last.y, body.velocity.yaw - last.yaw};
   const float most_m_per_s = kApproach_ratio * config.acceleration_limit_m_per_s2 * since_s;
@@ -99,7 +99,7 @@ void approach(const Config& config, const State& state, const Validated& validat
 }
 
 void close_loop(const Config& config, State& state, const Validated& validated, float since_s, BodyReference& body) {
-  const float yaw_error_rad_per_s = body.velocity.yaw - validated.yaw_rate_rad_per_s;
+  const float yaw_error_rad_per_s = body.velocity.yaw - validated.velocity.yaw;
   state.yaw_integral_rad = clamped(state.yaw_integral_rad + yaw_error_rad_per_s * since_s, -kMostYawIntegral_rad, kMostYawIntegral_rad);
   // A standing robot must not turn because of the integral that its motion needed.
   if (body.velocity.yaw == 0.0F && length(body.velocity) < kStanding_m_per_s) {

@@ -208,33 +208,34 @@ struct HeldReference {
 /// check sum covers all other members.
 struct alignas(8) ComparisonState {
   std::uint64_t check_sum = 0;
+  // A gap in time resets the members up to current_error_s.
   float disagreement_s[kMostWheels] = {};  ///< time for which the speed sample has contradicted the other evidence
   /// Evidence against the present verdict on the speed sensor, reset when the verdict changes. Accepted sensor: time for which it alone has
   /// contradicted all others, minus the time for which it has not, at least 0. Rejected sensor: time of its agreement with the others.
   float evidence_s[kMostWheels] = {};
-  float current_error_s[kMostWheels] = {};  ///< time for which the current sensor has contradicted voltage and speed
-  float last_rad_per_s[kMostWheels] = {};   ///< speed samples at the last comparison of pairs
-  float with_V_rad_per_s[6] = {};           ///< per pair of wheels: leaky sum of evidence that its currents accelerate its speed difference
-  float against_V_rad_per_s[6] = {};        ///< per pair of wheels: leaky sum of evidence that its currents decelerate that difference
-  float driven_V2[kMostWheels] = {};        ///< leaky mean square of voltage minus back-EMF
-  float counted_A2[kMostWheels] = {};       ///< leaky mean square of the current that the guard has counted: sensed, else calculated
-  float residual_m2_per_s2 = 0.0F;          ///< leaky mean square of the samples' residuals against one motion of the body
+  float with_V_rad_per_s[6] = {};      ///< per pair of wheels: leaky sum of evidence that its currents accelerate its speed difference
+  float against_V_rad_per_s[6] = {};   ///< per pair of wheels: leaky sum of evidence that its currents decelerate that difference
+  float driven_V2[kMostWheels] = {};   ///< leaky mean square of voltage minus back-EMF
+  float counted_A2[kMostWheels] = {};  ///< leaky mean square of the current that the guard has counted: sensed, else calculated
+  float residual_m2_per_s2 = 0.0F;     ///< leaky mean square of the samples' residuals against one motion of the body
   float yaw_disagreement_s = 0.0F;
   float yaw_agreement_s = 0.0F;
-  /// Copy of State::ambient_C. This and the next three survive a flipped bit in the rest of State.
-  float ambient_C = kNoSample;
-  std::uint8_t fitted = 0;  ///< bit i: WheelState::has_current of wheel i, bit 4 + i: has_stator
-  std::uint8_t unused[3] = {};
-  /// Copies of WheelState::speed_fault and State::yaw_fault.
-  std::uint8_t speed_fault[kMostWheels] = {};
-  std::uint8_t yaw_fault = 0;
-  std::uint8_t is_checked = 0;         ///< 1 if no pair of wheel sensors is swapped: each pair has kConfirmations
   std::uint8_t confirmations[6] = {};  ///< per pair of wheels: comparisons that showed it not to be swapped
+  std::uint16_t runaway_mm_per_s = 0;  ///< sum of the rim speeds in the first comparison that counts in runaway_count
+  std::uint8_t runaway_count = 0;      ///< comparisons in a row that showed a runaway
   /// 1 if the wheels have turned for kRunaway_s without slowing down although the robot should stand, until they stand.
   std::uint8_t is_runaway = 0;
-  std::uint8_t runaway_count = 0;      ///< comparisons in a row that showed it
-  std::uint16_t runaway_mm_per_s = 0;  ///< sum of the rim speeds in the first of them
-  float standing_s = 0.0F;  ///< time without a change of any speed sample while blocked motors would draw more than the limp current
+  std::uint8_t unused[2] = {};
+  float current_error_s[kMostWheels] = {};  ///< time for which the current sensor has contradicted voltage and speed
+  float last_rad_per_s[kMostWheels] = {};   ///< speed samples at the last comparison of pairs
+  float standing_s = 0.0F;      ///< time without a change of any speed sample while blocked motors would draw more than the limp current
+  std::uint8_t is_checked = 0;  ///< 1 if no pair of wheel sensors is swapped: each pair has kConfirmations
+  /// Bit i: WheelState::has_current of wheel i, bit 4 + i: has_stator. This and the next three survive a flipped bit in the rest of State.
+  std::uint8_t fitted = 0;
+  std::uint8_t yaw_fault = 0;  ///< copy of State::yaw_fault
+  std::uint8_t unused_too = 0;
+  std::uint8_t speed_fault[kMostWheels] = {};  ///< copies of WheelState::speed_fault
+  float ambient_C = kNoSample;                 ///< copy of State::ambient_C
 };
 
 /// State of the core between two steps. Only start() and step() write it; a copy can be logged. Every step verifies the check sum, which

@@ -7,7 +7,7 @@
 
 namespace robot_core {
 
-// Members per wheel have no initial values: every stage writes them for all wheels of the robot.
+// Members without initial values: every stage writes them before they are read, those per wheel for all wheels of the robot.
 
 /// Stage 1: validated signals of one wheel.
 struct ValidatedWheel {
@@ -21,23 +21,23 @@ struct ValidatedWheel {
 
 struct Validated {
   ValidatedWheel wheel[kMostWheels];
-  float yaw_rate_rad_per_s = 0.0F;
-  Vector3 velocity;            ///< velocity of the body, local frame
-  float battery_V = 0.0F;      ///< voltage for limits, unlikely to be above the true one
-  float pwm_battery_V = 0.0F;  ///< voltage for the PWM ratio, unlikely to be below the true one
-  float ambient_C = 0.0F;
-  float elapsed_s = 0.0F;  ///< time since the last step, a whole number of periods
-  int guard_periods = 1;   ///< elapsed periods; one more whenever small delays add up to a period
-  PerWheel rim_m_per_s;    ///< sensed rim speed without the rotation of the robot; NaN if the sensor is not accepted
-  float spread_V = 0.0F;   ///< bound of the difference between estimates of one back-EMF from different sensors; infinite: unknown
+  Vector3 velocity;     ///< velocity of the body, local frame
+  float battery_V;      ///< voltage for limits, unlikely to be above the true one
+  float pwm_battery_V;  ///< voltage for the PWM ratio, unlikely to be below the true one
+  float ambient_C;
+  float elapsed_s;             ///< time since the last step, a whole number of periods
+  int guard_periods;           ///< elapsed periods; one more whenever small delays add up to a period
+  PerWheel rim_m_per_s;        ///< sensed rim speed without the rotation of the robot; NaN if the sensor is not accepted
+  float spread_V;              ///< bound of the difference between estimates of one back-EMF from different sensors; infinite: unknown
   bool is_redundancy_reduced = false;  ///< true: three wheels, or a speed sensor or the gyro is not accepted
   bool is_checked = true;              ///< true: enough sensors are left for a wrong one to contradict the others
   /// True: with one spare sensor two swapped ones may go unnoticed, so until a swap is ruled out every sample may belong to each wheel.
   bool is_any_possible = false;
   bool are_all_sensed = true;
-  bool were_sensors_compared = false;  ///< true: compare_sensors() used its turn in this step
-  bool are_samples_compared = false;   ///< true: too few sensors are accepted, so implied speeds come from all samples
-  Mode mode = Mode::coast;             ///< mode after faults of the command
+  Reason common_reason = Reason::none;  ///< wheel_speeds_dead: all wheels get the limp current, and the motors may stand
+  bool were_sensors_compared = false;   ///< true: compare_sensors() used its turn in this step
+  bool are_samples_compared = false;    ///< true: too few sensors are accepted, so implied speeds come from all samples
+  Mode mode = Mode::coast;              ///< mode after faults of the command
   Reason command_fault = Reason::none;
   Reason robot_fault = Reason::none;
 };
@@ -96,6 +96,12 @@ void make_output(const Config& config, const State& state, const Validated& vali
 
 inline float rim_speed_m_per_s(const Config& config, int i, float speed_rad_per_s) {
   return speed_rad_per_s * config.wheel[i].rim_per_speed_m;
+}
+
+/// True if a sensed current is so far above the limit that this is neither noise nor settling.
+inline bool is_overcurrent(const Config& config, const WheelState& wheel, float sensed_A) {
+  constexpr float kOvercurrent_ratio = 1.3F;
+  return absolute(sensed_A) > kOvercurrent_ratio * wheel.current_bound_A + config.derived.current_margin_A;
 }
 
 /// Yaw rate that the validated wheel speeds imply.

@@ -197,7 +197,7 @@ struct PlaneFit {
 /// All sensors are accepted: least squares with a constant matrix.
 void find_from_all(const Config& config, Validated& validated) {
   const DerivedConfig& derived = config.derived;
-  const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
+  const float turning_m_per_s = config.contact_radius_m * validated.velocity.yaw;
   PerWheel& rim_m_per_s = validated.rim_m_per_s;
   float x_m_per_s = 0.0F;
   float y_m_per_s = 0.0F;
@@ -207,8 +207,8 @@ void find_from_all(const Config& config, Validated& validated) {
     x_m_per_s += config.wheel[i].rolling_x_share * rim_m_per_s[i];
     y_m_per_s += config.wheel[i].rolling_y_share * rim_m_per_s[i];
   }
-  validated.velocity = {derived.plane_xx_factor * x_m_per_s + derived.plane_xy_factor * y_m_per_s,
-                        derived.plane_xy_factor * x_m_per_s + derived.plane_yy_factor * y_m_per_s, validated.yaw_rate_rad_per_s};
+  validated.velocity.x = derived.plane_xx_factor * x_m_per_s + derived.plane_xy_factor * y_m_per_s;
+  validated.velocity.y = derived.plane_xy_factor * x_m_per_s + derived.plane_yy_factor * y_m_per_s;
   float disagreement_m_per_s = 0.0F;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -249,7 +249,7 @@ void find_from_all(const Config& config, Validated& validated) {
 /// If too few sensors are left, every sample is compared with all others, even with rejected ones. Sensors that were lost together and
 /// agree with each other again are so accepted again.
 [[gnu::cold]] void compare_samples(const Config& config, const State& state, Validated& validated) {
-  const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
+  const float turning_m_per_s = config.contact_radius_m * validated.velocity.yaw;
   PlaneFit all;
   for (int i = 0; i < config.wheel_count; ++i) {
     all.add(config.wheel[i], rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - turning_m_per_s);
@@ -265,7 +265,7 @@ void find_from_all(const Config& config, Validated& validated) {
 
 /// Calculates speeds and body velocity from the remaining sensors if some are missing.
 [[gnu::cold]] void find_from_some(const Config& config, const State& state, Validated& validated) {
-  const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
+  const float turning_m_per_s = config.contact_radius_m * validated.velocity.yaw;
   PlaneFit all;
   for (int i = 0; i < config.wheel_count; ++i) {
     float& rim_m_per_s = validated.rim_m_per_s[i];
@@ -280,7 +280,8 @@ void find_from_all(const Config& config, Validated& validated) {
     all.x_m_per_s = state.velocity_reference.x;
     all.y_m_per_s = state.velocity_reference.y;
   }
-  validated.velocity = {all.x_m_per_s, all.y_m_per_s, validated.yaw_rate_rad_per_s};
+  validated.velocity.x = all.x_m_per_s;
+  validated.velocity.y = all.y_m_per_s;
   validated.are_samples_compared = !is_known;
   float disagreement_m_per_s = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -290,10 +291,8 @@ void find_from_all(const Config& config, Validated& validated) {
       float rim_m_per_s = validated.rim_m_per_s[i];
       disagreement_m_per_s += absolute(rim_m_per_s - all.rim_of(wheel));
       found.is_speed_known = true;
-      if (is_wheel_compared(state)) {
-        const bool is_implied = is_known && all.leave_out(wheel, rim_m_per_s);
-        found.implied_rad_per_s = is_implied ? (rim_m_per_s + turning_m_per_s) * wheel.speed_per_rim_per_m : found.speed_rad_per_s;
-      }
+      const bool is_implied = is_known && all.leave_out(wheel, rim_m_per_s);
+      found.implied_rad_per_s = is_implied ? (rim_m_per_s + turning_m_per_s) * wheel.speed_per_rim_per_m : found.speed_rad_per_s;
       continue;
     }
     found.speed_rad_per_s = (all.rim_of(wheel) + turning_m_per_s) * wheel.speed_per_rim_per_m;
@@ -324,10 +323,10 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, V
   }
   state.is_yaw_same = sample == state.raw_yaw_rate_rad_per_s ? 1 : 0;
   state.raw_yaw_rate_rad_per_s = is_possible ? sample : 0.0F;
-  validated.yaw_rate_rad_per_s = state.raw_yaw_rate_rad_per_s;
+  validated.velocity.yaw = state.raw_yaw_rate_rad_per_s;
   if (state.yaw_fault != 0) {
     const float from_wheels = yaw_rate_of_wheels(config, validated);
-    validated.yaw_rate_rad_per_s =
+    validated.velocity.yaw =
         validated.are_all_sensed ? clamped(from_wheels, -kFastestYaw_rad_per_s, kFastestYaw_rad_per_s) : state.velocity_reference.yaw;
     validated.robot_fault = validated.robot_fault == Reason::none ? static_cast<Reason>(state.yaw_fault) : validated.robot_fault;
   }
@@ -399,13 +398,17 @@ float estimated_current_A(const Config& config, const WheelState& wheel, float s
 /// Handles a missing sample, or one of a sensor that contradicts voltage and speed.
 [[gnu::noinline]] void estimate_current(const Config& config, WheelState& wheel, float sample_A, bool is_sample,
                                         ValidatedWheel& validated) {
-  wheel.current_fault = is_sample                ? code(Reason::current_implausible)
-                        : wheel.has_current != 0 ? code(Reason::current_missing)
-                                                 : code(Reason::none);
-  wheel.has_current |= is_sample ? 1 : 0;
   const float estimate_A = estimated_current_A(config, wheel, validated.speed_rad_per_s);
   validated.is_current_sensed = false;
-  validated.current_A = is_sample && absolute(sample_A) > absolute(estimate_A) ? sample_A : estimate_A;
+  validated.current_A = estimate_A;
+  wheel.current_fault = code(wheel.has_current != 0 ? Reason::current_missing : Reason::none);
+  if (is_sample) {
+    wheel.current_fault = code(Reason::current_implausible);
+    wheel.has_current = 1;
+    // A distrusted sensor can still open the bridge.
+    validated.is_current_sensed = is_overcurrent(config, wheel, sample_A);
+    validated.current_A = absolute(sample_A) > absolute(estimate_A) ? sample_A : estimate_A;
+  }
 }
 
 void validate_currents(const Config& config, State& state, const Input& input, Validated& validated) {
@@ -452,6 +455,12 @@ Validated validate_input(const Config& config, State& state, const Input& input)
     }
   }
   compare_sensors(config, state, input, validated);
+  if (state.comparison.standing_s > kStanding_s) {
+    validated.common_reason = Reason::wheel_speeds_dead;
+    validated.is_redundancy_reduced = true;
+    validated.is_checked = false;
+    validated.spread_V = std::numeric_limits<float>::infinity();
+  }
   if (state.comparison.is_runaway != 0) {
     validated.mode = Mode::coast;
     validated.robot_fault = validated.robot_fault == Reason::none ? Reason::runaway : validated.robot_fault;

@@ -15,8 +15,6 @@ namespace {
 constexpr float kLeastKept_share = 0.25F;
 constexpr float kKeptRise_ratio = 1.01F;  // per period
 
-// A sensed current this far above the limit is neither noise nor settling.
-constexpr float kOvercurrent_ratio = 1.3F;
 constexpr float kBoundDecay = 0.8F;  // decay of the bound per period: sampling and actuation are late by one or two periods
 
 constexpr float kRounding = 1.0001F;
@@ -34,10 +32,13 @@ struct WheelDemand {
 // Seldom needed code is in functions of its own, because the loops over the wheels are unrolled.
 
 /// Limits a wheel without speed sensor to the limp current, and every wheel if a faulty sensor would contradict no other one.
-[[gnu::cold, gnu::noinline]] void limit_to_limp(const Config& config, const WheelState& state, WheelDemand& demand) {
+[[gnu::cold, gnu::noinline]] void limit_to_limp(const Config& config, const WheelState& state, const Validated& validated,
+                                                WheelDemand& demand) {
   if (config.limp_current_A < demand.most_A) {
     demand.most_A = config.limp_current_A;
-    demand.reason = state.speed_fault != 0 ? static_cast<Reason>(state.speed_fault) : Reason::unchecked;
+    demand.reason = state.speed_fault != 0                    ? static_cast<Reason>(state.speed_fault)
+                    : validated.common_reason != Reason::none ? validated.common_reason
+                                                              : Reason::unchecked;
   }
 }
 
@@ -51,7 +52,7 @@ void limit_demand(const Config& config, const WheelState& state, const Validated
     demand.reason = Reason::driver_current;
   }
   if (validated.is_redundancy_reduced && (!validated.wheel[i].is_speed_sensed || !validated.is_checked)) {
-    limit_to_limp(config, state, demand);
+    limit_to_limp(config, state, validated, demand);
   }
 }
 
@@ -105,7 +106,10 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
   const float band_V = config.lowest_resistance_ohm * demand.most_A;
   // Without a spare sensor a single set of sensors determines each speed.
   const float speed_rad_per_s = validated.wheel[i].speed_rad_per_s;
-  const SpeedRange range = validated.is_checked ? speed_range(config, state, validated, i) : SpeedRange{speed_rad_per_s, speed_rad_per_s};
+  SpeedRange range = validated.is_checked ? speed_range(config, state, validated, i) : SpeedRange{speed_rad_per_s, speed_rad_per_s};
+  if (validated.common_reason != Reason::none) {
+    range.add(0.0F);
+  }
   const float low_V = config.derived.geared_constant_V_s_per_rad * range.fastest_rad_per_s - band_V;
   const float high_V = config.derived.geared_constant_V_s_per_rad * range.slowest_rad_per_s + band_V;
   if (!(demand.most_A > 0.0F) || !(low_V <= high_V)) {
@@ -146,10 +150,6 @@ void hold_sensed_current(const Config& config, const Validated& validated, int i
   voltage_V = clamped(voltage_V, back_V - room_V, back_V + room_V);
 }
 
-bool is_overcurrent(const Config& config, const ValidatedWheel& sensed, const WheelState& wheel) {
-  return absolute(sensed.current_A) > kOvercurrent_ratio * wheel.current_bound_A + config.derived.current_margin_A;
-}
-
 /// Scales a wheel that exceeds its limit; returns the smaller one of `least` and the wheel's fraction.
 float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& demand, Reason& reason, float least) {
   const float size_A = absolute(demand.current_A);
@@ -161,7 +161,7 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
   return smaller(least, demand.share);
 }
 
-/// Applies the guards of a robot with a hot motor or with dead wheel speeds. Returns the new smallest fraction. A wheel that brakes may
+/// Applies the guards of a robot with a hot motor. Returns the new smallest fraction. A wheel that brakes may
 /// always use the braking reserve. All wheels may use it while the wanted currents take power out of the body. This must hold without the
 /// wheel that brakes most, because its speed sensor may be faulty. Otherwise a wheel that is pulled along and drives for a moment would
 /// take the brakes from all the others through the common factor.
@@ -180,21 +180,14 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
     most_braking_W = smaller(most_braking_W, driving_W[i]);
   }
   const bool body_brakes = body_W < most_braking_W && !body.is_wheelwise;
-  const bool are_speeds_dead = state.comparison.standing_s > kStanding_s;
   bool would_limit = false;
   for (int i = 0; i < config.wheel_count; ++i) {
     const bool brakes = body_brakes || driving_W[i] < 0.0F;
     const float allowed_A = brakes ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
     const float earlier_A = demand[i].most_A;
     would_limit = apply_guard(config, state, allowed_A, validated.elapsed_s, demand[i]) || would_limit;
-    if (are_speeds_dead) {
-      demand[i].most_A = smaller(demand[i].most_A, config.limp_current_A);
-    }
     if (validated.wheel[i].is_speed_known && demand[i].most_A < earlier_A) {
       least = share_of_wheel(config, i, most_V, demand[i], limited.wheel[i].reason, least);
-    }
-    if (are_speeds_dead) {
-      limited.wheel[i].reason = demand[i].reason = Reason::wheel_speeds_dead;
     }
   }
   state.shadow_steps += would_limit ? 1U : 0U;
@@ -206,7 +199,7 @@ float find_demands(const Config& config, State& state, const Validated& validate
                    float most_V, WheelDemand* demand, LimitedVoltages& limited) {
   float least = 1.0F;
   float power_W = 0.0F;
-  bool is_hot = state.comparison.standing_s > kStanding_s;
+  bool is_hot = false;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
     const ValidatedWheel& sensed = validated.wheel[i];
@@ -214,7 +207,7 @@ float find_demands(const Config& config, State& state, const Validated& validate
     each.back_V = config.derived.geared_constant_V_s_per_rad * sensed.speed_rad_per_s;
     each.current_A = (voltage.wheel[i].wanted_V - each.back_V) * config.derived.per_lowest_resistance_A_per_V;
     each.share = 1.0F;
-    limited.wheel[i].reason = Reason::none;
+    limited.wheel[i].reason = validated.common_reason;
     limit_demand(config, state.wheel[i], validated, body, i, each);
     // The limit for braking is at least as high.
     is_hot |= !(state.wheel[i].allowed_A >= each.most_A);
@@ -277,7 +270,7 @@ Reason strongest(const WheelState& wheel, Reason limit) {
     }
   }
   wheel.current_bound_A = larger(demand.most_A, kBoundDecay * wheel.current_bound_A);
-  if (sensed.is_current_sensed && is_overcurrent(config, sensed, wheel)) {
+  if (sensed.is_current_sensed && is_overcurrent(config, wheel, sensed.current_A)) {
     cause = Reason::sensed_current;
     is_held = false;
   }

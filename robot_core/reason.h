@@ -33,8 +33,8 @@
 // |        | currents and four speeds must not contradict the swap       |                                                   |                                 |
 // | 114 W  | speed unknown: too few other wheels to estimate it          | voltage at most limp_current_A times resistance;  | as 110                          |
 // |        |                                                             | bridge open if the current is not sensed          |                                 |
-// | 115 W  | no wheel speed changes for kStanding_s while more than      | every current at most Config::limp_current_A,     | a wheel speed changes           |
-// |        | limp_current_A would flow through standing motors: all      | calculated for standing motors (exception below)  |                                 |
+// | 115 W  | no wheel speed changes for kStanding_s while more than      | every current at most Config::limp_current_A, at  | a wheel speed changes           |
+// |        | limp_current_A would flow through standing motors: all      | its estimated speed and standing: no runaway      |                                 |
 // |        | sensors dead, or the robot is held                          |                                                   |                                 |
 // | 116 R  | wheels turn for kRunaway_s without slowing down although    | all bridges open                                  | the wheels stand, or a body     |
 // |        | the robot should stand, before swapped sensors are ruled    |                                                   | velocity is commanded           |
@@ -45,7 +45,8 @@
 // |        | slipping; the other sensors must be accepted                |                                                   |                                 |
 // | 120 W  | motor current seen once, also before a restart; now not     | current from voltage, speed and guard temperature | next valid sample               |
 // |        | finite or more than the battery can drive                   |                                                   |                                 |
-// | 121 W  | motor current contradicts voltage and speed (stuck sensor)  | as 120; the guard uses the larger magnitude       | kSteadyAgain_s of agreement     |
+// | 121 W  | motor current contradicts voltage and speed: a stuck        | as 120; the guard uses the larger magnitude; a    | kSteadyAgain_s of agreement     |
+// |        | sensor, or a wrong wheel speed                              | sample far above the limit opens the bridge       |                                 |
 // | 130 R  | battery voltage not finite, below half of the lowest or     | PWM for a full battery, limits for an empty one   | next valid sample               |
 // |        | above 1.1 times the full voltage                            |                                                   |                                 |
 // | 140 R  | yaw rate not finite, out of sensor range, or jumping        | yaw rate from the wheels                          | kSteadyAgain_s of agreement     |
@@ -63,6 +64,9 @@
 // Without a code:
 //   - A low battery sample is no fault: a kicker may be charging. Limits use the sample; the PWM ratio uses the last open-circuit voltage.
 //   - If a current sensor reads too low, the guard still counts the heat: it compares the sensor with voltage and speed.
+//   - Without a trusted current sensor a wrong wheel speed would hide heat. If one of four wheel speeds alone contradicts the others by more
+//     than 0.06 m/s plus 6 % of the speed limit, or any does with a sensor less, the guard counts the larger current of the two at its own
+//     and at the implied speed. A wheel that slides that much therefore counts as hotter than it is.
 //   - If the sample of the air temperature falls, the core follows it by at most 0.02 K/s.
 //   - Each voltage keeps the current limit for every speed that the wheel may have. These speeds come from its own sensor, from each two
 //     other wheels with the gyro, and from three other wheels. With four wheel sensors and a gyro, any two may be wrong without a higher
@@ -83,17 +87,14 @@
 //     currents shows the swap.
 //   - One wheel sensor with a wrong scale, sign or offset, or stuck with noise, until fault 117. In 77 of 80 drives of 12 s a wrong sign
 //     was found, after 1.4 s on average; a scale of a half in 70, after 4.5 s (tests/robot_core/wrong_wheel_sensor_test.cpp). The robot
-//     then turns and its wheels work against each other. Errors below 0.06 m/s plus 6 % of the speed limit are not found, larger ones of a
-//     fifth come and go with the speed, and none is found on three wheels. Where opposite wheels are parallel, nothing tells which one is
-//     wrong: both stay rejected until the robot turns, without current sensors with open bridges (114). A slipping wheel with a faulty
-//     speed sensor and no current sensor may exceed its limit.
+//     then turns and its wheels work against each other. In the modes wheel_speed and wheel_torque fault 117 is not searched for. With a
+//     torque command the wheel of a sensor that reads too much then accelerates up to its current limit. On three wheels its current
+//     exceeds the limit for some periods at a time, because a bridge that its correct current sensor (121) opens closes again. Errors below
+//     0.06 m/s plus 6 % of the speed limit are not found, larger ones of a fifth come and go with the speed, and none is found on three
+//     wheels. Where opposite wheels are parallel, nothing tells which one is wrong: both stay rejected until the robot turns, without
+//     current sensors with open bridges (114). A slipping wheel with a faulty speed sensor and no current sensor may exceed its limit.
 //   - More faulty speed sensors than spare ones: the current may exceed its limit for some periods. If all wheel sensors show 0, the robot
-//     accelerates for kStanding_s before the limp current limits it (115).
-//   - Without current sensors, while wheel torques or wheel speeds are commanded, fault 117 does not run and a wrong wheel speed hides heat.
-//     In simulation a sensor with twice the speed let a winding reach 167 degC (limit 155 degC) while the guard computed 93 degC. If all
-//     wheel sensors are dead then (115), wheels with the code 111 or 112 took up to 2.6 times limp_current_A.
-//   - One of three wheel speeds with twice its value while the current sensors are right: a right current sensor is rejected (121), and its
-//     wheel took up to three times limp_current_A for seconds.
+//     accelerates for kStanding_s before the limp current limits it (115). Rolling, it may then brake with up to twice the limp current.
 //   - Pushes on a moving robot can look like swapped sensors until these are ruled out: two wheels then keep the limp current until
 //     start(). Of robots pushed with three quarters of their grip for half of the first 10 s, fewer than 5 % with current sensors and 33 %
 //     without (tests/robot_core/swapped_sensors_test.cpp). Of 10 000 robots pushed while they should stand, none.

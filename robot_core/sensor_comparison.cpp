@@ -89,18 +89,9 @@ bool current_contradicts(const Config& config, const WheelState& wheel, float se
          !(sensed_A >= smaller(last.low_A, earlier.low_A) - margin_A && sensed_A <= larger(last.high_A, earlier.high_A) + margin_A);
 }
 
-/// Compares the heat of the current sensor with voltage and speed: a low reading hides heat long before it contradicts the motor equation.
-void compare_heat(const Config& config, State& state, const Validated& validated, float sensed_A, int i, float since_s) {
-  constexpr float kHeat_s = 1.0F;
-  const WheelState& wheel = state.wheel[i];
-  ComparisonState& comparison = state.comparison;
-  const float back_V = config.derived.geared_constant_V_s_per_rad * validated.wheel[i].speed_rad_per_s;
-  const float driven_V = wheel.is_open != 0 ? 0.0F : wheel.voltage_V - back_V;
-  const bool is_counted = absolute(sensed_A) <= config.derived.most_sensed_A && wheel.is_current_distrusted == 0;
-  const float counted_A = is_counted ? sensed_A : driven_V * wheel.conductance_A_per_V;
-  const float share = smaller(1.0F, since_s / kHeat_s);
-  comparison.driven_V2[i] += share * (driven_V * driven_V - comparison.driven_V2[i]);
-  comparison.counted_A2[i] += share * (counted_A * counted_A - comparison.counted_A2[i]);
+/// Error of a wheel speed that is more than slip and noise.
+float wrong_rad_per_s(const Config& config, int i) {
+  return (kWrong_m_per_s + kWrong_share * config.speed_limit_m_per_s) * config.wheel[i].speed_per_rim_per_m;
 }
 
 [[gnu::cold]] void compare_yaw_rate(const Config& config, State& state, const Validated& validated, float since_s) {
@@ -183,7 +174,7 @@ struct WheelResponse {
 };
 
 void find_responses(const Config& config, State& state, const Validated& validated, float since_s, WheelResponse* response) {
-  const float turning_rad = validated.yaw_rate_rad_per_s * since_s;
+  const float turning_rad = validated.velocity.yaw * since_s;
   const float gripping_m_per_s =
       kGripping_ratio * since_s * (config.acceleration_limit_m_per_s2 + config.contact_radius_m * config.yaw_acceleration_limit_rad_per_s2);
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -204,7 +195,7 @@ void find_responses(const Config& config, State& state, const Validated& validat
 /// exchanged. It is 0 for three wheels, whose speeds fit some motion with the gyro even after two samples were exchanged.
 [[gnu::cold, gnu::noinline]] float contradiction_m2_per_s2(const Config& config, const State& state, const Validated& validated, int a,
                                                            int b) {
-  const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
+  const float turning_m_per_s = config.contact_radius_m * validated.velocity.yaw;
   float x = 0.0F;
   float y = 0.0F;
   float all = 0.0F;
@@ -221,13 +212,36 @@ void find_responses(const Config& config, State& state, const Validated& validat
   return larger(0.0F, all - explained) / static_cast<float>(config.wheel_count);
 }
 
-/// Returns true if the share of the residual that disappears without one wheel's sensor shows that it alone contradicts the others. Leaving
-/// it out of the fit lowers the sum of squared residuals by d²·(1 − leverage), where d is its difference from the others' estimate.
-bool is_alone(const Config& config, const State& state, const Validated& validated, float apart_rad_per_s, int i) {
+/// Returns true if a wheel speed alone contradicts all others, or might: with a sensor less nothing tells which one is wrong.
+/// `apart_rad_per_s`: difference from the speed that the others imply. Leaving the wheel out of the fit lowers the sum of squared residuals
+/// by d²·(1 − leverage), where d is that difference.
+bool is_wrong(const Config& config, const State& state, const Validated& validated, float apart_rad_per_s, int i) {
   const float apart_m_per_s = rim_speed_m_per_s(config, i, apart_rad_per_s);
-  return !validated.is_redundancy_reduced && is_controlled(validated.mode) &&
-         apart_m_per_s * apart_m_per_s > kAlone_share * static_cast<float>(kMostWheels) * config.wheel[i].others_factor *
-                                             contradiction_m2_per_s2(config, state, validated, 0, 0);
+  return absolute(apart_rad_per_s) > wrong_rad_per_s(config, i) &&
+         (validated.is_redundancy_reduced || apart_m_per_s * apart_m_per_s > kAlone_share * static_cast<float>(kMostWheels) *
+                                                                                 config.wheel[i].others_factor *
+                                                                                 contradiction_m2_per_s2(config, state, validated, 0, 0));
+}
+
+/// Compares the counted heat with voltage and speed. A current sensor that reads too low hides heat long before it contradicts the motor
+/// equation. Without one, a wrong wheel speed hides heat: then the speed that heats more counts, its own or that of the other wheels.
+void compare_heat(const Config& config, State& state, const Validated& validated, float sensed_A, bool is_speed_wrong, int i,
+                  float since_s) {
+  constexpr float kHeat_s = 1.0F;
+  const WheelState& wheel = state.wheel[i];
+  ComparisonState& comparison = state.comparison;
+  const float constant_V_s_per_rad = config.derived.geared_constant_V_s_per_rad;
+  float driven_V = wheel.is_open != 0 ? 0.0F : wheel.voltage_V - constant_V_s_per_rad * validated.wheel[i].speed_rad_per_s;
+  float counted_A = sensed_A;
+  if (!(absolute(sensed_A) <= config.derived.most_sensed_A) || wheel.is_current_distrusted != 0) {
+    counted_A = driven_V * wheel.conductance_A_per_V;
+    if (is_speed_wrong && wheel.is_open == 0) {
+      driven_V = larger(absolute(driven_V), absolute(wheel.voltage_V - constant_V_s_per_rad * validated.wheel[i].implied_rad_per_s));
+    }
+  }
+  const float share = smaller(1.0F, since_s / kHeat_s);
+  comparison.driven_V2[i] += share * (driven_V * driven_V - comparison.driven_V2[i]);
+  comparison.counted_A2[i] += share * (counted_A * counted_A - comparison.counted_A2[i]);
 }
 
 /// Rejects the wrong sensor, and that of an opposite wheel, which contradicts the others almost equally. The right one then agrees with the
@@ -249,7 +263,7 @@ bool is_alone(const Config& config, const State& state, const Validated& validat
   const float sample = wheel.raw_speed_rad_per_s;
   const float implied_rad_per_s = validated.wheel[i].implied_rad_per_s;
   const float apart_rad_per_s = sample - implied_rad_per_s;
-  const float wrong_rad_per_s = (kWrong_m_per_s + kWrong_share * config.speed_limit_m_per_s) * config.wheel[i].speed_per_rim_per_m;
+  const bool is_wrong_now = is_wrong(config, state, validated, apart_rad_per_s, i);
   const bool is_same = static_cast<float>(wheel.same_steps) * config.period_s > kStuck_s;
   const float most_apart_rad_per_s = (is_same ? kSameDisagreement_share : kDisagreement_share) * config.fastest_wheel_rad_per_s;
   const bool contradicts = current_contradicts(config, wheel, input.motor_current_A[i], sample);
@@ -262,7 +276,7 @@ bool is_alone(const Config& config, const State& state, const Validated& validat
   const std::uint8_t fault = wheel.speed_fault;
   if (fault == 0) {
     comparison.disagreement_s[i] = agrees ? 0.0F : comparison.disagreement_s[i] + since_s;
-    if (absolute(apart_rad_per_s) > wrong_rad_per_s && is_alone(config, state, validated, apart_rad_per_s, i)) {
+    if (is_wrong_now && !validated.is_redundancy_reduced && is_controlled(validated.mode)) {
       evidence_s += since_s;
       if (evidence_s > kWrong_s) {
         reject_wrong(state);
@@ -279,10 +293,11 @@ bool is_alone(const Config& config, const State& state, const Validated& validat
     bool is_confirmed = agrees && is_comparable && wheel.has_spoken_wrongly == 0;
     float more_s = since_s;
     if (fault == code(Reason::wheel_speed_wrong)) {
-      is_confirmed = is_confirmed && absolute(apart_rad_per_s) < wrong_rad_per_s;
+      is_confirmed = is_confirmed && absolute(apart_rad_per_s) < wrong_rad_per_s(config, i);
       // A wrong scale or sign does not show while the wheel hardly turns. An error of an eighth is within slip and noise.
-      more_s =
-          absolute(implied_rad_per_s) > kTurning_share * wrong_rad_per_s + kRecovery_ratio * absolute(apart_rad_per_s) ? since_s : 0.0F;
+      more_s = absolute(implied_rad_per_s) > kTurning_share * wrong_rad_per_s(config, i) + kRecovery_ratio * absolute(apart_rad_per_s)
+                   ? since_s
+                   : 0.0F;
     }
     evidence_s = is_confirmed ? evidence_s + more_s : 0.0F;
     // A sensor with a constant sample may recover only while no current flows.
@@ -293,6 +308,7 @@ bool is_alone(const Config& config, const State& state, const Validated& validat
     }
   }
   wheel.has_spoken_wrongly = 0;
+  compare_heat(config, state, validated, input.motor_current_A[i], is_wrong_now, i, since_s);
 }
 
 /// Returns true if the evidence that does not depend on pushes also speaks for a swap of two sensors: their exchange makes four speeds fit
@@ -323,7 +339,7 @@ void compare_pairs(const Config& config, State& state, const Input& input, const
   const float keep = 1.0F - smaller(1.0F, since_s / kSwap_s);
   // If wheels and gyro disagree about the rotation, one of them is wrong.
   const bool is_turning_known =
-      state.yaw_fault == 0 && absolute(yaw_rate_of_wheels(config, validated) - validated.yaw_rate_rad_per_s) < kYawDisagreement_rad_per_s;
+      state.yaw_fault == 0 && absolute(yaw_rate_of_wheels(config, validated) - validated.velocity.yaw) < kYawDisagreement_rad_per_s;
   // Pushes on a standing robot look like swapped sensors.
   const bool is_driven = is_asked_to_move(config, state.velocity_reference, validated);
   const bool is_wheelwise = validated.mode == Mode::wheel_speed || validated.mode == Mode::wheel_torque;
@@ -423,17 +439,12 @@ namespace {
 /// Speeds before a gap in time cannot be compared with those after it. Earlier findings stay.
 [[gnu::cold, gnu::noinline]] void restart_comparisons(State& state) {
   ComparisonState& comparison = state.comparison;
-  PerWheel current_error_s;
-  __builtin_memcpy(current_error_s, comparison.current_error_s, sizeof(current_error_s));
-  const float standing_s = comparison.standing_s;
-  const std::uint8_t is_checked = comparison.is_checked;
-  comparison = {};
+  constexpr unsigned kFirst = __builtin_offsetof(ComparisonState, disagreement_s);
+  constexpr unsigned kEnd = __builtin_offsetof(ComparisonState, current_error_s);
+  __builtin_memset(reinterpret_cast<unsigned char*>(&comparison) + kFirst, 0, kEnd - kFirst);
   for (int i = 0; i < kMostWheels; ++i) {
-    comparison.current_error_s[i] = current_error_s[i];
     comparison.last_rad_per_s[i] = state.wheel[i].raw_speed_rad_per_s;
   }
-  comparison.standing_s = standing_s;
-  comparison.is_checked = is_checked;
   copy_faults(state);
   seal(state.comparison);
 }
@@ -467,7 +478,6 @@ void compare_sensors(const Config& config, State& state, const Input& input, Val
     const int first = turn == 0 ? 0 : 2;
     for (int i = first; i < first + 2 && i < config.wheel_count; ++i) {
       compare_wheel(config, state, input, validated, i, since_s);
-      compare_heat(config, state, validated, input.motor_current_A[i], i, since_s);
     }
     if (turn == 8) {
       compare_standing(config, state, validated, since_s);

@@ -30,7 +30,7 @@ float cross(const Other& a, const Other& b) { return a.x_share * b.y_share - a.y
 
 [[gnu::cold]] SpeedRange speed_range(const Config& config, const State& state, const Validated& validated, int wheel) {
   const WheelConfig& own = config.wheel[wheel];
-  const float turning_m_per_s = config.contact_radius_m * validated.yaw_rate_rad_per_s;
+  const float turning_m_per_s = config.contact_radius_m * validated.velocity.yaw;
   const Other a = other(config, validated, wheel + 1);
   const Other b = other(config, validated, wheel + 2);
   const Other c = other(config, validated, wheel + 3);

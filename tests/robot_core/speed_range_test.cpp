@@ -49,7 +49,7 @@ double area(const Config& config, int i, int j, int k) { return sine(config, i, 
 /// Reference: one sensor, every two others with the gyro, and three others, one after the other.
 Range searched(const Config& config, const State& state, const Validated& validated, int i) {
   constexpr auto kLeast = static_cast<double>(robot_core::kLeastArea_ratio);
-  const double turning = static_cast<double>(config.contact_radius_m) * static_cast<double>(validated.yaw_rate_rad_per_s);
+  const double turning = static_cast<double>(config.contact_radius_m) * static_cast<double>(validated.velocity.yaw);
   const auto rim = [&](int j) {
     return static_cast<double>(validated.wheel[j].speed_rad_per_s) * static_cast<double>(config.wheel[j].rim_per_speed_m);
   };
