@@ -89,11 +89,6 @@ bool current_contradicts(const Config& config, const WheelState& wheel, float se
          !(sensed_A >= smaller(last.low_A, earlier.low_A) - margin_A && sensed_A <= larger(last.high_A, earlier.high_A) + margin_A);
 }
 
-/// Error of a wheel speed that is more than slip and noise.
-float wrong_rad_per_s(const Config& config, int i) {
-  return (kWrong_m_per_s + kWrong_share * config.speed_limit_m_per_s) * config.wheel[i].speed_per_rim_per_m;
-}
-
 [[gnu::cold]] void compare_yaw_rate(const Config& config, State& state, const Validated& validated, float since_s) {
   ComparisonState& comparison = state.comparison;
   const float apart_rad_per_s = absolute(state.raw_yaw_rate_rad_per_s - yaw_rate_of_wheels(config, validated));
@@ -213,11 +208,11 @@ void find_responses(const Config& config, State& state, const Validated& validat
 }
 
 /// Returns true if a wheel speed alone contradicts all others, or might: with a sensor less nothing tells which one is wrong.
-/// `apart_rad_per_s`: difference from the speed that the others imply. Leaving the wheel out of the fit lowers the sum of squared residuals
-/// by d²·(1 − leverage), where d is that difference.
-bool is_wrong(const Config& config, const State& state, const Validated& validated, float apart_rad_per_s, int i) {
+/// `apart_rad_per_s`: size of the difference from the speed that the others imply. Leaving the wheel out of the fit lowers the sum of
+/// squared residuals by d²·(1 − leverage), where d is that difference.
+bool is_wrong(const Config& config, const State& state, const Validated& validated, float apart_rad_per_s, float most_rad_per_s, int i) {
   const float apart_m_per_s = rim_speed_m_per_s(config, i, apart_rad_per_s);
-  return absolute(apart_rad_per_s) > wrong_rad_per_s(config, i) &&
+  return apart_rad_per_s > most_rad_per_s &&
          (validated.is_redundancy_reduced || apart_m_per_s * apart_m_per_s > kAlone_share * static_cast<float>(kMostWheels) *
                                                                                  config.wheel[i].others_factor *
                                                                                  contradiction_m2_per_s2(config, state, validated, 0, 0));
@@ -262,12 +257,13 @@ void compare_heat(const Config& config, State& state, const Validated& validated
   ComparisonState& comparison = state.comparison;
   const float sample = wheel.raw_speed_rad_per_s;
   const float implied_rad_per_s = validated.wheel[i].implied_rad_per_s;
-  const float apart_rad_per_s = sample - implied_rad_per_s;
-  const bool is_wrong_now = is_wrong(config, state, validated, apart_rad_per_s, i);
+  const float apart_rad_per_s = absolute(sample - implied_rad_per_s);
+  const float wrong_rad_per_s = (kWrong_m_per_s + kWrong_share * config.speed_limit_m_per_s) * config.wheel[i].speed_per_rim_per_m;
+  const bool is_wrong_now = is_wrong(config, state, validated, apart_rad_per_s, wrong_rad_per_s, i);
   const bool is_same = static_cast<float>(wheel.same_steps) * config.period_s > kStuck_s;
   const float most_apart_rad_per_s = (is_same ? kSameDisagreement_share : kDisagreement_share) * config.fastest_wheel_rad_per_s;
   const bool contradicts = current_contradicts(config, wheel, input.motor_current_A[i], sample);
-  const bool agrees = absolute(apart_rad_per_s) <= most_apart_rad_per_s && !contradicts;
+  const bool agrees = apart_rad_per_s <= most_apart_rad_per_s && !contradicts;
   // Counts up to kSteadyAgain_s beyond the threshold, so that the sensor must agree for that time before it is accepted again.
   float& current_error_s = comparison.current_error_s[i];
   current_error_s = contradicts ? smaller(current_error_s + since_s, kStuck_s + kSteadyAgain_s) : larger(0.0F, current_error_s - since_s);
@@ -293,11 +289,9 @@ void compare_heat(const Config& config, State& state, const Validated& validated
     bool is_confirmed = agrees && is_comparable && wheel.has_spoken_wrongly == 0;
     float more_s = since_s;
     if (fault == code(Reason::wheel_speed_wrong)) {
-      is_confirmed = is_confirmed && absolute(apart_rad_per_s) < wrong_rad_per_s(config, i);
+      is_confirmed = is_confirmed && !is_wrong_now;
       // A wrong scale or sign does not show while the wheel hardly turns. An error of an eighth is within slip and noise.
-      more_s = absolute(implied_rad_per_s) > kTurning_share * wrong_rad_per_s(config, i) + kRecovery_ratio * absolute(apart_rad_per_s)
-                   ? since_s
-                   : 0.0F;
+      more_s = absolute(implied_rad_per_s) > kTurning_share * wrong_rad_per_s + kRecovery_ratio * apart_rad_per_s ? since_s : 0.0F;
     }
     evidence_s = is_confirmed ? evidence_s + more_s : 0.0F;
     // A sensor with a constant sample may recover only while no current flows.
