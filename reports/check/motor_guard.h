@@ -6,7 +6,7 @@
  * While the current is at most allowed_current_A and the air no hotter than that, the observer's winding temperature never exceeds its
  * limit. The safety factor on heat is 1.84, for a confidence of 0.95: of 60 motors drawn from the declared tolerances, 0 exceeded a
  * limit in one of the 11 hardest uses (0.0 %; other draws give 0.0 to 4.9 %). The hottest winding reached 125 degC.
- * Computed, not measured; plausible but wrong sensor readings are not covered.
+ * Computed, not measured; plausible but wrong readings of current, speed and air are not covered.
  *
  * Laws of the model:
  *   copper_loss: P_winding = I² · R25 · (1 + α · (T_winding − 25 °C))

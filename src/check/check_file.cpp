@@ -9,6 +9,7 @@
 #include <set>
 
 #include "check/limit.h"
+#include "derate/option_quantities.h"
 #include "input/reader.h"
 #include "motor/conditions.h"
 
@@ -218,16 +219,18 @@ class CheckReader {
     if (!table) {
       return;
     }
-    const auto take = [&](const base::ParameterSpec& spec, double& value) {
-      value = table->quantity(spec, input::Need::optional).value_or(value);
-    };
     derate::DerateOptions& options = check_.derate;
-    take({"ambient", "degC", base::Range::between(-40.0, 120.0), "hottest air at the motor"}, options.hottest_ambient_C);
-    take({"coldest", "degC", base::Range::between(-60.0, 120.0), "coldest air"}, options.coldest_ambient_C);
-    options.approach_s = table->quantity(
-        {"approach", "s", base::Range::between(0.01, 100.0), "time in which the winding may approach its limit"}, input::Need::optional);
-    take({"period", "s", base::Range::between(1e-3, 1.0), "time between two calls of the firmware"}, options.period_s);
-    take({"confidence", "", base::Range::between(0.5, 0.999), "share of motors that keep their limits"}, options.guarantee.confidence);
+    for (const derate::OptionQuantity& each : derate::option_quantities(options)) {
+      if (const std::optional<double> given = table->quantity(each.spec, input::Need::optional)) {
+        std::visit([&](auto* value) { *value = *given; }, each.value);
+      }
+    }
+    options.period_s =
+        table->quantity({"period", "s", base::Range::between(1e-3, 1.0), "time between two calls of the firmware"}, input::Need::optional)
+            .value_or(options.period_s);
+    if (const auto size = whole(*table, {"size", "", derate::kTableSize_byte, "largest size of the table in bytes"})) {
+      options.table.most_bytes = static_cast<std::size_t>(*size);
+    }
     if (const auto samples =
             whole(*table, {"samples", "", base::Range::between(1.0, 1e5), "number of motors drawn to find the safety factor on heat"})) {
       options.guarantee.samples = static_cast<int>(*samples);

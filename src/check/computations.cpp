@@ -22,13 +22,6 @@ std::string key_of(const motor::Motor& motor) {
   return key;
 }
 
-std::string key_of(const derate::DerateOptions& options) {
-  const derate::GuaranteeOptions& guarantee = options.guarantee;
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}", options.hottest_ambient_C, options.coldest_ambient_C, options.period_s,
-                     options.approach_s.value_or(0.0), guarantee.confidence, guarantee.samples, guarantee.seed,
-                     options.sensor ? derate::sensor_flags(*options.sensor) : "");
-}
-
 std::string key_of_load(const Check& check) {
   return fmt::format("{}|{}|{}", check.robot->file.string(), check.duty->file.string(), check.seed);
 }
@@ -75,7 +68,7 @@ const select::MotorEvaluation& Computations::feasible_evaluation(const Check& ch
 }
 
 const derate::Derating& Computations::derating(const Check& check, const derate::DerateOptions& options) {
-  return deratings_.get(fmt::format("{}|{}|{}", check.robot->file.string(), key_of(*check.motor), key_of(options)), [&] {
+  return deratings_.get(fmt::format("{}|{}|{}", check.robot->file.string(), key_of(*check.motor), derate::options_text(options, 0.0)), [&] {
     motor::require_sound(*check.motor);
     derate::DerateOptions with_threads = options;
     with_threads.guarantee.threads = threads_;
@@ -98,7 +91,7 @@ const GuardedDrive& Computations::guarded_drive(const Check& check) {
   options.hottest_ambient_C = std::max(options.hottest_ambient_C, check.duty->ambient_C.value);
   options.coldest_ambient_C = std::min(options.coldest_ambient_C, check.duty->ambient_C.value);
   options.sensor.reset();  // the drive core has no temperature sensor
-  return drives_.get(fmt::format("{}|{}|{}", key_of_load(check), key_of(*check.motor), key_of(options)), [&] {
+  return drives_.get(fmt::format("{}|{}|{}", key_of_load(check), key_of(*check.motor), derate::options_text(options, 0.0)), [&] {
     simulate::MotorGuard guard;
     guard.derating.emplace(derating(check, options));
     guard.guard.emplace(*guard.derating);

@@ -4,6 +4,7 @@
 
 #include "cli/condition_option.h"
 #include "cli/quantity_option.h"
+#include "derate/option_quantities.h"
 #include "motor/conditions.h"
 
 namespace heatsoak::cli {
@@ -16,23 +17,11 @@ void add_motor_options(CLI::App& app, GuardOptions& options) {
 
 void add_derate_options(CLI::App& app, derate::DerateOptions& options) {
   derate::GuaranteeOptions& guarantee = options.guarantee;
-  add_quantity(app, "--ambient", options.hottest_ambient_C,
-               {"ambient", "degC", base::Range::between(-40.0, 120.0), "hottest air at the motor; 40degC unless given"});
-  add_quantity(app, "--coldest", options.coldest_ambient_C,
-               {"coldest", "degC", base::Range::between(-60.0, 120.0),
-                "coldest air; a sensor that reads less is treated as faulty; 0degC unless given"});
-  add_quantity(app, "--approach", options.approach_s,
-               {"approach", "s", base::Range::between(0.01, 100.0),
-                "time in which the winding approaches its limit under full use; a shorter time allows higher peaks of a cold winding, a "
-                "longer one more current late in a long load; a quarter of the winding's time constant unless given"});
-  add_quantity(app, "--confidence", guarantee.confidence,
-               {"confidence", "", base::Range::between(0.5, 0.999),
-                "least share of motors that keep their limits, shown with 95 % certainty; 0.95 unless given"});
-  add_quantity(
-      app, "--error", options.table.shortfall_ratio,
-      {"error", "", base::Range::between(0.002, 0.5), "largest loss of current in the table against the exact result; 1 % unless given"});
+  for (const derate::OptionQuantity& each : derate::option_quantities(options)) {
+    std::visit([&](auto* value) { add_quantity(app, fmt::format("--{}", each.spec.key), *value, each.spec); }, each.value);
+  }
   app.add_option("--size", options.table.most_bytes, "largest size of the table in bytes; it takes precedence over --error")
-      ->check(CLI::Range(std::size_t{64}, std::size_t{1} << 20U))
+      ->check(CLI::Range(static_cast<std::size_t>(derate::kTableSize_byte.low), static_cast<std::size_t>(derate::kTableSize_byte.high)))
       ->capture_default_str();
   app.add_option("--samples", guarantee.samples,
                  "number of motors drawn to find the safety factor on heat; as many fresh ones show the confidence")

@@ -167,6 +167,16 @@ void read_header(const std::string& text, CommittedTable& committed) {
                         "contains no derating table or is truncated; expected a C header or a CSV table that `heatsoak derate` wrote");
 }
 
+/// The other formats of `heatsoak derate` have no table that could be compared.
+void require_csv(const CommittedTable& committed, const std::string& text) {
+  static const std::regex kColumns("(^|\n)speed_rad_per_s,stator_C,winding_C,allowed_current_A");
+  if (!std::regex_search(text, kColumns)) {
+    throw base::bad_input({committed.file.string(), 1, 1}, "",
+                          "is neither a C header nor a CSV table of `heatsoak derate`; of the other formats commit the table as --to csv "
+                          "as well and check that file");
+  }
+}
+
 /// Returns the distinct values of a column, ascending.
 std::vector<double> axis_of(const std::vector<CommittedRow>& rows, double CommittedRow::*column) {
   std::vector<double> axis;
@@ -300,7 +310,8 @@ CommittedTable read_committed_table(const std::filesystem::path& file) {
                            .sensor_flags = {},
                            .version = {},
                            .code = {}};
-  const std::string text = base::read_file(file, kLargestTable_bytes);
+  std::string text = base::read_file(file, kLargestTable_bytes);
+  std::erase(text, '\r');  // a checkout may have changed the line ends
   static const std::regex kVersion(R"re((?:heatsoak |VERSION ")(\d+\.\d+\.\d+))re");
   std::smatch version;
   const std::string head = text.substr(0, 4000);
@@ -312,6 +323,7 @@ CommittedTable read_committed_table(const std::filesystem::path& file) {
     require_whole(committed, text);
     read_header(text, committed);
   } else {
+    require_csv(committed, text);
     read_csv_table(committed);
   }
   return committed;

@@ -42,7 +42,15 @@ double lowest_limit_C(const motor::Motor& motor, std::string_view key, double no
 }  // namespace
 
 double approach_s(const motor::Motor& motor, const DerateOptions& options) {
-  return options.approach_s.value_or(kApproach_ratio * motor.nominal.thermal_time_constant_winding_s);
+  const double winding_s = motor.nominal.thermal_time_constant_winding_s;
+  const double approach_s = options.approach_s.value_or(kApproach_ratio * winding_s);
+  if (approach_s > winding_s) {
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("an approach of {:.4g} s is longer than the winding's time constant of {:.4g} s, so a hotter winding "
+                                    "would be allowed more current; expected at most that time constant",
+                                    approach_s, winding_s));
+  }
+  return approach_s;
 }
 
 BarrierRules barrier_rules(const motor::Motor& motor, const robot::Robot& robot, const DerateOptions& options) {

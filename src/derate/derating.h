@@ -28,7 +28,8 @@ struct DerateOptions {
 /// Share of the winding's nominal time constant. On three generated matches a robot with the ECX FLAT 32 L lost 14.6 % of its distance with
 /// 1/24, 6.4 % with 1/4 and 5.3 % with 1 (tolerances of the file, hard match); with those of a bench test 0.2, 0.3 and more than 0.8 %.
 inline constexpr double kApproach_ratio = 0.25;
-/// Returns the time constant in s with which the winding of this motor approaches its limit, > 0.
+/// Returns the time constant in s with which the winding of this motor approaches its limit, > 0. Throws Failure (bad_input) if the options
+/// give a longer one than the time constant of its winding.
 double approach_s(const motor::Motor& motor, const DerateOptions& options);
 
 /// Returns the rules that follow from motor, robot and options, before any safety factor on heat. A limit that the motor's file gives as a

@@ -22,6 +22,9 @@ struct Provenance {
   std::string input_hash;       ///< kInputHash over the texts of both files and the options
 };
 
+/// Returns the options as the command line that gives them, with `approach_s` for an approach that the options leave open.
+std::string options_text(const DerateOptions& options, double approach_s);
+
 /// Reads the files of robot and motor again to compute their hash. Throws Failure (bad_input) if one cannot be read.
 Provenance provenance_of(const motor::Motor& motor, const robot::Robot& robot, const DerateOptions& options);
 

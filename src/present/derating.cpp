@@ -87,15 +87,16 @@ void add_sensor(Document& document, const derate::Derating& derating) {
     return;
   }
   const derate::SensorPlan& plan = *derating.sensor;
-  document.paragraphs.push_back(fmt::format(
-      "With {} at the {}, error up to {:.3g} K{}: safety factor on heat {:.2f} (without {:.2f}). {} Each draw has its own "
-      "sensor error; the windings reached {:.0f} °C (95th percentile), {:.0f} °C (the hottest). The cross-check drops the correct sensor "
-      "of {}.",
-      plan.resistance ? "the resistance from voltage and current" : "a thermistor",
-      plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
-      plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(),
-      derating.observer.heat_safety_factor(), derate::confidence_text(derating, plan.guarantee), plan.guarantee.winding_p95_C,
-      plan.guarantee.winding_most_C, plan.dropped));
+  document.paragraphs.push_back(
+      fmt::format("With {} at the {}, error up to {:.3g} K{}: safety factor on heat {:.2f} (without {:.2f}). {} Each sensor reads too "
+                  "little by its whole error; the windings reached {:.0f} °C (95th percentile), {:.0f} °C (the hottest). The cross-check "
+                  "drops the correct sensor "
+                  "of {}.",
+                  plan.resistance ? "the resistance from voltage and current" : "a thermistor",
+                  plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
+                  plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(),
+                  derating.observer.heat_safety_factor(), derate::confidence_text(derating, plan.guarantee), plan.guarantee.winding_p95_C,
+                  plan.guarantee.winding_most_C, plan.dropped));
   document.add_note(Severity::warning,
                     fmt::format("With a plausible but wrong sensor the guard allows at most {:.2f} A more than without a sensor: the "
                                 "nominal motor then reaches {:.0f} °C ({:.0f} °C from a warm start), and {} of {} drawn motors exceed a "
@@ -143,8 +144,8 @@ Document derating_document(const derate::Derating& derating, const motor::Motor&
                                 derating.observer.heat_safety_factor(),
                                 derating.table.allowed_A(0.0, derating.rules.hottest_ambient_C, derating.rules.hottest_ambient_C),
                                 derate::limp_current_A(derating))}},
-      .paragraphs = {fmt::format("Confidence {:.6g}: {} of {} fresh draws exceeded a limit in the {} hardest uses. At least {} draws are "
-                                 "needed for this.",
+      .paragraphs = {fmt::format("Confidence {:.6g}: {} of {} fresh draws exceeded a limit in the {} hardest uses. This "
+                                 "confidence needs at least {} draws.",
                                  derating.options.guarantee.confidence, checked.over, checked.samples, derating.uses.size(),
                                  derate::least_samples(derating.options.guarantee)),
                      fmt::format("The windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C "

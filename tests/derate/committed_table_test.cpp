@@ -62,6 +62,17 @@ TEST_P(Committed, SaysTheSameAsTheOneThatWroteIt) {
   EXPECT_EQ(found.differing_line, 0) << found.differing_text << "\n" << found.differing_fresh_text;
 }
 
+TEST_P(Committed, MayHaveTheLineEndsOfAnotherSystem) {
+  std::string text = exported_text(*fresh_, GetParam());
+  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 2)) {
+    text.insert(at, "\r");
+  }
+  const TableComparison found = compare(read(text), *fresh_);
+  EXPECT_EQ(found.excess.difference_A, 0.0);
+  EXPECT_EQ(found.lost.difference_A, 0.0);
+  EXPECT_EQ(found.differing_line, 0) << found.differing_text << "\n" << found.differing_fresh_text;
+}
+
 TEST_P(Committed, NamesItsMotorAndRobot) {
   const CommittedTable committed = read(exported_text(*fresh_, GetParam()));
   EXPECT_EQ(committed.motor_id, fresh_->motor_id);

@@ -111,6 +111,10 @@ int model_restore(void *state, const unsigned char *buffer, float elapsed_s, flo
     if (has_sensor) {
       text += R"(int sensed_size(void) { return (int)sizeof(@_sensed_state); }
 void sensed_start(void *state, float body_C) { @_sensed_start(state, body_C); }
+void sensed_save(const void *state, unsigned char *buffer) { @_sensed_save(state, buffer); }
+int sensed_restore(void *state, const unsigned char *buffer, float elapsed_s, float unsaved_s, float board_C) {
+  return (int)@_sensed_restore(state, buffer, elapsed_s, unsaved_s, board_C);
+}
 void sensed_step(void *state, const plain_input *in, float reading_C, plain_output *out) {
   @_input input;
   @_sensed_output made;
@@ -195,6 +199,15 @@ class SensedGuard {
     return out;
   }
   [[nodiscard]] std::vector<unsigned char>& state() { return state_; }
+  [[nodiscard]] std::vector<unsigned char> saved(std::size_t nodes) const {
+    std::vector<unsigned char> buffer(4 * (2 + 2 * nodes));
+    guard_.function<void(const void*, unsigned char*)>("sensed_save")(state_.data(), buffer.data());
+    return buffer;
+  }
+  int restore(const std::vector<unsigned char>& buffer, float elapsed_s, float unsaved_s, float board_C) {
+    return guard_.function<int(void*, const unsigned char*, float, float, float)>("sensed_restore")(state_.data(), buffer.data(), elapsed_s,
+                                                                                                    unsaved_s, board_C);
+  }
 
  private:
   const CompiledGuard& guard_;

@@ -283,5 +283,12 @@ TEST(Derate, RefusesAPeriodThatIsTooLongForTheMotor) {
   EXPECT_THROW(derate(ecx_32(), twente(), slow), base::Failure);
 }
 
+// With a longer approach a hotter winding would be allowed more current.
+TEST(Derating, RefusesAnApproachThatIsSlowerThanTheWinding) {
+  DerateOptions options;
+  options.approach_s = 1.01 * ecx_32().nominal.thermal_time_constant_winding_s;
+  EXPECT_THROW(derate(ecx_32(), twente(), options), base::Failure);
+}
+
 }  // namespace
 }  // namespace heatsoak::derate

@@ -239,6 +239,28 @@ TEST(RampExporters, ControllerStaysBelowTheTableAndKeepsTheWindingBelowItsLimit)
 }
 
 /// VESC, motor/mc_interface.c, update_override_limits(): a filter of 0.01 at 1 kHz, full current up to 0.1 K above the start.
+// The script integrates a pause of its thread in short steps; one Euler step of 24 s would cool the winding to 0 °C.
+TEST(VescExporter, ScriptThatWasHeldUpIntegratesThePause) {
+  SmallLisp script;
+  float override_C = NAN;
+  script.settings["'si-motor-poles"] = 14.0F;
+  script.extensions = {{"systime", [](const auto&) { return 0.0F; }},
+                       {"secs-since", [](const auto&) { return 24.0F; }},
+                       {"sleep", [](const auto&) { return 0.0F; }},
+                       {"get-current", [](const auto&) { return 0.0F; }},
+                       {"get-rpm", [](const auto&) { return 0.0F; }},
+                       {"override-temp-motor", [&](const auto& with) { return override_C = with.at(0); }}};
+  script.load(exported("vesc"));
+  script.set("hs-state0-C", 120.0F);
+  script.set("hs-state1-C", 120.0F);
+  ObserverRun<float> observer(ecx_derating().observer, 0.01F, 120.0F);
+  for (int i = 0; i < 2400; ++i) {
+    observer.step(std::array<float, observed::kSignalCount>{0.0F, 0.0F, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
+  }
+  script.cycle();
+  EXPECT_NEAR(override_C, observer.state_C()[0], 1.0);
+}
+
 TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
   SmallLisp script;
   float override_C = NAN;

@@ -156,6 +156,96 @@ TEST_F(LyingSensor, AHotReadingTakesCurrentAway) {
   EXPECT_LT(out.allowed_A, 0.5F * model.step(in).allowed_A);
 }
 
+// The same load with an exact sensor and with one that drifts up.
+TEST_F(LyingSensor, ADriftToHotNeverAddsCurrent) {
+  for (const float drift_K_per_s : {0.1F, 1.0F, 3.3F}) {
+    SensedGuard exact(guard());
+    SensedGuard hot(guard());
+    exact.start(15.0F);
+    hot.start(15.0F);
+    RandomLoad driver(9);
+    Plant plant(ecx_32(), motor::nominal_sample(ecx_32()), 15.0);
+    double allowed_A = 0.0;
+    for (int i = 0; i < 30'000; ++i) {
+      const RandomLoad::Wish wish = driver.after(0.01);
+      const double current_A = wish.current_share * allowed_A;
+      const double speed_rad_per_s = wish.speed_share * thermistor_derating().rules.most_speed_rad_per_s;
+      plant.step(current_A, speed_rad_per_s, 15.0, 0.01);
+      const CompiledGuard::Input in{static_cast<float>(current_A), static_cast<float>(speed_rad_per_s), 15.0F};
+      const auto true_C = static_cast<float>(plant.true_C(motor::states::stator));
+      const float of_exact_A = exact.step(in, true_C).allowed_A;
+      const CompiledGuard::Output of_hot = hot.step(in, std::min(true_C + drift_K_per_s * 0.01F * static_cast<float>(i), 250.0F));
+      if (of_hot.sensor == CompiledGuard::used) {
+        ASSERT_LE(of_hot.allowed_A, of_exact_A + 1e-4F) << drift_K_per_s << " K/s, step " << i;
+      }
+      allowed_A = std::min(of_exact_A, of_hot.allowed_A);
+    }
+  }
+}
+
+// A driver that ignores the limit for a moment heats the winding beyond it. An unknown input must not erase that heat.
+TEST_F(LyingSensor, KeepsTheHeatOfAnOvercurrentThroughUnknownInputs) {
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  for (const bool is_current_unknown : {false, true}) {
+    for (const bool is_air_unknown : {false, true}) {
+      for (const bool is_read : {false, true}) {
+        SensedGuard sensed(guard());
+        ModelGuard model(guard());
+        sensed.start(40.0F);
+        model.start(40.0F);
+        Plant plant(ecx_32(), motor::nominal_sample(ecx_32()), 40.0);
+        float allowed_A = 0.0F;
+        float model_A = 0.0F;
+        for (int i = 0; i < 12'000; ++i) {
+          const bool is_burst = i >= 6000 && i < 6080;
+          const float current_A = is_burst ? 15.0F : std::min(allowed_A, model_A);
+          plant.step(static_cast<double>(current_A), 0.0, 40.0, 0.01);
+          const CompiledGuard::Input in{is_burst && is_current_unknown ? kUnknown : current_A, 0.0F,
+                                        i == 6080 && is_air_unknown ? kUnknown : 39.5F};
+          allowed_A = sensed.step(in, is_read ? static_cast<float>(plant.true_C(motor::states::stator)) : kUnknown).allowed_A;
+          model_A = model.step(in).allowed_A;
+          ASSERT_LE(allowed_A, model_A + static_cast<float>(thermistor_derating().sensor->most_gain_A) + 1e-4F)
+              << i << (is_current_unknown ? ", current unknown" : "") << (is_air_unknown ? ", air unknown" : "")
+              << (is_read ? ", read" : "");
+        }
+        EXPECT_LE(plant.true_C(motor::states::winding), thermistor_derating().rules.limits.winding_C);
+      }
+    }
+  }
+}
+
+// As warm as before after a reset: the header with a sensor saves the guard without the sensor, which is at least as hot as the motor.
+TEST_F(LyingSensor, AResetForgetsNoHeat) {
+  SensedGuard before(guard());
+  before.start(40.0F);
+  Plant plant(ecx_32(), motor::nominal_sample(ecx_32()), 40.0);
+  CompiledGuard::Output out;
+  for (int i = 0; i < 120'000; ++i) {
+    plant.step(static_cast<double>(out.allowed_A), 100.0, 40.0, 0.01);
+    out = before.step({out.allowed_A, 100.0F, 39.5F}, static_cast<float>(plant.true_C(motor::states::stator)));
+  }
+  const float lasting_A = out.allowed_A;
+  SensedGuard after(guard());
+  ASSERT_EQ(after.restore(before.saved(2), 2.0F, 0.0F, 25.0F), CompiledGuard::restored);
+  float current_A = 0.0F;
+  for (int i = 0; i < 200; ++i) {
+    plant.step(0.0, 0.0, 40.0, 0.01);
+  }
+  double hottest_C = 0.0;
+  for (int i = 0; i < 60'000; ++i) {
+    plant.step(static_cast<double>(current_A), 100.0, 40.0, 0.01);
+    hottest_C = std::max(hottest_C, plant.true_C(motor::states::winding));
+    current_A = after.step({current_A, 100.0F, 39.5F}, static_cast<float>(plant.true_C(motor::states::stator))).allowed_A;
+  }
+  EXPECT_LE(hottest_C, 125.0) << "the continuous load keeps the nominal winding at 112 °C";
+  EXPECT_NEAR(current_A, lasting_A, 0.05F);
+  SensedGuard damaged(guard());
+  std::vector<unsigned char> buffer = before.saved(2);
+  buffer[5] ^= 1U;
+  EXPECT_EQ(damaged.restore(buffer, 2.0F, 0.0F, 25.0F), CompiledGuard::nothing_restored);
+  EXPECT_LT(damaged.step({0.0F, 100.0F, 39.5F}, 40.0F).allowed_A, lasting_A);
+}
+
 // A state corrupted by radiation or a wild pointer must not allow more than the guard without a sensor at its limit.
 TEST_F(LyingSensor, ACorruptStateCountsAsAtItsLimit) {
   ModelGuard at_limit(guard());

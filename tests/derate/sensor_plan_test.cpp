@@ -36,6 +36,27 @@ TEST(SensorGain, CorrectsTheSensedNodeAndTheSensorItself) {
   EXPECT_EQ(gain_of({}).lag_gain_ratio, 0.0);
 }
 
+TEST(SensorGain, NoNodeCoolsWhenTheSensorReadsMore) {
+  for (const int node : {motor::states::winding, motor::states::stator}) {
+    for (const double accuracy_K : {0.5, 2.0, 8.0}) {
+      for (const double gain : gain_of({.node = node, .accuracy_K = accuracy_K}).gain) {
+        EXPECT_GE(gain, 0.0) << node << ", " << accuracy_K;
+      }
+    }
+  }
+}
+
+TEST(SensorPlan, ALessAccurateSensorPermitsNoMore) {
+  DerateOptions options = quick_options({});
+  options.sensor->accuracy_K = 20.0;
+  const Derating coarse = derate(ecx_32(), twente(), options);
+  ASSERT_TRUE(coarse.sensor);
+  EXPECT_GE(coarse.sensor->observer.heat_safety_factor(), thermistor_derating().sensor->observer.heat_safety_factor());
+  for (std::size_t i = 0; i < coarse.sensor->lasting.size(); ++i) {
+    EXPECT_LE(coarse.sensor->lasting[i].with_A, thermistor_derating().sensor->lasting[i].with_A) << i;
+  }
+}
+
 TEST(SensorPlan, ThermistorLowersTheSafetyFactor) {
   const Derating& derating = thermistor_derating();
   ASSERT_TRUE(derating.sensor);
@@ -63,8 +84,8 @@ TEST(SensorPlan, RefusesWhatIsNoSensor) {
   EXPECT_THROW(plan_sensor(ecx_32(), twente(), derating, {.node = 7}), base::Failure);
 }
 
-// Motors and sensor errors that the search has not used, with the generated code and another integrator.
-TEST(SensorPlan, DrawnMotorsKeepTheirLimitWithACorrectSensor) {
+// Motors that the search has not used, with the generated code and another integrator. All sensors read too little by their whole accuracy.
+TEST(SensorPlan, DrawnMotorsKeepTheirLimitWithTheLowestPermittedReading) {
   const Derating& derating = thermistor_derating();
   const CompiledGuard guard(derating);
   ASSERT_TRUE(guard);
@@ -74,12 +95,11 @@ TEST(SensorPlan, DrawnMotorsKeepTheirLimitWithACorrectSensor) {
   for (int i = 0; i < kMotors; ++i) {
     base::Random random(90210, static_cast<std::uint64_t>(i));
     const motor::MotorSample sample = motor::draw_sample(ecx_32(), random);
-    const double offset_K = 1.5 * (2.0 * random.uniform() - 1.0);
     Plant plant(ecx_32(), sample, 40.0);
     const SensedRun run = run_sensed(
         guard, derating, plant,
-        [&](double, double true_C, double) { return static_cast<float>(true_C + offset_K + 0.5 * (2.0 * random.uniform() - 1.0)); },
-        100'000, static_cast<unsigned>(i), i % 2 == 0);
+        [&](double, double true_C, double) { return static_cast<float>(true_C - derating.sensor->options.accuracy_K); }, 100'000,
+        static_cast<unsigned>(i), i % 2 == 0);
     over += run.winding_peak_C > derating.rules.limits.winding_C ? 1 : 0;
     dropped += run.dropped_at_s >= 0.0 ? 1 : 0;
   }

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "check/computations.h"
 #include "derate/committed_table.h"
 
@@ -20,6 +22,13 @@ inline derate::TableComparison compared(const Check& check, Computations& comput
                         fmt::format("{}: {}; 'derate' takes them as keys without \"--\", \"_\" for \"-\"", check.table.string(), problem));
   }
   return derate::compare(committed, computations.derating(check, check.derate));
+}
+
+/// A table cannot differ by more than the current that the driver permits.
+inline std::optional<LoosestLimit> largest_difference(const Check& check) {
+  return check.robot && std::isfinite(check.robot->drive.current_limit_A)
+             ? std::optional<LoosestLimit>({check.robot->drive.current_limit_A, "the current limit of the robot's driver", true})
+             : std::nullopt;
 }
 
 inline std::string place_text(const derate::TablePlace& place) {

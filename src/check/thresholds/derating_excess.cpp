@@ -34,6 +34,7 @@ ThresholdType derating_excess() {
           .example = "at most 0 A",
           .needs = {Setting::robot, Setting::motor, Setting::table},
           .takes = {Setting::conditions, Setting::derate},
+          .loosest = largest_difference,
           .measure = measure_derating_excess};
 }
 

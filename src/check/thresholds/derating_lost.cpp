@@ -12,6 +12,7 @@ ThresholdType derating_lost() {
           .example = "at most 0.5 A",
           .needs = {Setting::robot, Setting::motor, Setting::table},
           .takes = {Setting::conditions, Setting::derate},
+          .loosest = largest_difference,
           .measure = [](const Check& check, Computations& computations) -> Measured {
             const derate::TablePlace lost = compared(check, computations).lost;
             return {lost.difference_A, 0.0, place_text(lost)};

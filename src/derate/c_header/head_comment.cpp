@@ -57,7 +57,7 @@ std::string guarantee_text(const Derating& derating) {
       "exceeded a\n"
       " * limit in one of the {} hardest uses ({:.1f} %; other draws give {:.1f} to {:.1f} %). The hottest winding reached {:.0f} degC.\n"
       "{}"
-      " * Computed, not measured; plausible but wrong sensor readings are not covered.\n",
+      " * Computed, not measured; plausible but wrong readings of current, speed and air are not covered.\n",
       derating.rules.limits.winding_C,
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
       derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),

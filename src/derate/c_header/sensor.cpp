@@ -43,10 +43,9 @@ typedef struct {
   @_sensor_status sensor;
 } @_sensed_output;
 
-/* As @_start. A dropped sensor is used again. */
-static inline void @_sensed_start(@_sensed_state *state, float body_C) {
+/* Begins with the temperatures of the guard without the sensor. */
+static inline void @_begin_sensed(@_sensed_state *state) {
   int node;
-  @_start(&state->model, body_C);
   for (node = 0; node < @NODES@; ++node) {
     state->state_C[node] = state->model.state_C[node];
     state->capped_C[node] = state->model.state_C[node];
@@ -65,6 +64,23 @@ static inline void @_sensed_start(@_sensed_state *state, float body_C) {
   state->rejected = 0u;
   state->dropped = @_sensor_used;
   state->started = @CAP@_STARTED;
+}
+
+/* As @_start. A dropped sensor is used again. */
+static inline void @_sensed_start(@_sensed_state *state, float body_C) {
+  @_start(&state->model, body_C);
+  @_begin_sensed(state);
+}
+
+/* As @_save and @_restore, which keep the guard without the sensor: it is at least as hot as the motor. A dropped sensor is used again. */
+static inline void @_sensed_save(const @_sensed_state *state, uint8_t *buffer) {
+  @_save(&state->model, buffer);
+}
+
+static inline @_restored_from @_sensed_restore(@_sensed_state *state, const uint8_t *buffer, float elapsed_s, float unsaved_s, float board_C) {
+  const @_restored_from from = @_restore(&state->model, buffer, elapsed_s, unsaved_s, board_C);
+  @_begin_sensed(state);
+  return from;
 }
 
 )";
@@ -107,16 +123,7 @@ static inline @_sensor_status @_check_reading(@_sensed_state *state, float readi
   return state->dropped;
 }
 
-static inline float @_hottest_body_C(const float *state_C) {
-  int node;
-  float hottest_C = state_C[1];
-  for (node = 2; node < @NODES@; ++node) {
-    hottest_C = state_C[node] > hottest_C ? state_C[node] : hottest_C;
-  }
-  return hottest_C;
-}
-
-/* Corrects the observer with the upper bound of the reading. */
+@HOTTEST_BODY@/* Corrects the observer with the upper bound of the reading. */
 static inline void @_correct(@_sensed_state *state, float reading_C) {
   const float gain[@NODES@] = {@GAINS@};
   const float innovation_K = reading_C + @CAP@_SENSOR_ACCURACY_K - @PREDICTED@;
@@ -158,31 +165,34 @@ static inline bool @_is_sensed_started(const @_sensed_state *state) {
   return is_started;
 }
 
-/* One period of the guard without the sensor, driven by the measured current. A correct sensor keeps the winding within its limit, so each
-   temperature here is capped at that limit, or at its last value if that is higher. */
-static inline @_output @_step_model(@_sensed_state *state, const @_input *measured) {
-  @_output out;
-  float most_C[@NODES@];
+/* Returns true if more current flowed than the guard had allowed, by more than the ripple of a current control: then every observer counts
+   all of it. */
+static inline bool @_is_over_allowed(const @_sensed_state *state, float current_A) {
+  const float size_A = current_A < 0.0f ? -current_A : current_A;
+  return size_A > @CAP@_SENSOR_RIPPLE_RATIO * (state->capped_A + @CAP@_SENSOR_MOST_GAIN_A);
+}
+
+/* A correct sensor keeps the winding within its limit while the current is that allowed, so the guard without the sensor is capped at that
+   limit, or at its last temperature if that is higher. */
+static inline void @_cap_model(@_sensed_state *state, const float *last_C) {
   int node;
   for (node = 0; node < @NODES@; ++node) {
-    most_C[node] = state->model.state_C[node] > @CAP@_WINDING_LIMIT_C ? state->model.state_C[node] : @CAP@_WINDING_LIMIT_C;
-  }
-  out = @_step(&state->model, measured);
-  for (node = 0; node < @NODES@; ++node) {
-    if (out.reason != @_not_started && state->model.state_C[node] > most_C[node]) {
-      state->model.state_C[node] = most_C[node];
+    const float most_C = last_C[node] > @CAP@_WINDING_LIMIT_C ? last_C[node] : @CAP@_WINDING_LIMIT_C;
+    if (state->model.state_C[node] > most_C) {
+      state->model.state_C[node] = most_C;
       state->model.carry_K[node] = 0.0f;
     }
   }
-  return out;
 }
 
 /* One period of both observers; the current of the capped one is limited to the current that it would have allowed. */
-static inline void @_advance_sensed(@_sensed_state *state, const @_input *measured) {
+static inline void @_advance_sensed(@_sensed_state *state, const @_input *measured, bool is_over) {
   @_input capped = *measured;
   float rate_K_per_s[@NODES@];
-  capped.current_A = capped.current_A < state->capped_A ? capped.current_A : state->capped_A;
-  capped.current_A = capped.current_A > -state->capped_A ? capped.current_A : -state->capped_A;
+  if (!is_over) {
+    capped.current_A = capped.current_A < state->capped_A ? capped.current_A : state->capped_A;
+    capped.current_A = capped.current_A > -state->capped_A ? capped.current_A : -state->capped_A;
+  }
   @_rates(&capped, state->capped_C, rate_K_per_s);
   @_advance(state->capped_C, state->capped_carry_K, rate_K_per_s);
   if (state->unread_s < @CAP@_SENSOR_HOLD_S) {
@@ -197,14 +207,20 @@ static inline void @_advance_sensed(@_sensed_state *state, const @_input *measur
    declared air), a sensor stuck near ambient_C may never be dropped; SENSOR_MOST_GAIN_A then still bounds its effect. */
 static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_input *measured, float reading_C) {
   @_sensed_output out;
+  float last_C[@NODES@];
   float speed_rad_per_s;
   float sensed_A;
   float most_A;
+  int node;
+  bool is_over;
   const bool was_started = @_is_sensed_started(state);
   if (!was_started) {
     @_sensed_start(state, @CAP@_WINDING_LIMIT_C);
   }
-  out.guard = @_step_model(state, measured);
+  for (node = 0; node < @NODES@; ++node) {
+    last_C[node] = state->model.state_C[node];
+  }
+  out.guard = @_step(&state->model, measured);
   out.model_only_A = out.guard.allowed_current_A;
   out.sensor = state->dropped;
   if (!was_started || state->dropped != @_sensor_used || out.guard.reason == @_input_unknown || out.guard.reason == @_not_started) {
@@ -212,7 +228,11 @@ static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_
     out.guard.reason = was_started ? out.guard.reason : @_not_started;
     return out;
   }
-  @_advance_sensed(state, measured);
+  is_over = @_is_over_allowed(state, measured->current_A);
+  if (!is_over) {
+    @_cap_model(state, last_C);
+  }
+  @_advance_sensed(state, measured, is_over);
   out.sensor = @_check_reading(state, reading_C, measured->ambient_C);
   if (out.sensor == @_sensor_used) {
     @_correct(state, reading_C);
@@ -260,7 +280,7 @@ static inline void @_resistance_start(@_resistance *sensor, float body_C) {
 /* voltage_V: equivalent DC voltage at the terminals, mean over the period, > 0 when it drives a current > 0. Returns NAN if the current is
    too small, the motor too fast or the current changes too fast for the accuracy. */
 static inline float @_resistance_reading_C(@_resistance *sensor, const @_sensed_state *state, const @_input *measured, float voltage_V) {
-  const float nothing = (float)NAN;
+  const float nothing = @_number(0x7fc00000u); /* NaN */
   const float current_A = measured->current_A;
   const float speed_rad_per_s = measured->speed_rad_per_s;
   const float size_A = current_A < 0.0f ? -current_A : current_A;
@@ -284,6 +304,9 @@ static inline float @_resistance_reading_C(@_resistance *sensor, const @_sensed_
 
 )";
 
+/// A current up to this multiple of the allowed one counts as ripple of the current control.
+constexpr double kRipple_ratio = 1.1;
+
 std::string constants(const Source& source, const SensorPlan& plan) {
   const auto define = [&](std::string_view name, double value) {
     return fmt::format("#define {}_{} {}\n", source.capital, name, literal(value));
@@ -293,7 +316,7 @@ std::string constants(const Source& source, const SensorPlan& plan) {
                      define("SENSOR_MOST_RATE_K_PER_S", plan.check.most_rate_K_per_s) + define("SENSOR_COLD_RATIO", plan.check.cold_share) +
                      define("SENSOR_COLD_MARGIN_K", plan.check.cold_margin_K) + define("SENSOR_FROZEN_BAND_K", plan.check.frozen_band_K) +
                      define("SENSOR_FROZEN_K", plan.check.frozen_K) + define("SENSOR_CONTRADICTION_S", plan.check.contradiction_s) +
-                     define("SENSOR_HOLD_S", plan.check.hold_s);
+                     define("SENSOR_HOLD_S", plan.check.hold_s) + define("SENSOR_RIPPLE_RATIO", kRipple_ratio);
   if (plan.resistance) {
     text += define("RESISTANCE_ALPHA_PER_K", plan.resistance->temperature_coefficient_per_K) +
             define("RESISTANCE_LEAST_CURRENT_A", plan.resistance->least_current_A) +
@@ -308,8 +331,8 @@ std::string comment(const SensorPlan& plan) {
   return fmt::format(
       "\n"
       "/* With {} at the {} (largest error {:.3g} K{}): safety factor on heat {:.3g} instead of the above while the sensor is used.\n"
-      " * With {:.0f} % certainty at least {:.1f} % of the motors, each with a drawn sensor error, keep every limit; {} of {} fresh draws\n"
-      " * exceeded one. The cross-check drops the correct sensor of {}.\n"
+      " * With {:.0f} % certainty at least {:.1f} % of the motors keep every limit although each sensor reads too little by that error;\n"
+      " * {} of {} fresh draws exceeded one. The cross-check drops the correct sensor of {}.\n"
       " * A PLAUSIBLE BUT WRONG SENSOR allows at most SENSOR_MOST_GAIN_A more than without one: the nominal motor then reaches {:.0f} "
       "degC\n"
       " * from a start at the hottest air, and {:.0f} degC from a warmer start, all nodes equally warm up to the winding limit; {} of {} "
@@ -343,6 +366,17 @@ std::string sensed_table(const Source& source, const SensorPlan& plan) {
              name);
 }
 
+std::string hottest_body(std::size_t nodes) {
+  constexpr std::string_view kHead = "static inline float @_hottest_body_C(const float *state_C) {\n";
+  if (nodes == 2) {
+    return fmt::format("{}  return state_C[1];\n}}\n\n", kHead);
+  }
+  return fmt::format(
+      "{}  int node;\n  float hottest_C = state_C[1];\n  for (node = 2; node < {}; ++node) {{\n    hottest_C = state_C[node] > hottest_C ? "
+      "state_C[node] : hottest_C;\n  }}\n  return hottest_C;\n}}\n\n",
+      kHead, nodes);
+}
+
 }  // namespace
 
 Rates sensor_functions(const Source& source) {
@@ -366,6 +400,7 @@ Rates sensor_functions(const Source& source) {
                     {"@REJECTED@", plan.resistance ? "    if (out.sensor != @_sensor_silent) {\n      state->rejected += 1u;\n    }\n"
                                                    : "    state->rejected += 1u;\n"},
                     {"@GAINS@", gains},
+                    {"@HOTTEST_BODY@", hottest_body(plan.observer.state_count())},
                     {"@RESERVE@", fmt::format("{:.3g}", plan.observer.heat_safety_factor())},
                     {"@SENSOR_NODE@", std::to_string(plan.options.node)},
                     {"@CAP@", source.capital},

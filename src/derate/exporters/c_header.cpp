@@ -40,11 +40,9 @@ std::string write_c_header(const Derating& derating) {
   const unsigned signature = signature_of(derating);
   const c_header::Rates rates = c_header::rates(source);
   const c_header::Rates sensor = c_header::sensor_functions(source);
-  // A missing reading is NAN, which needs <math.h>.
-  const bool has_nan = derating.sensor && derating.sensor->resistance;
   return c_header::head_comment(source) +
          fmt::format("#ifndef {0}\n#define {0}\n\n", fmt::format("HEATSOAK_{}_{:08X}_H", source.capital, signature)) +
-         (has_nan ? "#include <math.h>\n" : "") + "#include <stdbool.h>\n#include <stdint.h>\n\n" +
+         "#include <stdbool.h>\n#include <stdint.h>\n\n" +
          "#ifdef __FAST_MATH__\n#error \"compile without -ffast-math: it removes the checks for NaN and the carried rounding "
          "error\"\n#endif\n\n" +
          (rates.calls_thermal_math ? shared_text("thermal_math.h") + "\n" : "") + shared_text("current_table.h") + "\n" +

@@ -107,6 +107,9 @@ std::string limits(const CurrentRamp& ramp, double phase_per_dc_ratio) {
       most_A, ramp.start_C, ramp.end_C);
 }
 
+/// A script that was held up integrates the time in steps of this share of the winding's time constant.
+constexpr double kStepsPerTimeConstant = 20.0;
+
 /// The observer runs in the script, the ramp in the controller: the script overrides the controller's motor temperature.
 std::string write_vesc(const Derating& derating) {
   const CurrentRamp ramp = ramp_for("vesc", derating, RampSignal::winding, kFullBeyond_K);
@@ -128,6 +131,13 @@ std::string write_vesc(const Derating& derating) {
              "(define hs-pole-pairs (/ (conf-get 'si-motor-poles) 2.0))\n"
              "(define hs-last-A 0.0)\n"
              "(define hs-time (systime))\n"
+             "(define hs-longest-s {})\n"
+             "(defun hs-advance (current-A speed-rad-per-s left-s)\n"
+             "  (if (> left-s hs-longest-s) {{\n"
+             "    (hs-step current-A speed-rad-per-s {} hs-longest-s)\n"
+             "    (hs-advance current-A speed-rad-per-s (- left-s hs-longest-s))\n"
+             "  }}\n"
+             "  (hs-step current-A speed-rad-per-s {} left-s)))\n"
              "(defun hs-magnitude (x) (if (< x 0.0) (- 0.0 x) x))\n"
              "(defun hs-cycle () {{\n"
              "  (var now-A (* {} (get-current)))\n"
@@ -136,13 +146,14 @@ std::string write_vesc(const Derating& derating) {
              "  (var dt-s (secs-since hs-time))\n"
              "  (setq hs-time (systime))\n"
              "  (var speed-rad-per-s (hs-magnitude (/ (* (get-rpm) {}) hs-pole-pairs)))\n"
-             "  (override-temp-motor (hs-step more-A speed-rad-per-s {} dt-s))\n"
+             "  (override-temp-motor (hs-advance more-A speed-rad-per-s dt-s))\n"
              "}})\n"
              "(loopwhile t {{\n"
              "  (hs-cycle)\n"
              "  (sleep {})\n"
              "}})\n",
-             literal(dc_per_phase_ratio), literal(std::numbers::pi / 30.0), literal(derating.rules.hottest_ambient_C),
+             literal(derating.nominal.thermal_time_constant_winding_s / kStepsPerTimeConstant), literal(derating.rules.hottest_ambient_C),
+             literal(derating.rules.hottest_ambient_C), literal(dc_per_phase_ratio), literal(std::numbers::pi / 30.0),
              literal(derating.options.period_s));
 }
 

@@ -149,33 +149,25 @@ class Bounds {
   thermal::Lanes last_C_;
 };
 
-/// kLanes sensors with a constant offset and noise, together within the accuracy.
+/// kLanes sensors with a constant error.
 class LaneSensor {
  public:
-  LaneSensor(const SensedLoop& loop, const thermal::Lanes& offset_share, std::uint64_t seed, std::uint64_t stream)
-      : loop_(loop), offset_K_(kOffsetShare * loop.plan.options.accuracy_K * offset_share), noise_(seed ^ kNoiseSeed, stream) {}
+  LaneSensor(const SensedLoop& loop, double error_K) : loop_(loop), error_K_(error_K) {}
 
   void start(double temperature_C) { sensor_C_ = thermal::Lanes::Constant(temperature_C); }
 
-  /// Sensor temperature in °C without offset and noise.
+  /// Sensor temperature in °C without the error.
   [[nodiscard]] const thermal::Lanes& sensor_C() const { return sensor_C_; }
 
   thermal::Lanes reading_C(const thermal::Lanes& true_C) {
     const double lag_s = loop_.plan.options.lag_s;
     sensor_C_ = lag_s > 0.0 ? thermal::Lanes(sensor_C_ + std::min(1.0, loop_.step_s / lag_s) * (true_C - sensor_C_)) : true_C;
-    thermal::Lanes read_C = sensor_C_ + offset_K_;
-    for (int lane = 0; lane < base::kLanes; ++lane) {
-      read_C[lane] += (1.0 - kOffsetShare) * loop_.plan.options.accuracy_K * (2.0 * noise_.uniform() - 1.0);
-    }
-    return read_C;
+    return sensor_C_ + error_K_;
   }
 
  private:
-  static constexpr double kOffsetShare = 0.75;
-  static constexpr std::uint64_t kNoiseSeed = 0x6e6f697365U;
   const SensedLoop& loop_;
-  thermal::Lanes offset_K_;
-  base::Random noise_;
+  double error_K_;
   thermal::Lanes sensor_C_;
 };
 
@@ -201,12 +193,10 @@ LaneFlags readable(const SensedLoop& loop, const thermal::Lanes& current_A, doub
 struct DrawnMotors {
   std::vector<thermal::Network> networks;
   std::vector<thermal::Lanes> parameters;
-  thermal::Lanes offset_share;
 };
 
-DrawnMotors side_by_side(const motor::Motor& motor, const std::array<motor::MotorSample, base::kLanes>& samples,
-                         const thermal::Lanes& offset_share) {
-  DrawnMotors drawn{.networks = {}, .parameters = {}, .offset_share = offset_share};
+DrawnMotors side_by_side(const motor::Motor& motor, const std::array<motor::MotorSample, base::kLanes>& samples) {
+  DrawnMotors drawn;
   for (int lane = 0; lane < base::kLanes; ++lane) {
     drawn.networks.push_back(motor::datasheet_network(motor, samples[static_cast<std::size_t>(lane)]));
     const std::vector<double> values = drawn.networks.back().values();
@@ -220,13 +210,11 @@ DrawnMotors side_by_side(const motor::Motor& motor, const std::array<motor::Moto
 
 DrawnMotors drawn_motors(const motor::Motor& motor, std::uint64_t seed, std::uint64_t first_stream) {
   std::array<motor::MotorSample, base::kLanes> samples;
-  thermal::Lanes offset_share;
   for (int lane = 0; lane < base::kLanes; ++lane) {
     base::Random random(seed, first_stream + static_cast<std::uint64_t>(lane));
     samples[static_cast<std::size_t>(lane)] = motor::draw_sample(motor, random);
-    offset_share[lane] = 2.0 * random.uniform() - 1.0;
   }
-  return side_by_side(motor, samples, offset_share);
+  return side_by_side(motor, samples);
 }
 
 /// Returns the currents of the last step.
@@ -276,7 +264,7 @@ std::array<SensedPeak, base::kLanes> sensed_peaks(const SensedLoop& loop, std::s
   const DrawnMotors drawn = drawn_motors(loop.motor, seed, first_stream);
   std::array<SensedPeak, base::kLanes> peaks{};
   LaneGuard guard(loop);
-  LaneSensor sensor(loop, drawn.offset_share, seed, first_stream);
+  LaneSensor sensor(loop, -loop.plan.options.accuracy_K);
   Bounds bounds(loop, peaks);
   for (const LoadPattern& use : uses) {
     run_use(loop, use, drawn, guard, sensor, bounds, peaks);
@@ -287,10 +275,10 @@ std::array<SensedPeak, base::kLanes> sensed_peaks(const SensedLoop& loop, std::s
 double nominal_lasting_current_A(const SensedLoop& loop, const LoadPattern& held) {
   std::array<motor::MotorSample, base::kLanes> samples;
   samples.fill(motor::nominal_sample(loop.motor));
-  const DrawnMotors nominal = side_by_side(loop.motor, samples, thermal::Lanes::Zero());
+  const DrawnMotors nominal = side_by_side(loop.motor, samples);
   std::array<SensedPeak, base::kLanes> peaks{};
   LaneGuard guard(loop);
-  LaneSensor sensor(loop, nominal.offset_share, 1, 0);
+  LaneSensor sensor(loop, 0.0);
   Bounds bounds(loop, peaks);
   return run_use(loop, held, nominal, guard, sensor, bounds, peaks)[0];
 }

@@ -1,4 +1,4 @@
-// Closed-loop simulation of drawn motors with drawn sensor errors. The allowed current depends on each motor through its sensor.
+// Closed-loop simulation of drawn motors with the worst sensor error. The allowed current depends on each motor through its sensor.
 #pragma once
 
 #include <array>
@@ -33,11 +33,12 @@ struct SensedPeak : MotorPeak {
 };
 
 /// Simulates kLanes drawn motors, from the random streams `first_stream` on, in every use with the full current that the sensed observer
-/// allows. Omits the bound most_gain_A and the cross-check, because both only lower the current.
+/// allows. Every sensor reads too little by its whole accuracy, so the result holds for each distribution of the errors, also a mounting
+/// error that all motors share. Omits the bound most_gain_A and the cross-check, because both only lower the current.
 std::array<SensedPeak, base::kLanes> sensed_peaks(const SensedLoop& loop, std::span<const LoadPattern> uses, std::uint64_t seed,
                                                   std::uint64_t first_stream);
 
-/// Returns the current in A that the nominal motor, with a sensor without offset, is allowed at the end of a continuous use.
+/// Returns the current in A that the nominal motor, with an exact sensor, is allowed at the end of a continuous use.
 double nominal_lasting_current_A(const SensedLoop& loop, const LoadPattern& held);
 
 }  // namespace heatsoak::derate

@@ -76,7 +76,8 @@ SensorGain sensor_gain(const motor::Motor& motor, const robot::Robot& robot, con
   observer.process_noise.topLeftCorner(states, states) = period_s * period_s * second_moments(motor, nominal, points, samples, seed);
   // The sensor error is uniformly distributed within the accuracy.
   observer.sensor_sd_K = options.accuracy_K / std::sqrt(3.0);
-  const Eigen::VectorXd gain = steady_kalman_gain(observer);
+  // A node that cools when the sensor reads more would let a hot reading add current.
+  const Eigen::VectorXd gain = steady_kalman_gain(observer).cwiseMax(0.0);
   return {.gain = {gain.data(), gain.data() + states}, .lag_gain_ratio = lags ? gain[states] : 0.0};
 }
 
