@@ -1,9 +1,6 @@
 // Stage 2: converts the command into the motion that the body should have now.
 #include "robot_core/drive_stages.h"
 
-// Optimised for size, because it runs in every second step only.
-#pragma GCC optimize("Os")
-
 namespace robot_core {
 namespace {
 

@@ -251,7 +251,7 @@ struct alignas(8) State {
   Vector3 acceleration_reference;  ///< smoothed reference of the body, local frame
   float yaw_integral_rad = 0.0F;
   float speed_share = 1.0F;             ///< fraction of the commanded velocity that the limits allow
-  std::uint32_t unused = 0;             ///< keeps the size a multiple of 8 bytes
+  std::uint32_t rounded_up = 0;         ///< time by which periods were rounded up, sum in 1/1024 periods; wraps
   float raw_yaw_rate_rad_per_s = 0.0F;  ///< last sample of the yaw rate, or 0 if it was impossible
   float battery_current_A = 0.0F;       ///< estimate for the last period
   float battery_source_V = 0.0F;        ///< open-circuit voltage estimated from samples; sinks slowly between them

@@ -134,6 +134,9 @@ inline float cross(const WheelConfig& a, const WheelConfig& b) {
   return a.rolling_x_share * b.rolling_y_share - a.rolling_y_share * b.rolling_x_share;
 }
 
+/// Unit of State::rounded_up.
+inline constexpr float kRoundedUp_per_period = 1024.0F;
+
 inline constexpr std::uint32_t kStepsPerComparison = 16;
 /// Returns true if compare_sensors() compares two wheels with the others in this step.
 inline bool is_wheel_compared(const State& state) { return state.steps % (kStepsPerComparison / 2) == 0; }

@@ -52,11 +52,16 @@ float missing_A2(const State& state, int i) {
   return larger(0.0F, state.comparison.driven_V2[i] * per_ohm * per_ohm - state.comparison.counted_A2[i]);
 }
 
-/// Steps the guard of one wheel. `periods`: number of periods summed up in current_squared_A2. `extra_s`: as in step_guard().
+/// Steps the guard of one wheel. `periods`: number of periods summed up in current_squared_A2. `extra_s`: as in GuardTime.
 void step_wheel_guard(const Config& config, State& state, const Validated& validated, int i, float periods, float extra_s) {
   WheelState& wheel = state.wheel[i];
   const GuardModel& model = *config.guard;
   const ValidatedWheel& sensed = validated.wheel[i];
+  // Periods are rounded up for heat, but a guard must not cool for longer than the time that has passed.
+  GuardTime time{extra_s, 1.0F, state.rounded_up};
+  if (const std::uint32_t more = state.rounded_up - state.guard[i].rounded_up; more != 0) {
+    time.cooling_share = larger(0.0F, 1.0F - static_cast<float>(more) / (kRoundedUp_per_period * periods));
+  }
   const float rms_A = square_root(wheel.current_squared_A2 / periods + missing_A2(state, i));
   const float speed_rad_per_s = sensed.speed_rad_per_s * config.gear_ratio;
   float signal[kGuardSignals];
@@ -69,7 +74,7 @@ void step_wheel_guard(const Config& config, State& state, const Validated& valid
   signal[guard_neighbour_C] = model.plausible_range[guard_neighbour_C].is_used ? hottest_neighbour_C(config, state, i) : 0.0F;
   signal[guard_age_h] = kNoSample;
   signal[guard_acceleration_rad_per_s2] = absolute(speed_rad_per_s - state.guard[i].speed_rad_per_s) / model.period_s;
-  const GuardOutput guard = step_guard(model, state.guard[i], signal, config.braking_reserve_K, extra_s);
+  const GuardOutput guard = step_guard(model, state.guard[i], signal, config.braking_reserve_K, time);
   wheel.conductance_A_per_V = nominal_conductance_A_per_V(config, state.guard[i], validated.ambient_C);
   const float cold_ratio = cold_current_ratio(config, guard.winding_C);
   // A winding carries the limp current permanently, unless it is at its limit already.
@@ -84,14 +89,16 @@ void step_wheel_guard(const Config& config, State& state, const Validated& valid
   }
 }
 
-/// Takes a stator sample if it is hotter than the observer; a colder one is ignored.
+/// Follows a stator sample that is hotter than the observer, by a bounded rise, so that a single wrong sample does not count. A colder one
+/// is ignored.
 void take_stator_sample(const GuardModel& model, State& state, const Input& input, int i) {
   WheelState& wheel = state.wheel[i];
   const float sample_C = input.stator_C[i];
   if (sample_C > -50.0F && sample_C < 400.0F) {
     wheel.has_stator = 1;
     if (GuardState& guard = state.guard[i]; sample_C > guard.state_C[1] && is_started(model, guard)) {
-      guard.state_C[1] = sample_C;
+      constexpr float kMostRise_K = 2.0F;
+      guard.state_C[1] = smaller(sample_C, guard.state_C[1] + kMostRise_K);
       seal(guard);
     }
     wheel.guard_fault = wheel.guard_fault == static_cast<std::uint8_t>(Reason::stator_missing) ? 0 : wheel.guard_fault;

@@ -20,14 +20,21 @@ void validate_time(const Config& config, State& state, const Input& input, Valid
   const float elapsed_s = input.elapsed_s;
   constexpr float kShortest_share = 0.5F;
   const float longest_s = kLongestGap_periods * config.period_s;
+  // A tenth of a period is jitter of the timer.
+  constexpr float kJitter_share = 0.1F;
   // Comparisons with NaN are false.
+  if (elapsed_s >= (1.0F - kJitter_share) * config.period_s && elapsed_s <= config.period_s) {
+    return;
+  }
   if (elapsed_s >= kShortest_share * config.period_s && elapsed_s <= longest_s) {
-    // Rounded up, so that no integration covers too short a time. A tenth of a period is jitter of the timer.
-    constexpr float kRoundUp_share = 0.9F;
+    // Rounded up, so that no integration covers too short a time. The guards then cool for less.
     const float periods = elapsed_s / config.period_s;
-    validated.guard_periods = static_cast<int>(clamped(periods + kRoundUp_share, 1.0F, kLongestGap_periods));
+    validated.guard_periods = static_cast<int>(clamped(periods + (1.0F - kJitter_share), 1.0F, kLongestGap_periods));
     const auto whole = static_cast<float>(validated.guard_periods);
     validated.elapsed_s = whole * config.period_s;
+    if (periods < whole) {
+      state.rounded_up += 1U + static_cast<std::uint32_t>(kRoundedUp_per_period * (whole - periods));
+    }
     // A loop that is always slightly late would otherwise lose that share of its heat.
     if (periods > whole) {
       state.late_periods += periods - whole;
@@ -130,16 +137,22 @@ void validate_battery(const Config& config, State& state, const Input& input, Va
   }
 }
 
-/// Validates the air temperature. A sample below the last one is followed slowly, in case the sensor has come off.
+/// Validates the air temperature. A sample below the last one is followed slowly, in case the sensor has come off. One above it is followed
+/// faster than air warms up, so that a single wrong sample does not count.
 void validate_ambient(const Config& config, State& state, const Input& input, Validated& validated) {
   constexpr float kCooling_K_per_s = 0.02F;
+  constexpr float kMostRise_K = 0.01F;  // per step
   const float coldest_C = config.guard != nullptr ? config.guard->coldest_ambient_C : -40.0F;
   // A dead sensor shows exactly 0.
   const bool is_plausible = input.ambient_C >= coldest_C + 0.05F && input.ambient_C <= kHottestAir_C;
   validated.ambient_C = kNoSample;
   if (is_plausible) {
-    const float least_C = state.ambient_C - kCooling_K_per_s * config.period_s;
-    state.ambient_C = least_C > input.ambient_C ? least_C : input.ambient_C;
+    if (input.ambient_C != state.ambient_C) {
+      const float least_C = state.ambient_C - kCooling_K_per_s * config.period_s;
+      const float most_C = state.ambient_C + kMostRise_K;
+      const float sample_C = most_C < input.ambient_C ? most_C : input.ambient_C;
+      state.ambient_C = least_C > sample_C ? least_C : sample_C;
+    }
     validated.ambient_C = state.ambient_C;
   } else if (state.ambient_C == state.ambient_C && validated.robot_fault == Reason::none) {
     validated.robot_fault = Reason::ambient_missing;

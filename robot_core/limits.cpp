@@ -326,7 +326,7 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
   const float feedback_share = smaller(1.0F, validated.elapsed_s * config.derived.per_tracking_time_per_s);
   float power_W = 0.0F;
   float kept = 1.0F;
-#pragma GCC unroll 4
+#pragma GCC unroll 2
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     LimitedWheel& end = limited.wheel[i];

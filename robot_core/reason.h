@@ -27,7 +27,7 @@
 // |        |                                                             | current at most Config::limp_current_A            |                                 |
 // | 111 W  | wheel speed changes by more than the motor can accelerate   | as 110                                            | as 110                          |
 // |        | within the periods since the last step, in a gap within one |                                                   |                                 |
-// | 112 W  | wheel speed constant in contradiction to other sensors      | as 110                                            | as 110                          |
+// | 112 W  | wheel speed constant in contradiction to all other sensors  | as 110                                            | as 110                          |
 // | 113 W  | speed of one wheel follows the current of another           | as 110, both wheels                               | start()                         |
 // |        | (swapped), while the robot is commanded to move; the sensed |                                                   |                                 |
 // |        | currents and four speeds must not contradict the swap       |                                                   |                                 |
@@ -64,10 +64,12 @@
 // Without a code:
 //   - A low battery sample is no fault: a kicker may be charging. Limits use the sample; the PWM ratio uses the last open-circuit voltage.
 //   - If a current sensor reads too low, the guard still counts the heat: it compares the sensor with voltage and speed.
-//   - Without a trusted current sensor a wrong wheel speed would hide heat. If one of four wheel speeds alone contradicts the others by more
-//     than 0.06 m/s plus 6 % of the speed limit, or any does with a sensor less, the guard counts the larger current of the two at its own
-//     and at the implied speed. A wheel that slides that much therefore counts as hotter than it is.
-//   - If the sample of the air temperature falls, the core follows it by at most 0.02 K/s.
+//   - Without a trusted current sensor a wrong wheel speed would hide heat. If one of four wheel speeds alone contradicts the others by
+//     more than 0.06 m/s plus 6 % of the speed limit, or any does with a sensor less, the guard counts the larger current of the two at its
+//     own and at the implied speed. A wheel that slides that much therefore counts as hotter than it is.
+//   - If the sample of the air temperature falls, the core follows it by at most 0.02 K/s; if it rises, by at most 0.01 K per step. A
+//     stator sample above the guard's temperature raises it by at most 2 K per guard step.
+//   - Periods of unequal length are rounded up for heat; a guard cools only for the time that has passed.
 //   - Each voltage keeps the current limit for every speed that the wheel may have. These speeds come from its own sensor, from each two
 //     other wheels with the gyro, and from three other wheels. With four wheel sensors and a gyro, any two may be wrong without a higher
 //     current while the wheels roll. With one sensor less (three wheels, or after a fault) one may be wrong. Swapped wheel sensors are then
@@ -93,6 +95,16 @@
 //     0.06 m/s plus 6 % of the speed limit are not found, larger ones of a fifth come and go with the speed, and none is found on three
 //     wheels. Where opposite wheels are parallel, nothing tells which one is wrong: both stay rejected until the robot turns, without
 //     current sensors with open bridges (114). A slipping wheel with a faulty speed sensor and no current sensor may exceed its limit.
+//   - Without current sensors and with wheel torques commanded, a wheel speed that is too high by a factor of two or more. If it passes the
+//     fastest speed it is rejected (110) and accepted again; meanwhile a standing wheel can be rejected instead (112). In simulation a
+//     winding then reached 173 degC (limit 155 degC) at a computed 45 degC, with up to three times the allowed current for seconds. On
+//     three wheels the same happens without 110. Two wheel speeds of twice their value hide heat, too: 187 degC at a computed 120 degC.
+//   - A wheel speed and the current sensor of the same wheel, both wrong: 166 degC at a computed 144 degC.
+//   - A wheel that carries less than a third of its load slides so often that it can get fault 117, and recovers only now and then: with a
+//     tenth of its load the robot loses up to 40 % of its speed.
+//   - Three wheels without current sensors, pushed with more than half of their grip in the first 10 s: half of them get fault 113 for two
+//     wheels, and with it open bridges (114) until start().
+//   - Without a spare sensor, fault 115 is shown while the robot stands. It clears with the first motion.
 //   - More faulty speed sensors than spare ones: the current may exceed its limit for some periods. If all wheel sensors show 0, the robot
 //     accelerates for kStanding_s before the limp current limits it (115). Rolling, it may then brake with up to twice the limp current.
 //   - Pushes on a moving robot can look like swapped sensors until these are ruled out: two wheels then keep the limp current until

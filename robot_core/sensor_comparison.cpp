@@ -121,8 +121,8 @@ bool is_controlled(Mode mode) { return mode == Mode::body_velocity || mode == Mo
       return;
     }
     const float driven_V = wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * wheel.raw_speed_rad_per_s;
-    // The limits may leave less than the limp current if the gyro contradicts wheels that seem to stand.
-    const bool is_held_back = validated.mode != Mode::coast && (validated.is_redundancy_reduced ||
+    // The limits may leave less than the limp current: without spare sensors, or if the gyro contradicts wheels that seem to stand.
+    const bool is_held_back = validated.mode != Mode::coast && ((validated.is_redundancy_reduced && state.is_limited != 0) ||
                                                                 validated.spread_V > config.lowest_resistance_ohm * config.limp_current_A);
     is_driven = is_driven || is_held_back || absolute(driven_V) > config.lowest_resistance_ohm * config.limp_current_A;
   }
@@ -280,7 +280,8 @@ void compare_heat(const Config& config, State& state, const Validated& validated
     } else {
       evidence_s = larger(0.0F, evidence_s - since_s);
     }
-    if (is_same && comparison.disagreement_s[i] > kStuck_s) {
+    // A wheel that stands has a constant sample. It contradicts a wrong sensor, but not alone.
+    if (is_same && comparison.disagreement_s[i] > kStuck_s && (is_wrong_now || contradicts)) {
       wheel.speed_fault = code(Reason::wheel_speed_stuck);
       evidence_s = 0.0F;
     }

@@ -1,8 +1,5 @@
 #include "robot_core/thermal_guard.h"
 
-// For size: each guard runs once in its own period.
-#pragma GCC optimize("Os")
-
 namespace robot_core {
 namespace {
 
@@ -199,7 +196,7 @@ namespace {
 
 }  // namespace
 
-GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K, float extra_s) {
+GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K, const GuardTime& time) {
   GuardOutput out;
   out.allowed_A = out.allowed_braking_A = 0.0F;
   const float unknown_s = gap_s(state);
@@ -217,7 +214,7 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
     find_hottest_rates(model, replaced.open, validated, state.state_C, rate_K_per_s);
   }
   for (int node = 0; node < model.node_count; ++node) {
-    const float counted_s = rate_K_per_s[node] > 0.0F ? model.period_s + extra_s : model.period_s;
+    const float counted_s = rate_K_per_s[node] > 0.0F ? model.period_s + time.extra_s : time.cooling_share * model.period_s;
     const float change_K = counted_s * rate_K_per_s[node] - state.carry_K[node];
     const float next_C = state.state_C[node] + change_K;
     state.carry_K[node] = (next_C - state.state_C[node]) - change_K;
@@ -231,6 +228,7 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
   state.load_squared_A2 += smoothing * (validated[guard_current_A] * validated[guard_current_A] - state.load_squared_A2);
   state.speed_rad_per_s = validated[guard_speed_rad_per_s];
   ++state.steps;
+  state.rounded_up = time.rounded_up;
   if ((replaced.all & (1U << static_cast<unsigned>(guard_speed_rad_per_s))) == 0) {
     const heatsoak_row row = row_at(model.table, absolute(validated[guard_speed_rad_per_s]), out.hottest_body_C);
     const float braking_A2 = square_at_A2(model.table, row, out.winding_C);

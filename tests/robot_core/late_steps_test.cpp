@@ -70,5 +70,58 @@ TEST(LateSteps, GuardsCountAllHeatInTurns) {
   }
 }
 
+// Steps of unequal length count as whole periods for heat. A guard that cools must not take them for more time than has passed.
+TEST(LateSteps, UnevenStepsCoolNoFaster) {
+  const auto rested_C = [](float periods) {
+    const Config config = make_config(4);
+    const Plant plant(config, {});
+    Random random(5);
+    State state;
+    robot_core::start(config, state, {.is_rested = true, .body_C = 120.0F});
+    for (double time_s = 0.0; time_s < 20.0;) {
+      robot_core::Input input = plant.sense(random, 0.3F, true);
+      input.elapsed_s = periods * config.period_s;
+      time_s += static_cast<double>(input.elapsed_s);
+      robot_core::step(config, state, input);
+    }
+    return state.guard[0].state_C[0];
+  };
+  const float usual_C = rested_C(1.0F);
+  EXPECT_LT(usual_C, 118.0F);
+  for (const float periods : {0.5F, 0.7F, 0.95F, 1.05F, 1.12F, 1.5F, 2.0F, 2.6F}) {
+    // Up to a tenth of a period is jitter and counts as a whole one.
+    const float jitter_share = periods > 0.9F && periods < 1.0F ? 1.3F * (1.0F / periods - 1.0F) : 0.0F;
+    EXPECT_GE(rested_C(periods), usual_C - 0.05F - jitter_share * (120.0F - usual_C)) << periods;
+    EXPECT_LE(rested_C(periods), 120.0F) << periods;
+  }
+}
+
+// A wrong sample of a temperature is one step; a hotter motor or air is followed within seconds.
+TEST(LateSteps, AWrongTemperatureSampleHardlyCounts) {
+  const Config config = make_config(4);
+  const Plant plant(config, {});
+  Random random(5);
+  State state;
+  robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F});
+  robot_core::Output out;
+  const auto run = [&](int steps, float stator_C, float ambient_C) {
+    for (int k = 0; k < steps; ++k) {
+      robot_core::Input input = plant.sense(random, 0.3F, true);
+      std::fill_n(input.stator_C, robot_core::kMostWheels, stator_C);
+      input.ambient_C = ambient_C;
+      out = robot_core::step(config, state, input);
+    }
+  };
+  run(2000, 25.0F, 25.0F);
+  const float usual_A = out.allowed_current_A[0];
+  run(1, 390.0F, 119.0F);
+  run(50, 25.0F, 25.0F);
+  EXPECT_GE(out.allowed_current_A[0], 0.97F * usual_A);
+  EXPECT_LE(state.ambient_C, 25.1F);
+  run(12'000, 120.0F, 60.0F);
+  EXPECT_GE(state.guard[0].state_C[1], 119.0F);
+  EXPECT_NEAR(state.ambient_C, 60.0F, 0.1F);
+}
+
 }  // namespace
 }  // namespace heatsoak::test_robot
