@@ -2,7 +2,6 @@
 #pragma once
 
 #include "estimation/flux_grid.h"
-#include "estimation/posterior.h"
 
 namespace heatsoak::attribution {
 
@@ -38,10 +37,6 @@ struct SelectionRules {
   double same_shape_ratio = 0.75;  ///< smallest squared correlation of the responses for the same shape
   double seen_nats = 7.0;          ///< smallest expected gain of a typical effect that counts as visible in the runs
   double least_seen_share = 0.5;   ///< smallest fraction of visible effects for the result "nothing missing"
-
-  // First fit: plain least squares without unknown heat.
-  double start_error_K = estimation::kIncompleteModel_K;       ///< standard deviation of the error of an incomplete model
-  double longest_step_ratio = estimation::kLongestStep_share;  ///< largest change of a coordinate in one Gauss-Newton step
 
   // Limits of the computation, not meant to influence the result.
   /// Largest number of effects in a set. Lags of both sensors and a wrong current sensor in one run often take three places.

@@ -21,10 +21,15 @@ enum class Multiplier {
   current,     ///< RMS current; g in W/A
   speed,       ///< mean of |ω|; g in W·s/rad
 };
-std::string_view unit_of(Multiplier multiplier);
-std::string_view to_string(Multiplier multiplier);
-/// Returns the name of the second signal that the heat depends on; empty if there is none.
-std::string_view second_signal(Multiplier multiplier);
+/// Properties of a multiplier.
+struct MultiplierSpec {
+  std::string_view name;
+  std::string_view unit;                ///< unit of the curve g
+  std::string_view form;                ///< `form` of the effect `tabulated`
+  std::string_view second_signal = {};  ///< signal that the heat depends on besides that of the curve; empty: none
+  bool is_conductance = false;          ///< positive values of g take heat out of the node
+};
+const MultiplierSpec& spec_of(Multiplier multiplier);
 
 /// One family of curves.
 struct ScanTerm {

@@ -30,9 +30,8 @@ class Selector : Rounds {
     begin();
     const std::vector<estimation::DesignRun> designs =
         estimation::design(now_.model.network, now_.fitted, input_.runs, out_.weights, merged_, {});
-    estimation::PosteriorOptions options = final_options(best_place(designs, estimation::prior_here(now_.model), {}, place_));
-    options.around.clear();
-    return estimation::posterior_of(now_.model, input_.runs, now_.start_C, options).evidence_nats;
+    const estimation::LatentFlux flux = grid_.at(best_place(designs, estimation::prior_here(now_.model), {}, place_));
+    return estimation::posterior_of(now_.model, input_.runs, now_.start_C, options_with(flux)).evidence_nats;
   }
 
   Selection run() {
@@ -43,8 +42,7 @@ class Selector : Rounds {
  private:
   void decide(const Judged& judged) {
     const EffectSet& best = search_->sets().front();
-    estimation::PosteriorOptions options = final_options(judged.best_place);
-    options.around.clear();
+    const estimation::PosteriorOptions options = options_with(grid_.at(judged.best_place));
     const estimation::Model with_best = with_members(best.members, judged.at_best, ShapesAre::held);
     const estimation::Posterior full = estimation::try_posterior_of(with_best, input_.runs, starts_of(with_best), options);
     out_.left_W = left_by(std::isfinite(full.evidence_nats) ? full : out_.before);
@@ -52,7 +50,7 @@ class Selector : Rounds {
     for (std::size_t m = 0; m < best.members.size(); ++m) {
       const double probability = search_->family_probability(best, m);
       if (is_parameter(best.members[m])) {
-        add_changed(best, m);
+        out_.changed_nats[parameter_of(best.members[m])] = search_->loss_without_nats(best, m);
       } else if (probability > rules_.named_probability) {
         named.push_back(m);
       } else {
@@ -80,7 +78,7 @@ class Selector : Rounds {
       }
     }
     if (out_.is_material()) {
-      keep_what_outweighs(best, named);
+      keep_what_reduces_error(best, named, rules_.beside_unknown_share, RefusalReason::unknown_heat_remains);
       out_.is_unexplained = named.empty();
     }
     if (input_.usual.flux_W > 0.0) {
@@ -97,18 +95,6 @@ class Selector : Rounds {
     }
   }
 
-  void add_changed(const EffectSet& best, std::size_t place) {
-    const Eigen::Index coordinate = parameter_of(best.members[place]);
-    const estimation::FreeParameter& free = input_.model.free[static_cast<std::size_t>(coordinate)];
-    const thermal::NetworkParameter& parameter = input_.model.network.parameters()[static_cast<std::size_t>(free.place)];
-    ChangedParameter changed;
-    changed.coordinate = coordinate;
-    changed.name = parameter.name;
-    changed.unit = parameter.unit;
-    changed.gain_nats = search_->loss_without_nats(best, place);
-    out_.changed.push_back(std::move(changed));
-  }
-
   void scan(const Judged& judged, const EffectSet& best) {
     constexpr std::size_t kMostReported = 8;
     const estimation::Model base = base_here();
@@ -121,26 +107,12 @@ class Selector : Rounds {
       path[r].state_C = estimation::smoothed_path_C(now_.fitted[r], grid_.at(judged.best_place), own.front().noise).topRows(path[r].states);
     }
     out_.drivers = drivers_of(base, path, input_.runs);
-    ScanInput input{&base,
-                    &input_.runs,
-                    &judged.fitted,
-                    &out_.drivers,
-                    &judged.designs,
-                    estimation::prior_here(base),
-                    {},
-                    grid_,
-                    {judged.best_place, judged.empty_place},
-                    out_.mean_heat_W};
-    input.members.size_sd = rules_.size_sd;
-    input.members.companion_sd = rules_.body_start_K;
-    for (const int member : best.members) {
-      for (const int companion : set_rules_[static_cast<std::size_t>(member)].companions) {
-        input.members.companions.push_back(free_count() + companion);
-      }
-      input.members.columns.push_back(free_count() + member);
-      input.members.has_sign.push_back(set_rules_[static_cast<std::size_t>(member)].has_sign);
-      input.members.prior_nats.push_back(set_rules_[static_cast<std::size_t>(member)].prior_nats);
-    }
+    const ScanInput input{&base,           &input_.runs,
+                          &judged.fitted,  &out_.drivers,
+                          &judged.designs, estimation::prior_here(base),
+                          &set_rules_,     best.members,
+                          grid_,           {judged.best_place, judged.empty_place},
+                          out_.mean_heat_W};
     out_.rounds.back().scan = scan_drivers(input, rules_, kMostReported);
   }
 
@@ -202,8 +174,7 @@ class Selector : Rounds {
     std::ranges::sort(kept);
     const SetSearch::AtBest at = search_->at_best(kept);
     const estimation::Model model = with_members(kept, at, ShapesAre::held);
-    estimation::PosteriorOptions options = final_options(best_place_);
-    options.around.clear();
+    const estimation::PosteriorOptions options = options_with(grid_.at(best_place_));
     const estimation::Posterior fit = to_predict(estimation::try_posterior_of(model, input_.runs, starts_of(model), options));
     return std::isfinite(fit.evidence_nats) ? free_run_error_K(fit.model) : std::numeric_limits<double>::infinity();
   }
@@ -215,9 +186,8 @@ class Selector : Rounds {
   }
 
   void keep_as_it_is(const Judged& judged) {
-    estimation::PosteriorOptions as_it_is = final_options(judged.empty_place);
+    estimation::PosteriorOptions as_it_is = options_with(grid_.at(judged.empty_place));
     as_it_is.most_steps = 0;
-    as_it_is.around.clear();
     out_.after = out_.own = estimation::posterior_of(input_.model, input_.runs, starts_of(input_.model), as_it_is);
     out_.after.covariance = input_.model.full_prior().precision.inverse();
   }
@@ -234,10 +204,6 @@ class Selector : Rounds {
         named = std::move(others);
       }
     }
-  }
-
-  void keep_what_outweighs(const EffectSet& best, std::vector<std::size_t>& named) {
-    keep_what_reduces_error(best, named, rules_.beside_unknown_share, RefusalReason::unknown_heat_remains);
   }
 
   /// Evidence alone is not sufficient: a calibrated model leaves some unknown heat even in the runs it was fitted to.

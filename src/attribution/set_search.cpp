@@ -211,6 +211,11 @@ void SetSearch::rank() {
   }
 }
 
+double SetSearch::nats_of(const std::vector<int>& members) const {
+  const auto found = std::ranges::find(sets_, members, &EffectSet::members);
+  return found == sets_.end() ? kNone_nats : found->log_probability_nats;
+}
+
 int SetSearch::count_of(const EffectSet& set, const std::string& family) const {
   return static_cast<int>(
       std::ranges::count_if(set.members, [&](int member) { return candidates_[static_cast<std::size_t>(member)].family == family; }));
@@ -221,8 +226,7 @@ int SetSearch::rank_in_family(const EffectSet& set, std::size_t place) const {
   const auto nats_without = [&](std::size_t gone) {
     std::vector<int> rest = set.members;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(gone));
-    const auto found = std::ranges::find(sets_, rest, &EffectSet::members);
-    return found == sets_.end() ? kNone_nats : found->log_probability_nats;
+    return nats_of(rest);
   };
   const std::string& family = candidates_[static_cast<std::size_t>(set.members[place])].family;
   const double own_nats = nats_without(place);
@@ -257,16 +261,7 @@ double SetSearch::loss_without_nats(const EffectSet& set, std::size_t place) con
 }
 
 double SetSearch::single_gain_nats(int candidate) const {
-  double empty_nats = kNone_nats;
-  double own_nats = kNone_nats;
-  for (const EffectSet& set : sets_) {
-    if (set.members.empty()) {
-      empty_nats = set.log_probability_nats;
-    } else if (set.members == std::vector<int>{candidate}) {
-      own_nats = set.log_probability_nats - candidates_[static_cast<std::size_t>(candidate)].prior_nats;
-    }
-  }
-  return own_nats - empty_nats;
+  return nats_of({candidate}) - candidates_[static_cast<std::size_t>(candidate)].prior_nats - nats_of({});
 }
 
 std::vector<int> SetSearch::stand_ins(const EffectSet& set, std::size_t place, double within_nats) const {

@@ -71,6 +71,8 @@ class SetSearch {
   [[nodiscard]] bool is_allowed(const std::vector<int>& members) const;
   [[nodiscard]] double log_evidence(const std::vector<int>& members) const;
   [[nodiscard]] std::vector<std::vector<int>> best_of_size(std::size_t size, std::size_t most) const;
+  /// Returns ln P of a set, not normalised; −∞ if it was not evaluated.
+  [[nodiscard]] double nats_of(const std::vector<int>& members) const;
   [[nodiscard]] int count_of(const EffectSet& set, const std::string& family) const;
   /// Returns 1 for the most certain member of its family, 2 for the next, and so on.
   [[nodiscard]] int rank_in_family(const EffectSet& set, std::size_t place) const;

@@ -60,35 +60,17 @@ std::optional<double> choice_value(const base::ParameterSpec& spec, std::string_
   return found == spec.choices.end() ? std::nullopt : std::optional(static_cast<double>(found - spec.choices.begin()));
 }
 
-std::string_view form_of(Multiplier multiplier) {
-  switch (multiplier) {
-    case Multiplier::source:
-      return "heat";
-    case Multiplier::copper:
-      return "per_copper_loss";
-    case Multiplier::current:
-      return "per_current";
-    case Multiplier::speed:
-      return "per_speed";
-    case Multiplier::excess:
-    case Multiplier::difference:
-      return "per_difference";
-  }
-  return "";
-}
-
 /// Returns the curve without negative values, because losses and conductances cannot be negative. The constant part of a conductance
 /// belongs to the base network and is subtracted.
 Eigen::VectorXd passive(const ScanResult& curve) {
-  const bool is_conductance = curve.term.multiplier == Multiplier::excess || curve.term.multiplier == Multiplier::difference;
-  const double shift = is_conductance ? curve.curve.minCoeff() : 0.0;
+  const double shift = spec_of(curve.term.multiplier).is_conductance ? curve.curve.minCoeff() : 0.0;
   return (curve.curve.array() - shift).cwiseMax(0.0);
 }
 
 std::optional<estimation::Model> with_table(const estimation::Model& model, const ScanResult& curve, const Regressor& driver,
                                             std::string_view name) {
   const thermal::EffectType& type = *thermal::find_effect("tabulated");
-  const std::optional<double> form = choice_value(type.parameters[1], form_of(curve.term.multiplier));
+  const std::optional<double> form = choice_value(type.parameters[1], spec_of(curve.term.multiplier).form);
   estimation::Model out = model;
   std::string_view driver_choice = driver.choice;
   if (driver.choice == thermal::kColumnChoice) {

@@ -45,4 +45,9 @@ Posterior fit_of(const Model& model, const SomeRuns& some);
 std::vector<Errors> errors_by_others(const Model& model, const std::vector<MeasuredRun>& runs,
                                      const std::vector<std::vector<double>>& start_C, const PosteriorOptions& options);
 
+/// Returns `fit`, or a fit with the options `plain` that starts from it if that predicts the last thirds of the runs better after a fit to
+/// the first two thirds. The difference of the two is added to the covariance. `own`: the options of `fit`. Weights and averaging are per
+/// run.
+Posterior more_predictive(Posterior fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& own, const PosteriorOptions& plain);
+
 }  // namespace heatsoak::estimation

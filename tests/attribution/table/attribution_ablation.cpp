@@ -106,8 +106,6 @@ const std::vector<Number>& numbers() {
       {"same_shape_share", &attribution::SelectionRules::same_shape_share, 0.0},
       {"same_shape_ratio", &attribution::SelectionRules::same_shape_ratio, 0.0},
       {"seen_nats", &attribution::SelectionRules::seen_nats, 0.0},
-      {"start_error_K", &attribution::SelectionRules::start_error_K, 0.05},
-      {"longest_step_ratio", &attribution::SelectionRules::longest_step_ratio, kInfinity},
   };
   return all;
 }
