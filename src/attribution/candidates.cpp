@@ -224,14 +224,12 @@ void add_network_candidates(const estimation::Model& model, const std::vector<es
   }
 }
 
-bool is_measured(const std::vector<estimation::MeasuredRun>& runs, std::string_view signal) {
-  return std::ranges::all_of(runs, [&](const estimation::MeasuredRun& run) {
-    return std::ranges::any_of(run.sensors, [&](const estimation::Sensor& sensor) { return sensor.signal == signal; });
-  });
-}
-
 Eigen::Index sensor_of(const estimation::MeasuredRun& run, std::string_view signal) {
   return std::ranges::find(run.sensors, signal, &estimation::Sensor::signal) - run.sensors.begin();
+}
+
+bool is_measured(const std::vector<estimation::MeasuredRun>& runs, std::string_view signal) {
+  return std::ranges::all_of(runs, [&](const auto& run) { return sensor_of(run, signal) < std::ssize(run.sensors); });
 }
 
 /// Network with all candidates added at size 0. It behaves like the original network, but provides their derivatives.

@@ -130,9 +130,7 @@ class Scanner {
  private:
   std::vector<Family> all_families() const {
     std::vector<Family> families;
-    std::vector<ScanTerm> terms = terms_of_one_signal(*input_.model, *input_.runs);
-    std::ranges::copy(terms_of_two_signals(*input_.model, *input_.runs), std::back_inserter(terms));
-    for (const ScanTerm& term : terms) {
+    for (const ScanTerm& term : scan_terms(*input_.model, *input_.runs)) {
       std::vector<Eigen::VectorXd> multiplier;
       double squares = 0.0;
       double count = 0.0;
@@ -147,7 +145,7 @@ class Scanner {
         if (!goes_with(of, term.multiplier)) {
           continue;
         }
-        std::vector<std::vector<double>> knots{knots_over(of)};
+        std::vector<std::vector<double>> knots{knots_between({of.low, of.high}, of.kind)};
         for (const Regressor::Range& range : of.inner) {
           knots.push_back(knots_between(range, of.kind));
         }
@@ -214,7 +212,7 @@ class Scanner {
         take_better(narrower[i], score(narrower[i], shared, family.scored.place));
       });
       Family& best = *std::ranges::max_element(narrower, {}, [](const Family& each) { return each.scored.nats; });
-      if (best.scored.nats < family.scored.nats + rules_.narrow_nats) {
+      if (best.scored.nats < family.scored.nats + rules_.distinct_nats) {
         return;
       }
       climb(best);
@@ -232,11 +230,7 @@ class Scanner {
         for (std::size_t r = 0; r < shared.size(); ++r) {
           estimation::add_without_starts(shared[r].products, (*input_.designs)[r], shared[r].whitening, sum);
         }
-        const estimation::Reduced all = estimation::reduced(sum, prior_);
-        double own_nats = -std::numeric_limits<double>::infinity();
-        for (std::size_t subset = 0; subset < subsets_; ++subset) {
-          own_nats = std::max(own_nats, all.base_nats + gain_of(all, subset, false) + prior_of(subset));
-        }
+        const double own_nats = best_subset(estimation::reduced(sum, prior_), false, place).nats;
         best_nats = std::max(best_nats, own_nats);
         return own_nats;
       });
@@ -359,16 +353,21 @@ class Scanner {
     return estimation::reduced(sum, prior_);
   }
 
-  [[nodiscard]] Scored score(const Family& family, const std::vector<SharedRun>& shared, const estimation::FluxPlace& place) const {
-    const estimation::Reduced all = reduced_with(family, shared);
-    const double second_nats = spec_of(family.term.multiplier).second_signal.empty() ? 0.0 : rules_.second_signal_nats;
+  [[nodiscard]] Scored best_subset(const estimation::Reduced& all, bool with_curve, const estimation::FluxPlace& place) const {
     Scored best;
     for (std::size_t subset = 0; subset < subsets_; ++subset) {
-      const double nats = all.base_nats + gain_of(all, subset, true) + prior_of(subset) + rules_.curve_nats - second_nats;
+      const double nats = all.base_nats + gain_of(all, subset, with_curve) + prior_of(subset);
       if (nats > best.nats) {
         best = {nats, subset, place};
       }
     }
+    return best;
+  }
+
+  [[nodiscard]] Scored score(const Family& family, const std::vector<SharedRun>& shared, const estimation::FluxPlace& place) const {
+    Scored best = best_subset(reduced_with(family, shared), true, place);
+    const double second_nats = spec_of(family.term.multiplier).second_signal.empty() ? 0.0 : rules_.second_signal_nats;
+    best.nats += rules_.curve_nats - second_nats;
     return best;
   }
 

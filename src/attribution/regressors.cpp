@@ -75,7 +75,7 @@ class Collector {
     driver.low = known[known.size() / 100];
     driver.high = known[known.size() - 1 - known.size() / 100];
     const double size = std::max(std::abs(driver.low), std::abs(driver.high));
-    if (!(driver.high - driver.low > 1e-6 * size) || is_label(driver) || is_copy(driver)) {
+    if (!(driver.high - driver.low > 1e-6 * size) || is_copy(driver)) {
       return;
     }
     double width = driver.high - driver.low;
@@ -88,22 +88,6 @@ class Collector {
       }
     }
     kept_.push_back(std::move(driver));
-  }
-
-  /// True if the signal hardly varies within any run: it only distinguishes runs.
-  [[nodiscard]] static bool is_label(const Regressor& driver) {
-    constexpr double kLeastWithin_share = 0.2;
-    return std::ranges::none_of(driver.values, [&](const Eigen::VectorXd& of_run) {
-      double low = driver.high;
-      double high = driver.low;
-      for (const double value : of_run) {
-        if (!std::isnan(value)) {
-          low = std::min(low, value);
-          high = std::max(high, value);
-        }
-      }
-      return high - low > kLeastWithin_share * (driver.high - driver.low);
-    });
   }
 
   [[nodiscard]] bool is_copy(const Regressor& driver) const {

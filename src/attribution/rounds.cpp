@@ -9,7 +9,6 @@
 #include <limits>
 #include <set>
 
-#include "attribution/mean_heat.h"
 #include "base/parallel.h"
 #include "calibration/motor_model.h"
 #include "calibration/unlogged_speed.h"
@@ -17,6 +16,7 @@
 #include "estimation/left_out_runs.h"
 #include "estimation/model_screening.h"
 #include "estimation/smoothed_path.h"
+#include "estimation/usual_heat.h"
 
 namespace heatsoak::attribution {
 namespace {
@@ -75,10 +75,8 @@ Judged Rounds::run_rounds() {
   Judged judged;
   for (int round = 0; round < rules_.most_rounds; ++round) {
     judged = judge();
-    const bool repeats = round > 0 && judged.best == best_;
-    const bool circles = !seen.insert(judged.best).second;
     best_ = judged.best;
-    if (repeats || circles) {
+    if (!seen.insert(judged.best).second) {
       break;
     }
     follow(judged);
@@ -89,7 +87,6 @@ Judged Rounds::run_rounds() {
 }
 
 void Rounds::begin() {
-  out_.mean_heat_W = mean_heat_W(input_.model, input_.runs);
   std::vector<std::vector<double>> start_C;
   std::vector<estimation::LinearisedRun> paths;
   for (const estimation::MeasuredRun& run : input_.runs) {
@@ -97,6 +94,7 @@ void Rounds::begin() {
     paths.push_back(estimation::linearise(input_.model, start_C.back(), run));
     merged_.push_back(estimation::mergeable_samples(paths.back()));
   }
+  out_.mean_heat_W = estimation::usual_heat_W(input_.model, input_.runs, start_C);
   unit_W_ = estimation::material_heat_W(paths, rules_.material_K);
   now_ = estimation::posterior_of(input_.model, input_.runs, start_C, plain_options());
   out_.material_W = std::max({unit_W_, rules_.material_share * out_.mean_heat_W, rules_.as_usual_ratio * input_.usual.flux_W});
@@ -168,9 +166,7 @@ Judged Rounds::judge() {
       all.push_back(reduced);
     }
     search_.emplace(std::move(all), set_rules_, rules_);
-    judged.best = search_->sets().front().members;
-    judged.at_best = search_->at_best(judged.best);
-    judged.best_place = best_place(judged.designs, prior, judged.best, judged.places[judged.at_best.point]);
+    take_best(judged, prior);
     const std::size_t before = points.size();
     add_points(judged.designs, prior, grid_.star(judged.best_place), points);
     if (points.size() == before) {
@@ -185,15 +181,17 @@ Judged Rounds::judge() {
         return estimation::try_posterior_of(model, input_.runs, starts_of(model), options).evidence_nats;
       },
       kMostFits);
-  if (search_->sets().front().members != judged.best) {
-    judged.best = search_->sets().front().members;
-    judged.at_best = search_->at_best(judged.best);
-    judged.best_place = judged.places[judged.at_best.point];
-  }
+  take_best(judged, prior);
   place_ = judged.empty_place;
   best_place_ = judged.best_place;
   note();
   return judged;
+}
+
+void Rounds::take_best(Judged& judged, const estimation::ThetaPrior& prior) const {
+  judged.best = search_->sets().front().members;
+  judged.at_best = search_->at_best(judged.best);
+  judged.best_place = best_place(judged.designs, prior, judged.best, judged.places[judged.at_best.point]);
 }
 
 void Rounds::add_points(const std::vector<estimation::DesignRun>& designs, const estimation::ThetaPrior& prior,
@@ -245,7 +243,7 @@ estimation::Model Rounds::with_members(const std::vector<int>& members, const Se
   for (std::size_t m = 0; m < members.size(); ++m) {
     if (!is_parameter(members[m])) {
       const Candidate& candidate = candidates()[static_cast<std::size_t>(members[m])];
-      model = with_candidate(model, candidate, at.sizes[static_cast<Eigen::Index>(m)], {}, shapes);
+      model = with_candidate(model, candidate, at.sizes[static_cast<Eigen::Index>(m)], shapes);
     }
   }
   return model;
@@ -326,7 +324,7 @@ void Rounds::note_sight() {
     }
   }
   for (const auto& [name, nats] : best_nats) {
-    if (nats < rules_.seen_nats) {
+    if (nats < rules_.seen_nats()) {
       out_.unseen.push_back(name);
     }
   }

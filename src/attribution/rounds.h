@@ -40,6 +40,8 @@ class Rounds {
   [[nodiscard]] estimation::Model base_here() const { return with_values_of(input_.model, now_.model); }
   /// Runs one round along the path of the last fit.
   Judged judge();
+  /// Sets the best set of the search with its solution and its most probable unknown heat.
+  void take_best(Judged& judged, const estimation::ThetaPrior& prior) const;
   /// Adds the normal equations at those grid points that `points` does not contain yet.
   void add_points(const std::vector<estimation::DesignRun>& designs, const estimation::ThetaPrior& prior,
                   const std::vector<estimation::FluxPlace>& places, std::map<estimation::FluxPlace, estimation::Reduced>& points) const;

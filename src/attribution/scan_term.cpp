@@ -11,7 +11,7 @@ std::optional<int> flux_of(const estimation::Model& model, std::string_view node
   return found == model.flux_nodes.end() ? std::nullopt : std::optional(static_cast<int>(found - model.flux_nodes.begin()));
 }
 
-std::vector<ScanTerm> terms_of_one_signal(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
+std::vector<ScanTerm> scan_terms(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
   std::vector<ScanTerm> terms;
   for (const int node : model.flux_nodes) {
     const std::string name(model.network.node_name(node));
@@ -28,17 +28,11 @@ std::vector<ScanTerm> terms_of_one_signal(const estimation::Model& model, const 
   if (is_seen("winding") && is_seen("stator")) {
     terms.push_back({"winding", "stator", Multiplier::difference, 0});
   }
-  return terms;
-}
-
-std::vector<ScanTerm> terms_of_two_signals(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
-  std::vector<ScanTerm> terms;
-  if (!flux_of(model, "stator")) {
-    return terms;
-  }
+  // Losses that depend on a second signal arise in the stator.
   for (const auto& [signal, multiplier] :
        {std::pair(thermal::Signal::current, Multiplier::current), std::pair(thermal::Signal::speed, Multiplier::speed)}) {
-    if (std::ranges::all_of(runs, [signal = signal](const estimation::MeasuredRun& run) { return run.has(signal); })) {
+    const bool is_logged = std::ranges::all_of(runs, [&, signal = signal](const estimation::MeasuredRun& run) { return run.has(signal); });
+    if (is_logged && flux_of(model, "stator")) {
       terms.push_back({"stator", "", multiplier, 0});
     }
   }

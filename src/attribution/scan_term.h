@@ -39,11 +39,9 @@ struct ScanTerm {
   int driver = 0;  ///< index in the list of signals
 };
 
-/// Returns the families with one signal. A flow between two nodes is included only if both have a sensor: the temperature of a node without
-/// one is too free.
-std::vector<ScanTerm> terms_of_one_signal(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs);
-/// Returns the families at the stator whose heat depends on a second signal, current or speed.
-std::vector<ScanTerm> terms_of_two_signals(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs);
+/// Returns all families, without their signals. A flow between two nodes is included only if both have a sensor: the temperature of a node
+/// without one is too free. Heat that depends on current or speed as a second signal enters the stator.
+std::vector<ScanTerm> scan_terms(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs);
 /// Returns the index of the node among those with unknown heat; empty if it is not one of them.
 std::optional<int> flux_of(const estimation::Model& model, std::string_view node);
 

@@ -6,10 +6,8 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include "attribution/rounds.h"
-#include "calibration/motor_model.h"
 #include "estimation/free_run_errors.h"
 #include "estimation/left_out_runs.h"
 #include "estimation/log_columns.h"
@@ -17,9 +15,6 @@
 
 namespace heatsoak::attribution {
 namespace {
-
-/// Explanations whose ln probability differs by less than this cannot be distinguished.
-constexpr double kAmbiguous_nats = 5.0;
 
 /// Decides which members of the best set get a name, whether a curve is accepted, and whether unknown heat remains.
 class Selector : Rounds {
@@ -119,8 +114,7 @@ class Selector : Rounds {
   /// Returns the member of the best set that has the same shape as the curve, if there is one.
   [[nodiscard]] std::optional<std::size_t> same_effect(const EffectSet& best, const ScanResult& curve) const {
     for (std::size_t m = 0; m < best.members.size(); ++m) {
-      const double share = curve.gain_nats / (curve.gain_nats + search_->loss_without_nats(best, m));
-      if (!is_parameter(best.members[m]) && curve.shape_ratio[m] > rules_.same_shape_ratio && share < rules_.same_shape_share) {
+      if (!is_parameter(best.members[m]) && curve.shape_ratio[m] > rules_.same_shape_ratio) {
         return m;
       }
     }
@@ -266,7 +260,7 @@ class Selector : Rounds {
       term.probability = search_->family_probability(best, m);
       term.loss_without_nats = search_->loss_without_nats(best, m);
       term.visibility_ratio = search_->visibility_ratio(member);
-      for (const int other : search_->stand_ins(best, m, kAmbiguous_nats)) {
+      for (const int other : search_->stand_ins(best, m, rules_.distinct_nats)) {
         if (!is_parameter(other)) {
           const Candidate& rival = candidates()[static_cast<std::size_t>(other)];
           if (std::ranges::find(term.confusable_with, rival.id) == term.confusable_with.end()) {
@@ -279,9 +273,8 @@ class Selector : Rounds {
     }
   }
 
-  /// Returns the ratio of two errors of left-out training runs: `beside` with the curve, divided by `without`. The ratio is the geometric
-  /// mean over the runs, so that one run outside the range of the others does not decide. Returns ∞ for a single run, and for a curve that
-  /// the model cannot contain.
+  /// Returns the ratio of two errors of left-out training runs: `beside` with the curve, divided by `without`. Returns ∞ for a single run,
+  /// and for a curve that the model cannot contain.
   [[nodiscard]] double left_out_share(const estimation::Posterior& beside, const estimation::Posterior& without,
                                       const ScanResult& curve) const {
     const Regressor& driver = out_.drivers[static_cast<std::size_t>(curve.term.driver)];
@@ -292,13 +285,7 @@ class Selector : Rounds {
     }
     std::vector<estimation::MeasuredRun> runs = input_.runs;
     estimation::set_columns(runs, curved->columns);
-    const std::vector<estimation::Errors> with = estimation::errors_by_others(*curved, runs, beside.start_C, plain_options());
-    const std::vector<estimation::Errors> own = estimation::errors_by_others(without.model, runs, without.start_C, plain_options());
-    double sum = 0.0;
-    for (std::size_t r = 0; r < runs.size(); ++r) {
-      sum += with[r].empty() ? std::numeric_limits<double>::infinity() : std::log(estimation::rms_K(with[r]) / estimation::rms_K(own[r]));
-    }
-    return std::exp(sum / static_cast<double>(runs.size()));
+    return estimation::left_out_ratio(*curved, beside.start_C, without.model, without.start_C, runs, plain_options());
   }
 
   /// Adds the curve to the model.
@@ -315,7 +302,7 @@ class Selector : Rounds {
     term.probability = 1.0;
     for (const ScanResult& each : out_.rounds.back().scan) {
       const std::string& other = out_.drivers[static_cast<std::size_t>(each.term.driver)].name;
-      if (each.gain_nats > curve.gain_nats - kAmbiguous_nats && other != driver.name &&
+      if (each.gain_nats > curve.gain_nats - rules_.distinct_nats && other != driver.name &&
           std::ranges::find(term.confusable_with, other) == term.confusable_with.end()) {
         term.confusable_with.push_back(other);
       }

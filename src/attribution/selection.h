@@ -84,7 +84,7 @@ struct Selection {
   std::vector<Round> rounds;
   std::vector<Regressor> drivers;  ///< signals of the scan
   std::vector<UntestedEffect> not_judged;
-  double mean_heat_W = 0.0;              ///< mean modelled heat over all runs
+  double mean_heat_W = 0.0;              ///< mean heat of the model along the runs, see usual_heat_W()
   double material_W = 0.0;               ///< unknown heat below this is normal for any model
   std::map<std::string, double> left_W;  ///< by node: RMS of the smoothed unknown heat with the best set
   std::vector<Eigen::VectorXd> weights;  ///< per run and sample: 0 for samples that the model excludes as wrong

@@ -118,7 +118,7 @@ class Fitting {
 
   Fit run() {
     find_start();
-    range_.unit_W = usual_heat_W(model_, runs_, starts_);
+    range_.unit_W = usual_heat_W(model_, runs_, start_C());
     linearise_all();
     constexpr int kMostRounds = 10;
     // Estimate the noise level first, with a plausible flux, because the flux estimate depends on it.

@@ -55,6 +55,18 @@ std::vector<Errors> errors_by_others(const Model& model, const std::vector<Measu
   return errors;
 }
 
+double left_out_ratio(const Model& model, const std::vector<std::vector<double>>& start_C, const Model& other,
+                      const std::vector<std::vector<double>>& other_C, const std::vector<MeasuredRun>& runs,
+                      const PosteriorOptions& options) {
+  const std::vector<Errors> with = errors_by_others(model, runs, start_C, options);
+  const std::vector<Errors> own = errors_by_others(other, runs, other_C, options);
+  double sum = 0.0;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    sum += with[r].empty() ? std::numeric_limits<double>::infinity() : std::log(rms_K(with[r]) / rms_K(own[r]));
+  }
+  return std::exp(sum / static_cast<double>(runs.size()));
+}
+
 Posterior more_predictive(Posterior fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& own, const PosteriorOptions& plain) {
   if (!std::isfinite(fit.evidence_nats)) {
     return fit;

@@ -23,10 +23,8 @@ std::vector<EqualReadings> equal_readings(const MeasuredRun& run, const ModelScr
   for (Eigen::Index sensor = 0; sensor < run.measured_C.cols(); ++sensor) {
     EqualReadings now{sensor, {}};
     double value_C = 0.0;
-    const double jump_K = rules.jump_sd * run.sensors[static_cast<std::size_t>(sensor)].noise_K;
-    const auto close = [&](double next_C) {
-      const int least = std::abs(next_C - value_C) > jump_K ? rules.least_before_jump : rules.least_equal;
-      if (static_cast<int>(now.samples.size()) >= least) {
+    const auto close = [&] {
+      if (static_cast<int>(now.samples.size()) >= rules.least_equal) {
         all.push_back(now);
       }
       now.samples.clear();
@@ -37,12 +35,12 @@ std::vector<EqualReadings> equal_readings(const MeasuredRun& run, const ModelScr
         continue;
       }
       if (!now.samples.empty() && std::abs(reading_C - value_C) > kEqual_K) {
-        close(reading_C);
+        close();
       }
       value_C = reading_C;
       now.samples.push_back(k);
     }
-    close(value_C);
+    close();
   }
   return all;
 }

@@ -10,8 +10,6 @@ namespace heatsoak::estimation {
 
 struct ModelScreeningRules {
   int least_equal = 8;        ///< shortest sequence of equal readings that is tested
-  int least_before_jump = 3;  ///< the same if the next reading is a jump
-  double jump_sd = 6.0;       ///< smallest jump, in standard deviations of the noise
   double stuck_nats = -14.0;  ///< limit of ln P of a sequence: 1e-6, with some thousand sequences per motor
   double shift_sd_K = 0.3;    ///< standard deviation of the model's error over such a sequence
   double gate_sd = 5.0;       ///< limit of a standardised innovation; 6e-7 of the good samples exceed it

@@ -88,7 +88,6 @@ struct Number {
 };
 
 const std::vector<Number>& numbers() {
-  constexpr double kInfinity = 1e9;
   static const std::vector<Number> all{
       {"inclusion_nats", &attribution::SelectionRules::inclusion_nats, 0.0},
       {"conditional_nats", &attribution::SelectionRules::conditional_nats, 0.0},
@@ -101,11 +100,9 @@ const std::vector<Number>& numbers() {
       {"material_K", &attribution::SelectionRules::material_K, 0.0},
       {"material_share", &attribution::SelectionRules::material_share, 0.0},
       {"curve_gain_nats", &attribution::SelectionRules::curve_gain_nats, 0.0},
-      {"narrow_nats", &attribution::SelectionRules::narrow_nats, kInfinity},
+      {"distinct_nats", &attribution::SelectionRules::distinct_nats, 0.0},
       {"second_signal_nats", &attribution::SelectionRules::second_signal_nats, 0.0},
-      {"same_shape_share", &attribution::SelectionRules::same_shape_share, 0.0},
       {"same_shape_ratio", &attribution::SelectionRules::same_shape_ratio, 0.0},
-      {"seen_nats", &attribution::SelectionRules::seen_nats, 0.0},
   };
   return all;
 }
