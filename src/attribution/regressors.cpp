@@ -13,8 +13,6 @@ namespace {
 
 /// Signals with a larger correlation are copies; the earlier one is kept.
 constexpr double kSameCorrelation_ratio = 0.9995;
-/// Smallest number of samples: a few for each of the seven knots of a curve.
-constexpr std::size_t kFewestSamples = 30;
 
 Regressor driver_of(std::string name, std::string unit, DriverKind kind) {
   Regressor driver;
@@ -68,7 +66,7 @@ class Collector {
     for (const Eigen::VectorXd& values : driver.values) {
       std::ranges::copy_if(values, std::back_inserter(known), [](double value) { return !std::isnan(value); });
     }
-    if (known.size() < kFewestSamples) {
+    if (known.empty()) {
       return;
     }
     std::ranges::sort(known);

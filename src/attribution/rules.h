@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "estimation/evidence.h"
 #include "estimation/flux_grid.h"
 
 namespace heatsoak::attribution {
@@ -18,12 +19,12 @@ struct SelectionRules {
   double curve_step_precision_ratio = 2.0;   ///< prior precision of the steps between knots: standard deviation 0.7 typical sizes
 
   // Decisions.
-  double named_probability = 0.95;              ///< smallest probability of a name: at most one in twenty is wrong
-  double material_K = estimation::kMaterial_K;  ///< temperature rise of the outermost body from which unknown heat matters
-  double material_share = 0.1;                  ///< fraction of the mean modelled heat from which unknown heat matters
-  double as_usual_ratio = 1.5;                  ///< largest ratio of unknown heat and error to those of earlier runs of the motor
-  double distinct_nats = 5.0;                   ///< explanations whose ln P differs by less cannot be distinguished: odds of 1 to 150
-  double curve_gain_nats = 10.0;                ///< smallest gain of a curve over the best effects
+  double named_probability = 0.95;                   ///< smallest probability of a name: at most one in twenty is wrong
+  double material_K = estimation::kMaterial_K;       ///< temperature rise of the outermost body from which unknown heat matters
+  double material_share = 0.1;                       ///< fraction of the mean modelled heat from which unknown heat matters
+  double as_usual_ratio = 1.5;                       ///< largest ratio of unknown heat and error to those of earlier runs of the motor
+  double distinct_nats = 5.0;                        ///< explanations whose ln P differs by less cannot be distinguished: odds of 1 to 150
+  double curve_gain_nats = estimation::kClear_nats;  ///< smallest gain of a curve over the best effects
   /// A curve must reduce the error of left-out training runs below this fraction: 0.55 for heat that exists, 0.8 without such heat (the
   /// extremes of 30 synthetic motors each).
   double curve_left_out_share = 0.65;

@@ -148,10 +148,9 @@ std::vector<Eigen::VectorXd> weights_by_model(const std::vector<LinearisedRun>& 
     }
     const LatentFlux loose{std::vector<double>(fluxes, rules.loose_ratio * unknown_W), rules.loose_time_scale_s};
     hide_outliers(path, run, loose, rules, noise);
-    constexpr double kMost_share = 0.1;
     for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
       auto of_sensor = noise.weight(Eigen::seq(sensor, noise.weight.size() - 1, path.sensors()));
-      if (of_sensor.sum() < (1.0 - kMost_share) * static_cast<double>(of_sensor.size())) {
+      if (of_sensor.sum() < (1.0 - kMostRejected_share) * static_cast<double>(of_sensor.size())) {
         of_sensor.setOnes();
       }
     }

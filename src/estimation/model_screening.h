@@ -8,6 +8,9 @@
 
 namespace heatsoak::estimation {
 
+/// If more samples than this would be rejected, the model is wrong rather than the samples, and none is rejected.
+inline constexpr double kMostRejected_share = 0.1;
+
 struct ModelScreeningRules {
   int least_equal = 8;        ///< shortest sequence of equal readings that is tested
   double stuck_nats = -14.0;  ///< limit of ln P of a sequence: 1e-6, with some thousand sequences per motor
@@ -20,7 +23,7 @@ struct ModelScreeningRules {
 
 /// Returns a weight per run and sample (n·s): 1, or 0 for a wrong sample. `fitted` are free runs of a model whose missing heat is at most
 /// about `unknown_W` (RMS per node, varying over minutes). A sequence of equal readings is excluded from its own prediction. If more than
-/// 10 % of a sensor's samples would be rejected, the model is assumed to be wrong and all of them are kept.
+/// kMostRejected_share of a sensor's samples would be rejected, all of them are kept.
 std::vector<Eigen::VectorXd> weights_by_model(const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs,
                                               double unknown_W, const ModelScreeningRules& rules = {});
 
