@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/added_terms.h"
 #include "estimation/log_rows.h"
 #include "estimation/model_along_run.h"
 #include "estimation/spans.h"
-#include "thermal/linearised.h"
 
 namespace heatsoak::attribution {
 namespace {
@@ -183,15 +183,10 @@ void add_conditional_candidates(const estimation::Model& model, const std::vecto
       const bool is_there =
           std::ranges::any_of(model.deviations, [&](const estimation::RunDeviation& each) { return each.is_same(&type, condition); });
       if (!is_there && !type.places_in(network).empty()) {
-        list.candidates.push_back({nullptr,
-                                   nullptr,
-                                   &type,
-                                   fmt::format("{} in {}", type.name, estimation::in_words(condition)),
-                                   {},
-                                   {type.usual},
-                                   0,
-                                   1.0,
-                                   condition});
+        list.candidates.push_back({.deviation_type = &type,
+                                   .id = fmt::format("{} in {}", type.name, estimation::in_words(condition)),
+                                   .parameters = {type.usual},
+                                   .condition = condition});
       }
     }
   }
@@ -219,7 +214,8 @@ void add_network_candidates(const estimation::Model& model, const std::vector<es
     for (const std::vector<std::string>& nodes : placements(model.network, type)) {
       int variant = 0;
       for (const std::vector<double>& parameters : type.candidacy.variants) {
-        Candidate candidate{&type, nullptr, nullptr, id_of(type, nodes), nodes, scaled(type, parameters, size), variant++, 1.0, {}};
+        Candidate candidate{
+            .type = &type, .id = id_of(type, nodes), .nodes = nodes, .parameters = scaled(type, parameters, size), .variant = variant++};
         if (!is_in(model, candidate)) {
           list.candidates.push_back(std::move(candidate));
         }
@@ -228,40 +224,33 @@ void add_network_candidates(const estimation::Model& model, const std::vector<es
   }
 }
 
-bool is_measured(const std::vector<estimation::MeasuredRun>& runs, std::string_view signal) {
-  return std::ranges::all_of(runs, [&](const estimation::MeasuredRun& run) {
-    return std::ranges::any_of(run.sensors, [&](const estimation::Sensor& sensor) { return sensor.signal == signal; });
-  });
-}
-
 Eigen::Index sensor_of(const estimation::MeasuredRun& run, std::string_view signal) {
   return std::ranges::find(run.sensors, signal, &estimation::Sensor::signal) - run.sensors.begin();
+}
+
+bool is_measured(const std::vector<estimation::MeasuredRun>& runs, std::string_view signal) {
+  return std::ranges::all_of(runs, [&](const auto& run) { return sensor_of(run, signal) < std::ssize(run.sensors); });
 }
 
 /// Network with all candidates added at size 0. It behaves like the original network, but provides their derivatives.
 struct Extended {
   thermal::Network network;
-  std::vector<int> wanted;           ///< parameter indices of the sizes; the capacity of an added node follows its size
-  std::vector<double> slope;         ///< weight of each parameter in its candidate's column
-  std::vector<std::size_t> own;      ///< candidate of each parameter
-  std::vector<double> state_C;       ///< temperatures at the start of an interval; added nodes last
-  std::vector<Eigen::Index> bodies;  ///< indices of the added nodes
+  std::vector<int> wanted;       ///< parameter indices of the sizes; the capacity of an added node follows its size
+  std::vector<double> slope;     ///< weight of each parameter in its candidate's column
+  std::vector<std::size_t> own;  ///< candidate of each parameter
 };
 
 /// Size, in typical sizes, at which an effect with its own body is linearised. Its capacity scales with it, so the time constant stays.
 /// With a fixed capacity the body would not warm up at size 0 and act like a wall at ambient temperature.
 constexpr double kHardly_share = 1e-3;
 
-void extend(Extended& extended, const Candidate& candidate, std::size_t own, double ambient_C) {
+void extend(Extended& extended, const Candidate& candidate, std::size_t own) {
   std::vector<double> parameters = candidate.parameters;
-  const auto size = static_cast<std::size_t>(candidate.size_parameter());
-  std::vector<std::size_t> scaled{size};
+  std::vector<std::size_t> scaled{static_cast<std::size_t>(candidate.size_parameter())};
   std::vector<std::string> nodes = candidate.nodes;
   for (std::size_t role = 0; role < nodes.size(); ++role) {
     if (const std::optional<int> capacity = candidate.type->nodes[role].own_capacity) {
       nodes[role] += fmt::format(" {}", own);
-      extended.bodies.push_back(static_cast<Eigen::Index>(extended.state_C.size()));
-      extended.state_C.push_back(ambient_C);
       scaled.push_back(static_cast<std::size_t>(*capacity));
     }
   }
@@ -274,89 +263,6 @@ void extend(Extended& extended, const Candidate& candidate, std::size_t own, dou
     extended.wanted.push_back(extended.network.effects().back().parameter_index[place]);
     extended.slope.push_back(candidate.parameters[place]);
     extended.own.push_back(own);
-  }
-}
-
-/// Computes the response of a linear system over a step to its state, e^(A·h), and to a constant rate, ∫e^(A·s)ds. Both are of fourth
-/// order, like the steps of the fit.
-void set_step(const Eigen::MatrixXd& slope_per_s, double step_s, Eigen::MatrixXd& power, Eigen::MatrixXd& forward,
-              Eigen::MatrixXd& held_s) {
-  const Eigen::Index size = slope_per_s.rows();
-  power.setIdentity(size, size);
-  forward.setIdentity(size, size);
-  held_s.setIdentity(size, size);
-  for (int order = 1; order <= 4; ++order) {
-    power = (slope_per_s * power.eval()) * (step_s / order);
-    forward += power;
-    held_s += order < 4 ? Eigen::MatrixXd(power / (order + 1.0)) : Eigen::MatrixXd::Zero(size, size);
-  }
-  held_s *= step_s;
-}
-
-/// Adds the columns of the extended network, linearised once per interval at its midpoint along the fitted path. `first_body`: index of the
-/// first column for the start temperature of a body.
-void add_network_columns(Extended& extended, std::span<const double> parameters, const estimation::LinearisedRun& fitted,
-                         const estimation::MeasuredRun& run, Eigen::Index first_body, estimation::Columns& columns) {
-  const Eigen::Index own = fitted.states;
-  const auto states = static_cast<Eigen::Index>(extended.state_C.size());
-  const auto wanted = static_cast<Eigen::Index>(extended.wanted.size());
-  std::vector<double> values = extended.network.values();
-  std::ranges::copy(parameters, values.begin());
-  const auto bodies = static_cast<Eigen::Index>(extended.bodies.size());
-  thermal::Linearised slope;
-  // Sensitivities to the candidates and to the start temperatures of added bodies; the last column is the state's step.
-  Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(states, wanted + bodies + 1), moved = rate, next = rate;
-  for (Eigen::Index body = 0; body < bodies; ++body) {
-    moved(extended.bodies[static_cast<std::size_t>(body)], wanted + body) = 1.0;
-  }
-  Eigen::MatrixXd power, forward, held_s;
-  for (Eigen::Index k = 0; k + 1 < fitted.samples(); ++k) {
-    for (Eigen::Index node = 0; node < own; ++node) {
-      extended.state_C[static_cast<std::size_t>(node)] = 0.5 * (fitted.state_C(node, k) + fitted.state_C(node, k + 1));
-    }
-    extended.network.linearise(run.at[static_cast<std::size_t>(k)], values, extended.state_C, slope);
-    rate.leftCols(wanted) = slope.by_parameter(Eigen::all, extended.wanted);
-    rate.rightCols<1>() = slope.rate_K_per_s;
-    const double duration_s = fitted.duration_s[static_cast<std::size_t>(k)];
-    const double fastest_per_s = slope.by_state.cwiseAbs().rowwise().sum().maxCoeff();
-    const int parts = std::max(1, static_cast<int>(std::ceil(2.0 * duration_s * fastest_per_s)));
-    set_step(slope.by_state, duration_s / parts, power, forward, held_s);
-    moved.rightCols<1>().setZero();
-    for (int part = 0; part < parts; ++part) {
-      next.noalias() = forward * moved;
-      next.noalias() += held_s * rate;
-      moved.swap(next);
-    }
-    for (Eigen::Index node = own; node < states; ++node) {
-      extended.state_C[static_cast<std::size_t>(node)] += moved(node, wanted + bodies);
-    }
-    for (Eigen::Index i = 0; i < wanted; ++i) {
-      const auto place = static_cast<std::size_t>(i);
-      for (Eigen::Index sensor = 0; sensor < fitted.sensors(); ++sensor) {
-        columns((k + 1) * fitted.sensors() + sensor, static_cast<Eigen::Index>(extended.own[place])) +=
-            extended.slope[place] * moved(fitted.sensor_node[static_cast<std::size_t>(sensor)], i);
-      }
-    }
-    for (Eigen::Index body = 0; body < bodies; ++body) {
-      for (Eigen::Index sensor = 0; sensor < fitted.sensors(); ++sensor) {
-        columns((k + 1) * fitted.sensors() + sensor, first_body + body) =
-            moved(fitted.sensor_node[static_cast<std::size_t>(sensor)], wanted + body) / kHardly_share;
-      }
-    }
-  }
-}
-
-/// Converts sensitivities of the nodes to those of the readings, with the stated sensor errors of the run.
-void show(const estimation::MeasuredRun& run, estimation::Columns& columns) {
-  const auto sensors = static_cast<Eigen::Index>(run.sensors.size());
-  for (Eigen::Index sensor = 0; sensor < sensors; ++sensor) {
-    const auto rows = Eigen::seq(sensor, columns.rows() - 1, sensors);
-    const std::vector<motor::SensorFault>& faults = run.sensors[static_cast<std::size_t>(sensor)].faults;
-    for (Eigen::Index column = 0; column < (faults.empty() ? 0 : columns.cols()); ++column) {
-      Eigen::VectorXd change = columns(rows, column);
-      motor::apply(faults, run.time_s, true, estimation::as_span(change));
-      columns(rows, column) = change;
-    }
   }
 }
 
@@ -397,7 +303,7 @@ CandidateList candidates_for(const estimation::Model& model, const std::vector<e
   for (const motor::SensorEffectType& type : motor::all_sensor_effects()) {
     const bool is_there = std::ranges::find(model.sensors, &type, &estimation::SensorTerm::type) != model.sensors.end();
     if (!is_there && is_measured(runs, type.signal)) {
-      list.candidates.push_back({nullptr, &type, nullptr, std::string(type.name), {}, {type.typical_size}, 0, 1.0, {}});
+      list.candidates.push_back({.sensor_type = &type, .id = std::string(type.name), .parameters = {type.typical_size}});
     }
   }
   return list;
@@ -417,15 +323,13 @@ std::vector<int> candidates_with_body(const std::vector<Candidate>& candidates) 
 estimation::Columns candidate_columns(const std::vector<Candidate>& candidates, const estimation::Model& model,
                                       const estimation::LinearisedRun& fitted, const estimation::MeasuredRun& run) {
   const std::vector<double> parameters = model.values_in(run);
-  Extended extended{model.network, {}, {}, {}, {}, {}};
-  const Eigen::VectorXd start_C = fitted.state_C.col(0);
-  extended.state_C.assign(start_C.begin(), start_C.end());
+  Extended extended{model.network, {}, {}, {}};
   for (std::size_t j = 0; j < candidates.size(); ++j) {
     if (!run.has(candidates[j].condition)) {
       continue;
     }
     if (candidates[j].type) {
-      extend(extended, candidates[j], j, run.at.front().ambient_C);
+      extend(extended, candidates[j], j);
     } else if (candidates[j].deviation_type) {
       for (const int place : candidates[j].deviation_type->places_in(model.network)) {
         extended.wanted.push_back(place);
@@ -434,11 +338,14 @@ estimation::Columns candidate_columns(const std::vector<Candidate>& candidates, 
       }
     }
   }
+  const estimation::Columns by_parameter = estimation::added_sensitivities(extended.network, parameters, extended.wanted, fitted, run);
   const auto count = static_cast<Eigen::Index>(candidates.size());
-  estimation::Columns columns =
-      estimation::Columns::Zero(fitted.residual_K.size(), count + static_cast<Eigen::Index>(extended.bodies.size()));
-  add_network_columns(extended, parameters, fitted, run, count, columns);
-  show(run, columns);
+  const Eigen::Index bodies = extended.network.state_count() - model.network.state_count();
+  estimation::Columns columns = estimation::Columns::Zero(fitted.residual_K.size(), count + bodies);
+  for (std::size_t i = 0; i < extended.wanted.size(); ++i) {
+    columns.col(static_cast<Eigen::Index>(extended.own[i])) += extended.slope[i] * by_parameter.col(static_cast<Eigen::Index>(i));
+  }
+  columns.rightCols(bodies) = by_parameter.rightCols(bodies) / kHardly_share;
   for (std::size_t j = 0; j < candidates.size(); ++j) {
     const Candidate& candidate = candidates[j];
     if (!candidate.sensor_type) {

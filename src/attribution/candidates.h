@@ -17,12 +17,12 @@ struct Candidate {
   const thermal::EffectType* type = nullptr;
   const motor::SensorEffectType* sensor_type = nullptr;
   const estimation::RunDeviationType* deviation_type = nullptr;
-  std::string id;                  ///< name of the type, followed by "@node" if it is not at its default node
-  std::vector<std::string> nodes;  ///< one node per role of the type
-  std::vector<double> parameters;  ///< values at the typical size, in declared order
+  std::string id = {};                  ///< name of the type, followed by "@node" if it is not at its default node
+  std::vector<std::string> nodes = {};  ///< one node per role of the type
+  std::vector<double> parameters = {};  ///< values at the typical size, in declared order
   int variant = 0;
-  double column_at_share = 1.0;     ///< sensor errors only: size of the linearisation point, in typical sizes
-  estimation::Condition condition;  ///< the candidate acts only in runs with this condition; empty: in all runs
+  double column_at_share = 1.0;          ///< sensor errors only: size of the linearisation point, in typical sizes
+  estimation::Condition condition = {};  ///< the candidate acts only in runs with this condition; empty: in all runs
 
   /// True for a deviation marked as rare, and for a one-node effect at another node than its default, without a condition.
   [[nodiscard]] bool is_rare() const;

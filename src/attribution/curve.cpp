@@ -23,8 +23,6 @@ std::vector<double> knots_between(Regressor::Range range, DriverKind kind) {
   return knots_from(range);
 }
 
-std::vector<double> knots_over(const Regressor& driver) { return knots_between({driver.low, driver.high}, driver.kind); }
-
 HatsAt hats_at(const std::vector<double>& knots, double value) {
   const auto intervals = static_cast<double>(knots.size() - 1);
   const double place = std::clamp((value - knots.front()) / (knots.back() - knots.front()) * intervals, 0.0, intervals);

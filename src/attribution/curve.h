@@ -15,8 +15,6 @@ std::vector<double> knots_from(const Regressor::Range& range);
 /// Returns such knots, but if a signal other than a temperature changes its sign, the range is extended so that one knot is 0. The curve
 /// may then differ between forward and reverse, or driving and braking.
 std::vector<double> knots_between(Regressor::Range range, DriverKind kind);
-/// Returns the knots over the range of the signal's values.
-std::vector<double> knots_over(const Regressor& driver);
 
 /// The two hat functions that are nonzero at a value: knots `left` and `left` + 1, with weights 1 − right_share and right_share. Values
 /// outside the knots are clamped.

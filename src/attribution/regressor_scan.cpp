@@ -6,9 +6,9 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <span>
 
 #include "attribution/curve.h"
-#include "attribution/set_search.h"
 #include "base/parallel.h"
 
 namespace heatsoak::attribution {
@@ -49,11 +49,9 @@ bool goes_with(const Regressor& driver, Multiplier multiplier) {
   if (driver.kind == DriverKind::node_temperature && multiplier == Multiplier::source) {
     return false;
   }
-  const std::string_view second = second_signal(multiplier);
+  const std::string_view second = spec_of(multiplier).second_signal;
   return second.empty() || (driver.kind == DriverKind::operating_point && driver.name != second);
 }
-
-bool is_taken_out(Multiplier multiplier) { return multiplier == Multiplier::excess || multiplier == Multiplier::difference; }
 
 /// Evidence of a curve with its most probable subset and unknown heat.
 struct Scored {
@@ -82,13 +80,22 @@ struct SharedRun {
 class Scanner {
  public:
   Scanner(const ScanInput& input, const SelectionRules& rules)
-      : input_(input), rules_(rules), precision_(curve_precision(kKnots, rules)), subsets_(std::size_t{1} << input.members.columns.size()) {
+      : input_(input),
+        rules_(rules),
+        precision_(curve_precision(kKnots, rules)),
+        members_(static_cast<Eigen::Index>(input.members.size())),
+        set_(columns_of(input.members, *input.rules, rules.size_sd)),
+        subsets_(std::size_t{1} << input.members.size()) {
     const Eigen::Index own = input.prior.mean.size();
-    const auto more = static_cast<Eigen::Index>(input.members.companions.size());
+    const Eigen::Index more = set_.precision.size() - members_;
     prior_.mean = Eigen::VectorXd::Zero(own + more);
     prior_.mean.head(own) = input.prior.mean;
-    prior_.precision = Eigen::MatrixXd::Identity(own + more, own + more) / (input.members.companion_sd * input.members.companion_sd);
+    prior_.precision = Eigen::MatrixXd::Zero(own + more, own + more);
     prior_.precision.topLeftCorner(own, own) = input.prior.precision;
+    prior_.precision.diagonal().tail(more) = set_.precision.tail(more);
+    for (Eigen::Index& column : set_.columns) {
+      column += own;
+    }
   }
 
   std::vector<ScanResult> run(std::size_t most) {
@@ -123,9 +130,7 @@ class Scanner {
  private:
   std::vector<Family> all_families() const {
     std::vector<Family> families;
-    std::vector<ScanTerm> terms = terms_of_one_signal(*input_.model, *input_.runs);
-    std::ranges::copy(terms_of_two_signals(*input_.model, *input_.runs), std::back_inserter(terms));
-    for (const ScanTerm& term : terms) {
+    for (const ScanTerm& term : scan_terms(*input_.model, *input_.runs)) {
       std::vector<Eigen::VectorXd> multiplier;
       double squares = 0.0;
       double count = 0.0;
@@ -140,7 +145,7 @@ class Scanner {
         if (!goes_with(of, term.multiplier)) {
           continue;
         }
-        std::vector<std::vector<double>> knots{knots_over(of)};
+        std::vector<std::vector<double>> knots{knots_between({of.low, of.high}, of.kind)};
         for (const Regressor::Range& range : of.inner) {
           knots.push_back(knots_between(range, of.kind));
         }
@@ -207,7 +212,7 @@ class Scanner {
         take_better(narrower[i], score(narrower[i], shared, family.scored.place));
       });
       Family& best = *std::ranges::max_element(narrower, {}, [](const Family& each) { return each.scored.nats; });
-      if (best.scored.nats < family.scored.nats + rules_.narrow_nats) {
+      if (best.scored.nats < family.scored.nats + rules_.distinct_nats) {
         return;
       }
       climb(best);
@@ -223,13 +228,9 @@ class Scanner {
         const std::vector<SharedRun>& shared = shared_at(place);
         estimation::Products sum;
         for (std::size_t r = 0; r < shared.size(); ++r) {
-          add_run(shared[r].products, (*input_.designs)[r], shared[r].whitening, sum);
+          estimation::add_without_starts(shared[r].products, (*input_.designs)[r], shared[r].whitening, sum);
         }
-        const estimation::Reduced all = estimation::reduced(sum, prior_);
-        double own_nats = -std::numeric_limits<double>::infinity();
-        for (std::size_t subset = 0; subset < subsets_; ++subset) {
-          own_nats = std::max(own_nats, all.base_nats + gain_of(all, subset, false) + prior_of(subset));
-        }
+        const double own_nats = best_subset(estimation::reduced(sum, prior_), false, place).nats;
         best_nats = std::max(best_nats, own_nats);
         return own_nats;
       });
@@ -247,7 +248,7 @@ class Scanner {
 
   /// Returns the heat of every hat along a run at the family's typical size.
   [[nodiscard]] HatColumns heats_W(const Family& family, std::size_t r) const {
-    const double sign = is_taken_out(family.term.multiplier) ? -1.0 : 1.0;
+    const double sign = spec_of(family.term.multiplier).is_conductance ? -1.0 : 1.0;
     const estimation::DesignRun& design = (*input_.designs)[r];
     const Regressor& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
     HatColumns heat_W = HatColumns::Zero(design.run.samples() - 1, kKnots + 1);
@@ -278,78 +279,54 @@ class Scanner {
       shared.push_back({estimation::Whitening(design.run, flux, design.noise), {}, {}});
       const Eigen::Index starts = design.run.states;
       const Eigen::Index own = input_.prior.mean.size();
-      const Eigen::Index t = prior_.mean.size();
-      const auto members = static_cast<Eigen::Index>(input_.members.columns.size());
+      const Eigen::Index more = prior_.mean.size() - own;
+      const std::span<const Eigen::Index> set(set_.columns);
       estimation::Columns& columns = shared.back().columns;
-      columns.resize(design.columns.rows(), starts + t + members + 1);
+      columns.resize(design.columns.rows(), starts + own + more + members_ + 1);
       columns.leftCols(starts) = design.run.by_start;
       columns.middleCols(starts, own) = design.columns.leftCols(own);
-      columns.middleCols(starts + own, t - own) = design.columns(Eigen::all, input_.members.companions);
-      columns.middleCols(starts + t, members) = design.columns(Eigen::all, input_.members.columns);
+      columns.middleCols(starts + own, more) = design.columns(Eigen::all, set.last(static_cast<std::size_t>(more)));
+      columns.middleCols(starts + own + more, members_) = design.columns(Eigen::all, set.first(static_cast<std::size_t>(members_)));
       columns.rightCols<1>() = design.run.residual_K;
       shared.back().whitening.apply(columns);
       Eigen::MatrixXd& products = shared.back().products;
       products = columns.transpose() * columns;
-      const Eigen::VectorXd precision = design.start.sd_K.cwiseAbs2().cwiseInverse();
-      const Eigen::VectorXd pull = precision.cwiseProduct(design.start.mean_K);
-      products.topLeftCorner(starts, starts).diagonal() += precision;
-      products.topRightCorner(starts, 1) += pull;
-      products.bottomLeftCorner(1, starts) += pull.transpose();
-      products(products.rows() - 1, products.cols() - 1) += design.start.mean_K.dot(pull);
+      estimation::add_start_prior(design.start, products);
     }
     return shared;
   }
 
-  /// Eliminates the start temperatures of a run and adds its products and its determinant to `sum`.
-  static void add_run(const Eigen::MatrixXd& square, const estimation::DesignRun& design, const estimation::Whitening& whitening,
-                      estimation::Products& sum) {
-    const Eigen::Index starts = design.run.states;
-    const Eigen::Index rest = square.cols() - starts;
-    const Eigen::LLT<Eigen::MatrixXd> start(square.topLeftCorner(starts, starts));
-    const Eigen::MatrixXd across = square.topRightCorner(starts, rest);
-    const Eigen::MatrixXd left = square.bottomRightCorner(rest, rest) - across.transpose() * start.solve(across);
-    sum.square = sum.square.size() == 0 ? left : Eigen::MatrixXd(sum.square + left);
-    sum.log_determinant +=
-        whitening.log_determinant() + 2.0 * start.matrixLLT().diagonal().array().log().sum() + 2.0 * design.start.sd_K.array().log().sum();
-  }
-
   [[nodiscard]] std::vector<Eigen::Index> members_of(std::size_t subset) const {
     std::vector<Eigen::Index> members;
-    for (std::size_t m = 0; m < input_.members.columns.size(); ++m) {
+    for (Eigen::Index m = 0; m < members_; ++m) {
       if ((subset >> m & 1U) != 0) {
-        members.push_back(static_cast<Eigen::Index>(m));
+        members.push_back(m);
       }
     }
     return members;
   }
 
   /// Returns the ln evidence of a subset of the members, with or without the curve, minus that of no member. Writes the sizes (curve last)
-  /// and their posterior precision if the pointers are set.
-  [[nodiscard]] double gain_of(const estimation::Reduced& all, std::size_t subset, bool with_curve, Eigen::VectorXd* sizes = nullptr,
-                               Eigen::MatrixXd* precision_of = nullptr) const {
+  /// to `sizes` if it is set.
+  [[nodiscard]] double gain_of(const estimation::Reduced& all, std::size_t subset, bool with_curve,
+                               Eigen::VectorXd* sizes = nullptr) const {
     std::vector<Eigen::Index> places = members_of(subset);
     const auto members = static_cast<Eigen::Index>(places.size());
     std::vector<bool> has_sign;
     for (const Eigen::Index place : places) {
-      has_sign.push_back(input_.members.has_sign[static_cast<std::size_t>(place)]);
+      has_sign.push_back(set_.has_sign[static_cast<std::size_t>(place)]);
     }
-    const auto first = static_cast<Eigen::Index>(input_.members.columns.size());
     for (Eigen::Index hat = 0; with_curve && hat < kKnots; ++hat) {
-      places.push_back(first + hat);
+      places.push_back(members_ + hat);
       has_sign.push_back(false);
     }
     const auto count = static_cast<Eigen::Index>(places.size());
-    Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(count, count) / (input_.members.size_sd * input_.members.size_sd);
+    Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(count, count);
+    precision.diagonal().head(members).setConstant(1.0 / (rules_.size_sd * rules_.size_sd));
     if (with_curve) {
       precision.bottomRightCorner(kKnots, kKnots) = precision_;
-      precision.topRightCorner(members, kKnots).setZero();
-      precision.bottomLeftCorner(kKnots, members).setZero();
     }
-    const Eigen::MatrixXd products = all.products(places, places);
-    if (precision_of) {
-      *precision_of = products + precision;
-    }
-    return set_gain_nats(products, all.right(places), precision, has_sign, sizes);
+    return set_gain_nats(all.products(places, places), all.right(places), precision, has_sign, sizes);
   }
 
   /// Returns the normal equations of [members, hats] with θ eliminated.
@@ -371,17 +348,15 @@ class Scanner {
       square.block(before, before + kKnots, kKnots, 1) = across.bottomRows(1).transpose();
       square.block(before + kKnots, before, 1, kKnots) = across.bottomRows(1);
       square(before + kKnots, before + kKnots) = shared[r].products(before, before);
-      add_run(square, (*input_.designs)[r], shared[r].whitening, sum);
+      estimation::add_without_starts(square, (*input_.designs)[r], shared[r].whitening, sum);
     }
     return estimation::reduced(sum, prior_);
   }
 
-  [[nodiscard]] Scored score(const Family& family, const std::vector<SharedRun>& shared, const estimation::FluxPlace& place) const {
-    const estimation::Reduced all = reduced_with(family, shared);
-    const double second_nats = second_signal(family.term.multiplier).empty() ? 0.0 : rules_.second_signal_nats;
+  [[nodiscard]] Scored best_subset(const estimation::Reduced& all, bool with_curve, const estimation::FluxPlace& place) const {
     Scored best;
     for (std::size_t subset = 0; subset < subsets_; ++subset) {
-      const double nats = all.base_nats + gain_of(all, subset, true) + prior_of(subset) + rules_.curve_nats - second_nats;
+      const double nats = all.base_nats + gain_of(all, subset, with_curve) + prior_of(subset);
       if (nats > best.nats) {
         best = {nats, subset, place};
       }
@@ -389,10 +364,17 @@ class Scanner {
     return best;
   }
 
+  [[nodiscard]] Scored score(const Family& family, const std::vector<SharedRun>& shared, const estimation::FluxPlace& place) const {
+    Scored best = best_subset(reduced_with(family, shared), true, place);
+    const double second_nats = spec_of(family.term.multiplier).second_signal.empty() ? 0.0 : rules_.second_signal_nats;
+    best.nats += rules_.curve_nats - second_nats;
+    return best;
+  }
+
   [[nodiscard]] double prior_of(std::size_t subset) const {
     double nats = 0.0;
     for (const Eigen::Index member : members_of(subset)) {
-      nats += input_.members.prior_nats[static_cast<std::size_t>(member)];
+      nats += (*input_.rules)[static_cast<std::size_t>(input_.members[static_cast<std::size_t>(member)])].prior_nats;
     }
     return nats;
   }
@@ -406,51 +388,41 @@ class Scanner {
     out.gain_nats = family.scored.nats - without_nats;
     const estimation::Reduced at = reduced_with(family, shared_at(family.scored.place));
     Eigen::VectorXd sizes;
-    Eigen::MatrixXd precision;
-    (void)gain_of(at, subset, true, &sizes, &precision);
+    (void)gain_of(at, subset, true, &sizes);
     const Eigen::VectorXd hats = sizes.tail<kKnots>();
     out.curve = family.usual * hats;
-    const Eigen::Index count = precision.cols();
-    const Eigen::MatrixXd inverse = precision.llt().solve(Eigen::MatrixXd::Identity(count, count));
-    out.covariance = family.usual * family.usual * inverse.bottomRightCorner(kKnots, kKnots);
     for (const Eigen::Index member : members_of(subset)) {
       out.beside.push_back(static_cast<int>(member));
     }
-    const auto first = static_cast<Eigen::Index>(input_.members.columns.size());
-    const double own = hats.dot(at.products.block(first, first, kKnots, kKnots) * hats);
-    for (Eigen::Index member = 0; member < first; ++member) {
-      const double across = hats.dot(at.products.block(first, member, kKnots, 1).col(0));
+    const double own = hats.dot(at.products.block(members_, members_, kKnots, kKnots) * hats);
+    for (Eigen::Index member = 0; member < members_; ++member) {
+      const double across = hats.dot(at.products.block(members_, member, kKnots, 1).col(0));
       out.shape_ratio.push_back(across * across / std::max(1e-300, own * at.products(member, member)));
     }
-    set_heat(out, family);
+    out.mean_W = mean_W(family, out.curve);
     return out;
   }
 
-  void set_heat(ScanResult& out, const Family& family) const {
-    std::vector<double> magnitude_W;
+  [[nodiscard]] double mean_W(const Family& family, const Eigen::VectorXd& curve) const {
     const Regressor& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
+    double sum_W = 0.0;
+    double count = 0.0;
     for (std::size_t r = 0; r < family.multiplier.size(); ++r) {
       for (Eigen::Index k = 0; k < family.multiplier[r].size(); ++k) {
-        const double value = driver.values[r][k];
-        if (!std::isnan(value)) {
-          magnitude_W.push_back(std::abs(value_at(family.knots, out.curve, value) * family.multiplier[r][k]));
+        if (const double value = driver.values[r][k]; !std::isnan(value)) {
+          sum_W += std::abs(value_at(family.knots, curve, value) * family.multiplier[r][k]);
+          count += 1.0;
         }
       }
     }
-    if (magnitude_W.empty()) {
-      return;
-    }
-    for (const double each_W : magnitude_W) {
-      out.mean_W += each_W / static_cast<double>(magnitude_W.size());
-    }
-    const std::size_t peak = magnitude_W.size() * 99 / 100;
-    std::nth_element(magnitude_W.begin(), magnitude_W.begin() + static_cast<std::ptrdiff_t>(peak), magnitude_W.end());
-    out.peak_W = magnitude_W[peak];
+    return sum_W / std::max(1.0, count);
   }
 
   const ScanInput& input_;
   const SelectionRules& rules_;
   Eigen::MatrixXd precision_;
+  Eigen::Index members_;  ///< number of effects in the best set
+  SetColumns set_;        ///< their columns in the design, then those of their companions, which are free in every subset
   std::size_t subsets_;
   estimation::ThetaPrior prior_;  ///< prior of θ and the companions
   std::map<estimation::FluxPlace, std::vector<SharedRun>> shared_;

@@ -8,6 +8,7 @@
 #include "attribution/regressors.h"
 #include "attribution/rules.h"
 #include "attribution/scan_term.h"
+#include "attribution/set_search.h"
 #include "estimation/design.h"
 #include "estimation/flux_grid.h"
 
@@ -19,24 +20,12 @@ struct ScanResult {
   double usual = 1.0;  ///< typical size of the curve in the prior, in the curve's unit
   /// Gain in ln P: the best subset with the curve compared with the best subset without one. Each has its own unknown heat.
   double gain_nats = 0.0;
-  std::vector<double> knots;   ///< knots, in the unit of the signal
-  Eigen::VectorXd curve;       ///< values of g at the knots, in unit_of(multiplier)
-  Eigen::MatrixXd covariance;  ///< posterior covariance of the curve
-  double mean_W = 0.0;         ///< mean magnitude of the heat over the time it acts
-  double peak_W = 0.0;         ///< 99th percentile of the magnitude
-  std::vector<int> beside;     ///< indices of the members in the best subset
+  std::vector<double> knots;  ///< knots, in the unit of the signal
+  Eigen::VectorXd curve;      ///< values of g at the knots, in the unit of the multiplier
+  double mean_W = 0.0;        ///< mean magnitude of the heat over the intervals with a value of the signal
+  std::vector<int> beside;    ///< indices of the members in the best subset
   /// Per member: squared correlation of the responses of the sensors to the member and to the curve, with θ eliminated.
   std::vector<double> shape_ratio;
-};
-
-/// Effects of the best set, as columns of the design after those of θ.
-struct ScanMembers {
-  std::vector<Eigen::Index> columns;
-  std::vector<bool> has_sign;
-  std::vector<double> prior_nats;
-  double size_sd = 1.0;
-  std::vector<Eigen::Index> companions = {};  ///< columns that are always free, in every subset
-  double companion_sd = 1.0;
 };
 
 /// Input of the scan. The pointers must be set and outlive the scan.
@@ -47,7 +36,8 @@ struct ScanInput {
   const std::vector<Regressor>* drivers = nullptr;
   const std::vector<estimation::DesignRun>* designs = nullptr;
   estimation::ThetaPrior prior;
-  ScanMembers members;
+  const std::vector<CandidateRule>* rules = nullptr;  ///< candidates, in the order of their columns in the design after those of θ
+  std::vector<int> members;                           ///< the best set of effects
   estimation::FluxGrid grid;
   std::vector<estimation::FluxPlace> places;  ///< start points of the search: most probable with the best set, and without any effect
   double mean_heat_W = 1.0;                   ///< mean modelled heat, which scales the prior of the curves

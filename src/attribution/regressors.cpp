@@ -13,8 +13,6 @@ namespace {
 
 /// Signals with a larger correlation are copies; the earlier one is kept.
 constexpr double kSameCorrelation_ratio = 0.9995;
-/// Smallest number of samples: a few for each of the seven knots of a curve.
-constexpr std::size_t kFewestSamples = 30;
 
 Regressor driver_of(std::string name, std::string unit, DriverKind kind) {
   Regressor driver;
@@ -24,11 +22,18 @@ Regressor driver_of(std::string name, std::string unit, DriverKind kind) {
   return driver;
 }
 
+/// A temperature that a curve can depend on. `choice`, `watched` and `reference` as in Regressor.
+Regressor temperature_of(std::string name, std::string unit, std::string choice, std::string_view watched, std::string_view reference) {
+  Regressor driver = driver_of(std::move(name), std::move(unit), DriverKind::node_temperature);
+  driver.choice = std::move(choice);
+  driver.watched = watched;
+  driver.reference = reference;
+  return driver;
+}
+
 class Collector {
  public:
-  Collector(const estimation::Model& model, const std::vector<estimation::LinearisedRun>& fitted,
-            const std::vector<estimation::MeasuredRun>& runs)
-      : model_(model), fitted_(fitted), runs_(runs) {}
+  explicit Collector(const std::vector<estimation::MeasuredRun>& runs) : runs_(runs) {}
 
   template <class Value>
   void add(Regressor driver, const Value& value) {
@@ -61,14 +66,14 @@ class Collector {
     for (const Eigen::VectorXd& values : driver.values) {
       std::ranges::copy_if(values, std::back_inserter(known), [](double value) { return !std::isnan(value); });
     }
-    if (known.size() < kFewestSamples) {
+    if (known.empty()) {
       return;
     }
     std::ranges::sort(known);
     driver.low = known[known.size() / 100];
     driver.high = known[known.size() - 1 - known.size() / 100];
     const double size = std::max(std::abs(driver.low), std::abs(driver.high));
-    if (!(driver.high - driver.low > 1e-6 * size) || is_label(driver) || is_copy(driver)) {
+    if (!(driver.high - driver.low > 1e-6 * size) || is_copy(driver)) {
       return;
     }
     double width = driver.high - driver.low;
@@ -81,22 +86,6 @@ class Collector {
       }
     }
     kept_.push_back(std::move(driver));
-  }
-
-  /// True if the signal hardly varies within any run: it only distinguishes runs.
-  [[nodiscard]] static bool is_label(const Regressor& driver) {
-    constexpr double kLeastWithin_share = 0.2;
-    return std::ranges::none_of(driver.values, [&](const Eigen::VectorXd& of_run) {
-      double low = driver.high;
-      double high = driver.low;
-      for (const double value : of_run) {
-        if (!std::isnan(value)) {
-          low = std::min(low, value);
-          high = std::max(high, value);
-        }
-      }
-      return high - low > kLeastWithin_share * (driver.high - driver.low);
-    });
   }
 
   [[nodiscard]] bool is_copy(const Regressor& driver) const {
@@ -118,8 +107,6 @@ class Collector {
     return count > 0.0 && spread > 0.0 ? (ab - sum_a * sum_b / count) / std::sqrt(spread) : 0.0;
   }
 
-  const estimation::Model& model_;
-  const std::vector<estimation::LinearisedRun>& fitted_;
   const std::vector<estimation::MeasuredRun>& runs_;
   std::vector<Regressor> kept_;
 };
@@ -141,54 +128,37 @@ void add_operating_points(Collector& all) {
 void add_temperatures(Collector& all, const estimation::Model& model, const std::vector<estimation::LinearisedRun>& fitted,
                       const std::vector<estimation::MeasuredRun>& runs) {
   const auto ambient_C = [&](std::size_t r, Eigen::Index k) { return runs[r].at[static_cast<std::size_t>(k)].ambient_C; };
-  const std::string ambient(thermal::Network::kAmbient);
+  const std::string_view ambient = thermal::Network::kAmbient;
   for (int node = 0; node < model.network.state_count(); ++node) {
     const std::string name(model.network.node_name(node));
     const bool is_seen = std::ranges::any_of(runs, [&](const estimation::MeasuredRun& run) { return run.sensor_at(name).has_value(); });
     if (!is_seen && name != "winding" && name != "stator") {
       continue;  // a body without a sensor is no signal
     }
-    Regressor absolute = driver_of(name + "_temperature", "degC", DriverKind::node_temperature);
-    absolute.choice = "temperature";
-    absolute.watched = name;
-    absolute.reference = ambient;
-    all.add(absolute, [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(node, k); });
-    Regressor excess = driver_of(name + "_excess", "K", DriverKind::node_temperature);
-    excess.choice = "temperature_difference";
-    excess.watched = name;
-    excess.reference = ambient;
-    all.add(excess, [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(node, k) - ambient_C(r, k); });
+    all.add(temperature_of(name + "_temperature", "degC", "temperature", name, ambient),
+            [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(node, k); });
+    all.add(temperature_of(name + "_excess", "K", "temperature_difference", name, ambient),
+            [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(node, k) - ambient_C(r, k); });
   }
   if (model.network.state_count() > 1) {
-    Regressor between =
-        driver_of(fmt::format("{}_above_{}", model.network.node_name(0), model.network.node_name(1)), "K", DriverKind::node_temperature);
-    between.choice = "temperature_difference";
-    between.watched = model.network.node_name(0);
-    between.reference = model.network.node_name(1);
-    all.add(between, [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(0, k) - fitted[r].state_C(1, k); });
+    const std::string_view inner = model.network.node_name(0), outer = model.network.node_name(1);
+    all.add(temperature_of(fmt::format("{}_above_{}", inner, outer), "K", "temperature_difference", inner, outer),
+            [&](std::size_t r, Eigen::Index k) { return fitted[r].state_C(0, k) - fitted[r].state_C(1, k); });
   }
   if (std::ranges::all_of(runs, [](const estimation::MeasuredRun& run) { return run.has(thermal::Signal::neighbour_temperature); })) {
-    Regressor neighbour = driver_of("neighbour_above_stator", "K", DriverKind::node_temperature);
     const int stator = model.network.find_node("stator").value_or(0);
-    neighbour.choice = "neighbour_difference";
-    neighbour.watched = model.network.node_name(stator);
-    neighbour.reference = ambient;
-    all.add(neighbour, [&](std::size_t r, Eigen::Index k) {
-      return runs[r].at[static_cast<std::size_t>(k)].neighbour_C - fitted[r].state_C(stator, k);
-    });
+    all.add(
+        temperature_of("neighbour_above_stator", "K", "neighbour_difference", model.network.node_name(stator), ambient),
+        [&](std::size_t r, Eigen::Index k) { return runs[r].at[static_cast<std::size_t>(k)].neighbour_C - fitted[r].state_C(stator, k); });
   }
-  Regressor air = driver_of("ambient_temperature", "degC", DriverKind::node_temperature);
-  air.choice = "temperature";
-  air.watched = ambient;
-  air.reference = ambient;
-  all.add(air, ambient_C);
+  all.add(temperature_of("ambient_temperature", "degC", "temperature", ambient, ambient), ambient_C);
 }
 
 }  // namespace
 
 std::vector<Regressor> drivers_of(const estimation::Model& model, const std::vector<estimation::LinearisedRun>& fitted,
                                   const std::vector<estimation::MeasuredRun>& runs) {
-  Collector all(model, fitted, runs);
+  Collector all(runs);
   add_operating_points(all);
   add_temperatures(all, model, fitted, runs);
   all.add(driver_of(std::string(kTimeDriver), "s", DriverKind::log_only),

@@ -9,13 +9,14 @@
 #include <limits>
 #include <set>
 
-#include "attribution/mean_heat.h"
 #include "base/parallel.h"
 #include "calibration/motor_model.h"
 #include "calibration/unlogged_speed.h"
 #include "estimation/averaged_run.h"
-#include "estimation/free_run_errors.h"
+#include "estimation/left_out_runs.h"
 #include "estimation/model_screening.h"
+#include "estimation/smoothed_path.h"
+#include "estimation/usual_heat.h"
 
 namespace heatsoak::attribution {
 namespace {
@@ -50,6 +51,19 @@ std::vector<CandidateRule> rules_of(const std::vector<Candidate>& candidates, co
   return all;
 }
 
+/// Returns the coordinates of positive parameters whose prior standard deviation is less than half of that of a value on a data sheet.
+std::vector<Eigen::Index> well_known_values(const estimation::Model& model) {
+  std::vector<Eigen::Index> known;
+  const Eigen::MatrixXd precision = model.full_prior().precision;
+  for (Eigen::Index i = 0; i < model.network_count(); ++i) {
+    const bool is_well_known = precision(i, i) * calibration::kSheet_sd * calibration::kSheet_sd > 4.0;
+    if (is_well_known && model.free[static_cast<std::size_t>(i)].by_log) {
+      known.push_back(i);
+    }
+  }
+  return known;
+}
+
 }  // namespace
 
 Rounds::Rounds(const SelectionInput& input, const SelectionRules& rules)
@@ -61,10 +75,8 @@ Judged Rounds::run_rounds() {
   Judged judged;
   for (int round = 0; round < rules_.most_rounds; ++round) {
     judged = judge();
-    const bool repeats = round > 0 && judged.best == best_;
-    const bool circles = !seen.insert(judged.best).second;
     best_ = judged.best;
-    if (repeats || circles) {
+    if (!seen.insert(judged.best).second) {
       break;
     }
     follow(judged);
@@ -75,7 +87,6 @@ Judged Rounds::run_rounds() {
 }
 
 void Rounds::begin() {
-  out_.mean_heat_W = mean_heat_W(input_.model, input_.runs);
   std::vector<std::vector<double>> start_C;
   std::vector<estimation::LinearisedRun> paths;
   for (const estimation::MeasuredRun& run : input_.runs) {
@@ -83,6 +94,7 @@ void Rounds::begin() {
     paths.push_back(estimation::linearise(input_.model, start_C.back(), run));
     merged_.push_back(estimation::mergeable_samples(paths.back()));
   }
+  out_.mean_heat_W = estimation::usual_heat_W(input_.model, input_.runs, start_C);
   unit_W_ = estimation::material_heat_W(paths, rules_.material_K);
   now_ = estimation::posterior_of(input_.model, input_.runs, start_C, plain_options());
   out_.material_W = std::max({unit_W_, rules_.material_share * out_.mean_heat_W, rules_.as_usual_ratio * input_.usual.flux_W});
@@ -94,7 +106,7 @@ void Rounds::begin() {
     std::erase_if(list_.candidates, [](const Candidate& each) { return each.type && each.nodes.front() == "stator"; });
   }
   out_.not_judged = list_.not_judged;
-  parameters_ = well_known_values(input_.model, calibration::kSheet_sd);
+  parameters_ = well_known_values(input_.model);
   set_rules_ = rules_of(candidates(), rules_);
   for (const Eigen::Index parameter : parameters_) {
     const std::string name = "parameter " + input_.model.name(parameter);
@@ -154,9 +166,7 @@ Judged Rounds::judge() {
       all.push_back(reduced);
     }
     search_.emplace(std::move(all), set_rules_, rules_);
-    judged.best = search_->sets().front().members;
-    judged.at_best = search_->at_best(judged.best);
-    judged.best_place = best_place(judged.designs, prior, judged.best, judged.places[judged.at_best.point]);
+    take_best(judged, prior);
     const std::size_t before = points.size();
     add_points(judged.designs, prior, grid_.star(judged.best_place), points);
     if (points.size() == before) {
@@ -166,21 +176,22 @@ Judged Rounds::judge() {
   constexpr std::size_t kMostFits = 6;
   search_->reconsider(
       [&](const std::vector<int>& members, const SetSearch::AtBest& at) {
-        estimation::PosteriorOptions options = final_options(judged.places[at.point]);
-        options.around.clear();
         const estimation::Model model = with_members(members, at, ShapesAre::free);
+        const estimation::PosteriorOptions options = options_with(grid_.at(judged.places[at.point]));
         return estimation::try_posterior_of(model, input_.runs, starts_of(model), options).evidence_nats;
       },
       kMostFits);
-  if (search_->sets().front().members != judged.best) {
-    judged.best = search_->sets().front().members;
-    judged.at_best = search_->at_best(judged.best);
-    judged.best_place = judged.places[judged.at_best.point];
-  }
+  take_best(judged, prior);
   place_ = judged.empty_place;
   best_place_ = judged.best_place;
   note();
   return judged;
+}
+
+void Rounds::take_best(Judged& judged, const estimation::ThetaPrior& prior) const {
+  judged.best = search_->sets().front().members;
+  judged.at_best = search_->at_best(judged.best);
+  judged.best_place = best_place(judged.designs, prior, judged.best, judged.places[judged.at_best.point]);
 }
 
 void Rounds::add_points(const std::vector<estimation::DesignRun>& designs, const estimation::ThetaPrior& prior,
@@ -218,36 +229,29 @@ estimation::FluxPlace Rounds::best_place(const std::vector<estimation::DesignRun
 estimation::Model Rounds::with_members(const std::vector<int>& members, const SetSearch::AtBest& at, ShapesAre shapes) const {
   estimation::Model model = base_here();
   Eigen::VectorXd theta = model.theta() + at.theta;
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    if (is_parameter(members[m])) {
+      const Eigen::Index parameter = parameter_of(members[m]);
+      model.prior.widen(parameter, calibration::kSheet_sd);
+      theta[parameter] += calibration::kSheet_sd * at.sizes[static_cast<Eigen::Index>(m)];
+    }
+  }
   for (Eigen::Index i = 0; i < theta.size(); ++i) {
     theta[i] = std::clamp(theta[i], model.low(i), model.high(i));
   }
   model.set_theta(theta);
   for (std::size_t m = 0; m < members.size(); ++m) {
-    if (is_parameter(members[m])) {
-      const Eigen::Index parameter = parameter_of(members[m]);
-      model.prior.widen(parameter, calibration::kSheet_sd);
-      Eigen::VectorXd moved = model.theta();
-      moved[parameter] = std::clamp(moved[parameter] + calibration::kSheet_sd * at.sizes[static_cast<Eigen::Index>(m)],
-                                    model.low(parameter), model.high(parameter));
-      model.set_theta(moved);
-    }
-  }
-  for (std::size_t m = 0; m < members.size(); ++m) {
     if (!is_parameter(members[m])) {
       const Candidate& candidate = candidates()[static_cast<std::size_t>(members[m])];
-      model = with_candidate(model, candidate, at.sizes[static_cast<Eigen::Index>(m)], {}, shapes);
+      model = with_candidate(model, candidate, at.sizes[static_cast<Eigen::Index>(m)], shapes);
     }
   }
   return model;
 }
 
 void Rounds::follow(const Judged& judged) {
-  estimation::PosteriorOptions options;
-  options.flux = grid_.at(judged.best_place);
-  options.weights = out_.weights;
-  options.merged = merged_;
-  estimation::Posterior next =
-      estimation::try_posterior_of(with_members(judged.best, judged.at_best, ShapesAre::free), input_.runs, now_.start_C, options);
+  estimation::Posterior next = estimation::try_posterior_of(with_members(judged.best, judged.at_best, ShapesAre::free), input_.runs,
+                                                            now_.start_C, options_with(grid_.at(judged.best_place)));
   if (!std::isfinite(next.evidence_nats)) {
     return;
   }
@@ -320,7 +324,7 @@ void Rounds::note_sight() {
     }
   }
   for (const auto& [name, nats] : best_nats) {
-    if (nats < rules_.seen_nats) {
+    if (nats < rules_.seen_nats()) {
       out_.unseen.push_back(name);
     }
   }
@@ -328,11 +332,16 @@ void Rounds::note_sight() {
   out_.seen_share = 1.0 - static_cast<double>(out_.unseen.size()) / all;
 }
 
-estimation::PosteriorOptions Rounds::final_options(const estimation::FluxPlace& place) const {
+estimation::PosteriorOptions Rounds::options_with(const estimation::LatentFlux& flux) const {
   estimation::PosteriorOptions options;
-  options.flux = grid_.at(place);
+  options.flux = flux;
   options.weights = out_.weights;
   options.merged = merged_;
+  return options;
+}
+
+estimation::PosteriorOptions Rounds::final_options(const estimation::FluxPlace& place) const {
+  estimation::PosteriorOptions options = options_with(grid_.at(place));
   for (const estimation::FluxPlace& each : grid_.star(place)) {
     options.around.push_back(grid_.at(each));
   }
@@ -340,47 +349,13 @@ estimation::PosteriorOptions Rounds::final_options(const estimation::FluxPlace& 
 }
 
 estimation::PosteriorOptions Rounds::plain_options() const {
-  estimation::PosteriorOptions plain;
-  plain.white_noise_K = rules_.start_error_K;
-  plain.longest_step_ratio = rules_.longest_step_ratio;
-  plain.most_steps = 20;
-  plain.flux = {std::vector<double>(input_.model.flux_nodes.size(), 0.0), 100.0};
+  constexpr int kMostSteps = 20;
+  estimation::PosteriorOptions plain = estimation::least_squares_options(input_.model, kMostSteps);
+  // Halved steps reach the minimum from a start that is wrong by 40 K, where smaller boxes stop early.
+  plain.holds_covariance = false;
   plain.weights = out_.weights;
   plain.merged = merged_;
   return plain;
-}
-
-double Rounds::error_of_ends_K(const estimation::Posterior& start, const std::vector<estimation::MeasuredRun>& runs,
-                               estimation::PosteriorOptions options) const {
-  constexpr double kSeen_share = 2.0 / 3.0;
-  const auto seen = [](const estimation::MeasuredRun& run) {
-    return static_cast<Eigen::Index>(kSeen_share * static_cast<double>(run.samples()));
-  };
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    const estimation::MeasuredRun& run = runs[r];
-    const auto sensors = static_cast<Eigen::Index>(run.sensors.size());
-    if (options.weights[r].size() == 0) {
-      options.weights[r].setOnes(run.samples() * sensors);
-    }
-    options.weights[r].tail((run.samples() - seen(run)) * sensors).setZero();
-  }
-  const estimation::Posterior fit = estimation::try_posterior_of(start.model, runs, start.start_C, options);
-  if (!std::isfinite(fit.evidence_nats)) {
-    return std::numeric_limits<double>::infinity();
-  }
-  double sum_K2 = 0.0;
-  double count = 0.0;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    const estimation::MeasuredRun& run = runs[r];
-    const Eigen::MatrixXd error_K = estimation::open_loop_C(fit.model, run, {}) - run.measured_C;
-    for (const double each_K : error_K.bottomRows(run.samples() - seen(run)).reshaped()) {
-      if (!std::isnan(each_K)) {
-        sum_K2 += each_K * each_K;
-        count += 1.0;
-      }
-    }
-  }
-  return std::sqrt(sum_K2 / std::max(1.0, count));
 }
 
 estimation::Posterior Rounds::to_predict(estimation::Posterior fit) const {
@@ -388,26 +363,8 @@ estimation::Posterior Rounds::to_predict(estimation::Posterior fit) const {
 }
 
 estimation::Posterior Rounds::more_predictive(estimation::Posterior fit, const std::vector<estimation::MeasuredRun>& runs) const {
-  if (!std::isfinite(fit.evidence_nats)) {
-    return fit;
-  }
-  estimation::Posterior plain = estimation::try_posterior_of(fit.model, runs, fit.start_C, plain_options());
-  if (!std::isfinite(plain.evidence_nats)) {
-    return fit;
-  }
-  estimation::PosteriorOptions whitened;
-  whitened.flux = fit.flux;
-  whitened.weights = out_.weights;
-  whitened.merged = merged_;
-  if (error_of_ends_K(fit, runs, whitened) <= error_of_ends_K(plain, runs, plain_options())) {
-    return fit;
-  }
-  const Eigen::VectorXd moved = plain.model.theta() - fit.model.theta();
-  plain.covariance = fit.covariance + moved * moved.transpose();
-  plain.flux = fit.flux;
-  plain.evidence_nats = fit.evidence_nats;
-  plain.converged = fit.converged;
-  return plain;
+  const estimation::PosteriorOptions whitened = options_with(fit.flux);
+  return estimation::more_predictive(std::move(fit), runs, whitened, plain_options());
 }
 
 void Rounds::own_parameters(const Judged& judged) {
@@ -433,22 +390,10 @@ std::vector<std::vector<double>> Rounds::starts_of(const estimation::Model& mode
 }
 
 std::map<std::string, double> Rounds::left_by(const estimation::Posterior& fit) const {
-  std::vector<Eigen::VectorXd> squares(input_.runs.size());
-  const std::vector<estimation::DesignRun> designs =
-      estimation::design(fit.model.network, fit.fitted, input_.runs, out_.weights, merged_, {});
-  base::in_parallel(designs.size(), 0, [&](std::size_t r) {
-    const estimation::DesignRun& one = designs[r];
-    squares[r] = estimation::Whitening(one.run, fit.flux, one.noise).smoothed_flux(one.run.residual_K).mean_W.rowwise().squaredNorm();
-  });
+  const Eigen::VectorXd rms_W = estimation::rms_W(estimation::smoothed_flux(fit, input_.runs, out_.weights, merged_));
   std::map<std::string, double> left;
   for (std::size_t f = 0; f < input_.model.flux_nodes.size(); ++f) {
-    double sum = 0.0;
-    double count = 0.0;
-    for (std::size_t r = 0; r < designs.size(); ++r) {
-      sum += squares[r][static_cast<Eigen::Index>(f)];
-      count += static_cast<double>(designs[r].run.samples());
-    }
-    left[std::string(input_.model.network.node_name(input_.model.flux_nodes[f]))] = std::sqrt(sum / count);
+    left[std::string(input_.model.network.node_name(input_.model.flux_nodes[f]))] = rms_W[static_cast<Eigen::Index>(f)];
   }
   return left;
 }

@@ -40,6 +40,8 @@ class Rounds {
   [[nodiscard]] estimation::Model base_here() const { return with_values_of(input_.model, now_.model); }
   /// Runs one round along the path of the last fit.
   Judged judge();
+  /// Sets the best set of the search with its solution and its most probable unknown heat.
+  void take_best(Judged& judged, const estimation::ThetaPrior& prior) const;
   /// Adds the normal equations at those grid points that `points` does not contain yet.
   void add_points(const std::vector<estimation::DesignRun>& designs, const estimation::ThetaPrior& prior,
                   const std::vector<estimation::FluxPlace>& places, std::map<estimation::FluxPlace, estimation::Reduced>& points) const;
@@ -58,15 +60,15 @@ class Rounds {
   void note();
   /// Records the effects whose expected gain at typical size is below `seen_nats`.
   void note_sight();
+  /// Returns options for a fit with one assumption about the unknown heat.
+  [[nodiscard]] estimation::PosteriorOptions options_with(const estimation::LatentFlux& flux) const;
+  /// Returns options for a fit that is averaged over the neighbours of `place`.
   [[nodiscard]] estimation::PosteriorOptions final_options(const estimation::FluxPlace& place) const;
-  /// Returns a fit to the free `runs` if that predicts the ends of the runs better, otherwise `fit`. The change is added to the covariance.
+  /// Same as estimation::more_predictive(), with plain least squares as the other fit.
   [[nodiscard]] estimation::Posterior more_predictive(estimation::Posterior fit, const std::vector<estimation::MeasuredRun>& runs) const;
   /// Sensor drift means that the network lacks bodies, and whitened residuals may then not give the most predictive parameters. Returns
   /// more_predictive() for such a fit, otherwise `fit`.
   [[nodiscard]] estimation::Posterior to_predict(estimation::Posterior fit) const;
-  /// Fits the first two thirds of all runs and returns the RMS error in K of the predicted last thirds; ∞ if the fit fails.
-  [[nodiscard]] double error_of_ends_K(const estimation::Posterior& start, const std::vector<estimation::MeasuredRun>& runs,
-                                       estimation::PosteriorOptions options) const;
   /// Returns options for plain least squares of the free runs, without unknown heat.
   [[nodiscard]] estimation::PosteriorOptions plain_options() const;
   /// Fits the model without effects: once with the file's priors (`before`), once with wider priors for the contradicted parameters

@@ -1,6 +1,7 @@
 #include "attribution/scan_term.h"
 
 #include <algorithm>
+#include <array>
 
 namespace heatsoak::attribution {
 
@@ -10,7 +11,7 @@ std::optional<int> flux_of(const estimation::Model& model, std::string_view node
   return found == model.flux_nodes.end() ? std::nullopt : std::optional(static_cast<int>(found - model.flux_nodes.begin()));
 }
 
-std::vector<ScanTerm> terms_of_one_signal(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
+std::vector<ScanTerm> scan_terms(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
   std::vector<ScanTerm> terms;
   for (const int node : model.flux_nodes) {
     const std::string name(model.network.node_name(node));
@@ -27,61 +28,27 @@ std::vector<ScanTerm> terms_of_one_signal(const estimation::Model& model, const 
   if (is_seen("winding") && is_seen("stator")) {
     terms.push_back({"winding", "stator", Multiplier::difference, 0});
   }
-  return terms;
-}
-
-std::vector<ScanTerm> terms_of_two_signals(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
-  std::vector<ScanTerm> terms;
-  if (!flux_of(model, "stator")) {
-    return terms;
-  }
+  // Losses that depend on a second signal arise in the stator.
   for (const auto& [signal, multiplier] :
        {std::pair(thermal::Signal::current, Multiplier::current), std::pair(thermal::Signal::speed, Multiplier::speed)}) {
-    if (std::ranges::all_of(runs, [signal = signal](const estimation::MeasuredRun& run) { return run.has(signal); })) {
+    const bool is_logged = std::ranges::all_of(runs, [&, signal = signal](const estimation::MeasuredRun& run) { return run.has(signal); });
+    if (is_logged && flux_of(model, "stator")) {
       terms.push_back({"stator", "", multiplier, 0});
     }
   }
   return terms;
 }
 
-std::string_view unit_of(Multiplier multiplier) {
-  switch (multiplier) {
-    case Multiplier::source:
-      return "W";
-    case Multiplier::excess:
-    case Multiplier::difference:
-      return "W/K";
-    case Multiplier::copper:
-      return "";
-    case Multiplier::current:
-      return "W/A";
-    case Multiplier::speed:
-      return "W s/rad";
-  }
-  return "";
-}
-
-std::string_view to_string(Multiplier multiplier) {
-  switch (multiplier) {
-    case Multiplier::source:
-      return "heat";
-    case Multiplier::excess:
-      return "excess over ambient";
-    case Multiplier::copper:
-      return "copper loss";
-    case Multiplier::difference:
-      return "difference to the other node";
-    case Multiplier::current:
-      return "current";
-    case Multiplier::speed:
-      return "speed";
-  }
-  return "";
-}
-
-std::string_view second_signal(Multiplier multiplier) {
-  const bool is_second = multiplier == Multiplier::current || multiplier == Multiplier::speed;
-  return is_second ? to_string(multiplier) : std::string_view();
+const MultiplierSpec& spec_of(Multiplier multiplier) {
+  static constexpr std::array kAll{
+      MultiplierSpec{"heat", "W", "heat"},
+      MultiplierSpec{"excess over ambient", "W/K", "per_difference", {}, true},
+      MultiplierSpec{"copper loss", "", "per_copper_loss"},
+      MultiplierSpec{"difference to the other node", "W/K", "per_difference", {}, true},
+      MultiplierSpec{"current", "W/A", "per_current", "current"},
+      MultiplierSpec{"speed", "W s/rad", "per_speed", "speed"},
+  };
+  return kAll[static_cast<std::size_t>(multiplier)];
 }
 
 Eigen::VectorXd multiplier_along(const ScanTerm& term, const estimation::Model& model, const estimation::LinearisedRun& fitted,
@@ -101,7 +68,7 @@ Eigen::VectorXd multiplier_along(const ScanTerm& term, const estimation::Model& 
     }
     return along;
   }
-  if (!second_signal(term.multiplier).empty()) {
+  if (!spec_of(term.multiplier).second_signal.empty()) {
     for (Eigen::Index k = 0; k < along.size(); ++k) {
       const thermal::OperatingPoint<double>& at = run.at[static_cast<std::size_t>(k)];
       along[k] = term.multiplier == Multiplier::current ? at.current_rms_A : at.speed_mean_rad_per_s;

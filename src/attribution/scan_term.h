@@ -21,10 +21,15 @@ enum class Multiplier {
   current,     ///< RMS current; g in W/A
   speed,       ///< mean of |ω|; g in W·s/rad
 };
-std::string_view unit_of(Multiplier multiplier);
-std::string_view to_string(Multiplier multiplier);
-/// Returns the name of the second signal that the heat depends on; empty if there is none.
-std::string_view second_signal(Multiplier multiplier);
+/// Properties of a multiplier.
+struct MultiplierSpec {
+  std::string_view name;
+  std::string_view unit;                ///< unit of the curve g
+  std::string_view form;                ///< `form` of the effect `tabulated`
+  std::string_view second_signal = {};  ///< signal that the heat depends on besides that of the curve; empty: none
+  bool is_conductance = false;          ///< positive values of g take heat out of the node
+};
+const MultiplierSpec& spec_of(Multiplier multiplier);
 
 /// One family of curves.
 struct ScanTerm {
@@ -34,11 +39,9 @@ struct ScanTerm {
   int driver = 0;  ///< index in the list of signals
 };
 
-/// Returns the families with one signal. A flow between two nodes is included only if both have a sensor: the temperature of a node without
-/// one is too free.
-std::vector<ScanTerm> terms_of_one_signal(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs);
-/// Returns the families at the stator whose heat depends on a second signal, current or speed.
-std::vector<ScanTerm> terms_of_two_signals(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs);
+/// Returns all families, without their signals. A flow between two nodes is included only if both have a sensor: the temperature of a node
+/// without one is too free. Heat that depends on current or speed as a second signal enters the stator.
+std::vector<ScanTerm> scan_terms(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs);
 /// Returns the index of the node among those with unknown heat; empty if it is not one of them.
 std::optional<int> flux_of(const estimation::Model& model, std::string_view node);
 

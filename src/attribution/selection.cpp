@@ -6,10 +6,8 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include "attribution/rounds.h"
-#include "calibration/motor_model.h"
 #include "estimation/free_run_errors.h"
 #include "estimation/left_out_runs.h"
 #include "estimation/log_columns.h"
@@ -17,9 +15,6 @@
 
 namespace heatsoak::attribution {
 namespace {
-
-/// Explanations whose ln probability differs by less than this cannot be distinguished.
-constexpr double kAmbiguous_nats = 5.0;
 
 /// Decides which members of the best set get a name, whether a curve is accepted, and whether unknown heat remains.
 class Selector : Rounds {
@@ -30,9 +25,8 @@ class Selector : Rounds {
     begin();
     const std::vector<estimation::DesignRun> designs =
         estimation::design(now_.model.network, now_.fitted, input_.runs, out_.weights, merged_, {});
-    estimation::PosteriorOptions options = final_options(best_place(designs, estimation::prior_here(now_.model), {}, place_));
-    options.around.clear();
-    return estimation::posterior_of(now_.model, input_.runs, now_.start_C, options).evidence_nats;
+    const estimation::LatentFlux flux = grid_.at(best_place(designs, estimation::prior_here(now_.model), {}, place_));
+    return estimation::posterior_of(now_.model, input_.runs, now_.start_C, options_with(flux)).evidence_nats;
   }
 
   Selection run() {
@@ -43,8 +37,7 @@ class Selector : Rounds {
  private:
   void decide(const Judged& judged) {
     const EffectSet& best = search_->sets().front();
-    estimation::PosteriorOptions options = final_options(judged.best_place);
-    options.around.clear();
+    const estimation::PosteriorOptions options = options_with(grid_.at(judged.best_place));
     const estimation::Model with_best = with_members(best.members, judged.at_best, ShapesAre::held);
     const estimation::Posterior full = estimation::try_posterior_of(with_best, input_.runs, starts_of(with_best), options);
     out_.left_W = left_by(std::isfinite(full.evidence_nats) ? full : out_.before);
@@ -52,7 +45,7 @@ class Selector : Rounds {
     for (std::size_t m = 0; m < best.members.size(); ++m) {
       const double probability = search_->family_probability(best, m);
       if (is_parameter(best.members[m])) {
-        add_changed(best, m);
+        out_.changed_nats[parameter_of(best.members[m])] = search_->loss_without_nats(best, m);
       } else if (probability > rules_.named_probability) {
         named.push_back(m);
       } else {
@@ -80,7 +73,7 @@ class Selector : Rounds {
       }
     }
     if (out_.is_material()) {
-      keep_what_outweighs(best, named);
+      keep_what_reduces_error(best, named, rules_.beside_unknown_share, RefusalReason::unknown_heat_remains);
       out_.is_unexplained = named.empty();
     }
     if (input_.usual.flux_W > 0.0) {
@@ -97,18 +90,6 @@ class Selector : Rounds {
     }
   }
 
-  void add_changed(const EffectSet& best, std::size_t place) {
-    const Eigen::Index coordinate = parameter_of(best.members[place]);
-    const estimation::FreeParameter& free = input_.model.free[static_cast<std::size_t>(coordinate)];
-    const thermal::NetworkParameter& parameter = input_.model.network.parameters()[static_cast<std::size_t>(free.place)];
-    ChangedParameter changed;
-    changed.coordinate = coordinate;
-    changed.name = parameter.name;
-    changed.unit = parameter.unit;
-    changed.gain_nats = search_->loss_without_nats(best, place);
-    out_.changed.push_back(std::move(changed));
-  }
-
   void scan(const Judged& judged, const EffectSet& best) {
     constexpr std::size_t kMostReported = 8;
     const estimation::Model base = base_here();
@@ -121,34 +102,19 @@ class Selector : Rounds {
       path[r].state_C = estimation::smoothed_path_C(now_.fitted[r], grid_.at(judged.best_place), own.front().noise).topRows(path[r].states);
     }
     out_.drivers = drivers_of(base, path, input_.runs);
-    ScanInput input{&base,
-                    &input_.runs,
-                    &judged.fitted,
-                    &out_.drivers,
-                    &judged.designs,
-                    estimation::prior_here(base),
-                    {},
-                    grid_,
-                    {judged.best_place, judged.empty_place},
-                    out_.mean_heat_W};
-    input.members.size_sd = rules_.size_sd;
-    input.members.companion_sd = rules_.body_start_K;
-    for (const int member : best.members) {
-      for (const int companion : set_rules_[static_cast<std::size_t>(member)].companions) {
-        input.members.companions.push_back(free_count() + companion);
-      }
-      input.members.columns.push_back(free_count() + member);
-      input.members.has_sign.push_back(set_rules_[static_cast<std::size_t>(member)].has_sign);
-      input.members.prior_nats.push_back(set_rules_[static_cast<std::size_t>(member)].prior_nats);
-    }
+    const ScanInput input{&base,           &input_.runs,
+                          &judged.fitted,  &out_.drivers,
+                          &judged.designs, estimation::prior_here(base),
+                          &set_rules_,     best.members,
+                          grid_,           {judged.best_place, judged.empty_place},
+                          out_.mean_heat_W};
     out_.rounds.back().scan = scan_drivers(input, rules_, kMostReported);
   }
 
   /// Returns the member of the best set that has the same shape as the curve, if there is one.
   [[nodiscard]] std::optional<std::size_t> same_effect(const EffectSet& best, const ScanResult& curve) const {
     for (std::size_t m = 0; m < best.members.size(); ++m) {
-      const double share = curve.gain_nats / (curve.gain_nats + search_->loss_without_nats(best, m));
-      if (!is_parameter(best.members[m]) && curve.shape_ratio[m] > rules_.same_shape_ratio && share < rules_.same_shape_share) {
+      if (!is_parameter(best.members[m]) && curve.shape_ratio[m] > rules_.same_shape_ratio) {
         return m;
       }
     }
@@ -202,8 +168,7 @@ class Selector : Rounds {
     std::ranges::sort(kept);
     const SetSearch::AtBest at = search_->at_best(kept);
     const estimation::Model model = with_members(kept, at, ShapesAre::held);
-    estimation::PosteriorOptions options = final_options(best_place_);
-    options.around.clear();
+    const estimation::PosteriorOptions options = options_with(grid_.at(best_place_));
     const estimation::Posterior fit = to_predict(estimation::try_posterior_of(model, input_.runs, starts_of(model), options));
     return std::isfinite(fit.evidence_nats) ? free_run_error_K(fit.model) : std::numeric_limits<double>::infinity();
   }
@@ -215,9 +180,8 @@ class Selector : Rounds {
   }
 
   void keep_as_it_is(const Judged& judged) {
-    estimation::PosteriorOptions as_it_is = final_options(judged.empty_place);
+    estimation::PosteriorOptions as_it_is = options_with(grid_.at(judged.empty_place));
     as_it_is.most_steps = 0;
-    as_it_is.around.clear();
     out_.after = out_.own = estimation::posterior_of(input_.model, input_.runs, starts_of(input_.model), as_it_is);
     out_.after.covariance = input_.model.full_prior().precision.inverse();
   }
@@ -234,10 +198,6 @@ class Selector : Rounds {
         named = std::move(others);
       }
     }
-  }
-
-  void keep_what_outweighs(const EffectSet& best, std::vector<std::size_t>& named) {
-    keep_what_reduces_error(best, named, rules_.beside_unknown_share, RefusalReason::unknown_heat_remains);
   }
 
   /// Evidence alone is not sufficient: a calibrated model leaves some unknown heat even in the runs it was fitted to.
@@ -300,7 +260,7 @@ class Selector : Rounds {
       term.probability = search_->family_probability(best, m);
       term.loss_without_nats = search_->loss_without_nats(best, m);
       term.visibility_ratio = search_->visibility_ratio(member);
-      for (const int other : search_->stand_ins(best, m, kAmbiguous_nats)) {
+      for (const int other : search_->stand_ins(best, m, rules_.distinct_nats)) {
         if (!is_parameter(other)) {
           const Candidate& rival = candidates()[static_cast<std::size_t>(other)];
           if (std::ranges::find(term.confusable_with, rival.id) == term.confusable_with.end()) {
@@ -313,9 +273,8 @@ class Selector : Rounds {
     }
   }
 
-  /// Returns the ratio of two errors of left-out training runs: `beside` with the curve, divided by `without`. The ratio is the geometric
-  /// mean over the runs, so that one run outside the range of the others does not decide. Returns ∞ for a single run, and for a curve that
-  /// the model cannot contain.
+  /// Returns the ratio of two errors of left-out training runs: `beside` with the curve, divided by `without`. Returns ∞ for a single run,
+  /// and for a curve that the model cannot contain.
   [[nodiscard]] double left_out_share(const estimation::Posterior& beside, const estimation::Posterior& without,
                                       const ScanResult& curve) const {
     const Regressor& driver = out_.drivers[static_cast<std::size_t>(curve.term.driver)];
@@ -326,13 +285,7 @@ class Selector : Rounds {
     }
     std::vector<estimation::MeasuredRun> runs = input_.runs;
     estimation::set_columns(runs, curved->columns);
-    const std::vector<estimation::Errors> with = estimation::errors_by_others(*curved, runs, beside.start_C, plain_options());
-    const std::vector<estimation::Errors> own = estimation::errors_by_others(without.model, runs, without.start_C, plain_options());
-    double sum = 0.0;
-    for (std::size_t r = 0; r < runs.size(); ++r) {
-      sum += with[r].empty() ? std::numeric_limits<double>::infinity() : std::log(estimation::rms_K(with[r]) / estimation::rms_K(own[r]));
-    }
-    return std::exp(sum / static_cast<double>(runs.size()));
+    return estimation::left_out_ratio(*curved, beside.start_C, without.model, without.start_C, runs, plain_options());
   }
 
   /// Adds the curve to the model.
@@ -349,7 +302,7 @@ class Selector : Rounds {
     term.probability = 1.0;
     for (const ScanResult& each : out_.rounds.back().scan) {
       const std::string& other = out_.drivers[static_cast<std::size_t>(each.term.driver)].name;
-      if (each.gain_nats > curve.gain_nats - kAmbiguous_nats && other != driver.name &&
+      if (each.gain_nats > curve.gain_nats - rules_.distinct_nats && other != driver.name &&
           std::ranges::find(term.confusable_with, other) == term.confusable_with.end()) {
         term.confusable_with.push_back(other);
       }

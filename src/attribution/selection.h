@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "attribution/candidates.h"
-#include "attribution/changed_parameters.h"
 #include "attribution/regressor_scan.h"
 #include "attribution/rules.h"
 #include "estimation/posterior.h"
@@ -78,12 +77,14 @@ struct Selection {
   estimation::Posterior before;  ///< fit of the model's own parameters, without effects
   estimation::Posterior after;
   estimation::Posterior own;  ///< same as `before`, with wider priors for contradicted parameters
-  std::vector<ChangedParameter> changed;
+  /// Coordinates of parameters that the runs contradict, each with the loss of ln P without its wide prior. Another mounting, another
+  /// specimen or a loose terminal changes them; without this test, such a change would be mistaken for an effect.
+  std::map<Eigen::Index, double> changed_nats;
   std::vector<AcceptedTerm> terms;
   std::vector<Round> rounds;
   std::vector<Regressor> drivers;  ///< signals of the scan
   std::vector<UntestedEffect> not_judged;
-  double mean_heat_W = 0.0;              ///< mean modelled heat over all runs
+  double mean_heat_W = 0.0;              ///< mean heat of the model along the runs, see usual_heat_W()
   double material_W = 0.0;               ///< unknown heat below this is normal for any model
   std::map<std::string, double> left_W;  ///< by node: RMS of the smoothed unknown heat with the best set
   std::vector<Eigen::VectorXd> weights;  ///< per run and sample: 0 for samples that the model excludes as wrong

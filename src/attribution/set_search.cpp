@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <set>
 
 namespace heatsoak::attribution {
@@ -22,8 +21,7 @@ double log_twice_normal(double x) {
   return -0.5 * x * x - std::log(-x) - 0.5 * std::log(0.5 * M_PI);
 }
 
-}  // namespace
-
+/// Returns ln Σ exp(x) of a non-empty list.
 double log_sum_nats(const std::vector<double>& nats) {
   const double most = std::ranges::max(nats);
   double sum = 0.0;
@@ -32,6 +30,8 @@ double log_sum_nats(const std::vector<double>& nats) {
   }
   return std::isfinite(most) ? most + std::log(sum) : most;
 }
+
+}  // namespace
 
 double set_gain_nats(const Eigen::MatrixXd& products, const Eigen::VectorXd& right, const Eigen::MatrixXd& precision,
                      const std::vector<bool>& has_sign, Eigen::VectorXd* sizes) {
@@ -96,18 +96,16 @@ double SetSearch::log_evidence(const std::vector<int>& members) const {
   return log_sum_nats(nats) - std::log(static_cast<double>(points_.size()));
 }
 
-bool SetSearch::is_allowed(const std::vector<int>& members) const {
-  std::set<std::string> ids;
-  return std::ranges::all_of(members, [&](int member) { return ids.insert(candidates_[static_cast<std::size_t>(member)].id).second; });
-}
-
 double SetSearch::score(std::vector<int> members) {
   std::ranges::sort(members);
   const auto known = std::ranges::find(sets_, members, &EffectSet::members);
   if (known != sets_.end()) {
     return known->log_probability_nats;
   }
-  if (!is_allowed(members)) {
+  std::set<std::string> ids;
+  const bool are_variants =
+      !std::ranges::all_of(members, [&](int member) { return ids.insert(candidates_[static_cast<std::size_t>(member)].id).second; });
+  if (are_variants) {
     return kNone_nats;
   }
   double nats = log_evidence(members);
@@ -165,12 +163,7 @@ void SetSearch::search() {
         ++added;
       }
     }
-    const std::size_t grown = size == 1 ? pool.size() : static_cast<std::size_t>(rules_.best_pairs);
-    for (const std::vector<int>& set :
-         size == 1 ? best_of_size(1, candidates_.size()) : best_of_size(static_cast<std::size_t>(size), grown)) {
-      if (size == 1 && !pool.contains(set.front())) {
-        continue;
-      }
+    for (const std::vector<int>& set : best_of_size(static_cast<std::size_t>(size), static_cast<std::size_t>(rules_.best_grown))) {
       for (const int j : pool) {
         if (std::ranges::find(set, j) == set.end()) {
           score(with(set, j));
@@ -182,7 +175,6 @@ void SetSearch::search() {
 }
 
 void SetSearch::reconsider(const std::function<double(const std::vector<int>&, const AtBest&)>& fitted_nats, std::size_t most) {
-  constexpr double kKept_nats = 5.0;
   std::vector<double> change_nats;
   std::size_t winner = 0;
   for (std::size_t i = 0; i < std::min(most, sets_.size()); ++i) {
@@ -190,7 +182,7 @@ void SetSearch::reconsider(const std::function<double(const std::vector<int>&, c
     change_nats.push_back(fitted_nats(sets_[i].members, at) - at.evidence_nats);
     const auto nats = [&](std::size_t set) { return sets_[set].log_probability_nats + change_nats[set]; };
     winner = nats(i) > nats(winner) ? i : winner;
-    if (change_nats.back() > -kKept_nats) {
+    if (change_nats.back() > -rules_.distinct_nats) {
       break;
     }
   }
@@ -211,6 +203,11 @@ void SetSearch::rank() {
   }
 }
 
+double SetSearch::nats_of(const std::vector<int>& members) const {
+  const auto found = std::ranges::find(sets_, members, &EffectSet::members);
+  return found == sets_.end() ? kNone_nats : found->log_probability_nats;
+}
+
 int SetSearch::count_of(const EffectSet& set, const std::string& family) const {
   return static_cast<int>(
       std::ranges::count_if(set.members, [&](int member) { return candidates_[static_cast<std::size_t>(member)].family == family; }));
@@ -221,8 +218,7 @@ int SetSearch::rank_in_family(const EffectSet& set, std::size_t place) const {
   const auto nats_without = [&](std::size_t gone) {
     std::vector<int> rest = set.members;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(gone));
-    const auto found = std::ranges::find(sets_, rest, &EffectSet::members);
-    return found == sets_.end() ? kNone_nats : found->log_probability_nats;
+    return nats_of(rest);
   };
   const std::string& family = candidates_[static_cast<std::size_t>(set.members[place])].family;
   const double own_nats = nats_without(place);
@@ -257,16 +253,7 @@ double SetSearch::loss_without_nats(const EffectSet& set, std::size_t place) con
 }
 
 double SetSearch::single_gain_nats(int candidate) const {
-  double empty_nats = kNone_nats;
-  double own_nats = kNone_nats;
-  for (const EffectSet& set : sets_) {
-    if (set.members.empty()) {
-      empty_nats = set.log_probability_nats;
-    } else if (set.members == std::vector<int>{candidate}) {
-      own_nats = set.log_probability_nats - candidates_[static_cast<std::size_t>(candidate)].prior_nats;
-    }
-  }
-  return own_nats - empty_nats;
+  return nats_of({candidate}) - candidates_[static_cast<std::size_t>(candidate)].prior_nats - nats_of({});
 }
 
 std::vector<int> SetSearch::stand_ins(const EffectSet& set, std::size_t place, double within_nats) const {

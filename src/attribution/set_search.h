@@ -42,8 +42,8 @@ class SetSearch {
   SetSearch(std::vector<estimation::Reduced> points, std::vector<CandidateRule> candidates, const SelectionRules& rules);
 
   /// Replaces the linear evidence by that of nonlinear fits, best set first, because linear evidence along another set's path can be too
-  /// high. Stops at the first set that loses less than 5 nats, or after `most` fits. Sets without a fit change by as much as the best
-  /// fitted one.
+  /// high. Stops at the first set that loses less than `distinct_nats`, or after `most` fits. Sets without a fit change by as much as the
+  /// best fitted one.
   void reconsider(const std::function<double(const std::vector<int>& members, const AtBest& at)>& fitted_nats, std::size_t most);
   /// Returns all evaluated sets, best first.
   [[nodiscard]] const std::vector<EffectSet>& sets() const { return sets_; }
@@ -68,9 +68,10 @@ class SetSearch {
   void search();
   void rank();
   double score(std::vector<int> members);
-  [[nodiscard]] bool is_allowed(const std::vector<int>& members) const;
   [[nodiscard]] double log_evidence(const std::vector<int>& members) const;
   [[nodiscard]] std::vector<std::vector<int>> best_of_size(std::size_t size, std::size_t most) const;
+  /// Returns ln P of a set, not normalised; −∞ if it was not evaluated.
+  [[nodiscard]] double nats_of(const std::vector<int>& members) const;
   [[nodiscard]] int count_of(const EffectSet& set, const std::string& family) const;
   /// Returns 1 for the most certain member of its family, 2 for the next, and so on.
   [[nodiscard]] int rank_in_family(const EffectSet& set, std::size_t place) const;
@@ -95,7 +96,5 @@ double set_gain_nats(const Eigen::MatrixXd& products, const Eigen::VectorXd& rig
                      const std::vector<bool>& has_sign, Eigen::VectorXd* sizes = nullptr);
 /// Same for a set at one point.
 double set_gain_nats(const estimation::Reduced& point, const SetColumns& set, Eigen::VectorXd* sizes = nullptr);
-/// Returns ln Σ exp(x) of a non-empty list.
-double log_sum_nats(const std::vector<double>& all_nats);
 
 }  // namespace heatsoak::attribution

@@ -20,8 +20,6 @@ constexpr double kKnotSpread = 0.5;
 /// Prior standard deviation of the logarithm for an effect with a body: its capacity may be almost anything.
 constexpr double kBodySpread = 1.0;
 
-std::string named(std::string_view name, std::string usual) { return name.empty() ? std::move(usual) : std::string(name); }
-
 /// Returns the text as a valid name in a motor file.
 std::string as_word(std::string text) {
   std::ranges::transform(text, text.begin(),
@@ -60,78 +58,16 @@ std::optional<double> choice_value(const base::ParameterSpec& spec, std::string_
   return found == spec.choices.end() ? std::nullopt : std::optional(static_cast<double>(found - spec.choices.begin()));
 }
 
-std::string_view form_of(Multiplier multiplier) {
-  switch (multiplier) {
-    case Multiplier::source:
-      return "heat";
-    case Multiplier::copper:
-      return "per_copper_loss";
-    case Multiplier::current:
-      return "per_current";
-    case Multiplier::speed:
-      return "per_speed";
-    case Multiplier::excess:
-    case Multiplier::difference:
-      return "per_difference";
-  }
-  return "";
-}
-
 /// Returns the curve without negative values, because losses and conductances cannot be negative. The constant part of a conductance
 /// belongs to the base network and is subtracted.
 Eigen::VectorXd passive(const ScanResult& curve) {
-  const bool is_conductance = curve.term.multiplier == Multiplier::excess || curve.term.multiplier == Multiplier::difference;
-  const double shift = is_conductance ? curve.curve.minCoeff() : 0.0;
+  const double shift = spec_of(curve.term.multiplier).is_conductance ? curve.curve.minCoeff() : 0.0;
   return (curve.curve.array() - shift).cwiseMax(0.0);
-}
-
-std::optional<estimation::Model> with_table(const estimation::Model& model, const ScanResult& curve, const Regressor& driver,
-                                            std::string_view name) {
-  const thermal::EffectType& type = *thermal::find_effect("tabulated");
-  const std::optional<double> form = choice_value(type.parameters[1], form_of(curve.term.multiplier));
-  estimation::Model out = model;
-  std::string_view driver_choice = driver.choice;
-  if (driver.choice == thermal::kColumnChoice) {
-    const auto place = static_cast<std::size_t>(std::ranges::find(out.columns, driver.name) - out.columns.begin());
-    if (place == thermal::kLogColumns) {
-      return std::nullopt;
-    }
-    out.columns.resize(std::max(out.columns.size(), place + 1), driver.name);
-    driver_choice = thermal::kColumnChoices[place];
-  }
-  const std::optional<double> choice = choice_value(type.parameters[0], driver_choice);
-  if (!choice || !form) {
-    return std::nullopt;
-  }
-  const Eigen::VectorXd values = passive(curve);
-  const std::string ambient(thermal::Network::kAmbient);
-  const std::string cold = curve.term.other.empty() ? ambient : curve.term.other;
-  const std::string watched = driver.watched.empty() ? curve.term.node : driver.watched;
-  const std::string reference = driver.reference.empty() ? ambient : driver.reference;
-  std::vector<double> parameters{*choice, *form, curve.knots.front(), curve.knots.back()};
-  parameters.insert(parameters.end(), values.begin(), values.end());
-  const thermal::EffectInPlace effect = add(out, named(name, as_word(fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name))),
-                                            type, {curve.term.node, cold, watched, reference}, parameters);
-  const double gap = (curve.knots.back() - curve.knots.front()) / static_cast<double>(values.size() - 1);
-  for (const std::size_t end : {2U, 3U}) {
-    // The scan used measured temperatures with noise and sensor errors, so the knots may be off.
-    if (driver.kind == DriverKind::node_temperature) {
-      const double knot = parameters[end];
-      out.set_free({.place = effect.parameter_index[end], .by_log = false, .scale = gap, .low = knot - 2.0 * gap, .high = knot + 2.0 * gap},
-                   kKnotSpread);
-    }
-  }
-  for (Eigen::Index knot = 0; knot < values.size(); ++knot) {
-    set_free_around_zero(out, effect.parameter_index[static_cast<std::size_t>(4 + knot)], curve.usual, base::Range::non_negative(), 1.0);
-  }
-  out.prior.precision.bottomRightCorner(values.size(), values.size()) = curve_precision(values.size(), {});
-  return out;
 }
 
 }  // namespace
 
-estimation::Model with_candidate(const estimation::Model& model, const Candidate& candidate, double size_share, std::string_view name,
-                                 ShapesAre shapes) {
+estimation::Model with_candidate(const estimation::Model& model, const Candidate& candidate, double size_share, ShapesAre shapes) {
   estimation::Model out = model;
   if (candidate.sensor_type) {
     const base::Range& faults = candidate.sensor_type->size.range;
@@ -157,8 +93,7 @@ estimation::Model with_candidate(const estimation::Model& model, const Candidate
       parameters[static_cast<std::size_t>(*role.own_capacity)] *= std::max(0.05, size_share);
     }
   }
-  const thermal::EffectInPlace effect =
-      add(out, std::string(name.empty() ? candidate.type->name : name), *candidate.type, candidate.nodes, parameters);
+  const thermal::EffectInPlace effect = add(out, std::string(candidate.type->name), *candidate.type, candidate.nodes, parameters);
   for (std::size_t p = 0; shapes == ShapesAre::free && p < parameters.size(); ++p) {
     const base::ParameterSpec& spec = candidate.type->parameters[p];
     if (static_cast<int>(p) != candidate.size_parameter() && spec.choices.empty() && parameters[p] > 0.0 && spec.range.low >= 0.0) {
@@ -194,9 +129,49 @@ Eigen::Index size_coordinate(const estimation::Model& model, const Candidate& ca
   return std::ranges::find(model.free, place, &estimation::FreeParameter::place) - model.free.begin();
 }
 
-std::optional<estimation::Model> with_curve(const estimation::Model& model, const ScanResult& curve, const Regressor& driver,
-                                            std::string_view name) {
-  return driver.choice.empty() ? std::nullopt : with_table(model, curve, driver, name);
+std::optional<estimation::Model> with_curve(const estimation::Model& model, const ScanResult& curve, const Regressor& driver) {
+  if (driver.choice.empty()) {
+    return std::nullopt;
+  }
+  const thermal::EffectType& type = *thermal::find_effect("tabulated");
+  const std::optional<double> form = choice_value(type.parameters[1], spec_of(curve.term.multiplier).form);
+  estimation::Model out = model;
+  std::string_view driver_choice = driver.choice;
+  if (driver.choice == thermal::kColumnChoice) {
+    const auto place = static_cast<std::size_t>(std::ranges::find(out.columns, driver.name) - out.columns.begin());
+    if (place == thermal::kLogColumns) {
+      return std::nullopt;
+    }
+    out.columns.resize(std::max(out.columns.size(), place + 1), driver.name);
+    driver_choice = thermal::kColumnChoices[place];
+  }
+  const std::optional<double> choice = choice_value(type.parameters[0], driver_choice);
+  if (!choice || !form) {
+    return std::nullopt;
+  }
+  const Eigen::VectorXd values = passive(curve);
+  const std::string ambient(thermal::Network::kAmbient);
+  const std::string cold = curve.term.other.empty() ? ambient : curve.term.other;
+  const std::string watched = driver.watched.empty() ? curve.term.node : driver.watched;
+  const std::string reference = driver.reference.empty() ? ambient : driver.reference;
+  std::vector<double> parameters{*choice, *form, curve.knots.front(), curve.knots.back()};
+  parameters.insert(parameters.end(), values.begin(), values.end());
+  const thermal::EffectInPlace effect = add(out, as_word(fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name)), type,
+                                            {curve.term.node, cold, watched, reference}, parameters);
+  const double gap = (curve.knots.back() - curve.knots.front()) / static_cast<double>(values.size() - 1);
+  for (const std::size_t end : {2U, 3U}) {
+    // The scan used measured temperatures with noise and sensor errors, so the knots may be off.
+    if (driver.kind == DriverKind::node_temperature) {
+      const double knot = parameters[end];
+      out.set_free({.place = effect.parameter_index[end], .by_log = false, .scale = gap, .low = knot - 2.0 * gap, .high = knot + 2.0 * gap},
+                   kKnotSpread);
+    }
+  }
+  for (Eigen::Index knot = 0; knot < values.size(); ++knot) {
+    set_free_around_zero(out, effect.parameter_index[static_cast<std::size_t>(4 + knot)], curve.usual, base::Range::non_negative(), 1.0);
+  }
+  out.prior.precision.bottomRightCorner(values.size(), values.size()) = curve_precision(values.size(), {});
+  return out;
 }
 
 estimation::Model with_values_of(estimation::Model model, const estimation::Model& other) {

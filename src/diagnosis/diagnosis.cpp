@@ -8,16 +8,17 @@
 #include <iterator>
 
 #include "attribution/curve.h"
-#include "attribution/mean_heat.h"
 #include "attribution/terms.h"
 #include "base/parallel.h"
 #include "base/quantity.h"
 #include "calibration/unlogged_speed.h"
 #include "diagnosis/advisor.h"
 #include "diagnosis/coverage.h"
+#include "diagnosis/heat_of_effects.h"
 #include "diagnosis/unexplained_heat.h"
 #include "estimation/interval.h"
 #include "estimation/log_columns.h"
+#include "estimation/smoothed_path.h"
 #include "estimation/turning_rows.h"
 
 namespace heatsoak::diagnosis {
@@ -67,14 +68,13 @@ class DiagnosisReport {
   void report_changed_parameters() {
     const estimation::Model& model = after().model;
     const Eigen::VectorXd theta = model.theta();
-    for (attribution::ChangedParameter parameter : out_.selection.changed) {
-      const Eigen::Index own = parameter.coordinate;
+    for (const auto& [own, gain_nats] : out_.selection.changed_nats) {
       const double reach = estimation::kInterval_sd * std::sqrt(after().covariance(own, own));
-      parameter.before = input_.model.values[static_cast<std::size_t>(model.free[static_cast<std::size_t>(own)].place)];
-      parameter.value = model.value_of(own, theta[own]);
-      parameter.low = model.value_of(own, theta[own] - reach);
-      parameter.high = model.value_of(own, theta[own] + reach);
-      out_.changed.push_back(std::move(parameter));
+      const auto place = static_cast<std::size_t>(model.free[static_cast<std::size_t>(own)].place);
+      const thermal::NetworkParameter& parameter = model.network.parameters()[place];
+      out_.changed.push_back({parameter.name, std::string(parameter.unit), gain_nats, input_.model.values[place],
+                              model.value_of(own, theta[own]), model.value_of(own, theta[own] - reach),
+                              model.value_of(own, theta[own] + reach)});
     }
   }
 
@@ -85,39 +85,30 @@ class DiagnosisReport {
     out_.file_train = errors_of_file(after().model, input_.train, {});
   }
 
-  /// Returns the smoothed unknown heat of every run, fluxes × samples.
-  [[nodiscard]] std::vector<estimation::FluxEstimate> smoothed(const estimation::Posterior& fit) const {
-    std::vector<estimation::FluxEstimate> all(fit.fitted.size());
-    const std::vector<estimation::DesignRun> designs =
-        estimation::design(fit.model.network, fit.fitted, input_.train, out_.selection.weights, {}, {});
-    base::in_parallel(all.size(), 0, [&](std::size_t r) {
-      all[r] = estimation::Whitening(fit.fitted[r], fit.flux, designs[r].noise).smoothed_flux(fit.fitted[r].residual_K);
-    });
-    return all;
-  }
-
   void report_flux() {
+    const auto smoothed = [&](const estimation::Posterior& fit) {
+      return estimation::smoothed_flux(fit, input_.train, out_.selection.weights, {});
+    };
     const std::vector<estimation::FluxEstimate> before = smoothed(out_.selection.before);
     const std::vector<estimation::FluxEstimate> now = smoothed(after());
+    const Eigen::VectorXd rms_before_W = estimation::rms_W(before);
+    const Eigen::VectorXd rms_now_W = estimation::rms_W(now);
     const std::vector<int>& nodes = input_.model.flux_nodes;
-    std::map<std::string, double> counts;
+    for (std::size_t f = 0; f < nodes.size(); ++f) {
+      const std::string node(input_.model.network.node_name(nodes[f]));
+      const auto row = static_cast<Eigen::Index>(f);
+      out_.flux_rms_before_W[node] = rms_before_W[row];
+      out_.flux_rms_after_W[node] = rms_now_W[row];
+    }
     for (std::size_t r = 0; r < input_.train.size(); ++r) {
       for (std::size_t f = 0; f < nodes.size(); ++f) {
-        const std::string node(input_.model.network.node_name(nodes[f]));
         const auto row = static_cast<Eigen::Index>(f);
-        FluxTrace trace{input_.train[r].name, node, input_.train[r].time_s, {}, {}, {}};
+        FluxTrace trace{input_.train[r].name, std::string(input_.model.network.node_name(nodes[f])), input_.train[r].time_s, {}, {}, {}};
         trace.before_W.assign(before[r].mean_W.row(row).begin(), before[r].mean_W.row(row).end());
         trace.after_W.assign(now[r].mean_W.row(row).begin(), now[r].mean_W.row(row).end());
         trace.after_sd_W.assign(now[r].sd_W.row(row).begin(), now[r].sd_W.row(row).end());
-        out_.flux_rms_before_W[node] += before[r].mean_W.row(row).squaredNorm();
-        out_.flux_rms_after_W[node] += now[r].mean_W.row(row).squaredNorm();
-        counts[node] += static_cast<double>(before[r].mean_W.cols());
         out_.flux.push_back(std::move(trace));
       }
-    }
-    for (auto& [node, count] : counts) {
-      out_.flux_rms_before_W[node] = std::sqrt(out_.flux_rms_before_W[node] / count);
-      out_.flux_rms_after_W[node] = std::sqrt(out_.flux_rms_after_W[node] / count);
     }
   }
 
@@ -131,7 +122,7 @@ class DiagnosisReport {
     for (std::size_t r = 0; r < input_.train.size(); ++r) {
       const estimation::MeasuredRun& run = input_.train[r];
       std::vector<double> in_run_J(effects * nodes, 0.0);
-      attribution::heat_along(after(), run, after().fitted[r], [&](std::size_t k, std::span<const double> heat_W) {
+      heat_along(after(), run, after().fitted[r], [&](std::size_t k, std::span<const double> heat_W) {
         const double duration_s = run.time_s[k + 1] - run.time_s[k];
         time_s += duration_s;
         for (std::size_t i = 0; i < in_run_J.size(); ++i) {
@@ -241,7 +232,7 @@ class DiagnosisReport {
     if (out_.selection.is_as_usual) {
       return DiagnosisVerdict::nothing_missing;
     }
-    const bool is_same_mounting = std::ranges::none_of(out_.changed, [](const attribution::ChangedParameter& parameter) {
+    const bool is_same_mounting = std::ranges::none_of(out_.changed, [](const ChangedParameter& parameter) {
       return std::abs(std::log(parameter.value / parameter.before)) > kOtherMounting;
     });
     const bool would_show = out_.selection.seen_share >= rules_.least_seen_share;

@@ -69,10 +69,22 @@ struct Experiment {
   double expected_nats = 0.0;  ///< expected gain in evidence between them; 0: not computed
 };
 
+/// A parameter of the file that the runs contradict.
+struct ChangedParameter {
+  std::string name;  ///< name in the network, "stator_ambient.thermal_resistance"
+  std::string unit;
+  double gain_nats = 0.0;  ///< ln evidence with the prior of a data sheet minus ln evidence with the file's prior
+  /// Values of the parameter: of the file, of the final fit, and the fit's 95 % interval; all in `unit`.
+  double before = 0.0;
+  double value = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+};
+
 struct Diagnosis {
   DiagnosisVerdict verdict = DiagnosisVerdict::nothing_missing;
   std::vector<FoundEffect> effects;
-  std::vector<attribution::ChangedParameter> changed;  ///< parameters of the file that the runs contradict
+  std::vector<ChangedParameter> changed;
   std::vector<Unexplained> unexplained;
   estimation::Errors before_train, after_train;
   estimation::Errors refitted_train;          ///< errors with only the model's own parameters refitted to the training runs

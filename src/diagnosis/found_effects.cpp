@@ -4,8 +4,8 @@
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
-#include "attribution/mean_heat.h"
 #include "attribution/terms.h"
+#include "diagnosis/heat_of_effects.h"
 #include "estimation/interval.h"
 
 namespace heatsoak::diagnosis {
@@ -44,13 +44,13 @@ class EffectReport {
     if (term.curve) {
       effect.node = term.curve->term.node;
       effect.drivers.push_back(selection_.drivers[static_cast<std::size_t>(term.curve->term.driver)].name);
-      if (const std::string_view second = attribution::second_signal(term.curve->term.multiplier); !second.empty()) {
+      if (const std::string_view second = attribution::spec_of(term.curve->term.multiplier).second_signal; !second.empty()) {
         effect.drivers.emplace_back(second);
       }
       effect.is_from_catalogue = false;
     }
     report_parameters(in_place, effect);
-    const attribution::HeatOfEffect heat = attribution::heat_of(
+    const HeatOfEffect heat = heat_of(
         after(), runs_, [&](const thermal::EffectInPlace& each) { return &each == &in_place; }, effect.condition);
     effect.mean_W = heat.mean_W;
     effect.peak_W = heat.peak_W;
@@ -91,7 +91,7 @@ class EffectReport {
     report_size(candidate, type.size, type.usual, std::max(-1.0, type.size.range.low), effect);
     const double value = effect.parameters.front().value;
     const thermal::Network& network = after().model.network;
-    const attribution::HeatOfEffect heat = attribution::heat_of(
+    const HeatOfEffect heat = heat_of(
         after(), runs_, [&](const thermal::EffectInPlace& in_place) { return type.concerns(network, in_place); }, candidate.condition);
     effect.mean_W = std::abs(type.part_ratio(value)) * heat.mean_W;
     effect.peak_W = std::abs(type.part_ratio(value)) * heat.peak_W;

@@ -20,8 +20,7 @@ class UnexplainedHeatReport {
   std::vector<Unexplained> tell() {
     for (const attribution::AcceptedTerm& term : told_.selection.terms) {
       if (term.curve) {
-        add_curve(*term.curve, term.confusable_with);
-        report_as_added(term, heats_.back());
+        add_curve(term);
       }
     }
     if (heats_.empty() && told_.selection.is_unexplained) {
@@ -88,44 +87,34 @@ class UnexplainedHeatReport {
     return heat;
   }
 
-  /// Overwrites the curve of the scan by the fitted one of the model.
-  void report_as_added(const attribution::AcceptedTerm& term, Unexplained& heat) const {
+  /// Reports the fitted curve of the model.
+  void add_curve(const attribution::AcceptedTerm& term) {
+    const attribution::ScanTerm& scanned = term.curve->term;
+    const attribution::Regressor& driver = told_.selection.drivers[static_cast<std::size_t>(scanned.driver)];
     const auto effect = std::ranges::find(told_.effects, term.effect_name, &FoundEffect::name);
-    heat.is_in_model = true;
+    Unexplained heat;
+    heat.node = scanned.node;
+    heat.drivers = {driver.name};
+    heat.drivers.insert(heat.drivers.end(), term.confusable_with.begin(), term.confusable_with.end());
+    heat.times = attribution::spec_of(scanned.multiplier).second_signal;
     heat.mean_W = heat.rms_W = effect->mean_W;
     heat.peak_W = effect->peak_W;
-    const estimation::Model& model = after().model;
-    const thermal::EffectInPlace& in_place = *effect_named(after().model.network, term.effect_name);
-    const std::size_t first = in_place.parameter_index.size() - heat.curve.size();
-    const auto value = [&](std::size_t parameter) { return model.values[static_cast<std::size_t>(in_place.parameter_index[parameter])]; };
-    heat.knots = attribution::knots_from({value(first - 2), value(first - 1)});
-    for (std::size_t knot = 0; knot < heat.curve.size(); ++knot) {
-      heat.curve[knot] = value(first + knot);
-      const auto free = std::ranges::find(model.free, in_place.parameter_index[first + knot], &estimation::FreeParameter::place);
-      const Eigen::Index own = free - model.free.begin();
-      heat.curve_sd[knot] = free == model.free.end() ? 0.0 : free->scale * std::sqrt(after().covariance(own, own));
-    }
-  }
-
-  void add_curve(const attribution::ScanResult& curve, const std::vector<std::string>& others) {
-    const attribution::Regressor& driver = told_.selection.drivers[static_cast<std::size_t>(curve.term.driver)];
-    Unexplained heat;
-    heat.node = curve.term.node;
-    heat.drivers = {driver.name};
-    heat.drivers.insert(heat.drivers.end(), others.begin(), others.end());
-    heat.times = attribution::second_signal(curve.term.multiplier);
-    heat.mean_W = curve.mean_W;
-    heat.peak_W = curve.peak_W;
-    heat.rms_W = curve.mean_W;
     heat.time_scale_s = time_scale_s();
-    heat.gain_nats = curve.gain_nats;
-    heat.knots = curve.knots;
-    heat.curve.assign(curve.curve.begin(), curve.curve.end());
-    for (Eigen::Index i = 0; i < curve.covariance.rows(); ++i) {
-      heat.curve_sd.push_back(std::sqrt(curve.covariance(i, i)));
-    }
-    heat.curve_unit = attribution::unit_of(curve.term.multiplier);
+    heat.gain_nats = term.curve->gain_nats;
+    heat.curve_unit = attribution::spec_of(scanned.multiplier).unit;
     heat.driver_unit = driver.unit;
+    heat.is_in_model = true;
+    const estimation::Model& model = after().model;
+    const std::vector<int>& parameters = effect_named(model.network, term.effect_name)->parameter_index;
+    const auto value = [&](std::size_t parameter) { return model.values[static_cast<std::size_t>(parameters[parameter])]; };
+    const std::size_t first = parameters.size() - static_cast<std::size_t>(term.curve->curve.size());
+    heat.knots = attribution::knots_from({value(first - 2), value(first - 1)});
+    for (std::size_t knot = first; knot < parameters.size(); ++knot) {
+      heat.curve.push_back(value(knot));
+      const auto free = std::ranges::find(model.free, parameters[knot], &estimation::FreeParameter::place);
+      const Eigen::Index own = free - model.free.begin();
+      heat.curve_sd.push_back(free == model.free.end() ? 0.0 : free->scale * std::sqrt(after().covariance(own, own)));
+    }
     heats_.push_back(std::move(heat));
   }
 

@@ -43,6 +43,27 @@ std::vector<double> measured_start_C(const thermal::Network& network, const Meas
   return {start_C.begin(), start_C.end()};
 }
 
+void add_start_prior(const StartPrior& start, Eigen::MatrixXd& square) {
+  const Eigen::Index x = start.sd_K.size();
+  const Eigen::VectorXd precision = start.sd_K.cwiseAbs2().cwiseInverse();
+  const Eigen::VectorXd pull = precision.cwiseProduct(start.mean_K);
+  square.topLeftCorner(x, x).diagonal() += precision;
+  square.topRightCorner(x, 1) += pull;
+  square.bottomLeftCorner(1, x) += pull.transpose();
+  square.bottomRightCorner<1, 1>()(0, 0) += start.mean_K.dot(pull);
+}
+
+void add_without_starts(const Eigen::MatrixXd& square, const DesignRun& design, const Whitening& whitening, Products& sum) {
+  const Eigen::Index x = design.run.states;
+  const Eigen::Index rest = square.cols() - x;
+  const Eigen::LLT<Eigen::MatrixXd> start(square.topLeftCorner(x, x));
+  const Eigen::MatrixXd across = square.topRightCorner(x, rest);
+  const Eigen::MatrixXd left = square.bottomRightCorner(rest, rest) - across.transpose() * start.solve(across);
+  sum.square = sum.square.size() == 0 ? left : Eigen::MatrixXd(sum.square + left);
+  sum.log_determinant +=
+      whitening.log_determinant() + 2.0 * start.matrixLLT().diagonal().array().log().sum() + 2.0 * design.start.sd_K.array().log().sum();
+}
+
 Products products_of(const std::vector<DesignRun>& runs, const LatentFlux& flux, const std::vector<Eigen::Index>& columns) {
   Products out;
   for (const DesignRun& design : runs) {
@@ -61,18 +82,8 @@ Products products_of(const std::vector<DesignRun>& runs, const LatentFlux& flux,
     Eigen::MatrixXd square = Eigen::MatrixXd::Zero(tall.cols(), tall.cols());
     square.selfadjointView<Eigen::Lower>().rankUpdate(tall.transpose());
     square.triangularView<Eigen::StrictlyUpper>() = square.transpose();
-    const Eigen::VectorXd precision = design.start.sd_K.cwiseAbs2().cwiseInverse();
-    const Eigen::VectorXd pull = precision.cwiseProduct(design.start.mean_K);
-    square.topLeftCorner(x, x).diagonal() += precision;
-    square.topRightCorner(x, 1) += pull;
-    square.bottomLeftCorner(1, x) += pull.transpose();
-    square(x + count, x + count) += design.start.mean_K.dot(pull);
-    const Eigen::LLT<Eigen::MatrixXd> start(square.topLeftCorner(x, x));
-    const Eigen::MatrixXd across = square.topRightCorner(x, count + 1);
-    const Eigen::MatrixXd rest = square.bottomRightCorner(count + 1, count + 1) - across.transpose() * start.solve(across);
-    out.square = out.square.size() == 0 ? rest : Eigen::MatrixXd(out.square + rest);
-    out.log_determinant +=
-        whitening.log_determinant() + 2.0 * start.matrixLLT().diagonal().array().log().sum() - precision.array().log().sum();
+    add_start_prior(design.start, square);
+    add_without_starts(square, design, whitening, out);
   }
   return out;
 }

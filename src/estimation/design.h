@@ -41,6 +41,10 @@ struct Products {
   double log_determinant = 0.0;  ///< ln|V| + ln|posterior precision of the starts| − ln|prior precision of the starts|
 };
 
+/// Adds the prior of the start temperatures to `square`: products of whitened [start temperatures, columns, residual].
+void add_start_prior(const StartPrior& start, Eigen::MatrixXd& square);
+/// Eliminates the start temperatures from such products of one run, with their prior, and adds the rest to `sum`.
+void add_without_starts(const Eigen::MatrixXd& square, const DesignRun& design, const Whitening& whitening, Products& sum);
 /// Computes the products of the columns with these indices, in this order; empty: all columns.
 Products products_of(const std::vector<DesignRun>& runs, const LatentFlux& flux, const std::vector<Eigen::Index>& columns);
 

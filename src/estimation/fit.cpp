@@ -11,6 +11,7 @@
 #include "base/random.h"
 #include "estimation/free_run_fit.h"
 #include "estimation/model_along_run.h"
+#include "estimation/model_screening.h"
 #include "estimation/posterior.h"
 #include "estimation/usual_heat.h"
 
@@ -20,8 +21,6 @@ namespace {
 /// Innovations beyond kSuspect standard deviations are down-weighted, those beyond kHopeless are rejected.
 constexpr double kSuspect = 2.5;
 constexpr double kHopeless = 6.0;
-/// If more samples than this would be rejected, the model or the flux is wrong rather than the samples, and none is rejected.
-constexpr double kMostRejected_share = 0.1;
 /// Mean square (kInsideSquare) of a standard normal variable truncated to ±kInside.
 constexpr double kInside = 3.0;
 constexpr double kInsideSquare = 0.9733;
@@ -118,7 +117,7 @@ class Fitting {
 
   Fit run() {
     find_start();
-    range_.unit_W = usual_heat_W(model_, runs_, starts_);
+    range_.unit_W = usual_heat_W(model_, runs_, start_C());
     linearise_all();
     constexpr int kMostRounds = 10;
     // Estimate the noise level first, with a plausible flux, because the flux estimate depends on it.
@@ -273,8 +272,7 @@ class Fitting {
     if (best_.drift_K.empty() && is_much) {
       const Supposition drifting = most_probable(evidence, range_, with_drift(range_, best_));
       const std::vector<double> values = evidences({best_, drifting});
-      constexpr double kClearly_nats = 10.0;
-      best_ = values[1] > values[0] + kClearly_nats ? drifting : best_;
+      best_ = values[1] > values[0] + kClear_nats ? drifting : best_;
     }
   }
 

@@ -1,10 +1,44 @@
 #include "estimation/left_out_runs.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 
 namespace heatsoak::estimation {
+namespace {
+
+/// Fits the first two thirds of every run and returns the RMS error in K of the predicted last thirds; ∞ if the fit fails.
+double error_of_ends_K(const Posterior& start, const std::vector<MeasuredRun>& runs, PosteriorOptions options) {
+  constexpr double kSeen_share = 2.0 / 3.0;
+  const auto seen = [](const MeasuredRun& run) { return static_cast<Eigen::Index>(kSeen_share * static_cast<double>(run.samples())); };
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const MeasuredRun& run = runs[r];
+    const auto sensors = static_cast<Eigen::Index>(run.sensors.size());
+    if (options.weights[r].size() == 0) {
+      options.weights[r].setOnes(run.samples() * sensors);
+    }
+    options.weights[r].tail((run.samples() - seen(run)) * sensors).setZero();
+  }
+  const Posterior fit = try_posterior_of(start.model, runs, start.start_C, options);
+  if (!std::isfinite(fit.evidence_nats)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  double sum_K2 = 0.0;
+  double count = 0.0;
+  for (const MeasuredRun& run : runs) {
+    const Eigen::MatrixXd error_K = open_loop_C(fit.model, run, {}) - run.measured_C;
+    for (const double each_K : error_K.bottomRows(run.samples() - seen(run)).reshaped()) {
+      if (!std::isnan(each_K)) {
+        sum_K2 += each_K * each_K;
+        count += 1.0;
+      }
+    }
+  }
+  return std::sqrt(sum_K2 / std::max(1.0, count));
+}
+
+}  // namespace
 
 Posterior fit_of(const Model& model, const SomeRuns& some) { return try_posterior_of(model, some.runs, some.start_C, some.options); }
 
@@ -19,6 +53,34 @@ std::vector<Errors> errors_by_others(const Model& model, const std::vector<Measu
     }
   });
   return errors;
+}
+
+double left_out_ratio(const Model& model, const std::vector<std::vector<double>>& start_C, const Model& other,
+                      const std::vector<std::vector<double>>& other_C, const std::vector<MeasuredRun>& runs,
+                      const PosteriorOptions& options) {
+  const std::vector<Errors> with = errors_by_others(model, runs, start_C, options);
+  const std::vector<Errors> own = errors_by_others(other, runs, other_C, options);
+  double sum = 0.0;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    sum += with[r].empty() ? std::numeric_limits<double>::infinity() : std::log(rms_K(with[r]) / rms_K(own[r]));
+  }
+  return std::exp(sum / static_cast<double>(runs.size()));
+}
+
+Posterior more_predictive(Posterior fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& own, const PosteriorOptions& plain) {
+  if (!std::isfinite(fit.evidence_nats)) {
+    return fit;
+  }
+  Posterior other = try_posterior_of(fit.model, runs, fit.start_C, plain);
+  if (!std::isfinite(other.evidence_nats) || error_of_ends_K(fit, runs, own) <= error_of_ends_K(other, runs, plain)) {
+    return fit;
+  }
+  const Eigen::VectorXd moved = other.model.theta() - fit.model.theta();
+  other.covariance = fit.covariance + moved * moved.transpose();
+  other.flux = fit.flux;
+  other.evidence_nats = fit.evidence_nats;
+  other.converged = fit.converged;
+  return other;
 }
 
 }  // namespace heatsoak::estimation

@@ -45,4 +45,16 @@ Posterior fit_of(const Model& model, const SomeRuns& some);
 std::vector<Errors> errors_by_others(const Model& model, const std::vector<MeasuredRun>& runs,
                                      const std::vector<std::vector<double>>& start_C, const PosteriorOptions& options);
 
+/// Returns the error of `model` divided by that of `other`, for runs predicted with fits to all other runs. The ratio is the geometric mean
+/// over the runs, so that one run outside the range of the others does not decide. ∞ if a fit of `model` fails. `start_C` and `other_C`:
+/// the start temperatures of the two models.
+double left_out_ratio(const Model& model, const std::vector<std::vector<double>>& start_C, const Model& other,
+                      const std::vector<std::vector<double>>& other_C, const std::vector<MeasuredRun>& runs,
+                      const PosteriorOptions& options);
+
+/// Returns `fit`, or a fit with the options `plain` that starts from it if that predicts the last thirds of the runs better after a fit to
+/// the first two thirds. The difference of the two is added to the covariance. `own`: the options of `fit`. Weights and averaging are per
+/// run.
+Posterior more_predictive(Posterior fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& own, const PosteriorOptions& plain);
+
 }  // namespace heatsoak::estimation

@@ -23,10 +23,8 @@ std::vector<EqualReadings> equal_readings(const MeasuredRun& run, const ModelScr
   for (Eigen::Index sensor = 0; sensor < run.measured_C.cols(); ++sensor) {
     EqualReadings now{sensor, {}};
     double value_C = 0.0;
-    const double jump_K = rules.jump_sd * run.sensors[static_cast<std::size_t>(sensor)].noise_K;
-    const auto close = [&](double next_C) {
-      const int least = std::abs(next_C - value_C) > jump_K ? rules.least_before_jump : rules.least_equal;
-      if (static_cast<int>(now.samples.size()) >= least) {
+    const auto close = [&] {
+      if (static_cast<int>(now.samples.size()) >= rules.least_equal) {
         all.push_back(now);
       }
       now.samples.clear();
@@ -37,12 +35,12 @@ std::vector<EqualReadings> equal_readings(const MeasuredRun& run, const ModelScr
         continue;
       }
       if (!now.samples.empty() && std::abs(reading_C - value_C) > kEqual_K) {
-        close(reading_C);
+        close();
       }
       value_C = reading_C;
       now.samples.push_back(k);
     }
-    close(value_C);
+    close();
   }
   return all;
 }
@@ -150,10 +148,9 @@ std::vector<Eigen::VectorXd> weights_by_model(const std::vector<LinearisedRun>& 
     }
     const LatentFlux loose{std::vector<double>(fluxes, rules.loose_ratio * unknown_W), rules.loose_time_scale_s};
     hide_outliers(path, run, loose, rules, noise);
-    constexpr double kMost_share = 0.1;
     for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
       auto of_sensor = noise.weight(Eigen::seq(sensor, noise.weight.size() - 1, path.sensors()));
-      if (of_sensor.sum() < (1.0 - kMost_share) * static_cast<double>(of_sensor.size())) {
+      if (of_sensor.sum() < (1.0 - kMostRejected_share) * static_cast<double>(of_sensor.size())) {
         of_sensor.setOnes();
       }
     }

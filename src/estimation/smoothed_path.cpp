@@ -1,5 +1,6 @@
 #include "estimation/smoothed_path.h"
 
+#include "base/parallel.h"
 #include "estimation/evidence.h"
 
 namespace heatsoak::estimation {
@@ -21,6 +22,26 @@ Eigen::MatrixXd smoothed_path_C(const LinearisedRun& run, const LatentFlux& flux
     }
   }
   return path_C;
+}
+
+std::vector<FluxEstimate> smoothed_flux(const Posterior& fit, const std::vector<MeasuredRun>& runs,
+                                        const std::vector<Eigen::VectorXd>& weights, const std::vector<int>& merged) {
+  std::vector<FluxEstimate> all(fit.fitted.size());
+  const std::vector<DesignRun> designs = design(fit.model.network, fit.fitted, runs, weights, merged, {});
+  base::in_parallel(all.size(), 0, [&](std::size_t r) {
+    all[r] = Whitening(designs[r].run, fit.flux, designs[r].noise).smoothed_flux(designs[r].run.residual_K);
+  });
+  return all;
+}
+
+Eigen::VectorXd rms_W(const std::vector<FluxEstimate>& runs) {
+  Eigen::VectorXd squares_W2 = Eigen::VectorXd::Zero(runs.front().mean_W.rows());
+  double count = 0.0;
+  for (const FluxEstimate& run : runs) {
+    squares_W2 += run.mean_W.rowwise().squaredNorm();
+    count += static_cast<double>(run.mean_W.cols());
+  }
+  return (squares_W2 / count).cwiseSqrt();
 }
 
 }  // namespace heatsoak::estimation

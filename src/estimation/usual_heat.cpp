@@ -6,7 +6,7 @@
 
 namespace heatsoak::estimation {
 
-double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const std::vector<RunStart>& starts) {
+double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const std::vector<std::vector<double>>& start_C) {
   const thermal::Network& network = model.network;
   const auto nodes = static_cast<std::size_t>(network.node_count());
   std::vector<double> heat_W(network.effects().size() * nodes);
@@ -14,7 +14,8 @@ double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const
   double led_away_J = 0.0;
   double duration_s = 0.0;
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    std::vector<double> state_C(starts[r].state_C.begin(), starts[r].state_C.end());
+    std::vector<double> state_C = start_C[r];
+    const std::vector<double> values = model.values_in(runs[r]);
     for (std::size_t k = 0; k < runs[r].at.size(); ++k) {
       const double step_s = runs[r].time_s[k + 1] - runs[r].time_s[k];
       for (const Sensor& sensor : runs[r].sensors) {
@@ -22,7 +23,7 @@ double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const
         double& node_C = state_C[static_cast<std::size_t>(network.node(sensor.node))];
         node_C = std::isnan(sensor_C) ? node_C : motor::true_at_rest_C(sensor.faults, sensor_C);
       }
-      network.balance_W(runs[r].at[k], model.values, state_C, heat_W);
+      network.balance_W(runs[r].at[k], values, state_C, heat_W);
       double away_W = 0.0;
       for (std::size_t e = 0; e < network.effects().size(); ++e) {
         away_W += heat_W[e * nodes + nodes - 1];

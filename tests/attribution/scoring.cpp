@@ -19,7 +19,7 @@ bool is_name_of(const std::string& id, const Subject& subject) {
 
 std::string curve_name(const Selection& selection, const ScanResult& curve) {
   return fmt::format("{}~{} x {}", curve.term.node, selection.drivers[static_cast<std::size_t>(curve.term.driver)].name,
-                     to_string(curve.term.multiplier));
+                     spec_of(curve.term.multiplier).name);
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ bool names_outsider(const Answer& answer, const Outsider& outsider) {
   const Selection& selection = answer.diagnosis.selection;
   const auto is_right = [&](const ScanResult& curve) {
     const std::string& driver = selection.drivers[static_cast<std::size_t>(curve.term.driver)].name;
-    return curve.term.node == outsider.node && second_signal(curve.term.multiplier) == outsider.times &&
+    return curve.term.node == outsider.node && spec_of(curve.term.multiplier).second_signal == outsider.times &&
            std::ranges::find(outsider.drivers, driver) != outsider.drivers.end();
   };
   // Only the first term counts as the answer; further terms may follow.
@@ -108,7 +108,7 @@ std::string account(const diagnosis::Diagnosis& diagnosis) {
   for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
     text += fmt::format(" [{}@{} {:.1f} nats, {:.2f} W]", effect.id, effect.node, effect.gain_nats, effect.mean_W);
   }
-  for (const ChangedParameter& parameter : diagnosis.changed) {
+  for (const diagnosis::ChangedParameter& parameter : diagnosis.changed) {
     text += fmt::format(" | {}: {:.3g} -> {:.3g}", parameter.name, parameter.before, parameter.value);
   }
   for (const diagnosis::Unexplained& heat : diagnosis.unexplained) {

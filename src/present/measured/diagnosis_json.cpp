@@ -133,7 +133,7 @@ Json ladder_json(const attribution::Selection& selection) {
       curves.push_back({{"node", each.term.node},
                         {"other", each.term.other},
                         {"driver", selection.drivers[static_cast<std::size_t>(each.term.driver)].name},
-                        {"per", attribution::to_string(each.term.multiplier)},
+                        {"per", attribution::spec_of(each.term.multiplier).name},
                         {"nats", rounded(each.gain_nats, 2)}});
     }
     rounds.push_back({{"effects", candidates}, {"curves", curves}, {"taken", round.taken}, {"taken_nats", rounded(round.taken_nats, 2)}});
@@ -157,7 +157,7 @@ Json diagnosis_json(const diagnosis::DiagnosisAnswer& answer, std::span<const re
   json["residual_tests"] = {{"before", tests_json(diagnosis.tests_before)}, {"after", tests_json(diagnosis.tests_after)}};
   json["description"] = fmt::format("{}", fmt::join(diagnosis_words(diagnosis, score), " "));
   json["figures_contradicted"] = Json::array();
-  for (const attribution::ChangedParameter& parameter : diagnosis.changed) {
+  for (const diagnosis::ChangedParameter& parameter : diagnosis.changed) {
     json["figures_contradicted"].push_back({{"name", parameter.name},
                                             {"unit", parameter.unit},
                                             {"before", parameter.before},

@@ -121,7 +121,7 @@ std::string ladder_table(const diagnosis::Diagnosis& diagnosis) {
     text += round.ladder.empty() ? row({"no effect of the catalogue makes the runs more probable", "", "", "", ""}) : "";
     for (const attribution::ScanResult& each : round.scan) {
       const std::string& driver = diagnosis.selection.drivers[static_cast<std::size_t>(each.term.driver)].name;
-      text += row({fmt::format("curve over {} × {} at {}{}", driver, attribution::to_string(each.term.multiplier), each.term.node,
+      text += row({fmt::format("curve over {} × {} at {}{}", driver, attribution::spec_of(each.term.multiplier).name, each.term.node,
                                each.term.other.empty() ? "" : "→" + each.term.other),
                    fmt::format("{:.1f}", each.gain_nats), fmt::format("{} W mean", base::significant(each.mean_W, 2)), "", ""});
     }

@@ -139,7 +139,7 @@ std::string verdict_in_words(const diagnosis::Diagnosis& diagnosis) {
                    "resistances and capacities. No effect is named.");
 }
 
-std::string changed_in_words(const attribution::ChangedParameter& parameter) {
+std::string changed_in_words(const diagnosis::ChangedParameter& parameter) {
   // The interval includes a common factor on all heat. If it contains the file's value it would be misleading, so it is not printed.
   const bool is_beyond_scale = parameter.before < parameter.low || parameter.before > parameter.high;
   return fmt::format(
@@ -327,7 +327,7 @@ std::vector<std::string> diagnosis_words(const diagnosis::Diagnosis& diagnosis, 
       all.push_back(effect_in_words(effect));
     }
   }
-  for (const attribution::ChangedParameter& parameter : diagnosis.changed) {
+  for (const diagnosis::ChangedParameter& parameter : diagnosis.changed) {
     all.push_back(changed_in_words(parameter));
   }
   if (!diagnosis.changed.empty() && diagnosis.verdict != diagnosis::DiagnosisVerdict::not_identifiable) {

@@ -100,14 +100,16 @@ const std::vector<Number>& numbers() {
       {"named_probability", &attribution::SelectionRules::named_probability, 0.0},
       {"material_K", &attribution::SelectionRules::material_K, 0.0},
       {"material_share", &attribution::SelectionRules::material_share, 0.0},
+      {"as_usual_ratio", &attribution::SelectionRules::as_usual_ratio, 0.0},
       {"curve_gain_nats", &attribution::SelectionRules::curve_gain_nats, 0.0},
-      {"narrow_nats", &attribution::SelectionRules::narrow_nats, kInfinity},
+      {"distinct_nats", &attribution::SelectionRules::distinct_nats, 0.0},
+      {"curve_left_out_share", &attribution::SelectionRules::curve_left_out_share, kInfinity},
+      {"beside_unknown_share", &attribution::SelectionRules::beside_unknown_share, kInfinity},
+      {"better_share", &attribution::SelectionRules::better_share, kInfinity},
+      {"plainly_better_share", &attribution::SelectionRules::plainly_better_share, kInfinity},
+      {"least_seen_share", &attribution::SelectionRules::least_seen_share, 0.0},
       {"second_signal_nats", &attribution::SelectionRules::second_signal_nats, 0.0},
-      {"same_shape_share", &attribution::SelectionRules::same_shape_share, 0.0},
       {"same_shape_ratio", &attribution::SelectionRules::same_shape_ratio, 0.0},
-      {"seen_nats", &attribution::SelectionRules::seen_nats, 0.0},
-      {"start_error_K", &attribution::SelectionRules::start_error_K, 0.05},
-      {"longest_step_ratio", &attribution::SelectionRules::longest_step_ratio, kInfinity},
   };
   return all;
 }

@@ -1,4 +1,4 @@
-// Mean and peak of the modelled heat.
+// Mean and peak of the heat that a fitted model assigns to its effects.
 #pragma once
 
 #include <functional>
@@ -7,11 +7,7 @@
 
 #include "estimation/posterior.h"
 
-namespace heatsoak::attribution {
-
-/// Returns the time average of the modelled source heat in W, evaluated at the start temperatures. Flows between nodes do not count. 0
-/// without data.
-double mean_heat_W(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs);
+namespace heatsoak::diagnosis {
 
 /// Heat of every effect in every node (effects × nodes, W) over one interval of a run.
 using HeatVisit = std::function<void(std::size_t interval, std::span<const double> heat_W)>;
@@ -29,4 +25,4 @@ struct HeatOfEffect {
 HeatOfEffect heat_of(const estimation::Posterior& fit, const std::vector<estimation::MeasuredRun>& runs,
                      const std::function<bool(const thermal::EffectInPlace&)>& counts, const estimation::Condition& condition);
 
-}  // namespace heatsoak::attribution
+}  // namespace heatsoak::diagnosis
