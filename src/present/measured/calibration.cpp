@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/quantity.h"
 #include "present/measured/calibration_words.h"
@@ -117,7 +118,7 @@ Document calibration_document(const motor::Motor& motor, const calibration::Cali
   add_errors(errors, result.holdout_after.size() > 1 ? "worst hold-out" : "hold-out", result.holdout_error);
   document.tables.push_back(std::move(errors));
   // A wrong unit makes all other warnings meaningless, so it comes first.
-  for (const std::string& note : answer.admission.notes) {
+  for (const std::string& note : words_of(answer.admission.notes)) {
     document.add_note(Severity::warning, note);
   }
   for (const calibration::GrownError& each : result.worse) {
@@ -139,7 +140,8 @@ Document calibration_document(const motor::Motor& motor, const calibration::Cali
 }
 
 std::string next_steps_words(const calibration::CalibrationAnswer& answer) {
-  std::vector<std::string> steps = answer.admission.next_steps;
+  std::vector<std::string> steps;
+  std::ranges::transform(answer.admission.lagging, std::back_inserter(steps), lag_words);
   if (const std::string& experiment = answer.calibration.next_experiment; !experiment.empty()) {
     steps.push_back(experiment);
   }

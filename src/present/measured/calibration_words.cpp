@@ -9,6 +9,7 @@
 
 #include "base/quantity.h"
 #include "estimation/turning_rows.h"
+#include "present/measured/log_words.h"
 
 namespace heatsoak::present {
 namespace {
@@ -157,10 +158,80 @@ std::string say(const calibration::ExtendedForForecasts& of) {
 
 std::string say(const calibration::Remark& of) { return of.words; }
 
+std::string say(const recording::Suspicion& of) { return words_of(of); }
+
+std::string outliers_in_words(std::string_view channel, double largest, int line, double most, std::string_view unit,
+                              std::string_view suspected) {
+  return fmt::format(
+      "{} reaches {} {} in line {}; at three times the nominal voltage this motor reaches {} {}, and less than 2 % of the rows exceed "
+      "that: "
+      "exclude outliers with valid = \"…\" in a mapping, or is it in {}?",
+      channel, base::significant(largest, 3), unit, line, base::significant(most, 3), unit, suspected);
+}
+
+std::string say(const calibration::CurrentOutliers& of) {
+  return outliers_in_words("current_A", of.largest_A, of.line, of.most_A, "A", "milliamperes");
+}
+
+std::string say(const calibration::SpeedOutliers& of) {
+  return outliers_in_words("speed_rad_per_s", of.largest_rad_per_s, of.line, of.most_rad_per_s, "rad/s", "rpm");
+}
+
+std::string say(const calibration::CurrentExceedsMotor& of) {
+  return fmt::format(
+      "current_A reaches {} A; through {} ohm at most {} A flow at three times the nominal voltage: is it in milliamperes, or is it "
+      "another "
+      "motor?",
+      base::significant(of.top_A, 3), base::significant(of.terminal_resistance_ohm, 3), base::significant(of.most_A, 3));
+}
+
+std::string say(const calibration::SpeedExceedsMotor& of) {
+  return fmt::format(
+      "speed_rad_per_s reaches {} rad/s; at three times the nominal voltage this motor turns at {} rad/s: is it in rpm ({} rad/s), or is "
+      "it "
+      "another motor?",
+      base::significant(of.top_rad_per_s, 3), base::significant(of.most_rad_per_s, 3),
+      base::significant(base::convert(of.top_rad_per_s, "rpm", "rad/s"), 3));
+}
+
+std::string say(const calibration::RisesTooFast& of) {
+  return fmt::format(
+      "{} rises about {} times as fast as the losses of this motor can heat it: is the time in {}, is a heat input in another unit, or is "
+      "it another motor?",
+      of.channel, base::significant(of.ratio, 1), words_of(of.suspected));
+}
+
+std::string say(const calibration::OfOtherMotor& of) {
+  return fmt::format("{} states that it is of the motor {}, not of {}", of.recording, of.stated, of.motor);
+}
+
+std::string say(const recording::SuspicionOfLog& of) { return words_of(of); }
+
+std::string say(const calibration::SensorLags& of) { return fmt::format("{}: {}", of.log, words_of(of.response)); }
+
 }  // namespace
 
 std::string words_of(const calibration::CalibrationFinding& finding) {
   return std::visit([](const auto& each) { return say(each); }, finding);
+}
+
+std::string words_of(const calibration::LogProblem& problem) {
+  return std::visit([](const auto& each) { return say(each); }, problem);
+}
+
+std::vector<std::string> words_of(const std::vector<calibration::AdmissionNote>& notes) {
+  std::vector<std::string> words;
+  for (const calibration::AdmissionNote& note : notes) {
+    words.push_back(std::visit([](const auto& each) { return say(each); }, note));
+  }
+  return words;
+}
+
+std::string lag_words(const std::string& temperature) {
+  return fmt::format(
+      "{} lags: record one event, such as a step of the current, with both loggers; state a clock offset in a mapping (clock_offset), or "
+      "replace a lagging sensor by one in better contact",
+      temperature);
 }
 
 std::string words_of(const calibration::GrownError& error) {
