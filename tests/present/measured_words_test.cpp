@@ -1,4 +1,4 @@
-// Wording of the findings about logs and friction tests: one sentence for every kind of finding.
+// Wording of the findings about logs, friction tests and fits: one sentence for every kind of finding.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calibration/admission.h"
+#include "calibration/calibrate.h"
 #include "friction/friction_job.h"
 #include "friction/robot_file.h"
 #include "present/measured/calibration_words.h"
@@ -155,6 +156,69 @@ TEST(WordsOfLogs, Admission) {
   EXPECT_THAT(lag_words("winding_C"), testing::StartsWith("winding_C lags: record one event"));
 }
 
+TEST(WordsOfCalibration, HeldValues) {
+  using namespace calibration;
+  const auto words = [](const HeldValue& held) { return words_of(CalibrationFinding(held)); };
+  EXPECT_EQ(words(ResistanceHeld{}), "terminal_resistance is held at its stated value: all heat capacities and resistances scale with it");
+  EXPECT_EQ(words(NoLoadCurrentUnused{}), "no_load_current is not used: the loss other than copper loss is the measured power balance");
+  EXPECT_EQ(words(NoLoadCurrentHeld{}), "no_load_current is held: its loss depends on speed, which not every log has");
+  EXPECT_THAT(words(HeatShareHeld{false}), HasSubstr("scale with it; all of it is assumed to arise at the winding, and iron loss, friction "
+                                                     "or a driver's heat at the stator would shift"));
+  EXPECT_THAT(words(HeatShareHeld{true}),
+              HasSubstr("the part due to no_load_current is assumed to arise at the stator and the rest to arise at the winding, and iron "
+                        "loss, friction or a driver's heat at the stator beyond that would shift"));
+  EXPECT_EQ(words(EffectHeld{"fan", {"conductance"}}), "effects.fan: conductance is held: the file states no tolerance or range");
+  EXPECT_EQ(words(EffectHeld{"fan", {"a", "b"}}), "effects.fan: a, b are held: the file states no tolerance or range");
+  EXPECT_EQ(words(SensorHeld{"glued_on", "time_constant", 25.0, "s"}),
+            "effects.glued_on.time_constant is held at 25 s: an error of the sensor is not a property of the motor");
+  EXPECT_EQ(words(SensorHeld{"amplifier", "factor", 1.1, ""}),
+            "effects.amplifier.factor is held at 1.1: an error of the sensor is not a property of the motor");
+  EXPECT_EQ(words(SensorUnused{"glued_on", "stator_C"}),
+            "no log has the stator_C to which effects.glued_on applies: the effect is not used");
+}
+
+TEST(WordsOfCalibration, NotesOfForecasts) {
+  using namespace calibration;
+  EXPECT_THAT(words_of(std::vector<PredictionNote>{BandIncludesLossAtSpeed{"run1", 4.21}, BandIsEstimated{"motor"}, Remark{"said"}}),
+              ElementsAre("the band of run1 is wider, because its log has a current but no speed: the loss at speed may be anything up to "
+                          "4.2 W; if the motor stood still, add speed_rad_per_s = 0",
+                          "the band of motor is only an estimate from its declared uncertainties and the usual error of forecasts; "
+                          "`heatsoak calibrate` determines a band",
+                          "said"));
+}
+
+TEST(WordsOfCalibration, OpenDirections) {
+  using namespace calibration;
+  OpenDirection open;
+  open.parameters = {"no_load_current"};
+  EXPECT_EQ(parameter_words(open), "no_load_current");
+  open.together = {{"a", true}, {"b", false}};
+  EXPECT_EQ(parameter_words(open), "a raised, b lowered together, no_load_current");
+  using enum OpenReason;
+  for (const auto& [reason, words] :
+       {std::pair(no_heat, "a cool-down determines time constants, but no heat capacity or resistance"),
+        std::pair(common_factor, "a common factor on all heat, all heat capacities and all conductances changes no temperature"),
+        std::pair(only_stator_measured, "only the stator is measured"), std::pair(only_winding_measured, "only the winding is measured"),
+        std::pair(motor_hardly_turns, "the motor hardly turns"),
+        std::pair(small_loss_at_speed, "the loss at speed is small against the copper loss"), std::pair(not_excited, "hardly depend on it"),
+        std::pair(speed_not_logged, "the runs do not contain the speed"),
+        std::pair(stator_not_settled, "the longest lasts 2 min, the stator's time constant is about 20 min"),
+        std::pair(winding_not_stepped, "never changes in steps")}) {
+    open.reason = reason;
+    open.longest_run_s = 120.0;
+    open.stator_s = 1150.0;
+    EXPECT_THAT(reason_words(open), HasSubstr(words));
+  }
+  for (const auto& [remedy, words] :
+       {std::pair(Remedy::heated_run, "constant current at standstill"), std::pair(Remedy::four_wire_resistance, "four wires"),
+        std::pair(Remedy::winding_sensor, "a thermocouple at the winding"),
+        std::pair(Remedy::stator_sensor, "a thermocouple on the housing"), std::pair(Remedy::no_load_run, "at no load and full speed"),
+        std::pair(Remedy::long_run, "up to the steady state"), std::pair(Remedy::logged_speed, "with the speed logged"),
+        std::pair(Remedy::current_steps, "several steps of current")}) {
+    EXPECT_THAT(words_of(remedy), HasSubstr(words));
+  }
+}
+
 TEST(WordsOfFriction, Suspicions) {
   using namespace friction;
   expect_words<FrictionSuspicion>({
@@ -217,6 +281,29 @@ TEST(WordsOfFailures, FindingsOfLogs) {
   EXPECT_EQ(to_string(wrong.diagnostics()[0]), "run1.csv: error: current_A reaches 8000 A: is it in milliamperes?");
   const base::Failure plain(base::ExitCode::numerics_failed, "did not converge");
   EXPECT_STREQ(told(plain).what(), plain.what());
+}
+
+TEST(WordsOfFailures, NothingLearned) {
+  calibration::OpenDirection open;
+  open.parameters = {"no_load_current"};
+  open.reason = calibration::OpenReason::motor_hardly_turns;
+  open.remedy = calibration::Remedy::no_load_run;
+  EXPECT_EQ(told(calibration::NothingLearned({open}, false)).message(),
+            "no parameter of this motor is identifiable from these logs\n  not identifiable: no_load_current: the motor hardly turns in "
+            "these runs\n  cheapest experiment: 10 minutes at no load and full speed");
+  EXPECT_THAT(told(calibration::NothingLearned({open}, true)).message(),
+              EndsWith("also check the units of the heat inputs (kiloamperes, kilowatts); `heatsoak log inspect` shows each channel"));
+}
+
+TEST(WordsOfFailures, NothingFollows) {
+  EXPECT_EQ(
+      told(calibration::NothingFollows({{"winding_C", 30.0, 20.0}, {"stator_C", 30.0, 40.0}}, false)).message(),
+      "no parameter values make the model follow these logs\n  winding_C has an error of 30 K rms, more than its variation (standard "
+      "deviation 20 K)\n  stator_C has an error of 30 K rms, close to its variation (standard deviation 40 K)\n  no log has the speed "
+      "(speed_rad_per_s), so the loss at speed is unknown\n  check for another motor, a wrong unit (degrees Fahrenheit, minutes, "
+      "milliamperes), a misplaced sensor, or heat that no column contains; `heatsoak log inspect` shows each channel");
+  EXPECT_THAT(told(calibration::NothingFollows({{"winding_C", 30.0, 20.0}}, true)).message(),
+              testing::Not(HasSubstr("no log has the speed")));
 }
 
 TEST(WordsOfFailures, FindingsOfFriction) {

@@ -126,8 +126,8 @@ Document calibration_document(const motor::Motor& motor, const calibration::Cali
   }
   for (const calibration::OpenDirection& each : result.open) {
     document.add_note(Severity::note,
-                      fmt::format("Not identifiable: {} ({}). To determine it: {}.", each.what, each.why,
-                                  each.experiment == result.next_experiment ? "the next experiment above" : each.experiment));
+                      fmt::format("Not identifiable: {} ({}). To determine it: {}.", parameter_words(each), reason_words(each),
+                                  each.remedy == result.next_experiment ? "the next experiment above" : words_of(each.remedy)));
   }
   for (const calibration::CalibrationFinding& each : result.findings) {
     document.add_note(severity_of(each), words_of(each));
@@ -142,8 +142,8 @@ Document calibration_document(const motor::Motor& motor, const calibration::Cali
 std::string next_steps_words(const calibration::CalibrationAnswer& answer) {
   std::vector<std::string> steps;
   std::ranges::transform(answer.admission.lagging, std::back_inserter(steps), lag_words);
-  if (const std::string& experiment = answer.calibration.next_experiment; !experiment.empty()) {
-    steps.push_back(experiment);
+  if (answer.calibration.next_experiment) {
+    steps.emplace_back(words_of(*answer.calibration.next_experiment));
   }
   return fmt::format("{}", fmt::join(steps, "; then: "));
 }

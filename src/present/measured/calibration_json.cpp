@@ -77,7 +77,7 @@ Json calibration_json(const motor::Motor& motor, const calibration::CalibrationA
   }
   Json open = Json::array();
   for (const calibration::OpenDirection& each : result.open) {
-    open.push_back({{"parameters", each.what}, {"why", each.why}, {"experiment", each.experiment}});
+    open.push_back({{"parameters", parameter_words(each)}, {"why", reason_words(each)}, {"experiment", words_of(each.remedy)}});
   }
   Json correlation = Json::array();
   for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {

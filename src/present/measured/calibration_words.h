@@ -23,6 +23,14 @@ std::vector<std::string> words_of(const std::vector<calibration::GrownError>& er
 /// Returns what looks wrong, and the question to the user.
 std::string words_of(const calibration::LogProblem& problem);
 std::vector<std::string> words_of(const std::vector<calibration::AdmissionNote>& notes);
+std::vector<std::string> words_of(const std::vector<calibration::PredictionNote>& notes);
+
+/// Returns the names of the parameters that are not determined.
+std::string parameter_words(const calibration::OpenDirection& open);
+/// Returns why they are not determined.
+std::string reason_words(const calibration::OpenDirection& open);
+std::string_view words_of(calibration::Remedy remedy);
+
 /// Returns what to change before recording more runs.
 std::string lag_words(const std::string& temperature);
 

@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include "base/counted.h"
+#include "base/quantity.h"
 #include "calibration/admission.h"
+#include "calibration/calibrate.h"
 #include "friction/friction_job.h"
 #include "friction/robot_file.h"
 #include "present/measured/calibration_words.h"
@@ -57,6 +59,33 @@ base::Failure worded(const calibration::LogsLookWrong& failure) {
   return {failure.code(), failure.message(), std::move(diagnostics)};
 }
 
+base::Failure worded(const calibration::NothingLearned& failure) {
+  std::string message = failure.message();
+  for (const calibration::OpenDirection& each : failure.open()) {
+    message += fmt::format("\n  not identifiable: {}: {}\n  cheapest experiment: {}", parameter_words(each), reason_words(each),
+                           words_of(each.remedy));
+  }
+  if (failure.has_heat_input()) {
+    message += "\n  also check the units of the heat inputs (kiloamperes, kilowatts); `heatsoak log inspect` shows each channel";
+  }
+  return with_message(failure, std::move(message));
+}
+
+base::Failure worded(const calibration::NothingFollows& failure) {
+  std::string message = failure.message();
+  for (const calibration::PoorFit& each : failure.signals()) {
+    message += fmt::format("\n  {} has an error of {} K rms, {} its variation (standard deviation {} K)", each.signal,
+                           base::significant(each.rmse_K, 2), each.rmse_K > each.varies_K ? "more than" : "close to",
+                           base::significant(each.varies_K, 2));
+  }
+  if (!failure.has_speed()) {
+    message += "\n  no log has the speed (speed_rad_per_s), so the loss at speed is unknown";
+  }
+  return with_message(failure, message +
+                                   "\n  check for another motor, a wrong unit (degrees Fahrenheit, minutes, milliamperes), a misplaced "
+                                   "sensor, or heat that no column contains; `heatsoak log inspect` shows each channel");
+}
+
 /// Returns the words of the first type that the failure has.
 template <class First, class... Others>
 base::Failure worded_as(const base::Failure& failure) {
@@ -73,8 +102,8 @@ base::Failure worded_as(const base::Failure& failure) {
 }  // namespace
 
 base::Failure in_words(const base::Failure& failure) {
-  return worded_as<recording::NothingAboutHeat, calibration::LogsLookWrong, friction::LogsLookWrong, friction::NothingIdentifiable,
-                   friction::WheelNotIdentifiable>(failure);
+  return worded_as<recording::NothingAboutHeat, calibration::NothingLearned, calibration::NothingFollows, calibration::LogsLookWrong,
+                   friction::LogsLookWrong, friction::NothingIdentifiable, friction::WheelNotIdentifiable>(failure);
 }
 
 }  // namespace heatsoak::present
