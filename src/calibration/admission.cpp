@@ -8,7 +8,6 @@
 
 #include "base/copper.h"
 #include "base/diagnostic.h"
-#include "base/quantity.h"
 #include "recording/clock_offset.h"
 #include "recording/fingerprint.h"
 #include "recording/quality.h"
@@ -65,38 +64,27 @@ Reached reached(const recording::Recording& recording, std::string_view key) {
   return found;
 }
 
-/// Reports single outlying rows. The unit is right if the usual magnitude is possible and only the largest one is not.
-void single_rows_beyond(const char* key, const char* unit, const char* other_unit, const Reached& reached, double most,
-                        std::vector<std::string>& wrong) {
-  if (reached.largest > most && !(reached.usual > most)) {
-    wrong.push_back(
-        fmt::format("{} reaches {} {} in line {}; at three times the nominal voltage this motor reaches {} {}, and less than 2 % of the "
-                    "rows exceed that: exclude outliers with valid = \"…\" in a mapping, or is it in {}?",
-                    key, base::significant(reached.largest, 3), unit, reached.line, base::significant(most, 3), unit, other_unit));
-  }
-}
+/// True for single outlying rows. The unit is right if the usual magnitude is possible and only the largest one is not.
+bool only_single_rows_exceed(double most, const Reached& reached) { return reached.largest > most && !(reached.usual > most); }
 
 /// Reports currents and speeds that this motor cannot reach at three times its nominal voltage.
-void beyond_the_motor(const motor::Motor& motor, const recording::Recording& recording, std::vector<std::string>& wrong) {
+void beyond_the_motor(const motor::Motor& motor, const recording::Recording& recording, std::vector<LogProblem>& wrong) {
   const motor::MotorValues& nominal = motor.nominal;
   const double most_A = kMost_ratio * nominal.nominal_voltage_V / nominal.terminal_resistance_ohm;
   const Reached current_A = reached(recording, "current_A");
-  single_rows_beyond("current_A", "A", "milliamperes", current_A, most_A, wrong);
+  if (only_single_rows_exceed(most_A, current_A)) {
+    wrong.emplace_back(CurrentOutliers{current_A.largest, most_A, current_A.line});
+  }
   if (const double reached_A = current_A.usual; reached_A > most_A) {
-    wrong.push_back(
-        fmt::format("current_A reaches {} A; through {} ohm at most {} A flow at three times the nominal voltage: is it in milliamperes, "
-                    "or is it another motor?",
-                    base::significant(reached_A, 3), base::significant(nominal.terminal_resistance_ohm, 3), base::significant(most_A, 3)));
+    wrong.emplace_back(CurrentExceedsMotor{reached_A, most_A, nominal.terminal_resistance_ohm});
   }
   const double most_rad_per_s = kMost_ratio * nominal.nominal_voltage_V / nominal.torque_constant_Nm_per_A;
   const Reached speed_rad_per_s = reached(recording, "speed_rad_per_s");
-  single_rows_beyond("speed_rad_per_s", "rad/s", "rpm", speed_rad_per_s, most_rad_per_s, wrong);
+  if (only_single_rows_exceed(most_rad_per_s, speed_rad_per_s)) {
+    wrong.emplace_back(SpeedOutliers{speed_rad_per_s.largest, most_rad_per_s, speed_rad_per_s.line});
+  }
   if (const double reached_rad_per_s = speed_rad_per_s.usual; reached_rad_per_s > most_rad_per_s) {
-    wrong.push_back(
-        fmt::format("speed_rad_per_s reaches {} rad/s; at three times the nominal voltage this motor turns at {} rad/s: is it in rpm "
-                    "({} rad/s), or is it another motor?",
-                    base::significant(reached_rad_per_s, 3), base::significant(most_rad_per_s, 3),
-                    base::significant(base::convert(reached_rad_per_s, "rpm", "rad/s"), 3)));
+    wrong.emplace_back(SpeedExceedsMotor{reached_rad_per_s, most_rad_per_s});
   }
 }
 
@@ -162,7 +150,7 @@ double heat_ratio_of_rises(const recording::Recording& recording, const recordin
 }
 
 /// Reports temperatures that rise faster than possible even if all losses heated this one body and none of the heat flowed away.
-void faster_than_the_motor(const motor::Motor& motor, const recording::Recording& recording, std::vector<std::string>& wrong) {
+void faster_than_the_motor(const motor::Motor& motor, const recording::Recording& recording, std::vector<LogProblem>& wrong) {
   constexpr double kTooFast_ratio =
       8.0;  // more than errors of the data sheet's heat capacities and another convention for the current explain
   constexpr double kHours_ratio = 300.0;
@@ -180,10 +168,7 @@ void faster_than_the_motor(const motor::Motor& motor, const recording::Recording
     }
     const double ratio = heat_ratio_of_rises(recording, *channel, capacity_J_per_K, heat_W);
     if (ratio > kTooFast_ratio) {
-      wrong.push_back(fmt::format(
-          "{} rises about {} times as fast as the losses of this motor can heat it: is the time in {}, is a heat input in another "
-          "unit, or is it another motor?",
-          key, base::significant(ratio, 1), ratio > kHours_ratio ? "hours" : "minutes"));
+      wrong.emplace_back(RisesTooFast{key, ratio, ratio > kHours_ratio ? recording::TimeUnit::hours : recording::TimeUnit::minutes});
       return;
     }
   }
@@ -194,52 +179,55 @@ void faster_than_the_motor(const motor::Motor& motor, const recording::Recording
 void late_answers(const motor::Motor& motor, const recording::Recording& recording, const recording::DataQuality& quality,
                   Admission& admission) {
   for (const recording::ClockOffset& offset : quality.clock_offsets) {
-    const std::string late = recording::late_answer(offset, quality.sampling.usual_period_s);
+    const std::optional<recording::RespondsLate> late = recording::late_answer(offset, quality.sampling.usual_period_s);
     const bool is_stated = std::ranges::any_of(motor::faults_of(motor, offset.temperature), [](const motor::SensorFault& fault) {
       return fault.type->law.after != nullptr && fault.size > 0.0;
     });
-    if (late.empty() || is_stated) {
+    if (!late || is_stated) {
       continue;
     }
-    admission.notes.push_back(fmt::format("{}: {}", recording.name, late));
-    const std::string next = fmt::format(
-        "{} lags: record one event, such as a step of the current, with both loggers; state a clock offset in a mapping (clock_offset), or "
-        "replace a lagging sensor by one in better contact",
-        offset.temperature);
-    if (std::ranges::find(admission.next_steps, next) == admission.next_steps.end()) {
-      admission.next_steps.push_back(next);
+    admission.notes.emplace_back(SensorLags{recording.name, *late});
+    if (std::ranges::find(admission.lagging, offset.temperature) == admission.lagging.end()) {
+      admission.lagging.push_back(offset.temperature);
     }
   }
 }
 
 }  // namespace
 
+LogsLookWrong::LogsLookWrong(std::vector<Finding> findings)
+    : base::Failure(base::ExitCode::bad_input,
+                    "units or sensors of the logs look wrong; correct them in a mapping (--map), or use --as-is if they are right"),
+      findings_(std::move(findings)) {}
+
 Admission admit(const motor::Motor& motor, std::span<const recording::Recording> fitted, std::span<const recording::Recording> held_out,
                 bool takes_logs_as_they_are, std::optional<double> ambient_C) {
   refuse_repeated(fitted, held_out);
   Admission admission;
-  std::vector<std::string>& notes = admission.notes;
-  std::vector<base::Diagnostic> wrong;
+  std::vector<LogsLookWrong::Finding> wrong;
   const auto look = [&](const recording::Recording& recording, const recording::DataQuality& quality) {
     if (!recording.motor.empty() && recording.motor != motor.id && !(motor.fit && recording.motor == motor.fit->motor)) {
-      notes.push_back(fmt::format("{} states that it is of the motor {}, not of {}", recording.name, recording.motor, motor.id));
+      admission.notes.emplace_back(OfOtherMotor{recording.name, recording.motor, motor.id});
     }
-    std::vector<std::string> blocking = recording.blocking_of_whole.value_or(quality.blocking);
-    for (const std::string& each : quality.suspicions) {
-      const bool is_of_part =
-          std::ranges::find(quality.blocking, each) != quality.blocking.end() && std::ranges::find(blocking, each) == blocking.end();
+    const std::vector<recording::Suspicion>& blocking = recording.blocking_of_whole ? *recording.blocking_of_whole : quality.blocking;
+    for (const recording::Suspicion& each : quality.suspicions) {
+      const auto has_it = [&each](const std::vector<recording::Suspicion>& some) {
+        return std::ranges::any_of(some, [&each](const recording::Suspicion& other) { return recording::have_one_subject(each, other); });
+      };
+      const bool is_of_part = has_it(quality.blocking) && !has_it(blocking);
       if (is_of_part) {
         continue;
       }
-      notes.push_back(fmt::format("{}: {}", recording.name, each));
+      admission.notes.emplace_back(recording::SuspicionOfLog{recording.name, each});
     }
     late_answers(motor, recording, quality, admission);
-    if (blocking.empty()) {
-      beyond_the_motor(motor, recording, blocking);
-      faster_than_the_motor(motor, recording, blocking);
+    std::vector<LogProblem> problems(blocking.begin(), blocking.end());
+    if (problems.empty()) {
+      beyond_the_motor(motor, recording, problems);
+      faster_than_the_motor(motor, recording, problems);
     }
-    for (const std::string& each : blocking) {
-      wrong.push_back({{recording.file.string()}, {}, each});
+    for (LogProblem& each : problems) {
+      wrong.push_back({recording.file.string(), std::move(each)});
     }
   };
   for (const recording::Recording& recording : fitted) {
@@ -251,9 +239,7 @@ Admission admit(const motor::Motor& motor, std::span<const recording::Recording>
     look(recording, recording::assess(recording, {}, ambient_C));
   }
   if (!wrong.empty() && !takes_logs_as_they_are) {
-    throw base::Failure(base::ExitCode::bad_input,
-                        "units or sensors of the logs look wrong; correct them in a mapping (--map), or use --as-is if they are right",
-                        std::move(wrong));
+    throw LogsLookWrong(std::move(wrong));
   }
   return admission;
 }

@@ -4,23 +4,87 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "base/diagnostic.h"
 #include "motor/motor.h"
+#include "recording/findings.h"
 #include "recording/quality.h"
 #include "recording/recording.h"
 
 namespace heatsoak::calibration {
 
-struct Admission {
-  std::vector<std::string> notes;       ///< sentences for the user: properties of the logs that look wrong but may be right
-  std::vector<std::string> next_steps;  ///< sentences for the user: what to change before recording more runs
+/// Single rows exceed the current that the motor can draw at three times its nominal voltage.
+struct CurrentOutliers {
+  double largest_A = 0.0;
+  double most_A = 0.0;  ///< at three times the nominal voltage
+  int line = 0;         ///< line of the largest value
+};
+/// Same for the speed.
+struct SpeedOutliers {
+  double largest_rad_per_s = 0.0;
+  double most_rad_per_s = 0.0;  ///< at three times the nominal voltage
+  int line = 0;
+};
+/// The motor cannot draw such a current at three times its nominal voltage.
+struct CurrentExceedsMotor {
+  double top_A = 0.0;  ///< usual largest magnitude
+  double most_A = 0.0;
+  double terminal_resistance_ohm = 0.0;
+};
+/// The motor cannot turn so fast at three times its nominal voltage.
+struct SpeedExceedsMotor {
+  double top_rad_per_s = 0.0;  ///< usual largest magnitude
+  double most_rad_per_s = 0.0;
+};
+/// A temperature rises faster than the losses of the motor can heat it.
+struct RisesTooFast {
+  std::string channel;
+  double ratio = 0.0;  ///< heat that the rises need, divided by the heat supplied
+  recording::TimeUnit suspected = recording::TimeUnit::minutes;
+};
+/// Property of a log that prevents a fit if it is an error.
+using LogProblem = std::variant<recording::Suspicion, CurrentOutliers, SpeedOutliers, CurrentExceedsMotor, SpeedExceedsMotor, RisesTooFast>;
+
+/// Units or sensors of the logs look wrong (bad_input).
+class LogsLookWrong : public base::Failure {
+ public:
+  struct Finding {
+    std::string file;
+    LogProblem problem;
+  };
+  explicit LogsLookWrong(std::vector<Finding> findings);
+  [[nodiscard]] const std::vector<Finding>& findings() const { return findings_; }
+
+ private:
+  std::vector<Finding> findings_;
 };
 
-/// Checks all logs and returns notes. Throws one Failure that lists the findings of every log:
-/// - bad_input if rows are given twice, or are both fitted and held out;
-/// - bad_input if units, signs or sensors look wrong in themselves or for this motor (only notes if `takes_logs_as_they_are`);
-/// - cannot_answer if a fitted log contains no information about heat.
+/// A recording states that it is of another motor.
+struct OfOtherMotor {
+  std::string recording;
+  std::string stated;
+  std::string motor;
+};
+/// A sensor of a log lags, or a clock is off.
+struct SensorLags {
+  std::string log;
+  recording::RespondsLate response;
+};
+/// Property of a log that looks wrong but may be right.
+using AdmissionNote = std::variant<OfOtherMotor, recording::SuspicionOfLog, SensorLags>;
+
+struct Admission {
+  std::vector<AdmissionNote> notes;
+  std::vector<std::string> lagging;  ///< temperatures that lag in any log: to be changed before recording more runs
+};
+
+/// Checks all logs. Throws:
+/// - Failure (bad_input) if rows are given twice, or are both fitted and held out;
+/// - LogsLookWrong with the findings of every log if units, signs or sensors look wrong in themselves or for this motor (only notes if
+///   `takes_logs_as_they_are`);
+/// - NothingAboutHeat if a fitted log contains no information about heat.
 /// `ambient_C` is the user's air temperature for logs without one.
 Admission admit(const motor::Motor& motor, std::span<const recording::Recording> fitted, std::span<const recording::Recording> held_out,
                 bool takes_logs_as_they_are, std::optional<double> ambient_C = {});

@@ -6,12 +6,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "base/copper.h"
 #include "base/diagnostic.h"
-#include "base/quantity.h"
 #include "calibration/identifiability.h"
 #include "calibration/profile.h"
 #include "calibration/training_range.h"
@@ -66,8 +66,8 @@ class Calibrating {
     all_.effects = setup_.motor.effects;
     all_.motor_model = motor_model(setup_.motor, setup_.heat, setup_.has_speed);
     const double most_loss_W = all_.motor_model.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
-    add_remarks(all_.motor_model.held);
-    add_remarks(held_sensors(motor, recordings_));
+    std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.findings));
+    std::ranges::move(held_sensors(motor, recordings_), std::back_inserter(all_.findings));
     estimation::MeasuredRunOptions how = how_to_read(motor, setup_.heat);
     if (std::string lacking = estimation::columns_lacking(how.columns, recordings_); !lacking.empty()) {
       add_remarks({std::move(lacking)});
@@ -159,7 +159,9 @@ class Calibrating {
     }
     all_.holdout_before = predict(motor, holdout_, {options_.ambient_C, false}).runs;
     Prediction after = predict(calibrated_motor(motor, all_), holdout_, {options_.ambient_C, rows_turn_});
-    add_remarks(after.notes);
+    for (const PredictionNote& note : after.notes) {
+      std::visit([this](const auto& each) { all_.findings.emplace_back(each); }, note);
+    }
     all_.holdout_after = std::move(after.runs);
     all_.holdout_error = worst_errors(all_.holdout_before, all_.holdout_after);
     report_grown_errors(true, all_.holdout_error);
@@ -363,44 +365,30 @@ class Calibrating {
     if (is_file_kept || is_learned_) {
       return;
     }
-    std::string why = "no parameter of this motor is identifiable from these logs";
-    for (const OpenDirection& each : all_.open) {
-      why += fmt::format("\n  not identifiable: {}: {}\n  cheapest experiment: {}", each.what, each.why, each.experiment);
-    }
-    // A current in the wrong unit, such as kiloamperes, looks like no current.
-    if (std::ranges::any_of(recordings_, [](const recording::Recording& each) { return recording::heat_input_of(each) != nullptr; })) {
-      why += "\n  also check the units of the heat inputs (kiloamperes, kilowatts); `heatsoak log inspect` shows each channel";
-    }
-    throw base::Failure(base::ExitCode::cannot_answer, why);
+    throw NothingLearned(all_.open, std::ranges::any_of(recordings_, [](const recording::Recording& each) {
+                           return recording::heat_input_of(each) != nullptr;
+                         }));
   }
 
-  /// Returns a line for each signal that the fitted model does not follow.
-  [[nodiscard]] std::string not_followed(std::span<const ErrorBeforeAfter> errors) const {
+  /// Returns the signals that the fitted model does not follow.
+  [[nodiscard]] std::vector<PoorFit> not_followed(std::span<const ErrorBeforeAfter> errors) const {
     constexpr double kFar_K = 20.0;
     constexpr double kFar_share = 0.4;
-    std::string why;
+    std::vector<PoorFit> found;
     for (const ErrorBeforeAfter& each : errors) {
       const double moves_K = estimation::standard_deviation_K(all_.runs, each.signal);
       if (each.after.rmse_K > moves_K || each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
-        why += fmt::format("\n  {} has an error of {} K rms, {} its variation (standard deviation {} K)", each.signal,
-                           base::significant(each.after.rmse_K, 2), each.after.rmse_K > moves_K ? "more than" : "close to",
-                           base::significant(moves_K, 2));
+        found.push_back({each.signal, each.after.rmse_K, moves_K});
       }
     }
-    return why;
+    return found;
   }
 
-  /// Throws Failure (cannot_answer) if neither fit follows the runs: its parameters would mean nothing.
+  /// Refuses if neither fit follows the runs: its parameters would mean nothing.
   void refuse_where_nothing_is_explained() const {
-    const std::string why = not_followed(all_.fit_error);
-    if (!why.empty() && !not_followed(innovations_error_).empty()) {
-      throw base::Failure(
-          base::ExitCode::cannot_answer,
-          fmt::format(
-              "no parameter values make the model follow these logs{}{}\n  check for another motor, a wrong unit (degrees Fahrenheit, "
-              "minutes, milliamperes), a misplaced sensor, or heat that no column contains; `heatsoak log inspect` shows each channel",
-              why,
-              all_.motor_model.nuisances.empty() ? "" : "\n  no log has the speed (speed_rad_per_s), so the loss at speed is unknown"));
+    std::vector<PoorFit> signals = not_followed(all_.fit_error);
+    if (!signals.empty() && !not_followed(innovations_error_).empty()) {
+      throw NothingFollows(std::move(signals), all_.motor_model.nuisances.empty());
     }
   }
 
@@ -437,6 +425,11 @@ std::vector<std::string> names_of(std::span<const estimation::MeasuredRun> runs)
 }
 
 }  // namespace
+
+NothingFollows::NothingFollows(std::vector<PoorFit> signals, bool has_speed)
+    : base::Failure(base::ExitCode::cannot_answer, "no parameter values make the model follow these logs"),
+      signals_(std::move(signals)),
+      has_speed_(has_speed) {}
 
 Calibration calibrate(const motor::Motor& motor, std::span<const recording::Recording> recordings,
                       std::span<const recording::Recording> holdout, const CalibrationOptions& options) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.h"
 #include "calibration/error_before_after.h"
 #include "calibration/findings.h"
 #include "calibration/forecast/forecast.h"
@@ -42,13 +43,72 @@ struct CalibratedParameter {
   bool by_profile = false;       ///< true: interval from the profile likelihood; false: from the curvature
 };
 
-/// Combination of parameters that the data do not determine.
+/// Why the data do not determine something.
+enum class OpenReason {
+  no_heat,                ///< the runs have no heat input
+  common_factor,          ///< one factor on all heat, heat capacities and conductances changes no temperature
+  only_stator_measured,   ///< a larger winding behind a smaller resistance gives the same stator temperature
+  only_winding_measured,  ///< and the runs are too short for the stator
+  motor_hardly_turns,
+  small_loss_at_speed,  ///< against the copper loss
+  not_excited,          ///< the measured temperatures hardly depend on it
+  speed_not_logged,
+  stator_not_settled,  ///< the runs neither reach a steady state nor cool down far enough
+  winding_not_stepped  ///< the winding's temperature hardly differs from the stator's, or never changes in steps
+};
+/// Cheapest experiment that determines something.
+enum class Remedy {
+  heated_run,
+  four_wire_resistance,
+  winding_sensor,
+  stator_sensor,
+  no_load_run,
+  long_run,  ///< up to the steady state, then the cool-down
+  logged_speed,
+  current_steps
+};
+
+/// Direction in which a parameter changes.
+struct MovedParameter {
+  std::string name;
+  bool is_raised = true;
+};
+
+/// Parameters that the data do not determine.
 struct OpenDirection {
-  std::string what;             ///< names of the parameters, in words
-  std::string why;              ///< reason, in words
-  std::string experiment;       ///< cheapest experiment that would determine it
-  double experiment_min = 0.0;  ///< approximate working time in minutes
-  double left_sd = 0.0;         ///< remaining standard deviation along the direction, in logarithms
+  std::vector<MovedParameter> together;  ///< combination that is not determined; empty or two and more
+  std::vector<std::string> parameters;   ///< single parameters that are not determined for the same reason
+  OpenReason reason = OpenReason::not_excited;
+  double longest_run_s = 0.0;  ///< only with `stator_not_settled`
+  double stator_s = 0.0;       ///< time constant of the stator, only with `stator_not_settled`
+  Remedy remedy = Remedy::long_run;
+  double left_sd = 0.0;  ///< remaining standard deviation along the direction, in logarithms
+};
+
+/// No parameter of the motor is identifiable from the logs (cannot_answer).
+class NothingLearned : public base::Failure {
+ public:
+  NothingLearned(std::vector<OpenDirection> open, bool has_heat_input);
+  [[nodiscard]] const std::vector<OpenDirection>& open() const { return open_; }
+  /// True if a heat input varies. A current in the wrong unit, such as kiloamperes, then still heats nothing.
+  [[nodiscard]] bool has_heat_input() const { return has_heat_input_; }
+
+ private:
+  std::vector<OpenDirection> open_;
+  bool has_heat_input_;
+};
+
+/// No parameter values make the model follow the logs (cannot_answer).
+class NothingFollows : public base::Failure {
+ public:
+  NothingFollows(std::vector<PoorFit> signals, bool has_speed);
+  [[nodiscard]] const std::vector<PoorFit>& signals() const { return signals_; }
+  /// False if the loss at speed is unknown, because no log has the speed.
+  [[nodiscard]] bool has_speed() const { return has_speed_; }
+
+ private:
+  std::vector<PoorFit> signals_;
+  bool has_speed_;
 };
 
 struct Calibration {
@@ -60,7 +120,7 @@ struct Calibration {
   std::vector<CalibratedParameter> parameters;
   Eigen::MatrixXd correlation;  ///< correlation of the logarithms of the motor file's parameters, in the order of `parameters`
   std::vector<OpenDirection> open;
-  std::string next_experiment;              ///< empty if nothing is open
+  std::optional<Remedy> next_experiment;    ///< nullopt if nothing is open
   std::vector<ErrorBeforeAfter> fit_error;  ///< per signal: errors in the fitted runs, of the original and the written file
   std::optional<Forecast> forecast;         ///< forecast fit, its rivals and its error band
   bool is_forecast_written = false;         ///< true: `parameters` are from the forecast fit; false: from the innovations fit
@@ -74,8 +134,8 @@ struct Calibration {
   std::vector<CalibrationFinding> findings;     ///< assumptions and limits of the answer
 };
 
-/// Calibrates the motor. The logs must have passed admit() (calibration/admission.h). Throws Failure: bad_input if the logs lack a needed
-/// column; cannot_answer (with the reason) if the logs determine nothing or no fit succeeds.
+/// Calibrates the motor. The logs must have passed admit() (calibration/admission.h). Throws NothingLearned, NothingFollows, and Failure:
+/// bad_input if the logs lack a needed column; cannot_answer (with the reason) if no fit succeeds.
 Calibration calibrate(const motor::Motor& motor, std::span<const recording::Recording> recordings,
                       std::span<const recording::Recording> holdout, const CalibrationOptions& options);
 

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "calibration/assumptions.h"
 #include "calibration/forecast/forecast.h"
 
 namespace heatsoak::calibration {
@@ -94,18 +95,11 @@ struct ExtendedForForecasts {
   std::vector<std::string> effects;
   bool is_written = false;
 };
-/// A remark of a layer below, already in words.
-struct Remark {
-  std::string words;
-};
-
 using CalibrationFinding =
     std::variant<LossAtSpeedUnknown, RowsTurn, UnmodelledHeat, SensorDrift, WindingNotMeasured, ResponseNeedsOtherValues, FitStoppedEarly,
                  HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit, UnidentifiableAreWritten, TooFewPieces,
-                 CrossValidation, ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest, ExtendedForForecasts, Remark>;
-
-/// Returns the remarks of the layers below.
-std::vector<std::string> remarks_in(const std::vector<CalibrationFinding>& findings);
+                 CrossValidation, ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest, ExtendedForForecasts, HeldValue,
+                 BandIncludesLossAtSpeed, BandIsEstimated, Remark>;
 
 /// Returns whether a finding of this type exists.
 template <class Finding>

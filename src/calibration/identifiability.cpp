@@ -1,21 +1,14 @@
 #include "calibration/identifiability.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "base/quantity.h"
 #include "calibration/loss_at_stator.h"
 
 namespace heatsoak::calibration {
 namespace {
-
-/// Experiment that determines the stator, and any value that other runs do not excite.
-constexpr std::string_view kLongRun = "one run from cold with a constant current up to the steady state, then the cool-down";
 
 /// A direction is open if the data leave more than this fraction of its prior variance.
 constexpr double kIdentifiableShare = 0.5;
@@ -69,50 +62,61 @@ Roles roles_of(const estimation::Model& model) {
           std::max(find("no_load_loss.drag_torque"), find(kDragAtStator))};
 }
 
-/// Reason why something is open, and the cheapest experiment that would determine it.
-struct Answer {
-  std::string why;
-  std::string experiment;
-  double experiment_min = 0.0;
-};
-
-Answer no_heat() {
-  return {"these runs have no heat input: a cool-down determines time constants, but no heat capacity or resistance",
-          "one run with a constant current at standstill, 10 minutes, current and terminal voltage measured", 20.0};
-}
-Answer scale_open() {
-  return {
-      "a common factor on all heat, all heat capacities and all conductances changes no temperature: the scale depends on the stated "
-      "terminal resistance",
-      "measure the terminal resistance at a known temperature with four wires (minutes, no run needed)", 5.0};
-}
-Answer winding_unseen() {
-  return {
-      "only the stator is measured: a larger winding behind a smaller resistance to the stator gives the same stator temperature",
-      "a thermocouple at the winding, or the winding's resistance from voltage and current right after switching off, during one warm-up",
-      45.0};
-}
-Answer stator_unseen() {
-  return {"only the winding is measured and the runs are short against the stator's time constant, or never cool down",
-          "a thermocouple on the housing, or one long warm-up with its cool-down to ambient", 60.0};
-}
-Answer loss_hidden(const Look& seen) {
-  return {seen.is_ever_at_speed ? "the loss at speed is small against the copper loss" : "the motor hardly turns in these runs",
-          "10 minutes at no load and full speed", 15.0};
-}
-Answer not_excited() { return {"the measured temperatures of these runs hardly depend on it", std::string(kLongRun), 90.0}; }
-Answer speed_unlogged() {
-  return {
-      "the runs do not contain the speed: the loss may be anything from none to that at no-load speed, and the stator's values depend on "
-      "it",
-      "the same runs with the speed logged (speed_rad_per_s; 0 throughout if the motor stood still)", 0.0};
+Remedy remedy_for(OpenReason reason) {
+  switch (reason) {
+    case OpenReason::no_heat:
+      return Remedy::heated_run;
+    case OpenReason::common_factor:
+      return Remedy::four_wire_resistance;
+    case OpenReason::only_stator_measured:
+      return Remedy::winding_sensor;
+    case OpenReason::only_winding_measured:
+      return Remedy::stator_sensor;
+    case OpenReason::motor_hardly_turns:
+    case OpenReason::small_loss_at_speed:
+      return Remedy::no_load_run;
+    case OpenReason::speed_not_logged:
+      return Remedy::logged_speed;
+    case OpenReason::winding_not_stepped:
+      return Remedy::current_steps;
+    case OpenReason::not_excited:
+    case OpenReason::stator_not_settled:
+      break;
+  }
+  return Remedy::long_run;
 }
 
-OpenDirection open_direction(std::string what, Answer answer) {
-  return {.what = std::move(what),
-          .why = std::move(answer.why),
-          .experiment = std::move(answer.experiment),
-          .experiment_min = answer.experiment_min};
+/// Approximate working time.
+double working_time_min(Remedy remedy) {
+  switch (remedy) {
+    case Remedy::logged_speed:
+      return 0.0;
+    case Remedy::four_wire_resistance:
+      return 5.0;
+    case Remedy::no_load_run:
+      return 15.0;
+    case Remedy::heated_run:
+    case Remedy::current_steps:
+      return 20.0;
+    case Remedy::winding_sensor:
+      return 45.0;
+    case Remedy::stator_sensor:
+      return 60.0;
+    case Remedy::long_run:
+      break;
+  }
+  return 90.0;
+}
+
+OpenReason loss_hidden(const Look& seen) {
+  return seen.is_ever_at_speed ? OpenReason::small_loss_at_speed : OpenReason::motor_hardly_turns;
+}
+
+OpenDirection open_for(OpenReason reason) {
+  OpenDirection open;
+  open.reason = reason;
+  open.remedy = remedy_for(reason);
+  return open;
 }
 
 double component(const Eigen::VectorXd& direction, int place) { return place >= 0 ? direction[place] : 0.0; }
@@ -131,27 +135,28 @@ double likeness_to_scale(const Eigen::VectorXd& direction, const Roles& roles) {
   return std::abs(direction.dot(scale.normalized()));
 }
 
-std::string movement(const estimation::Model& model, const Eigen::VectorXd& direction) {
-  std::vector<std::string> names;
-  std::vector<std::string> parts;
+/// Adds the parameters that change most along the direction. The one that changes most is raised.
+void add_movement(const estimation::Model& model, const Eigen::VectorXd& direction, OpenDirection& open) {
   const double largest = direction.cwiseAbs().maxCoeff();
   Eigen::Index first = 0;
   direction.cwiseAbs().maxCoeff(&first);
   const double sign = direction[first] > 0.0 ? 1.0 : -1.0;
   for (Eigen::Index i = 0; i < direction.size(); ++i) {
     if (std::abs(direction[i]) > 0.3 * largest) {
-      names.emplace_back(model.name(i));
-      parts.push_back(fmt::format("{} {}", names.back(), sign * direction[i] > 0.0 ? "raised" : "lowered"));
+      open.together.push_back({std::string(model.name(i)), sign * direction[i] > 0.0});
     }
   }
-  return names.size() == 1 ? names.front() : fmt::format("{} together", fmt::join(parts, ", "));
+  if (open.together.size() == 1) {
+    open.parameters.push_back(std::move(open.together.front().name));
+    open.together.clear();
+  }
 }
 
-Answer answer_to(const MotorModel& motor, const Eigen::VectorXd& direction, const Look& seen) {
+OpenReason reason_of(const MotorModel& motor, const Eigen::VectorXd& direction, const Look& seen) {
   const Roles roles = roles_of(motor.model);
   constexpr double kAlike = 0.9;
   if (seen.has_heat && likeness_to_scale(direction, roles) > kAlike) {
-    return scale_open();
+    return OpenReason::common_factor;
   }
   const double in_winding = std::hypot(component(direction, roles.winding_capacity), component(direction, roles.winding_stator));
   const double in_stator = std::hypot(component(direction, roles.stator_capacity), component(direction, roles.stator_ambient));
@@ -161,15 +166,15 @@ Answer answer_to(const MotorModel& motor, const Eigen::VectorXd& direction, cons
   const double winding_moves = component(direction, roles.winding_capacity) + component(direction, roles.winding_stator);
   const double stator_moves = component(direction, roles.stator_capacity) + component(direction, roles.stator_ambient);
   if (!seen.has_heat && std::hypot(winding_moves, stator_moves) < kSame) {
-    return no_heat();
+    return OpenReason::no_heat;
   }
   if (!seen.winding_is_sensed && in_winding > kMostly) {
-    return winding_unseen();
+    return OpenReason::only_stator_measured;
   }
   if (!seen.stator_is_sensed && in_stator > kMostly) {
-    return stator_unseen();
+    return OpenReason::only_winding_measured;
   }
-  return std::abs(component(direction, roles.drag)) > kMostly ? loss_hidden(seen) : not_excited();
+  return std::abs(component(direction, roles.drag)) > kMostly ? loss_hidden(seen) : OpenReason::not_excited;
 }
 
 bool is_of_stator(const MotorModel& motor, const CalibratedValue& parameter) {
@@ -178,36 +183,31 @@ bool is_of_stator(const MotorModel& motor, const CalibratedValue& parameter) {
 }
 
 /// Reason why a single parameter is not identifiable although no open direction contains it.
-Answer answer_to(const MotorModel& motor, const CalibratedValue& parameter, const estimation::Fit& fit, const Look& seen) {
+OpenReason reason_of(const MotorModel& motor, const CalibratedValue& parameter, const Look& seen) {
   const Roles roles = roles_of(motor.model);
   const auto holds = [&](int place) { return component(parameter.exponents, place) != 0.0; };
   if (!seen.has_heat && (holds(roles.resistance) || holds(roles.drag) || rests_on_watts(motor, parameter))) {
-    return no_heat();
+    return OpenReason::no_heat;
   }
   if (holds(roles.resistance)) {
-    return scale_open();
+    return OpenReason::common_factor;
   }
   if (holds(roles.drag)) {
     return loss_hidden(seen);
   }
   if (is_of_stator(motor, parameter) && !seen.stator_is_sensed) {
-    return stator_unseen();
+    return OpenReason::only_winding_measured;
   }
   if (is_of_stator(motor, parameter)) {
-    const double stator_s = std::exp(fit.theta[roles.stator_capacity] + fit.theta[roles.stator_ambient]);
-    return {fmt::format("the runs neither reach a steady state nor cool down far enough: the longest lasts {} min, the stator's time "
-                        "constant is about {} min",
-                        base::significant(seen.longest_s / 60.0, 2), base::significant(stator_s / 60.0, 1)),
-            std::string(kLongRun), 90.0};
+    return OpenReason::stator_not_settled;
   }
   if ((holds(roles.winding_capacity) || holds(roles.winding_stator)) && !seen.winding_is_sensed) {
-    return winding_unseen();
+    return OpenReason::only_stator_measured;
   }
   if (holds(roles.winding_capacity) || holds(roles.winding_stator)) {
-    return {"the winding's temperature hardly differs from the stator's in these runs, or never changes in steps",
-            "several steps of current at standstill, on and off for two of the winding's time constants each", 20.0};
+    return OpenReason::winding_not_stepped;
   }
-  return not_excited();
+  return OpenReason::not_excited;
 }
 
 /// Adds a reason for every parameter that is neither identifiable nor explained by the open directions, the columns of `explained`.
@@ -221,20 +221,28 @@ void name_the_rest(const MotorModel& motor, const estimation::Fit& fit, const Lo
     if (parameters[i].is_identifiable || (explained.transpose() * parameter.exponents).squaredNorm() > kMostly * variance) {
       continue;
     }
-    const Answer answer = has_unlogged_speed && is_of_stator(motor, parameter) ? speed_unlogged() : answer_to(motor, parameter, fit, seen);
-    const auto same = std::ranges::find_if(
-        open, [&](const OpenDirection& each) { return each.why == answer.why && each.experiment == answer.experiment; });
-    if (same != open.end()) {
-      same->what += fmt::format(", {}", parameter.name);
-      same->left_sd = std::max(same->left_sd, std::sqrt(variance));
-    } else {
-      open.push_back(open_direction(parameter.name, answer));
-      open.back().left_sd = std::sqrt(variance);
+    const OpenReason reason =
+        has_unlogged_speed && is_of_stator(motor, parameter) ? OpenReason::speed_not_logged : reason_of(motor, parameter, seen);
+    auto same = std::ranges::find(open, reason, &OpenDirection::reason);
+    if (same == open.end()) {
+      same = open.insert(open.end(), open_for(reason));
     }
+    if (reason == OpenReason::stator_not_settled) {
+      const Roles roles = roles_of(motor.model);
+      same->longest_run_s = seen.longest_s;
+      same->stator_s = std::exp(fit.theta[roles.stator_capacity] + fit.theta[roles.stator_ambient]);
+    }
+    same->parameters.push_back(parameter.name);
+    same->left_sd = std::max(same->left_sd, std::sqrt(variance));
   }
 }
 
 }  // namespace
+
+NothingLearned::NothingLearned(std::vector<OpenDirection> open, bool has_heat_input)
+    : base::Failure(base::ExitCode::cannot_answer, "no parameter of this motor is identifiable from these logs"),
+      open_(std::move(open)),
+      has_heat_input_(has_heat_input) {}
 
 bool is_heated(const MotorModel& motor, std::span<const estimation::MeasuredRun> runs) {
   // The offset of a current sensor must not count as heat.
@@ -292,7 +300,8 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const estima
   const bool was_fitted = std::ranges::find(motor.parameters, base::Origin::measured, &CalibratedValue::origin) != motor.parameters.end();
   std::vector<OpenDirection> open;
   if (!motor.nuisances.empty()) {
-    open.push_back(open_direction(std::string(kLossAtUnloggedSpeed), speed_unlogged()));
+    open.push_back(open_for(OpenReason::speed_not_logged));
+    open.back().parameters.emplace_back(kLossAtUnloggedSpeed);
     // Rank this first, because the information in the other runs depends on it.
     open.back().left_sd = std::numeric_limits<double>::infinity();
   }
@@ -305,7 +314,8 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const estima
     constexpr double kWellKnown = 0.03;
     const bool is_known = was_fitted && left.cwiseAbs().maxCoeff() < kWellKnown;
     if (1.0 / (1.0 + information) > kIdentifiableShare && !is_known) {
-      open.push_back(open_direction(movement(motor.model, left.normalized()), answer_to(motor, left.normalized(), seen)));
+      open.push_back(open_for(reason_of(motor, left.normalized(), seen)));
+      add_movement(motor.model, left.normalized(), open.back());
       open.back().left_sd = left.norm();
       explained.conservativeResize(Eigen::NoChange, explained.cols() + 1);
       explained.rightCols(1) = left;
@@ -315,7 +325,7 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const estima
   return open;
 }
 
-std::string next_experiment(std::span<const OpenDirection> open) {
+std::optional<Remedy> next_experiment(std::span<const OpenDirection> open) {
   // Ignore directions that are open by much less than the most uncertain one.
   constexpr double kWeighs_share = 0.5;
   double most_sd = 0.0;
@@ -324,11 +334,11 @@ std::string next_experiment(std::span<const OpenDirection> open) {
   }
   const OpenDirection* best = nullptr;
   for (const OpenDirection& each : open) {
-    if (each.left_sd >= kWeighs_share * most_sd && (!best || each.experiment_min < best->experiment_min)) {
+    if (each.left_sd >= kWeighs_share * most_sd && (!best || working_time_min(each.remedy) < working_time_min(best->remedy))) {
       best = &each;
     }
   }
-  return best ? best->experiment : "";
+  return best ? std::optional(best->remedy) : std::nullopt;
 }
 
 }  // namespace heatsoak::calibration

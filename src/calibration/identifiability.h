@@ -1,8 +1,8 @@
-// Identifiability in words: parameter combinations that the data do not determine, and the cheapest experiment that would determine them.
+// Identifiability: parameter combinations that the data do not determine, and the cheapest experiment that would determine them.
 #pragma once
 
+#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "calibration/calibrate.h"
@@ -20,7 +20,7 @@ bool rests_on_watts(const MotorModel& motor, const CalibratedValue& parameter);
 std::vector<OpenDirection> open_directions(const MotorModel& motor, const estimation::Fit& fit,
                                            std::span<const estimation::MeasuredRun> runs, std::span<const CalibratedParameter> parameters);
 
-/// Returns the cheapest experiment for the most uncertain directions; empty if nothing is open.
-std::string next_experiment(std::span<const OpenDirection> open);
+/// Returns the cheapest experiment for the most uncertain directions; nullopt if nothing is open.
+std::optional<Remedy> next_experiment(std::span<const OpenDirection> open);
 
 }  // namespace heatsoak::calibration

@@ -142,12 +142,12 @@ class ModelBuilder {
         all_.parameters.back().prior_sd = std::min(all_.parameters.back().prior_sd, prior_sd_of_spread(resistance));
       }
     } else {
-      all_.held.emplace_back("terminal_resistance is held at its stated value: all heat capacities and resistances scale with it");
+      all_.held.emplace_back(ResistanceHeld{});
     }
     if (all_.heat == HeatInput::power_balance) {
-      all_.held.emplace_back("no_load_current is not used: the loss other than copper loss is the measured power balance");
+      all_.held.emplace_back(NoLoadCurrentUnused{});
     } else if (!with_speed_) {
-      all_.held.emplace_back("no_load_current is held: its loss depends on speed, which not every log has");
+      all_.held.emplace_back(NoLoadCurrentHeld{});
     } else if (motor_.nominal.no_load_current_A > 0.0) {
       all_.needed.push_back(thermal::Signal::speed);
       add_parameter("no_load_current", {{free("no_load_loss.drag_torque"), 1.0}});
@@ -156,12 +156,7 @@ class ModelBuilder {
 
   void heat_of_power() {
     const bool has_loss_at_stator = place_of(all_.model.network, kDragAtStator) >= 0;
-    all_.held.push_back(fmt::format(
-        "the share of the stated power that becomes heat is held at 1: all heat capacities and resistances scale with it; {} to "
-        "arise at the winding, and iron loss, friction or a driver's heat at the stator {}would shift "
-        "thermal_resistance_winding_stator and winding_heat_capacity",
-        has_loss_at_stator ? "the part due to no_load_current is assumed to arise at the stator and the rest" : "all of it is assumed",
-        has_loss_at_stator ? "beyond that " : ""));
+    all_.held.emplace_back(HeatShareHeld{has_loss_at_stator});
     if (has_loss_at_stator) {
       all_.needed.push_back(thermal::Signal::speed);
       add_parameter("no_load_current", {{free(std::string(kDragAtStator)), 1.0}});
@@ -171,7 +166,7 @@ class ModelBuilder {
   void effects() {
     for (const motor::MotorEffect& effect : motor_.effects) {
       const std::vector<double> values = effect.values();
-      std::vector<std::string_view> held;
+      std::vector<std::string> held;
       for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
         const base::ParameterSpec& spec = effect.type->parameters[i];
         const std::string name = fmt::format("{}.{}", effect.name, spec.key);
@@ -181,7 +176,7 @@ class ModelBuilder {
         }
         if (!spec.choices.empty() || !effect.parameters[i].spread || !(effect.parameters[i].value > 0.0)) {
           if (spec.choices.empty()) {
-            held.push_back(spec.key);
+            held.emplace_back(spec.key);
           }
           continue;
         }
@@ -191,8 +186,7 @@ class ModelBuilder {
         bounded.high = std::min(bounded.high, spec.range.high);
       }
       if (!held.empty()) {
-        all_.held.push_back(fmt::format("effects.{}: {} {} held: the file states no tolerance or range", effect.name, fmt::join(held, ", "),
-                                        held.size() == 1 ? "is" : "are"));
+        all_.held.emplace_back(EffectHeld{effect.name, std::move(held)});
       }
     }
   }
@@ -371,18 +365,17 @@ HeatInput heat_input_of(const motor::Motor& motor, std::span<const recording::Re
   return heat_input_for(recordings, shaft_torque_of(motor));
 }
 
-std::vector<std::string> held_sensors(const motor::Motor& motor, std::span<const recording::Recording> recordings) {
-  std::vector<std::string> held;
+std::vector<HeldValue> held_sensors(const motor::Motor& motor, std::span<const recording::Recording> recordings) {
+  std::vector<HeldValue> held;
   for (const motor::MotorSensor& sensor : motor.sensors) {
     const motor::SensorEffectType& type = *sensor.type;
     const bool is_shown =
         std::ranges::any_of(recordings, [&](const recording::Recording& each) { return estimation::has_values(each.find(type.signal)); });
-    const std::string size =
-        fmt::format("{}{}{}", base::significant(sensor.size.value, 3), type.size.unit.empty() ? "" : " ", type.size.unit);
-    held.push_back(is_shown
-                       ? fmt::format("effects.{}.{} is held at {}: an error of the sensor is not a property of the motor", sensor.name,
-                                     type.size.key, size)
-                       : fmt::format("no log has the {} to which effects.{} applies: the effect is not used", type.signal, sensor.name));
+    if (is_shown) {
+      held.emplace_back(SensorHeld{sensor.name, std::string(type.size.key), sensor.size.value, std::string(type.size.unit)});
+    } else {
+      held.emplace_back(SensorUnused{sensor.name, std::string(type.signal)});
+    }
   }
   return held;
 }

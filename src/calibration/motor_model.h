@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calibration/assumptions.h"
 #include "estimation/measured_run.h"
 #include "estimation/model.h"
 #include "motor/motor.h"
@@ -48,8 +49,8 @@ struct MotorModel {
   HeatInput heat = HeatInput::current;
   std::vector<thermal::Signal> needed;
   std::vector<CalibratedValue> parameters;
-  std::vector<int> nuisances;     ///< indices of free parameters that are not parameters of the motor
-  std::vector<std::string> held;  ///< sentences: parameters that are not fitted, and why
+  std::vector<int> nuisances;  ///< indices of free parameters that are not parameters of the motor
+  std::vector<HeldValue> held;
 };
 
 /// Returns the options for reading logs of the motor; the caller sets `needed` and `ambient_C`. Rows are merged up to a tenth of the
@@ -58,8 +59,8 @@ struct MotorModel {
 /// have the faults stated in the file.
 estimation::MeasuredRunOptions how_to_read(const motor::Motor& motor, HeatInput heat);
 
-/// Returns sentences about the sensor faults stated in the file, which are not fitted.
-std::vector<std::string> held_sensors(const motor::Motor& motor, std::span<const recording::Recording> recordings);
+/// Returns the sensor faults stated in the file, which are not fitted.
+std::vector<HeldValue> held_sensors(const motor::Motor& motor, std::span<const recording::Recording> recordings);
 
 /// Returns the heat input that all recordings have: current (copper loss), else input power, else a current computed from the torque with
 /// `torque`. Throws Failure (bad_input) if they have none of these.

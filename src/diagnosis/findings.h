@@ -44,9 +44,9 @@ struct ColumnsNotSearched {
   std::vector<std::string> columns;
 };
 
-using DiagnosisFinding =
-    std::variant<ExtensionsMayImitate, ContradictingRun, ColumnsTakenAsZero, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet,
-                 LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn, calibration::Remark>;
+using DiagnosisFinding = std::variant<ExtensionsMayImitate, ContradictingRun, ColumnsTakenAsZero, ConditionNotApplied, ConditionNeverMet,
+                                      IntervalsOfDataSheet, LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn,
+                                      calibration::HeldValue, calibration::Remark>;
 
 /// Signal that is outside the range of the training runs for more than a quarter of the time of the hold-out runs.
 struct BeyondTraining {

@@ -230,12 +230,6 @@ void forget_fit(motor::Motor& motor, const std::vector<recording::Recording>& re
   findings.emplace_back(IntervalsOfDataSheet{});
 }
 
-void add_remarks(std::vector<std::string> sentences, std::vector<DiagnosisFinding>& findings) {
-  for (std::string& each : sentences) {
-    findings.emplace_back(calibration::Remark{std::move(each)});
-  }
-}
-
 }  // namespace
 
 ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording::Recording>& recordings) {
@@ -265,8 +259,8 @@ ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording
   out.usual.error_K = everywhere.fit ? everywhere.fit->free_run_error_K : 0.0;
   out.usual.flux_W = everywhere.fit && !everywhere.fit->latent_flux_W.empty() ? std::ranges::max(everywhere.fit->latent_flux_W) : 0.0;
   out.parameters = std::move(built.parameters);
-  add_remarks(std::move(built.held), out.findings);
-  add_remarks(calibration::held_sensors(motor, recordings), out.findings);
+  std::ranges::move(built.held, std::back_inserter(out.findings));
+  std::ranges::move(calibration::held_sensors(motor, recordings), std::back_inserter(out.findings));
   add_conditional_effects(motor, recordings, out);
   if (std::string lacking = estimation::columns_lacking(out.how.columns, recordings); !lacking.empty()) {
     out.findings.emplace_back(calibration::Remark{std::move(lacking)});

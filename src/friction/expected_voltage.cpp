@@ -27,7 +27,7 @@ Expectation expectation(const robot::Robot& robot, const motor::MotorValues& mot
   const double damping_Nm_s_per_rad = robot.friction.wheel_damping_Nm_s_per_rad.value_or(0.0);
   found.damping_V_s_per_rad = robot::steady_voltage_V(without_drag, damping_Nm_s_per_rad, 1.0);
   const std::optional<robot::BodyConfig> body = body_of(robot, motor);
-  found.from = body ? "the robot's file" : "the motor's data sheet";
+  found.from = body ? ExpectedFrom::robot_file : ExpectedFrom::motor_data_sheet;
   found.voltages = [drive, wheels, body](const SteadyPart& part) {
     robot::PerWheel torque_Nm{};
     if (body) {

@@ -1,8 +1,6 @@
 // Voltages expected before a fit: from the robot file, else from the motor's data sheet.
 #pragma once
 
-#include <string>
-
 #include "friction/friction_fit.h"
 #include "motor/motor.h"
 #include "robot/friction.h"
@@ -11,7 +9,7 @@ namespace heatsoak::friction {
 
 struct Expectation {
   ExpectedVoltages voltages;
-  std::string from;  ///< origin in words: "the robot's file" or "the motor's data sheet"
+  ExpectedFrom from = ExpectedFrom::robot_file;
   double damping_V_s_per_rad = 0.0;
 };
 

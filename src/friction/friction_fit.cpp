@@ -148,12 +148,12 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, std::span<const int> he
   WheelFriction found;
   found.parts_standing = wheel_points.standing;
   if (points.size() < 4) {
-    found.problem = "it hardly turns in any steady leg";
+    found.problem = WheelProblem::hardly_turns;
     return found;
   }
   if (std::ranges::all_of(points,
                           [&](const WheelPoint& each) { return each.part->voltage_V[wheel] == points.front().part->voltage_V[wheel]; })) {
-    found.problem = "its voltage is the same in all legs";
+    found.problem = WheelProblem::constant_voltage;
     return found;
   }
   const ChosenTerms chosen = chosen_terms(points, wheel, settings);

@@ -4,9 +4,9 @@
 #include <functional>
 #include <numbers>
 #include <optional>
-#include <string>
 #include <vector>
 
+#include "friction/findings.h"
 #include "friction/robust_fit.h"
 #include "friction/steady_parts.h"
 
@@ -27,7 +27,7 @@ struct LackOfFit {
   bool is_found = false;
   double left_V = std::numeric_limits<double>::quiet_NaN();     ///< RMS over headings, without the scatter of repeats
   double repeats_V = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation of the scatter of repeats; NaN: too few repeats
-  std::string repeats;                                          ///< kind of repeats used, for example "legs on one heading"
+  Repeats repeats = Repeats::legs_on_one_heading;               ///< kind of repeats, if `repeats_V` is known
 };
 
 struct WheelFriction {
@@ -47,9 +47,9 @@ struct WheelFriction {
   int parts_standing = 0;  ///< parts in which the wheel should stand, or does
   int parts_outlying = 0;
   std::size_t rows_used = 0;
-  std::string problem;  ///< why the wheel was not fitted; empty if it was
+  std::optional<WheelProblem> problem;  ///< set if the wheel was not fitted
 
-  [[nodiscard]] bool is_learned() const { return problem.empty(); }
+  [[nodiscard]] bool is_learned() const { return !problem.has_value(); }
   /// Voltage of the motor driver in steady motion. The friction always opposes the wheel's speed, even if sin(θ + φ) has another sign than
   /// the speed, as is possible near headings on which the wheel stands.
   [[nodiscard]] double voltage_V(double heading_rad, double wheel_speed_rad_per_s) const;

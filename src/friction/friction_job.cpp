@@ -1,14 +1,12 @@
 #include "friction/friction_job.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <utility>
 
-#include "base/counted.h"
 #include "base/files.h"
 #include "friction/expected_voltage.h"
 #include "friction/friction_suspicions.h"
@@ -36,20 +34,15 @@ void refuse_repeated(const recording::Recording& recording, std::vector<std::pai
   seen.emplace_back(recording.file, held);
 }
 
-/// Values from a wrong unit would get into the robot's file and from there into its firmware.
-void refuse_what_looks_wrong(const FrictionJob& job, const std::vector<base::Diagnostic>& blocking) {
+void refuse_what_looks_wrong(const FrictionJob& job, const std::vector<LogsLookWrong::Finding>& blocking) {
   if (!blocking.empty() && !job.takes_logs_as_they_are) {
-    throw base::Failure(
-        base::ExitCode::bad_input,
-        "units, signs or wheels of the logs look wrong; correct them in a mapping (--map) or in the robot's file, or use --as-is "
-        "if they are right",
-        blocking);
+    throw LogsLookWrong(blocking);
   }
 }
 
 struct FrictionInput {
   std::vector<FrictionLog> logs;
-  std::vector<base::Diagnostic> blocking;  ///< the suspicions (units, signs, wheel order) that would make the answer wrong if true
+  std::vector<LogsLookWrong::Finding> blocking;  ///< the suspicions (units, signs, wheel order) that would make the answer wrong if true
 };
 
 FrictionInput read_logs(const FrictionJob& job, bool needs_voltage, FrictionRun& run, const base::Progress& progress) {
@@ -67,11 +60,11 @@ FrictionInput read_logs(const FrictionJob& job, bool needs_voltage, FrictionRun&
     const recording::Recording recording = recording::read_recording(file, recording::mapping_for(file, job.map), report);
     input.logs.push_back(friction_log(recording, job.robot, needs, run.findings));
     const recording::DataQuality quality = recording::assess(recording, report);
-    for (const std::string& suspicion : quality.suspicions) {
-      run.suspicions.push_back(fmt::format("{}: {}", recording.name, suspicion));
+    for (const recording::Suspicion& suspicion : quality.suspicions) {
+      run.suspicions.push_back({recording.name, suspicion});
     }
-    for (const std::string& suspicion : quality.blocking_for_wheels) {
-      input.blocking.push_back({{recording.file.string()}, {}, suspicion});
+    for (const recording::Suspicion& suspicion : quality.blocking_for_wheels) {
+      input.blocking.push_back({recording.file.string(), suspicion});
     }
     refuse_repeated(recording, seen);
     if (progress) {
@@ -87,21 +80,17 @@ std::string source_of(const FrictionJob& job) {
                               : fmt::format("friction test, {} and {} more logs", first, job.logs.size() - 1);
 }
 
-/// Explains why nothing was learned, with the problem of wheel 1 as the example.
-base::Failure nothing_learned(const SteadyParts& steady, const FrictionFit& fit, const std::vector<std::string>& suspicions) {
-  const std::string suspected = suspicions.empty() ? "" : fmt::format("\nsuspicious: {}", fmt::join(suspicions, "\nsuspicious: "));
-  if (steady.parts.empty()) {
-    return {
-        base::ExitCode::cannot_answer,
-        "nothing is identifiable: in no interval do the wheels turn steadily; legs of one speed and direction must last a second or more" +
-            suspected};
-  }
-  return {base::ExitCode::cannot_answer,
-          fmt::format("nothing is identifiable from {} on {}: of wheel 1, {}{}", base::counted(steady.parts.size(), "steady leg"),
-                      base::counted(static_cast<std::size_t>(fit.headings), "heading"), fit.wheels.front().problem, suspected)};
-}
-
 }  // namespace
+
+LogsLookWrong::LogsLookWrong(std::vector<Finding> findings)
+    : base::Failure(
+          base::ExitCode::bad_input,
+          "units, signs or wheels of the logs look wrong; correct them in a mapping (--map) or in the robot's file, or use --as-is "
+          "if they are right"),
+      findings_(std::move(findings)) {}
+
+NothingIdentifiable::NothingIdentifiable(Reason reason)
+    : base::Failure(base::ExitCode::cannot_answer, "nothing is identifiable"), reason_(std::move(reason)) {}
 
 SteadyFriction steady_friction(const FrictionJob& job, const base::Progress& progress) {
   SteadyFriction answer;
@@ -117,17 +106,19 @@ SteadyFriction steady_friction(const FrictionJob& job, const base::Progress& pro
     answer.settings.known_damping_V_s_per_rad = before.damping_V_s_per_rad;
   }
   answer.fit = fit_friction(answer.steady.parts, kinematics, answer.settings);
-  for (const std::string& suspicion : friction_suspicions(answer.steady, answer.fit, kinematics, drive)) {
-    answer.suspicions.push_back(suspicion);
-    input.blocking.push_back({{job.logs.front()}, {}, suspicion});
+  for (const FrictionSuspicion& suspicion : friction_suspicions(answer.steady, answer.fit, kinematics, drive)) {
+    answer.suspicions.push_back({{}, suspicion});
+    input.blocking.push_back({job.logs.front(), suspicion});
   }
   refuse_what_looks_wrong(job, input.blocking);
   if (!answer.fit.is_learned()) {
-    throw nothing_learned(answer.steady, answer.fit, answer.suspicions);
+    throw NothingIdentifiable({.legs = answer.steady.parts.size(),
+                               .headings = static_cast<std::size_t>(answer.fit.headings),
+                               .of_first_wheel = answer.fit.wheels.front().problem,
+                               .suspicions = answer.suspicions});
   }
   answer.error = error_on_held_out_headings(answer.steady.parts, kinematics, answer.settings, before.voltages);
-  answer.has_expectation = static_cast<bool>(before.voltages);
-  answer.expected_from = before.from;
+  answer.expected_from = before.voltages ? std::optional(before.from) : std::nullopt;
   if (job.writes_robot_file) {
     if (!drive) {
       throw base::Failure(base::ExitCode::bad_input,

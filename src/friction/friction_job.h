@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.h"
 #include "base/parallel.h"
 #include "friction/friction_fit.h"
 #include "friction/read_friction_log.h"
@@ -30,7 +31,7 @@ struct FrictionJob {
 /// Remarks on the logs, and the text of the robot's file with the measured friction.
 struct FrictionRun {
   FrictionFindings findings;
-  std::vector<std::string> suspicions;
+  std::vector<SuspicionOfTest> suspicions;
   std::string robot_text;            ///< empty unless requested
   std::vector<WrittenAsZero> notes;  ///< remarks on `robot_text`
 };
@@ -40,8 +41,7 @@ struct SteadyFriction : FrictionRun {
   FrictionFit fit;
   FitSettings settings;
   HeldOutError error;
-  bool has_expectation = false;  ///< true if `error` also contains the error of a robot file without measurement
-  std::string expected_from;     ///< source of that expectation
+  std::optional<ExpectedFrom> expected_from;  ///< set if `error` also contains the error of a robot file without measurement
 };
 
 struct RollOutFriction : FrictionRun {
@@ -49,8 +49,39 @@ struct RollOutFriction : FrictionRun {
   robot::DriveConstants drive;  ///< with a drag torque of 0
 };
 
-/// Fits friction and damping of every wheel to a steady-state test. Throws Failure: bad_input for logs that cannot be read, are given twice
-/// or look wrong, and for a robot file without a known motor; cannot_answer if nothing is identifiable.
+/// Units, signs or wheels of the logs look wrong (bad_input). Values from a wrong unit would get into the robot's file and from there into
+/// its firmware.
+class LogsLookWrong : public base::Failure {
+ public:
+  struct Finding {
+    std::string file;
+    FrictionSuspicion suspicion;
+  };
+  explicit LogsLookWrong(std::vector<Finding> findings);
+  [[nodiscard]] const std::vector<Finding>& findings() const { return findings_; }
+
+ private:
+  std::vector<Finding> findings_;
+};
+
+/// No wheel was fitted (cannot_answer).
+class NothingIdentifiable : public base::Failure {
+ public:
+  struct Reason {
+    std::size_t legs = 0;  ///< steady legs; 0: in no interval do the wheels turn steadily
+    std::size_t headings = 0;
+    std::optional<WheelProblem> of_first_wheel = {};
+    std::vector<SuspicionOfTest> suspicions = {};
+  };
+  explicit NothingIdentifiable(Reason reason);
+  [[nodiscard]] const Reason& reason() const { return reason_; }
+
+ private:
+  Reason reason_;
+};
+
+/// Fits friction and damping of every wheel to a steady-state test. Throws LogsLookWrong, NothingIdentifiable, and Failure (bad_input) for
+/// logs that cannot be read or are given twice, and for a robot file without a known motor.
 SteadyFriction steady_friction(const FrictionJob& job, const base::Progress& progress = {});
 
 /// Estimates damping from decelerations with open motors. Throws Failure as above; the motor must be known.

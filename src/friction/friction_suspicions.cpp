@@ -1,12 +1,8 @@
 #include "friction/friction_suspicions.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include "base/quantity.h"
 
 namespace heatsoak::friction {
 namespace {
@@ -68,51 +64,42 @@ double voltage_share(const SteadyParts& steady, int wheel, int wheel_count) {
   return others_V > 0.0 ? own_V / others_V : 1.0;
 }
 
-/// Returns a sentence if one wheel is implausible by itself, else an empty string.
-std::string suspicion_of_wheel(const SteadyParts& steady, const WheelFriction& wheel, int number, int wheel_count,
-                               double back_emf_V_s_per_rad) {
-  if (voltage_share(steady, number - 1, wheel_count) < kDead_share) {
-    return fmt::format("wheel {} turns with hardly any voltage: is its modulation missing from the log?", number);
+/// Returns a suspicion if one wheel is implausible by itself.
+std::optional<FrictionSuspicion> suspicion_of_wheel(const SteadyParts& steady, const WheelFriction& wheel, std::size_t number,
+                                                    int wheel_count, double back_emf_V_s_per_rad) {
+  if (voltage_share(steady, static_cast<int>(number) - 1, wheel_count) < kDead_share) {
+    return WheelWithoutVoltage{number};
   }
   if (!wheel.is_learned()) {
-    return {};
+    return std::nullopt;
   }
   const double damping = wheel.damping_is_given ? back_emf_V_s_per_rad : wheel.damping_V_s_per_rad.value;
   if (damping < 0.0) {
-    return fmt::format("voltage of wheel {} falls as it turns faster: does its speed or its modulation have the wrong sign?", number);
+    return WheelVoltageFallsWithSpeed{number};
   }
   if (wheel.constant_V.high < 0.0 || wheel.sine_V.high + wheel.constant_V.high < 0.0) {
-    return fmt::format(
-        "friction of wheel {} would drive it (a = {} V, b = {} V): is its modulation that of another wheel, or of the wrong sign?", number,
-        base::significant(wheel.sine_V.value, 2), base::significant(wheel.constant_V.value, 2));
+    return FrictionDrivesWheel{number, wheel.sine_V.value, wheel.constant_V.value};
   }
   if (wheel.r2_ratio < kLeastExplained_ratio) {
-    return fmt::format("voltage of wheel {} hardly follows its speed and direction (R² {:.2f}): is its modulation that of another wheel?",
-                       number, wheel.r2_ratio);
+    return WheelVoltageUnexplained{number, wheel.r2_ratio};
   }
   const double ratio = damping / back_emf_V_s_per_rad;
   if (!wheel.damping_is_given && (ratio < kLeastOfBackEmf_ratio || ratio > kMostOfBackEmf_ratio)) {
-    return fmt::format("d of wheel {} is {} times the motor's back-EMF, expected 1 to 2 times: is its speed or modulation in another unit?",
-                       number, base::significant(ratio, 2));
+    return WheelDampingDiffers{number, ratio};
   }
-  return {};
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::vector<std::string> friction_suspicions(const SteadyParts& steady, const FrictionFit& fit, const robot::Kinematics& kinematics,
-                                             const std::optional<robot::DriveConstants>& drive) {
-  std::vector<std::string> found;
+std::vector<FrictionSuspicion> friction_suspicions(const SteadyParts& steady, const FrictionFit& fit, const robot::Kinematics& kinematics,
+                                                   const std::optional<robot::DriveConstants>& drive) {
+  std::vector<FrictionSuspicion> found;
   if (const double off_deg = direction_off_deg(steady, kinematics); off_deg > kFarOff_deg) {
-    found.push_back(
-        fmt::format("the direction of travel is {:.0f}° off the direction that follows from the wheels' speeds: are the wheels in another "
-                    "order than in the "
-                    "robot's file, or is an angle in degrees or in another frame?",
-                    off_deg));
+    found.emplace_back(DirectionDiffers{off_deg});
   }
   if (const double share = contradiction_share(steady, kinematics); share > kContradicting_share) {
-    found.push_back(fmt::format(
-        "{:.0f} % of the wheels' speeds fit no motion of the robot: do their order or signs differ from the robot's file?", 100.0 * share));
+    found.emplace_back(SpeedsContradict{share});
   }
   std::vector<double> dampings;
   for (const WheelFriction& wheel : fit.wheels) {
@@ -124,16 +111,13 @@ std::vector<std::string> friction_suspicions(const SteadyParts& steady, const Fr
   // Problems that not all wheels have are reported per wheel below.
   const auto all = [&dampings](auto is_wrong) { return std::ranges::all_of(dampings, is_wrong); };
   if (damping < 0.0 && all([](double each) { return each < 0.0; })) {
-    found.emplace_back("voltage falls as the wheels turn faster: does one of them have the wrong sign?");
+    found.emplace_back(VoltageFallsWithSpeed{});
   } else if (drive) {
     const double back_emf_V_s_per_rad = drive->torque_constant_Nm_per_A * drive->gear_ratio;
     const double ratio = damping / back_emf_V_s_per_rad;
     if (std::isfinite(ratio) && (all([&](double each) { return each < kLeastOfBackEmf_ratio * back_emf_V_s_per_rad; }) ||
                                  all([&](double each) { return each > kMostOfBackEmf_ratio * back_emf_V_s_per_rad; }))) {
-      found.push_back(
-          fmt::format("d is {} times the motor's back-EMF, expected 1 to 2 times: is a speed in rpm or that of the wheel instead of its "
-                      "motor, a modulation in percent, a voltage in millivolts or too high, or is it another motor?",
-                      base::significant(ratio, 2)));
+      found.emplace_back(DampingDiffersFromBackEmf{ratio});
     }
   }
   // Report single wheels only if no common problem was found.
@@ -141,10 +125,8 @@ std::vector<std::string> friction_suspicions(const SteadyParts& steady, const Fr
   const double back_emf_V_s_per_rad =
       drive ? drive->torque_constant_Nm_per_A * drive->gear_ratio : std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; is_of_single_wheels && i < fit.wheels.size(); ++i) {
-    const int number = static_cast<int>(i) + 1;
-    if (std::string of_wheel = suspicion_of_wheel(steady, fit.wheels[i], number, kinematics.wheel_count, back_emf_V_s_per_rad);
-        !of_wheel.empty()) {
-      found.push_back(std::move(of_wheel));
+    if (const auto of_wheel = suspicion_of_wheel(steady, fit.wheels[i], i + 1, kinematics.wheel_count, back_emf_V_s_per_rad)) {
+      found.push_back(*of_wheel);
     }
   }
   return found;

@@ -2,16 +2,16 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
+#include "friction/findings.h"
 #include "friction/friction_fit.h"
 #include "robot/friction.h"
 
 namespace heatsoak::friction {
 
-/// Returns sentences for the user about implausible results; nothing is corrected. `drive`: constants of the motor, if known.
-std::vector<std::string> friction_suspicions(const SteadyParts& steady, const FrictionFit& fit, const robot::Kinematics& kinematics,
-                                             const std::optional<robot::DriveConstants>& drive);
+/// Returns implausible results; nothing is corrected. `drive`: constants of the motor, if known.
+std::vector<FrictionSuspicion> friction_suspicions(const SteadyParts& steady, const FrictionFit& fit, const robot::Kinematics& kinematics,
+                                                   const std::optional<robot::DriveConstants>& drive);
 
 }  // namespace heatsoak::friction

@@ -20,14 +20,14 @@ constexpr std::array kMissingHarmonics{2.0, 3.0};
 /// Mean residual of each repeat, per group. Within a group the law predicts the same value.
 using LeftByGroup = std::map<int, std::vector<double>>;
 
-struct Repeats {
-  const char* what;
+struct RepeatGroups {
+  Repeats kind = Repeats::legs_on_one_heading;
   std::vector<int> group;  ///< per point
   std::vector<int> repeat;
 };
 
 /// Possible kinds of repeats, best first. Neighbouring headings also differ slightly by the error of the law itself.
-std::vector<Repeats> repeats_of(const std::vector<WheelPoint>& points, std::span<const int> heading) {
+std::vector<RepeatGroups> repeats_of(const std::vector<WheelPoint>& points, std::span<const int> heading) {
   const std::vector<int> headings(heading.begin(), heading.end());
   std::vector<int> legs(points.size()), parts(points.size()), pairs(points.size());
   const std::set<int> driven(headings.begin(), headings.end());
@@ -36,10 +36,12 @@ std::vector<Repeats> repeats_of(const std::vector<WheelPoint>& points, std::span
     parts[i] = static_cast<int>(i);
     pairs[i] = headings[i] < 0 ? -1 : static_cast<int>(std::distance(driven.upper_bound(-1), driven.find(headings[i]))) / 2;
   }
-  return {{"legs on one heading", headings, legs}, {"speeds of one leg", headings, parts}, {"neighbouring headings", pairs, headings}};
+  return {{Repeats::legs_on_one_heading, headings, legs},
+          {Repeats::speeds_of_one_leg, headings, parts},
+          {Repeats::neighbouring_headings, pairs, headings}};
 }
 
-LeftByGroup left_by_group(const Repeats& repeats, const Eigen::VectorXd& left_V, const Eigen::VectorXd& weights) {
+LeftByGroup left_by_group(const RepeatGroups& repeats, const Eigen::VectorXd& left_V, const Eigen::VectorXd& weights) {
   std::map<std::pair<int, int>, std::vector<double>> units;
   for (std::size_t i = 0; i < repeats.group.size(); ++i) {
     if (repeats.group[i] >= 0 && weights(static_cast<Eigen::Index>(i)) > 0.0) {
@@ -114,10 +116,10 @@ LackOfFit lack_of_fit(const std::vector<WheelPoint>& points, std::span<const int
   const double other_terms = has(WheelTerm::damping);
   const double heading_terms = static_cast<double>(terms.size()) - other_terms - has(WheelTerm::rotation);
   LackOfFit found;
-  for (const Repeats& repeats : repeats_of(points, heading)) {
+  for (const RepeatGroups& repeats : repeats_of(points, heading)) {
     found = compared(left_by_group(repeats, left_V, fit.weights), heading_terms, other_terms);
     if (!std::isnan(found.repeats_V)) {
-      found.repeats = repeats.what;
+      found.repeats = repeats.kind;
       break;
     }
   }

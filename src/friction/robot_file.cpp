@@ -196,14 +196,17 @@ std::string checked(const Lines& lines, const robot::Robot& robot) {
 
 }  // namespace
 
+WheelNotIdentifiable::WheelNotIdentifiable(std::size_t wheel, std::optional<WheelProblem> problem)
+    : base::Failure(
+          base::ExitCode::cannot_answer,
+          fmt::format("no robot file is written, because the friction of wheel {} over the directions is not identifiable", wheel)),
+      problem_(problem) {}
+
 std::string with_measured_friction(const std::string& text, const robot::Robot& robot, const robot::DriveConstants& drive,
                                    const FrictionFit& fit, const std::string& source, std::vector<WrittenAsZero>& notes) {
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     if (!fit.wheels[i].is_learned() || std::isnan(fit.wheels[i].constant_V.value)) {
-      throw base::Failure(
-          base::ExitCode::cannot_answer,
-          fmt::format("no robot file is written, because the friction of wheel {} over the directions is not identifiable: {}", i + 1,
-                      fit.wheels[i].is_learned() ? "its logs only turn on the spot" : fit.wheels[i].problem));
+      throw WheelNotIdentifiable(i + 1, fit.wheels[i].problem);
     }
   }
   note_what_is_cut(fit, drive, notes);

@@ -116,16 +116,16 @@ ChosenTerms chosen_terms(const std::vector<WheelPoint>& points, int wheel, const
   }
   if (!is_identifiable(design(points, wheel, terms), terms, WheelTerm::damping)) {
     if (!travels || std::isnan(settings.known_damping_V_s_per_rad)) {
-      chosen.problem = "all its legs have one speed, so damping and friction are indistinguishable; drive at two speeds or more";
+      chosen.problem = WheelProblem::one_speed;
       return chosen;
     }
     std::erase(terms, WheelTerm::damping);
     chosen.damping_is_given = true;
   }
   if (travels && !friction_is_identifiable(points, wheel, terms, chosen.phase_is_given ? settings.phase_uncertainty_rad : 0.0)) {
-    chosen.problem = "too few headings to determine how friction depends on the direction; drive at least six directions all around";
+    chosen.problem = WheelProblem::too_few_headings;
   } else if (points.size() < terms.size() + 3) {
-    chosen.problem = "it has too few steady legs";
+    chosen.problem = WheelProblem::too_few_legs;
   }
   return chosen;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "friction/friction_fit.h"
@@ -38,7 +38,7 @@ struct ChosenTerms {
   std::vector<WheelTerm> terms;
   bool damping_is_given = false;
   bool phase_is_given = false;
-  std::string problem;
+  std::optional<WheelProblem> problem;
 };
 
 /// Chooses the terms that the points determine. `problem` states the reason if they do not suffice for a fit.

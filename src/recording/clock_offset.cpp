@@ -1,7 +1,5 @@
 #include "recording/clock_offset.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -10,7 +8,6 @@
 #include <string_view>
 
 #include "base/copper.h"
-#include "base/quantity.h"
 #include "base/unknown.h"
 #include "recording/noise.h"
 #include "recording/row_order.h"
@@ -284,7 +281,7 @@ std::optional<double> bottom_of(std::span<const double> delays_s, const std::vec
 ClockOffset offset_within(double around_s, double reach_s, DelayScan& scan, double noise_K, double period_s) {
   ClockOffset offset;
   if (scan.place_windows(noise_K, std::abs(around_s) + reach_s) < kFewestWindows) {
-    offset.why_not = "the intervals without a gap are too short";
+    offset.why_not = IntervalsTooShort{};
     return offset;
   }
   std::vector<double> delays_s;
@@ -305,7 +302,7 @@ ClockOffset offset_within(double around_s, double reach_s, DelayScan& scan, doub
   }
   constexpr double kTooWide_share = 0.25;
   if (!delay_s || found < kParts) {
-    offset.why_not = fmt::format("no delay within ± {} s gives a best fit", base::significant(reach_s, 2));
+    offset.why_not = NoBestDelay{reach_s};
     return offset;
   }
   const double mean_s = sum_s / kParts;
@@ -315,7 +312,7 @@ ClockOffset offset_within(double around_s, double reach_s, DelayScan& scan, doub
   const double by_parts_s = std::sqrt(std::max(0.0, (kParts - 1.0) * (sum_s2 / kParts - mean_s * mean_s)));
   const double standard_error_s = std::hypot(by_parts_s, period_s / std::sqrt(12.0), held_too_long_s);
   if (standard_error_s > kTooWide_share * reach_s) {
-    offset.why_not = fmt::format("parts of the log disagree by {} s", base::significant(standard_error_s, 2));
+    offset.why_not = PartsDisagree{standard_error_s};
     return offset;
   }
   offset.delay_s = *delay_s;
@@ -337,10 +334,6 @@ bool is_sure(const ClockOffset& offset, double period_s) {
   return offset.delay_s && offset.explains_flow && offset.misfit_ratio > kMuchBetter_ratio && offset.temperature == "winding_C" &&
          std::ranges::find(kDirect, offset.heat_input) != kDirect.end() &&
          std::abs(*offset.delay_s) > std::max({kStandardErrors * offset.delay_uncertainty_s, kLeast_s, kLeast_rows * period_s});
-}
-
-std::string shown(const ClockOffset& offset) {
-  return fmt::format("{} s ± {} s", base::significant(std::abs(*offset.delay_s), 2), base::significant(offset.delay_uncertainty_s, 2));
 }
 
 }  // namespace
@@ -365,27 +358,20 @@ ClockOffset clock_offset(const Recording& recording, const Channel& temperature,
   return offset;
 }
 
-std::string early_answer(const ClockOffset& offset, double period_s) {
+std::optional<RespondsEarly> early_answer(const ClockOffset& offset, double period_s) {
   if (!is_sure(offset, period_s) || *offset.delay_s > 0.0) {
     return {};
   }
   constexpr double kAboutOneRow = 0.3;
   const bool is_one_row = std::abs(*offset.delay_s + period_s) < std::max(kAboutOneRow * period_s, offset.delay_uncertainty_s);
-  return fmt::format(
-      "{} responds {} before {} changes, so one of their clocks is off; in a mapping give {} and all columns logged with it clock_offset = "
-      "\"{:.2g} s\"{}",
-      offset.temperature, shown(offset), offset.heat_input, offset.heat_input, *offset.delay_s,
-      is_one_row ? ", or inputs = \"previous_interval\" if a row's inputs describe the interval before it" : "");
+  return RespondsEarly{offset.temperature, offset.heat_input, *offset.delay_s, offset.delay_uncertainty_s, is_one_row};
 }
 
-std::string late_answer(const ClockOffset& offset, double period_s) {
+std::optional<RespondsLate> late_answer(const ClockOffset& offset, double period_s) {
   if (!is_sure(offset, period_s) || *offset.delay_s < 0.0) {
     return {};
   }
-  return fmt::format(
-      "{} follows {} {} late: its sensor lags, or a clock is off (clock_offset of a mapping); the values fitted to the winding (heat "
-      "capacity, time constant, resistance to the stator) are biased by more than their intervals",
-      offset.temperature, offset.heat_input, shown(offset));
+  return RespondsLate{offset.temperature, offset.heat_input, *offset.delay_s, offset.delay_uncertainty_s};
 }
 
 }  // namespace heatsoak::recording

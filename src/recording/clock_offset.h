@@ -1,8 +1,9 @@
 // Estimates the delay between heat input and temperature, which is a clock offset or a sensor lag.
 #pragma once
 
-#include <string>
+#include <optional>
 
+#include "recording/findings.h"
 #include "recording/quality.h"
 #include "recording/recording.h"
 
@@ -12,10 +13,9 @@ namespace heatsoak::recording {
 /// and the mean temperatures in each window; no motor model is needed. `noise_K` is the standard deviation of the temperature's noise.
 ClockOffset clock_offset(const Recording& recording, const Channel& temperature, const Channel& heat_input, double noise_K);
 
-/// Returns a sentence if the winding certainly responds before its heat input, which is possible only with a wrong clock; else an empty
-/// string. `period_s` is the row spacing.
-std::string early_answer(const ClockOffset& offset, double period_s);
-/// Returns a sentence if the winding certainly responds late, as with a sensor lag; else an empty string.
-std::string late_answer(const ClockOffset& offset, double period_s);
+/// Returns a finding if the winding certainly responds before its heat input. `period_s` is the row spacing.
+std::optional<RespondsEarly> early_answer(const ClockOffset& offset, double period_s);
+/// Returns a finding if the winding certainly responds late.
+std::optional<RespondsLate> late_answer(const ClockOffset& offset, double period_s);
 
 }  // namespace heatsoak::recording

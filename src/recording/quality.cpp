@@ -1,16 +1,11 @@
 #include "recording/quality.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <span>
 
-#include "base/diagnostic.h"
-#include "base/quantity.h"
 #include "recording/clock_offset.h"
 #include "recording/noise.h"
 #include "recording/row_order.h"
@@ -31,10 +26,6 @@ const ChannelQuality* find(const DataQuality& quality, std::string_view key) {
 
 bool is_kind(const ChannelQuality& channel, QuantityKind kind) { return channel.quantity.kind == kind; }
 
-std::string shown(double value, const Quantity& quantity) {
-  return fmt::format("{} {}", base::significant(value, 4), base::unit_for_display(quantity.unit));
-}
-
 /// True if every temperature has its maximum in the first third of the log and is clearly lower at the end.
 bool cools_down(const Recording& recording, const std::vector<const ChannelQuality*>& temperatures) {
   const auto is_less = [](double a, double b) { return a < b || (std::isnan(a) && !std::isnan(b)); };
@@ -50,7 +41,7 @@ bool cools_down(const Recording& recording, const std::vector<const ChannelQuali
 Fitness thermal_fitness(const Recording& recording, std::size_t rows, const DataQuality& quality) {
   Fitness fitness;
   if (rows < kFewestRows) {
-    fitness.lacks.push_back(fmt::format("it has {} row{}; at least {} are needed", rows, rows == 1 ? "" : "s", kFewestRows));
+    fitness.lacks.emplace_back(TooFewRows{rows, kFewestRows});
   }
   std::vector<const ChannelQuality*> temperatures;
   std::vector<const ChannelQuality*> inputs;
@@ -63,24 +54,22 @@ Fitness thermal_fitness(const Recording& recording, std::size_t rows, const Data
     }
   }
   if (temperatures.empty()) {
-    fitness.lacks.emplace_back("it has no temperature of the motor (winding_C, stator_C, …)");
+    fitness.lacks.emplace_back(NoTemperature{});
   }
   if (inputs.empty()) {
-    fitness.lacks.emplace_back("it has no heat input (current_A, power_in_W, torque_Nm, speed_rad_per_s, …)");
+    fitness.lacks.emplace_back(NoHeatInput{});
   }
   // Changes below the noise carry no information; the gain from averaging is ignored.
   const auto says_nothing = [](const ChannelQuality* channel) { return channel->high - channel->low <= 6.0 * channel->noise; };
   if (!temperatures.empty() && std::ranges::all_of(temperatures, says_nothing)) {
     const ChannelQuality& one = *temperatures.front();
-    fitness.lacks.push_back(one.is_constant() ? fmt::format("{} is constant, {}", one.quantity.key, shown(one.low, one.quantity))
-                                              : fmt::format("no temperature changes by more than its noise: {} from {} to {}, noise {} K",
-                                                            one.quantity.key, shown(one.low, one.quantity), shown(one.high, one.quantity),
-                                                            base::significant(one.noise, 2)));
+    fitness.lacks.push_back(one.is_constant() ? Lack(TemperatureIsConstant{one.quantity.key, one.low})
+                                              : Lack(TemperatureWithinNoise{one.quantity.key, one.low, one.high, one.noise}));
   }
   // Without heat, the time constants are still identifiable from a cool-down.
   if (!inputs.empty() && !cools_down(recording, temperatures) && heat_input_of(recording) == nullptr &&
       std::ranges::all_of(inputs, [](const ChannelQuality* channel) { return channel->high == 0.0 && channel->low == 0.0; })) {
-    fitness.lacks.push_back(fmt::format("there is no heat input: {} is 0 throughout", inputs.front()->quantity.key));
+    fitness.lacks.emplace_back(HeatInputIsZero{inputs.front()->quantity.key});
   }
   return fitness;
 }
@@ -91,19 +80,19 @@ Fitness drive_fitness(std::size_t rows, const DataQuality& quality) {
     return std::ranges::any_of(quality.channels, [stem](const ChannelQuality& each) { return each.quantity.key.starts_with(stem); });
   };
   if (rows < kFewestRows) {
-    fitness.lacks.push_back(fmt::format("it has {} row{}; at least {} are needed", rows, rows == 1 ? "" : "s", kFewestRows));
+    fitness.lacks.emplace_back(TooFewRows{rows, kFewestRows});
   }
   if (!has("wheel_speed_rad_per_s_")) {
-    fitness.lacks.emplace_back("it has no speeds of wheels (wheel_speed_rad_per_s_1, …)");
+    fitness.lacks.emplace_back(NoWheelSpeed{});
   }
   const auto turns = [](const ChannelQuality& each) {
     return each.quantity.key.starts_with("wheel_speed_rad_per_s_") && each.high - each.low > 10.0 * each.noise;
   };
   if (has("wheel_speed_rad_per_s_") && std::ranges::none_of(quality.channels, turns)) {
-    fitness.lacks.emplace_back("no wheel changes its speed beyond the noise");
+    fitness.lacks.emplace_back(WheelsKeepSpeed{});
   }
   if (!has("wheel_pwm_ratio_") && !has("wheel_voltage_V_") && !has("wheel_current_A_")) {
-    fitness.lacks.emplace_back("it has no effort of wheels (wheel_pwm_ratio_1, wheel_voltage_V_1 or wheel_current_A_1, …)");
+    fitness.lacks.emplace_back(NoWheelEffort{});
   }
   return fitness;
 }
@@ -256,10 +245,13 @@ DataQuality assess(const Recording& recording, const RecordingReport& report, st
   return assessment.conclude(report, ambient_C);
 }
 
+NothingAboutHeat::NothingAboutHeat(const std::filesystem::path& file, std::vector<Lack> lacks)
+    : base::Failure(base::ExitCode::cannot_answer, file.string() + ": this log contains no information about heat"),
+      lacks_(std::move(lacks)) {}
+
 void require_thermal(const Recording& recording, const DataQuality& quality) {
   if (!quality.thermal.is_good()) {
-    throw base::Failure(base::ExitCode::cannot_answer, fmt::format("{}: this log contains no information about heat: {}",
-                                                                   recording.file.string(), fmt::join(quality.thermal.lacks, "; ")));
+    throw NothingAboutHeat(recording.file, quality.thermal.lacks);
   }
 }
 

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.h"
 #include "recording/condensed_recording.h"
+#include "recording/findings.h"
 #include "recording/noise.h"
 #include "recording/recording.h"
 #include "recording/recording_report.h"
@@ -48,16 +50,16 @@ struct ChannelQuality {
 struct ClockOffset {
   std::string temperature;
   std::string heat_input;
-  std::optional<double> delay_s;     ///< positive: the temperature is late; nullopt if not determined
-  double delay_uncertainty_s = 0.0;  ///< standard error; includes a jackknife over eighths of the log
-  double misfit_ratio = 1.0;         ///< sum of squared errors without delay divided by that with delay
-  std::string why_not;               ///< reason if delay_s is not determined
-  bool explains_flow = false;        ///< true: the log has other temperatures, and this one is the hottest while heated
+  std::optional<double> delay_s;         ///< positive: the temperature is late; nullopt if not determined
+  double delay_uncertainty_s = 0.0;      ///< standard error; includes a jackknife over eighths of the log
+  double misfit_ratio = 1.0;             ///< sum of squared errors without delay divided by that with delay
+  std::optional<NoDelayReason> why_not;  ///< set if delay_s is not
+  bool explains_flow = false;            ///< true: the log has other temperatures, and this one is the hottest while heated
 };
 
 /// Suitability of a log for one purpose.
 struct Fitness {
-  std::vector<std::string> lacks;  ///< sentences about missing data; empty if suitable
+  std::vector<Lack> lacks;  ///< empty if suitable
   [[nodiscard]] bool is_good() const { return lacks.empty(); }
 };
 
@@ -68,11 +70,11 @@ struct DataQuality {
   std::vector<Gap> gaps;  ///< between runs, the first kMostGaps
   std::vector<ChannelQuality> channels;
   std::vector<ClockOffset> clock_offsets;
-  std::vector<std::string> suspicions;           ///< reported only, nothing is corrected
-  std::vector<std::string> blocking;             ///< subset about units, signs and sensors that, if true, prevents any fit
-  std::vector<std::string> blocking_for_wheels;  ///< same for a robot's wheels and angles, and for the clock
-  Fitness thermal;                               ///< for fitting a thermal network
-  Fitness drive;                                 ///< for fitting friction of wheels
+  std::vector<Suspicion> suspicions;           ///< reported only, nothing is corrected
+  std::vector<Suspicion> blocking;             ///< subset about units, signs and sensors that, if true, prevents any fit
+  std::vector<Suspicion> blocking_for_wheels;  ///< same for a robot's wheels and angles, and for the clock
+  Fitness thermal;                             ///< for fitting a thermal network
+  Fitness drive;                               ///< for fitting friction of wheels
 };
 
 /// Assesses a log part by part with bounded memory.
@@ -109,8 +111,18 @@ class Assessment {
 
 DataQuality assess(const Recording& recording, const RecordingReport& report, std::optional<double> ambient_C = {});
 
-/// Throws Failure (cannot_answer) if the recording contains no information about a thermal network: too short, no changes, no temperature
-/// or no heat input.
+/// The log `file` contains no information about heat (cannot_answer), because it lacks data.
+class NothingAboutHeat : public base::Failure {
+ public:
+  NothingAboutHeat(const std::filesystem::path& file, std::vector<Lack> lacks);
+  [[nodiscard]] const std::vector<Lack>& lacks() const { return lacks_; }
+
+ private:
+  std::vector<Lack> lacks_;
+};
+
+/// Throws NothingAboutHeat if the recording contains no information about a thermal network: too short, no changes, no temperature or no
+/// heat input.
 void require_thermal(const Recording& recording, const DataQuality& quality);
 
 /// Returns the varying channel that heats the winding most directly: current, else power, torque, voltage, speed; nullptr if none varies.

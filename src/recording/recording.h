@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "recording/findings.h"
 #include "recording/quantities.h"
 
 namespace heatsoak::recording {
@@ -42,7 +43,7 @@ struct Recording {
   std::string content = {};
   double content_begin_s = 0.0;
   /// If this is a part: Suspicions::blocking of the whole log. A part may start warm and only cool down, which misleads the checks.
-  std::optional<std::vector<std::string>> blocking_of_whole = {};
+  std::optional<std::vector<Suspicion>> blocking_of_whole = {};
   InputConvention inputs =
       InputConvention::held;  ///< convention of the file before conversion; states to which end of a gap a sample belongs
 

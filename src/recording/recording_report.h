@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "recording/findings.h"
+
 namespace heatsoak::recording {
 
 enum class LeftOutReason {
@@ -52,7 +54,7 @@ struct RecordingReport {
   std::size_t repeated_times = 0;  ///< rows whose time equals that of the row before
   /// Omitted samples by quantity ("" for whole rows) and reason.
   std::map<std::pair<std::string, LeftOutReason>, LeftOut> left_out;
-  std::vector<std::string> notes;  ///< sentences: other actions and observations
+  std::vector<ReadingNote> notes;
 
   [[nodiscard]] const LeftOut* find(std::string_view quantity, LeftOutReason reason) const;
 };

@@ -34,8 +34,7 @@ std::vector<QuantityMapping> quantities_of_header(const input::NumberTable& tabl
       mapping.column = name;
       mapping.at = {file, table.header_line(), 1};
     } else {
-      report.notes.push_back(
-          fmt::format("column {} '{}' is not used: its name does not end in a unit{}", i + 1, name, nearest_quantity(name)));
+      report.notes.emplace_back(ColumnWithoutUnit{i + 1, name});
     }
   }
   return found;
@@ -148,12 +147,12 @@ class RecordingStream::Intake {
         mapping_.is_canonical() ? quantities_of_header(table_, log_.string(), report_) : mapping_.quantities;
     base::Diagnostics problems;
     for (const QuantityMapping& quantity : quantities) {
-      if (const std::string nearest = nearest_quantity(quantity.quantity.key); quantity.quantity.meaning.empty() && !nearest.empty()) {
-        report_.notes.push_back(fmt::format("{} is used as an additional signal{}", quantity.quantity.key, nearest));
+      if (quantity.quantity.meaning.empty() && !nearest_quantity(quantity.quantity.key).empty()) {
+        report_.notes.emplace_back(AdditionalSignal{quantity.quantity.key});
       }
       ChannelSource source(quantity, table_.header(), log_.string(), used_, problems);
       if (source.is_absent()) {
-        report_.notes.push_back(fmt::format("{} is not recorded: no column '{}'", quantity.quantity.key, quantity.column));
+        report_.notes.emplace_back(NotRecorded{quantity.quantity.key, quantity.column});
       } else if (quantity.quantity.kind == QuantityKind::time) {
         time_.emplace(std::move(source));
       } else {
@@ -364,9 +363,9 @@ class RecordingStream::Intake {
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       const std::string& key = sources_[i].quantity().key;
       if (!has_numbers(i)) {
-        report_.notes.push_back(fmt::format("{} is left out: not one number in {} rows", key, report_.rows_kept));
+        report_.notes.emplace_back(ChannelWithoutNumbers{key, report_.rows_kept});
       } else if (sources_[i].filled() > 0) {
-        report_.notes.push_back(fmt::format("{}: {} blank samples are filled as the mapping states", key, sources_[i].filled()));
+        report_.notes.emplace_back(BlanksFilled{key, sources_[i].filled()});
       }
     }
     if (std::ranges::count(has_numbers_, 1) == 0) {

@@ -1,13 +1,10 @@
 #include "recording/sensor_places.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 
-#include "base/quantity.h"
 #include "recording/row_order.h"
 #include "recording/spread.h"
 
@@ -65,7 +62,7 @@ class Places {
     find_rests();
   }
 
-  std::vector<std::string> run() {
+  std::vector<Suspicion> run() {
     ambient_against_motor();
     signs();
     if (moves(winding_) && moves(stator_)) {
@@ -109,8 +106,7 @@ class Places {
         above_K.push_back(channel.values[i] - ambient_->values[i]);
       }
       if (middle_of(above_K) < -kBelow_K && !was_brought_in_cold(channel, above_K)) {
-        found_.push_back(fmt::format("ambient_C is hotter than {} most of the time (by {} K): are the channels swapped?",
-                                     channel.quantity.key, base::significant(-middle_of(above_K), 2)));
+        found_.emplace_back(AmbientAboveMotor{channel.quantity.key, -middle_of(above_K)});
       }
     }
   }
@@ -200,8 +196,7 @@ class Places {
       const double much_K = std::max({1.0, 5.0 * quality(*channel).noise, kMuch_share * swing(*channel)});
       if (blocks.heat.size() >= kEnoughBlocks && falls_K > much_K && rises_K > much_K &&
           regress(blocks.heat, blocks.rate_K_per_s).correlation_ratio < -0.5) {
-        found_.push_back(fmt::format("{} falls while {} heats and rises while it rests: is the sign of the sensor wrong?",
-                                     channel->quantity.key, input->quantity.key));
+        found_.emplace_back(FallsWhileHeated{channel->quantity.key, input->quantity.key});
       }
     }
   }
@@ -234,9 +229,7 @@ class Places {
     const Regression of_stator = answer_of(*stator_, heat);
     if (of_stator.points >= kEnoughBlocks && of_stator.correlation_ratio > 0.3 && of_stator.slope > 1.3 * of_winding.slope &&
         swing(*stator_) > kSwing_ratio * swing(*winding_)) {
-      found_.push_back(
-          fmt::format("stator_C responds to {} faster than winding_C and varies more ({} K against {} K): are the two swapped?",
-                      input->quantity.key, base::significant(swing(*stator_), 3), base::significant(swing(*winding_), 3)));
+      found_.emplace_back(StatorRespondsFaster{input->quantity.key, swing(*stator_), swing(*winding_)});
     }
   }
 
@@ -261,8 +254,7 @@ class Places {
       }
     }
     if (swapped > 0 && sound == 0) {
-      found_.push_back(fmt::format("without heat, stator_C is hotter than winding_C (by {} K) and falls by more: are the two swapped?",
-                                   base::significant(apart_K, 2)));
+      found_.emplace_back(StatorHotterAtRest{apart_K});
     }
   }
 
@@ -276,9 +268,7 @@ class Places {
     for (const auto& [begin, end] : recording_.runs()) {
       const StandstillWarmUp warm_up = standstill_warm_up(begin, end, heat);
       if (warm_up.stator_ahead_K > 0.0) {
-        found_.push_back(fmt::format(
-            "at standstill {} heats stator_C by {} K while winding_C is {} K cooler: are the two swapped, or is a sensor elsewhere?",
-            input->quantity.key, base::significant(warm_up.stator_rise_K, 2), base::significant(warm_up.stator_ahead_K, 2)));
+        found_.emplace_back(StatorWarmsFirst{input->quantity.key, warm_up.stator_rise_K, warm_up.stator_ahead_K});
         return;
       }
     }
@@ -393,13 +383,13 @@ class Places {
   const Channel* speed_;
   double block_s_ = 0.0;
   std::vector<char> rests_;  ///< per row: 1 if nothing heats the motor
-  std::vector<std::string> found_;
+  std::vector<Suspicion> found_;
 };
 
 }  // namespace
 
-std::vector<std::string> suspicious_places(const Recording& recording, std::span<const ChannelQuality> channels) {
-  return recording.rows() < 2 ? std::vector<std::string>{} : Places(recording, channels).run();
+std::vector<Suspicion> suspicious_places(const Recording& recording, std::span<const ChannelQuality> channels) {
+  return recording.rows() < 2 ? std::vector<Suspicion>{} : Places(recording, channels).run();
 }
 
 }  // namespace heatsoak::recording

@@ -2,15 +2,15 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
+#include "recording/findings.h"
 #include "recording/quality.h"
 #include "recording/recording.h"
 
 namespace heatsoak::recording {
 
-/// Returns sentences about temperatures that are probably swapped or have the wrong sign; empty if there are none.
-std::vector<std::string> suspicious_places(const Recording& recording, std::span<const ChannelQuality> channels);
+/// Returns the temperatures that are probably swapped or have the wrong sign.
+std::vector<Suspicion> suspicious_places(const Recording& recording, std::span<const ChannelQuality> channels);
 
 }  // namespace heatsoak::recording

@@ -1,7 +1,5 @@
 #include "recording/suspicions.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -10,7 +8,6 @@
 #include <span>
 #include <utility>
 
-#include "base/quantity.h"
 #include "recording/clock_offset.h"
 #include "recording/row_order.h"
 #include "recording/sensor_places.h"
@@ -33,10 +30,10 @@ class Suspector {
     early_answers();
     const std::size_t of_motors = found_.size();
     clock();
-    std::vector<std::string> blocking = found_;
+    std::vector<Suspicion> blocking = found_;
     angles();
     wheels();
-    std::vector<std::string> blocking_for_wheels(found_.begin() + static_cast<std::ptrdiff_t>(of_motors), found_.end());
+    std::vector<Suspicion> blocking_for_wheels(found_.begin() + static_cast<std::ptrdiff_t>(of_motors), found_.end());
     short_clock();
     constants();
     limits();
@@ -53,7 +50,7 @@ class Suspector {
     for (const char* key : {"current_A", "current_q_A", "bus_A"}) {
       const Channel* const current = recording_.find(key);
       if (const double top_A = current != nullptr ? top_of_sizes(current->values) : 0.0; top_A > kLargestCurrent_A) {
-        found_.push_back(fmt::format("{} reaches {} A: is it in milliamperes?", key, base::significant(top_A, 3)));
+        found_.emplace_back(CurrentTooLarge{key, top_A});
       }
     }
     const Channel* const power = recording_.find("power_in_W");
@@ -70,15 +67,15 @@ class Suspector {
       }
       const double ratio = middle_of(ratios);
       if (std::abs(ratio) < 0.5 || std::abs(ratio) > 2.0) {
-        found_.push_back(fmt::format("power_in_W is {} times bus_V × bus_A: is one of them in another unit?", base::significant(ratio, 3)));
+        found_.emplace_back(PowerDiffersFromBus{ratio});
       } else if (ratio < 0.0) {
-        found_.emplace_back("power_in_W and bus_V × bus_A have opposite signs");
+        found_.emplace_back(PowerOppositeToBus{});
       }
     }
     if (const Channel* const torque = recording_.find("torque_Nm"); torque != nullptr && recording_.find("current_A") != nullptr) {
       const Regression answer = pairs(*recording_.find("current_A"), *torque);
       if (answer.points > 20 && answer.correlation_ratio < -0.7) {
-        found_.emplace_back("torque_Nm and current_A have opposite signs: is the sign of one of them wrong?");
+        found_.emplace_back(TorqueOppositeToCurrent{});
       }
     }
   }
@@ -95,13 +92,10 @@ class Suspector {
   }
 
   void speeds() {
-    constexpr double kRpm = 30.0 / std::numbers::pi;
     for (const Channel& channel : recording_.channels) {
       const double fastest = top_of_sizes(channel.values);
       if (channel.quantity.unit == "rad/s" && channel.quantity.key.find("speed") != std::string::npos && fastest > kFastest_rad_per_s) {
-        found_.push_back(fmt::format("{} reaches {} rad/s: is it in rpm ({} rad/s) or degrees per second ({} rad/s)?", channel.quantity.key,
-                                     base::significant(fastest, 4), base::significant(fastest / kRpm, 3),
-                                     base::significant(fastest * std::numbers::pi / 180.0, 3)));
+        found_.emplace_back(SpeedTooLarge{channel.quantity.key, fastest});
       }
     }
     const Channel* const speed = recording_.find("speed_rad_per_s");
@@ -118,10 +112,7 @@ class Suspector {
       }
     }
     if (const double ratio = middle_of(ratios); ratio > 1.1) {
-      found_.push_back(
-          fmt::format("torque_Nm × speed_rad_per_s is {} times power_in_W, more than the input: is the speed in rpm (÷ 9.55) or "
-                      "degrees per second (÷ 57.3)?",
-                      base::significant(ratio, 3)));
+      found_.emplace_back(ShaftPowerExceedsInput{ratio});
     }
   }
 
@@ -130,7 +121,7 @@ class Suspector {
       const double span = channel.high - channel.low;
       const bool is_angle = channel.quantity.key.starts_with("yaw") || channel.quantity.key.starts_with("heading");
       if (channel.quantity.unit == "rad" && is_angle && span > 100.0 && span <= 721.0) {
-        found_.push_back(fmt::format("{} spans {} rad: is it in degrees?", channel.quantity.key, base::significant(span, 3)));
+        found_.emplace_back(AngleSpansDegrees{channel.quantity.key, span});
       }
     }
   }
@@ -143,18 +134,17 @@ class Suspector {
     const bool has_wheels = std::ranges::any_of(recording_.channels,
                                                 [](const Channel& each) { return each.quantity.key.starts_with("wheel_speed_rad_per_s"); });
     if (has_wheels && period_s > kLongestPeriod_s && recording_.time_s.back() - recording_.time_s.front() <= kLongest_s) {
-      found_.push_back(fmt::format("the speeds of wheels are {} s apart: is the time in milliseconds?", base::significant(period_s, 3)));
+      found_.emplace_back(WheelRowsFarApart{period_s});
     }
     for (const Channel& channel : recording_.channels) {
       const std::string& key = channel.quantity.key;
       const double top = top_of_sizes(channel.values);
       if (key.starts_with("wheel_pwm_ratio") && top > 1.5) {
-        found_.push_back(fmt::format("{} reaches {}: is it in percent or in counts of a timer? 1 is the whole battery voltage", key,
-                                     base::significant(top, 3)));
+        found_.emplace_back(ModulationAboveOne{key, top});
       } else if ((key == "battery_V" || key.starts_with("wheel_voltage_V")) && top > kLargestBattery_V) {
-        found_.push_back(fmt::format("{} reaches {} V: is it in millivolts?", key, base::significant(top, 3)));
+        found_.emplace_back(VoltageTooLarge{key, top});
       } else if (key.starts_with("wheel_current_A") && top > kLargestCurrent_A) {
-        found_.push_back(fmt::format("{} reaches {} A: is it in milliamperes?", key, base::significant(top, 3)));
+        found_.emplace_back(CurrentTooLarge{key, top});
       }
     }
   }
@@ -162,18 +152,16 @@ class Suspector {
   void clock() {
     const double duration_s = recording_.time_s.back() - recording_.time_s.front();
     if (duration_s > kLongest_s) {
-      const double in_days = duration_s / 86400.0;
-      found_.push_back(fmt::format("the log lasts {} days at {} s per row: is the time in {}?", base::significant(in_days, 3),
-                                   base::significant(usual_period_s(recording_.time_s), 3),
-                                   duration_s > 1e3 * kLongest_s ? "microseconds" : "milliseconds"));
+      found_.emplace_back(LastsForDays{duration_s, usual_period_s(recording_.time_s),
+                                       duration_s > 1e3 * kLongest_s ? TimeUnit::microseconds : TimeUnit::milliseconds});
     }
   }
 
   /// Reports temperatures that respond before their heat input.
   void early_answers() {
     for (const ClockOffset& offset : quality_.clock_offsets) {
-      if (std::string early = early_answer(offset, quality_.sampling.usual_period_s); !early.empty()) {
-        found_.push_back(std::move(early));
+      if (const std::optional<RespondsEarly> early = early_answer(offset, quality_.sampling.usual_period_s)) {
+        found_.emplace_back(*early);
       }
     }
   }
@@ -185,7 +173,7 @@ class Suspector {
     constexpr double kMost_s = 60.0;
     constexpr double kOff_ratio = 5e-3;
     const auto is_whole = [](double value, double off) { return std::abs(value - std::round(value)) < off; };
-    for (const auto& [unit, in_s] : {std::pair("minutes", 60.0), std::pair("hours", 3600.0)}) {
+    for (const auto& [unit, in_s] : {std::pair(TimeUnit::minutes, 60.0), std::pair(TimeUnit::hours, 3600.0)}) {
       const double true_s = in_s * period_s;
       if (true_s > kMost_s || std::round(true_s) < 1.0 || !is_whole(true_s, kOff_ratio * true_s) || is_whole(1e3 * period_s, 0.01)) {
         continue;
@@ -197,9 +185,7 @@ class Suspector {
         // The rate of a rise depends on the current, but the rate of a fall only on the motor.
         const double fast_s = channel.quantity.key.find("winding") != std::string::npos ? 0.5 : 5.0;
         if (const double fall_s = usual_fall_s(channel); fall_s < fast_s) {
-          found_.push_back(fmt::format("the rows are {} s apart and {} falls by {} K in {} s: is the time in {}?",
-                                       base::significant(period_s, 3), channel.quantity.key, base::significant(kFall_K, 2),
-                                       base::significant(fall_s, 2), unit));
+          found_.emplace_back(FallsTooFast{channel.quantity.key, period_s, kFall_K, fall_s, unit});
           return;
         }
       }
@@ -239,8 +225,7 @@ class Suspector {
         return each.quantity.kind == QuantityKind::temperature && swing(each) > kMoves_K;
       });
       if (moving != recording_.channels.end()) {
-        found_.push_back(fmt::format("{} is constant, {} °C, while {} changes by {} K: is its sensor connected?", constant.quantity.key,
-                                     base::significant(range->low, 4), moving->quantity.key, base::significant(swing(*moving), 3)));
+        found_.emplace_back(ConstantSensor{constant.quantity.key, range->low, moving->quantity.key, swing(*moving)});
       }
     }
   }
@@ -258,9 +243,7 @@ class Suspector {
         const auto there = static_cast<double>(samples);
         if (end != 0.0 && there > kMuch_share * static_cast<double>(range->samples) && range->noise > 0.0 &&
             range->distinct > kManyValues) {
-          found_.push_back(fmt::format("{} stays at exactly {} {} in {:.0f} % of its rows: a limit, or a saturated sensor?",
-                                       channel.quantity.key, base::significant(end, 5), base::unit_for_display(channel.quantity.unit),
-                                       100.0 * there / static_cast<double>(range->samples)));
+          found_.emplace_back(StaysAtLimit{channel.quantity.key, channel.quantity.unit, end, samples, range->samples});
         }
       }
     }
@@ -271,7 +254,7 @@ class Suspector {
   const Recording& recording_;
   const DataQuality& quality_;
   std::optional<double> ambient_C_;
-  std::vector<std::string> found_;
+  std::vector<Suspicion> found_;
 };
 
 }  // namespace

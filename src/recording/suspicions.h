@@ -2,20 +2,20 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
+#include "recording/findings.h"
 #include "recording/quality.h"
 #include "recording/recording.h"
 
 namespace heatsoak::recording {
 
 struct Suspicions {
-  std::vector<std::string> all;
-  std::vector<std::string> blocking;             ///< subset about units, signs and sensors that, if true, prevents any fit
-  std::vector<std::string> blocking_for_wheels;  ///< subset about a robot's wheels and angles, and about the clock
+  std::vector<Suspicion> all;
+  std::vector<Suspicion> blocking;             ///< subset about units, signs and sensors that, if true, prevents any fit
+  std::vector<Suspicion> blocking_for_wheels;  ///< subset about a robot's wheels and angles, and about the clock
 };
-/// Returns the suspicions as sentences. `quality` must contain sampling, channels and clock offsets. `ambient_C`: air temperature if the
+/// `quality` must contain sampling, channels and clock offsets. `ambient_C`: air temperature if the
 /// user states it.
 Suspicions suspicions(const Recording& recording, const DataQuality& quality, std::optional<double> ambient_C);
 

@@ -1,13 +1,10 @@
 #include "recording/temperature_scales.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
 
-#include "base/quantity.h"
 #include "base/unknown.h"
 #include "recording/spread.h"
 
@@ -96,23 +93,20 @@ class Scales {
     }
   }
 
-  std::vector<std::string> run() {
+  std::vector<Suspicion> run() {
     const bool in_tenths = std::ranges::any_of(channels_, [this](const Channel* each) { return is_in_tenths(*each); });
     constexpr double kColdest_K = 240.0;
     for (const Channel* each : channels_) {
       const std::string& key = each->quantity.key;
       const double start = at_start(*each);
       if (is_in_tenths(*each) || (in_tenths && is_of_a_room(from_tenths_C(start)) && start > 250.0)) {
-        found_.push_back(fmt::format("{} starts at {} °C: is it in tenths of degrees ({} °C)?", key, base::significant(start, 4),
-                                     base::significant(from_tenths_C(start), 3)));
+        found_.emplace_back(StartsInOtherScale{key, start, from_tenths_C(start), TemperatureScale::tenths_of_degrees});
       } else if (start > 250.0 && from_kelvin_C(start) > -25.0 && from_kelvin_C(start) < 60.0 &&
                  percentile(each->values, 0.02) > kColdest_K) {
-        found_.push_back(fmt::format("{} starts at {} °C: is it in kelvin ({} °C)?", key, base::significant(start, 4),
-                                     base::significant(from_kelvin_C(start), 3)));
+        found_.emplace_back(StartsInOtherScale{key, start, from_kelvin_C(start), TemperatureScale::kelvin});
       } else if (is_in_fahrenheit(*each)) {
         is_told_ = is_told_ || each->quantity.kind == QuantityKind::temperature;
-        found_.push_back(fmt::format("{} starts at {} °C: is it in degrees Fahrenheit ({} °C)?", key, base::significant(start, 3),
-                                     base::significant(from_fahrenheit_C(start), 3)));
+        found_.emplace_back(StartsInOtherScale{key, start, from_fahrenheit_C(start), TemperatureScale::fahrenheit});
       }
     }
     if (!is_told_) {
@@ -188,10 +182,7 @@ class Scales {
     });
     if (all) {
       is_told_ = true;
-      found_.push_back(
-          fmt::format("{} and the motor's other temperatures start at {} °C in air of {} °C: are they in degrees Fahrenheit ({} °C)?",
-                      sensors_.front()->quantity.key, base::significant(first, 3), base::significant(room_C, 3),
-                      base::significant(from_fahrenheit_C(first), 3)));
+      found_.emplace_back(MotorStartsInFahrenheit{sensors_.front()->quantity.key, first, from_fahrenheit_C(first), room_C});
     }
   }
 
@@ -210,10 +201,7 @@ class Scales {
     });
     if (all) {
       const double rest = rests_at(recording_, *sensors_.front(), first);
-      found_.push_back(fmt::format(
-          "{} reaches a steady state of {} °C without heat, in air of {} °C: are the motor's temperatures in degrees Fahrenheit ({} °C)?",
-          sensors_.front()->quantity.key, base::significant(rest, 3), base::significant(room_C, 3),
-          base::significant(from_fahrenheit_C(rest), 3)));
+      found_.emplace_back(MotorCoolsInFahrenheit{sensors_.front()->quantity.key, rest, from_fahrenheit_C(rest), room_C});
     }
   }
 
@@ -223,12 +211,12 @@ class Scales {
   bool is_told_ = false;                  ///< true: Fahrenheit has already been reported for a sensor of the motor
   std::vector<const Channel*> sensors_;   ///< temperatures of the motor
   std::vector<const Channel*> channels_;  ///< these and the surroundings
-  std::vector<std::string> found_;
+  std::vector<Suspicion> found_;
 };
 
 }  // namespace
 
-std::vector<std::string> suspicious_scales(const Recording& recording, std::optional<double> ambient_C) {
+std::vector<Suspicion> suspicious_scales(const Recording& recording, std::optional<double> ambient_C) {
   return Scales(recording, ambient_C).run();
 }
 

@@ -2,15 +2,15 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
+#include "recording/findings.h"
 #include "recording/recording.h"
 
 namespace heatsoak::recording {
 
-/// Returns sentences about suspicious temperature scales. `ambient_C`: air temperature if the user states it; the
+/// Returns the suspicious temperature scales. `ambient_C`: air temperature if the user states it; the
 /// recording's own ambient temperature takes precedence.
-std::vector<std::string> suspicious_scales(const Recording& recording, std::optional<double> ambient_C);
+std::vector<Suspicion> suspicious_scales(const Recording& recording, std::optional<double> ambient_C);
 
 }  // namespace heatsoak::recording

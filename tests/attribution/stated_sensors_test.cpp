@@ -140,8 +140,9 @@ TEST(StatedSensors, AreWrittenWhereTheyWereFoundAndThenNothingIsMissing) {
 
   const diagnosis::DiagnosisAnswer second = diagnosis::run_diagnosis({again, named_logs});
   EXPECT_EQ(second.diagnosis.verdict, diagnosis::DiagnosisVerdict::nothing_missing) << account(second.diagnosis);
-  EXPECT_THAT(second.findings, testing::Contains(testing::VariantWith<calibration::Remark>(testing::Field(
-                                   &calibration::Remark::words, testing::HasSubstr("effects.sensor_lag_stator.time_constant is held")))));
+  EXPECT_THAT(second.findings, testing::Contains(testing::VariantWith<calibration::HeldValue>(testing::VariantWith<calibration::SensorHeld>(
+                                   testing::AllOf(testing::Field(&calibration::SensorHeld::sensor, "sensor_lag_stator"),
+                                                  testing::Field(&calibration::SensorHeld::parameter, "time_constant"))))));
 
   // Entries that the file already contains keep their names.
   motor::Motor named = motor;

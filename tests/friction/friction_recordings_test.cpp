@@ -86,9 +86,9 @@ TEST(FrictionOfRecordings, robotino_on_two_surfaces) {
     EXPECT_LT(error.after_V, 0.35 * error.before_V);
     // Neighbouring points deviate from the curve in the same direction where a wheel turns slowly.
     EXPECT_TRUE(fit.wheels[0].lack.is_found);
-    EXPECT_EQ(fit.wheels[0].lack.repeats, "neighbouring headings");
+    EXPECT_EQ(fit.wheels[0].lack.repeats, Repeats::neighbouring_headings);
     for (const WheelFriction& wheel : fit.wheels) {
-      ASSERT_TRUE(wheel.is_learned()) << wheel.problem;
+      ASSERT_TRUE(wheel.is_learned()) << testing::PrintToString(wheel.problem);
       EXPECT_TRUE(wheel.damping_is_given);
       EXPECT_GT(wheel.r2_ratio, 0.98);
       // The recordings' robots.md states about 0.15 A to keep a wheel turning, 5.95 Ω.
@@ -110,7 +110,7 @@ TEST(FrictionOfRecordings, robotino_on_carpet_at_three_speeds) {
   print("green_surface", steady, fit, error);
   EXPECT_LT(error.after_V, 0.35 * error.before_V);
   for (const WheelFriction& wheel : fit.wheels) {
-    ASSERT_TRUE(wheel.is_learned()) << wheel.problem;
+    ASSERT_TRUE(wheel.is_learned()) << testing::PrintToString(wheel.problem);
     EXPECT_FALSE(wheel.damping_is_given);
     EXPECT_GT(wheel.r2_ratio, 0.98);
     // The damping is at least the back-EMF constant unless friction falls with speed. The measured interval must not contradict this.
@@ -157,7 +157,7 @@ TEST(FrictionOfRecordings, a_team_wheel_motors_voltage_over_speed) {
     const double slope = (n * xy - x * y) / (n * xx - x * x);
     const double offset_V = (y - slope * x) / n;
     const WheelFriction& wheel = fit.wheels[i];
-    ASSERT_TRUE(wheel.is_learned()) << wheel.problem;
+    ASSERT_TRUE(wheel.is_learned()) << testing::PrintToString(wheel.problem);
     std::cout << "wheel " << i + 1 << ": " << wheel.damping_V_s_per_rad.value << " [" << wheel.damping_V_s_per_rad.low << ", "
               << wheel.damping_V_s_per_rad.high << "] V s/rad, offset " << wheel.rotation_V.value << " V, R2 " << wheel.r2_ratio
               << ", legs " << wheel.parts_used << "; line through the rows " << slope << ", " << offset_V << "\n";

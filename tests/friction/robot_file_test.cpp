@@ -117,13 +117,14 @@ TEST(RobotFile, says_where_the_motor_alone_is_more_than_what_was_measured) {
 TEST(RobotFile, is_not_written_with_a_wheel_that_was_not_learned) {
   const robot::Robot robot = robot::read_robot(kFile);
   FrictionFit fit = any_fit(robot);
-  fit.wheels[1].problem = "it hardly turns in any steady leg";
+  fit.wheels[1].problem = WheelProblem::hardly_turns;
   std::vector<WrittenAsZero> notes;
   try {
     with_measured_friction(file_text(), robot, robot::drive_constants(robot, motor()), fit, "drive.csv", notes);
     FAIL();
-  } catch (const base::Failure& failure) {
+  } catch (const WheelNotIdentifiable& failure) {
     EXPECT_EQ(failure.code(), base::ExitCode::cannot_answer);
+    EXPECT_EQ(failure.problem(), WheelProblem::hardly_turns);
     EXPECT_THAT(failure.what(), HasSubstr("the friction of wheel 2 over the directions is not identifiable"));
   }
 }

@@ -19,6 +19,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
+using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::NanSensitiveDoubleEq;
 using ::testing::Pointwise;
@@ -81,7 +82,8 @@ TEST(Mapping, BlankIsUnknownUnlessTheMappingFillsIt) {
   ASSERT_NE(report.find("power_in_W", LeftOutReason::not_recorded), nullptr);
   EXPECT_EQ(report.find("power_in_W", LeftOutReason::not_recorded)->count, 2U);
   EXPECT_EQ(report.find("power_in_W", LeftOutReason::not_recorded)->lines.front().first, 4);
-  EXPECT_THAT(report.notes, ElementsAre(HasSubstr("1 blank samples are filled")));
+  EXPECT_THAT(report.notes, ElementsAre(testing::VariantWith<BlanksFilled>(
+                                AllOf(Field(&BlanksFilled::channel, "power_in_W"), Field(&BlanksFilled::samples, 1U)))));
 }
 
 TEST(Mapping, RowsAndSamplesThatCount) {

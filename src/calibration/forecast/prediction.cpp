@@ -1,14 +1,12 @@
 #include "calibration/forecast/prediction.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <string>
 
-#include "base/quantity.h"
 #include "calibration/unlogged_speed.h"
 #include "estimation/log_columns.h"
 #include "estimation/turning_rows.h"
@@ -78,17 +76,16 @@ motor::Motor as_in(const recording::Recording& recording, const motor::Motor& mo
 void predict_one(const motor::Motor& motor, const recording::Recording& recording, const PredictionOptions& options, Prediction& all) {
   const std::span<const recording::Recording> own(&recording, 1);
   ForecastSetup setup = forecast_setup(motor, own);
-  std::vector<estimation::MeasuredRun> runs = forecast_runs(setup, own, options.ambient_C, all.notes);
+  std::vector<std::string> remarks;
+  std::vector<estimation::MeasuredRun> runs = forecast_runs(setup, own, options.ambient_C, remarks);
+  std::ranges::transform(remarks, std::back_inserter(all.notes), [](const std::string& each) { return Remark{each}; });
   if (options.turns_within_rows) {
     std::ranges::transform(runs, runs.begin(), estimation::turning_within_rows);
   }
   const double most_loss_W = setup.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
   if (most_loss_W > 0.0 && std::ranges::any_of(runs, turns_unseen)) {
     setup.opens_loss_at_speed = true;
-    all.notes.push_back(
-        fmt::format("the band of {} is wider, because its log has a current but no speed: the loss at speed may be anything up to {} W; if "
-                    "the motor stood still, add speed_rad_per_s = 0",
-                    recording.name, base::significant(most_loss_W, 2)));
+    all.notes.emplace_back(BandIncludesLossAtSpeed{recording.name, most_loss_W});
   }
   const ForecastModel model = setup.model();
   const Eigen::MatrixXd& precision = model.prior().precision;
@@ -138,16 +135,13 @@ std::vector<estimation::MeasuredRun> forecast_runs(const ForecastSetup& setup, s
 Prediction predict(const motor::Motor& motor, std::span<const recording::Recording> recordings, const PredictionOptions& options) {
   Prediction all;
   if (std::string lacking = estimation::columns_lacking(how_to_read(motor, HeatInput::current).columns, recordings); !lacking.empty()) {
-    all.notes.push_back(std::move(lacking));
+    all.notes.emplace_back(Remark{std::move(lacking)});
   }
   for (const recording::Recording& recording : recordings) {
     predict_one(as_in(recording, motor), recording, options, all);
   }
   if (!motor.fit || !motor.fit->band) {
-    all.notes.push_back(
-        fmt::format("the band of {} is only an estimate from its declared uncertainties and the usual error of forecasts; `heatsoak "
-                    "calibrate` determines a band",
-                    motor.id));
+    all.notes.emplace_back(BandIsEstimated{motor.id});
   }
   return all;
 }

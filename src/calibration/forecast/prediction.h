@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/assumptions.h"
 #include "calibration/forecast/band.h"
 #include "calibration/forecast/forecast_setup.h"
 #include "recording/recording.h"
@@ -33,14 +34,15 @@ struct PredictedRun {
 /// Predictions of several runs. They are not pooled, because errors under different conditions have different distributions.
 struct Prediction {
   std::vector<PredictedRun> runs;
-  std::vector<std::string> notes;  ///< sentences: assumptions
+  std::vector<PredictionNote> notes;
 };
 
 /// Predicts a run from its first temperatures and measured inputs. `covariance` is that of θ.
 PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance,
                      const motor::ForecastBand& band, const estimation::MeasuredRun& run);
 
-/// Reads the runs of the recordings with the signals that the setup's model needs. Appends to `notes`. Throws Failure as measured_runs().
+/// Reads the runs of the recordings with the signals that the setup's model needs. Appends the remarks of measured_runs() to `notes`.
+/// Throws Failure as measured_runs().
 std::vector<estimation::MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const recording::Recording> recordings,
                                                    std::optional<double> ambient_C, std::vector<std::string>& notes);
 

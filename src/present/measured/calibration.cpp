@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/quantity.h"
 #include "present/measured/calibration_words.h"
@@ -117,7 +118,7 @@ Document calibration_document(const motor::Motor& motor, const calibration::Cali
   add_errors(errors, result.holdout_after.size() > 1 ? "worst hold-out" : "hold-out", result.holdout_error);
   document.tables.push_back(std::move(errors));
   // A wrong unit makes all other warnings meaningless, so it comes first.
-  for (const std::string& note : answer.admission.notes) {
+  for (const std::string& note : words_of(answer.admission.notes)) {
     document.add_note(Severity::warning, note);
   }
   for (const calibration::GrownError& each : result.worse) {
@@ -125,8 +126,8 @@ Document calibration_document(const motor::Motor& motor, const calibration::Cali
   }
   for (const calibration::OpenDirection& each : result.open) {
     document.add_note(Severity::note,
-                      fmt::format("Not identifiable: {} ({}). To determine it: {}.", each.what, each.why,
-                                  each.experiment == result.next_experiment ? "the next experiment above" : each.experiment));
+                      fmt::format("Not identifiable: {} ({}). To determine it: {}.", parameter_words(each), reason_words(each),
+                                  each.remedy == result.next_experiment ? "the next experiment above" : words_of(each.remedy)));
   }
   for (const calibration::CalibrationFinding& each : result.findings) {
     document.add_note(severity_of(each), words_of(each));
@@ -139,9 +140,10 @@ Document calibration_document(const motor::Motor& motor, const calibration::Cali
 }
 
 std::string next_steps_words(const calibration::CalibrationAnswer& answer) {
-  std::vector<std::string> steps = answer.admission.next_steps;
-  if (const std::string& experiment = answer.calibration.next_experiment; !experiment.empty()) {
-    steps.push_back(experiment);
+  std::vector<std::string> steps;
+  std::ranges::transform(answer.admission.lagging, std::back_inserter(steps), lag_words);
+  if (answer.calibration.next_experiment) {
+    steps.emplace_back(words_of(*answer.calibration.next_experiment));
   }
   return fmt::format("{}", fmt::join(steps, "; then: "));
 }

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -53,9 +55,8 @@ Json forecast_json(const calibration::Calibration& calibration) {
 /// Returns all remarks and findings as sentences.
 std::vector<std::string> calibration_notes(const calibration::CalibrationAnswer& answer, std::span<const recording::LogReading> readings) {
   std::vector<std::string> all = reading_words(readings);
-  all.insert(all.end(), answer.admission.notes.begin(), answer.admission.notes.end());
-  const std::vector<std::string> findings = words_of(answer.calibration.findings);
-  all.insert(all.end(), findings.begin(), findings.end());
+  std::ranges::move(words_of(answer.admission.notes), std::back_inserter(all));
+  std::ranges::move(words_of(answer.calibration.findings), std::back_inserter(all));
   return all;
 }
 
@@ -76,7 +77,7 @@ Json calibration_json(const motor::Motor& motor, const calibration::CalibrationA
   }
   Json open = Json::array();
   for (const calibration::OpenDirection& each : result.open) {
-    open.push_back({{"parameters", each.what}, {"why", each.why}, {"experiment", each.experiment}});
+    open.push_back({{"parameters", parameter_words(each)}, {"why", reason_words(each)}, {"experiment", words_of(each.remedy)}});
   }
   Json correlation = Json::array();
   for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {

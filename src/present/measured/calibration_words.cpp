@@ -9,6 +9,7 @@
 
 #include "base/quantity.h"
 #include "estimation/turning_rows.h"
+#include "present/measured/log_words.h"
 
 namespace heatsoak::present {
 namespace {
@@ -155,12 +156,212 @@ std::string say(const calibration::ExtendedForForecasts& of) {
                      fmt::join(of.effects, ", "));
 }
 
+std::string say(const calibration::ResistanceHeld& /*of*/) {
+  return "terminal_resistance is held at its stated value: all heat capacities and resistances scale with it";
+}
+
+std::string say(const calibration::NoLoadCurrentUnused& /*of*/) {
+  return "no_load_current is not used: the loss other than copper loss is the measured power balance";
+}
+
+std::string say(const calibration::NoLoadCurrentHeld& /*of*/) {
+  return "no_load_current is held: its loss depends on speed, which not every log has";
+}
+
+std::string say(const calibration::HeatShareHeld& of) {
+  return fmt::format(
+      "the share of the stated power that becomes heat is held at 1: all heat capacities and resistances scale with it; {} to arise at the "
+      "winding, and iron loss, friction or a driver's heat at the stator {}would shift thermal_resistance_winding_stator and "
+      "winding_heat_capacity",
+      of.has_loss_at_stator ? "the part due to no_load_current is assumed to arise at the stator and the rest" : "all of it is assumed",
+      of.has_loss_at_stator ? "beyond that " : "");
+}
+
+std::string say(const calibration::EffectHeld& of) {
+  return fmt::format("effects.{}: {} {} held: the file states no tolerance or range", of.effect, fmt::join(of.parameters, ", "),
+                     of.parameters.size() == 1 ? "is" : "are");
+}
+
+std::string say(const calibration::SensorHeld& of) {
+  return fmt::format("effects.{}.{} is held at {}{}{}: an error of the sensor is not a property of the motor", of.sensor, of.parameter,
+                     base::significant(of.value, 3), of.unit.empty() ? "" : " ", of.unit);
+}
+
+std::string say(const calibration::SensorUnused& of) {
+  return fmt::format("no log has the {} to which effects.{} applies: the effect is not used", of.signal, of.sensor);
+}
+
+std::string say(const calibration::HeldValue& of) {
+  return std::visit([](const auto& each) { return say(each); }, of);
+}
+
+std::string say(const calibration::BandIncludesLossAtSpeed& of) {
+  return fmt::format(
+      "the band of {} is wider, because its log has a current but no speed: the loss at speed may be anything up to {} W; if the motor "
+      "stood still, add speed_rad_per_s = 0",
+      of.recording, base::significant(of.most_W, 2));
+}
+
+std::string say(const calibration::BandIsEstimated& of) {
+  return fmt::format(
+      "the band of {} is only an estimate from its declared uncertainties and the usual error of forecasts; `heatsoak calibrate` "
+      "determines "
+      "a band",
+      of.motor);
+}
+
 std::string say(const calibration::Remark& of) { return of.words; }
+
+std::string say(const recording::Suspicion& of) { return words_of(of); }
+
+std::string outliers_in_words(std::string_view channel, double largest, int line, double most, std::string_view unit,
+                              std::string_view suspected) {
+  return fmt::format(
+      "{} reaches {} {} in line {}; at three times the nominal voltage this motor reaches {} {}, and less than 2 % of the rows exceed "
+      "that: "
+      "exclude outliers with valid = \"…\" in a mapping, or is it in {}?",
+      channel, base::significant(largest, 3), unit, line, base::significant(most, 3), unit, suspected);
+}
+
+std::string say(const calibration::CurrentOutliers& of) {
+  return outliers_in_words("current_A", of.largest_A, of.line, of.most_A, "A", "milliamperes");
+}
+
+std::string say(const calibration::SpeedOutliers& of) {
+  return outliers_in_words("speed_rad_per_s", of.largest_rad_per_s, of.line, of.most_rad_per_s, "rad/s", "rpm");
+}
+
+std::string say(const calibration::CurrentExceedsMotor& of) {
+  return fmt::format(
+      "current_A reaches {} A; through {} ohm at most {} A flow at three times the nominal voltage: is it in milliamperes, or is it "
+      "another "
+      "motor?",
+      base::significant(of.top_A, 3), base::significant(of.terminal_resistance_ohm, 3), base::significant(of.most_A, 3));
+}
+
+std::string say(const calibration::SpeedExceedsMotor& of) {
+  return fmt::format(
+      "speed_rad_per_s reaches {} rad/s; at three times the nominal voltage this motor turns at {} rad/s: is it in rpm ({} rad/s), or is "
+      "it "
+      "another motor?",
+      base::significant(of.top_rad_per_s, 3), base::significant(of.most_rad_per_s, 3),
+      base::significant(base::convert(of.top_rad_per_s, "rpm", "rad/s"), 3));
+}
+
+std::string say(const calibration::RisesTooFast& of) {
+  return fmt::format(
+      "{} rises about {} times as fast as the losses of this motor can heat it: is the time in {}, is a heat input in another unit, or is "
+      "it another motor?",
+      of.channel, base::significant(of.ratio, 1), words_of(of.suspected));
+}
+
+std::string say(const calibration::OfOtherMotor& of) {
+  return fmt::format("{} states that it is of the motor {}, not of {}", of.recording, of.stated, of.motor);
+}
+
+std::string say(const recording::SuspicionOfLog& of) { return words_of(of); }
+
+std::string say(const calibration::SensorLags& of) { return fmt::format("{}: {}", of.log, words_of(of.response)); }
 
 }  // namespace
 
 std::string words_of(const calibration::CalibrationFinding& finding) {
   return std::visit([](const auto& each) { return say(each); }, finding);
+}
+
+std::string words_of(const calibration::LogProblem& problem) {
+  return std::visit([](const auto& each) { return say(each); }, problem);
+}
+
+std::vector<std::string> words_of(const std::vector<calibration::AdmissionNote>& notes) {
+  std::vector<std::string> words;
+  for (const calibration::AdmissionNote& note : notes) {
+    words.push_back(std::visit([](const auto& each) { return say(each); }, note));
+  }
+  return words;
+}
+
+std::vector<std::string> words_of(const std::vector<calibration::PredictionNote>& notes) {
+  std::vector<std::string> words;
+  for (const calibration::PredictionNote& note : notes) {
+    words.push_back(std::visit([](const auto& each) { return say(each); }, note));
+  }
+  return words;
+}
+
+std::string parameter_words(const calibration::OpenDirection& open) {
+  std::vector<std::string> moves;
+  std::ranges::transform(open.together, std::back_inserter(moves), [](const calibration::MovedParameter& each) {
+    return fmt::format("{} {}", each.name, each.is_raised ? "raised" : "lowered");
+  });
+  std::vector<std::string> all = open.parameters;
+  if (!moves.empty()) {
+    all.insert(all.begin(), fmt::format("{} together", fmt::join(moves, ", ")));
+  }
+  return fmt::format("{}", fmt::join(all, ", "));
+}
+
+std::string reason_words(const calibration::OpenDirection& open) {
+  switch (open.reason) {
+    case calibration::OpenReason::no_heat:
+      return "these runs have no heat input: a cool-down determines time constants, but no heat capacity or resistance";
+    case calibration::OpenReason::common_factor:
+      return "a common factor on all heat, all heat capacities and all conductances changes no temperature: the scale depends on the "
+             "stated "
+             "terminal resistance";
+    case calibration::OpenReason::only_stator_measured:
+      return "only the stator is measured: a larger winding behind a smaller resistance to the stator gives the same stator temperature";
+    case calibration::OpenReason::only_winding_measured:
+      return "only the winding is measured and the runs are short against the stator's time constant, or never cool down";
+    case calibration::OpenReason::motor_hardly_turns:
+      return "the motor hardly turns in these runs";
+    case calibration::OpenReason::small_loss_at_speed:
+      return "the loss at speed is small against the copper loss";
+    case calibration::OpenReason::not_excited:
+      return "the measured temperatures of these runs hardly depend on it";
+    case calibration::OpenReason::speed_not_logged:
+      return "the runs do not contain the speed: the loss may be anything from none to that at no-load speed, and the stator's values "
+             "depend on it";
+    case calibration::OpenReason::stator_not_settled:
+      return fmt::format(
+          "the runs neither reach a steady state nor cool down far enough: the longest lasts {} min, the stator's time constant is about "
+          "{} "
+          "min",
+          base::significant(open.longest_run_s / 60.0, 2), base::significant(open.stator_s / 60.0, 1));
+    case calibration::OpenReason::winding_not_stepped:
+      break;
+  }
+  return "the winding's temperature hardly differs from the stator's in these runs, or never changes in steps";
+}
+
+std::string_view words_of(calibration::Remedy remedy) {
+  switch (remedy) {
+    case calibration::Remedy::heated_run:
+      return "one run with a constant current at standstill, 10 minutes, current and terminal voltage measured";
+    case calibration::Remedy::four_wire_resistance:
+      return "measure the terminal resistance at a known temperature with four wires (minutes, no run needed)";
+    case calibration::Remedy::winding_sensor:
+      return "a thermocouple at the winding, or the winding's resistance from voltage and current right after switching off, during one "
+             "warm-up";
+    case calibration::Remedy::stator_sensor:
+      return "a thermocouple on the housing, or one long warm-up with its cool-down to ambient";
+    case calibration::Remedy::no_load_run:
+      return "10 minutes at no load and full speed";
+    case calibration::Remedy::long_run:
+      return "one run from cold with a constant current up to the steady state, then the cool-down";
+    case calibration::Remedy::logged_speed:
+      return "the same runs with the speed logged (speed_rad_per_s; 0 throughout if the motor stood still)";
+    case calibration::Remedy::current_steps:
+      break;
+  }
+  return "several steps of current at standstill, on and off for two of the winding's time constants each";
+}
+
+std::string lag_words(const std::string& temperature) {
+  return fmt::format(
+      "{} lags: record one event, such as a step of the current, with both loggers; state a clock offset in a mapping (clock_offset), or "
+      "replace a lagging sensor by one in better contact",
+      temperature);
 }
 
 std::string words_of(const calibration::GrownError& error) {

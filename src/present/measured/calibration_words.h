@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/admission.h"
 #include "calibration/calibrate.h"
 #include "present/document.h"
 
@@ -18,5 +19,19 @@ Severity severity_of(const calibration::CalibrationFinding& finding);
 
 std::vector<std::string> words_of(const std::vector<calibration::CalibrationFinding>& findings);
 std::vector<std::string> words_of(const std::vector<calibration::GrownError>& errors);
+
+/// Returns what looks wrong, and the question to the user.
+std::string words_of(const calibration::LogProblem& problem);
+std::vector<std::string> words_of(const std::vector<calibration::AdmissionNote>& notes);
+std::vector<std::string> words_of(const std::vector<calibration::PredictionNote>& notes);
+
+/// Returns the names of the parameters that are not determined.
+std::string parameter_words(const calibration::OpenDirection& open);
+/// Returns why they are not determined.
+std::string reason_words(const calibration::OpenDirection& open);
+std::string_view words_of(calibration::Remedy remedy);
+
+/// Returns what to change before recording more runs.
+std::string lag_words(const std::string& temperature);
 
 }  // namespace heatsoak::present

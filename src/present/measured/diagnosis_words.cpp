@@ -407,8 +407,8 @@ std::vector<DiagnosisNote> diagnosis_notes(const diagnosis::DiagnosisAnswer& ans
     }
   };
   add_findings(true);
-  for (const std::string& each : answer.admission.notes) {
-    notes.push_back({Severity::note, each});
+  for (std::string& each : words_of(answer.admission.notes)) {
+    notes.push_back({Severity::note, std::move(each)});
   }
   add_findings(false);
   return notes;

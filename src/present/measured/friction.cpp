@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <variant>
 
 #include "base/quantity.h"
+#include "present/measured/friction_words.h"
 
 namespace heatsoak::present {
 namespace {
@@ -85,7 +85,7 @@ void add_wheel_notes(Document& document, const friction::FrictionFit& fit) {
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     const friction::WheelFriction& wheel = fit.wheels[i];
     if (!wheel.is_learned()) {
-      document.add_note(Severity::warning, fmt::format("Wheel {} is not identifiable: {}.", i + 1, wheel.problem));
+      document.add_note(Severity::warning, fmt::format("Wheel {} is not identifiable: {}.", i + 1, words_of(*wheel.problem)));
     }
     if (wheel.phase_is_bounded) {
       document.add_note(Severity::note, fmt::format("Wheel {}: the phase is limited by the measured sense of rotation; the friction hardly "
@@ -110,47 +110,6 @@ std::string what_rolls(const friction::RollOutRun& run) {
                                                     : fmt::format("wheel {} lifted", run.wheel + 1);
 }
 
-std::string source_words(const friction::VoltageFrom& from) {
-  switch (from.source) {
-    case friction::VoltageFrom::Source::log:
-      return "voltage: as the log has it";
-    case friction::VoltageFrom::Source::modulation:
-      return "voltage: modulation × battery voltage";
-    case friction::VoltageFrom::Source::modulation_with_nominal_battery:
-      return fmt::format(
-          "voltage: modulation × {} V, the robot's nominal battery voltage, because the log has none; every value in V scales with it, "
-          "beyond its interval",
-          base::significant(from.battery_V, 3));
-    case friction::VoltageFrom::Source::current:
-      return "voltage: from currents, with the motor's resistance and torque constant";
-    case friction::VoltageFrom::Source::current_without_sign:
-      return "voltage: from currents without sign (that of the speed is used), with the motor's resistance and torque constant";
-  }
-  return "";
-}
-
-std::string zero_words(const friction::DragExceedsOffset& of) {
-  return fmt::format("0 is written for b of wheel {}: the drag of the motor alone, {:.3f} V by its data sheet, is larger than b", of.wheel,
-                     of.drag_V);
-}
-
-std::string zero_words(const friction::BackEmfExceedsDamping& of) {
-  return fmt::format("0 is written for d of wheel {}: the back-EMF of the motor alone, {:.4f} V s/rad by its data sheet, is larger than d",
-                     of.wheel, of.back_emf_V_s_per_rad);
-}
-
-std::string source_words(const friction::DirectionFrom& from) {
-  switch (from.source) {
-    case friction::DirectionFrom::Source::commanded:
-      return "direction of travel: as commanded";
-    case friction::DirectionFrom::Source::measured:
-      return "direction of travel: as measured";
-    case friction::DirectionFrom::Source::wheels:
-      return "direction of travel: from the wheels' speeds";
-  }
-  return "";
-}
-
 }  // namespace
 
 Document friction_document(const robot::Robot& robot, const FrictionAnswer& answer) {
@@ -165,9 +124,10 @@ Document friction_document(const robot::Robot& robot, const FrictionAnswer& answ
                                  answer.uses_return_legs ? "used too" : "left out")},
       .tables = {wheel_table(answer.fit, answer.steady.rows)}};
   if (std::isfinite(answer.error.after_V)) {
-    document.paragraphs.push_back(fmt::format(
-        "Hold-out error on {} of {} headings: {}{:.3f} V after the fit.", answer.error.headings, answer.error.all_headings,
-        answer.has_expectation ? fmt::format("{:.3f} V by {}, ", answer.error.before_V, answer.expected_from) : "", answer.error.after_V));
+    document.paragraphs.push_back(
+        fmt::format("Hold-out error on {} of {} headings: {}{:.3f} V after the fit.", answer.error.headings, answer.error.all_headings,
+                    answer.expected_from ? fmt::format("{:.3f} V by {}, ", answer.error.before_V, words_of(*answer.expected_from)) : "",
+                    answer.error.after_V));
   }
   for (const std::string& each : lack_of_fit_words(answer.fit)) {
     document.add_note(Severity::warning, each);
@@ -184,7 +144,7 @@ std::vector<std::string> lack_of_fit_words(const friction::FrictionFit& fit) {
       found.push_back(
           fmt::format("the residual of wheel {} depends on θ: {} V rms beyond the {} V by which {} differ. The law a sin(θ+φ) + b sign "
                       "does not hold there; the intervals of a and b are wider to allow for this error",
-                      i + 1, base::significant(lack.left_V, 2), base::significant(lack.repeats_V, 2), lack.repeats));
+                      i + 1, base::significant(lack.left_V, 2), base::significant(lack.repeats_V, 2), words_of(lack.repeats)));
     }
   }
   return found;
@@ -226,18 +186,14 @@ Document roll_out_document(const robot::Robot& robot, const friction::RollOutRes
   return document;
 }
 
-std::string words_of(const friction::WrittenAsZero& finding) {
-  return std::visit([](const auto& each) { return zero_words(each); }, finding);
-}
-
 FrictionRemarks friction_remarks(const std::string& motor, bool has_motor, const friction::FrictionRun& run,
                                  const std::vector<std::string>& of_fit) {
-  FrictionRemarks remarks{has_motor ? std::optional(motor) : std::nullopt, {}, run.suspicions};
+  FrictionRemarks remarks{has_motor ? std::optional(motor) : std::nullopt, {}, words_of(run.suspicions)};
   if (!has_motor) {
     remarks.findings.push_back(fmt::format("there is no file of the robot's motor '{}'; name a motor with --motor", motor));
   }
   for (const friction::FrictionFinding& each : run.findings) {
-    remarks.findings.push_back(std::visit([](const auto& finding) { return source_words(finding); }, each));
+    remarks.findings.push_back(words_of(each));
   }
   remarks.findings.insert(remarks.findings.end(), of_fit.begin(), of_fit.end());
   return remarks;

@@ -18,8 +18,7 @@ struct FrictionAnswer {
   const friction::FrictionFit& fit;
   const friction::HeldOutError& error;
   bool uses_return_legs = false;
-  bool has_expectation = false;      ///< true if `error` also contains the error of a robot file without measurement
-  const std::string& expected_from;  ///< source of that expectation
+  std::optional<friction::ExpectedFrom> expected_from;  ///< set if `error` also contains the error of a robot file without measurement
   std::size_t logs = 0;
 };
 Document friction_document(const robot::Robot& robot, const FrictionAnswer& answer);
@@ -47,9 +46,6 @@ friction::Estimate damping_with_back_emf(const robot::DriveConstants& drive, con
 /// Returns the remarks of a test. `motor` is the id of the robot's motor, which has no file if `has_motor` is false. `of_fit` follow last.
 FrictionRemarks friction_remarks(const std::string& motor, bool has_motor, const friction::FrictionRun& run,
                                  const std::vector<std::string>& of_fit);
-
-/// Returns why 0 is written to the robot file.
-std::string words_of(const friction::WrittenAsZero& finding);
 
 /// Adds the findings as notes and the suspicions as warnings.
 void add_findings(Document& document, std::span<const std::string> findings, std::span<const std::string> suspicions);

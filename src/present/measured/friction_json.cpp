@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "present/measured/friction.h"
+#include "present/measured/friction_words.h"
 
 namespace heatsoak::present {
 namespace {
@@ -33,7 +34,7 @@ Json wheels_json(const friction::FrictionFit& fit, const friction::HeldOutError&
                       {"repeats_V", wheel.lack.repeats_V},
                       {"before_rmse_V", error.before_of_wheel_V[i]},
                       {"after_rmse_V", error.after_of_wheel_V[i]},
-                      {"problem", wheel.problem}});
+                      {"problem", wheel.problem ? words_of(*wheel.problem) : ""}});
   }
   return wheels;
 }
@@ -42,21 +43,22 @@ Json wheels_json(const friction::FrictionFit& fit, const friction::HeldOutError&
 
 Json friction_json(const robot::Robot& robot, const FrictionAnswer& answer, const FrictionRemarks& remarks) {
   const friction::SteadyParts& steady = answer.steady;
-  return {{"schema", "heatsoak.friction/1"},
-          {"method", "steady_state"},
-          {"robot", robot.id},
-          {"motor", remarks.motor_id ? Json(*remarks.motor_id) : Json()},
-          {"wheels", wheels_json(answer.fit, answer.error, steady.rows)},
-          {"before", {{"rmse", answer.error.before_V}, {"unit", "V"}, {"from", answer.expected_from}}},
-          {"after", {{"rmse", answer.error.after_V}, {"unit", "V"}}},
-          {"headings", answer.fit.headings},
-          {"headings_held_out", answer.error.headings},
-          {"rows", steady.rows},
-          {"rows_steady", steady.rows_steady},
-          {"legs", steady.legs},
-          {"return_legs", steady.return_legs},
-          {"findings", remarks.findings},
-          {"suspicions", remarks.suspicions}};
+  return {
+      {"schema", "heatsoak.friction/1"},
+      {"method", "steady_state"},
+      {"robot", robot.id},
+      {"motor", remarks.motor_id ? Json(*remarks.motor_id) : Json()},
+      {"wheels", wheels_json(answer.fit, answer.error, steady.rows)},
+      {"before", {{"rmse", answer.error.before_V}, {"unit", "V"}, {"from", answer.expected_from ? words_of(*answer.expected_from) : ""}}},
+      {"after", {{"rmse", answer.error.after_V}, {"unit", "V"}}},
+      {"headings", answer.fit.headings},
+      {"headings_held_out", answer.error.headings},
+      {"rows", steady.rows},
+      {"rows_steady", steady.rows_steady},
+      {"legs", steady.legs},
+      {"return_legs", steady.return_legs},
+      {"findings", remarks.findings},
+      {"suspicions", remarks.suspicions}};
 }
 
 Json roll_out_json(const robot::Robot& robot, const friction::RollOutResult& result, const robot::DriveConstants& drive,

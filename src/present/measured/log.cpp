@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/quantity.h"
+#include "present/measured/log_words.h"
 #include "present/parameter_table.h"
 
 namespace heatsoak::present {
@@ -53,7 +54,8 @@ std::string runs_text(const recording::DataQuality& quality) {
 
 std::string clock_text(const recording::ClockOffset& offset) {
   if (!offset.delay_s) {
-    return fmt::format("{} against {}: not determinable, {}", offset.temperature, offset.heat_input, offset.why_not);
+    return fmt::format("{} against {}: not determinable, {}", offset.temperature, offset.heat_input,
+                       offset.why_not ? words_of(*offset.why_not) : "");
   }
   return fmt::format("{} follows {} by {:+.2g} s ± {} s (standard error); a clock offset and a sensor's lag are indistinguishable",
                      offset.temperature, offset.heat_input, *offset.delay_s, base::significant(offset.delay_uncertainty_s, 2));
@@ -102,8 +104,9 @@ Table channel_table(const recording::DataQuality& quality) {
 }
 
 void add_fitness(Document& document, const std::string& name, const char* what, const recording::Fitness& fitness) {
-  document.headline.push_back({fitness.is_good() ? fmt::format("{}: usable for {}.", name, what)
-                                                 : fmt::format("{}: not usable for {}: {}.", name, what, fmt::join(fitness.lacks, "; ")),
+  document.headline.push_back({fitness.is_good()
+                                   ? fmt::format("{}: usable for {}.", name, what)
+                                   : fmt::format("{}: not usable for {}: {}.", name, what, fmt::join(words_of(fitness.lacks), "; ")),
                                fitness.is_good() ? Tone::good : Tone::bad});
 }
 
@@ -128,8 +131,8 @@ std::vector<std::string> reading_words(std::span<const recording::LogReading> re
     }
   };
   for (const auto& [log, report] : readings) {
-    for (const std::string& note : report.notes) {
-      add(fmt::format("{}: {}", log, note));
+    for (const recording::ReadingNote& note : report.notes) {
+      add(fmt::format("{}: {}", log, words_of(note)));
     }
     for (const std::string& sentence : left_out_sentences(report)) {
       add(fmt::format("{}: left out: {}", log, sentence));
@@ -154,14 +157,14 @@ void add_log(Document& document, const recording::Recording& recording, const re
   }
   document.tables.push_back(summary_table(recording.name, recording, report, quality));
   document.tables.push_back(channel_table(quality));
-  for (const std::string& suspicion : quality.suspicions) {
-    document.add_note(Severity::warning, fmt::format("{}: {}", recording.name, suspicion));
+  for (const recording::Suspicion& suspicion : quality.suspicions) {
+    document.add_note(Severity::warning, fmt::format("{}: {}", recording.name, words_of(suspicion)));
   }
   for (const std::string& sentence : left_out_sentences(report)) {
     document.add_note(Severity::note, fmt::format("{}: left out: {}", recording.name, sentence));
   }
-  for (const std::string& note : report.notes) {
-    document.add_note(Severity::note, fmt::format("{}: {}", recording.name, note));
+  for (const recording::ReadingNote& note : report.notes) {
+    document.add_note(Severity::note, fmt::format("{}: {}", recording.name, words_of(note)));
   }
 }
 

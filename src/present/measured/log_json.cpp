@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "present/measured/log_words.h"
+
 namespace heatsoak::present {
 namespace {
 
@@ -44,7 +46,7 @@ Json clocks_json(const recording::DataQuality& quality) {
                       {"heat_input", offset.heat_input},
                       {"delay_s", offset.delay_s ? Json(*offset.delay_s) : Json()},
                       {"standard_error_s", offset.delay_s ? Json(offset.delay_uncertainty_s) : Json()},
-                      {"why_not", offset.why_not}});
+                      {"why_not", offset.why_not ? words_of(*offset.why_not) : ""}});
   }
   return clocks;
 }
@@ -71,10 +73,10 @@ Json log_json(const recording::Recording& recording, const recording::RecordingR
           {"channels", channels_json(quality)},
           {"left_out", left_out_json(report)},
           {"clock_offsets", clocks_json(quality)},
-          {"suspicions", quality.suspicions},
-          {"notes", report.notes},
-          {"thermal", {{"good", quality.thermal.is_good()}, {"lacks", quality.thermal.lacks}}},
-          {"drive", {{"good", quality.drive.is_good()}, {"lacks", quality.drive.lacks}}}};
+          {"suspicions", words_of(quality.suspicions)},
+          {"notes", words_of(report.notes)},
+          {"thermal", {{"good", quality.thermal.is_good()}, {"lacks", words_of(quality.thermal.lacks)}}},
+          {"drive", {{"good", quality.drive.is_good()}, {"lacks", words_of(quality.drive.lacks)}}}};
 }
 
 Json logs_json(const std::vector<Json>& logs) { return {{"schema", "heatsoak.log/1"}, {"logs", logs}}; }

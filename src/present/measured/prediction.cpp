@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "base/quantity.h"
+#include "present/measured/calibration_words.h"
 #include "present/measured/log.h"
 
 namespace heatsoak::present {
@@ -90,7 +91,7 @@ Document prediction_document(const motor::Motor& motor, const calibration::Predi
   for (const std::string& each : reading_words(readings)) {
     document.add_note(Severity::background, each);
   }
-  for (const std::vector<std::string>& notes : {answer.admission.notes, prediction.notes}) {
+  for (const std::vector<std::string>& notes : {words_of(answer.admission.notes), words_of(prediction.notes)}) {
     for (const std::string& each : notes) {
       document.add_note(Severity::note, each);
     }

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "present/measured/calibration_words.h"
 #include "present/measured/log.h"
 #include "present/measured/prediction.h"
 
@@ -22,7 +23,8 @@ Json runs_json(const std::vector<calibration::PredictedRun>& runs) {
 Json prediction_json(const motor::Motor& motor, const calibration::PredictionAnswer& answer,
                      std::span<const recording::LogReading> readings) {
   std::vector<std::string> notes = warning_words(answer);
-  for (const std::vector<std::string>& more : {reading_words(readings), answer.admission.notes, answer.prediction.notes}) {
+  for (const std::vector<std::string>& more :
+       {reading_words(readings), words_of(answer.admission.notes), words_of(answer.prediction.notes)}) {
     notes.insert(notes.end(), more.begin(), more.end());
   }
   return {{"schema", "heatsoak.prediction/1"},

@@ -11,6 +11,7 @@
 #include "motor/write_motor.h"
 #include "present/measured/calibration.h"
 #include "present/measured/calibration_chart.h"
+#include "present/measured/failure_words.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -80,7 +81,7 @@ Command calibrate_command() {
                 ->capture_default_str();
             session.add_data_option(app);
             session.add_answer_options(app);
-            return [options, &session] { return run(*options, session); };
+            return [options, &session] { return present::with_words([&] { return run(*options, session); }); };
           }};
 }
 

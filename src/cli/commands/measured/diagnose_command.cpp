@@ -13,6 +13,7 @@
 #include "motor/write_motor.h"
 #include "present/measured/diagnosis.h"
 #include "present/measured/diagnosis_answer.h"
+#include "present/measured/failure_words.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -84,7 +85,7 @@ Command diagnose_command() {
         add_log_options(app, options->logs);
         session.add_data_option(app);
         session.add_answer_options(app);
-        return [options, &session] { return run(*options, session); };
+        return [options, &session] { return present::with_words([&] { return run(*options, session); }); };
       },
       .topics = effect_topics,
   };

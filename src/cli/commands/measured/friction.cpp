@@ -10,7 +10,9 @@
 #include "cli/quantity_option.h"
 #include "duty/named_files.h"
 #include "friction/friction_job.h"
+#include "present/measured/failure_words.h"
 #include "present/measured/friction_chart.h"
+#include "present/measured/friction_words.h"
 #include "present/robot_notes.h"
 
 namespace heatsoak::cli::commands {
@@ -96,8 +98,8 @@ base::ExitCode steady_state(const FrictionOptions& options, const Input& input, 
   const friction::SteadyFriction found = friction::steady_friction(input.job, progress_bar("reading"));
   const present::FrictionRemarks remarks =
       present::friction_remarks(input.motor_id, input.job.motor.has_value(), found, present::lack_of_fit_words(found.fit));
-  const present::FrictionAnswer answer{found.steady,          found.fit,           found.error,        found.settings.use_return_legs,
-                                       found.has_expectation, found.expected_from, options.logs.size()};
+  const present::FrictionAnswer answer{found.steady,        found.fit,          found.error, found.settings.use_return_legs,
+                                       found.expected_from, options.logs.size()};
   present::Document document = present::friction_document(robot, answer);
   present::add_findings(document, remarks.findings, remarks.suspicions);
   present::add_robot_notes(document, robot);
@@ -169,7 +171,7 @@ Command friction() {
                         "picture of offset and damping over the headings; voltage over speed is beside it, in FILE_voltage.svg");
             session.add_data_option(app);
             session.add_answer_options(app);
-            return [options, &session] { return run(*options, session); };
+            return [options, &session] { return present::with_words([&] { return run(*options, session); }); };
           }};
 }
 

@@ -7,6 +7,7 @@
 #include "cli/measured/logs_option.h"
 #include "cli/quantity_option.h"
 #include "duty/named_files.h"
+#include "present/measured/failure_words.h"
 #include "present/measured/prediction.h"
 #include "present/measured/prediction_chart.h"
 
@@ -54,7 +55,7 @@ Command predict_command() {
         add_log_options(app, options->how);
         session.add_data_option(app);
         session.add_answer_options(app);
-        return [options, &session] { return run(*options, session); };
+        return [options, &session] { return present::with_words([&] { return run(*options, session); }); };
       }};
 }
 

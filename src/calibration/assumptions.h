@@ -1,0 +1,58 @@
+// Assumptions of a fit or a forecast as data: parameters that are not fitted, and effects on an error band. src/present puts them into
+// words.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace heatsoak::calibration {
+
+/// A remark of the estimation, already in words.
+struct Remark {
+  std::string words;
+};
+
+/// The terminal resistance keeps its stated value. All heat capacities and resistances scale with it.
+struct ResistanceHeld {};
+/// The loss other than copper loss is the measured power balance, so the no-load current is not used.
+struct NoLoadCurrentUnused {};
+/// The no-load current is not fitted: its loss depends on speed, which not every log has.
+struct NoLoadCurrentHeld {};
+/// All of the logged input power counts as heat. All heat capacities and resistances scale with this share.
+struct HeatShareHeld {
+  bool has_loss_at_stator = false;  ///< true: the part due to the no-load current arises at the stator; false: all of it at the winding
+};
+/// Parameters of an effect are not fitted: the file states no tolerance or range.
+struct EffectHeld {
+  std::string effect;
+  std::vector<std::string> parameters;  ///< keys, at least one
+};
+/// The error of a sensor is not fitted: it is not a property of the motor.
+struct SensorHeld {
+  std::string sensor;
+  std::string parameter;  ///< key of its size
+  double value = 0.0;
+  std::string unit;
+};
+/// No log has the signal of a sensor, so the error of that sensor is not used.
+struct SensorUnused {
+  std::string sensor;
+  std::string signal;
+};
+/// Value of the motor file that is not fitted, and why.
+using HeldValue = std::variant<ResistanceHeld, NoLoadCurrentUnused, NoLoadCurrentHeld, HeatShareHeld, EffectHeld, SensorHeld, SensorUnused>;
+
+/// The log of a recording has a current but no speed, so its band includes a loss at speed of up to `most_W`.
+struct BandIncludesLossAtSpeed {
+  std::string recording;
+  double most_W = 0.0;
+};
+/// The motor file has no band from a calibration; the band follows from declared uncertainties and the usual error of forecasts.
+struct BandIsEstimated {
+  std::string motor;
+};
+/// Assumption of a forecast.
+using PredictionNote = std::variant<BandIncludesLossAtSpeed, BandIsEstimated, Remark>;
+
+}  // namespace heatsoak::calibration

@@ -1,0 +1,109 @@
+#include "present/measured/failure_words.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/counted.h"
+#include "base/quantity.h"
+#include "calibration/admission.h"
+#include "calibration/calibrate.h"
+#include "friction/friction_job.h"
+#include "friction/robot_file.h"
+#include "present/measured/calibration_words.h"
+#include "present/measured/friction_words.h"
+#include "present/measured/log_words.h"
+#include "recording/quality.h"
+
+namespace heatsoak::present {
+namespace {
+
+base::Failure with_message(const base::Failure& failure, std::string message) { return {failure.code(), std::move(message)}; }
+
+base::Failure worded(const recording::NothingAboutHeat& failure) {
+  return with_message(failure, fmt::format("{}: {}", failure.message(), fmt::join(words_of(failure.lacks()), "; ")));
+}
+
+base::Failure worded(const friction::WheelNotIdentifiable& failure) {
+  return with_message(failure, fmt::format("{}: {}", failure.message(),
+                                           failure.problem() ? words_of(*failure.problem()) : "its logs only turn on the spot"));
+}
+
+/// The problem of wheel 1 serves as the example.
+base::Failure worded(const friction::NothingIdentifiable& failure) {
+  const friction::NothingIdentifiable::Reason& reason = failure.reason();
+  std::string message =
+      reason.legs == 0
+          ? fmt::format("{}: in no interval do the wheels turn steadily; legs of one speed and direction must last a second or more",
+                        failure.message())
+          : fmt::format("{} from {} on {}: of wheel 1, {}", failure.message(), base::counted(reason.legs, "steady leg"),
+                        base::counted(reason.headings, "heading"), reason.of_first_wheel ? words_of(*reason.of_first_wheel) : "");
+  for (const std::string& each : words_of(reason.suspicions)) {
+    message += fmt::format("\nsuspicious: {}", each);
+  }
+  return with_message(failure, std::move(message));
+}
+
+base::Failure worded(const friction::LogsLookWrong& failure) {
+  std::vector<base::Diagnostic> diagnostics;
+  for (const auto& [file, suspicion] : failure.findings()) {
+    diagnostics.push_back({{file}, {}, words_of(suspicion)});
+  }
+  return {failure.code(), failure.message(), std::move(diagnostics)};
+}
+
+base::Failure worded(const calibration::LogsLookWrong& failure) {
+  std::vector<base::Diagnostic> diagnostics;
+  for (const auto& [file, problem] : failure.findings()) {
+    diagnostics.push_back({{file}, {}, words_of(problem)});
+  }
+  return {failure.code(), failure.message(), std::move(diagnostics)};
+}
+
+base::Failure worded(const calibration::NothingLearned& failure) {
+  std::string message = failure.message();
+  for (const calibration::OpenDirection& each : failure.open()) {
+    message += fmt::format("\n  not identifiable: {}: {}\n  cheapest experiment: {}", parameter_words(each), reason_words(each),
+                           words_of(each.remedy));
+  }
+  if (failure.has_heat_input()) {
+    message += "\n  also check the units of the heat inputs (kiloamperes, kilowatts); `heatsoak log inspect` shows each channel";
+  }
+  return with_message(failure, std::move(message));
+}
+
+base::Failure worded(const calibration::NothingFollows& failure) {
+  std::string message = failure.message();
+  for (const calibration::PoorFit& each : failure.signals()) {
+    message += fmt::format("\n  {} has an error of {} K rms, {} its variation (standard deviation {} K)", each.signal,
+                           base::significant(each.rmse_K, 2), each.rmse_K > each.varies_K ? "more than" : "close to",
+                           base::significant(each.varies_K, 2));
+  }
+  if (!failure.has_speed()) {
+    message += "\n  no log has the speed (speed_rad_per_s), so the loss at speed is unknown";
+  }
+  return with_message(failure, message +
+                                   "\n  check for another motor, a wrong unit (degrees Fahrenheit, minutes, milliamperes), a misplaced "
+                                   "sensor, or heat that no column contains; `heatsoak log inspect` shows each channel");
+}
+
+/// Returns the words of the first type that the failure has.
+template <class First, class... Others>
+base::Failure worded_as(const base::Failure& failure) {
+  if (const auto* const found = dynamic_cast<const First*>(&failure)) {
+    return worded(*found);
+  }
+  if constexpr (sizeof...(Others) > 0) {
+    return worded_as<Others...>(failure);
+  } else {
+    return failure;
+  }
+}
+
+}  // namespace
+
+base::Failure in_words(const base::Failure& failure) {
+  return worded_as<recording::NothingAboutHeat, calibration::NothingLearned, calibration::NothingFollows, calibration::LogsLookWrong,
+                   friction::LogsLookWrong, friction::NothingIdentifiable, friction::WheelNotIdentifiable>(failure);
+}
+
+}  // namespace heatsoak::present
