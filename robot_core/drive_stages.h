@@ -134,8 +134,8 @@ inline float cross(const WheelConfig& a, const WheelConfig& b) {
   return a.rolling_x_share * b.rolling_y_share - a.rolling_y_share * b.rolling_x_share;
 }
 
-/// Unit of State::rounded_up.
-inline constexpr float kRoundedUp_per_period = 1024.0F;
+/// Parts of a period in which State::rounded_up counts.
+inline constexpr float kPeriodParts_ratio = 1024.0F;
 
 inline constexpr std::uint32_t kStepsPerComparison = 16;
 /// Returns true if compare_sensors() compares two wheels with the others in this step.

@@ -60,7 +60,7 @@ void step_wheel_guard(const Config& config, State& state, const Validated& valid
   // Periods are rounded up for heat, but a guard must not cool for longer than the time that has passed.
   GuardTime time{extra_s, 1.0F, state.rounded_up};
   if (const std::uint32_t more = state.rounded_up - state.guard[i].rounded_up; more != 0) {
-    time.cooling_share = larger(0.0F, 1.0F - static_cast<float>(more) / (kRoundedUp_per_period * periods));
+    time.cooling_share = larger(0.0F, 1.0F - static_cast<float>(more) / (kPeriodParts_ratio * periods));
   }
   const float rms_A = square_root(wheel.current_squared_A2 / periods + missing_A2(state, i));
   const float speed_rad_per_s = sensed.speed_rad_per_s * config.gear_ratio;

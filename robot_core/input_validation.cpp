@@ -33,7 +33,7 @@ void validate_time(const Config& config, State& state, const Input& input, Valid
     const auto whole = static_cast<float>(validated.guard_periods);
     validated.elapsed_s = whole * config.period_s;
     if (periods < whole) {
-      state.rounded_up += 1U + static_cast<std::uint32_t>(kRoundedUp_per_period * (whole - periods));
+      state.rounded_up += 1U + static_cast<std::uint32_t>(kPeriodParts_ratio * (whole - periods));
     }
     // A loop that is always slightly late would otherwise lose that share of its heat.
     if (periods > whole) {

@@ -171,9 +171,10 @@ void read_header(const std::string& text, CommittedTable& committed) {
 void require_csv(const CommittedTable& committed, const std::string& text) {
   static const std::regex kColumns("(^|\n)speed_rad_per_s,stator_C,winding_C,allowed_current_A");
   if (!std::regex_search(text, kColumns)) {
-    throw base::bad_input({committed.file.string(), 1, 1}, "",
-                          "is neither a C header nor a CSV table of `heatsoak derate`; of the other formats commit the table as --to csv "
-                          "as well and check that file");
+    throw base::bad_input(
+        {committed.file.string(), 1, 1}, "",
+        "is neither a C header nor a CSV table of `heatsoak derate` with the columns speed_rad_per_s, stator_C, winding_C "
+        "and allowed_current_A; of the other formats commit the table as --to csv as well and check that file");
   }
 }
 

@@ -249,7 +249,7 @@ TEST(DerateCheck, NamesTheOptionsOfTheSensor) {
   const TemporaryFolder folder;
   RunOptions options;
   options.folder = folder.path();
-  const Words derate{"derate", "--robot", "roboteam_twente_v2024", "--motor", "maxon_ecx_flat_42m_24v", "--samples", "60"};
+  const Words derate{"derate", "--robot", "roboteam_twente_v2024", "--motor", "maxon_ecx_flat_32l_48v", "--samples", "60"};
   const Words sensor{"--thermistor", "stator", "--thermistor-accuracy", "1.5K", "--thermistor-lag", "3s"};
   ASSERT_EQ(run(derate + sensor + Words{"--out", "sensed.h"}, options).exit_code, 0);
   ASSERT_EQ(run(derate + Words{"--out", "plain.h"}, options).exit_code, 0);
@@ -270,7 +270,7 @@ TEST(DerateCheck, NamesTheOptionsOfTheSensor) {
   EXPECT_THAT(older.err, HasSubstr("does not state its options; generate the header again"));
   const auto check = [&](const std::string& accuracy) {
     write(folder.path() / "a.check.toml", fmt::format("[[check]]\nname = \"a\"\nrobot = \"roboteam_twente_v2024\"\nmotor = "
-                                                      "\"maxon_ecx_flat_42m_24v\"\ntable = \"sensed.h\"\nderate = {{ samples = \"60\", "
+                                                      "\"maxon_ecx_flat_32l_48v\"\ntable = \"sensed.h\"\nderate = {{ samples = \"60\", "
                                                       "thermistor = \"stator\", thermistor_accuracy = \"{}\", thermistor_lag = \"3 s\" }}\n"
                                                       "[check.limits]\nderating_excess = \"at most 0 A\"\n",
                                                       accuracy));
