@@ -161,10 +161,10 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
   return smaller(least, demand.share);
 }
 
-/// Applies the guards of a robot with a hot motor. Returns the new smallest fraction. A wheel that brakes may
-/// always use the braking reserve. All wheels may use it while the wanted currents take power out of the body. This must hold without the
-/// wheel that brakes most, because its speed sensor may be faulty. Otherwise a wheel that is pulled along and drives for a moment would
-/// take the brakes from all the others through the common factor.
+/// Applies the guards of a robot with a hot motor. Returns the new smallest fraction. A wheel that brakes may always use the braking
+/// reserve. All wheels may use it while the wanted currents take power out of the body. This must hold without the wheel that brakes most,
+/// because its speed sensor may be faulty. Otherwise a wheel that is pulled along and drives for a moment would take the brakes from all
+/// the others through the common factor.
 [[gnu::noinline]] float apply_guards(const Config& config, State& state, const Validated& validated, const BodyReference& body,
                                      float most_V, WheelDemand* demand, LimitedVoltages& limited, float least) {
   float body_W = 0.0F;
@@ -326,7 +326,6 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
   const float feedback_share = smaller(1.0F, validated.elapsed_s * config.derived.per_tracking_time_per_s);
   float power_W = 0.0F;
   float kept = 1.0F;
-#pragma GCC unroll 2
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     LimitedWheel& end = limited.wheel[i];

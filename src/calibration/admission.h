@@ -18,13 +18,13 @@ namespace heatsoak::calibration {
 /// Single rows exceed the current that the motor can draw at three times its nominal voltage.
 struct CurrentOutliers {
   double largest_A = 0.0;
-  double most_A = 0.0;  ///< at three times the nominal voltage
+  double most_A = 0.0;  ///< largest possible current
   int line = 0;         ///< line of the largest value
 };
-/// Same for the speed.
+/// Single rows exceed the speed that the motor can reach at three times its nominal voltage.
 struct SpeedOutliers {
   double largest_rad_per_s = 0.0;
-  double most_rad_per_s = 0.0;  ///< at three times the nominal voltage
+  double most_rad_per_s = 0.0;  ///< largest possible speed
   int line = 0;
 };
 /// The motor cannot draw such a current at three times its nominal voltage.

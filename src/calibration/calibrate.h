@@ -48,7 +48,7 @@ enum class OpenReason {
   no_heat,                ///< the runs have no heat input
   common_factor,          ///< one factor on all heat, heat capacities and conductances changes no temperature
   only_stator_measured,   ///< a larger winding behind a smaller resistance gives the same stator temperature
-  only_winding_measured,  ///< and the runs are too short for the stator
+  only_winding_measured,  ///< the runs are too short to determine the stator from the winding's temperature
   motor_hardly_turns,
   small_loss_at_speed,  ///< against the copper loss
   not_excited,          ///< the measured temperatures hardly depend on it
@@ -79,8 +79,8 @@ struct OpenDirection {
   std::vector<MovedParameter> together;  ///< combination that is not determined; empty or two and more
   std::vector<std::string> parameters;   ///< single parameters that are not determined for the same reason
   OpenReason reason = OpenReason::not_excited;
-  double longest_run_s = 0.0;  ///< only with `stator_not_settled`
-  double stator_s = 0.0;       ///< time constant of the stator, only with `stator_not_settled`
+  double longest_run_s = 0.0;  ///< duration of the longest run, set for `stator_not_settled`
+  double stator_s = 0.0;       ///< time constant of the stator, set for `stator_not_settled`
   Remedy remedy = Remedy::long_run;
   double left_sd = 0.0;  ///< remaining standard deviation along the direction, in logarithms
 };

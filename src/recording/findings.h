@@ -119,8 +119,8 @@ enum class TemperatureScale { tenths_of_degrees, kelvin, fahrenheit };
 /// A temperature starts at a value that is plausible in another scale.
 struct StartsInOtherScale {
   std::string channel;
-  double start_C = 0.0;      ///< as logged
-  double converted_C = 0.0;  ///< the same value, read in the suspected scale
+  double start_C = 0.0;      ///< first value in the log
+  double converted_C = 0.0;  ///< the same value read in the suspected scale
   TemperatureScale suspected = TemperatureScale::fahrenheit;
 };
 /// All temperatures of the motor start alike, far above the air, but at its temperature if read as degrees Fahrenheit.

@@ -214,7 +214,7 @@ TEST_F(LyingSensor, KeepsTheHeatOfAnOvercurrentThroughUnknownInputs) {
   }
 }
 
-// As warm as before after a reset: the header with a sensor saves the guard without the sensor, which is at least as hot as the motor.
+// After a reset the guard is as warm as before. The header with a sensor saves the guard without it, which is at least as hot as the motor.
 TEST_F(LyingSensor, AResetForgetsNoHeat) {
   SensedGuard before(guard());
   before.start(40.0F);

@@ -325,8 +325,7 @@ std::string reason_words(const calibration::OpenDirection& open) {
     case calibration::OpenReason::stator_not_settled:
       return fmt::format(
           "the runs neither reach a steady state nor cool down far enough: the longest lasts {} min, the stator's time constant is about "
-          "{} "
-          "min",
+          "{} min",
           base::significant(open.longest_run_s / 60.0, 2), base::significant(open.stator_s / 60.0, 1));
     case calibration::OpenReason::winding_not_stepped:
       break;
