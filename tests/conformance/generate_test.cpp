@@ -242,6 +242,13 @@ TEST(GeneratedCore, HeaderIsC99) {
   build(plain_core(), fmt::format("c++ -std=c++11 -Wpedantic {} -I. -fsyntax-only -x c++ ../c99.c", kStrict));
 }
 
+TEST(GeneratedCore, ConfigurationMayBeIncludedAfterAUsingDirective) {
+  write(plain_core().folder.path() / "using.cpp",
+        "#include \"robot_core/drive_core.h\"\nusing namespace robot_core;\n#include \"core_config.h\"\n"
+        "int main() { return kCoreConfigWithPlanner.wheel_count; }\n");
+  build(plain_core(), fmt::format("c++ -std=c++20 -Wpedantic {} -I. -fsyntax-only ../using.cpp", kStrict));
+}
+
 TEST(GeneratedCore, NamesTheReasonsOfTheCore) {
   const std::string header = content_of(plain_core().core / "heatsoak_core.h");
   EXPECT_THAT(header, AllOf(HasSubstr("HEATSOAK_CORE_NONE = 0,"), HasSubstr("HEATSOAK_CORE_GUARD = 14,"),
