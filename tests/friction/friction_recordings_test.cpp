@@ -13,11 +13,6 @@
 namespace heatsoak::friction {
 namespace {
 
-std::filesystem::path data_or_skip(const std::string& folder) {
-  const std::optional<std::filesystem::path> found = measured_data(folder);
-  return found.value_or("");
-}
-
 FrictionLog log_in_file(const std::filesystem::path& file, const std::string& mapping, const robot::Robot& robot,
                         const FrictionLogNeeds& needs, FrictionFindings& findings) {
   recording::RecordingReport report;
@@ -68,10 +63,8 @@ void print(const std::string& name, const SteadyParts& steady, const FrictionFit
 
 /// One speed: the back-EMF gives the damping, the directions give the rest. Opposite headings agree within 5 % of Σi².
 TEST(FrictionOfRecordings, robotino_on_two_surfaces) {
-  const std::filesystem::path folder = data_or_skip("robotino_omni");
-  if (folder.empty()) {
-    GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
-  }
+  SKIP_WITHOUT_MEASURED_DATA("robotino_omni");
+  const std::filesystem::path folder = *measured_data("robotino_omni");
   for (const char* surface : {"table_surface", "brown_surface"}) {
     FrictionFindings findings;
     const SteadyParts steady = robotino_parts(folder / surface, 0, 72, findings);
@@ -98,10 +91,8 @@ TEST(FrictionOfRecordings, robotino_on_two_surfaces) {
 }
 
 TEST(FrictionOfRecordings, robotino_on_carpet_at_three_speeds) {
-  const std::filesystem::path folder = data_or_skip("robotino_omni");
-  if (folder.empty()) {
-    GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
-  }
+  SKIP_WITHOUT_MEASURED_DATA("robotino_omni");
+  const std::filesystem::path folder = *measured_data("robotino_omni");
   FrictionFindings findings;
   const SteadyParts steady = robotino_parts(folder / "green_surface", 0, 216, findings);
   const robot::Kinematics kinematics = robot::make_kinematics(robotino());
@@ -123,10 +114,8 @@ TEST(FrictionOfRecordings, robotino_on_carpet_at_three_speeds) {
 /// Staircases of modulation on blocks in both directions. The reference is an ordinary line through all rows above 5 rad/s. Back-EMF and
 /// battery give 24 V/(60 rad/s per 0.083), about 0.033 V s/rad.
 TEST(FrictionOfRecordings, a_team_wheel_motors_voltage_over_speed) {
-  const std::filesystem::path folder = data_or_skip("ateam_wheel_motor");
-  if (folder.empty()) {
-    GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
-  }
+  SKIP_WITHOUT_MEASURED_DATA("ateam_wheel_motor");
+  const std::filesystem::path folder = *measured_data("ateam_wheel_motor");
   robot::Robot robot = robotino();
   robot.wheels.axis_rad = {-0.5, 0.5, 2.4, -2.4};
   robot.drive.gear_ratio = 1.0;
