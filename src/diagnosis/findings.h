@@ -51,7 +51,6 @@ using DiagnosisFinding = std::variant<ExtensionsMayImitate, ContradictingRun, Co
 /// Signal that is outside the range of the training runs for more than a quarter of the time of the hold-out runs.
 struct BeyondTraining {
   thermal::Signal signal = thermal::Signal::current;
-  std::string unit;
   double low = 0.0;  ///< range of the training runs
   double high = 0.0;
   double time_share = 0.0;  ///< share of the time outside
