@@ -113,7 +113,7 @@ void examine(const Case& one, int threads) {
   const std::vector<recording::Recording> unseen = read(one, one.predicted);
   const motor::Motor motor = motor::read_motor(kSource / "reports" / one.motor);
   const ForecastSetup setup = forecast_setup(motor, fitted);
-  std::vector<std::string> notes;
+  std::vector<estimation::RunNote> notes;
   const std::vector<estimation::MeasuredRun> runs = forecast_runs(setup, fitted, one.ambient_C, notes);
   const std::vector<estimation::MeasuredRun> others = forecast_runs(setup, unseen, one.ambient_C, notes);
   const ForecastModel base = setup.model();
