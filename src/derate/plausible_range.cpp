@@ -25,7 +25,7 @@ Bounds bounds(const Derating& derating, observed::Signal signal) {
       // A failed sensor or a zero-initialised structure reads exactly 0.
       return {static_cast<float>(derating.options.coldest_ambient_C) + 0.05F, 300.0F};
     case observed::neighbour:
-      return {static_cast<float>(derating.options.coldest_ambient_C) + 0.05F - kNeighbourBelowAir_K, 1000.0F};
+      return {static_cast<float>(derating.options.coldest_ambient_C) + 0.05F - kNeighbourBelowAir_K, kMostState_C};
     case observed::vehicle_speed:
       return {0.0F, static_cast<float>(derating.rules.most_vehicle_speed_m_per_s)};
     case observed::age:
