@@ -460,7 +460,7 @@ TEST(CHeaderText, NamesHeatAfterItsLawAndNodes) {
 
 TEST(CHeaderText, ACommentEndsWhereItShould) {
   EXPECT_THAT(header_text(), HasSubstr("a * / robot"));
-  EXPECT_THAT(header_text(), HasSubstr("of 400 motors drawn from the declared tolerances, 10 exceeded"));
+  EXPECT_THAT(header_text(), HasSubstr("Of 400 motors drawn independently, 10 exceeded"));
 }
 
 }  // namespace
