@@ -418,8 +418,8 @@ TEST(RequiredValues, ASlipOfTheUnitIsFound) {
   for (const Typed& each :
        {Typed{"0.19 ohm", "0.19 mohm", "mohm or ohm?", true}, Typed{"0.19 ohm", "190 ohm", "stall current of 0.126 A", false},
         Typed{"25 mN m/A", "25 N m/A", "mN m/A or N m/A?", true}, Typed{"400 mA", "40 A", "mA or A?", true},
-        Typed{"24 V", "240 V", "heat the stator by 384 K", false}, Typed{"300 s", "300 h", "s or h?", true},
-        Typed{"4 K/W", "0.04 K/W", "0.02 times", true}, Typed{"10 s", "10 ms", "s or h?", true}}) {
+        Typed{"24 V", "240 V", "heat the stator by 384 K", false}, Typed{"300 s", "30 h", "s or h?", true},
+        Typed{"4 K/W", "0.04 K/W", "0.02 times", true}, Typed{"10 s", "0.5 s", "s or h?", false}}) {
     const Motor motor = typed_motor(each.was, each.is);
     EXPECT_THAT(said_by("required_values", motor), HasSubstr(each.said)) << each.is;
     EXPECT_EQ(errors(motor).contains("required_values"), each.is_error) << each.is;
