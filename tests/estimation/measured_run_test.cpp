@@ -316,8 +316,12 @@ TEST(MeasuredRun, says_how_short_a_log_is) {
   try {
     runs_of(rows);
     FAIL();
-  } catch (const base::Failure& failure) {
-    EXPECT_THAT(failure.what(), testing::HasSubstr("its 14 s make fewer than 9 intervals of 2 s"));
+  } catch (const NoUsableInterval& failure) {
+    ASSERT_EQ(failure.reasons().size(), 1U);
+    const auto& found = std::get<TooFewIntervals>(failure.reasons().front());
+    EXPECT_NEAR(found.duration_s, 14.0, 0.05);
+    EXPECT_EQ(found.needed, 9U);
+    EXPECT_EQ(found.interval_s, 2.0);
   }
 }
 

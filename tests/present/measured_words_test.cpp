@@ -203,7 +203,7 @@ TEST(WordsOfRuns, NotesAndReasons) {
                                              RowsLack{RowsLack::What::temperature, {}, 2, 20}}),
             "gaps split its 20 rows into 2 runs ([runs] longest_gap of a mapping sets what counts as a gap), "
             "1 of 20 rows have no ambient temperature within a minute, 2 of 20 rows have no temperature of winding or stator");
-  EXPECT_EQ(words_of(std::vector<LossOfRows>{TooFewIntervals{12.0, 9, 2.0}}), "its 12 s make fewer than 9 intervals of 2.0 s");
+  EXPECT_EQ(words_of(std::vector<LossOfRows>{TooFewIntervals{12.0, 9, 2.0}}), "its 12 s make fewer than 9 intervals of 2 s");
   EXPECT_EQ(words_of(std::vector<LossOfRows>{IntervalsTooShort{}}), "intervals are too short");
 }
 
@@ -217,7 +217,7 @@ TEST(WordsOfFailures, OfRunsAndDiagnoses) {
             "no log has a heat input for ecx; expected current_A, or power_in_W with an effect input_power_loss; add one to the logs");
   EXPECT_THAT(in_words(diagnosis::NoEffectFollows({"stator_C", 31.26, 8.04})).message(),
               HasSubstr("no effect makes the model follow these logs: stator_C has an error of 31 K rms, more than its variation (standard "
-                        "deviation 8.0 K)\n  check for another motor"));
+                        "deviation 8 K)\n  check for another motor"));
 }
 
 TEST(WordsOfCalibration, OpenDirections) {
