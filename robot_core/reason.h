@@ -99,8 +99,8 @@
 //     wheels. Where opposite wheels are parallel, nothing tells which one is wrong: both stay rejected until the robot turns, without
 //     current sensors with open bridges (114). A slipping wheel with a faulty speed sensor and no current sensor may exceed its limit.
 //   - Three wheels without current sensors that spin faster than the gyro can measure, with one wrong speed: the gyro stays rejected (140),
-//     and the wheel exceeds the limp current up to fourfold for a minute; the winding is up to 21 K hotter than the guard. Two wheel speeds
-//     of twice their value hide heat: 187 degC at a computed 120 degC.
+//     and the wheel exceeds the limp current up to fourfold for a minute; the winding is up to 21 K hotter than the guard. If two wheel
+//     sensors report twice their speed, a winding reaches 187 degC at a computed 120 degC.
 //   - A current sensor that fails in step with the comparisons (every 16 periods), as an ADC shared with the control loop may: valid in each
 //     second period only, a winding was 10 K hotter than the guard, in each eighth 42 to 53 K (193 degC). A sensor that reads 0 hides the
 //     heat of a torque that is 0 in each compared period and not between them.
@@ -124,8 +124,8 @@
 //   - An air temperature that is too low, from the start or later: in the end the guard is too cold by the same amount.
 //   - A correct robot on slippery ground (grip below a half) with three wheels and a coarse encoder: short faults 112. A robot with a grip
 //     of 0.3 was once in 400 drives left with fault 113 without a push.
-//   - An invalid timer (102) that hides a gap longer than kWatchdog_s, in firmware without such a watchdog. A timer, or a loop without one,
-//     that reports half of the true period: the winding was 18 K hotter than the guard.
+//   - An invalid timer (102) that hides a gap longer than kWatchdog_s, in firmware without such a watchdog. If the timer reports half of the
+//     true period, the winding is up to 18 K hotter than the guard. The same holds for firmware without a timer whose loop is too slow.
 //   - A battery sensor with a constant wrong factor since the start or a fault, or one that sinks more slowly than 0.4 % of the full
 //     battery per second, or reads too low for minutes: the voltage exceeds its limit by that factor and the current by more: twice its
 //     limit for a second with a factor of 1.25.
