@@ -77,7 +77,9 @@ std::uint64_t check_sum_of_words(const void* object, std::uint64_t seed) {
     __builtin_memcpy(&word, __builtin_assume_aligned(at + i * sizeof(word), sizeof(word)), sizeof(word));
     sum[i % 2] = sum[i % 2].with(word);
   }
-  // The last round separates the last words from the stored sum.
+  // A multiple of a highest bit is that bit, so the rotation keeps it apart from the same bit of the neighbouring word. The last round
+  // separates the last words from the stored sum.
+  sum[1].high = sum[1].high << 16U | sum[1].high >> 16U;
   return sum[0].with(sum[1].value()).with(0U).value();
 }
 
