@@ -36,8 +36,9 @@ namespace {
     wheel.allowed_A = wheel.allowed_braking_A = allowed_current_A(*model, 0.0F, start_C, start_C + config.braking_reserve_K);
     // Spreads the guard steps of the wheels over the guard period.
     const int periods = static_cast<int>(model->period_s / config.period_s + 0.5F);
-    wheel.guard_steps = static_cast<std::uint16_t>(i * periods / config.wheel_count);
+    wheel.guard_clock = static_cast<std::uint16_t>(-i * periods / config.wheel_count);
   }
+  state.next_guard = static_cast<std::uint8_t>(config.wheel_count - 1);
   seal(state.comparison);
 }
 
@@ -94,7 +95,7 @@ BodyReference find_references(const Config& config, State& state, const Input& i
 /// Reuses the result of stages 2 to 4 of the last period.
 void hold_references(const Config& config, State& state, const Validated& validated, WheelReferences& wheels, WheelVoltages& voltage) {
   HeldReference& held = state.held;
-  held.is_fresh = 0;
+  state.is_held_fresh = 0;
   held.since_s += validated.elapsed_s;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -124,13 +125,13 @@ void step_valid(const Config& config, State& state, const Input& input, bool was
   WheelVoltages voltage;
   const bool is_body_velocity =
       (validated.mode == Mode::body_velocity || validated.mode == Mode::brake) && validated.robot_fault == Reason::none;
-  if (is_body_velocity && state.held.is_fresh != 0) {
+  if (is_body_velocity && state.is_held_fresh != 0) {
     static constexpr BodyReference kBodyVelocity;
     hold_references(config, state, validated, wheels, voltage);
     control_wheels(config, state, validated, kBodyVelocity, wheels, voltage, out);
   } else {
     const BodyReference body = find_references(config, state, input, validated, wheels, voltage);
-    state.held.is_fresh = is_body_velocity ? 1 : 0;
+    state.is_held_fresh = is_body_velocity ? 1 : 0;
     control_wheels(config, state, validated, body, wheels, voltage, out);
   }
   ++state.steps;

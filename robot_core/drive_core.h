@@ -179,12 +179,13 @@ struct WheelState {
   float integral_V = 0.0F;
   float voltage_V = 0.0F;            ///< voltage applied over the last period
   float earlier_V = 0.0F;            ///< voltage applied over the period before the last
-  float current_squared_A2 = 0.0F;   ///< sum of squares since the guard's last step
+  float current_squared_A2 = 0.0F;   ///< sum of squares of the counted current since the guard's last step
+  float driven_squared_V2 = 0.0F;    ///< sum of squares of voltage minus back-EMF since then, while the bridge was not open
   float allowed_A = 0.0F;            ///< allowed by the guard, converted to the current of a motor with the lowest resistance
   float allowed_braking_A = 0.0F;    ///< the same limit for a current that brakes
   float conductance_A_per_V = 0.0F;  ///< nominal motor: 1/resistance at its winding temperature in the guard's last step
   float current_bound_A = 0.0F;      ///< decaying current limit; a sensed current above 1.3 times this plus a margin opens the bridge
-  std::uint16_t guard_steps = 0;     ///< periods since the guard's last step
+  std::uint16_t guard_clock = 0;     ///< State::guard_clock at the end of the time that the guard has counted
   std::uint16_t same_steps = 0;      ///< periods in which the speed sample stayed bit-identical, up to kMostSameSteps
   std::uint8_t speed_fault = 0;      ///< Reason as a number, or 0
   std::uint8_t current_fault = 0;
@@ -200,8 +201,7 @@ struct WheelState {
 struct HeldReference {
   PerWheel speed_rad_per_s = {};
   PerWheel feed_forward_V = {};
-  float since_s = 0.0F;        ///< time since stages 2 to 4 were run
-  std::uint32_t is_fresh = 0;  ///< 1 if they were run in the last period for a body velocity
+  float since_s = 0.0F;  ///< time since stages 2 to 4 were run
 };
 
 /// State of the comparisons of sensors with each other. They act over tens of milliseconds and run once in kStepsPerComparison steps. The
@@ -213,11 +213,12 @@ struct alignas(8) ComparisonState {
   /// Evidence against the present verdict on the speed sensor, reset when the verdict changes. Accepted sensor: time for which it alone has
   /// contradicted all others, minus the time for which it has not, at least 0. Rejected sensor: time of its agreement with the others.
   float evidence_s[kMostWheels] = {};
-  float with_V_rad_per_s[6] = {};      ///< per pair of wheels: leaky sum of evidence that its currents accelerate its speed difference
-  float against_V_rad_per_s[6] = {};   ///< per pair of wheels: leaky sum of evidence that its currents decelerate that difference
-  float driven_V2[kMostWheels] = {};   ///< leaky mean square of voltage minus back-EMF
-  float counted_A2[kMostWheels] = {};  ///< leaky mean square of the current that the guard has counted: sensed, else calculated
-  float residual_m2_per_s2 = 0.0F;     ///< leaky mean square of the samples' residuals against one motion of the body
+  float with_V_rad_per_s[6] = {};     ///< per pair of wheels: leaky sum of evidence that its currents accelerate its speed difference
+  float against_V_rad_per_s[6] = {};  ///< per pair of wheels: leaky sum of evidence that its currents decelerate that difference
+  /// Leaky mean of the squared voltage minus back-EMF at the other speed that a wheel without a trusted current sensor may have, minus the
+  /// square at its validated speed.
+  float hidden_V2[kMostWheels] = {};
+  float residual_m2_per_s2 = 0.0F;  ///< leaky mean square of the samples' residuals against one motion of the body
   float yaw_disagreement_s = 0.0F;
   float yaw_agreement_s = 0.0F;
   std::uint8_t confirmations[6] = {};  ///< per pair of wheels: comparisons that showed it not to be swapped
@@ -265,6 +266,9 @@ struct alignas(8) State {
   std::uint8_t yaw_fault = 0;
   std::uint8_t is_yaw_same = 0;             ///< 1 if the last two samples of the yaw rate are equal
   std::uint8_t has_yaw_spoken_wrongly = 0;  ///< 1 if a sample was implausible since the last comparison
+  std::uint8_t is_held_fresh = 0;           ///< 1 if stages 2 to 4 were run in the last period for a body velocity
+  std::uint8_t next_guard = 0;              ///< wheel whose guard has waited longest
+  std::uint16_t guard_clock = 0;            ///< periods since start(); wraps
   float ambient_C = kNoSample;              ///< last validated air temperature; NaN before the first sample, whose absence is no fault
   ComparisonState comparison;
   GuardState guard[kMostWheels];

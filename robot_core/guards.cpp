@@ -46,23 +46,25 @@ float nominal_conductance_A_per_V(const Config& config, const GuardState& guard,
   return config.derived.per_resistance_A_per_V / (1.0F + config.resistance_rise_per_K * warm_K);
 }
 
-/// Mean square of the current that voltage and speed drive through the nominal motor, minus the square already counted.
-float missing_A2(const State& state, int i) {
-  const float per_ohm = state.wheel[i].conductance_A_per_V;
-  return larger(0.0F, state.comparison.driven_V2[i] * per_ohm * per_ohm - state.comparison.counted_A2[i]);
-}
-
-/// Steps the guard of one wheel. `periods`: number of periods summed up in current_squared_A2. `extra_s`: as in GuardTime.
+/// Steps the guard of one wheel. `periods`: number of periods in the sums of squares. `extra_s`: as in GuardPeriod.
 void step_wheel_guard(const Config& config, State& state, const Validated& validated, int i, float periods, float extra_s) {
   WheelState& wheel = state.wheel[i];
   const GuardModel& model = *config.guard;
   const ValidatedWheel& sensed = validated.wheel[i];
   // Periods are rounded up for heat, but a guard must not cool for longer than the time that has passed.
-  GuardTime time{extra_s, 1.0F, state.rounded_up};
+  GuardPeriod time{extra_s, 1.0F, state.rounded_up};
   if (const std::uint32_t more = state.rounded_up - state.guard[i].rounded_up; more != 0) {
     time.cooling_share = larger(0.0F, 1.0F - static_cast<float>(more) / (kPeriodParts_ratio * periods));
   }
-  const float rms_A = square_root(wheel.current_squared_A2 / periods + missing_A2(state, i));
+  // A current sensor that reads too low hides heat long before it contradicts the motor equation. The mean over this time is longer than
+  // the delays of samples and voltages.
+  constexpr float kHidden_s = 0.25F;
+  const float square_per_ohm2 = wheel.conductance_A_per_V * wheel.conductance_A_per_V;
+  const float counted_A2 = wheel.current_squared_A2 / periods;
+  const float hidden_A2 = square_per_ohm2 * wheel.driven_squared_V2 / periods - counted_A2;
+  time.hidden_A2 = state.guard[i].hidden_A2;
+  time.hidden_A2 += smaller(1.0F, periods * config.period_s / kHidden_s) * (hidden_A2 - time.hidden_A2);
+  const float rms_A = square_root(counted_A2 + larger(0.0F, time.hidden_A2) + square_per_ohm2 * state.comparison.hidden_V2[i]);
   const float speed_rad_per_s = sensed.speed_rad_per_s * config.gear_ratio;
   float signal[kGuardSignals];
   signal[guard_current_A] = sensed.current_A < 0.0F ? -rms_A : rms_A;
@@ -120,14 +122,29 @@ void take_stator_sample(const GuardModel& model, State& state, const Input& inpu
 
 /// Steps the guard of a wheel whose guard period has passed. A surplus of one period, from waiting, is kept for the next step, so that the
 /// guards stay apart. More, after late steps, is counted at once.
-void run_due_guard(const Config& config, State& state, const Input& input, const Validated& validated, int i, int periods) {
+void run_due_guard(const Config& config, State& state, const Input& input, const Validated& validated, int i, int waited, int periods) {
   WheelState& wheel = state.wheel[i];
-  const int late = wheel.guard_steps - periods;
-  const auto steps = static_cast<float>(wheel.guard_steps);
+  const int late = waited - periods;
+  const auto steps = static_cast<float>(waited);
   take_stator_sample(*config.guard, state, input, i);
   step_wheel_guard(config, state, validated, i, steps, late > 1 ? static_cast<float>(late) * config.period_s : 0.0F);
-  wheel.guard_steps = late == 1 ? 1 : 0;
-  wheel.current_squared_A2 = late == 1 ? wheel.current_squared_A2 * (1.0F / steps) : 0.0F;
+  wheel.guard_clock = static_cast<std::uint16_t>(state.guard_clock - (late == 1 ? 1 : 0));
+  const float kept_share = late == 1 ? 1.0F / steps : 0.0F;
+  wheel.current_squared_A2 *= kept_share;
+  wheel.driven_squared_V2 *= kept_share;
+}
+
+/// Counts the currents for the periods by which a step is late.
+[[gnu::cold, gnu::noinline]] void count_late_periods(const Config& config, State& state, const Validated& validated) {
+  const auto more = static_cast<float>(validated.guard_periods - 1);
+  for (int i = 0; i < config.wheel_count; ++i) {
+    WheelState& wheel = state.wheel[i];
+    wheel.current_squared_A2 += more * validated.wheel[i].current_A * validated.wheel[i].current_A;
+    if (wheel.is_open == 0) {
+      const float driven_V = wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * validated.wheel[i].speed_rad_per_s;
+      wheel.driven_squared_V2 += more * driven_V * driven_V;
+    }
+  }
 }
 
 }  // namespace
@@ -136,18 +153,16 @@ void run_guards(const Config& config, State& state, const Input& input, const Va
   if (config.guard == nullptr) {
     return;
   }
+  if (validated.guard_periods != 1) {
+    count_late_periods(config, state, validated);
+  }
   const int periods = periods_per_guard_step(config);
-  const auto weight = static_cast<float>(validated.guard_periods);
-  int most_steps = 0;
 #pragma GCC unroll 4
   for (int i = 0; i < config.wheel_count; ++i) {
-    WheelState& wheel = state.wheel[i];
     const float current_A = validated.wheel[i].current_A;
-    wheel.current_squared_A2 += weight * current_A * current_A;
-    const int steps = wheel.guard_steps + validated.guard_periods;
-    wheel.guard_steps = static_cast<std::uint16_t>(steps);
-    most_steps = larger(most_steps, steps);
+    state.wheel[i].current_squared_A2 += current_A * current_A;
   }
+  state.guard_clock = static_cast<std::uint16_t>(state.guard_clock + validated.guard_periods);
   if (validated.robot_fault == Reason::time_jump || validated.robot_fault == Reason::period_invalid) {
     note_gap(config, state, validated);
   }
@@ -155,16 +170,18 @@ void run_guards(const Config& config, State& state, const Input& input, const Va
   // short for that run at once.
   constexpr std::uint32_t kPeriodsPerEstimate = 32;
   const bool is_short = periods < config.wheel_count;
-  if (most_steps >= periods) {
-    for (int i = 0; i < config.wheel_count && (is_short || !validated.were_sensors_compared); ++i) {
-      if (state.wheel[i].guard_steps >= (is_short ? periods : most_steps)) {
-        run_due_guard(config, state, input, validated, i, periods);
-        if (!is_short) {
-          break;
-        }
-      }
+  bool has_run = false;
+  for (int left = is_short ? config.wheel_count : 1; left > 0; --left) {
+    const int i = state.next_guard;
+    const int waited = static_cast<std::uint16_t>(state.guard_clock - state.wheel[i].guard_clock);
+    if (waited < periods || (validated.were_sensors_compared && !is_short)) {
+      break;
     }
-  } else if (state.steps % kPeriodsPerEstimate == 1) {
+    state.next_guard = static_cast<std::uint8_t>(i == 0 ? config.wheel_count - 1 : i - 1);
+    run_due_guard(config, state, input, validated, i, waited, periods);
+    has_run = true;
+  }
+  if (!has_run && state.steps % kPeriodsPerEstimate == 1) {
     const std::uint32_t turn = state.steps / kPeriodsPerEstimate % static_cast<std::uint32_t>(config.wheel_count);
     estimate_time_to_limit(*config.guard, state.guard[turn], config.braking_reserve_K);
   }

@@ -25,7 +25,7 @@ struct WheelDemand {
   float back_V;     ///< back-EMF at the sensed speed
   float current_A;  ///< current that the wanted voltage drives
   float most_A;     ///< largest magnitude that driver, grip and guard allow
-  float share;      ///< fraction of the wanted current that the wheel's own limits allow
+  float share;      ///< wheel by wheel: fraction of the wanted current that the wheel's own limits allow
   Reason reason;    ///< reason for most_A; none: the smaller one of driver limit and grip
 };
 
@@ -49,6 +49,7 @@ void limit_demand(const Config& config, const WheelState& state, const Validated
   demand.reason = Reason::none;
   if (body.is_wheelwise) {
     demand.most_A = config.current_limit_A;
+    demand.share = 1.0F;
     demand.reason = Reason::driver_current;
   }
   if (validated.is_redundancy_reduced && (!validated.wheel[i].is_speed_sensed || !validated.is_checked)) {
@@ -211,11 +212,12 @@ float find_demands(const Config& config, State& state, const Validated& validate
     WheelDemand& each = demand[i];
     each.back_V = config.derived.geared_constant_V_s_per_rad * sensed.speed_rad_per_s;
     each.current_A = (voltage.wheel[i].wanted_V - each.back_V) * config.derived.per_lowest_resistance_A_per_V;
-    each.share = 1.0F;
     limited.wheel[i].reason = validated.common_reason;
     limit_demand(config, state.wheel[i], validated, body, i, each);
     // The limit for braking is at least as high.
-    is_hot |= !(state.wheel[i].allowed_A >= each.most_A);
+    if (!(state.wheel[i].allowed_A >= each.most_A)) [[unlikely]] {
+      is_hot = true;
+    }
     if (sensed.is_speed_known) {
       least = share_of_wheel(config, i, most_V, each, limited.wheel[i].reason, least);
     }
@@ -249,7 +251,11 @@ float find_demands(const Config& config, State& state, const Validated& validate
 
 /// Strongest reason of a wheel: faults before limits.
 Reason strongest(const WheelState& wheel, Reason limit) {
-  return (wheel.speed_fault | wheel.current_fault | wheel.guard_fault) == 0 ? limit : fault_of(wheel);
+  // Loads the three faults and is_open at once.
+  constexpr std::uint32_t kFaults = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? 0x00FFFFFFU : 0xFFFFFF00U;
+  std::uint32_t word = 0;
+  __builtin_memcpy(&word, &wheel.speed_fault, sizeof(word));
+  return (word & kFaults) == 0 ? limit : fault_of(wheel);
 }
 
 /// Limits a wheel whose voltage may exceed the current limit. Returns false if its bridge has to open. Else it lowers `kept` to the
@@ -299,10 +305,11 @@ bool is_within_by_current(const Config& config, WheelState& wheel, float sensed_
   return is_within;
 }
 
-/// Limits the wanted voltage of one wheel. Returns true if its bridge has to open.
+/// Limits the wanted voltage of one wheel. Returns true if its bridge has to open. `driven_V`: voltage minus back-EMF.
 bool finish_wheel(const Config& config, State& state, const Validated& validated, const WheelDemand& demand, int i, float most_V,
-                  LimitedWheel& end, float& kept) {
+                  LimitedWheel& end, float& kept, float& driven_V) {
   end.voltage_V = demand.back_V + config.lowest_resistance_ohm * demand.current_A;
+  driven_V = end.voltage_V - demand.back_V;
   const ValidatedWheel& sensed = validated.wheel[i];
   WheelState& wheel = state.wheel[i];
   // The common case of hold_wheel(): speeds and sensed current agree that the voltage keeps the limit.
@@ -315,7 +322,9 @@ bool finish_wheel(const Config& config, State& state, const Validated& validated
       return false;
     }
   }
-  return !hold_wheel(config, state, validated, demand, i, most_V, end, kept);
+  const bool is_held = hold_wheel(config, state, validated, demand, i, most_V, end, kept);
+  driven_V = end.voltage_V - demand.back_V;
+  return !is_held;
 }
 
 }  // namespace
@@ -329,20 +338,23 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
   state.is_limited = !body.is_open && share < 1.0F ? 1 : 0;
   // Back-calculation: the integrators follow the voltages after the limits.
   const float feedback_share = smaller(1.0F, validated.elapsed_s * config.derived.per_tracking_time_per_s);
+  const bool is_body_open = body.is_open;
   float power_W = 0.0F;
   float kept = 1.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
     WheelState& wheel = state.wheel[i];
     LimitedWheel& end = limited.wheel[i];
     end.allowed_A = demand[i].most_A;
-    end.is_open = finish_wheel(config, state, validated, demand[i], i, most_V, end, kept) || body.is_open;
+    float driven_V = 0.0F;
+    end.is_open = finish_wheel(config, state, validated, demand[i], i, most_V, end, kept, driven_V) || is_body_open;
     wheel.is_open = end.is_open ? 1 : 0;
     if (end.is_open) {
       end.voltage_V = 0.0F;
-      end.reason = body.is_open ? Reason::none : end.reason;
+      end.reason = is_body_open ? Reason::none : end.reason;
       wheel.integral_V = 0.0F;
     } else {
       power_W += end.voltage_V * demand[i].current_A;
+      wheel.driven_squared_V2 += driven_V * driven_V;
       wheel.integral_V += (end.voltage_V - voltage.wheel[i].wanted_V) * feedback_share;
     }
     wheel.earlier_V = wheel.voltage_V;

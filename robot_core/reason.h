@@ -64,7 +64,10 @@
 //
 // Without a code:
 //   - A low battery sample is no fault: a kicker may be charging. Limits use the sample; the PWM ratio uses the last open-circuit voltage.
-//   - If a current sensor reads too low, the guard still counts the heat: it compares the sensor with voltage and speed.
+//   - If a current sensor reads too low, the guard still counts the heat: it compares all samples with all voltages and speeds. A sensor
+//   that
+//     fails in step with the control loop, as a shared ADC may, hides no heat either: a winding was at most 2.2 K above its guard
+//     (tests/robot_core/sensor_heat_test.cpp).
 //   - Without a trusted current sensor a wrong wheel speed would hide heat. If one of four wheel speeds alone contradicts the others by
 //     more than 0.06 m/s plus 6 % of the speed limit, or any does with a sensor less, the guard counts the larger current of the two at its
 //     own and at the implied speed. A wheel that slides that much therefore counts as hotter than it is. Without a spare sensor it counts
@@ -101,9 +104,6 @@
 //   - Three wheels without current sensors that spin faster than the gyro can measure, with one wrong speed: the gyro stays rejected (140),
 //     and the wheel exceeds the limp current up to fourfold for a minute; the winding is up to 21 K hotter than the guard. If two wheel
 //     sensors report twice their speed, a winding reaches 187 degC at a computed 120 degC.
-//   - A current sensor that fails in step with the comparisons (every 16 periods), as an ADC shared with the control loop may: valid in each
-//     second period only, a winding was 10 K hotter than the guard, in each eighth 42 to 53 K (193 degC). A sensor that reads 0 hides the
-//     heat of a torque that is 0 in each compared period and not between them.
 //   - Three wheels, one of whose speeds drifts: its correct current sensor is distrusted (121), and a current of twice the limp current may
 //     flow for seconds. The guard counts it.
 //   - A wheel speed and the current sensor of the same wheel, both wrong: 166 degC at a computed 144 degC.
@@ -124,7 +124,8 @@
 //   - An air temperature that is too low, from the start or later: in the end the guard is too cold by the same amount.
 //   - A correct robot on slippery ground (grip below a half) with three wheels and a coarse encoder: short faults 112. A robot with a grip
 //     of 0.3 was once in 400 drives left with fault 113 without a push.
-//   - An invalid timer (102) that hides a gap longer than kWatchdog_s, in firmware without such a watchdog. If the timer reports half of the
+//   - An invalid timer (102) that hides a gap longer than kWatchdog_s, in firmware without such a watchdog. If the timer reports half of
+//   the
 //     true period, the winding is up to 18 K hotter than the guard. The same holds for firmware without a timer whose loop is too slow.
 //   - A battery sensor with a constant wrong factor since the start or a fault, or one that sinks more slowly than 0.4 % of the full
 //     battery per second, or reads too low for minutes: the voltage exceeds its limit by that factor and the current by more: twice its

@@ -218,29 +218,26 @@ bool is_wrong(const Config& config, const State& state, const Validated& validat
                                                                                  contradiction_m2_per_s2(config, state, validated, 0, 0));
 }
 
-/// Compares the counted heat with voltage and speed. A current sensor that reads too low hides heat long before it contradicts the motor
-/// equation. Without one, a wrong wheel speed hides heat: then the speed that heats more counts, its own or that of the other wheels.
+/// Without a trusted current sensor the guard counts the current from voltage and speed, and a wrong wheel speed hides heat. Then the speed
+/// that heats more counts, its own or that of the other wheels.
 void compare_heat(const Config& config, State& state, const Validated& validated, float sensed_A, bool is_speed_wrong, int i,
                   float since_s) {
   constexpr float kHeat_s = 1.0F;
   const WheelState& wheel = state.wheel[i];
-  ComparisonState& comparison = state.comparison;
   const float constant_V_s_per_rad = config.derived.geared_constant_V_s_per_rad;
-  float driven_V = wheel.is_open != 0 ? 0.0F : wheel.voltage_V - constant_V_s_per_rad * validated.wheel[i].speed_rad_per_s;
-  float counted_A = sensed_A;
-  if (!(absolute(sensed_A) <= config.derived.most_sensed_A) || wheel.is_current_distrusted != 0) {
-    counted_A = driven_V * wheel.conductance_A_per_V;
-    if (is_speed_wrong && wheel.is_open == 0) {
-      driven_V = larger(absolute(driven_V), absolute(wheel.voltage_V - constant_V_s_per_rad * validated.wheel[i].implied_rad_per_s));
+  const float counted_V = absolute(wheel.voltage_V - constant_V_s_per_rad * validated.wheel[i].speed_rad_per_s);
+  float driven_V = counted_V;
+  if (wheel.is_open == 0 && (!(absolute(sensed_A) <= config.derived.most_sensed_A) || wheel.is_current_distrusted != 0)) {
+    if (is_speed_wrong) {
+      driven_V = larger(driven_V, absolute(wheel.voltage_V - constant_V_s_per_rad * validated.wheel[i].implied_rad_per_s));
     }
     // Without a spare sensor the limits keep the limp current for every speed that the wheel may have.
-    if (!validated.is_checked && wheel.is_open == 0) {
-      driven_V = larger(absolute(driven_V), config.lowest_resistance_ohm * config.limp_current_A);
+    if (!validated.is_checked) {
+      driven_V = larger(driven_V, config.lowest_resistance_ohm * config.limp_current_A);
     }
   }
-  const float share = smaller(1.0F, since_s / kHeat_s);
-  comparison.driven_V2[i] += share * (driven_V * driven_V - comparison.driven_V2[i]);
-  comparison.counted_A2[i] += share * (counted_A * counted_A - comparison.counted_A2[i]);
+  ComparisonState& comparison = state.comparison;
+  comparison.hidden_V2[i] += smaller(1.0F, since_s / kHeat_s) * (driven_V * driven_V - counted_V * counted_V - comparison.hidden_V2[i]);
 }
 
 /// Rejects the wrong sensor, and that of an opposite wheel, which contradicts the others almost equally. The right one then agrees with the

@@ -196,15 +196,18 @@ namespace {
 
 }  // namespace
 
-GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K, const GuardTime& time) {
+GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K, const GuardPeriod& time) {
   GuardOutput out;
   out.allowed_A = out.allowed_braking_A = 0.0F;
   const float unknown_s = gap_s(state);
   out.was_started = is_started(model, state) && is_finite(unknown_s);
   if (!out.was_started) {
     start_guard(model, state, model.winding_limit_C);
-  } else if (unknown_s != 0.0F) {
-    heat_for_gap(model, state, unknown_s);
+  } else {
+    state.hidden_A2 = time.hidden_A2;
+    if (unknown_s != 0.0F) {
+      heat_for_gap(model, state, unknown_s);
+    }
   }
   float validated[kGuardSignals];
   const Replaced replaced = replace_implausible(model, signal, validated);

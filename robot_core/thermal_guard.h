@@ -62,6 +62,8 @@ struct alignas(8) GuardState {
   float time_to_limit_s = 0.0F;  ///< estimated time until the allowed current falls below the present load; kLongTime_s: never
   std::uint32_t steps = 0;
   std::uint32_t rounded_up = 0;  ///< State::rounded_up in the last step
+  float hidden_A2 = 0.0F;        ///< leaky mean square of the current by voltage and speed minus that of the counted current
+  std::uint32_t unused = 0;
   // The check sum ends here. A gap changes between the guard's steps, and its complement costs less time than a new check sum.
   std::uint32_t gap_bits = 0;  ///< time with unknown current that the temperatures do not include yet, a float in s
   std::uint32_t gap_complement = ~0U;
@@ -96,17 +98,18 @@ void set_gap(GuardState& state, float gap_s);
 /// gap of more than 1 s it starts at its temperature limit.
 void add_gap(GuardState& state, float added_s);
 
-/// Time since the last step of a guard.
-struct GuardTime {
+/// Time since the last step of a guard, and values that the guard keeps for its caller.
+struct GuardPeriod {
   float extra_s = 0.0F;          ///< time beyond the guard period; counts for heating but not for cooling
   float cooling_share = 1.0F;    ///< share of the guard period that counts for cooling
   std::uint32_t rounded_up = 0;  ///< value for GuardState::rounded_up
+  float hidden_A2 = 0.0F;        ///< value for GuardState::hidden_A2
 };
 
 /// Runs one guard period. `signal` has kGuardSignals values; its current flowed since the last call. `braking_reserve_K` is kept free below
 /// the limit for braking: the driving current is read from the table for a winding that much hotter.
 GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K,
-                       const GuardTime& time = {});
+                       const GuardPeriod& time = {});
 
 /// Updates GuardState::time_to_limit_s. Extrapolates the smoothed heating linearly at the present load: too short near the steady state.
 void estimate_time_to_limit(const GuardModel& model, GuardState& state, float braking_reserve_K);

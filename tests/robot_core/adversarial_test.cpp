@@ -197,6 +197,17 @@ class Episode {
            static_cast<double>(config_.lowest_resistance_ohm);
   }
 
+  /// The twin's State gets the applied voltage instead of its own, also in the sum that its guard compares with the sensed current.
+  void give_twin_the_voltage(const Output& out, int i) {
+    robot_core::WheelState& wheel = twin_.wheel[i];
+    const float back_V = config_.derived.geared_constant_V_s_per_rad * wheel.raw_speed_rad_per_s;
+    const auto square_V2 = [&] { return wheel.is_open != 0 ? 0.0F : (wheel.voltage_V - back_V) * (wheel.voltage_V - back_V); };
+    wheel.driven_squared_V2 -= square_V2();
+    wheel.voltage_V = out.is_open[i] ? 0.0F : static_cast<float>(static_cast<double>(out.pwm_ratio[i]) * plant_.battery_V());
+    wheel.is_open = out.is_open[i] ? 1 : 0;
+    wheel.driven_squared_V2 += square_V2();
+  }
+
   void check(const Output& out, const Output& of_twin, Mode mode) {
     // Within a period the contact may change the wheel's speed by this much against the voltage.
     const double margin_A = static_cast<double>(config_.derived.geared_constant_V_s_per_rad) *
@@ -221,9 +232,7 @@ class Episode {
       tally_.unexplained += unexplained_A > 0.0 ? 1 : 0;
       tally_.largest_unexplained_A = std::max(tally_.largest_unexplained_A, unexplained_A);
       tally_.alarms_of_twin += robot_core::is_fault(of_twin.reason[i]) && of_twin.reason[i] != robot_core::Reason::guard_unknown ? 1 : 0;
-      // The twin's State gets the applied voltage instead of its own.
-      twin_.wheel[i].voltage_V = out.is_open[i] ? 0.0F : static_cast<float>(static_cast<double>(out.pwm_ratio[i]) * plant_.battery_V());
-      twin_.wheel[i].is_open = out.is_open[i] ? 1 : 0;
+      give_twin_the_voltage(out, i);
     }
     seal(twin_);
     plant_.move(out);

@@ -46,7 +46,7 @@ Guards run(int least, int most) {
     robot_core::step(config, state, input);
     guards.most_at_once = std::max(guards.most_at_once, steps() - before);
     for (const robot_core::WheelState& wheel : state.wheel) {
-      guards.most_waiting = std::max<int>(guards.most_waiting, wheel.guard_steps);
+      guards.most_waiting = std::max<int>(guards.most_waiting, static_cast<std::uint16_t>(state.guard_clock - wheel.guard_clock));
     }
   }
   guards.winding_C = 1000.0;

@@ -112,6 +112,59 @@ TEST(SensorHeat, CurrentSensorThatReadsTooLittleHidesNoHeat) {
   }
 }
 
+/// Largest difference between a winding and its guard within 10 s. The wheels, on rubber, work against each other. `change` gets the step.
+double most_above_guard_K(const Config& config, const std::function<void(Input&, int)>& change) {
+  Truth truth;
+  truth.grip_ratio = 2.0;
+  Plant plant(config, truth);
+  State state;
+  Random random(3);
+  EXPECT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
+  const std::array<float, 4> torque = torques_against_each_other(config);
+  double most_K = -1e9;
+  for (int k = 0; k < 10'000; ++k) {
+    Input input = plant.sense(random, 0.3F, true);
+    input.command.mode = Mode::wheel_torque;
+    for (std::size_t i = 0; i < 4; ++i) {
+      input.command.wheel_torque_Nm[i] = 0.3F * torque.at(i);
+    }
+    change(input, k);
+    const Output out = robot_core::step(config, state, input);
+    plant.move(out);
+    for (int i = 0; i < 4; ++i) {
+      most_K = std::max(most_K, plant.winding_C(i) - static_cast<double>(out.winding_C[i]));
+    }
+  }
+  return most_K;
+}
+
+// An ADC that the control loop shares may fail in step with it. The sensors are compared with each other in some of the steps only.
+TEST(SensorHeat, CurrentSensorThatFailsInStepHidesNoHeat) {
+  const Config config = make_config(4);
+  for (const int period : {2, 4, 8, 15, 16, 17, 32}) {
+    double valid_in_one_K = -1e9;
+    double without_torque_in_one_K = -1e9;
+    for (int phase = 0; phase < period; ++phase) {
+      const auto is_chosen = [&](int k) { return k % period == phase; };
+      valid_in_one_K = std::max(valid_in_one_K, most_above_guard_K(config, [&](Input& input, int k) {
+                                  if (!is_chosen(k)) {
+                                    std::ranges::fill(input.motor_current_A, 0.0F);
+                                  }
+                                }));
+      without_torque_in_one_K = std::max(without_torque_in_one_K, most_above_guard_K(config, [&](Input& input, int k) {
+                                           std::ranges::fill(input.motor_current_A, 0.0F);
+                                           if (is_chosen(k)) {
+                                             std::ranges::fill(input.command.wheel_torque_Nm, 0.0F);
+                                           }
+                                         }));
+    }
+    std::printf("period %d: valid in one step %.1f K above the guard; always 0, torque except in one step %.1f K\n", period, valid_in_one_K,
+                without_torque_in_one_K);
+    EXPECT_LT(valid_in_one_K, 3.0) << period;
+    EXPECT_LT(without_torque_in_one_K, 3.0) << period;
+  }
+}
+
 TEST(SensorHeat, AirSensorThatBecomesColdHidesNoHeat) {
   const Config config = make_config(4);
   const Heat truthful = push(
