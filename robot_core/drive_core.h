@@ -215,8 +215,8 @@ struct alignas(8) ComparisonState {
   float evidence_s[kMostWheels] = {};
   float with_V_rad_per_s[6] = {};     ///< per pair of wheels: leaky sum of evidence that its currents accelerate its speed difference
   float against_V_rad_per_s[6] = {};  ///< per pair of wheels: leaky sum of evidence that its currents decelerate that difference
-  /// Leaky mean of the squared voltage minus back-EMF at the other speed that a wheel without a trusted current sensor may have, minus the
-  /// square at its validated speed.
+  /// Squared voltage minus back-EMF at the other speed that a wheel without a trusted current sensor may have, minus the square at its
+  /// validated speed, in the last comparison.
   float hidden_V2[kMostWheels] = {};
   float residual_m2_per_s2 = 0.0F;  ///< leaky mean square of the samples' residuals against one motion of the body
   float yaw_disagreement_s = 0.0F;

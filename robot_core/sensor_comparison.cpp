@@ -220,9 +220,7 @@ bool is_wrong(const Config& config, const State& state, const Validated& validat
 
 /// Without a trusted current sensor the guard counts the current from voltage and speed, and a wrong wheel speed hides heat. Then the speed
 /// that heats more counts, its own or that of the other wheels.
-void compare_heat(const Config& config, State& state, const Validated& validated, float sensed_A, bool is_speed_wrong, int i,
-                  float since_s) {
-  constexpr float kHeat_s = 1.0F;
+void compare_heat(const Config& config, State& state, const Validated& validated, float sensed_A, bool is_speed_wrong, int i) {
   const WheelState& wheel = state.wheel[i];
   const float constant_V_s_per_rad = config.derived.geared_constant_V_s_per_rad;
   const float counted_V = absolute(wheel.voltage_V - constant_V_s_per_rad * validated.wheel[i].speed_rad_per_s);
@@ -236,8 +234,7 @@ void compare_heat(const Config& config, State& state, const Validated& validated
       driven_V = larger(driven_V, config.lowest_resistance_ohm * config.limp_current_A);
     }
   }
-  ComparisonState& comparison = state.comparison;
-  comparison.hidden_V2[i] += smaller(1.0F, since_s / kHeat_s) * (driven_V * driven_V - counted_V * counted_V - comparison.hidden_V2[i]);
+  state.comparison.hidden_V2[i] = driven_V * driven_V - counted_V * counted_V;
 }
 
 /// Rejects the wrong sensor, and that of an opposite wheel, which contradicts the others almost equally. The right one then agrees with the
@@ -304,7 +301,7 @@ void compare_heat(const Config& config, State& state, const Validated& validated
     }
   }
   wheel.has_spoken_wrongly = 0;
-  compare_heat(config, state, validated, input.motor_current_A[i], is_wrong_now, i, since_s);
+  compare_heat(config, state, validated, input.motor_current_A[i], is_wrong_now, i);
 }
 
 /// Returns true if the evidence that does not depend on pushes also speaks for a swap of two sensors: their exchange makes four speeds fit
