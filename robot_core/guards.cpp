@@ -46,6 +46,12 @@ float nominal_conductance_A_per_V(const Config& config, const GuardState& guard,
   return config.derived.per_resistance_A_per_V / (1.0F + config.resistance_rise_per_K * warm_K);
 }
 
+/// Square of the current that the guard takes for one with the given square: an implausible current is replaced.
+float plausible_square_A2(const GuardModel& model, float square_A2) {
+  const PlausibleRange& range = model.plausible_range[guard_current_A];
+  return range.is_used && square_A2 > range.most * range.most ? range.possible[0] * range.possible[0] : square_A2;
+}
+
 /// Steps the guard of one wheel. `periods`: number of periods in the sums of squares. `extra_s`: as in GuardPeriod.
 void step_wheel_guard(const Config& config, State& state, const Validated& validated, int i, float periods, float extra_s) {
   WheelState& wheel = state.wheel[i];
@@ -61,7 +67,7 @@ void step_wheel_guard(const Config& config, State& state, const Validated& valid
   constexpr float kHidden_s = 0.25F;
   const float square_per_ohm2 = wheel.conductance_A_per_V * wheel.conductance_A_per_V;
   const float counted_A2 = wheel.current_squared_A2 / periods;
-  const float hidden_A2 = square_per_ohm2 * wheel.driven_squared_V2 / periods - counted_A2;
+  const float hidden_A2 = square_per_ohm2 * wheel.driven_squared_V2 / periods - plausible_square_A2(model, counted_A2);
   time.hidden_A2 = state.guard[i].hidden_A2;
   time.hidden_A2 += smaller(1.0F, periods * config.period_s / kHidden_s) * (hidden_A2 - time.hidden_A2);
   const float rms_A = square_root(counted_A2 + larger(0.0F, time.hidden_A2) + square_per_ohm2 * state.comparison.hidden_V2[i]);

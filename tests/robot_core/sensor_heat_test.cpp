@@ -165,6 +165,25 @@ TEST(SensorHeat, CurrentSensorThatFailsInStepHidesNoHeat) {
   }
 }
 
+// The guard replaces an implausible current. Only what it counts may be set off against the heat that a sensor hides.
+TEST(SensorHeat, ImplausibleSpikesOfAFailingSensorHideNoHeat) {
+  const Config config = make_config(4);
+  const float implausible_A = 2.0F * config.guard->plausible_range[robot_core::guard_current_A].most;
+  // The sample of the comparison is correct, and spikes as long as a guard period come in step with it or at any time.
+  for (const int steps_between : {496, 311}) {
+    double most_K = -1e9;
+    for (const int phase : {0, 8}) {
+      most_K = std::max(most_K, most_above_guard_K(config, [&](Input& input, int k) {
+                          if (k % 16 != phase) {
+                            std::ranges::fill(input.motor_current_A, k % steps_between < 16 ? implausible_A : 0.0F);
+                          }
+                        }));
+    }
+    std::printf("spikes every %d steps: %.1f K above the guard\n", steps_between, most_K);
+    EXPECT_LT(most_K, 3.0) << steps_between;
+  }
+}
+
 TEST(SensorHeat, AirSensorThatBecomesColdHidesNoHeat) {
   const Config config = make_config(4);
   const Heat truthful = push(
