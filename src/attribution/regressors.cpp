@@ -11,9 +11,6 @@
 namespace heatsoak::attribution {
 namespace {
 
-/// Signals with a larger correlation are copies; the earlier one is kept.
-constexpr double kSameCorrelation_ratio = 0.9995;
-
 Regressor driver_of(std::string name, std::string unit, DriverKind kind) {
   Regressor driver;
   driver.name = std::move(name);
@@ -73,38 +70,20 @@ class Collector {
     driver.low = known[known.size() / 100];
     driver.high = known[known.size() - 1 - known.size() / 100];
     const double size = std::max(std::abs(driver.low), std::abs(driver.high));
-    if (!(driver.high - driver.low > 1e-6 * size) || is_copy(driver)) {
+    constexpr double kPoint_share = 1e-6;
+    if (!(driver.high - driver.low > kPoint_share * size)) {
       return;
     }
     double width = driver.high - driver.low;
     for (const std::size_t part : {10, 4}) {
       const double low = known[known.size() / part];
       const double high = known[known.size() - 1 - known.size() / part];
-      if (high - low < 0.8 * width && high - low > 0.02 * (driver.high - driver.low)) {
+      if (high - low < width && high - low > kPoint_share * (driver.high - driver.low)) {
         driver.inner.push_back({low, high});
         width = high - low;
       }
     }
     kept_.push_back(std::move(driver));
-  }
-
-  [[nodiscard]] bool is_copy(const Regressor& driver) const {
-    return std::ranges::any_of(kept_,
-                               [&](const Regressor& other) { return std::abs(correlation(driver, other)) > kSameCorrelation_ratio; });
-  }
-
-  static double correlation(const Regressor& a, const Regressor& b) {
-    double count = 0.0, sum_a = 0.0, sum_b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
-    for (std::size_t r = 0; r < a.values.size(); ++r) {
-      for (Eigen::Index k = 0; k < a.values[r].size(); ++k) {
-        const double x = a.values[r][k], y = b.values[r][k];
-        if (!std::isnan(x) && !std::isnan(y)) {
-          count += 1.0, sum_a += x, sum_b += y, aa += x * x, bb += y * y, ab += x * y;
-        }
-      }
-    }
-    const double spread = (aa - sum_a * sum_a / count) * (bb - sum_b * sum_b / count);
-    return count > 0.0 && spread > 0.0 ? (ab - sum_a * sum_b / count) / std::sqrt(spread) : 0.0;
   }
 
   const std::vector<estimation::MeasuredRun>& runs_;
@@ -117,7 +96,6 @@ void add_operating_points(Collector& all) {
     if (each.is_driver) {
       all.add_where({each.signal.value()}, std::string(each.name), std::string(each.unit), [&](const Point& at) { return at.*each.value; });
     }
-    // The later of two signals that are nearly copies is left out.
     if (each.signal == thermal::Signal::input_power) {
       all.add_where({thermal::Signal::current, thermal::Signal::speed}, "current_speed_squared", "A rad2/s2",
                     [](const Point& at) { return at.current_rms_A * at.speed_rms_rad_per_s * at.speed_rms_rad_per_s; });

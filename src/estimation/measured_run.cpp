@@ -13,16 +13,16 @@
 #include "estimation/log_rows.h"
 #include "estimation/row_steps.h"
 #include "estimation/segment_inputs.h"
+#include "estimation/thresholds.h"
 #include "recording/noise.h"
 #include "recording/row_order.h"
 
 namespace heatsoak::estimation {
 namespace {
 
-/// A segment with fewer samples contains no information about thermal time constants.
-constexpr std::size_t kLeastSamples = 10;
-/// 10 s plus a margin for rounding errors of the time stamps.
-constexpr double kLongestPause_s = 10.0 * (1.0 + 1e-6);
+std::size_t least_samples() { return static_cast<std::size_t>(thresholds().least_rows_count); }
+/// The margin is for rounding errors of the time stamps.
+double longest_pause_s() { return thresholds().longest_pause_s * (1.0 + 1e-6); }
 
 /// Assigns temperatures of a recording to nodes. If a recording has two for one node, the first is used.
 struct SensorPlace {
@@ -86,7 +86,7 @@ class Builder {
   MeasuredRuns build() {
     check();
     for (const auto& [begin, end] : segments()) {
-      const double longest_s = std::max(recording::kLongestStep_ratio * steps_of(begin, end).usual_s, kLongestPause_s);
+      const double longest_s = std::max(recording::kLongestStep_ratio * steps_of(begin, end).usual_s, longest_pause_s());
       for (std::size_t first = begin; first < end;) {
         std::size_t last = first;
         while (last + 1 < end && rows_.is_known(last)) {
@@ -101,11 +101,10 @@ class Builder {
       throw base::Failure(
           base::ExitCode::cannot_answer,
           fmt::format("{}: no interval of {} rows or more has temperatures and all heat inputs: {}; see `heatsoak log inspect {}`",
-                      recording_.name, kLeastSamples, fmt::join(reasons_of_loss(), ", "), recording_.file.string()));
+                      recording_.name, least_samples(), fmt::join(reasons_of_loss(), ", "), recording_.file.string()));
     }
-    constexpr double kMostUnused_share = 0.1;
     const std::size_t unused = recording_.rows() - used_rows_;
-    if (static_cast<double>(unused) > kMostUnused_share * static_cast<double>(recording_.rows())) {
+    if (static_cast<double>(unused) > thresholds().most_unused_share * static_cast<double>(recording_.rows())) {
       all_.notes.push_back(fmt::format("{}: {} of {} rows are not used: {}", recording_.name, unused, recording_.rows(),
                                        fmt::join(reasons_of_loss(), ", ")));
     }
@@ -134,10 +133,10 @@ class Builder {
   }
 
   [[nodiscard]] bool is_pause(std::size_t last, std::size_t first, double usual_s) const {
-    constexpr double kJump_K = 5.0;
     const double step_s = recording_.time_s[first] - recording_.time_s[last];
-    return step_s > recording::kLongestStep_ratio * usual_s && step_s <= kLongestPause_s &&
-           std::ranges::none_of(sensor_values_, [&](const auto* values) { return std::abs((*values)[first] - (*values)[last]) > kJump_K; });
+    return step_s > recording::kLongestStep_ratio * usual_s && step_s <= longest_pause_s() &&
+           std::ranges::none_of(sensor_values_,
+                                [&](const auto* values) { return std::abs((*values)[first] - (*values)[last]) > thresholds().jump_K; });
   }
 
   void check() const {
@@ -186,7 +185,7 @@ class Builder {
     if (reasons.empty()) {
       const double whole_s = recording_.time_s.back() - recording_.time_s.front();
       reasons.push_back(all_.runs.empty() ? fmt::format("its {} s make fewer than {} intervals of {} s", base::significant(whole_s, 2),
-                                                        kLeastSamples - 1, base::significant(options_.longest_step_s, 2))
+                                                        least_samples() - 1, base::significant(options_.longest_step_s, 2))
                                           : std::string("intervals are too short"));
     }
     return reasons;
@@ -208,12 +207,12 @@ class Builder {
     return std::ranges::any_of(sensor_values_, [&](const auto* values) { return !std::isnan((*values)[row]); });
   }
 
-  /// Appends rows first … last as one run; skips it if fewer than kLeastSamples remain.
+  /// Appends rows first … last as one run; skips it if fewer than least_samples() remain.
   void take(std::size_t first, std::size_t last) {
     while (first < last && (!is_sampled(first) || !rows_.is_known(first))) {
       ++first;
     }
-    if (last < first + kLeastSamples - 1) {
+    if (last < first + least_samples() - 1) {
       return;
     }
     MeasuredRun run;
@@ -250,7 +249,7 @@ class Builder {
             sample_at(time_s, *sensor_values_[sensor], first, last + 1, kept[k], reach_s);
       }
     }
-    if (kept.size() >= kLeastSamples) {
+    if (kept.size() >= least_samples()) {
       run.name = all_.runs.empty() ? recording_.name : fmt::format("{}#{}", recording_.name, all_.runs.size() + 1);
       run.columns = columns_along(recording_, run.time_s);
       set_columns(run, options_.columns);
