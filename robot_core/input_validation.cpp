@@ -11,6 +11,7 @@ constexpr float kFastestYaw_rad_per_s = 60.0F;
 constexpr float kYawJump_rad_per_s = 10.0F;
 constexpr float kHottestAir_C = 120.0F;
 constexpr int kMostSameSteps = 60000;
+constexpr float kDead_s = 1.0F;  // a rejected sample that is constant for this time is not the correct one
 
 constexpr std::uint8_t code(Reason reason) { return static_cast<std::uint8_t>(reason); }
 
@@ -276,6 +277,18 @@ void find_from_all(const Config& config, Validated& validated) {
   }
 }
 
+/// True if a rejected sample may be the correct one: without a spare sensor and a current sensor, if it jumped or was constant, unless it
+/// stays constant.
+bool is_rejection_doubtful(const Config& config, const State& state, const Validated& validated) {
+  bool is_any_doubtful = false;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    const WheelState& wheel = state.wheel[i];
+    const bool may_be_correct = wheel.speed_fault == code(Reason::wheel_speed_jump) || wheel.speed_fault == code(Reason::wheel_speed_stuck);
+    is_any_doubtful |= may_be_correct && wheel.has_current == 0 && static_cast<float>(wheel.same_steps) * config.period_s < kDead_s;
+  }
+  return is_any_doubtful && !validated.is_checked;
+}
+
 /// Calculates speeds and body velocity from the remaining sensors if some are missing.
 [[gnu::cold]] void find_from_some(const Config& config, const State& state, Validated& validated) {
   const float turning_m_per_s = config.contact_radius_m * validated.velocity.yaw;
@@ -295,7 +308,7 @@ void find_from_all(const Config& config, Validated& validated) {
   }
   validated.velocity.x = all.x_m_per_s;
   validated.velocity.y = all.y_m_per_s;
-  validated.are_samples_compared = !is_known;
+  validated.are_samples_compared = !is_known || is_rejection_doubtful(config, state, validated);
   float disagreement_m_per_s = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelConfig& wheel = config.wheel[i];
@@ -320,7 +333,7 @@ void find_from_all(const Config& config, Validated& validated) {
     found.implied_rad_per_s = found.speed_rad_per_s;
   }
   validated.spread_V = config.derived.spread_V_s_per_m * disagreement_m_per_s;
-  if (!is_known && is_wheel_compared(state)) {
+  if (validated.are_samples_compared) {
     compare_samples(config, state, validated);
   }
 }
@@ -357,9 +370,11 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, V
   count_same(wheel, change_rad_per_s);
   const bool is_possible = absolute(sample) <= config.fastest_wheel_rad_per_s;  // false for NaN
   wheel.raw_speed_rad_per_s = is_possible ? sample : 0.0F;
-  if (!is_possible || absolute(change_rad_per_s) > jump_rad_per_s) {
+  const bool is_jump = !(absolute(change_rad_per_s) <= jump_rad_per_s);
+  if (!is_possible || is_jump) {
     wheel.has_spoken_wrongly = 1;
-    const Reason fault = is_possible ? Reason::wheel_speed_jump : Reason::wheel_speed_missing;
+    // Without a jump a sample too large is no disturbance, but a wrong scale.
+    const Reason fault = !is_jump ? Reason::wheel_speed_wrong : is_possible ? Reason::wheel_speed_jump : Reason::wheel_speed_missing;
     wheel.speed_fault = wheel.speed_fault == 0 ? code(fault) : wheel.speed_fault;
   }
   validated.is_speed_sensed = wheel.speed_fault == 0;

@@ -104,9 +104,14 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
 [[gnu::cold, gnu::noinline]] bool move_into_window(const Config& config, const State& state, const Validated& validated,
                                                    const WheelDemand& demand, int i, float& voltage_V) {
   const float band_V = config.lowest_resistance_ohm * demand.most_A;
-  // Without a spare sensor a single set of sensors determines each speed.
-  const float speed_rad_per_s = validated.wheel[i].speed_rad_per_s;
-  SpeedRange range = validated.is_checked ? speed_range(config, state, validated, i) : SpeedRange{speed_rad_per_s, speed_rad_per_s};
+  // Without a spare sensor a single set of sensors determines each speed, and all samples do if a rejected one may be correct.
+  const ValidatedWheel& sensed = validated.wheel[i];
+  SpeedRange range =
+      validated.is_checked ? speed_range(config, state, validated, i) : SpeedRange{sensed.speed_rad_per_s, sensed.speed_rad_per_s};
+  if (validated.are_samples_compared) {
+    range.add(state.wheel[i].raw_speed_rad_per_s);
+    range.add(sensed.implied_rad_per_s);
+  }
   if (validated.common_reason != Reason::none) {
     range.add(0.0F);
   }

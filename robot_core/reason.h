@@ -23,8 +23,8 @@
 // | 106 R  | pose target without planner, or with a pose not finite or   | all bridges open: the robot rolls out             | next valid pose                 |
 // |        | Input::pose_age_s not a number, negative or above           |                                                   |                                 |
 // |        | Config::command_timeout_s                                   |                                                   |                                 |
-// | 110 W  | wheel speed not finite or above fastest_wheel_rad_per_s     | speed from the other wheels and the gyro,         | kSteadyAgain_s of agreement     |
-// |        |                                                             | current at most Config::limp_current_A            |                                 |
+// | 110 W  | wheel speed not finite, or above fastest_wheel_rad_per_s    | speed from the other wheels and the gyro,         | kSteadyAgain_s of agreement     |
+// |        | after a jump                                                | current at most Config::limp_current_A            |                                 |
 // | 111 W  | wheel speed changes by more than the motor can accelerate   | as 110                                            | as 110                          |
 // |        | within the periods since the last step, in a gap within one |                                                   |                                 |
 // | 112 W  | wheel speed constant in contradiction to all other sensors  | as 110                                            | as 110                          |
@@ -42,7 +42,8 @@
 // | 117 W  | one of four wheel speeds alone contradicts the others and   | as 110; also an opposite wheel that contradicts   | kSteadyAgain_s of agreement     |
 // |        | the gyro for a second more than not, while a velocity or    | the rest as much, until it agrees with the rest   | while the wheel turns           |
 // |        | pose is commanded: wrong sign, scale or offset, or long     |                                                   |                                 |
-// |        | slipping; the other sensors must be accepted                |                                                   |                                 |
+// |        | slipping; the other sensors must be accepted. Or a speed    |                                                   |                                 |
+// |        | rises above fastest_wheel_rad_per_s without a jump          |                                                   |                                 |
 // | 120 W  | motor current seen once, also before a restart; now not     | current from voltage, speed and guard temperature | next valid sample               |
 // |        | finite or more than the battery can drive                   |                                                   |                                 |
 // | 121 W  | motor current contradicts voltage and speed: a stuck        | as 120; the guard uses the larger magnitude; a    | kSteadyAgain_s of agreement     |
@@ -66,7 +67,9 @@
 //   - If a current sensor reads too low, the guard still counts the heat: it compares the sensor with voltage and speed.
 //   - Without a trusted current sensor a wrong wheel speed would hide heat. If one of four wheel speeds alone contradicts the others by
 //     more than 0.06 m/s plus 6 % of the speed limit, or any does with a sensor less, the guard counts the larger current of the two at its
-//     own and at the implied speed. A wheel that slides that much therefore counts as hotter than it is.
+//     own and at the implied speed. A wheel that slides that much therefore counts as hotter than it is. Without a spare sensor it counts
+//     at least the limp current, and a sample rejected by code 111 or 112 may be the correct one, unless it stays constant for a second:
+//     the voltage then keeps the limp current for that sample, too, or the bridge opens.
 //   - If the sample of the air temperature falls, the core follows it by at most 0.02 K/s; if it rises, by at most 0.01 K per step. A
 //     stator sample above the guard's temperature raises it by at most 2 K per guard step.
 //   - Periods of unequal length are rounded up for heat; a guard cools only for the time that has passed.
@@ -95,10 +98,9 @@
 //     0.06 m/s plus 6 % of the speed limit are not found, larger ones of a fifth come and go with the speed, and none is found on three
 //     wheels. Where opposite wheels are parallel, nothing tells which one is wrong: both stay rejected until the robot turns, without
 //     current sensors with open bridges (114). A slipping wheel with a faulty speed sensor and no current sensor may exceed its limit.
-//   - Without current sensors and with wheel torques commanded, a wheel speed that is too high by a factor of two or more. If it passes the
-//     fastest speed it is rejected (110) and accepted again; meanwhile a standing wheel can be rejected instead (112). In simulation a
-//     winding then reached 173 degC (limit 155 degC) at a computed 45 degC, with up to three times the allowed current for seconds. On
-//     three wheels the same happens without 110. Two wheel speeds of twice their value hide heat, too: 187 degC at a computed 120 degC.
+//   - Without current sensors and with wheel torques commanded: three wheels with one wrong speed that spin faster than the gyro can
+//     measure exceed the limp current up to fourfold for seconds. Two wheel speeds of twice their value hide heat: 187 degC at a computed
+//     120 degC.
 //   - A wheel speed and the current sensor of the same wheel, both wrong: 166 degC at a computed 144 degC.
 //   - A wheel that carries less than a third of its load slides so often that it can get fault 117, and recovers only now and then: with a
 //     tenth of its load the robot loses up to 40 % of its speed.

@@ -233,6 +233,10 @@ void compare_heat(const Config& config, State& state, const Validated& validated
     if (is_speed_wrong && wheel.is_open == 0) {
       driven_V = larger(absolute(driven_V), absolute(wheel.voltage_V - constant_V_s_per_rad * validated.wheel[i].implied_rad_per_s));
     }
+    // Without a spare sensor the limits keep the limp current for every speed that the wheel may have.
+    if (!validated.is_checked && wheel.is_open == 0) {
+      driven_V = larger(absolute(driven_V), config.lowest_resistance_ohm * config.limp_current_A);
+    }
   }
   const float share = smaller(1.0F, since_s / kHeat_s);
   comparison.driven_V2[i] += share * (driven_V * driven_V - comparison.driven_V2[i]);

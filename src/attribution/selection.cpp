@@ -64,7 +64,7 @@ class Selector : Rounds {
       return;
     }
     const std::vector<ScanResult>& scan = out_.rounds.back().scan;
-    if (!scan.empty() && scan.front().gain_nats > estimation::decisive_nats()) {
+    if (!scan.empty() && scan.front().gain_nats > estimation::thresholds().curve_gain_nats) {
       if (const std::optional<std::size_t> same = same_effect(best, scan.front())) {
         if (std::ranges::find(named, *same) == named.end()) {
           named.push_back(*same);

@@ -6,12 +6,9 @@
 #include <variant>
 #include <vector>
 
-namespace heatsoak::calibration {
+#include "estimation/findings.h"
 
-/// A remark of the estimation, already in words.
-struct Remark {
-  std::string words;
-};
+namespace heatsoak::calibration {
 
 /// The terminal resistance keeps its stated value. All heat capacities and resistances scale with it.
 struct ResistanceHeld {};
@@ -53,6 +50,6 @@ struct BandIsEstimated {
   std::string motor;
 };
 /// Assumption of a forecast.
-using PredictionNote = std::variant<BandIncludesLossAtSpeed, BandIsEstimated, Remark>;
+using PredictionNote = std::variant<BandIncludesLossAtSpeed, BandIsEstimated, estimation::RunNote>;
 
 }  // namespace heatsoak::calibration

@@ -38,7 +38,7 @@ bool has_speed(const recording::Recording& recording) {
 /// Reads the runs of all recordings. If the heat follows from the current, a log with a speed column needs a speed in every row; a log
 /// without that column is accepted.
 std::vector<estimation::MeasuredRun> runs_of(std::span<const recording::Recording> recordings,
-                                             const estimation::MeasuredRunOptions& options, std::vector<std::string>& notes) {
+                                             const estimation::MeasuredRunOptions& options, std::vector<estimation::RunNote>& notes) {
   std::vector<estimation::MeasuredRun> all;
   for (const recording::Recording& recording : recordings) {
     estimation::MeasuredRunOptions here = options;
@@ -69,14 +69,14 @@ class Calibrating {
     std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.findings));
     std::ranges::move(held_sensors(motor, recordings_), std::back_inserter(all_.findings));
     estimation::MeasuredRunOptions how = how_to_read(motor, setup_.heat);
-    if (std::string lacking = estimation::columns_lacking(how.columns, recordings_); !lacking.empty()) {
-      add_remarks({std::move(lacking)});
+    if (std::optional<estimation::ColumnsLacking> lacking = estimation::columns_lacking(how.columns, recordings_)) {
+      all_.findings.emplace_back(estimation::RunNote(*std::move(lacking)));
     }
     how.needed = all_.motor_model.needed;
     how.ambient_C = options_.ambient_C;
-    std::vector<std::string> remarks;
-    all_.runs = runs_of(recordings_, how, remarks);
-    add_remarks(remarks);
+    std::vector<estimation::RunNote> notes;
+    all_.runs = runs_of(recordings_, how, notes);
+    std::ranges::move(notes, std::back_inserter(all_.findings));
     std::ranges::transform(recordings_, std::back_inserter(all_.fitted), recording::name_and_fingerprint);
     all_.training = motor.fit ? motor.fit->training : motor::TrainingRange{};
     widen(all_.training, recordings_);
@@ -108,12 +108,6 @@ class Calibrating {
   }
 
  private:
-  void add_remarks(const std::vector<std::string>& remarks) {
-    for (const std::string& each : remarks) {
-      all_.findings.push_back(Remark{each});
-    }
-  }
-
   /// Runs the forecast fit to whole runs, and writes its parameters if they predict better.
   void forecast() {
     const ForecastModel base = setup_.model();

@@ -126,8 +126,9 @@ void require_brushless(std::string_view controller, const Derating& derating) {
 }
 
 void require_three_signals(std::string_view controller, const Derating& derating) {
-  for (std::size_t i = observed::vehicle_speed; i < observed::kSignalCount; ++i) {
-    if (derating.observer.uses(static_cast<observed::Signal>(i))) {
+  for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
+    const bool is_searched = observed::signals()[i].worst == thermal::WorstCase::searched;
+    if (is_searched && derating.observer.uses(static_cast<observed::Signal>(i))) {
       throw base::Failure(base::ExitCode::bad_input,
                           fmt::format("{} cannot express the effects {}: one of them depends on {}, which the controller does "
                                       "not know; use --to c_header",

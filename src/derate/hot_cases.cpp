@@ -1,6 +1,7 @@
 #include "derate/hot_cases.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -44,12 +45,6 @@ class Rates {
   std::vector<double> rate_;
 };
 
-HotCase plain_case(const BarrierRules& rules) {
-  HotCase plain;
-  plain.neighbour_C = rules.hottest_ambient_C;
-  return plain;
-}
-
 /// Returns the combinations of signs with different rates; combinations that no law distinguishes appear once.
 std::vector<HotCase> directions(const Observer& observer, const BarrierRules& rules) {
   Rates rates(observer);
@@ -88,18 +83,30 @@ std::vector<double> by_ratio(double first, double last, int count) {
   return values;
 }
 
+/// Range of a signal whose worst case is searched.
 struct Scan {
   observed::Signal signal;
-  double HotCase::*value;
-  std::vector<double> values;
+  std::vector<double> (*values)(const BarrierRules& rules);  ///< ascending
+};
+constexpr std::array kScans{
+    Scan{observed::vehicle_speed, [](const BarrierRules& rules) { return evenly(0.0, rules.most_vehicle_speed_m_per_s, 101); }},
+    Scan{observed::neighbour, [](const BarrierRules& rules) { return evenly(rules.hottest_ambient_C, rules.limits.winding_C, 33); }},
+    Scan{observed::age, [](const BarrierRules& /*rules*/) { return by_ratio(1e-2, 1e5, 141); }},
+    Scan{observed::acceleration, [](const BarrierRules& /*rules*/) { return by_ratio(1.0, 1e6, 241); }},
 };
 
-std::vector<Scan> scans(const BarrierRules& rules) {
-  return {{observed::vehicle_speed, &HotCase::vehicle_speed_m_per_s, evenly(0.0, rules.most_vehicle_speed_m_per_s, 101)},
-          {observed::neighbour, &HotCase::neighbour_C, evenly(rules.hottest_ambient_C, rules.limits.winding_C, 33)},
-          {observed::age, &HotCase::age_h, by_ratio(1e-2, 1e5, 141)},
-          {observed::acceleration, &HotCase::acceleration_rad_per_s2, by_ratio(1.0, 1e6, 241)}};
+/// Returns whether every signal whose worst case is searched has one range, and no other signal has one.
+constexpr bool has_every_scan() {
+  for (std::size_t signal = 0; signal < observed::kSignalCount; ++signal) {
+    const bool is_searched = thermal::kQuantities<double>[observed::kRows[signal]].firmware->worst == thermal::WorstCase::searched;
+    const auto ranges = std::ranges::count(kScans, static_cast<observed::Signal>(signal), &Scan::signal);
+    if (ranges != (is_searched ? 1 : 0)) {
+      return false;
+    }
+  }
+  return true;
 }
+static_assert(has_every_scan(), "each input of the firmware with WorstCase::searched needs a range here");
 
 struct Hottest {
   double for_winding = 0.0;
@@ -134,12 +141,12 @@ std::vector<HotCase> surroundings(const Observer& observer, const BarrierRules& 
   HotCase for_winding = plain_case(rules);
   HotCase for_bodies = for_winding;
   bool is_any = false;
-  for (const Scan& scan : scans(rules)) {
+  for (const Scan& scan : kScans) {
     if (observer.uses(scan.signal)) {
       is_any = true;
-      const Hottest found = hottest(observer, rules, scan.signal, scan.values);
-      for_winding.*scan.value = found.for_winding;
-      for_bodies.*scan.value = found.for_bodies;
+      const Hottest found = hottest(observer, rules, scan.signal, scan.values(rules));
+      for_winding.held[scan.signal] = found.for_winding;
+      for_bodies.held[scan.signal] = found.for_bodies;
     }
   }
   return is_any ? std::vector{plain_case(rules), for_winding, for_bodies} : std::vector{plain_case(rules)};
@@ -164,9 +171,12 @@ std::vector<std::vector<float>> random_inputs(const Observer& observer, const Ba
   std::vector<std::pair<double, double>> ranges(observed::kSignalCount + observer.state_count(), {coldest_C, hottest_C});
   ranges[observed::current] = {-rules.most_current_A, rules.most_current_A};
   ranges[observed::speed] = {-rules.most_speed_rad_per_s, rules.most_speed_rad_per_s};
-  ranges[observed::vehicle_speed] = {0.0, rules.most_vehicle_speed_m_per_s};
-  for (const Scan& scan : scans(rules)) {
-    ranges[scan.signal] = scan.signal == observed::neighbour ? ranges[scan.signal] : std::pair(scan.values.front(), scan.values.back());
+  for (const Scan& scan : kScans) {
+    // A neighbour has any temperature that a node may have.
+    if (scan.signal != observed::neighbour) {
+      const std::vector<double> values = scan.values(rules);
+      ranges[scan.signal] = {values.front(), values.back()};
+    }
   }
   base::Random random(1, 0);
   std::vector<std::vector<float>> places(kPlaces);
@@ -220,38 +230,43 @@ std::vector<double> without_needless(const std::vector<double>& values, const Ob
 
 }  // namespace
 
+HotCase plain_case(const BarrierRules& rules) {
+  HotCase plain;
+  plain.held[observed::neighbour] = rules.hottest_ambient_C;
+  return plain;
+}
+
 Signals HotCase::signals(const BarrierRules& rules, double current_A, double speed_rad_per_s) const {
-  return {current_sign * current_A, speed_sign * speed_rad_per_s, rules.hottest_ambient_C, vehicle_speed_m_per_s, neighbour_C, age_h,
-          acceleration_rad_per_s2};
+  Signals all = held;
+  all[observed::current] = current_sign * current_A;
+  all[observed::speed] = speed_sign * speed_rad_per_s;
+  all[observed::ambient] = rules.hottest_ambient_C;
+  return all;
 }
 
 std::vector<double> values_if_unknown(const Observer& observer, const BarrierRules& rules, observed::Signal signal) {
   constexpr int kFew = 17;
   constexpr int kMany = 33;
-  switch (signal) {
-    case observed::current:
-      return without_needless(with_hottest(evenly(-rules.most_current_A, rules.most_current_A, kMany), observer, rules, signal), observer,
-                               rules, signal);
-    case observed::speed:
-      return without_needless(
-          with_hottest(evenly(-rules.most_speed_rad_per_s, rules.most_speed_rad_per_s, kMany), observer, rules, signal), observer, rules,
-          signal);
-    case observed::ambient:
+  switch (observed::signals()[static_cast<std::size_t>(signal)].worst) {
+    case thermal::WorstCase::both_directions: {
+      const double most = signal == observed::current ? rules.most_current_A : rules.most_speed_rad_per_s;
+      return without_needless(with_hottest(evenly(-most, most, kMany), observer, rules, signal), observer, rules, signal);
+    }
+    case thermal::WorstCase::hottest_air:
       return {rules.hottest_ambient_C};
-    default:
+    case thermal::WorstCase::searched:
       break;
   }
-  const std::vector<Scan> all = scans(rules);
-  const Scan& scan = *std::ranges::find(all, signal, &Scan::signal);
+  const std::vector<double> scanned = std::ranges::find(kScans, signal, &Scan::signal)->values(rules);
   std::vector<double> values;
   for (const HotCase& each : surroundings(observer, rules)) {
-    values.push_back(each.*scan.value);
+    values.push_back(each.held[signal]);
   }
-  const std::size_t apart = (scan.values.size() + kFew - 1) / kFew;
-  for (std::size_t i = 0; i < scan.values.size(); i += apart) {
-    values.push_back(scan.values[i]);
+  const std::size_t apart = (scanned.size() + kFew - 1) / kFew;
+  for (std::size_t i = 0; i < scanned.size(); i += apart) {
+    values.push_back(scanned[i]);
   }
-  values.push_back(scan.values.back());
+  values.push_back(scanned.back());
   std::ranges::sort(values);
   values.erase(std::unique(values.begin(), values.end()), values.end());
   return without_needless(values, observer, rules, signal);

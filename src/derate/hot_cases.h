@@ -41,15 +41,15 @@ using Signals = std::array<double, observed::kSignalCount>;
 struct HotCase {
   double current_sign = 1.0;
   double speed_sign = 1.0;
-  double vehicle_speed_m_per_s = 0.0;
-  double neighbour_C = 0.0;
-  double age_h = 0.0;
-  double acceleration_rad_per_s2 = 0.0;
+  Signals held{};  ///< signals that are no axes: wind, neighbour, age, …; current, speed and ambient stay 0
 
   bool operator==(const HotCase&) const = default;
   /// Returns all signals, with the hottest declared air, for magnitudes of current and speed.
   [[nodiscard]] Signals signals(const BarrierRules& rules, double current_A, double speed_rad_per_s) const;
 };
+
+/// Returns the case of a new motor that drives in still air beside a neighbour at air temperature.
+HotCase plain_case(const BarrierRules& rules);
 
 /// Returns the plain case first: driving, no wind, a new motor whose neighbour is at air temperature. Then those that differ from it under
 /// the motor's laws: other directions, and the values of each signal that heat the winding most and the bodies most, found by a scan.

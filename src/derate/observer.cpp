@@ -12,18 +12,17 @@ namespace heatsoak::derate {
 namespace observed {
 
 std::span<const SignalSpec> signals() {
-  static constexpr std::array<SignalSpec, kSignalCount> kSignals{{
-      {"current_A",
-       "equivalent DC current (torque per torque constant), rms over the period, with the sign of the speed when the motor drives"},
-      {"speed_rad_per_s", "speed of the motor's shaft, signed"},
-      {"ambient_C", "air around the motor; the hottest declared air if it is not measured", thermal::quantity_row("ambient")},
-      {"vehicle_speed_m_per_s", "speed of the robot through the air, not of its wheels; 0 if it is not known",
-       thermal::quantity_row("vehicle_speed")},
-      {"neighbour_C", "temperature of the motor next to this one; the winding's limit if it is not known",
-       thermal::quantity_row("neighbour_temperature")},
-      {"age_h", "operating hours of the motor", thermal::quantity_row("age")},
-      {"acceleration_rad_per_s2", "magnitude of dω/dt of the motor's shaft, mean over the period", thermal::quantity_row("acceleration")},
-  }};
+  static constexpr std::array<SignalSpec, kSignalCount> kSignals = [] {
+    std::array<SignalSpec, kSignalCount> all{};
+    for (std::size_t i = 0; i < kSignalCount; ++i) {
+      const thermal::FirmwareInput& input = thermal::kQuantities<double>[kRows[i]].firmware.value();
+      all[i] = {input.field, input.meaning, input.worst, {}};
+      if (input.worst != thermal::WorstCase::both_directions) {
+        all[i].row = kRows[i];
+      }
+    }
+    return all;
+  }();
   return kSignals;
 }
 

@@ -16,16 +16,30 @@
 
 namespace heatsoak::derate {
 
-/// Input signals of the observer, in the order of the formula's first inputs.
+/// Input signals of the observer, in the order of the formula's first inputs: the quantities of thermal::kQuantities that are inputs of the
+/// firmware.
 namespace observed {
 enum Signal : int { current, speed, ambient, vehicle_speed, neighbour, age, acceleration };
+/// Rows of thermal::kQuantities in the order of the enumerators.
+inline constexpr std::array kRows{
+    thermal::quantity_row("current"),
+    thermal::quantity_row("speed"),
+    thermal::quantity_row("ambient"),
+    thermal::quantity_row("vehicle_speed"),
+    thermal::quantity_row("neighbour_temperature"),
+    thermal::quantity_row("age"),
+    thermal::quantity_row("acceleration"),
+};
+inline constexpr std::size_t kSignalCount = kRows.size();
+static_assert(kSignalCount == acceleration + 1 && kSignalCount == thermal::firmware_input_count(), "a row for every input of the firmware");
+
 struct SignalSpec {
-  std::string_view name;                ///< field name in generated code
-  std::string_view meaning;             ///< description with sign convention
+  std::string_view name;     ///< field name in generated code
+  std::string_view meaning;  ///< description with sign convention
+  thermal::WorstCase worst;
   std::optional<std::size_t> row = {};  ///< row of kQuantities that it sets; current and speed set several
 };
 std::span<const SignalSpec> signals();
-inline constexpr std::size_t kSignalCount = 7;
 }  // namespace observed
 
 /// Converts the signals to the operating point of the motor's network, S is double, Lanes or Traced. The bus has the voltage of a

@@ -1,6 +1,7 @@
 #include "derate/plausible_range.h"
 
 #include <algorithm>
+#include <array>
 
 namespace heatsoak::derate {
 namespace {
@@ -10,30 +11,66 @@ struct Bounds {
   float high = 0.0F;
 };
 
-/// Returns bounds wider than the motor's operating range, so that only a faulty sensor exceeds them.
-Bounds bounds(const Derating& derating, observed::Signal signal) {
-  const auto most_current_A = static_cast<float>(derating.rules.most_current_A);
-  const auto reachable_rad_per_s = static_cast<float>(derating.reachable_speed_rad_per_s);
-  // The bound includes the table's last speed, up to which the allowed current falls continuously.
-  const float fastest_rad_per_s = std::max(1.25F * reachable_rad_per_s, static_cast<float>(derating.table.no_current_speed_rad_per_s));
-  switch (signal) {
-    case observed::current:
-      return {-10.0F * most_current_A, 10.0F * most_current_A};
-    case observed::speed:
-      return {-fastest_rad_per_s, fastest_rad_per_s};
-    case observed::ambient:
-      // A failed sensor or a zero-initialised structure reads exactly 0.
-      return {static_cast<float>(derating.options.coldest_ambient_C) + 0.05F, 300.0F};
-    case observed::neighbour:
-      return {static_cast<float>(derating.options.coldest_ambient_C) + 0.05F - kNeighbourBelowAir_K, 1000.0F};
-    case observed::vehicle_speed:
-      return {0.0F, static_cast<float>(derating.rules.most_vehicle_speed_m_per_s)};
-    case observed::age:
-      return {0.0F, 1e6F};
-    default:
-      return {0.0F, 2.0F * reachable_rad_per_s / static_cast<float>(derating.options.period_s)};
-  }
+/// Largest plausible reading of a speed sensor. It exceeds the motor's range and includes the table's last speed, up to which the allowed
+/// current falls continuously.
+float fastest_rad_per_s(const Derating& derating) {
+  return std::max(1.25F * static_cast<float>(derating.reachable_speed_rad_per_s),
+                  static_cast<float>(derating.table.no_current_speed_rad_per_s));
 }
+
+/// A failed sensor or a zero-initialised structure reads exactly 0.
+float coldest_C(const Derating& derating) { return static_cast<float>(derating.options.coldest_ambient_C) + 0.05F; }
+
+/// Bounds of one signal, wider than the motor's operating range, so that only a faulty sensor exceeds them.
+struct SignalBounds {
+  observed::Signal signal;
+  Bounds (*of)(const Derating& derating);
+};
+constexpr std::array kBounds{
+    SignalBounds{observed::current,
+                 [](const Derating& derating) {
+                   const auto most_current_A = static_cast<float>(derating.rules.most_current_A);
+                   return Bounds{-10.0F * most_current_A, 10.0F * most_current_A};
+                 }},
+    SignalBounds{observed::speed,
+                 [](const Derating& derating) {
+                   return Bounds{-fastest_rad_per_s(derating), fastest_rad_per_s(derating)};
+                 }},
+    SignalBounds{observed::ambient,
+                 [](const Derating& derating) {
+                   return Bounds{coldest_C(derating), 300.0F};
+                 }},
+    SignalBounds{observed::vehicle_speed,
+                 [](const Derating& derating) {
+                   return Bounds{0.0F, static_cast<float>(derating.rules.most_vehicle_speed_m_per_s)};
+                 }},
+    SignalBounds{observed::neighbour,
+                 [](const Derating& derating) {
+                   return Bounds{coldest_C(derating) - kNeighbourBelowAir_K, 1000.0F};
+                 }},
+    SignalBounds{observed::age,
+                 [](const Derating& /*derating*/) {
+                   return Bounds{0.0F, 1e6F};
+                 }},
+    SignalBounds{observed::acceleration,
+                 [](const Derating& derating) {
+                   return Bounds{
+                       0.0F, 2.0F * static_cast<float>(derating.reachable_speed_rad_per_s) / static_cast<float>(derating.options.period_s)};
+                 }},
+};
+
+/// Returns whether kBounds has one row per input of the firmware, in their order.
+constexpr bool has_all_bounds() {
+  for (std::size_t i = 0; i < kBounds.size(); ++i) {
+    if (kBounds[i].signal != static_cast<observed::Signal>(i)) {
+      return false;
+    }
+  }
+  return kBounds.size() == observed::kSignalCount;
+}
+static_assert(has_all_bounds(), "each input of the firmware needs bounds here");
+
+Bounds bounds(const Derating& derating, observed::Signal signal) { return kBounds[static_cast<std::size_t>(signal)].of(derating); }
 
 }  // namespace
 

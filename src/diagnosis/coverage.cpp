@@ -1,7 +1,6 @@
 #include "diagnosis/coverage.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace heatsoak::diagnosis {
@@ -14,23 +13,13 @@ constexpr double kReach_share = 0.1;
 /// Fraction of the time outside the range from which a warning is given.
 constexpr double kMuch_share = 0.25;
 
-struct Watched {
-  thermal::Signal signal;
-  std::string_view unit;
-  double thermal::OperatingPoint<double>::*value;
-};
-constexpr std::array kWatched{
-    Watched{thermal::Signal::current, "A", &thermal::OperatingPoint<double>::current_rms_A},
-    Watched{thermal::Signal::speed, "rad/s", &thermal::OperatingPoint<double>::speed_mean_rad_per_s},
-    Watched{thermal::Signal::input_power, "W", &thermal::OperatingPoint<double>::input_power_W},
-    Watched{thermal::Signal::vehicle_speed, "m/s", &thermal::OperatingPoint<double>::vehicle_speed_m_per_s},
-};
+using Watched = thermal::OperatingQuantity<double>;
 
 /// Returns the values with their durations in s, sorted by value.
 std::vector<std::pair<double, double>> held(const std::vector<estimation::MeasuredRun>& runs, const Watched& watched) {
   std::vector<std::pair<double, double>> all;
   for (const estimation::MeasuredRun& run : runs) {
-    for (std::size_t k = 0; run.has(watched.signal) && k < run.at.size(); ++k) {
+    for (std::size_t k = 0; run.has(watched.signal.value()) && k < run.at.size(); ++k) {
       all.emplace_back(run.at[k].*watched.value, run.time_s[k + 1] - run.time_s[k]);
     }
   }
@@ -63,7 +52,11 @@ double quantile(const std::vector<std::pair<double, double>>& values, double sha
 std::vector<BeyondTraining> beyond_fitted(const std::vector<estimation::MeasuredRun>& fitted,
                                           const std::vector<estimation::MeasuredRun>& unseen) {
   std::vector<BeyondTraining> beyond;
-  for (const Watched& watched : kWatched) {
+  for (std::size_t i = 0; i < thermal::kSignalCount; ++i) {
+    const Watched& watched = thermal::quantity_of(static_cast<thermal::Signal>(i));
+    if (!watched.is_range_compared) {
+      continue;
+    }
     const auto known = held(fitted, watched);
     const auto wanted = held(unseen, watched);
     if (known.empty() || wanted.empty()) {
@@ -77,7 +70,7 @@ std::vector<BeyondTraining> beyond_fitted(const std::vector<estimation::Measured
       outside_s += value < low - reach || value > high + reach ? duration_s : 0.0;
     }
     if (const double share = outside_s / time_s(wanted); share > kMuch_share) {
-      beyond.push_back({watched.signal, std::string(watched.unit), low, high, share});
+      beyond.push_back({watched.signal.value(), low, high, share});
     }
   }
   return beyond;

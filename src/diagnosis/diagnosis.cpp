@@ -202,10 +202,11 @@ class DiagnosisReport {
   }
 
   static void add_inputs(const estimation::MeasuredRun& run, std::vector<estimation::NamedInput>& inputs) {
-    const auto add = [&](std::string_view name, thermal::Signal signal, auto value) {
-      auto found = std::ranges::find(inputs, name, &estimation::NamedInput::name);
+    for (const thermal::Signal signal : {thermal::Signal::current, thermal::Signal::speed, thermal::Signal::input_power}) {
+      const thermal::OperatingQuantity<double>& quantity = thermal::quantity_of(signal);
+      auto found = std::ranges::find(inputs, quantity.lacking, &estimation::NamedInput::name);
       if (found == inputs.end()) {
-        inputs.push_back({std::string(name), {}});
+        inputs.push_back({std::string(quantity.lacking), {}});
         found = inputs.end() - 1;
       }
       // A run without the signal takes its rows, too: inputs and innovations are compared row by row.
@@ -213,13 +214,10 @@ class DiagnosisReport {
       found->values.conservativeResize(begin + run.samples() + estimation::kMostLag);
       found->values.tail<estimation::kMostLag>().setConstant(std::nan(""));
       for (Eigen::Index k = 0; k < run.samples(); ++k) {
-        found->values[begin + k] = run.has(signal) ? value(run.at[static_cast<std::size_t>(std::min(k, run.samples() - 2))]) : std::nan("");
+        found->values[begin + k] =
+            run.has(signal) ? run.at[static_cast<std::size_t>(std::min(k, run.samples() - 2))].*quantity.value : std::nan("");
       }
-    };
-    using Point = thermal::OperatingPoint<double>;
-    add("current", thermal::Signal::current, [](const Point& at) { return at.current_rms_A; });
-    add("speed", thermal::Signal::speed, [](const Point& at) { return at.speed_mean_rad_per_s; });
-    add("input power", thermal::Signal::input_power, [](const Point& at) { return at.input_power_W; });
+    }
   }
 
   [[nodiscard]] DiagnosisVerdict verdict() const {

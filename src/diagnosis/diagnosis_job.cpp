@@ -1,13 +1,10 @@
 #include "diagnosis/diagnosis_job.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
 #include "base/diagnostic.h"
-#include "base/quantity.h"
 #include "estimation/log_columns.h"
 #include "estimation/open_loop.h"
 
@@ -19,9 +16,7 @@ std::vector<estimation::MeasuredRun> runs_of(const std::vector<recording::Record
   std::vector<estimation::MeasuredRun> all;
   for (const recording::Recording& recording : recordings) {
     estimation::MeasuredRuns runs = estimation::measured_runs(recording, options);
-    for (std::string& note : runs.notes) {
-      findings.emplace_back(calibration::Remark{std::move(note)});
-    }
+    std::ranges::move(runs.notes, std::back_inserter(findings));
     std::ranges::move(runs.runs, std::back_inserter(all));
   }
   return all;
@@ -33,11 +28,7 @@ void refuse_where_nothing_follows(const Diagnosis& diagnosis, const DiagnosisInp
   for (const auto& [signal, error] : diagnosis.after_train) {
     const double moves_K = estimation::standard_deviation_K(input.train, signal);
     if (error.rmse_K > std::max(kFar_K, moves_K)) {
-      throw base::Failure(base::ExitCode::cannot_answer,
-                          fmt::format("no effect makes the model follow these logs: {} has an error of {} K rms, more than its variation "
-                                      "(standard deviation {} K)\n  check for another motor, a wrong unit (degrees Fahrenheit, minutes, "
-                                      "milliamperes) or a misplaced sensor; `heatsoak log inspect` shows each channel",
-                                      signal, base::significant(error.rmse_K, 2), base::significant(moves_K, 2)));
+      throw NoEffectFollows({signal, error.rmse_K, moves_K});
     }
   }
 }
@@ -53,20 +44,27 @@ void add_contradiction(const attribution::Selection& selection, const std::vecto
   }
 }
 
-/// Adds the remark that hold-out logs lack columns of curves, unless the training logs already gave it.
+/// Adds the finding that hold-out logs lack columns of curves, unless the training logs already gave it.
 void add_lacking_columns(std::span<const std::string> columns, const std::vector<recording::Recording>& holdout,
                          std::vector<DiagnosisFinding>& findings) {
-  const std::string lacking = estimation::columns_lacking(columns, holdout);
+  const std::optional<estimation::ColumnsLacking> lacking = estimation::columns_lacking(columns, holdout);
+  if (!lacking) {
+    return;
+  }
   const bool is_known = std::ranges::any_of(findings, [&](const DiagnosisFinding& each) {
-    const auto* const remark = std::get_if<calibration::Remark>(&each);
-    return remark != nullptr && remark->words == lacking;
+    const auto* const note = std::get_if<estimation::RunNote>(&each);
+    const auto* const known = note != nullptr ? std::get_if<estimation::ColumnsLacking>(note) : nullptr;
+    return known != nullptr && *known == *lacking;
   });
-  if (!lacking.empty() && !is_known) {
-    findings.emplace_back(calibration::Remark{lacking});
+  if (!is_known) {
+    findings.emplace_back(estimation::RunNote(*lacking));
   }
 }
 
 }  // namespace
+
+NoEffectFollows::NoEffectFollows(calibration::PoorFit worst)
+    : base::Failure(base::ExitCode::cannot_answer, "no effect makes the model follow these logs"), worst_(std::move(worst)) {}
 
 DiagnosisAnswer run_diagnosis(const DiagnosisJob& job) {
   const auto& [fitted, held_out, readings, choice] = job.logs;

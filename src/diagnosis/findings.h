@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/diagnostic.h"
 #include "calibration/findings.h"
 #include "diagnosis/contradicting_run.h"
 #include "estimation/run_deviation.h"
@@ -46,12 +47,27 @@ struct ColumnsNotSearched {
 
 using DiagnosisFinding = std::variant<ExtensionsMayImitate, ContradictingRun, ColumnsTakenAsZero, ConditionNotApplied, ConditionNeverMet,
                                       IntervalsOfDataSheet, LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn,
-                                      calibration::HeldValue, calibration::Remark>;
+                                      calibration::HeldValue, estimation::RunNote>;
+
+/// Thrown if no log has a heat input that the motor's model uses.
+class NoHeatInput : public base::Failure {
+ public:
+  explicit NoHeatInput(const std::string& motor);
+};
+
+/// Thrown if not even the extended model follows the runs: effects found in them would be meaningless.
+class NoEffectFollows : public base::Failure {
+ public:
+  explicit NoEffectFollows(calibration::PoorFit worst);
+  [[nodiscard]] const calibration::PoorFit& worst() const { return worst_; }
+
+ private:
+  calibration::PoorFit worst_;
+};
 
 /// Signal that is outside the range of the training runs for more than a quarter of the time of the hold-out runs.
 struct BeyondTraining {
   thermal::Signal signal = thermal::Signal::current;
-  std::string unit;
   double low = 0.0;  ///< range of the training runs
   double high = 0.0;
   double time_share = 0.0;  ///< share of the time outside

@@ -19,6 +19,9 @@
 #include "recording/fingerprint.h"
 
 namespace heatsoak::diagnosis {
+
+NoHeatInput::NoHeatInput(const std::string& motor) : base::Failure(base::ExitCode::bad_input, "no log has a heat input for " + motor) {}
+
 namespace {
 
 bool has_signal(const recording::Recording& recording, thermal::Signal signal, const estimation::ShaftTorque& torque = {}) {
@@ -50,11 +53,7 @@ void set_needed(ModelOfLogs& out, const motor::Motor& motor, const std::vector<r
     }
   }
   if (!has_heat) {
-    throw base::Failure(
-        base::ExitCode::bad_input,
-        fmt::format(
-            "no log has a heat input for {}; expected current_A, or power_in_W with an effect input_power_loss; add one to the logs",
-            motor.id));
+    throw NoHeatInput(motor.id);
   }
   for (const thermal::EffectInPlace& effect : out.model.network.effects()) {
     std::vector<std::string> lacking;
@@ -262,8 +261,8 @@ ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording
   std::ranges::move(built.held, std::back_inserter(out.findings));
   std::ranges::move(calibration::held_sensors(motor, recordings), std::back_inserter(out.findings));
   add_conditional_effects(motor, recordings, out);
-  if (std::string lacking = estimation::columns_lacking(out.how.columns, recordings); !lacking.empty()) {
-    out.findings.emplace_back(calibration::Remark{std::move(lacking)});
+  if (std::optional<estimation::ColumnsLacking> lacking = estimation::columns_lacking(out.how.columns, recordings)) {
+    out.findings.emplace_back(estimation::RunNote(*std::move(lacking)));
   }
   set_needed(out, motor, recordings);
   const bool has_torque = have(thermal::Signal::shaft_power);

@@ -1,8 +1,5 @@
 #include "estimation/log_columns.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -49,7 +46,7 @@ Eigen::VectorXd without_gaps(Eigen::VectorXd values) {
 
 }  // namespace
 
-std::string columns_lacking(std::span<const std::string> columns, std::span<const recording::Recording> recordings) {
+std::optional<ColumnsLacking> columns_lacking(std::span<const std::string> columns, std::span<const recording::Recording> recordings) {
   std::vector<std::string> lacking;
   for (const std::string& column : columns) {
     const auto has_it = [&](const recording::Recording& each) {
@@ -59,9 +56,7 @@ std::string columns_lacking(std::span<const std::string> columns, std::span<cons
       lacking.push_back(column);
     }
   }
-  return lacking.empty() ? std::string()
-                         : fmt::format("the hottest value of the curve is used in logs without a column {}, which not every log has",
-                                       fmt::join(lacking, ", "));
+  return lacking.empty() ? std::nullopt : std::optional(ColumnsLacking{std::move(lacking)});
 }
 
 std::map<std::string, Eigen::VectorXd> columns_along(const recording::Recording& recording, const std::vector<double>& time_s) {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,9 +18,8 @@ namespace heatsoak::estimation {
 /// Includes a current that has both signs, because the network's laws use only its magnitude.
 std::map<std::string, Eigen::VectorXd> columns_along(const recording::Recording& recording, const std::vector<double>& time_s);
 
-/// Returns a sentence for the user about those of `columns`, over which the model has curves, that not all logs have; empty if all have
-/// them.
-std::string columns_lacking(std::span<const std::string> columns, std::span<const recording::Recording> recordings);
+/// Returns those of `columns`, over which the model has curves, that not all logs have; nothing if all have them.
+std::optional<ColumnsLacking> columns_lacking(std::span<const std::string> columns, std::span<const recording::Recording> recordings);
 
 /// Removes the columns that not all runs have, except `of_model`, over which the model already has a curve. Their effect would be
 /// confounded with other differences between the runs. Returns the names of the removed columns.

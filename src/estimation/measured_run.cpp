@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "base/diagnostic.h"
-#include "base/quantity.h"
 #include "base/unknown.h"
 #include "estimation/log_columns.h"
 #include "estimation/log_rows.h"
@@ -73,7 +72,7 @@ class Builder {
       const recording::Channel* const channel = recording.find(place.key);
       const bool is_taken = std::ranges::find(sensors_, place.node, &Sensor::node) != sensors_.end();
       if (has_values(channel) && !is_taken && is_stuck(*channel)) {
-        all_.notes.push_back(fmt::format("{}: {} is not used as a sensor, because its value never changes", recording.name, place.key));
+        all_.notes.emplace_back(SensorNeverChanges{recording.name, std::string(place.key)});
       } else if (has_values(channel) && !is_taken) {
         Sensor& sensor = sensors_.emplace_back(Sensor{std::string(place.key), std::string(place.node)});
         std::ranges::copy_if(options.faults, std::back_inserter(sensor.faults),
@@ -98,19 +97,14 @@ class Builder {
       }
     }
     if (all_.runs.empty()) {
-      throw base::Failure(
-          base::ExitCode::cannot_answer,
-          fmt::format("{}: no interval of {} rows or more has temperatures and all heat inputs: {}; see `heatsoak log inspect {}`",
-                      recording_.name, least_samples(), fmt::join(reasons_of_loss(), ", "), recording_.file.string()));
+      throw NoUsableInterval(recording_.name, recording_.file, least_samples(), reasons_of_loss());
     }
     const std::size_t unused = recording_.rows() - used_rows_;
     if (static_cast<double>(unused) > thresholds().most_unused_share * static_cast<double>(recording_.rows())) {
-      all_.notes.push_back(fmt::format("{}: {} of {} rows are not used: {}", recording_.name, unused, recording_.rows(),
-                                       fmt::join(reasons_of_loss(), ", ")));
+      all_.notes.emplace_back(RowsUnused{recording_.name, unused, recording_.rows(), reasons_of_loss()});
     }
     if (all_.runs.size() > 1) {
-      all_.notes.push_back(
-          fmt::format("{} is split into {} runs: heat or ambient temperature is unknown between them", recording_.name, all_.runs.size()));
+      all_.notes.emplace_back(SplitIntoRuns{recording_.name, all_.runs.size()});
     }
     set_noise();
     return std::move(all_);
@@ -161,32 +155,30 @@ class Builder {
     }
   }
 
-  [[nodiscard]] std::vector<std::string> reasons_of_loss() const {
-    std::vector<std::string> reasons;
+  [[nodiscard]] std::vector<LossOfRows> reasons_of_loss() const {
+    std::vector<LossOfRows> reasons;
     const auto runs = recording_.runs();
     if (runs.size() > 1) {
-      reasons.push_back(fmt::format("gaps split its {} rows into {} runs ([runs] longest_gap of a mapping sets what counts as a gap)",
-                                    recording_.rows(), runs.size()));
+      reasons.emplace_back(GapsSplitRows{recording_.rows(), runs.size()});
     }
-    const auto tell = [&](std::string_view key, auto&& is_lacking) {
+    const auto add = [&](RowsLack::What what, std::optional<thermal::Signal> signal, auto&& is_lacking) {
       std::size_t lacking = 0;
       for (std::size_t row = 0; row < recording_.rows(); ++row) {
         lacking += is_lacking(row) ? 1 : 0;
       }
       if (lacking > 0) {
-        reasons.push_back(fmt::format("{} of {} rows have no {}", lacking, recording_.rows(), key));
+        reasons.emplace_back(RowsLack{what, signal, lacking, recording_.rows()});
       }
     };
     for (const thermal::Signal signal : options_.needed) {
-      tell(column_of(signal), [&](std::size_t row) { return std::isnan(quantity_of(rows_.at(row), signal)); });
+      add(RowsLack::What::signal, signal, [&](std::size_t row) { return std::isnan(quantity_of(rows_.at(row), signal)); });
     }
-    tell("ambient temperature within a minute", [&](std::size_t row) { return std::isnan(rows_.at(row).ambient_C); });
-    tell("temperature of winding or stator", [&](std::size_t row) { return !is_sampled(row); });
+    add(RowsLack::What::surroundings, {}, [&](std::size_t row) { return std::isnan(rows_.at(row).ambient_C); });
+    add(RowsLack::What::temperature, {}, [&](std::size_t row) { return !is_sampled(row); });
     if (reasons.empty()) {
       const double whole_s = recording_.time_s.back() - recording_.time_s.front();
-      reasons.push_back(all_.runs.empty() ? fmt::format("its {} s make fewer than {} intervals of {} s", base::significant(whole_s, 2),
-                                                        least_samples() - 1, base::significant(options_.longest_step_s, 2))
-                                          : std::string("intervals are too short"));
+      reasons.push_back(all_.runs.empty() ? LossOfRows(TooFewIntervals{whole_s, least_samples() - 1, options_.longest_step_s})
+                                          : LossOfRows(IntervalsTooShort{}));
     }
     return reasons;
   }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "estimation/findings.h"
 #include "motor/sensor_effect.h"
 #include "recording/recording.h"
 #include "thermal/network.h"
@@ -80,15 +81,15 @@ struct MeasuredRunOptions {
 
 struct MeasuredRuns {
   std::vector<MeasuredRun> runs;
-  std::vector<std::string> notes;  ///< sentences for the user: omitted data and assumptions
+  std::vector<RunNote> notes;
 };
 
 /// Returns the signals that a recording has or that follow from it, for example the shaft power from torque or current.
 std::vector<thermal::Signal> signals_of(const recording::Recording& recording, const ShaftTorque& torque = {});
 
 /// Splits a recording into runs whose inputs are known. Merged temperatures are means over ± a tenth of longest_step_s around the sample.
-/// Throws Failure: bad_input if a needed signal, the surroundings' temperature or every sensor is missing; cannot_answer if no segment
-/// with all of them is left.
+/// Throws Failure: bad_input if a needed signal, the surroundings' temperature or every sensor is missing; NoUsableInterval
+/// if no segment with all of them is left.
 MeasuredRuns measured_runs(const recording::Recording& recording, const MeasuredRunOptions& options);
 
 /// Merges every `merged` intervals into one with the same heat. Readings are not averaged; log columns are dropped.

@@ -116,8 +116,8 @@ class Fitter {
       low_[i] = now_.model.low(i);
       high_[i] = now_.model.high(i);
     }
-    if (options.held >= 0) {
-      low_[options.held] = high_[options.held] = now_.model.theta()[options.held];
+    if (options.held) {
+      low_[*options.held] = high_[*options.held] = now_.model.theta()[*options.held];
     }
   }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "estimation/design.h"
@@ -31,7 +32,7 @@ struct PosteriorOptions {
   /// reweighted least squares, and a step that fails is searched for in a smaller box. false: it is judged by the covariance after it, and
   /// a step that fails is halved.
   bool holds_covariance = false;
-  int held = -1;                                                        ///< coordinate that keeps its start value; -1: none
+  std::optional<int> held = {};                                         ///< coordinate that keeps its start value
   double longest_step_ratio = std::numeric_limits<double>::infinity();  ///< largest change of a coordinate in one step
   /// Other assumptions about the unknown heat. The result is averaged over them with their evidence as weights, so that the intervals
   /// include this uncertainty. Empty: `flux` alone.

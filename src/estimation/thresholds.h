@@ -11,6 +11,7 @@ struct Thresholds {
   // Attribution.
   double wrong_answer_share = 0.05;   ///< allowed share of wrong decisions by evidence
   double material_K = 1.8;            ///< temperature rise of the outermost body from which unknown heat matters
+  double curve_gain_nats = 10.0;      ///< smallest gain in ln P of a curve over the best effects
   double clearly_other_ratio = 1.54;  ///< ratio from which two errors, or two amounts of unknown heat, clearly differ
   double beside_unknown_share = 0.5;  ///< ratio of errors below which a name may stand beside material unknown heat
   double better_share = 0.85;         ///< ratio of errors below which a name improves a good model
@@ -44,6 +45,8 @@ struct ThresholdSpec {
 inline constexpr std::array kThresholds{
     ThresholdSpec{"wrong_answer_share", "", "false-alarm rate: at most one name in twenty is wrong", &Thresholds::wrong_answer_share, 0.5},
     ThresholdSpec{"material_K", "K", "physical size: rise that does not matter for a limit (judgement)", &Thresholds::material_K, 0.01},
+    ThresholdSpec{"curve_gain_nats", "", "false-alarm rate: odds of 1 to 22 000, because a curve follows no law",
+                  &Thresholds::curve_gain_nats, 0.0},
     ThresholdSpec{"clearly_other_ratio", "", "between 1.25 (no heat) and 1.8 (heat), 30 synthetic motors each",
                   &Thresholds::clearly_other_ratio, 1.0},
     ThresholdSpec{"beside_unknown_share", "", "judgement: a name must explain more than the unknown heat beside it",

@@ -180,6 +180,22 @@ std::vector<Stop> stops(const robot::Robot& robot, const robot::DriveConstants& 
 
 }  // namespace
 
+namespace {
+
+/// Limp current of a core without guard: in air of 40 °C its copper loss takes half of the heat that the winding may have, which leaves
+/// the other half to friction, iron and tolerances.
+double limp_current_without_guard_A(const motor::MotorValues& motor) {
+  constexpr double kHotAir_C = 40.0;
+  constexpr double kCopper_share = 0.5;
+  const double rise_K = std::max(0.0, motor.winding_limit_C - kHotAir_C);
+  const double resistance_ohm =
+      motor.terminal_resistance_ohm * base::resistance_ratio(motor.temperature_coefficient_per_K, motor.winding_limit_C);
+  return std::sqrt(kCopper_share * rise_K /
+                   ((motor.thermal_resistance_winding_stator_K_per_W + motor.thermal_resistance_stator_ambient_K_per_W) * resistance_ohm));
+}
+
+}  // namespace
+
 CoreOptions with_tolerance(CoreOptions options, const motor::Motor& motor) {
   if (const std::optional<base::Spread> spread = motor::spread_or_default(motor, "terminal_resistance")) {
     options.lowest_resistance_ratio = spread->low / motor.nominal.terminal_resistance_ohm;
@@ -197,6 +213,7 @@ robot_core::Config make_core_config(const robot::Robot& robot, const motor::Moto
   set_friction(robot, motor, body, config);
   set_gains(wheel_loop_gains(wheel_loop_plant(body, robot::drive_constants(robot, motor)), options.period_s), config);
   set_limits(robot, body, config);
+  config.limp_current_A = single(std::min(limp_current_without_guard_A(motor), double{config.current_limit_A}));
   config.plan_step = options.has_pose_targets ? &robot_core::plan_to_pose : nullptr;
   config.predict_pose = options.has_pose_targets ? &robot_core::predict_pose : nullptr;
   return finished(config);

@@ -242,12 +242,12 @@ std::string core_config_header(const CoreSource& source) {
       source.hash);
   text += Writer(source, declaration()).config() + "    .guard = &kMotorGuard,\n};\n\n";
   return text +
-         "namespace detail {\n\nconstexpr robot_core::Config with_planner(robot_core::Config config) {\n"
+         "namespace core_config_detail {\n\nconstexpr robot_core::Config with_planner(robot_core::Config config) {\n"
          "  // The check sum leaves pointers out.\n  config.plan_step = &robot_core::plan_to_pose;\n"
          "  config.predict_pose = &robot_core::predict_pose;\n  return config;\n}\n\n"
-         "}  // namespace detail\n\n"
+         "}  // namespace core_config_detail\n\n"
          "/// With the planner of pose targets. The linker leaves the planner out if nothing refers to this.\n"
-         "inline constexpr robot_core::Config kCoreConfigWithPlanner = detail::with_planner(kCoreConfig);\n";
+         "inline constexpr robot_core::Config kCoreConfigWithPlanner = core_config_detail::with_planner(kCoreConfig);\n";
 }
 
 }  // namespace heatsoak::firmware

@@ -139,7 +139,7 @@ void judge(const std::vector<WheelPoint>& points, const Eigen::VectorXd& weights
     found.rows_used += outlies ? 0U : static_cast<std::size_t>(part.rows_kept[wheel]);
   }
   found.rmse_V = std::sqrt(error_V2 / weights.sum());
-  found.r2_ratio = variance_V2 > 0.0 ? 1.0 - error_V2 / variance_V2 : std::numeric_limits<double>::quiet_NaN();
+  found.r2_ratio = variance_V2 > 0.0 ? std::optional(1.0 - error_V2 / variance_V2) : std::nullopt;
 }
 
 WheelFriction fit_wheel(const WheelPoints& wheel_points, std::span<const int> heading, const robot::Kinematics& kinematics, int wheel,
@@ -163,13 +163,13 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, std::span<const int> he
   }
   found.damping_is_given = chosen.damping_is_given;
   found.phase_is_given = chosen.phase_is_given;
-  const double given = chosen.damping_is_given ? settings.known_damping_V_s_per_rad : 0.0;
+  const double given = chosen.damping_is_given ? settings.known_damping_V_s_per_rad.value() : 0.0;
   const WheelRegression asked = regression_of(points, wheel, chosen.terms, given);
   const auto& [X, voltage_V, legs] = asked;
   RobustFit fit = robust_fit(X, voltage_V, legs);
   weights = fit.weights;
   found.lack = lack_of_fit(points, heading, asked, chosen.terms, fit);
-  const double left_V = found.lack.is_found ? found.lack.left_V : 0.0;
+  const double left_V = found.lack.is_found ? found.lack.left_V.value() : 0.0;
   widen(points, X, left_V, fit);
   const auto place = [&](WheelTerm term) { return std::ranges::find(chosen.terms, term) - chosen.terms.begin(); };
   const auto has = [&](WheelTerm term) { return place(term) < std::ssize(chosen.terms); };
@@ -339,6 +339,15 @@ FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const robot::Kine
   return found;
 }
 
+namespace {
+
+/// Root of the mean of squares; nothing without any.
+std::optional<double> rms(double sum_of_squares, double count) {
+  return count > 0.0 ? std::optional(std::sqrt(sum_of_squares / count)) : std::nullopt;
+}
+
+}  // namespace
+
 HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, const robot::Kinematics& kinematics,
                                         const FitSettings& settings, const ExpectedVoltages& before) {
   HeldOutError error;
@@ -365,21 +374,21 @@ HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, co
       const SteadyPart& part = *point.part;
       const double measured_V = part.voltage_V[wheel];
       const double after_V = measured_V - learned.voltage_V(part.heading_rad, part.wheel_speed_rad_per_s[wheel]);
-      const double before_V = before ? measured_V - before(part)[wheel] : std::numeric_limits<double>::quiet_NaN();
+      const double before_V = before ? measured_V - before(part)[wheel] : 0.0;
       before_of_wheel_V2 += before_V * before_V;
       after_of_wheel_V2 += after_V * after_V;
       count += 1.0;
     }
-    error.before_of_wheel_V.push_back(std::sqrt(before_of_wheel_V2 / count));
-    error.after_of_wheel_V.push_back(std::sqrt(after_of_wheel_V2 / count));
+    error.before_of_wheel_V.push_back(before ? rms(before_of_wheel_V2, count) : std::nullopt);
+    error.after_of_wheel_V.push_back(learned.is_learned() ? rms(after_of_wheel_V2, count) : std::nullopt);
     if (learned.is_learned()) {
       before_V2 += before_of_wheel_V2;
       after_V2 += after_of_wheel_V2;
       all += count;
     }
   }
-  error.before_V = std::sqrt(before_V2 / all);
-  error.after_V = std::sqrt(after_V2 / all);
+  error.before_V = before ? rms(before_V2, all) : std::nullopt;
+  error.after_V = rms(after_V2, all);
   return error;
 }
 

@@ -25,24 +25,24 @@ namespace heatsoak::friction {
 /// Model error that depends on the direction of travel (lack_of_fit.h).
 struct LackOfFit {
   bool is_found = false;
-  double left_V = std::numeric_limits<double>::quiet_NaN();     ///< RMS over headings, without the scatter of repeats
-  double repeats_V = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation of the scatter of repeats; NaN: too few repeats
-  Repeats repeats = Repeats::legs_on_one_heading;               ///< kind of repeats, if `repeats_V` is known
+  std::optional<double> left_V = {};               ///< RMS over headings, without the scatter of repeats; empty: too few repeats
+  std::optional<double> repeats_V = {};            ///< standard deviation of the scatter of repeats; empty: too few repeats
+  Repeats repeats = Repeats::legs_on_one_heading;  ///< kind of repeats, if `repeats_V` is known
 };
 
 struct WheelFriction {
-  Estimate damping_V_s_per_rad;     ///< d
-  Estimate sine_V;                  ///< a
-  Estimate constant_V;              ///< b
-  Estimate phase_rad;               ///< φ, −π to π
-  Estimate rotation_V;              ///< c; NaN without rotation legs
-  bool damping_is_given = false;    ///< true: d was not fitted but taken from FitSettings
-  double sine_per_damping_V = 0.0;  ///< decrease of a if the given d were twice as large
-  bool phase_is_given = false;      ///< true: too few headings, so φ is that of the rolling direction
-  bool phase_is_bounded = false;    ///< true: φ is at its limit; beyond it the wheel would turn the other way than measured
-  double r2_ratio = std::numeric_limits<double>::quiet_NaN();  ///< coefficient of determination of the voltage
-  double rmse_V = std::numeric_limits<double>::quiet_NaN();
-  LackOfFit lack;  ///< if found, the intervals include it
+  Estimate damping_V_s_per_rad;         ///< d
+  Estimate sine_V;                      ///< a
+  Estimate constant_V;                  ///< b
+  Estimate phase_rad;                   ///< φ, −π to π
+  Estimate rotation_V;                  ///< c; NaN without rotation legs
+  bool damping_is_given = false;        ///< true: d was not fitted but taken from FitSettings
+  double sine_per_damping_V = 0.0;      ///< decrease of a if the given d were twice as large
+  bool phase_is_given = false;          ///< true: too few headings, so φ is that of the rolling direction
+  bool phase_is_bounded = false;        ///< true: φ is at its limit; beyond it the wheel would turn the other way than measured
+  std::optional<double> r2_ratio = {};  ///< coefficient of determination of the voltage; empty if the voltage does not vary
+  std::optional<double> rmse_V = {};    ///< empty if the wheel was not fitted
+  LackOfFit lack;                       ///< if found, the intervals include it
   int parts_used = 0;
   int parts_standing = 0;  ///< parts in which the wheel should stand, or does
   int parts_outlying = 0;
@@ -73,8 +73,8 @@ struct FrictionFit {
 
 struct FitSettings {
   bool use_return_legs = false;
-  /// Damping to use if all legs have one speed, so that d and a are indistinguishable; NaN: unknown.
-  double known_damping_V_s_per_rad = std::numeric_limits<double>::quiet_NaN();
+  /// Damping to use if all legs have one speed, so that d and a are indistinguishable.
+  std::optional<double> known_damping_V_s_per_rad = {};
   /// Half width of the 95 % interval of φ about the rolling direction if the data do not determine φ. The nine fits of reports/friction
   /// deviate by 4.6° RMS; this is multiplied by Student's quantile for nine.
   double phase_uncertainty_rad = 10.0 * std::numbers::pi / 180.0;
@@ -91,14 +91,14 @@ using ExpectedVoltages = std::function<robot::PerWheel(const SteadyPart&)>;
 
 /// Prediction errors on hold-out headings: every third heading is excluded from the fit and then predicted.
 struct HeldOutError {
-  int headings = 0;                                            ///< number of hold-out headings
-  int all_headings = 0;                                        ///< number of all headings
-  double before_V = std::numeric_limits<double>::quiet_NaN();  ///< RMS over wheels and parts, of the expected voltages
-  double after_V = std::numeric_limits<double>::quiet_NaN();   ///< the same, of the fit
-  std::vector<double> before_of_wheel_V;
-  std::vector<double> after_of_wheel_V;
+  int headings = 0;                     ///< number of hold-out headings
+  int all_headings = 0;                 ///< number of all headings
+  std::optional<double> before_V = {};  ///< RMS over wheels and parts, of the expected voltages
+  std::optional<double> after_V = {};   ///< the same, of the fit
+  std::vector<std::optional<double>> before_of_wheel_V;
+  std::vector<std::optional<double>> after_of_wheel_V;
 };
-/// Returns the errors of a fit to the other headings, and those of `before`; these are NaN if `before` is empty.
+/// Returns the errors of a fit to the other headings, and those of `before`. An error is empty if it has no hold-out part, or no `before`.
 HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, const robot::Kinematics& kinematics,
                                         const FitSettings& settings, const ExpectedVoltages& before);
 

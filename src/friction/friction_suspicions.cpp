@@ -80,8 +80,8 @@ std::optional<FrictionSuspicion> suspicion_of_wheel(const SteadyParts& steady, c
   if (wheel.constant_V.high < 0.0 || wheel.sine_V.high + wheel.constant_V.high < 0.0) {
     return FrictionDrivesWheel{number, wheel.sine_V.value, wheel.constant_V.value};
   }
-  if (wheel.r2_ratio < kLeastExplained_ratio) {
-    return WheelVoltageUnexplained{number, wheel.r2_ratio};
+  if (wheel.r2_ratio && *wheel.r2_ratio < kLeastExplained_ratio) {
+    return WheelVoltageUnexplained{number, *wheel.r2_ratio};
   }
   const double ratio = damping / back_emf_V_s_per_rad;
   if (!wheel.damping_is_given && (ratio < kLeastOfBackEmf_ratio || ratio > kMostOfBackEmf_ratio)) {

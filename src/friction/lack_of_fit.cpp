@@ -118,7 +118,7 @@ LackOfFit lack_of_fit(const std::vector<WheelPoint>& points, std::span<const int
   LackOfFit found;
   for (const RepeatGroups& repeats : repeats_of(points, heading)) {
     found = compared(left_by_group(repeats, left_V, fit.weights), heading_terms, other_terms);
-    if (!std::isnan(found.repeats_V)) {
+    if (found.repeats_V) {
       found.repeats = repeats.kind;
       break;
     }
@@ -128,7 +128,7 @@ LackOfFit lack_of_fit(const std::vector<WheelPoint>& points, std::span<const int
     const bool is_friction = terms[k] != WheelTerm::damping && terms[k] != WheelTerm::rotation;
     friction_V += is_friction ? std::abs(fit.coefficients(static_cast<Eigen::Index>(k))) : 0.0;
   }
-  found.is_found = found.is_found && found.left_V > kMatters_share * friction_V;
+  found.is_found = found.is_found && found.left_V.value() > kMatters_share * friction_V;
   return found;
 }
 

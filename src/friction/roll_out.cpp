@@ -301,7 +301,7 @@ RollOutResult roll_out(const std::vector<FrictionLog>& logs, const robot::BodyCo
   for (int i = 0; i < body.kinematics.wheel_count; ++i) {
     std::vector<double> dampings, torques;
     for (const RollOutRun& run : result.runs) {
-      if (run.wheel < 0 || run.wheel == i) {
+      if (!run.wheel || run.wheel == i) {
         dampings.push_back(run.wheel_damping_Nm_s_per_rad);
         torques.push_back(run.wheel_torque_Nm);
       }

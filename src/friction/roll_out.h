@@ -1,6 +1,7 @@
 // Estimates wheel damping from a robot that rolls out with its motors off.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,7 @@ enum class RollOut { translation, rotation, lifted_wheel };
 
 struct RollOutRun {
   RollOut kind = RollOut::translation;
-  int wheel = -1;                           ///< index of the lifted wheel; −1: the robot is on the floor
+  std::optional<int> wheel = {};            ///< index of the lifted wheel; empty: the robot is on the floor
   double heading_rad = 0.0;                 ///< direction of a translation in the robot's frame
   double force_N = 0.0;                     ///< friction force against a translation at zero speed
   double wheel_damping_Nm_s_per_rad = 0.0;  ///< D; equal for all wheels if the robot is on the floor

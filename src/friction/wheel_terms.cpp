@@ -115,7 +115,7 @@ ChosenTerms chosen_terms(const std::vector<WheelPoint>& points, int wheel, const
     chosen.phase_is_given = true;
   }
   if (!is_identifiable(design(points, wheel, terms), terms, WheelTerm::damping)) {
-    if (!travels || std::isnan(settings.known_damping_V_s_per_rad)) {
+    if (!travels || !settings.known_damping_V_s_per_rad) {
       chosen.problem = WheelProblem::one_speed;
       return chosen;
     }

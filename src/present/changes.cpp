@@ -27,7 +27,7 @@ std::string change_words(const select::ChangeEffect& change) {
 
 /// Returns whether the motor needs the change to deliver the demand, or whether its effect is larger than its own scatter.
 bool counts(const select::ChangeEffect& change) {
-  const double error_K = std::isfinite(change.standard_error_K) ? change.standard_error_K : 0.0;
+  const double error_K = change.standard_error_K.value_or(0.0);
   return change.makes_deliverable || (change.is_deliverable && change.saved_K > std::max(kLeastSaved_K, 2.0 * error_K));
 }
 
@@ -98,8 +98,7 @@ void add_changes(Document& document, const simulate::SuggestedChanges& changes, 
                           {is_value ? shown_value(each->before * each->factor, unit) : ""},
                           {fmt::format("{:.0f}", each->saved_K)}});
     if (is_drawn) {
-      table.rows.back().push_back(
-          {std::isfinite(each->standard_error_K) ? fmt::format("{:.0f}", std::ceil(2.0 * each->standard_error_K)) : "–"});
+      table.rows.back().push_back({each->standard_error_K ? fmt::format("{:.0f}", std::ceil(2.0 * *each->standard_error_K)) : "–"});
     }
   }
   document.tables.push_back(std::move(table));

@@ -5,6 +5,7 @@
 #include "derate/export_text.h"
 #include "present/derating.h"
 #include "present/parameter_table.h"
+#include "present/shell_word.h"
 
 namespace heatsoak::present {
 
@@ -18,7 +19,7 @@ Document core_folder_document(const firmware::CoreFolder& folder, const derate::
                                               folder.files.size(), bytes / 1024, out)}},
                     .paragraphs = {fmt::format("Safety factor on heat {:.2f}. {}", derating.observer.heat_safety_factor(),
                                                derate::confidence_text(derating, derating.guarantee)),
-                                   fmt::format("Next: `make -C {0} host` and `make -C {0} firmware`.", out)}};
+                                   fmt::format("Next: `make -C {0} host` and `make -C {0} firmware`.", shell_word(out))}};
   Table table = labelled_table("");
   add_labelled(table, "winding limit",
                fmt::format("{:.0f} °C{} in air up to {:.0f} °C, {} thermal data", derating.rules.limits.winding_C,

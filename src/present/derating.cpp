@@ -55,8 +55,9 @@ void add_table_notes(Document& document, const derate::Derating& derating) {
                     derating.rules.most_speed_rad_per_s, derating.reachable_speed_rad_per_s, derating.table.no_current_speed_rad_per_s));
   }
   std::vector<std::string_view> asked;
-  for (std::size_t i = derate::observed::vehicle_speed; i < derate::observed::kSignalCount; ++i) {
-    if (derating.observer.uses(static_cast<derate::observed::Signal>(i))) {
+  for (std::size_t i = 0; i < derate::observed::kSignalCount; ++i) {
+    const bool is_searched = derate::observed::signals()[i].worst == thermal::WorstCase::searched;
+    if (is_searched && derating.observer.uses(static_cast<derate::observed::Signal>(i))) {
       asked.push_back(derate::observed::signals()[i].name);
     }
   }

@@ -53,7 +53,7 @@ Json changes_json(const simulate::SuggestedChanges& changes) {
                    {"from", is_value ? rounded(each.before, 6) : Json(changes.motor_id)},
                    {"to", is_value ? rounded(each.before * each.factor, 6) : Json(each.other_motor)},
                    {"saved_K", rounded(each.saved_K, 2)},
-                   {"standard_error_K", rounded(each.standard_error_K, 2)},
+                   {"standard_error_K", each.standard_error_K ? rounded(*each.standard_error_K, 2) : Json()},
                    {"deliverable", each.is_deliverable}});
   }
   return all;

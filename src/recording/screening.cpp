@@ -206,10 +206,10 @@ struct Reported {
   }
 };
 
-/// Omits frozen and saturated samples. `frozen_at` is the frozen value before the first reported row, on return that of the last (or NaN).
-void leave_out_segments(Recording& part, Channel& channel, const NoiseLevel& noise, double& low, double& high, double& frozen_at,
-                        const Reported& reported) {
-  const double was_frozen_at = std::exchange(frozen_at, base::kUnknown);
+/// Omits frozen and saturated samples. `frozen_at` is the frozen value before the first reported row, on return that of the last.
+void leave_out_segments(Recording& part, Channel& channel, const NoiseLevel& noise, double& low, double& high,
+                        std::optional<double>& frozen_at, const Reported& reported) {
+  const std::optional<double> was_frozen_at = std::exchange(frozen_at, std::nullopt);
   if (never_rests(channel.values, low, high)) {
     return;
   }

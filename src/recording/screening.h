@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "recording/recording.h"
@@ -26,7 +27,7 @@ class Screening {
   struct Past {
     double low = std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
-    double value = std::numeric_limits<double>::quiet_NaN();  ///< frozen value in the row before the part; NaN: not frozen
+    std::optional<double> value = {};  ///< frozen value in the row before the part
   };
   std::vector<Past> past_;  ///< per channel
 };

@@ -145,7 +145,7 @@ ChangeEffect effect_of(ChangedQuantity quantity, double value, double factor, st
     const double off_K = before[game].peak_C - after[game].peak_C - effect.saved_K;
     sum_squares_K2 += off_K * off_K;
   }
-  effect.standard_error_K = count > 1.0 ? std::sqrt(sum_squares_K2 / (count - 1.0) / count) : std::numeric_limits<double>::quiet_NaN();
+  effect.standard_error_K = count > 1.0 ? std::optional(std::sqrt(sum_squares_K2 / (count - 1.0) / count)) : std::nullopt;
   effect.makes_deliverable = effect.is_deliverable && !std::ranges::all_of(before, &Played::is_deliverable);
   return effect;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,13 +20,13 @@ enum class ChangedQuantity { acceleration, jerk, speed, yaw_acceleration, mass, 
 
 struct ChangeEffect {
   ChangedQuantity quantity = ChangedQuantity::acceleration;
-  double before = 0.0;             ///< present value, in unit_of(quantity); 0 for another motor
-  double factor = 1.0;             ///< ratio of the new to the present value
-  std::string other_motor = {};    ///< id; only for another motor
-  double saved_K = 0.0;            ///< decrease of the winding's peak, mean of the games; negative if it rises
-  double standard_error_K = 0.0;   ///< standard error of saved_K over the games; NaN for one game
-  bool is_deliverable = true;      ///< voltage and current suffice in every game
-  bool makes_deliverable = false;  ///< voltage or current do not suffice without the change
+  double before = 0.0;                          ///< present value, in unit_of(quantity); 0 for another motor
+  double factor = 1.0;                          ///< ratio of the new to the present value
+  std::string other_motor = {};                 ///< id; only for another motor
+  double saved_K = 0.0;                         ///< decrease of the winding's peak, mean of the games; negative if it rises
+  std::optional<double> standard_error_K = {};  ///< standard error of saved_K over the games; empty for one game
+  bool is_deliverable = true;                   ///< voltage and current suffice in every game
+  bool makes_deliverable = false;               ///< voltage or current do not suffice without the change
 };
 
 inline constexpr int kChangeGames = 4;

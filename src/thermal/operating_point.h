@@ -68,6 +68,20 @@ enum class FromColumn {
   computed  ///< from several columns: estimation/log_rows.cpp
 };
 
+/// Assumption of the guard in the firmware about an input whose heating must not be underestimated.
+enum class WorstCase {
+  both_directions,  ///< every magnitude up to the largest, with either sign
+  hottest_air,      ///< the hottest declared air
+  searched          ///< the values of its range that heat winding and bodies most (derate/hot_cases.cpp)
+};
+
+/// Quantity as an input of the guard in the firmware.
+struct FirmwareInput {
+  std::string_view field;    ///< name in generated code
+  std::string_view meaning;  ///< description with sign convention
+  WorstCase worst = WorstCase::searched;
+};
+
 /// One row of the table of quantities; S as in OperatingPoint.
 template <class S>
 struct OperatingQuantity {
@@ -80,27 +94,36 @@ struct OperatingQuantity {
   std::optional<Signal> signal = {};
   std::string_view column = {};  ///< log column of the signal; one quantity of each signal has it
   FromColumn from = FromColumn::computed;
-  std::string_view lacking = {};  ///< words of the message about a log without the signal
-  bool is_driver = false;         ///< can be the input signal of a measured curve (effect `tabulated`)
-  std::string_view meaning = {};  ///< description as an input signal
+  std::string_view lacking = {};   ///< words of the message about a log without the signal
+  bool is_driver = false;          ///< can be the input signal of a measured curve (effect `tabulated`)
+  std::string_view meaning = {};   ///< description as an input signal
+  bool is_range_compared = false;  ///< forecasts beyond the range of the training runs get a warning
+  std::optional<FirmwareInput> firmware = {};
 };
 
 // clang-format off
 /// Every number of OperatingPoint once; the order of the input signals is also that in which a diagnosis tries them.
 template <class S, class P = OperatingPoint<S>>
 inline constexpr std::array kQuantities{
-    OperatingQuantity<S>{&P::speed_mean_rad_per_s, "speed", "rad/s", 300.0, AveragingRule::mean, true, Signal::speed, "speed_rad_per_s", FromColumn::computed, "speed", true, "mean of |ω|"},
+    OperatingQuantity<S>{&P::speed_mean_rad_per_s, "speed", "rad/s", 300.0, AveragingRule::mean, true, Signal::speed, "speed_rad_per_s", FromColumn::computed, "speed", true, "mean of |ω|", true,
+                         FirmwareInput{"speed_rad_per_s", "speed of the motor's shaft, signed", WorstCase::both_directions}},
     OperatingQuantity<S>{&P::velocity_rad_per_s, "velocity", "rad/s", 300.0, AveragingRule::mean, true, Signal::speed, "", FromColumn::computed, "", true, "speed ω with its sign"},
-    OperatingQuantity<S>{&P::current_rms_A, "current", "A", 5.0, AveragingRule::rms, false, Signal::current, "current_A", FromColumn::computed, "current", true, "rms current"},
+    OperatingQuantity<S>{&P::current_rms_A, "current", "A", 5.0, AveragingRule::rms, false, Signal::current, "current_A", FromColumn::computed, "current", true, "rms current", true,
+                         FirmwareInput{"current_A", "equivalent DC current (torque per torque constant), rms over the period, with the sign of the speed when the motor drives", WorstCase::both_directions}},
     OperatingQuantity<S>{&P::modulation_ratio, "modulation", "", 0.5, AveragingRule::mean, false, Signal::modulation, "duty_ratio", FromColumn::computed, "duty ratio", true, "ratio |V_motor|/V_bus"},
     OperatingQuantity<S>{&P::shaft_power_W, "shaft_power", "W", 50.0, AveragingRule::mean, false, Signal::shaft_power, "torque_Nm", FromColumn::computed, "torque and speed", true, "mechanical power; above 0 while the motor drives"},
-    OperatingQuantity<S>{&P::input_power_W, "input_power", "W", 80.0, AveragingRule::mean, false, Signal::input_power, "power_in_W", FromColumn::value, "input power", true, "electrical input power"},
-    OperatingQuantity<S>{&P::acceleration_rad_per_s2, "acceleration", "rad/s2", 100.0, AveragingRule::mean, true, Signal::speed, "", FromColumn::computed, "", true, "mean of |dω/dt|"},
+    OperatingQuantity<S>{&P::input_power_W, "input_power", "W", 80.0, AveragingRule::mean, false, Signal::input_power, "power_in_W", FromColumn::value, "input power", true, "electrical input power", true},
+    OperatingQuantity<S>{&P::acceleration_rad_per_s2, "acceleration", "rad/s2", 100.0, AveragingRule::mean, true, Signal::speed, "", FromColumn::computed, "", true, "mean of |dω/dt|", false,
+                         FirmwareInput{"acceleration_rad_per_s2", "magnitude of dω/dt of the motor's shaft, mean over the period"}},
     OperatingQuantity<S>{&P::bus_V, "bus_voltage", "V", 24.0, AveragingRule::mean, false, Signal::bus_voltage, "bus_V", FromColumn::value, "supply voltage", true, "voltage of the supply"},
-    OperatingQuantity<S>{&P::vehicle_speed_m_per_s, "vehicle_speed", "m/s", 2.0, AveragingRule::mean, true, Signal::vehicle_speed, "vehicle_speed_m_per_s", FromColumn::magnitude, "vehicle speed", true, "magnitude of the vehicle's speed"},
-    OperatingQuantity<S>{&P::age_h, "age", "h", 100.0, AveragingRule::mean, false, Signal::age, "age_h", FromColumn::value, "hours of running", true, "operating hours"},
-    OperatingQuantity<S>{&P::neighbour_C, "neighbour_temperature", "degC", 90.0, AveragingRule::mean, false, Signal::neighbour_temperature, "neighbour_C", FromColumn::computed, "temperature of the neighbour"},
-    OperatingQuantity<S>{&P::ambient_C, "ambient", "degC", 20.0, AveragingRule::mean, false, {}, "ambient_C"},
+    OperatingQuantity<S>{&P::vehicle_speed_m_per_s, "vehicle_speed", "m/s", 2.0, AveragingRule::mean, true, Signal::vehicle_speed, "vehicle_speed_m_per_s", FromColumn::magnitude, "vehicle speed", true, "magnitude of the vehicle's speed", true,
+                         FirmwareInput{"vehicle_speed_m_per_s", "speed of the robot through the air, not of its wheels; 0 if it is not known"}},
+    OperatingQuantity<S>{&P::age_h, "age", "h", 100.0, AveragingRule::mean, false, Signal::age, "age_h", FromColumn::value, "hours of running", true, "operating hours", false,
+                         FirmwareInput{"age_h", "operating hours of the motor"}},
+    OperatingQuantity<S>{&P::neighbour_C, "neighbour_temperature", "degC", 90.0, AveragingRule::mean, false, Signal::neighbour_temperature, "neighbour_C", FromColumn::computed, "temperature of the neighbour", false, "", false,
+                         FirmwareInput{"neighbour_C", "temperature of the motor next to this one; the winding's limit if it is not known"}},
+    OperatingQuantity<S>{&P::ambient_C, "ambient", "degC", 20.0, AveragingRule::mean, false, {}, "ambient_C", FromColumn::computed, "", false, "", false,
+                         FirmwareInput{"ambient_C", "air around the motor; the hottest declared air if it is not measured", WorstCase::hottest_air}},
     OperatingQuantity<S>{&P::speed_rms_rad_per_s, "speed_rms", "rad/s", 300.0, AveragingRule::rms, true, Signal::speed},
     OperatingQuantity<S>{&P::resistive_headroom_V, "resistive_headroom", "V", std::numeric_limits<double>::infinity(), AveragingRule::limit},
     OperatingQuantity<S>{&P::series_resistance_ohm, "series_resistance", "ohm"},
@@ -129,6 +152,15 @@ constexpr std::size_t logged_signal_count() {
   return count;
 }
 static_assert(logged_signal_count() == kSignalCount, "kSignalCount is the number of signals, and each has a log column");
+
+/// Returns the number of quantities that are inputs of the firmware.
+constexpr std::size_t firmware_input_count() {
+  std::size_t count = 0;
+  for (const OperatingQuantity<double>& each : kQuantities<double>) {
+    count += each.firmware ? 1 : 0;
+  }
+  return count;
+}
 
 /// Members for the columns of a log.
 template <class S, class P = OperatingPoint<S>>

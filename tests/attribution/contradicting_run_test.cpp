@@ -1,10 +1,12 @@
 // A sensor that was moved between the runs of one motor is reported with the run, and nothing is reported for runs that agree.
 #include "diagnosis/contradicting_run.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "estimation/log_columns.h"
 #include "examination.h"
+#include "scoring.h"
 
 namespace heatsoak::attribution::truth {
 namespace {
@@ -31,19 +33,20 @@ std::optional<diagnosis::ContradictingRun> contradiction(std::uint64_t seed, dou
 }
 
 TEST(ContradictingRun, AMovedSensorIsReportedWithItsRun) {
-  for (std::uint64_t seed = 90000; seed < 90004; ++seed) {
+  const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
     const auto run = contradiction(seed, 0.7);
-    ASSERT_TRUE(run) << seed;
-    EXPECT_EQ(run->run, "run2") << seed;
-    EXPECT_EQ(run->signal, "winding_C") << seed;
-    EXPECT_GT(run->by_others_K, 3.0 * run->alone_K) << seed;
-  }
+    claim.expect(run && run->run == "run2" && run->signal == "winding_C" && run->by_others_K > 3.0 * run->alone_K,
+                 run ? fmt::format("{} {} {} {}", run->run, run->signal, run->by_others_K, run->alone_K) : "nothing is reported");
+  });
+  EXPECT_GE(rate.right, kSeeds - 2) << rate.misses;
 }
 
 TEST(ContradictingRun, RunsOfAnUnchangedMotorAgree) {
-  for (std::uint64_t seed = 90000; seed < 90004; ++seed) {
-    EXPECT_FALSE(contradiction(seed, 0.0)) << seed;
-  }
+  const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
+    const auto run = contradiction(seed, 0.0);
+    claim.expect(!run, run ? run->run : "");
+  });
+  EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;
 }
 
 }  // namespace

@@ -60,12 +60,6 @@ double rms_K(const estimation::Model& model, const std::vector<estimation::Measu
   return estimation::open_loop_errors(model, runs, {}).at(signal).rmse_K;
 }
 
-/// Skips the test if the recording folder is not available.
-#define SKIP_WITHOUT(folder)                                                   \
-  if (!(folder)) {                                                             \
-    GTEST_SKIP() << "the recordings are not at hand (HEATSOAK_MEASURED_DATA)"; \
-  }
-
 const diagnosis::FoundEffect* effect_of(const diagnosis::Diagnosis& diagnosis, std::string_view id) {
   const auto found = std::ranges::find(diagnosis.effects, id, &diagnosis::FoundEffect::id);
   return found == diagnosis.effects.end() ? nullptr : &*found;
@@ -121,8 +115,8 @@ void expect_follows_the_fan(Drone& all, const Diagnosed& found) {
 }
 
 TEST(MeasuredMotors, an_undocumented_fan_is_found_in_the_run_that_had_it) {
+  SKIP_WITHOUT_MEASURED_DATA("tasrv_uav_motor");
   const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
-  SKIP_WITHOUT(folder);
   Drone all = drone(*folder, false);
   const Diagnosed found = diagnosed(all, 0.6);
   expect_follows_the_fan(all, found);
@@ -133,8 +127,8 @@ TEST(MeasuredMotors, an_undocumented_fan_is_found_in_the_run_that_had_it) {
 }
 
 TEST(MeasuredMotors, a_fan_is_found_from_another_start_too) {
+  SKIP_WITHOUT_MEASURED_DATA("tasrv_uav_motor");
   const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
-  SKIP_WITHOUT(folder);
   Drone all = drone(*folder, true,
                     {{"thermal_resistance_winding_stator", 1.7},
                      {"thermal_resistance_stator_ambient", 1.5},
@@ -145,8 +139,8 @@ TEST(MeasuredMotors, a_fan_is_found_from_another_start_too) {
 
 /// The law that the whole set needs is hardly visible in this part. Without it the error on whole runs is six times as large.
 TEST(MeasuredMotors, a_hardly_visible_law_is_kept_if_no_parameter_could_replace_it) {
+  SKIP_WITHOUT_MEASURED_DATA("tasrv_uav_motor");
   const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
-  SKIP_WITHOUT(folder);
   Drone all = drone(*folder);
   const Diagnosed found = diagnosed(all, 0.65);
   for (const char* const signal : {"winding_C", "stator_C"}) {
@@ -158,8 +152,8 @@ TEST(MeasuredMotors, a_hardly_visible_law_is_kept_if_no_parameter_could_replace_
 class DroneWithFan : public testing::TestWithParam<int> {};
 
 TEST_P(DroneWithFan, is_named_wherever_its_run_is_cut) {
+  SKIP_WITHOUT_MEASURED_DATA("tasrv_uav_motor");
   const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
-  SKIP_WITHOUT(folder);
   Drone all = drone(*folder);
   const Diagnosed found = diagnosed(all, GetParam() / 100.0);
   EXPECT_EQ(found.diagnosis.verdict, diagnosis::DiagnosisVerdict::effect_found) << account(found.diagnosis);
@@ -190,8 +184,8 @@ PropellerBench propeller_bench(const std::filesystem::path& folder) {
 /// The probe at the coils is in the propeller's air flow. The copper behind it is hotter, so the probe's temperature rises after
 /// switch-off.
 TEST(MeasuredMotors, a_propeller_cools_while_it_turns_and_what_is_hot_inside_comes_out_after_switch_off) {
+  SKIP_WITHOUT_MEASURED_DATA("ksu_propeller_bench");
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
-  SKIP_WITHOUT(folder);
   const auto [january, march, start] = propeller_bench(*folder);
   const auto [model, input, diagnosis, score] = diagnosed(start, {january}, {march});
   EXPECT_EQ(diagnosis.verdict, diagnosis::DiagnosisVerdict::effect_found) << account(diagnosis);
@@ -211,8 +205,8 @@ TEST(MeasuredMotors, a_propeller_cools_while_it_turns_and_what_is_hot_inside_com
 
 /// A calibration without the propeller's air flow absorbs part of it in the parameters. The run must still reveal the effect.
 TEST(MeasuredMotors, a_calibrated_motor_gets_the_air_of_its_propeller_from_the_one_run_that_it_was_fitted_to) {
+  SKIP_WITHOUT_MEASURED_DATA("ksu_propeller_bench");
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
-  SKIP_WITHOUT(folder);
   const auto [january, march, start] = propeller_bench(*folder);
   const motor::Motor motor = calibration::calibrated_motor(
       start, calibration::calibrate(start, std::vector{january}, {}, {.fit = {}, .written = calibration::WrittenFit::innovations}));
@@ -224,8 +218,8 @@ TEST(MeasuredMotors, a_calibrated_motor_gets_the_air_of_its_propeller_from_the_o
 
 /// From this initial guess no step along the whitened errors improves the fit. The fit must first match the simulated runs directly.
 TEST(MeasuredMotors, two_recordings_far_from_the_guess_are_followed_before_anything_is_looked_for) {
+  SKIP_WITHOUT_MEASURED_DATA("ksu_propeller_bench");
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
-  SKIP_WITHOUT(folder);
   const auto [january, march, start] = propeller_bench(*folder);
   const std::vector<recording::Recording> both{january, march};
   const diagnosis::Diagnosis diagnosis = diagnosed(start, both, {}).diagnosis;
@@ -237,8 +231,8 @@ TEST(MeasuredMotors, two_recordings_far_from_the_guess_are_followed_before_anyth
 
 /// If no effect is accepted, the result must be the base model with refitted parameters. Rejected laws must not influence it.
 TEST(MeasuredMotors, rejected_laws_do_not_change_the_refitted_parameters) {
+  SKIP_WITHOUT_MEASURED_DATA("ksu_propeller_bench");
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
-  SKIP_WITHOUT(folder);
   const auto [january, march, start] = propeller_bench(*folder);
   const motor::Motor guess = guessed_otherwise(start, {{"thermal_resistance_winding_stator", 1.31},
                                                        {"thermal_resistance_stator_ambient", 1.70},
@@ -256,8 +250,8 @@ TEST(MeasuredMotors, rejected_laws_do_not_change_the_refitted_parameters) {
 
 /// A second motor of the bench, not used during development of the tool. Its speed was recorded once only.
 TEST(MeasuredMotors, another_outrunner_of_the_bench_gets_the_air_of_its_propeller) {
+  SKIP_WITHOUT_MEASURED_DATA("ksu_propeller_bench");
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
-  SKIP_WITHOUT(folder);
   const recording::Recording all = of_bench(*folder, "P80-1700_2020-02-11_162559");
   const motor::Motor start = motor::read_motor(kReports / "propeller_bench/start.toml");
   const auto [model, input, diagnosis, score] = diagnosed(start, {recording::part_of(all, 0.0, 0.7)}, {recording::part_of(all, 0.7, 1.0)});
@@ -267,8 +261,8 @@ TEST(MeasuredMotors, another_outrunner_of_the_bench_gets_the_air_of_its_propelle
 }
 
 TEST(MeasuredMotors, locked_and_free_runs_of_a_frameless_motor_come_under_one_model) {
+  SKIP_WITHOUT_MEASURED_DATA("umich_ri50");
   const std::optional<std::filesystem::path> folder = measured_data("umich_ri50");
-  SKIP_WITHOUT(folder);
   const std::filesystem::path map = kSource / "tests/data/mappings/umich_ri50.map.toml";
   const recording::Recording stall = read(*folder / "stall_staircase.csv", map);
   const recording::Recording no_load = read(*folder / "no_load_staircase.csv", map);
@@ -292,8 +286,8 @@ Diagnosed of_traction_motor(const std::filesystem::path& folder, double cut) {
 }
 
 TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_is_predicted_after_two_loads) {
+  SKIP_WITHOUT_MEASURED_DATA("paderborn_pmsm");
   const std::optional<std::filesystem::path> folder = measured_data("paderborn_pmsm");
-  SKIP_WITHOUT(folder);
   const auto [model, input, diagnosis, score] = of_traction_motor(*folder, 0.65);
   for (const char* const signal : {"winding_C", "stator_C"}) {
     EXPECT_GT(score.before.at(signal).rmse_K, 10.0) << signal;
@@ -303,8 +297,8 @@ TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_is_predicted
 }
 
 TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_gets_names_once_two_loads_were_seen_for_a_while) {
+  SKIP_WITHOUT_MEASURED_DATA("paderborn_pmsm");
   const std::optional<std::filesystem::path> folder = measured_data("paderborn_pmsm");
-  SKIP_WITHOUT(folder);
   for (const double cut : {0.7, 0.75}) {
     const auto [model, input, diagnosis, score] = of_traction_motor(*folder, cut);
     EXPECT_THAT(diagnosis.effects, testing::Not(testing::IsEmpty())) << account(diagnosis);
@@ -315,8 +309,8 @@ TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_gets_names_o
 }
 
 TEST(MeasuredMotors, half_a_log_at_one_load_does_not_claim_to_know_another_load) {
+  SKIP_WITHOUT_MEASURED_DATA("paderborn_pmsm");
   const std::optional<std::filesystem::path> folder = measured_data("paderborn_pmsm");
-  SKIP_WITHOUT(folder);
   const auto [model, input, diagnosis, score] = of_traction_motor(*folder, 0.5);
   for (const char* const signal : {"winding_C", "stator_C"}) {
     EXPECT_LT(score.after.at(signal).rmse_K, score.before.at(signal).rmse_K) << signal;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <ranges>
 
 namespace heatsoak::attribution::truth {
@@ -33,6 +34,30 @@ std::string in_words(const Share& share) {
   const double half = z * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n)) / (1 + z * z / n);
   return fmt::format("{:.1f} % ({}/{}; 95 %: {:.1f} to {:.1f})", 100 * p, share.right, share.of, 100 * std::max(0.0, middle - half),
                      100 * std::min(1.0, middle + half));
+}
+
+bool Claim::expect(bool holds, const std::string& what) {
+  if (!holds) {
+    missed_ += " " + what + ";";
+  }
+  return holds;
+}
+
+SeedRate rate_over_seeds(int count, const std::function<void(std::uint64_t, Claim&)>& check) {
+  SeedRate rate;
+  Share share;
+  for (int seed = 1; seed <= count; ++seed) {
+    Claim claim;
+    check(static_cast<std::uint64_t>(seed), claim);
+    share.add(claim.missed().empty());
+    if (!claim.missed().empty()) {
+      rate.misses += fmt::format("\nseed {}:{}", seed, claim.missed());
+    }
+  }
+  rate.right = share.right;
+  fmt::print("holds for {}{}\n", in_words(share), rate.misses);
+  std::fflush(stdout);
+  return rate;
 }
 
 bool names(const std::vector<std::string>& named, const Subject& subject) {

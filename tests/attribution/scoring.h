@@ -1,6 +1,8 @@
 // Scores an answer against the hidden label.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,29 @@ struct Share {
 };
 /// Formats a share with Wilson's interval: "93.3 % (28/30; 95 %: 78.7 to 98.2)".
 std::string in_words(const Share& share);
+
+/// Collects what does not hold for one seed.
+class Claim {
+ public:
+  /// Records `what` if it does not hold. Returns `holds`.
+  bool expect(bool holds, const std::string& what);
+  [[nodiscard]] const std::string& missed() const { return missed_; }
+
+ private:
+  std::string missed_;
+};
+
+/// Seeds for which a claim holds.
+struct SeedRate {
+  int right = 0;
+  std::string misses;  ///< claims that do not hold, one line per seed
+};
+/// Number of seeds of most tests. The long form, heatsoak_attribution_table, takes hundreds. The tests require one right seed less than the
+/// present method has, because a change in rounding may turn one.
+constexpr int kSeeds = 8;
+/// Checks a claim for the seeds 1 to `count` and prints the share for which it holds. Every range starts at 1, so that no test depends on
+/// a choice of seeds.
+SeedRate rate_over_seeds(int count, const std::function<void(std::uint64_t, Claim&)>& check);
 
 /// True if one of the names is the subject's name or another name for the same heat.
 bool names(const std::vector<std::string>& named, const Subject& subject);

@@ -151,10 +151,8 @@ void print(const char* what, const Score& score) {
 }
 
 TEST(Screening, FindsWrongSamplesAndLeavesGoodOnes) {
+  SKIP_WITHOUT_MEASURED_DATA("examination_2");
   const std::optional<std::filesystem::path> folder = measured_data("examination_2");
-  if (!folder) {
-    GTEST_SKIP() << "the recordings are not at hand (HEATSOAK_MEASURED_DATA)";
-  }
   const nlohmann::json truth = nlohmann::json::parse(std::ifstream(*folder / "truth.json"));
   const motor::Motor sheet = motor::read_motor(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml");
   Score single, stuck;

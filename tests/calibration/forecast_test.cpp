@@ -23,17 +23,20 @@ estimation::LogMaking long_enough() {
 
 /// Writes logs of one motor to files and reads them.
 std::vector<recording::Recording> logs_of(const estimation::TwoNodeTruth& truth, const estimation::LogMaking& making, const Folder& folder,
-                                          int first, int count) {
+                                          int first, int count, std::uint64_t seed = 1) {
   std::vector<recording::Recording> all;
   for (int run = first; run < first + count; ++run) {
     const auto file = folder.path() / ("run_" + std::to_string(run) + ".csv");
-    all.push_back(read_log(write_log(estimation::generated_log(truth, making, 17, static_cast<std::uint64_t>(run)), file)));
+    all.push_back(read_log(write_log(estimation::generated_log(truth, making, seed, static_cast<std::uint64_t>(run)), file)));
   }
   return all;
 }
 
+/// The tests of a rate take the seeds 1 to kSeeds.
+constexpr int kSeeds = 4;
+
 std::vector<estimation::MeasuredRun> runs_of(const ForecastSetup& setup, const std::vector<recording::Recording>& logs) {
-  std::vector<std::string> notes;
+  std::vector<estimation::RunNote> notes;
   return forecast_runs(setup, logs, std::nullopt, notes);
 }
 
@@ -86,59 +89,68 @@ TEST(ForecastModel, SlopesAreDifferences) {
 
 /// A motor with two nodes needs no extended network. Only the unknown heat limits its forecasts.
 TEST(Forecast, KeepsANetworkThatIsRight) {
-  const Folder folder;
-  const Sheet sheet;
-  const motor::Motor motor = sheet.motor(folder);
-  const estimation::TwoNodeTruth truth = drawn_truth(sheet, motor, 5);
-  const std::vector<recording::Recording> logs = logs_of(truth, long_enough(), folder, 0, 4);
-  const ForecastSetup setup = forecast_setup(motor, logs);
-  const std::vector<estimation::MeasuredRun> runs = runs_of(setup, logs);
-  const Forecast found = forecast_of(setup, runs, {}, 0);
-  EXPECT_THAT(found.accepted, testing::IsEmpty());
-  EXPECT_EQ(found.pieces.size(), 4U);
-  EXPECT_NE(found.source, ForecastSource::file);
-  const ForecastModel model = found.model();
-  for (const estimation::MeasuredRun& run : runs_of(setup, logs_of(truth, long_enough(), folder, 10, 2))) {
-    const PredictedRun predicted = predict(model, found.fit.theta, found.fit.covariance, found.band, run);
-    for (const PredictedSignal& each : predicted.signals) {
-      // 0.06 W of unknown heat at each node with a time constant of 180 s changes it by some tenths of a kelvin.
-      EXPECT_LT(each.rmse_K, 0.6) << each.signal;
-      EXPECT_GT(each.coverage_share, 0.6) << each.signal;
+  int kept = 0;
+  int predicted = 0;
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(kSeeds); ++seed) {
+    const Folder folder;
+    const Sheet sheet;
+    const motor::Motor motor = sheet.motor(folder);
+    const estimation::TwoNodeTruth truth = drawn_truth(sheet, motor, seed);
+    const std::vector<recording::Recording> logs = logs_of(truth, long_enough(), folder, 0, 4, seed);
+    const ForecastSetup setup = forecast_setup(motor, logs);
+    const Forecast found = forecast_of(setup, runs_of(setup, logs), {}, 0);
+    EXPECT_EQ(found.pieces.size(), 4U);
+    kept += found.accepted.empty() && found.source != ForecastSource::file ? 1 : 0;
+    const ForecastModel model = found.model();
+    bool is_within = true;
+    for (const estimation::MeasuredRun& run : runs_of(setup, logs_of(truth, long_enough(), folder, 10, 2, seed))) {
+      for (const PredictedSignal& each : predict(model, found.fit.theta, found.fit.covariance, found.band, run).signals) {
+        // 0.06 W of unknown heat at each node with a time constant of 180 s changes it by some tenths of a kelvin.
+        is_within = is_within && each.rmse_K < 0.6 && each.coverage_share > 0.6;
+      }
     }
+    predicted += is_within ? 1 : 0;
   }
+  EXPECT_GE(kept, kSeeds - 1);
+  EXPECT_GE(predicted, kSeeds - 1);
 }
 
 /// Logs of a motor whose contact conductance rises by 1 % per K, hot enough to make it visible.
-std::vector<recording::Recording> logs_of_better_contact(estimation::TwoNodeTruth truth, const Folder& folder, int first, int count) {
+std::vector<recording::Recording> logs_of_better_contact(estimation::TwoNodeTruth truth, const Folder& folder, int first, int count,
+                                                         std::uint64_t seed = 1) {
   truth.contact_change_per_K = 0.01;
   estimation::LogMaking making = long_enough();
   making.largest_current_A = 13.0;
   making.flux_rms_W = 0.02;
-  return logs_of(truth, making, folder, first, count);
+  return logs_of(truth, making, folder, first, count, seed);
 }
 
 /// The contact conductance rises by 1 % per K, by a law that no candidate has. The hold-out runs require a candidate with a similar
 /// curvature.
 TEST(Forecast, ExtendsANetworkThatIsWrong) {
-  const Folder folder;
-  const Sheet sheet;
-  const motor::Motor motor = sheet.motor(folder);
-  const std::vector<recording::Recording> logs = logs_of_better_contact(sheet.truth, folder, 0, 4);
-  const ForecastSetup setup = forecast_setup(motor, logs);
-  const Forecast found = forecast_of(setup, runs_of(setup, logs), {}, 0);
-  ASSERT_FALSE(found.accepted.empty());
-  EXPECT_EQ(found.source, ForecastSource::tempered);
-  ASSERT_EQ(found.rivals.size(), 3U);
-  const ForecastModel model = found.model();
-  const ForecastModel base = setup.model();
-  const ForecastRules ordinary{.is_tempered = false, .has_heat_factors = false};
-  const ForecastFit plain = fit_forecast(base, runs_of(setup, logs), {}, base.start(), ordinary);
-  for (const estimation::MeasuredRun& run : runs_of(setup, logs_of_better_contact(sheet.truth, folder, 10, 2))) {
-    const auto winding_K = [&](const ForecastModel& by, const ForecastFit& fit) {
-      return predict(by, fit.theta, fit.covariance, found.band, run).signals.front().rmse_K;
-    };
-    EXPECT_LT(winding_K(model, found.fit), 0.8 * winding_K(base, plain));
+  int extended = 0;
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(kSeeds); ++seed) {
+    const Folder folder;
+    const Sheet sheet;
+    const motor::Motor motor = sheet.motor(folder);
+    const std::vector<recording::Recording> logs = logs_of_better_contact(sheet.truth, folder, 0, 4, seed);
+    const ForecastSetup setup = forecast_setup(motor, logs);
+    const Forecast found = forecast_of(setup, runs_of(setup, logs), {}, 0);
+    ASSERT_EQ(found.rivals.size(), 3U);
+    const ForecastModel model = found.model();
+    const ForecastModel base = setup.model();
+    const ForecastRules ordinary{.is_tempered = false, .has_heat_factors = false};
+    const ForecastFit plain = fit_forecast(base, runs_of(setup, logs), {}, base.start(), ordinary);
+    bool is_better = !found.accepted.empty() && found.source == ForecastSource::tempered;
+    for (const estimation::MeasuredRun& run : runs_of(setup, logs_of_better_contact(sheet.truth, folder, 10, 2, seed))) {
+      const auto winding_K = [&](const ForecastModel& by, const ForecastFit& fit) {
+        return predict(by, fit.theta, fit.covariance, found.band, run).signals.front().rmse_K;
+      };
+      is_better = is_better && winding_K(model, found.fit) < 0.8 * winding_K(base, plain);
+    }
+    extended += is_better ? 1 : 0;
   }
+  EXPECT_GE(extended, kSeeds - 1);
 }
 
 /// With only one run the priors of the data sheet matter: a single steady state cannot separate two resistances.

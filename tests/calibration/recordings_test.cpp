@@ -20,11 +20,7 @@ const fs::path kMappings = kSource / "tests/data/mappings";
 
 class Recordings : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!measured_data()) {
-      GTEST_SKIP() << "the recordings are not at hand (HEATSOAK_MEASURED_DATA)";
-    }
-  }
+  void SetUp() override { SKIP_WITHOUT_MEASURED_DATA(""); }
   static std::vector<recording::Recording> read(const std::string& folder, const std::vector<std::string>& files, const fs::path& map) {
     std::vector<recording::Recording> all;
     for (const std::string& file : files) {

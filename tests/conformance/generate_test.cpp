@@ -18,6 +18,7 @@
 #include "firmware/core_files.h"
 #include "program_run.h"
 #include "support/shipped.h"
+#include "support/skip_reasons.h"
 
 namespace heatsoak {
 namespace {
@@ -183,7 +184,7 @@ void expect_host_builds_with_the_bits_of_the_core_here(const Generated& core) {
 
 void expect_firmware_builds(const Generated& core) {
   if (!has_cross_compiler()) {
-    GTEST_SKIP() << "no arm-none-eabi-g++ with its headers";
+    GTEST_SKIP() << HEATSOAK_FAILS_CI "no arm-none-eabi-g++ with its headers";
   }
   build(core, fmt::format("make firmware WARNINGS='{}'", kStrict));
   build(core,
@@ -240,6 +241,13 @@ TEST(GeneratedCore, HeaderIsC99) {
   write(plain_core().folder.path() / "c99.c", "#include \"heatsoak_core.h\"\nint main(void) { return HEATSOAK_CORE_GUARD_UNKNOWN; }\n");
   build(plain_core(), fmt::format("cc -std=c99 -Wpedantic {} -I. -fsyntax-only ../c99.c", kStrict));
   build(plain_core(), fmt::format("c++ -std=c++11 -Wpedantic {} -I. -fsyntax-only -x c++ ../c99.c", kStrict));
+}
+
+TEST(GeneratedCore, ConfigurationMayBeIncludedAfterAUsingDirective) {
+  write(plain_core().folder.path() / "using.cpp",
+        "#include \"robot_core/drive_core.h\"\nusing namespace robot_core;\n#include \"core_config.h\"\n"
+        "int main() { return kCoreConfigWithPlanner.wheel_count; }\n");
+  build(plain_core(), fmt::format("c++ -std=c++20 -Wpedantic {} -I. -fsyntax-only ../using.cpp", kStrict));
 }
 
 TEST(GeneratedCore, NamesTheReasonsOfTheCore) {

@@ -13,6 +13,7 @@
 #include "derate/integer_form/integer_lines.h"
 #include "derate/integer_form/quantised_table.h"
 #include "exported_motor.h"
+#include "support/skip_reasons.h"
 
 namespace heatsoak::derate {
 namespace {
@@ -162,7 +163,7 @@ class Q15Header : public testing::Test {
  protected:
   void SetUp() override {
     if (!has("cc")) {
-      GTEST_SKIP() << "no compiler here";
+      GTEST_SKIP() << HEATSOAK_FAILS_CI "no compiler here";
     }
     std::filesystem::create_directories(folder_);
   }
@@ -233,7 +234,7 @@ TEST_F(Q15Header, AllowsNeverMoreThanSinglePrecisionAndLittleLess) {
 
 TEST_F(Q15Header, HasTheSameBitsOnACortexM0WithoutAnyFloatingPoint) {
   if (!has("arm-none-eabi-gcc") || !has("qemu-system-arm")) {
-    GTEST_SKIP() << "no compiler or no machine for a Cortex-M0 here";
+    GTEST_SKIP() << HEATSOAK_FAILS_CI "no compiler or no machine for a Cortex-M0 here";
   }
   const Derating& derating = ecx_derating();
   write_headers(derating);

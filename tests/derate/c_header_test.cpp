@@ -18,6 +18,7 @@
 #include "derate/exporter.h"
 #include "guarded_motor.h"
 #include "robot/motor_drive.h"
+#include "support/skip_reasons.h"
 
 namespace heatsoak::derate {
 namespace {
@@ -96,7 +97,7 @@ class CHeader : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
     if (std::system("cc --version > /dev/null 2>&1 && c++ --version > /dev/null 2>&1") != 0) {
-      GTEST_SKIP() << "no compiler here";
+      GTEST_SKIP() << HEATSOAK_FAILS_CI "no compiler here";
     }
     folder_ = std::filesystem::path(testing::TempDir()) / ("heatsoak_guard_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder_);

@@ -10,6 +10,7 @@
 
 #include "derate/export_text.h"
 #include "exported_motor.h"
+#include "support/skip_reasons.h"
 
 namespace heatsoak::derate {
 namespace {
@@ -73,7 +74,7 @@ TEST_P(CleanHeader, HasNoWarningsAsC99AndAsCpp11) {
 
 TEST_P(CleanHeader, CompilesForEveryCortexM) {
   if (!has("arm-none-eabi-gcc")) {
-    GTEST_SKIP() << "no compiler for ARM here";
+    GTEST_SKIP() << HEATSOAK_FAILS_CI "no compiler for ARM here";
   }
   for (const char* const controller : {"cortex-m0", "cortex-m0plus", "cortex-m3", "cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard",
                                        "cortex-m7 -mfpu=fpv5-sp-d16 -mfloat-abi=hard"}) {
@@ -87,7 +88,7 @@ TEST_P(CleanHeader, CompilesForEveryCortexM) {
 
 TEST_P(CleanHeader, KeepsMisraRulesButTheNamedAdvisoryOnes) {
   if (!has("cppcheck")) {
-    GTEST_SKIP() << "no cppcheck here";
+    GTEST_SKIP() << HEATSOAK_FAILS_CI "no cppcheck here";
   }
   const Answer answer =
       run("cppcheck --std=c99 --addon=misra --enable=style --inline-suppr --template='{file}:{line}: {id}: {message}' use.c");

@@ -190,7 +190,7 @@ share = { value = "0.3", origin = "estimated", derivation = "a test" }
 type = "neighbour_coupling"
 conductance = { value = "0.1 W/K", origin = "estimated", derivation = "a test" }
 )");
-  EXPECT_TRUE(std::ranges::any_of(neighbour, [](const HotCase& each) { return each.neighbour_C == 155.0; }));
+  EXPECT_TRUE(std::ranges::any_of(neighbour, [](const HotCase& each) { return each.held[observed::neighbour] == 155.0; }));
   const std::vector<HotCase> hump = cases_of(R"([effects.hump]
 type = "tabulated"
 driver = "acceleration"
@@ -205,7 +205,7 @@ value_5 = { value = "0 W", origin = "estimated", derivation = "a test" }
 value_6 = { value = "0 W", origin = "estimated", derivation = "a test" }
 value_7 = { value = "0 W", origin = "estimated", derivation = "a test" }
 )");
-  EXPECT_TRUE(std::ranges::any_of(hump, [](const HotCase& each) { return std::abs(each.acceleration_rad_per_s2 - 300.0) < 20.0; }));
+  EXPECT_TRUE(std::ranges::any_of(hump, [](const HotCase& each) { return std::abs(each.held[observed::acceleration] - 300.0) < 20.0; }));
 }
 
 // A safety factor for driving alone would let a braking motor exceed its limit.

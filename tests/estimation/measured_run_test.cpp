@@ -205,6 +205,11 @@ TEST(MeasuredRun, current_replaces_an_unlogged_torque) {
   EXPECT_NEAR(measured_runs(log, how).runs.at(0).at[0].shaft_power_W, -1.0, 1e-9);
 }
 
+testing::Matcher<const RowsLack&> without_current(std::size_t lacking, std::size_t rows) {
+  return testing::AllOf(testing::Field(&RowsLack::signal, testing::Optional(thermal::Signal::current)),
+                        testing::Field(&RowsLack::lacking, lacking), testing::Field(&RowsLack::rows, rows));
+}
+
 TEST(MeasuredRun, reports_why_no_segment_remains) {
   std::vector<LogRow> rows = rows_of_a_step();
   for (std::size_t row = 0; row < rows.size(); row += 5) {
@@ -213,9 +218,9 @@ TEST(MeasuredRun, reports_why_no_segment_remains) {
   try {
     runs_of(rows);
     FAIL();
-  } catch (const base::Failure& failure) {
+  } catch (const NoUsableInterval& failure) {
     EXPECT_EQ(failure.code(), base::ExitCode::cannot_answer);
-    EXPECT_THAT(failure.what(), testing::HasSubstr("12 of 20 rows have no current_A"));
+    EXPECT_THAT(failure.reasons(), testing::Contains(testing::VariantWith<RowsLack>(without_current(12, 20))));
   }
 }
 
@@ -235,7 +240,8 @@ TEST(MeasuredRun, empty_cells_of_a_heat_input_are_one_unknown_from_the_row_befor
   }
   const MeasuredRuns split = runs_of(rows);
   EXPECT_THAT(split.runs, testing::SizeIs(2)) << "12 s from the row at 14 s to that at 26 s";
-  EXPECT_THAT(split.notes, testing::Contains(testing::HasSubstr("11 of 40 rows have no current_A")));
+  EXPECT_THAT(split.notes, testing::Contains(testing::VariantWith<RowsUnused>(testing::Field(
+                               &RowsUnused::reasons, testing::Contains(testing::VariantWith<RowsLack>(without_current(11, 40)))))));
 }
 
 TEST(MeasuredRun, rows_that_lack_a_speed_alone_stay_rows_and_keep_their_current) {
@@ -310,8 +316,12 @@ TEST(MeasuredRun, says_how_short_a_log_is) {
   try {
     runs_of(rows);
     FAIL();
-  } catch (const base::Failure& failure) {
-    EXPECT_THAT(failure.what(), testing::HasSubstr("its 14 s make fewer than 9 intervals of 2 s"));
+  } catch (const NoUsableInterval& failure) {
+    ASSERT_EQ(failure.reasons().size(), 1U);
+    const auto& found = std::get<TooFewIntervals>(failure.reasons().front());
+    EXPECT_NEAR(found.duration_s, 14.0, 0.05);
+    EXPECT_EQ(found.needed, 9U);
+    EXPECT_EQ(found.interval_s, 2.0);
   }
 }
 

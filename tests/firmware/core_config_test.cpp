@@ -52,6 +52,8 @@ TEST(CoreConfig, HandCalculationOfTheMotor) {
   EXPECT_NEAR(config.fastest_wheel_rad_per_s, 1.1 * 25.2 / 0.0328, 1e-3);
   EXPECT_NEAR(config.current_limit_A, (12.5 + 1.1 * 25.2) / lowest_ohm, 1e-4);
   EXPECT_NEAR(config.largest_acceleration_rad_per_s2, 0.0328 * (12.5 + 1.1 * 25.2) / lowest_ohm / 229.47e-7, 1.0);
+  // Half of the heat that warms the winding from 40 to 155 degC through 3.8 and 2.8 K/W.
+  EXPECT_NEAR(config.limp_current_A, std::sqrt(0.5 * 115.0 / (6.6 * 1.07 * (1.0 + 0.0039 * 130.0))), 1e-4);
   EXPECT_FLOAT_EQ(config.voltage_limit_V, 12.5F);
   EXPECT_FLOAT_EQ(config.battery_lowest_V, 19.8F);
   EXPECT_FLOAT_EQ(config.traction_ratio, 0.7F);

@@ -21,6 +21,7 @@
 
 #include "derate/exporter.h"
 #include "derate/guarded_motor.h"
+#include "support/skip_reasons.h"
 
 namespace heatsoak::firmware {
 namespace {
@@ -252,7 +253,7 @@ class HostGuardBits : public testing::Test {
  protected:
   void SetUp() override {
     if (std::system("cc --version > /dev/null 2>&1") != 0) {
-      GTEST_SKIP() << "no compiler here";
+      GTEST_SKIP() << HEATSOAK_FAILS_CI "no compiler here";
     }
   }
 };

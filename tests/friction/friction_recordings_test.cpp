@@ -13,11 +13,6 @@
 namespace heatsoak::friction {
 namespace {
 
-std::filesystem::path data_or_skip(const std::string& folder) {
-  const std::optional<std::filesystem::path> found = measured_data(folder);
-  return found.value_or("");
-}
-
 FrictionLog log_in_file(const std::filesystem::path& file, const std::string& mapping, const robot::Robot& robot,
                         const FrictionLogNeeds& needs, FrictionFindings& findings) {
   recording::RecordingReport report;
@@ -55,23 +50,21 @@ SteadyParts robotino_parts(const std::filesystem::path& surface, int first, int 
 
 void print(const std::string& name, const SteadyParts& steady, const FrictionFit& fit, const HeldOutError& error) {
   std::cout << name << ": " << steady.legs << " legs, " << steady.rows_steady << " of " << steady.rows << " rows steady; on "
-            << error.headings << " of " << error.all_headings << " headings " << error.before_V << " V before, " << error.after_V
-            << " V after\n";
+            << error.headings << " of " << error.all_headings << " headings " << error.before_V.value_or(NAN) << " V before, "
+            << error.after_V.value_or(NAN) << " V after\n";
   for (const WheelFriction& wheel : fit.wheels) {
     std::cout << "  d " << wheel.damping_V_s_per_rad.value << " [" << wheel.damping_V_s_per_rad.low << ", "
               << wheel.damping_V_s_per_rad.high << "]  a " << wheel.sine_V.value << " [" << wheel.sine_V.low << ", " << wheel.sine_V.high
               << "]  b " << wheel.constant_V.value << " [" << wheel.constant_V.low << ", " << wheel.constant_V.high << "]  phase "
-              << wheel.phase_rad.value << "  R2 " << wheel.r2_ratio << "  " << wheel.parts_used << " legs, " << wheel.parts_standing
-              << " standing, " << wheel.parts_outlying << " outlying\n";
+              << wheel.phase_rad.value << "  R2 " << wheel.r2_ratio.value_or(NAN) << "  " << wheel.parts_used << " legs, "
+              << wheel.parts_standing << " standing, " << wheel.parts_outlying << " outlying\n";
   }
 }
 
 /// One speed: the back-EMF gives the damping, the directions give the rest. Opposite headings agree within 5 % of Σi².
 TEST(FrictionOfRecordings, robotino_on_two_surfaces) {
-  const std::filesystem::path folder = data_or_skip("robotino_omni");
-  if (folder.empty()) {
-    GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
-  }
+  SKIP_WITHOUT_MEASURED_DATA("robotino_omni");
+  const std::filesystem::path folder = *measured_data("robotino_omni");
   for (const char* surface : {"table_surface", "brown_surface"}) {
     FrictionFindings findings;
     const SteadyParts steady = robotino_parts(folder / surface, 0, 72, findings);
@@ -83,7 +76,7 @@ TEST(FrictionOfRecordings, robotino_on_two_surfaces) {
     const HeldOutError error = error_on_held_out_headings(steady.parts, kinematics, settings, back_emf_V);
     print(surface, steady, fit, error);
     EXPECT_EQ(error.headings, 24);
-    EXPECT_LT(error.after_V, 0.35 * error.before_V);
+    EXPECT_LT(error.after_V.value(), 0.35 * error.before_V.value());
     // Neighbouring points deviate from the curve in the same direction where a wheel turns slowly.
     EXPECT_TRUE(fit.wheels[0].lack.is_found);
     EXPECT_EQ(fit.wheels[0].lack.repeats, Repeats::neighbouring_headings);
@@ -98,17 +91,15 @@ TEST(FrictionOfRecordings, robotino_on_two_surfaces) {
 }
 
 TEST(FrictionOfRecordings, robotino_on_carpet_at_three_speeds) {
-  const std::filesystem::path folder = data_or_skip("robotino_omni");
-  if (folder.empty()) {
-    GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
-  }
+  SKIP_WITHOUT_MEASURED_DATA("robotino_omni");
+  const std::filesystem::path folder = *measured_data("robotino_omni");
   FrictionFindings findings;
   const SteadyParts steady = robotino_parts(folder / "green_surface", 0, 216, findings);
   const robot::Kinematics kinematics = robot::make_kinematics(robotino());
   const FrictionFit fit = fit_friction(steady.parts, kinematics, {});
   const HeldOutError error = error_on_held_out_headings(steady.parts, kinematics, {}, back_emf_V);
   print("green_surface", steady, fit, error);
-  EXPECT_LT(error.after_V, 0.35 * error.before_V);
+  EXPECT_LT(error.after_V.value(), 0.35 * error.before_V.value());
   for (const WheelFriction& wheel : fit.wheels) {
     ASSERT_TRUE(wheel.is_learned()) << testing::PrintToString(wheel.problem);
     EXPECT_FALSE(wheel.damping_is_given);
@@ -123,10 +114,8 @@ TEST(FrictionOfRecordings, robotino_on_carpet_at_three_speeds) {
 /// Staircases of modulation on blocks in both directions. The reference is an ordinary line through all rows above 5 rad/s. Back-EMF and
 /// battery give 24 V/(60 rad/s per 0.083), about 0.033 V s/rad.
 TEST(FrictionOfRecordings, a_team_wheel_motors_voltage_over_speed) {
-  const std::filesystem::path folder = data_or_skip("ateam_wheel_motor");
-  if (folder.empty()) {
-    GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
-  }
+  SKIP_WITHOUT_MEASURED_DATA("ateam_wheel_motor");
+  const std::filesystem::path folder = *measured_data("ateam_wheel_motor");
   robot::Robot robot = robotino();
   robot.wheels.axis_rad = {-0.5, 0.5, 2.4, -2.4};
   robot.drive.gear_ratio = 1.0;
@@ -159,8 +148,9 @@ TEST(FrictionOfRecordings, a_team_wheel_motors_voltage_over_speed) {
     const WheelFriction& wheel = fit.wheels[i];
     ASSERT_TRUE(wheel.is_learned()) << testing::PrintToString(wheel.problem);
     std::cout << "wheel " << i + 1 << ": " << wheel.damping_V_s_per_rad.value << " [" << wheel.damping_V_s_per_rad.low << ", "
-              << wheel.damping_V_s_per_rad.high << "] V s/rad, offset " << wheel.rotation_V.value << " V, R2 " << wheel.r2_ratio
-              << ", legs " << wheel.parts_used << "; line through the rows " << slope << ", " << offset_V << "\n";
+              << wheel.damping_V_s_per_rad.high << "] V s/rad, offset " << wheel.rotation_V.value << " V, R2 "
+              << wheel.r2_ratio.value_or(NAN) << ", legs " << wheel.parts_used << "; line through the rows " << slope << ", " << offset_V
+              << "\n";
     EXPECT_NEAR(wheel.damping_V_s_per_rad.value, slope, 0.02 * slope);
     EXPECT_NEAR(wheel.rotation_V.value, offset_V, 0.04);
     EXPECT_GT(wheel.r2_ratio, 0.998);

@@ -223,11 +223,10 @@ TEST(EvaluationDocument, warns_of_implausible_values_of_the_robot) {
 
 TEST(EvaluationDocument, changes_of_the_robot_come_before_another_motor) {
   simulate::EvaluationAnswer answer = answer_with({sampled(0.0, {0.0, 0.01}, 500)});
-  const double nothing = std::numeric_limits<double>::quiet_NaN();
-  answer.changes = simulate::SuggestedChanges{
-      "m",
-      {{.quantity = select::ChangedQuantity::gear_ratio, .before = 1.0, .factor = 1.25, .saved_K = 20.0, .standard_error_K = nothing},
-       {.quantity = select::ChangedQuantity::motor, .other_motor = "other", .saved_K = 100.0, .standard_error_K = nothing}}};
+  answer.changes =
+      simulate::SuggestedChanges{"m",
+                                 {{.quantity = select::ChangedQuantity::gear_ratio, .before = 1.0, .factor = 1.25, .saved_K = 20.0},
+                                  {.quantity = select::ChangedQuantity::motor, .other_motor = "other", .saved_K = 100.0}}};
   const Document document = evaluation_document(answer);
   const Table& table = document.tables.back();
   ASSERT_EQ(table.rows.size(), 2U);

@@ -9,12 +9,15 @@
 
 #include "calibration/admission.h"
 #include "calibration/calibrate.h"
+#include "diagnosis/findings.h"
+#include "estimation/findings.h"
 #include "friction/friction_job.h"
 #include "friction/robot_file.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/failure_words.h"
 #include "present/measured/friction_words.h"
 #include "present/measured/log_words.h"
+#include "present/measured/run_words.h"
 #include "recording/quality.h"
 
 namespace heatsoak::present {
@@ -179,12 +182,42 @@ TEST(WordsOfCalibration, HeldValues) {
 
 TEST(WordsOfCalibration, NotesOfForecasts) {
   using namespace calibration;
-  EXPECT_THAT(words_of(std::vector<PredictionNote>{BandIncludesLossAtSpeed{"run1", 4.21}, BandIsEstimated{"motor"}, Remark{"said"}}),
+  EXPECT_THAT(words_of(std::vector<PredictionNote>{BandIncludesLossAtSpeed{"run1", 4.21}, BandIsEstimated{"motor"},
+                                                   estimation::RunNote(estimation::SplitIntoRuns{"run2", 3})}),
               ElementsAre("the band of run1 is wider, because its log has a current but no speed: the loss at speed may be anything up to "
                           "4.2 W; if the motor stood still, add speed_rad_per_s = 0",
                           "the band of motor is only an estimate from its declared uncertainties and the usual error of forecasts; "
                           "`heatsoak calibrate` determines a band",
-                          "said"));
+                          "run2 is split into 3 runs: heat or ambient temperature is unknown between them"));
+}
+
+TEST(WordsOfRuns, NotesAndReasons) {
+  using namespace estimation;
+  EXPECT_EQ(words_of(RunNote(SensorNeverChanges{"run1", "stator_C"})),
+            "run1: stator_C is not used as a sensor, because its value never changes");
+  EXPECT_EQ(words_of(RunNote(ColumnsLacking{{"fan_V", "flap_deg"}})),
+            "the hottest value of the curve is used in logs without a column fan_V, flap_deg, which not every log has");
+  EXPECT_EQ(words_of(RunNote(RowsUnused{"run1", 12, 20, {RowsLack{RowsLack::What::signal, thermal::Signal::current, 11, 20}}})),
+            "run1: 12 of 20 rows are not used: 11 of 20 rows have no current_A");
+  EXPECT_EQ(words_of(std::vector<LossOfRows>{GapsSplitRows{20, 2}, RowsLack{RowsLack::What::surroundings, {}, 1, 20},
+                                             RowsLack{RowsLack::What::temperature, {}, 2, 20}}),
+            "gaps split its 20 rows into 2 runs ([runs] longest_gap of a mapping sets what counts as a gap), "
+            "1 of 20 rows have no ambient temperature within a minute, 2 of 20 rows have no temperature of winding or stator");
+  EXPECT_EQ(words_of(std::vector<LossOfRows>{TooFewIntervals{12.0, 9, 2.0}}), "its 12 s make fewer than 9 intervals of 2 s");
+  EXPECT_EQ(words_of(std::vector<LossOfRows>{IntervalsTooShort{}}), "intervals are too short");
+}
+
+TEST(WordsOfFailures, OfRunsAndDiagnoses) {
+  EXPECT_EQ(in_words(estimation::NoUsableInterval("run1", "logs/run1.csv", 10, {estimation::IntervalsTooShort{}})).message(),
+            "run1: no interval of 10 rows or more has temperatures and all heat inputs: intervals are too short; see `heatsoak log inspect "
+            "logs/run1.csv`");
+  const base::Failure heat = in_words(diagnosis::NoHeatInput("ecx"));
+  EXPECT_EQ(heat.code(), base::ExitCode::bad_input);
+  EXPECT_EQ(heat.message(),
+            "no log has a heat input for ecx; expected current_A, or power_in_W with an effect input_power_loss; add one to the logs");
+  EXPECT_THAT(in_words(diagnosis::NoEffectFollows({"stator_C", 31.26, 8.04})).message(),
+              HasSubstr("no effect makes the model follow these logs: stator_C has an error of 31 K rms, more than its variation (standard "
+                        "deviation 8.0 K)\n  check for another motor"));
 }
 
 TEST(WordsOfCalibration, OpenDirections) {

@@ -20,11 +20,7 @@ using ::testing::IsEmpty;
 
 class MeasuredLogs : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!measured_data()) {
-      GTEST_SKIP() << "the recordings are not at hand (HEATSOAK_MEASURED_DATA)";
-    }
-  }
+  void SetUp() override { SKIP_WITHOUT_MEASURED_DATA(""); }
 
   Recording read(const std::string& folder, const std::string& file) {
     const fs::path log = *measured_data() / folder / file;

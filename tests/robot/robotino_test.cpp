@@ -33,11 +33,8 @@ motor::MotorValues robotino_motor() {
 class Robotino : public testing::Test {
  protected:
   void SetUp() override {
-    const std::optional<std::filesystem::path> found = measured_data("robotino_omni");
-    if (!found) {
-      GTEST_SKIP() << "the recordings are not here; HEATSOAK_MEASURED_DATA names their folder";
-    }
-    folder_ = *found;
+    SKIP_WITHOUT_MEASURED_DATA("robotino_omni");
+    folder_ = *measured_data("robotino_omni");
     body_ = make_body(read_robot(kSource / "tests/data/robots/festo_robotino.toml"), robotino_motor());
   }
 

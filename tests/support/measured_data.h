@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "skip_reasons.h"
+
 namespace heatsoak {
 
 /// Returns a folder of HEATSOAK_MEASURED_DATA, or of shared/data in a folder above the sources.
@@ -22,5 +24,25 @@ inline std::optional<std::filesystem::path> measured_data(const std::string& fol
   }
   return std::nullopt;
 }
+
+/// Returns why measured_data(folder) found nothing. The skip fails in CI if the machine has recordings or a variable promises them.
+inline std::string why_no_measured_data(const std::string& folder = "") {
+  const std::string wanted = folder.empty() ? "recordings" : "recordings of " + folder;
+  if (const char* given = std::getenv("HEATSOAK_MEASURED_DATA")) {
+    return HEATSOAK_FAILS_CI "HEATSOAK_MEASURED_DATA=" + std::string(given) + " has no " + wanted;
+  }
+  if (const std::optional<std::filesystem::path> found = measured_data()) {
+    return HEATSOAK_FAILS_CI + found->string() + " has no " + wanted;
+  }
+  return "no " + wanted + ": HEATSOAK_MEASURED_DATA is not set, and no folder above the sources has shared/data";
+}
+
+/// Skips the test if the recordings of a folder (all if empty) are not available.
+#define SKIP_WITHOUT_MEASURED_DATA(folder)                    \
+  do {                                                        \
+    if (!heatsoak::measured_data(folder)) {                   \
+      GTEST_SKIP() << heatsoak::why_no_measured_data(folder); \
+    }                                                         \
+  } while (false)
 
 }  // namespace heatsoak

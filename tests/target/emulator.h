@@ -10,24 +10,25 @@
 
 #include "conformance/program_run.h"
 #include "image/replay_files.h"
+#include "support/skip_reasons.h"
 
 namespace heatsoak::target {
 
 /// Skips the test if no cross compiler was found at configuration.
-#define SKIP_WITHOUT_COMPILER()                               \
-  do {                                                        \
-    if (*HEATSOAK_TARGET_MISSING != '\0') {                   \
-      GTEST_SKIP() << "skipped: " << HEATSOAK_TARGET_MISSING; \
-    }                                                         \
+#define SKIP_WITHOUT_COMPILER()                                  \
+  do {                                                           \
+    if (*HEATSOAK_TARGET_MISSING != '\0') {                      \
+      GTEST_SKIP() << HEATSOAK_FAILS_CI HEATSOAK_TARGET_MISSING; \
+    }                                                            \
   } while (false)
 
 /// Skips the test if the cross compiler or the emulator is missing.
-#define SKIP_WITHOUT_EMULATOR()                                    \
-  do {                                                             \
-    SKIP_WITHOUT_COMPILER();                                       \
-    if (std::string(HEATSOAK_EMULATOR).empty()) {                  \
-      GTEST_SKIP() << "skipped: qemu-system-arm is not installed"; \
-    }                                                              \
+#define SKIP_WITHOUT_EMULATOR()                                             \
+  do {                                                                      \
+    SKIP_WITHOUT_COMPILER();                                                \
+    if (std::string(HEATSOAK_EMULATOR).empty()) {                           \
+      GTEST_SKIP() << HEATSOAK_FAILS_CI "qemu-system-arm is not installed"; \
+    }                                                                       \
   } while (false)
 
 /// Output of a program on the target.

@@ -76,9 +76,9 @@ motor::Motor as_in(const recording::Recording& recording, const motor::Motor& mo
 void predict_one(const motor::Motor& motor, const recording::Recording& recording, const PredictionOptions& options, Prediction& all) {
   const std::span<const recording::Recording> own(&recording, 1);
   ForecastSetup setup = forecast_setup(motor, own);
-  std::vector<std::string> remarks;
-  std::vector<estimation::MeasuredRun> runs = forecast_runs(setup, own, options.ambient_C, remarks);
-  std::ranges::transform(remarks, std::back_inserter(all.notes), [](const std::string& each) { return Remark{each}; });
+  std::vector<estimation::RunNote> notes;
+  std::vector<estimation::MeasuredRun> runs = forecast_runs(setup, own, options.ambient_C, notes);
+  std::ranges::move(notes, std::back_inserter(all.notes));
   if (options.turns_within_rows) {
     std::ranges::transform(runs, runs.begin(), estimation::turning_within_rows);
   }
@@ -113,7 +113,7 @@ PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, c
 }
 
 std::vector<estimation::MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const recording::Recording> recordings,
-                                                   std::optional<double> ambient_C, std::vector<std::string>& notes) {
+                                                   std::optional<double> ambient_C, std::vector<estimation::RunNote>& notes) {
   estimation::MeasuredRunOptions how = how_to_read(setup.motor, setup.heat);
   how.needed = setup.model().motor().needed;
   how.ambient_C = ambient_C;
@@ -134,8 +134,9 @@ std::vector<estimation::MeasuredRun> forecast_runs(const ForecastSetup& setup, s
 
 Prediction predict(const motor::Motor& motor, std::span<const recording::Recording> recordings, const PredictionOptions& options) {
   Prediction all;
-  if (std::string lacking = estimation::columns_lacking(how_to_read(motor, HeatInput::current).columns, recordings); !lacking.empty()) {
-    all.notes.emplace_back(Remark{std::move(lacking)});
+  if (std::optional<estimation::ColumnsLacking> lacking =
+          estimation::columns_lacking(how_to_read(motor, HeatInput::current).columns, recordings)) {
+    all.notes.emplace_back(estimation::RunNote(*std::move(lacking)));
   }
   for (const recording::Recording& recording : recordings) {
     predict_one(as_in(recording, motor), recording, options, all);

@@ -41,10 +41,10 @@ struct Prediction {
 PredictedRun predict(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance,
                      const motor::ForecastBand& band, const estimation::MeasuredRun& run);
 
-/// Reads the runs of the recordings with the signals that the setup's model needs. Appends the remarks of measured_runs() to `notes`.
+/// Reads the runs of the recordings with the signals that the setup's model needs. Appends the notes of measured_runs() to `notes`.
 /// Throws Failure as measured_runs().
 std::vector<estimation::MeasuredRun> forecast_runs(const ForecastSetup& setup, std::span<const recording::Recording> recordings,
-                                                   std::optional<double> ambient_C, std::vector<std::string>& notes);
+                                                   std::optional<double> ambient_C, std::vector<estimation::RunNote>& notes);
 
 struct PredictionOptions {
   std::optional<double> ambient_C = {};  ///< for logs without an ambient temperature

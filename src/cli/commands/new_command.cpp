@@ -9,6 +9,7 @@
 
 #include "cli/command.h"
 #include "present/document.h"
+#include "present/shell_word.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -17,19 +18,6 @@ struct NewOptions {
   std::string kind;
   std::string file;
 };
-
-/// Quotes a word for the shell if it contains special characters.
-std::string quoted(const std::string& word) {
-  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./";
-  if (word.find_first_not_of(kPlain) == std::string::npos) {
-    return word;
-  }
-  std::string result = "'";
-  for (const char each : word) {
-    result += each == '\'' ? "'\\''" : std::string(1, each);
-  }
-  return result + "'";
-}
 
 base::ExitCode run(const NewOptions& options, Session& session) {
   std::error_code unreadable;
@@ -40,8 +28,8 @@ base::ExitCode run(const NewOptions& options, Session& session) {
   const auto found =
       std::ranges::find_if(texts, [&](const embedded::Text& each) { return each.path.ends_with("/" + options.kind + ".toml"); });
   session.write(options.file, std::string(found->text));
-  session.show(
-      present::short_answer(fmt::format("{}: replace every \"?\", then run `heatsoak lint {}`", options.file, quoted(options.file))));
+  session.show(present::short_answer(
+      fmt::format("{}: replace every \"?\", then run `heatsoak lint {}`", options.file, present::shell_word(options.file))));
   session.answer({{"schema", "heatsoak.new/1"}, {"kind", options.kind}, {"file", options.file}});
   return base::ExitCode::done;
 }

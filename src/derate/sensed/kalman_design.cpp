@@ -17,8 +17,7 @@ struct HotPoint {
 
 HotPoint hot_point(const motor::Motor& motor, const robot::Robot& robot, const BarrierRules& rules, double current_A, int states,
                    double speed_share) {
-  HotCase plain;
-  plain.neighbour_C = rules.hottest_ambient_C;
+  const HotCase plain = plain_case(rules);
   HotPoint point{operating_point<double>(motor.nominal, robot, plain.signals(rules, current_A, speed_share * rules.most_speed_rad_per_s)),
                  std::vector<double>(static_cast<std::size_t>(states), 0.5 * (rules.hottest_ambient_C + rules.limits.winding_C))};
   point.state_C[motor::states::winding] = rules.limits.winding_C;

@@ -10,6 +10,7 @@
 #include "base/quantity.h"
 #include "estimation/turning_rows.h"
 #include "present/measured/log_words.h"
+#include "present/measured/run_words.h"
 
 namespace heatsoak::present {
 namespace {
@@ -210,7 +211,7 @@ std::string say(const calibration::BandIsEstimated& of) {
       of.motor);
 }
 
-std::string say(const calibration::Remark& of) { return of.words; }
+std::string say(const estimation::RunNote& of) { return words_of(of); }
 
 std::string say(const recording::Suspicion& of) { return words_of(of); }
 

@@ -226,14 +226,11 @@ std::string file_alone_in_words(const diagnosis::Diagnosis& diagnosis, const dia
 }
 
 std::string beyond_in_words(const diagnosis::BeyondTraining& beyond) {
-  const std::string_view name = beyond.signal == thermal::Signal::current       ? "current"
-                                : beyond.signal == thermal::Signal::speed       ? "speed"
-                                : beyond.signal == thermal::Signal::input_power ? "input power"
-                                                                                : "vehicle's speed";
+  const thermal::OperatingQuantity<double>& quantity = thermal::quantity_of(beyond.signal);
   return fmt::format(
       "The forecast is an extrapolation for {:.0f} % of the time of the hold-out runs, because the {} is outside the range of the "
       "training runs ({} to {} {}).",
-      100.0 * beyond.time_share, name, base::significant(beyond.low, 2), base::significant(beyond.high, 2), beyond.unit);
+      100.0 * beyond.time_share, quantity.lacking, base::significant(beyond.low, 2), base::significant(beyond.high, 2), quantity.unit);
 }
 
 std::string reason_in_words(const attribution::Refusal& refused) {

@@ -7,11 +7,14 @@
 #include "base/quantity.h"
 #include "calibration/admission.h"
 #include "calibration/calibrate.h"
+#include "diagnosis/findings.h"
+#include "estimation/findings.h"
 #include "friction/friction_job.h"
 #include "friction/robot_file.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/friction_words.h"
 #include "present/measured/log_words.h"
+#include "present/measured/run_words.h"
 #include "recording/quality.h"
 
 namespace heatsoak::present {
@@ -86,6 +89,25 @@ base::Failure worded(const calibration::NothingFollows& failure) {
                                    "sensor, or heat that no column contains; `heatsoak log inspect` shows each channel");
 }
 
+base::Failure worded(const estimation::NoUsableInterval& failure) {
+  return with_message(failure, fmt::format("{}: {}; see `heatsoak log inspect {}`", failure.message(), words_of(failure.reasons()),
+                                           failure.file().string()));
+}
+
+base::Failure worded(const diagnosis::NoHeatInput& failure) {
+  return with_message(failure,
+                      failure.message() + "; expected current_A, or power_in_W with an effect input_power_loss; add one to the logs");
+}
+
+base::Failure worded(const diagnosis::NoEffectFollows& failure) {
+  const calibration::PoorFit& worst = failure.worst();
+  return with_message(
+      failure, fmt::format("{}: {} has an error of {} K rms, more than its variation (standard deviation {} K)\n  check for "
+                           "another motor, a wrong unit (degrees Fahrenheit, minutes, milliamperes) or a misplaced "
+                           "sensor; `heatsoak log inspect` shows each channel",
+                           failure.message(), worst.signal, base::significant(worst.rmse_K, 2), base::significant(worst.varies_K, 2)));
+}
+
 /// Returns the words of the first type that the failure has.
 template <class First, class... Others>
 base::Failure worded_as(const base::Failure& failure) {
@@ -103,7 +125,8 @@ base::Failure worded_as(const base::Failure& failure) {
 
 base::Failure in_words(const base::Failure& failure) {
   return worded_as<recording::NothingAboutHeat, calibration::NothingLearned, calibration::NothingFollows, calibration::LogsLookWrong,
-                   friction::LogsLookWrong, friction::NothingIdentifiable, friction::WheelNotIdentifiable>(failure);
+                   friction::LogsLookWrong, friction::NothingIdentifiable, friction::WheelNotIdentifiable, estimation::NoUsableInterval,
+                   diagnosis::NoHeatInput, diagnosis::NoEffectFollows>(failure);
 }
 
 }  // namespace heatsoak::present

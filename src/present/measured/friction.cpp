@@ -50,7 +50,7 @@ Table wheel_table(const friction::FrictionFit& fit, std::size_t rows) {
                           {estimate_text(wheel.sine_V, 3)},
                           {estimate_text(wheel.constant_V, 3)},
                           {estimate_text(wheel.phase_rad, 1, kDegrees)},
-                          {std::isfinite(wheel.r2_ratio) ? fmt::format("{:.3f}", wheel.r2_ratio) : "–"},
+                          {wheel.r2_ratio ? fmt::format("{:.3f}", *wheel.r2_ratio) : "–"},
                           {fmt::format("{}", wheel.rows_used)},
                           {fmt::format("{}", rows - wheel.rows_used)}});
   }
@@ -107,7 +107,7 @@ void add_wheel_notes(Document& document, const friction::FrictionFit& fit) {
 std::string what_rolls(const friction::RollOutRun& run) {
   return run.kind == friction::RollOut::translation ? fmt::format("towards {:.0f}°, {:.2f} N", run.heading_rad * kDegrees, run.force_N)
          : run.kind == friction::RollOut::rotation  ? "turning"
-                                                    : fmt::format("wheel {} lifted", run.wheel + 1);
+                                                    : fmt::format("wheel {} lifted", run.wheel.value() + 1);
 }
 
 }  // namespace
@@ -123,11 +123,11 @@ Document friction_document(const robot::Robot& robot, const FrictionAnswer& answ
                                  plural_of(static_cast<std::size_t>(answer.steady.return_legs), "return leg"),
                                  answer.uses_return_legs ? "used too" : "left out")},
       .tables = {wheel_table(answer.fit, answer.steady.rows)}};
-  if (std::isfinite(answer.error.after_V)) {
-    document.paragraphs.push_back(
-        fmt::format("Hold-out error on {} of {} headings: {}{:.3f} V after the fit.", answer.error.headings, answer.error.all_headings,
-                    answer.expected_from ? fmt::format("{:.3f} V by {}, ", answer.error.before_V, words_of(*answer.expected_from)) : "",
-                    answer.error.after_V));
+  if (answer.error.after_V) {
+    document.paragraphs.push_back(fmt::format(
+        "Hold-out error on {} of {} headings: {}{:.3f} V after the fit.", answer.error.headings, answer.error.all_headings,
+        answer.expected_from ? fmt::format("{:.3f} V by {}, ", answer.error.before_V.value(), words_of(*answer.expected_from)) : "",
+        *answer.error.after_V));
   }
   for (const std::string& each : lack_of_fit_words(answer.fit)) {
     document.add_note(Severity::warning, each);
@@ -141,10 +141,10 @@ std::vector<std::string> lack_of_fit_words(const friction::FrictionFit& fit) {
   std::vector<std::string> found;
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     if (const friction::LackOfFit& lack = fit.wheels[i].lack; lack.is_found) {
-      found.push_back(
-          fmt::format("the residual of wheel {} depends on θ: {} V rms beyond the {} V by which {} differ. The law a sin(θ+φ) + b sign "
-                      "does not hold there; the intervals of a and b are wider to allow for this error",
-                      i + 1, base::significant(lack.left_V, 2), base::significant(lack.repeats_V, 2), words_of(lack.repeats)));
+      found.push_back(fmt::format(
+          "the residual of wheel {} depends on θ: {} V rms beyond the {} V by which {} differ. The law a sin(θ+φ) + b sign "
+          "does not hold there; the intervals of a and b are wider to allow for this error",
+          i + 1, base::significant(lack.left_V.value(), 2), base::significant(lack.repeats_V.value(), 2), words_of(lack.repeats)));
     }
   }
   return found;

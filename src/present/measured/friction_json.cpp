@@ -7,6 +7,8 @@ namespace heatsoak::present {
 namespace {
 
 /// Unknown (NaN) values become null.
+Json number_or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
 Json json(const friction::Estimate& estimate) { return {{"value", estimate.value}, {"ci95", {estimate.low, estimate.high}}}; }
 
 Json wheels_json(const friction::FrictionFit& fit, const friction::HeldOutError& error, std::size_t rows) {
@@ -19,8 +21,8 @@ Json wheels_json(const friction::FrictionFit& fit, const friction::HeldOutError&
                       {"b_V", json(wheel.constant_V)},
                       {"phase_rad", json(wheel.phase_rad)},
                       {"rotation_V", json(wheel.rotation_V)},
-                      {"r2", wheel.r2_ratio},
-                      {"rmse_V", wheel.rmse_V},
+                      {"r2", number_or_null(wheel.r2_ratio)},
+                      {"rmse_V", number_or_null(wheel.rmse_V)},
                       {"rows_used", wheel.rows_used},
                       {"rows_left_out", rows - wheel.rows_used},
                       {"legs_used", wheel.parts_used},
@@ -30,10 +32,10 @@ Json wheels_json(const friction::FrictionFit& fit, const friction::HeldOutError&
                       {"phase_given", wheel.phase_is_given},
                       {"phase_bounded", wheel.phase_is_bounded},
                       {"lack_of_fit", wheel.lack.is_found},
-                      {"left_V", wheel.lack.left_V},
-                      {"repeats_V", wheel.lack.repeats_V},
-                      {"before_rmse_V", error.before_of_wheel_V[i]},
-                      {"after_rmse_V", error.after_of_wheel_V[i]},
+                      {"left_V", number_or_null(wheel.lack.left_V)},
+                      {"repeats_V", number_or_null(wheel.lack.repeats_V)},
+                      {"before_rmse_V", number_or_null(error.before_of_wheel_V[i])},
+                      {"after_rmse_V", number_or_null(error.after_of_wheel_V[i])},
                       {"problem", wheel.problem ? words_of(*wheel.problem) : ""}});
   }
   return wheels;
@@ -43,22 +45,24 @@ Json wheels_json(const friction::FrictionFit& fit, const friction::HeldOutError&
 
 Json friction_json(const robot::Robot& robot, const FrictionAnswer& answer, const FrictionRemarks& remarks) {
   const friction::SteadyParts& steady = answer.steady;
-  return {
-      {"schema", "heatsoak.friction/1"},
-      {"method", "steady_state"},
-      {"robot", robot.id},
-      {"motor", remarks.motor_id ? Json(*remarks.motor_id) : Json()},
-      {"wheels", wheels_json(answer.fit, answer.error, steady.rows)},
-      {"before", {{"rmse", answer.error.before_V}, {"unit", "V"}, {"from", answer.expected_from ? words_of(*answer.expected_from) : ""}}},
-      {"after", {{"rmse", answer.error.after_V}, {"unit", "V"}}},
-      {"headings", answer.fit.headings},
-      {"headings_held_out", answer.error.headings},
-      {"rows", steady.rows},
-      {"rows_steady", steady.rows_steady},
-      {"legs", steady.legs},
-      {"return_legs", steady.return_legs},
-      {"findings", remarks.findings},
-      {"suspicions", remarks.suspicions}};
+  return {{"schema", "heatsoak.friction/1"},
+          {"method", "steady_state"},
+          {"robot", robot.id},
+          {"motor", remarks.motor_id ? Json(*remarks.motor_id) : Json()},
+          {"wheels", wheels_json(answer.fit, answer.error, steady.rows)},
+          {"before",
+           {{"rmse", number_or_null(answer.error.before_V)},
+            {"unit", "V"},
+            {"from", answer.expected_from ? words_of(*answer.expected_from) : ""}}},
+          {"after", {{"rmse", number_or_null(answer.error.after_V)}, {"unit", "V"}}},
+          {"headings", answer.fit.headings},
+          {"headings_held_out", answer.error.headings},
+          {"rows", steady.rows},
+          {"rows_steady", steady.rows_steady},
+          {"legs", steady.legs},
+          {"return_legs", steady.return_legs},
+          {"findings", remarks.findings},
+          {"suspicions", remarks.suspicions}};
 }
 
 Json roll_out_json(const robot::Robot& robot, const friction::RollOutResult& result, const robot::DriveConstants& drive,
@@ -68,7 +72,7 @@ Json roll_out_json(const robot::Robot& robot, const friction::RollOutResult& res
     const friction::Estimate& mechanical = result.wheel_damping_Nm_s_per_rad[i];
     std::size_t used = 0;
     for (const friction::RollOutRun& run : result.runs) {
-      used += run.wheel < 0 || run.wheel == static_cast<int>(i) ? static_cast<std::size_t>(run.rows_used) : 0U;
+      used += !run.wheel || run.wheel == static_cast<int>(i) ? static_cast<std::size_t>(run.rows_used) : 0U;
     }
     wheels.push_back({{"index", i + 1},
                       {"damping_V_s_per_rad", json(damping_with_back_emf(drive, mechanical))},

@@ -103,7 +103,7 @@ Result examine(const std::string& name, int runs, const motor::Motor& motor, con
   Result result{.name = name, .runs = runs};
   const std::vector<recording::Recording> fitted = logs_of(recorded.training);
   const calibration::ForecastSetup setup = calibration::forecast_setup(motor, fitted);
-  std::vector<std::string> notes;
+  std::vector<estimation::RunNote> notes;
   const std::vector<estimation::MeasuredRun> train = calibration::forecast_runs(setup, fitted, {}, notes);
   const std::vector<estimation::MeasuredRun> unseen = calibration::forecast_runs(setup, logs_of(recorded.unseen), {}, notes);
   const calibration::ForecastModel base = setup.model();

@@ -113,7 +113,7 @@ void examine(const Case& one, int threads) {
   const std::vector<recording::Recording> unseen = read(one, one.predicted);
   const motor::Motor motor = motor::read_motor(kSource / "reports" / one.motor);
   const ForecastSetup setup = forecast_setup(motor, fitted);
-  std::vector<std::string> notes;
+  std::vector<estimation::RunNote> notes;
   const std::vector<estimation::MeasuredRun> runs = forecast_runs(setup, fitted, one.ambient_C, notes);
   const std::vector<estimation::MeasuredRun> others = forecast_runs(setup, unseen, one.ambient_C, notes);
   const ForecastModel base = setup.model();
@@ -165,7 +165,8 @@ void examine(const Case& one, int threads) {
 int main(int argc, char** argv) {
   constexpr int kSkipped = 77;
   if (!heatsoak::measured_data("tasrv_uav_motor")) {
-    fmt::print("the recordings are not at hand (HEATSOAK_MEASURED_DATA)\n");
+    // The form in which GoogleTest reports it, for .ci/list_skipped.
+    fmt::print("{}:{}: Skipped\n{}\n", __FILE__, __LINE__, heatsoak::why_no_measured_data("tasrv_uav_motor"));
     return kSkipped;
   }
   fmt::print(

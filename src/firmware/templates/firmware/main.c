@@ -5,6 +5,8 @@
 /* Start-up does not touch this memory, so after a reset by the watchdog the guard continues with its last temperatures. After a power
  * loss its contents are random: the core detects this by its check sums and begins as hot as the limit. */
 __attribute__((section(".noinit"))) static heatsoak_core_state state;
+/* Configuration that `state` belongs to: new firmware must not continue with the temperatures of another motor. */
+__attribute__((section(".noinit"))) static uint32_t config_of_state;
 
 static void read_inputs(heatsoak_core_input *input) {
   int wheel;
@@ -25,6 +27,7 @@ static void start_core(void) {
   const bool is_rested = board_motors_have_rested(&body_C);
   /* A damaged configuration needs no reaction here: every step then opens all bridges and reports it. */
   (void)heatsoak_core_start(&state, is_rested, body_C);
+  config_of_state = HEATSOAK_CORE_CONFIG_CHECK_SUM;
 }
 
 int main(void) {
@@ -35,7 +38,7 @@ int main(void) {
   uint32_t last_us;
   int wheel;
   board_start();
-  if (!board_has_kept_memory()) {
+  if (!board_has_kept_memory() || config_of_state != HEATSOAK_CORE_CONFIG_CHECK_SUM) {
     start_core();
     elapsed_s = HEATSOAK_CORE_PERIOD_S;
   }

@@ -1,0 +1,16 @@
+// Wording of the findings about the rows of logs that runs are made of.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimation/findings.h"
+
+namespace heatsoak::present {
+
+/// Returns the note as one sentence.
+std::string words_of(const estimation::RunNote& note);
+/// Returns the reasons why rows are not used, joined by commas.
+std::string words_of(const std::vector<estimation::LossOfRows>& reasons);
+
+}  // namespace heatsoak::present

@@ -1,0 +1,128 @@
+// List of skipped tests at the end of `./bootstrap test`, and the skips that fail in CI.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest-spi.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "program_run.h"
+#include "support/measured_data.h"
+#include "support/source_folder.h"
+
+namespace heatsoak {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// Sets or removes HEATSOAK_MEASURED_DATA until the end of its life.
+class StatedData {
+ public:
+  explicit StatedData(const char* folder) {
+    if (const char* const before = std::getenv(kName)) {
+      before_ = before;
+    }
+    set(folder);
+  }
+  StatedData(const StatedData&) = delete;
+  StatedData& operator=(const StatedData&) = delete;
+  ~StatedData() { set(before_ ? before_->c_str() : nullptr); }
+
+ private:
+  static constexpr const char* kName = "HEATSOAK_MEASURED_DATA";
+  static void set(const char* value) { value != nullptr ? ::setenv(kName, value, 1) : ::unsetenv(kName); }
+  std::optional<std::string> before_;
+};
+
+void body_of_a_test(const std::string& folder) { SKIP_WITHOUT_MEASURED_DATA(folder); }
+
+/// Returns what GoogleTest prints when a test needs recordings of this folder and HEATSOAK_MEASURED_DATA is as given.
+std::string skip_without(const char* data, const std::string& folder) {
+  const StatedData stated(data);
+  testing::TestPartResultArray results;
+  {
+    const testing::ScopedFakeTestPartResultReporter reporter(testing::ScopedFakeTestPartResultReporter::INTERCEPT_ONLY_CURRENT_THREAD,
+                                                             &results);
+    body_of_a_test(folder);
+  }
+  EXPECT_EQ(results.size(), 1);
+  EXPECT_TRUE(results.size() == 1 && results.GetTestPartResult(0).skipped());
+  return results.size() == 0 ? "" : fmt::format("/x/test.cpp:66: Skipped\n{}\n\n", results.GetTestPartResult(0).message());
+}
+
+std::string ran(const std::string& name, const std::string& printed) {
+  return fmt::format("[ RUN      ] {0}\n{1}[  SKIPPED ] {0} (0 ms)\n", name, printed);
+}
+
+/// Returns a log of CTest with these names and outputs of tests.
+std::string log_of(const std::vector<std::pair<std::string, std::string>>& tests) {
+  std::string log = "Start testing: Nov 27 13:36 UTC\n";
+  for (const auto& [name, output] : tests) {
+    log += fmt::format("1/9 Testing: {0}\n1/9 Test: {0}\nCommand: \"x\"\nOutput:\n-----\n{1}<end of output>\n", name, output);
+  }
+  return log;
+}
+
+ProgramRun list_skipped(const std::string& log, const std::string& ci) {
+  const TemporaryFolder folder;
+  write(folder.path() / "LastTest.log", log);
+  return run_line(fmt::format("'{}/.ci/list_skipped' LastTest.log", kSource.string()), {.folder = folder.path(), .environment = {ci}});
+}
+
+const std::string kLog = log_of({{"base.A.passes", "[ RUN      ] A.passes\n[       OK ] A.passes (0 ms)\n"},
+                                 {"target.Core.runs", ran("Core.runs", "/x/emulator.h:20: Skipped\n" HEATSOAK_FAILS_CI "no compiler\n\n")},
+                                 {"target.Records/Match", "/x/emulator.h:20: Skipped\n" HEATSOAK_FAILS_CI "no compiler\n\n"},
+                                 {"derate.part_0", ran("Fmu.reader", "/x/fmu.cpp:1: Skipped\nno fmpy\n\n")}});
+
+TEST(SkippedTests, are_listed_by_reason_and_pass_outside_of_ci) {
+  const ProgramRun listed = list_skipped(kLog, "CI");
+  EXPECT_EQ(listed.exit_code, 0) << listed.err;
+  EXPECT_THAT(listed.out, HasSubstr("  2 skipped: [fails CI] no compiler\n    target.Core.runs\n    target.Records/Match\n"));
+  EXPECT_THAT(listed.out, HasSubstr("  1 skipped: no fmpy\n    derate.part_0/Fmu.reader\n"));
+  EXPECT_THAT(listed.out, Not(HasSubstr("passes")));
+  EXPECT_THAT(listed.out, Not(HasSubstr("CI fails")));
+}
+
+TEST(SkippedTests, fail_ci_with_the_same_list_if_something_promised_is_missing) {
+  const ProgramRun listed = list_skipped(kLog, "CI=true");
+  EXPECT_EQ(listed.exit_code, 1) << listed.err;
+  EXPECT_THAT(listed.out, HasSubstr(list_skipped(kLog, "CI").out));
+  EXPECT_THAT(listed.out, HasSubstr("CI fails: 2 skipped tests"));
+}
+
+TEST(SkippedTests, pass_in_ci_for_other_reasons_and_without_skips) {
+  const ProgramRun others = list_skipped(log_of({{"derate.part_0", ran("Fmu.reader", "/x/fmu.cpp:1: Skipped\nno fmpy\n\n")}}), "CI=true");
+  EXPECT_EQ(others.exit_code, 0) << others.err;
+  EXPECT_THAT(others.out, HasSubstr("1 skipped: no fmpy"));
+  const ProgramRun none = list_skipped(log_of({{"base.A.passes", "[       OK ] A.passes (0 ms)\n"}}), "CI=true");
+  EXPECT_EQ(none.exit_code, 0) << none.err;
+  EXPECT_THAT(none.out, IsEmpty());
+}
+
+TEST(SkippedTests, need_a_log) {
+  const ProgramRun run = run_line(fmt::format("'{}/.ci/list_skipped' no_such_file", kSource.string()));
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("no_such_file"));
+}
+
+TEST(SkippedTests, for_recordings_that_a_variable_promises_fail_ci) {
+  const std::string printed = skip_without("/no/such/folder", "uav");
+  EXPECT_THAT(printed, HasSubstr("HEATSOAK_MEASURED_DATA=/no/such/folder has no recordings of uav"));
+  EXPECT_EQ(list_skipped(log_of({{"a.B.c", ran("B.c", printed)}}), "CI=true").exit_code, 1);
+  EXPECT_EQ(list_skipped(log_of({{"a.B.c", ran("B.c", printed)}}), "CI").exit_code, 0);
+}
+
+/// A CI machine may have no recordings at all: they are not part of the project. Where there are some, none may be missing.
+TEST(SkippedTests, for_recordings_fail_ci_only_where_there_are_recordings) {
+  const StatedData unset(nullptr);
+  const bool has_recordings = measured_data().has_value();
+  const std::string printed = skip_without(nullptr, "no_such_recordings");
+  const ProgramRun listed = list_skipped(log_of({{"a.B.c", ran("B.c", printed)}}), "CI=true");
+  EXPECT_EQ(listed.exit_code, has_recordings ? 1 : 0) << listed.out;
+  EXPECT_THAT(listed.out, HasSubstr("no recordings of no_such_recordings"));
+}
+
+}  // namespace
+}  // namespace heatsoak
