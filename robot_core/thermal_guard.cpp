@@ -218,7 +218,7 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
     const float change_K = counted_s * rate_K_per_s[node] - state.carry_K[node];
     const float next_C = state.state_C[node] + change_K;
     state.carry_K[node] = (next_C - state.state_C[node]) - change_K;
-    state.state_C[node] = next_C > model.coldest_ambient_C ? next_C : model.coldest_ambient_C;
+    state.state_C[node] = smaller(next_C > model.coldest_ambient_C ? next_C : model.coldest_ambient_C, kMostTemperature_C);
   }
   out.winding_C = state.state_C[0];
   out.hottest_body_C = hottest_body_C(model, state);

@@ -103,7 +103,8 @@ namespace {
 /// systems without O_TMPFILE (NFS) and systems without /proc get a temporary name instead.
 class UnfinishedFile {
  public:
-  /// `in_place` opens the target itself: a device or pipe must not be replaced by a renamed file.
+  /// `in_place` opens the target itself: a device or pipe must not be replaced by a renamed file. A file that is replaced keeps its
+  /// permissions.
   UnfinishedFile(std::filesystem::path target, bool in_place)
       : target_(std::move(target)), temporary_(fmt::format("{}.{}.partial", target_.string(), ::getpid())), is_in_place_(in_place) {
     if (in_place) {
@@ -122,6 +123,9 @@ class UnfinishedFile {
     }
     if (descriptor_ < 0) {
       cannot_write(target_, errno);
+    }
+    if (!in_place) {
+      keep_permissions();
     }
   }
   UnfinishedFile(const UnfinishedFile&) = delete;
@@ -163,6 +167,25 @@ class UnfinishedFile {
   }
 
  private:
+  /// Runs before the first byte is written, so that nobody else can read the content of a private file.
+  void keep_permissions() {
+    constexpr mode_t kPermissions = 0777;
+    struct stat before {};
+    struct stat now {};
+    if (::stat(target_.c_str(), &before) != 0 || ::fstat(descriptor_, &now) != 0) {
+      return;  // a new file keeps to the umask
+    }
+    const mode_t kept = before.st_mode & kPermissions;
+    if (kept != (now.st_mode & kPermissions) && ::fchmod(descriptor_, kept) != 0) {
+      const int error = errno;
+      ::close(std::exchange(descriptor_, -1));
+      if (has_temporary_name_) {
+        ::unlink(temporary_.c_str());
+      }
+      cannot_write(target_, error);
+    }
+  }
+
   std::filesystem::path target_;
   std::string temporary_;
   int descriptor_ = -1;

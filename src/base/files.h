@@ -46,7 +46,8 @@ class StreamedFile {
 };
 
 /// Writes all files or none. Each is written without a name or under a temporary one, and renamed when all of them are complete. Links are
-/// followed; a device or pipe receives the bytes directly. Throws Failure (bad_input) on errors and if two outputs have the same target.
+/// followed; a device or pipe receives the bytes directly. A file that is replaced keeps its permissions, a new one keeps to the umask.
+/// Throws Failure (bad_input) on errors and if two outputs have the same target.
 void write_files(std::span<const OutputFile> files, std::span<const std::unique_ptr<StreamedFile>> streamed = {});
 
 /// Writes one file in the same way.

@@ -165,7 +165,7 @@ ParsedQuantity parse_quantity(std::string_view text, std::string_view wanted_uni
   const Converter converter(ut_get_converter(from.get(), to.get()));
   // UDUNITS-2 also converts to the reciprocal ("5 W/K" to 0.2 K/W). Only a reciprocal conversion maps zero to infinity.
   if (!converter || !std::isfinite(cv_convert_double(converter.get(), 0.0))) {
-    return {0.0, fmt::format("'{}' is a unit of something else; {}", shown(unit), example_for(wanted_unit))};
+    return {0.0, fmt::format("'{}' is no unit of this quantity; {}", shown(unit), example_for(wanted_unit))};
   }
   if (wanted_unit == "K" && cv_convert_double(converter.get(), 0.0) != 0.0) {
     return {0.0, fmt::format("\"{}\" is a temperature, not a difference of temperatures; write the difference in K", shown(text))};

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include "check/limit.h"
 #include "derate/option_quantities.h"
@@ -23,9 +24,11 @@ constexpr std::size_t kMostChecks = 1000;
 
 class CheckReader {
  public:
-  /// `reported`: problems of other files that were reported before; several checks may name one file.
-  CheckReader(input::Reader table, fs::path folder, const input::DataFolders& folders, std::set<std::string>& reported)
-      : table_(std::move(table)), folder_(std::move(folder)), folders_(folders), reported_(reported) {}
+  /// `written` is the table as it stands in the file. `reported`: problems of other files that were reported before; several checks may
+  /// name one file.
+  CheckReader(input::Reader table, const input::Value& written, fs::path folder, const input::DataFolders& folders,
+              std::set<std::string>& reported)
+      : table_(std::move(table)), written_(written), folder_(std::move(folder)), folders_(folders), reported_(reported) {}
 
   Check read() {
     check_.name = table_.text("name", input::Need::required).value_or("");
@@ -268,6 +271,11 @@ class CheckReader {
                      : fmt::format("there is no such threshold{} (`heatsoak list thresholds` shows them)", base::did_you_mean(key, known)));
         continue;
       }
+      if (const input::Value* value = written_.find("limits")->find(key); value->kind == input::Value::Kind::number) {
+        limits_->pass_over(key);
+        limits_->problem(key, bare_limit_problem(value->text, *type));
+        continue;
+      }
       const std::optional<std::string> text = limits_->text(key, input::Need::required);
       if (!text) {
         continue;
@@ -326,6 +334,7 @@ class CheckReader {
   }
 
   input::Reader table_;
+  const input::Value& written_;
   std::optional<input::Reader> limits_;
   fs::path folder_;
   const input::DataFolders& folders_;
@@ -348,11 +357,17 @@ CheckFile read_check_file(const fs::path& path, const input::DataFolders& folder
   if (tables.empty() && diagnostics.empty()) {
     diagnostics.add({path.string(), 1, 1}, "", "has no [[check]] table; `heatsoak check --help` shows an example");
   }
+  std::vector<const input::Value*> written;  // of the same tables
+  for (const input::Value& item : tables.empty() ? std::span<const input::Value>() : std::span(root.find("check")->items)) {
+    if (item.kind == input::Value::Kind::table) {
+      written.push_back(&item);
+    }
+  }
   std::set<std::string> names;
   std::set<std::string> reported;
   for (std::size_t i = 0; i < tables.size(); ++i) {
     const base::Location at = tables[i].at("name");
-    file.checks.push_back(CheckReader(std::move(tables[i]), path.parent_path(), folders, reported).read());
+    file.checks.push_back(CheckReader(std::move(tables[i]), *written[i], path.parent_path(), folders, reported).read());
     const std::string& name = file.checks.back().name;
     if (!name.empty() && !names.insert(name).second) {
       diagnostics.add(at, fmt::format("check[{}].name", i),

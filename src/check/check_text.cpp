@@ -83,16 +83,16 @@ std::string escaped_command(std::string_view text, bool is_property) {
 
 std::string conclusion_text(std::span<const Outcome> outcomes) {
   const Counts counts = counts_of(outcomes);
-  const std::string all = fmt::format("{} limit{}", counts.all, counts.all == 1 ? "" : "s");
+  const auto some = [](std::size_t count) { return fmt::format("{} limit{}", count, count == 1 ? "" : "s"); };
   if (counts.exceeded + counts.not_evaluated == 0) {
-    return fmt::format("{} {}", all, counts.all == 1 ? "holds" : "hold");
+    return fmt::format("{} {}", some(counts.all), counts.all == 1 ? "holds" : "hold");
   }
   std::string text;
   if (counts.exceeded > 0) {
-    text = fmt::format("{} of {} {} not hold", counts.exceeded, all, counts.exceeded == 1 ? "does" : "do");
+    text = fmt::format("{} of {} {} not hold", some(counts.exceeded), counts.all, counts.exceeded == 1 ? "does" : "do");
   }
   if (counts.not_evaluated > 0) {
-    text += fmt::format("{}{} of {} cannot be evaluated and {} as failed", text.empty() ? "" : "; ", counts.not_evaluated, all,
+    text += fmt::format("{}{} of {} cannot be evaluated and {} as failed", text.empty() ? "" : "; ", some(counts.not_evaluated), counts.all,
                         counts.not_evaluated == 1 ? "counts" : "count");
   }
   return text;

@@ -74,8 +74,19 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
   return {parsed.value, unit_behind(quantity), {}};
 }
 
+std::string bare_limit_problem(std::string_view number, const ThresholdType& type) {
+  // A share may be meant in percent or not, so the number cannot be taken over.
+  const std::string expected = type.is_share
+                                   ? std::string(type.example)
+                                   : fmt::format("{} {}{}{}", to_string(type.direction), number, type.unit.empty() ? "" : " ", type.unit);
+  return fmt::format("{} is a bare number; expected a limit as text, such as \"{}\"", number, expected);
+}
+
 std::string looseness_problem(double value, std::string_view text, const ThresholdType& type, const Check& check) {
   const std::optional<LoosestLimit> loosest = type.loosest != nullptr ? type.loosest(check) : std::nullopt;
+  if (loosest && !loosest->refusal.empty()) {
+    return loosest->refusal;
+  }
   // The slack absorbs rounding errors: 99.9 % in a file is not exactly 0.999.
   constexpr double kRounding = 1e-9;
   const double slack = kRounding * (type.direction == Bound::at_most ? 1.0 : -1.0);

@@ -42,6 +42,7 @@ struct LoosestLimit {
   double value = 0.0;         ///< in the unit of the threshold
   std::string what;           ///< its origin: "the winding limit of the motor"
   bool always_holds = false;  ///< a limit of this value holds always, so only a tighter one is permitted
+  std::string refusal = {};   ///< why the settings of the check make every limit useless; empty if they do not
 };
 
 /// A share of 100 % holds always, so a limit must be below it.

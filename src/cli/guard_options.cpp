@@ -20,11 +20,20 @@ void add_derate_options(CLI::App& app, derate::DerateOptions& options) {
   for (const derate::OptionQuantity& each : derate::option_quantities(options)) {
     std::visit([&](auto* value) { add_quantity(app, fmt::format("--{}", each.spec.key), *value, each.spec); }, each.value);
   }
-  app.add_option("--size", options.table.most_bytes, "largest size of the table in bytes; it takes precedence over --error")
-      ->check(CLI::Range(static_cast<std::size_t>(derate::kTableSize_byte.low), static_cast<std::size_t>(derate::kTableSize_byte.high)))
+  const base::Range& bytes = derate::kTableSize_byte;
+  app.add_option(
+         "--size", options.table.most_bytes,
+         fmt::format("largest size of the table in bytes, {:.0f} to {:.0f}; it takes precedence over --error", bytes.low, bytes.high))
+      ->check([](const std::string& text) {
+        const base::Range& range = derate::kTableSize_byte;
+        const bool is_number = whole_number(static_cast<std::uint64_t>(range.high))(text).empty();
+        return is_number && range.contains(std::stod(text))
+                   ? std::string()
+                   : fmt::format("'{}' is not a whole number of bytes from {:.0f} to {:.0f}", text, range.low, range.high);
+      })
       ->capture_default_str();
   app.add_option("--samples", guarantee.samples,
-                 "number of motors drawn to find the safety factor on heat; as many fresh ones show the confidence")
+                 "number of motors drawn to find the safety factor on heat; as many others, drawn independently, show the confidence")
       ->check(whole_number(100'000))
       ->capture_default_str();
   add_seed(app, guarantee.seed, "seed of the draws; the same seed gives the same bytes");

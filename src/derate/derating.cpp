@@ -85,7 +85,8 @@ BarrierRules barrier_rules(const motor::Motor& motor, const robot::Robot& robot,
 
 namespace {
 
-void require_short_period(const thermal::Network& network, const BarrierRules& rules, const DerateOptions& options) {
+void require_short_period(const thermal::Network& network, const robot::Robot& robot, const BarrierRules& rules,
+                          const DerateOptions& options) {
   std::vector<thermal::Lanes> parameters;
   for (const double value : network.values()) {
     parameters.emplace_back(thermal::Lanes::Constant(value));
@@ -93,15 +94,24 @@ void require_short_period(const thermal::Network& network, const BarrierRules& r
   thermal::OperatingPoint<thermal::Lanes> at;
   at.ambient_C = thermal::Lanes::Constant(options.hottest_ambient_C);
   at.current_rms_A = thermal::Lanes::Constant(rules.most_current_A);
+  const bool is_limited = std::isfinite(robot.drive.current_limit_A);
   // The guard accepts speeds up to less than this (belief.cpp).
   const double fastest_rad_per_s = std::max(2.0 * rules.most_speed_rad_per_s, rules.no_current_speed_rad_per_s);
   at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = thermal::Lanes::Constant(fastest_rad_per_s);
   const double longest_s = 0.2 * thermal::longest_step_s(network, parameters, at, rules.limits.winding_C - options.hottest_ambient_C);
+  // At this current copper heats the winding so fast that the growth of its resistance shortens the time constant.
+  const std::string reason =
+      longest_s < 0.1 * rules.approach_s && !is_limited
+          ? fmt::format(
+                ". The robot has no current_limit, so a current of {:.3g} A counts, which the battery can drive through this motor "
+                "and which heats the winding that fast; state the limit of its motor driver as [drive] current_limit",
+                rules.most_current_A)
+          : std::string();
   if (options.period_s > longest_s || options.period_s > 0.1 * rules.approach_s) {
     throw base::Failure(base::ExitCode::bad_input,
                         fmt::format("a period of {:.3g} s is too long: expected --period {:.3g}s or shorter, the smaller "
-                                    "of 1/20 of this motor's fastest time constant and 1/10 of --approach",
-                                    options.period_s, std::min(longest_s, 0.1 * rules.approach_s)));
+                                    "of 1/20 of this motor's fastest time constant and 1/10 of --approach{}",
+                                    options.period_s, std::min(longest_s, 0.1 * rules.approach_s), reason));
   }
 }
 
@@ -132,7 +142,7 @@ class Search {
         reachable_(barrier_rules(motor, robot, options)),
         progress_(progress),
         network_(motor::datasheet_network(motor, motor::nominal_sample(motor))) {
-    require_short_period(network_, reachable_, options);
+    require_short_period(network_, robot, reachable_, options);
   }
 
   [[nodiscard]] const thermal::Network& network() const { return network_; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 #include "derate/export_text.h"
@@ -61,6 +62,9 @@ Json default_spreads(const Derating& derating) {
   return rows;
 }
 
+/// Returns the shortest decimal number that is the same in single precision, in which the controller computes.
+double in_single_precision(double value) { return std::strtod(fmt::format("{}", static_cast<float>(value)).c_str(), nullptr); }
+
 Json table_json(const CurrentTable& table) {
   // Rounded down, so that a table read back from the file never allows more current.
   const auto rounded_down = [](double value) { return std::floor(value * 1e4) / 1e4; };
@@ -81,7 +85,7 @@ Json table_json(const CurrentTable& table) {
            "winding temperature; above the last grid point of the winding the current is 0 A. Above most_speed_rad_per_s the current falls "
            "linearly to 0 A at no_current_speed_rad_per_s. Linear interpolation of current_A gives a lower current."},
           {"most_current_A", rounded_down(table.most_current_A)},
-          {"straight_below_A", table.straight_below_A},
+          {"straight_below_A", in_single_precision(table.straight_below_A)},
           {"most_speed_rad_per_s", table.most_speed_rad_per_s},
           {"no_current_speed_rad_per_s", table.no_current_speed_rad_per_s},
           {"winding_per_stator_K", table.winding_per_stator_K},

@@ -33,7 +33,7 @@ std::string identifier(std::string_view id) {
 std::string confidence_text(const Derating& derating, const Guarantee& checked) {
   return fmt::format(
       "Confidence {:.6g}: with {:.0f} % certainty at least {:.1f} % of the motors within their tolerances keep every limit in the {} "
-      "hardest uses; {} of {} fresh draws exceeded one.",
+      "hardest uses; {} of {} drawn motors exceeded one.",
       derating.options.guarantee.confidence, 100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0,
       derating.uses.size(), checked.over, checked.samples);
 }

@@ -46,7 +46,7 @@ constexpr std::array kBounds{
                  }},
     SignalBounds{observed::neighbour,
                  [](const Derating& derating) {
-                   return Bounds{coldest_C(derating) - kNeighbourBelowAir_K, 1000.0F};
+                   return Bounds{coldest_C(derating) - kNeighbourBelowAir_K, kMostState_C};
                  }},
     SignalBounds{observed::age,
                  [](const Derating& /*derating*/) {

@@ -11,6 +11,10 @@ namespace heatsoak::derate {
 /// A neighbouring motor that reads this much below the air temperature has a faulty sensor. Its lower bound therefore follows the air.
 inline constexpr float kNeighbourBelowAir_K = 5.0F;
 
+/// Highest temperature of a node of the generated observer, in °C: winding and magnets are destroyed long before. Numbers that follow from
+/// the state stay within the range of the fixed-point form. Also the bound of a plausible reading or saved temperature.
+inline constexpr float kMostState_C = 1000.0F;
+
 /// Plausible range of one signal, in the signal's unit. Single precision, because the controller compares in it.
 struct PlausibleRange {
   bool is_used = false;  ///< false: no law of the motor depends on the signal

@@ -264,6 +264,18 @@ CoreFolder core_files(const robot::Robot& robot, const motor::Motor& motor, cons
   return folder;
 }
 
+std::size_t largest_core_bytes(std::size_t table_bytes) {
+  constexpr std::size_t kCharactersPerByte = 4;  // a number of four bytes as text, "1234.56789F, "
+  std::size_t bytes = kCharactersPerByte * table_bytes;
+  for (const embedded::Text& each : embedded::core_templates()) {
+    bytes += each.text.size();
+  }
+  for (const embedded::Text& each : embedded::core_sources()) {
+    bytes += is_for_firmware(each.path) ? each.text.size() : 0;
+  }
+  return bytes;
+}
+
 GeneratedCore generate_core(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options,
                             derate::DerateOptions derate_options, std::string_view version, const base::Progress& progress) {
   static_cast<void>(make_core_config(robot, motor.nominal, options));

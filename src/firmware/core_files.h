@@ -1,6 +1,7 @@
 // `heatsoak generate core`: the drive core of one robot and motor as a folder of source files that compiles on its own.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -49,6 +50,10 @@ double guard_period_s(double period_s);
 /// (bad_input) as make_core_config() and HostGuard do, or where a file cannot be read.
 CoreFolder core_files(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options, const derate::Derating& derating,
                       std::string_view version);
+
+/// Returns the size of all texts of which core_files() builds a folder, and of a guard table of `table_bytes` as text. The few texts that
+/// depend on robot and motor do not count.
+std::size_t largest_core_bytes(std::size_t table_bytes);
 
 struct GeneratedCore {
   derate::Derating derating;

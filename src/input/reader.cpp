@@ -59,9 +59,8 @@ const Value* Reader::get(std::string_view key, Value::Kind kind, Need need) {
     const bool bare_number = kind == Value::Kind::text && value->kind == Value::Kind::number;
     problem(key, bare_number && is_no_quantity(value->text)
                      ? fmt::format("{} is no quantity; expected a number with its unit, as text", value->text)
-                 : bare_number
-                     ? fmt::format("{} is a bare number; write it as text with its unit, such as \"{} …\"", value->text, value->text)
-                     : fmt::format("is {}, expected {}", to_string(value->kind), to_string(kind)));
+                 : bare_number ? fmt::format("{} is a bare number; expected text, in quotes: \"{}\"", value->text, value->text)
+                               : fmt::format("is {}, expected {}", to_string(value->kind), to_string(kind)));
     return nullptr;
   }
   return value;

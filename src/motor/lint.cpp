@@ -77,6 +77,7 @@ constexpr std::array kChecks = {
     NamedCheck{"nominal_speed", lint_checks::nominal_speed},
     NamedCheck{"nominal_point_heat", lint_checks::nominal_point_heat_check},
     NamedCheck{"copper_limit", lint_checks::copper_limit},
+    NamedCheck{"required_values", lint_checks::required_values},
     NamedCheck{"heat_capacities", lint_checks::heat_capacities},
     NamedCheck{"electrical_time_constant", lint_checks::electrical_time_constant},
     NamedCheck{"density", lint_checks::density},

@@ -85,6 +85,7 @@ void nominal_point_heat_check(const Motor& motor, Findings& findings);
 void copper_limit(const Motor& motor, Findings& findings);
 
 // Orders of magnitude: lint_magnitude.cpp
+void required_values(const Motor& motor, Findings& findings);
 void heat_capacities(const Motor& motor, Findings& findings);
 void electrical_time_constant(const Motor& motor, Findings& findings);
 void density(const Motor& motor, Findings& findings);

@@ -1,6 +1,7 @@
 // Checks of orders of magnitude: values that no real motor has.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "base/quantity.h"
@@ -26,6 +27,24 @@ constexpr double kMostInertia = 0.5;
 /// An external rotor is a bell with the magnets in it: 8 % of the mass with a radius of gyration of 0.6 r gives 0.03. motor_db has 0.05 to
 /// 0.28 for external rotors, 0.018 to 0.028 for the internal ones of the EC-i 40.
 constexpr double kLeastExternalInertia = 0.03;
+/// Lasting over stall current, the root of the share of the stall power that the motor can shed. Usual: motor_db has 0.06 to 0.31, a
+/// traction motor of 52 kW 0.025. Possible: gimbal motors hold their stall current forever. A wrong prefix of the resistance is a factor of
+/// 32.
+constexpr Bounds kUsualLasting_share{0.015, 0.5};
+constexpr Bounds kLasting_share{0.003, 3.0};
+/// U/K_t as a speed: motor_db has 3500 to 14000 rpm. Usual: from hub motors to fans; possible: from torque motors of machine tools to
+/// turbo compressors.
+constexpr Bounds kUsualSpeed_rpm{200.0, 60000.0};
+constexpr Bounds kSpeed_rpm{20.0, 300000.0};
+/// The no-load loss may heat the stator by this share of the room below the winding limit; motor_db has 0.08 to 0.51. Small motors that an
+/// own propeller cools exceed it, but not tenfold.
+constexpr double kUsualNoLoadHeating_share = 1.0;
+constexpr double kNoLoadHeating_share = 10.0;
+/// Stator-ambient over winding-stator: motor_db has 0.19 to 5.3.
+constexpr Bounds kUsualThermalResistance_ratio{0.05, 20.0};
+/// Stator over winding: motor_db has 7 to 14. Copper is at least 3 % of the mass, which gives 40; a mounting plate may come on top.
+constexpr double kUsualHeatCapacity_ratio = 100.0;
+constexpr double kHeatCapacity_ratio = 1000.0;
 /// A motor shorter than this share of its diameter counts as flat; nearly all flat motors have an external rotor.
 constexpr double kFlat = 0.7;
 
@@ -36,7 +55,78 @@ std::string shown_heat(double heat_J_per_K, double mass_kg) {
                      shown(1e3 * mass_kg, "g"));
 }
 
+/// Reports an error outside `possible`, a warning outside `usual`.
+void compare(Findings& findings, std::string_view key, double value, const Bounds& usual, const Bounds& possible, std::string message) {
+  if (possible.excludes(value)) {
+    findings.error(key, std::move(message));
+  } else if (usual.excludes(value)) {
+    findings.warning(key, std::move(message));
+  }
+}
+
+void lasting_current(const MotorValues& v, Findings& findings) {
+  const double thermal_resistance_K_per_W = v.thermal_resistance_winding_stator_K_per_W + v.thermal_resistance_stator_ambient_K_per_W;
+  const double shed_W = (v.winding_limit_C - kSheetAmbient_C) / thermal_resistance_K_per_W;
+  const double lasting_A = std::sqrt(shed_W / resistance_ohm(v, v.winding_limit_C));
+  const double stall_A = v.nominal_voltage_V / v.terminal_resistance_ohm;
+  const double share = lasting_A / stall_A;
+  compare(findings, "terminal_resistance", share, kUsualLasting_share, kLasting_share,
+          fmt::format("{} heat the motor to its winding limit in the long run, which is {} times the stall current of {} ({} over {}); "
+                      "expected 0.015 to 0.5 times; check the units of resistance, voltage and thermal resistances (mohm or ohm?)",
+                      shown(lasting_A, "A"), base::significant(share, 2), shown(stall_A, "A"), shown(v.nominal_voltage_V, "V"),
+                      shown(v.terminal_resistance_ohm, "ohm")));
+}
+
+void ideal_speed(const MotorValues& v, Findings& findings) {
+  const double speed_rad_per_s = v.nominal_voltage_V / v.torque_constant_Nm_per_A;
+  compare(findings, "torque_constant", base::convert(speed_rad_per_s, "rad/s", "rpm"), kUsualSpeed_rpm, kSpeed_rpm,
+          fmt::format("{} over {} is a speed without load of {}, expected 200 to 60000 rpm; check the units of both (mN m/A or N m/A?)",
+                      shown(v.nominal_voltage_V, "V"), shown_torque_constant(v.torque_constant_Nm_per_A), shown_speed(speed_rad_per_s)));
+}
+
+void no_load_heating(const MotorValues& v, Findings& findings) {
+  const double room_K = v.winding_limit_C - kSheetAmbient_C;
+  const double heating_K = v.nominal_voltage_V * v.no_load_current_A * v.thermal_resistance_stator_ambient_K_per_W;
+  compare(findings, "no_load_current", heating_K / room_K, {0.0, kUsualNoLoadHeating_share}, {0.0, kNoLoadHeating_share},
+          fmt::format("without load {} at {} heat the stator by {} (thermal resistance {}), expected less than the {} from 25 degC to the "
+                      "winding limit; check the units of all three (mA or A?)",
+                      shown(v.no_load_current_A, "A"), shown(v.nominal_voltage_V, "V"), shown(heating_K, "K"),
+                      shown(v.thermal_resistance_stator_ambient_K_per_W, "K/W"), shown(room_K, "K")));
+}
+
+void thermal_ratios(const MotorValues& v, Findings& findings) {
+  const double winding_K_per_W = v.thermal_resistance_winding_stator_K_per_W;
+  const double ambient_K_per_W = v.thermal_resistance_stator_ambient_K_per_W;
+  const double ratio = ambient_K_per_W / winding_K_per_W;
+  if (kUsualThermalResistance_ratio.excludes(ratio)) {
+    findings.warning("thermal_resistance_stator_ambient",
+                     fmt::format("{} from stator to ambient is {} times the {} from winding to stator, expected 0.05 to 20 times; "
+                                 "check both and their units",
+                                 shown(ambient_K_per_W, "K/W"), base::significant(ratio, 2), shown(winding_K_per_W, "K/W")));
+  }
+  const double stator_J_per_K = v.thermal_time_constant_stator_s / ambient_K_per_W;
+  const double winding_J_per_K = v.thermal_time_constant_winding_s / winding_K_per_W;
+  compare(findings, "thermal_time_constant_stator", stator_J_per_K / winding_J_per_K, {0.0, kUsualHeatCapacity_ratio},
+          {0.0, kHeatCapacity_ratio},
+          fmt::format("time constant over thermal resistance gives the stator {} and the winding {}, expected at most 100 times as much in "
+                      "the stator, because copper is at least 3 % of a motor's mass; check the units of both time constants (s or h?) and "
+                      "thermal resistances",
+                      shown(stator_J_per_K, "J/K"), shown(winding_J_per_K, "J/K")));
+}
+
 }  // namespace
+
+void required_values(const Motor& motor, Findings& findings) {
+  if (!is_complete(motor.nominal)) {
+    return;
+  }
+  if (motor.nominal.winding_limit_C > kSheetAmbient_C) {  // else limits() reports it
+    lasting_current(motor.nominal, findings);
+    no_load_heating(motor.nominal, findings);
+  }
+  ideal_speed(motor.nominal, findings);
+  thermal_ratios(motor.nominal, findings);
+}
 
 void heat_capacities(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;

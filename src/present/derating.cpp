@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/quantity.h"
 #include "base/version.h"
 #include "derate/export_text.h"
 #include "motor/datasheet_network.h"
@@ -77,9 +78,10 @@ void add_table_notes(Document& document, const derate::Derating& derating) {
       Severity::background,
       fmt::format(
           "Table: {} bytes. Its current is never above the exact answer of the network, and at most {:.1f} % below it from {:.2g} A up. "
-          "The current changes by at most {:.2g} A per K of the winding, {:.2g} A per K of the stator and {:.2g} A per rad/s.",
-          derating.table.size_bytes(), 100.0 * bound.shortfall_ratio, derating.table.straight_below_A, bound.winding_slope_A_per_K,
-          bound.stator_slope_A_per_K, bound.speed_slope_A_s_per_rad));
+          "The current changes by at most {} A per K of the winding, {} A per K of the stator and {} A per rad/s.",
+          derating.table.size_bytes(), 100.0 * bound.shortfall_ratio, derating.table.straight_below_A,
+          base::significant(bound.winding_slope_A_per_K, 2), base::significant(bound.stator_slope_A_per_K, 2),
+          base::significant(bound.speed_slope_A_s_per_rad, 2)));
 }
 
 /// Adds the benefit and the possible faults of the sensor, if there is one.
@@ -123,6 +125,16 @@ std::string place_text(const derate::TablePlace& place) {
                      place.stator_C, place.winding_C, place.committed_A, place.fresh_A);
 }
 
+/// Returns in one line why a committed table must not be used any more.
+std::string broken_words(const derate::TableCheck& check) {
+  const derate::TableComparison& found = check.found;
+  const std::string why = found.is_other_motor ? fmt::format("it is for another motor, {}", check.committed.motor_id)
+                          : found.excess.difference_A > 0.0
+                              ? fmt::format("it allows up to {:.3f} A more than a fresh table", found.excess.difference_A)
+                              : fmt::format("its observer differs from a fresh one in line {}", found.differing_line);
+  return fmt::format("no longer holds: {}; write it again with --out", why);
+}
+
 }  // namespace
 
 std::string limit_range_words(const derate::Derating& derating) {
@@ -136,16 +148,16 @@ Document derating_document(const derate::Derating& derating, const motor::Motor&
   Document document{
       .headline = {{fmt::format(
                        "{} in {}: with {:.0f} % certainty at least {:.1f} % of the motors within their tolerances keep the winding below "
-                       "{:.0f} °C{}{} in air of {:.0f} °C, {} thermal data.",
+                       "{:.0f} °C{}{} in air of {:.0f} °C in the {} simulated uses, {} thermal data.",
                        derating.motor_id, derating.robot_id, 100.0 * derate::kCertainty_share,
                        std::floor(1000.0 * checked.least_kept_share) / 10.0, derating.rules.limits.winding_C, limit_range_words(derating),
                        derating.rules.limits.stator_C ? fmt::format(", the stator below {:.0f} °C", *derating.rules.limits.stator_C) : "",
-                       derating.rules.hottest_ambient_C, derating.data_quality)},
+                       derating.rules.hottest_ambient_C, derating.uses.size(), derating.data_quality)},
                    {fmt::format("Safety factor on heat {:.2f}; current {:.1f} A from cold, {:.2f} A lasting.",
                                 derating.observer.heat_safety_factor(),
                                 derating.table.allowed_A(0.0, derating.rules.hottest_ambient_C, derating.rules.hottest_ambient_C),
                                 derate::limp_current_A(derating))}},
-      .paragraphs = {fmt::format("Confidence {:.6g}: {} of {} fresh draws exceeded a limit in the {} hardest uses. This "
+      .paragraphs = {fmt::format("Confidence {:.6g}: {} of {} drawn motors exceeded a limit in the {} hardest uses. This "
                                  "confidence needs at least {} draws.",
                                  derating.options.guarantee.confidence, checked.over, checked.samples, derating.uses.size(),
                                  derate::least_samples(derating.options.guarantee)),
@@ -172,9 +184,9 @@ Document derating_document(const derate::Derating& derating, const motor::Motor&
 
 void add_table_check(Document& document, const derate::Derating& derating, const derate::TableCheck& check) {
   const derate::TableComparison& found = check.found;
-  document.headline.push_back({fmt::format("{}: {}", check.committed.file.string(),
-                                           check.found.holds() ? "still holds" : "no longer holds; write it again with --out"),
-                               check.found.holds() ? Tone::good : Tone::bad});
+  document.headline.insert(document.headline.begin(),
+                           {fmt::format("{}: {}", check.committed.file.string(), check.found.holds() ? "still holds" : broken_words(check)),
+                            check.found.holds() ? Tone::good : Tone::bad});
   if (found.is_other_motor) {
     document.add_note(Severity::warning, fmt::format("Unsafe: the table is for another motor, {}; expected a table for {}.",
                                                      check.committed.motor_id, derating.motor_id));

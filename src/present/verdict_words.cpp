@@ -34,7 +34,8 @@ Tone tone_of(select::Verdict verdict) {
 }
 
 std::string passing_text(std::ptrdiff_t passing, std::size_t all, std::string_view what) {
-  return fmt::format("{} of {} {}{} pass{}", passing, all, what, all == 1 ? "" : "s", passing == 1 || all == 1 ? "es" : "");
+  const bool is_single = passing == 1 && all == 1;
+  return fmt::format("{} of {} {}{} pass{}", passing, all, what, is_single ? "" : "s", passing == 1 ? "es" : "");
 }
 
 std::string percent_range(const select::Interval95& range) {

@@ -39,6 +39,12 @@ void check_wheels(const Robot& robot, std::vector<motor::LintFinding>& findings)
   const double room_m = robot.wheels.contact_radius_m * std::tan(0.5 * std::min(closest_axles_rad(robot), 0.9 * std::numbers::pi));
   // Known robots have wheels of 0.35 to 0.42 of the contact radius.
   constexpr double kLargestShare = 0.6;
+  constexpr double kSameDirection_rad = 1e-3;
+  if (closest_axles_rad(robot) < kSameDirection_rad) {
+    findings.push_back(finding(robot, motor::LintFinding::Level::error, "axes", "wheels.axis_angles",
+                               "two wheels have the same angle; expected a different one for each wheel"));
+    return;
+  }
   const bool is_overlap = robot.wheels.radius_m > room_m;
   if (is_overlap || robot.wheels.radius_m > kLargestShare * robot.wheels.contact_radius_m) {
     findings.push_back(

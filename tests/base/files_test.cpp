@@ -65,14 +65,36 @@ TEST_F(Files, a_writer_that_is_killed_leaves_what_was_there) {
   EXPECT_EQ(read_file(folder_ / "answer.json", kMost_bytes), "before");
 }
 
-TEST_F(Files, replaces_what_was_there_and_keeps_to_the_umask) {
-  std::ofstream(folder_ / "answer.json") << "something longer than what comes now";
+TEST_F(Files, a_new_one_keeps_to_the_umask) {
   const mode_t before = ::umask(027);
   write_file(folder_ / "answer.json", "now");
   ::umask(before);
   EXPECT_EQ(read_file(folder_ / "answer.json", kMost_bytes), "now");
   EXPECT_EQ(fs::status(folder_ / "answer.json").permissions(), fs::perms{0640});
   EXPECT_THAT(names(), ElementsAre("answer.json"));
+}
+
+TEST_F(Files, replaces_what_was_there_and_keeps_its_permissions) {
+  for (const fs::perms permissions : {fs::perms{0600}, fs::perms{0666}, fs::perms{0755}}) {
+    std::ofstream(folder_ / "answer.json") << "something longer than what comes now";
+    fs::permissions(folder_ / "answer.json", permissions);
+    const mode_t before = ::umask(027);
+    write_file(folder_ / "answer.json", "now");
+    ::umask(before);
+    EXPECT_EQ(read_file(folder_ / "answer.json", kMost_bytes), "now");
+    EXPECT_EQ(fs::status(folder_ / "answer.json").permissions(), permissions);
+    EXPECT_THAT(names(), ElementsAre("answer.json"));
+  }
+}
+
+TEST_F(Files, a_link_stays_a_link_to_a_file_with_its_permissions) {
+  std::ofstream(folder_ / "private.json") << "before";
+  fs::permissions(folder_ / "private.json", fs::perms{0600});
+  fs::create_symlink("private.json", folder_ / "answer.json");
+  write_file(folder_ / "answer.json", "now");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "answer.json"));
+  EXPECT_EQ(read_file(folder_ / "private.json", kMost_bytes), "now");
+  EXPECT_EQ(fs::status(folder_ / "private.json").permissions(), fs::perms{0600});
 }
 
 TEST_F(Files, of_which_one_cannot_be_written_all_stay_away) {

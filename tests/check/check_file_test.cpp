@@ -184,7 +184,7 @@ TEST_F(CheckFiles, ForecastErrorNeedsTheAirOfALogWithoutIt) {
   }
   base::write_file(folder_ / "no_air.csv", log);
   const std::string check = "[[check]]\nname = \"x\"\nmotor = \"maxon_ecx_flat_42m_24v\"\nlogs = [\"no_air.csv\"]\n";
-  const std::string limits = "[check.limits]\nforecast_error = \"at most 500 K\"\n";
+  const std::string limits = "[check.limits]\nforecast_error = \"at most 90 K\"\n";
   const Outcome without = outcomes(check + limits).front();
   EXPECT_FALSE(without.is_evaluated);
   EXPECT_THAT(without.reason, HasSubstr("the log has no ambient temperature"));
@@ -344,6 +344,32 @@ TEST_F(CheckFiles, TimeAboveLongerThanTheDutyIsRefused) {
   EXPECT_THAT(message("2400 s"), HasSubstr("\"at most 2400 s\" holds always"));
   EXPECT_THAT(message("40 min"), HasSubstr("\"at most 40 min\" holds always"));
   EXPECT_EQ(message("2399 s"), "nothing was wrong");
+}
+
+// Each bound follows from the motor, the duty or the program.
+TEST_F(CheckFiles, LimitsThatCannotFailAreRefused) {
+  const auto message = [&](const std::string& settings, const std::string& limit) {
+    return message_of("[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nmotor = \"maxon_ecx_flat_32l_48v\"\n" + settings +
+                      "[check.limits]\n" + limit + "\n");
+  };
+  const std::string paper = "duty = \"paper_intermittent\"\n";
+  EXPECT_THAT(message(paper, "stator_peak_p95 = \"at most 900 degC\""), HasSubstr("which the stator must not exceed either, 155.0 °C"));
+  EXPECT_EQ(message(paper, "stator_peak_p95 = \"at most 155 degC\""), "nothing was wrong");
+  EXPECT_THAT(message(paper + "temperature = \"156 degC\"\n", "time_above = \"at most 60 s\""),
+              HasSubstr("'temperature' is 156.0 °C, the limit 155.0 °C; expected a 'temperature' up to that limit"));
+  EXPECT_THAT(message(paper, "guard_missing_charge = \"at most 1e6 A s\""),
+              HasSubstr("holds always: the largest current of all wheels during the whole duty is"));
+  EXPECT_THAT(message("", "lint_problems = \"at most 10000\""), HasSubstr("holds always: the number of values in a complete motor file"));
+  EXPECT_EQ(message("", "lint_problems = \"at most 3\""), "nothing was wrong");
+  EXPECT_THAT(message("", "core_size = \"at most 900 kbyte\""),
+              HasSubstr("is looser than twice all texts of the drive core with the largest guard table"));
+  EXPECT_EQ(message("", "core_size = \"at most 410 kbyte\""), "nothing was wrong");
+}
+
+TEST_F(CheckFiles, ABareNumberAsLimitIsAnsweredWithTheLimit) {
+  const std::string message = message_of(kHead + "[check.limits]\nwinding_peak_p95 = 70\nprobability_over_limit = 5\n");
+  EXPECT_THAT(message, HasSubstr("winding_peak_p95: 70 is a bare number; expected a limit as text, such as \"at most 70 degC\""));
+  EXPECT_THAT(message, HasSubstr("probability_over_limit: 5 is a bare number; expected a limit as text, such as \"at most 5 %\""));
 }
 
 TEST_F(CheckFiles, RankOfAMotorAgainstItselfIsRefused) {

@@ -105,7 +105,7 @@ TEST_F(Outcomes, AreAnnotationsAtFileAndLine) {
 
 TEST_F(Outcomes, AreAMarkdownTable) {
   const std::string text = summary_markdown(outcomes_, "1.2.3");
-  EXPECT_THAT(text, HasSubstr("1 of 3 limits does not hold; 1 of 3 limits cannot be evaluated"));
+  EXPECT_THAT(text, HasSubstr("1 limit of 3 does not hold; 1 limit of 3 cannot be evaluated"));
   std::istringstream lines(text);
   int rows = 0;
   for (std::string line; std::getline(lines, line);) {

@@ -31,7 +31,7 @@ TEST(Limit, ThatIsNoneSaysWhatWasExpected) {
   EXPECT_THAT(problem("at most", "winding_peak_p95"), HasSubstr("does not begin with a number"));
   EXPECT_THAT(problem("at least 150 degC", "winding_peak_p95"), HasSubstr("the wrong side"));
   EXPECT_THAT(problem("at most 150", "winding_peak_p95"), HasSubstr("has no unit"));
-  EXPECT_THAT(problem("at most 150 A", "winding_peak_p95"), HasSubstr("a unit of something else"));
+  EXPECT_THAT(problem("at most 150 A", "winding_peak_p95"), HasSubstr("no unit of this quantity"));
   EXPECT_THAT(problem("at most nan degC", "winding_peak_p95"), HasSubstr("not a finite number"));
   EXPECT_THAT(problem("at most inf degC", "winding_peak_p95"), HasSubstr("not a finite number"));
   EXPECT_THAT(problem("at most 1e999 degC", "winding_peak_p95"), HasSubstr("too large"));

@@ -1,5 +1,5 @@
 // One faulty file is one test: tests/data/bad_<kind>s/bad_<kind>_*.toml. Its first lines state the expected messages,
-//   # expect: 7:23: error: figures.torque_constant.value: 'N m' is a unit of something else
+//   # expect: 7:23: error: figures.torque_constant.value: 'N m' is no unit of this quantity
 //   # expect: bad_csv_short_row.csv:3:1: error: has 2 cells
 // with the place and the beginning of each message. Files that cannot hold a comment have these lines in <file>.expect.
 #include <fmt/format.h>

@@ -78,12 +78,12 @@ TEST_F(CheckCommand, ExceededLimitIsExitOneAtItsLine) {
   write(folder_.path() / "summary.md", "before\n");
   const ProgramRun done = check(check_with(30.0, 1.0), {"--junit", "check.xml"});
   EXPECT_EQ(done.exit_code, 1) << done.err;
-  EXPECT_THAT(done.out, HasSubstr("1 of 2 limits does not hold"));
+  EXPECT_THAT(done.out, HasSubstr("1 limit of 2 does not hold"));
   EXPECT_THAT(done.out, HasSubstr("::error file=robot.check.toml,line=9,col=20,title=paper%3A winding_peak_p95::"));
   EXPECT_THAT(done.out, Not(HasSubstr("\x1b")));
   EXPECT_THAT(content_of(folder_.path() / "check.xml"), HasSubstr("<failure type=\"limit_exceeded\""));
   EXPECT_THAT(content_of(folder_.path() / "summary.md"),
-              testing::AllOf(testing::StartsWith("before\n"), HasSubstr("1 of 2 limits does not hold")));
+              testing::AllOf(testing::StartsWith("before\n"), HasSubstr("1 limit of 2 does not hold")));
   EXPECT_EQ(check(check_with(120.0, 99.0)).exit_code, 1);
 }
 
@@ -124,6 +124,7 @@ TEST_F(CheckCommand, MissingMotorFileIsAFailedLimitInEveryReport) {
 }
 
 TEST_F(CheckCommand, UpdateRewritesTheLimitsInPlace) {
+  EXPECT_EQ(check(check_with(30.0, 99.0), {"--margin", "10 %"}).exit_code, 2) << "without --update it would change nothing";
   const ProgramRun updated = check(check_with(30.0, 99.0), {"--update", "--margin", "10 %"});
   EXPECT_EQ(updated.exit_code, 0) << updated.err;
   EXPECT_THAT(updated.out, HasSubstr("limit at most 30 degC → at most "));
@@ -237,6 +238,9 @@ TEST(DerateCheck, FindsATableThatNoLongerHolds) {
   EXPECT_THAT(unsafe.err, HasSubstr("unsafe.csv: no longer holds"));
   EXPECT_THAT(unsafe.err, HasSubstr("70.250 A, a fresh table"));
   EXPECT_EQ(unsafe.json().at("check").at("holds"), false);
+  const std::string reason = "unsafe.csv: no longer holds: it allows up to ";
+  EXPECT_THAT(unsafe.err, testing::StartsWith(reason));
+  EXPECT_THAT(run(derate + Words{"--check", "unsafe.csv", "--quiet"}, options).out, testing::StartsWith(reason));
   const ProgramRun holds = run(derate + Words{"--check", "table.csv"}, options);
   EXPECT_EQ(holds.exit_code, 0) << holds.err;
   EXPECT_THAT(holds.out, HasSubstr("table.csv: still holds"));

@@ -678,7 +678,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "the value of --motors is empty"},
         Mistake{"current_in_volt",
                 {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "6V", "--time-on", "1", "--time-off", "1"},
-                "unit of something else"},
+                "no unit of this quantity"},
         Mistake{"negative_current",
                 {"steady", "--motor", "maxon_ec45_flat_70w_24v", "--current-on", "-6", "--time-on", "1", "--time-off", "1"},
                 "out of range"},

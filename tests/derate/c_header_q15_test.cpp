@@ -302,6 +302,35 @@ TEST_F(Q15Header, TakesTheHottestAcceptedSpeedAndCallsAColdMotorsCurrentFull) {
   EXPECT_EQ(warm, 1) << "derated";
 }
 
+/// Prints the hottest winding of 30 s at 60 A in °C, the number of steps that were colder than the one before or counted as not started,
+/// and the reason without current after that.
+constexpr const char* kOvercurrent = R"(
+#include "q15_guard.h"
+#include <stdio.h>
+int main(void) {
+  MOTOR_q15_state state;
+  MOTOR_q15_input in = {60000, 0, 40000};
+  int32_t last_mC = 40000;
+  int wrong = 0;
+  int i;
+  MOTOR_q15_start(&state, 40000);
+  for (i = 0; i < 3000; ++i) {
+    const MOTOR_q15_output out = MOTOR_q15_step(&state, &in);
+    wrong += (out.guarded_winding_mC < last_mC) || (out.reason == MOTOR_q15_not_started);
+    last_mC = out.guarded_winding_mC;
+  }
+  in.current_mA = 0;
+  printf("%d %d %d", (int)(last_mC / 1000), wrong, (int)MOTOR_q15_step(&state, &in).reason);
+  return 0;
+}
+)";
+
+TEST_F(Q15Header, ForgetsNoHeatOfAnImpossibleOvercurrent) {
+  write_headers(ecx_derating());
+  write("overcurrent.c", kOvercurrent, ecx_derating());
+  EXPECT_EQ(output_of(fmt::format("cc -std=c99 {} -o overcurrent overcurrent.c && ./overcurrent", kWarnings)), "1000 0 2");
+}
+
 TEST(Q15HeaderText, RefusesLawsThatItCannotCompute) {
   const Derating derating = derating_of(ecx_32_with(R"([effects.air]
 type = "natural_convection"

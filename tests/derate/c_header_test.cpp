@@ -291,6 +291,26 @@ TEST_P(CHeader, counts_as_hot_what_was_never_started) {
   EXPECT_NE(ask("start 30\nin 0 0 25\n")[0].reason, not_started);
 }
 
+// A winding hotter than any number of the observer counts as that hot: to start again at the limit would forget the heat.
+TEST_P(CHeader, forgets_no_heat_of_an_impossible_overcurrent) {
+  for (const char* const in : {"in 60 0 40\n", "in nan 100 40\n"}) {
+    std::string lines = "start 40\n";
+    constexpr std::size_t kSteps = 3000;
+    for (std::size_t i = 0; i < kSteps; ++i) {
+      lines += in;
+    }
+    const std::vector<Answer> answers = ask(lines + "in 0 0 40\n");
+    ASSERT_EQ(answers.size(), kSteps + 1);
+    for (std::size_t i = 1; i < kSteps; ++i) {
+      ASSERT_GE(answers[i].winding_C, answers[i - 1].winding_C) << in << i;
+      ASSERT_NE(answers[i].reason, not_started) << in << i;
+    }
+    EXPECT_EQ(answers[kSteps - 1].winding_C, 1000.0F) << in;
+    EXPECT_LT(answers[kSteps].winding_C, 1000.0F) << in;
+    EXPECT_EQ(answers[kSteps].reason, no_current) << in;
+  }
+}
+
 TEST_P(CHeader, takes_the_hottest_case_for_what_is_no_number) {
   const std::vector<Answer> known = ask("start 80\nin 0 0 25\nin 0 0 25\n");
   for (const char* const in : {"in nan 0 25\n", "in inf 0 25\n", "in -inf 0 25\n", "in 0 nan 25\n", "in 0 0 nan\n", "in 0 0 -273\n",
@@ -441,7 +461,7 @@ TEST(CHeaderText, NamesHeatAfterItsLawAndNodes) {
 
 TEST(CHeaderText, ACommentEndsWhereItShould) {
   EXPECT_THAT(header_text(), HasSubstr("a * / robot"));
-  EXPECT_THAT(header_text(), HasSubstr("of 400 motors drawn from the declared tolerances, 10 exceeded"));
+  EXPECT_THAT(header_text(), HasSubstr("Of 400 motors drawn independently, 10 exceeded"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <limits>
 #include <set>
 
 #include "base/diagnostic.h"
@@ -281,6 +282,21 @@ TEST(Derate, RefusesAPeriodThatIsTooLongForTheMotor) {
   DerateOptions slow;
   slow.period_s = 0.4;
   EXPECT_THROW(derate(ecx_32(), twente(), slow), base::Failure);
+}
+
+// Without a limit of the driver the current that the battery can drive counts; the message must name it, not the period only.
+TEST(Derate, NamesTheCurrentThatMakesAPeriodTooLong) {
+  motor::Motor motor = ecx_32();
+  motor.nominal.terminal_resistance_ohm = 0.05;
+  robot::Robot robot = twente();
+  robot.drive.current_limit_A = std::numeric_limits<double>::infinity();
+  try {
+    derate(motor, robot, {});
+    FAIL() << "no failure";
+  } catch (const base::Failure& failure) {
+    EXPECT_THAT(failure.what(), HasSubstr("too long"));
+    EXPECT_THAT(failure.what(), HasSubstr("The robot has no current_limit, so a current of"));
+  }
 }
 
 // With a longer approach a hotter winding would be allowed more current.

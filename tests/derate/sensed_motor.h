@@ -69,9 +69,15 @@ struct SensedRun {
   double last_allowed_A = 0.0;
 };
 
+/// Current of a driver that differs from the asked one.
+struct CurrentError {
+  double over_share = 0.0;    ///< always this share more
+  double ripple_share = 0.0;  ///< every other period this share more, else this share less
+};
+
 /// Drives with the full allowed current, or with a random load.
 inline SensedRun run_sensed(const CompiledGuard& guard, const Derating& derating, Plant& plant, const Sensor& sensor, int steps,
-                            unsigned driver_seed, bool is_always_all = false) {
+                            unsigned driver_seed, bool is_always_all = false, const CurrentError& error = {}) {
   SensedGuard sensed(guard);
   ModelGuard model(guard);
   const double ambient_C = 39.5;  // just below 40 °C, the value that replaces a missing measurement
@@ -84,7 +90,8 @@ inline SensedRun run_sensed(const CompiledGuard& guard, const Derating& derating
   double capped_A = 0.0;
   for (int i = 0; i < steps; ++i) {
     const RandomLoad::Wish wish = is_always_all ? RandomLoad::Wish{} : driver.after(period_s);
-    const double current_A = wish.current_share * allowed_A;
+    const double ripple_share = i % 2 == 0 ? error.ripple_share : -error.ripple_share;
+    const double current_A = wish.current_share * allowed_A * (1.0 + error.over_share + ripple_share);
     const double speed_rad_per_s = wish.speed_share * derating.rules.most_speed_rad_per_s;
     plant.step(current_A, speed_rad_per_s, ambient_C, period_s);
     run.winding_peak_C = std::max(run.winding_peak_C, plant.true_C(motor::states::winding));

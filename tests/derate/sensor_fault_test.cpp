@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -28,6 +29,12 @@ std::vector<Attack> attacks() {
       {"stuck at a plausible value", true, [](double, double, double) { return 75.0F; }},
       {"slow drift to cold", false, [](double time_s, double true_C, double) { return static_cast<float>(true_C - 0.03 * time_s); }},
       {"very slow drift to cold", false, [](double time_s, double true_C, double) { return static_cast<float>(true_C - 0.01 * time_s); }},
+      {"as cold as the cross-check permits", false,
+       [](double, double true_C, double ambient_C) {
+         const auto& check = thermistor_derating().sensor->check;
+         const double least_C = ambient_C + check.cold_share * (true_C - ambient_C) - check.cold_margin_K;
+         return static_cast<float>(std::max(0.0, least_C - thermistor_derating().sensor->options.accuracy_K + 0.3));
+       }},
       {"half of the rise", false,
        [](double, double true_C, double ambient_C) { return static_cast<float>(ambient_C + 0.5 * (true_C - ambient_C)); }},
       {"0.7 of the reading", false, [](double, double true_C, double) { return static_cast<float>(0.7 * true_C); }},
@@ -72,6 +79,36 @@ TEST_F(LyingSensor, GainsNoMoreThanStatedAndSparesTheNominalMotor) {
       std::cout << fmt::format("{} ({}): {:.2f} A more, winding {:.0f} °C, dropped at {:.0f} s\n", attack.name, is_all ? "all" : "random",
                                run.most_excess_A, run.winding_peak_C, run.dropped_at_s);
     }
+  }
+}
+
+// A driver that exceeds the allowed current by a constant share. The header states the hottest winding of the nominal motor.
+TEST_F(LyingSensor, SparesTheNominalMotorOfADriverThatExceedsTheAllowedCurrent) {
+  const Derating& derating = thermistor_derating();
+  ASSERT_TRUE(guard());
+  const double stated_C = derating.sensor->sensor_fault_nominal_C;
+  for (const Attack& attack : attacks()) {
+    for (const double over_share : {0.0, 0.02, 0.05, 0.09, 0.11, 0.2}) {
+      Plant plant(ecx_32(), motor::nominal_sample(ecx_32()), 40.0);
+      const SensedRun run = run_sensed(guard(), derating, plant, attack.sensor, 120'000, 11, true, {.over_share = over_share});
+      EXPECT_LE(run.winding_peak_C, stated_C + 1.0) << attack.name << ", " << 100.0 * over_share << " % more current than allowed";
+    }
+  }
+}
+
+// The ripple of a current control is no excess: it must not take away what a correct sensor gains.
+TEST_F(LyingSensor, ARippleAroundTheAllowedCurrentCostsACorrectSensorLittle) {
+  const Derating& derating = thermistor_derating();
+  const Sensor correct = [](double, double true_C, double) { return static_cast<float>(true_C); };
+  double smooth_A = 0.0;
+  for (const double ripple_share : {0.0, 0.05}) {
+    Plant plant(ecx_32(), motor::nominal_sample(ecx_32()), 40.0);
+    const SensedRun run = run_sensed(guard(), derating, plant, correct, 120'000, 11, true, {.ripple_share = ripple_share});
+    EXPECT_EQ(run.status, CompiledGuard::used);
+    std::cout << fmt::format("ripple of {:.0f} %: {:.3f} A lasting, winding {:.1f} °C\n", 100.0 * ripple_share, run.last_allowed_A,
+                             run.winding_peak_C);
+    smooth_A = ripple_share == 0.0 ? run.last_allowed_A : smooth_A;
+    EXPECT_GE(run.last_allowed_A, 0.99 * smooth_A);
   }
 }
 

@@ -258,6 +258,37 @@ class HostGuardBits : public testing::Test {
   }
 };
 
+// Beyond every temperature that a motor can have: no heat is forgotten.
+TEST_F(HostGuardBits, EqualThoseOfTheHeaderUnderAnImpossibleOvercurrent) {
+  const derate::Derating derating = derating_of(ecx_32());
+  const HostGuard guard(derating);
+  std::vector<Record> records(6000, Record{});
+  std::vector<std::uint32_t> winding;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    records[i][derate::observed::current] = i < 4000 ? 60.0F : 0.0F;
+    records[i][derate::observed::ambient] = 40.0F;
+  }
+  robot_core::GuardState state;  // started by the first step, as that of the header
+  float last_C = 0.0F;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const robot_core::GuardOutput out = robot_core::step_guard(guard.model(), state, records[i].data(), 0.0F);
+    winding.push_back(std::bit_cast<std::uint32_t>(state.state_C[0]));
+    ASSERT_EQ(out.was_started, i > 0) << i;
+    if (i < 4000) {
+      ASSERT_GE(out.winding_C, last_C) << i;
+    }
+    last_C = out.winding_C;
+    if (i == 3999) {
+      EXPECT_EQ(out.winding_C, 1000.0F);
+    }
+  }
+  const std::vector<Row> header = by_header(derating, records);
+  ASSERT_EQ(header.size(), records.size());
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    ASSERT_EQ(header[i].bits[1], winding[i]) << i;
+  }
+}
+
 TEST_F(HostGuardBits, EqualThoseOfTheHeaderOfADataSheetMotor) { expect_same_bits(derating_of(ecx_32()), "data sheet"); }
 
 TEST_F(HostGuardBits, EqualThoseOfTheHeaderOfAMotorWithManyLaws) {

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "support/source_folder.h"
 
@@ -391,6 +392,39 @@ TEST(Lint, heat_of_estimates_is_only_a_warning) {
 
   EXPECT_THAT(errors(estimated), ElementsAre());
   EXPECT_THAT(checks_with(LintFinding::Level::warning, estimated), Contains("nominal_point_heat"));
+}
+
+/// Returns a motor with the required values only; `was` is replaced by `is`.
+Motor typed_motor(const std::string& was, const std::string& is) {
+  std::stringstream text;
+  text << std::ifstream(kSource / "tests/data/lint_motors/lint_typed_from_a_page.toml").rdbuf();
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / ("heatsoak_typed_" + std::to_string(static_cast<int>(getpid())) + ".toml");
+  std::ofstream(file) << std::regex_replace(text.str(), std::regex('"' + was + '"'), '"' + is + '"');
+  Motor motor = read_motor(file);
+  std::filesystem::remove(file);
+  return motor;
+}
+
+// With nothing to compare them with, required values are judged by their order of magnitude.
+TEST(RequiredValues, ASlipOfTheUnitIsFound) {
+  EXPECT_EQ(said_by("required_values", typed_motor("24 V", "24 V")), "");
+  struct Typed {
+    std::string was;
+    std::string is;
+    std::string said;
+    bool is_error;
+  };
+  for (const Typed& each :
+       {Typed{"0.19 ohm", "0.19 mohm", "mohm or ohm?", true}, Typed{"0.19 ohm", "190 ohm", "stall current of 0.126 A", false},
+        Typed{"25 mN m/A", "25 N m/A", "mN m/A or N m/A?", true}, Typed{"400 mA", "40 A", "mA or A?", true},
+        Typed{"24 V", "240 V", "heat the stator by 384 K", false}, Typed{"300 s", "30 h", "s or h?", true},
+        Typed{"4 K/W", "0.04 K/W", "0.02 times", true}, Typed{"10 s", "0.5 s", "s or h?", false}}) {
+    const Motor motor = typed_motor(each.was, each.is);
+    EXPECT_THAT(said_by("required_values", motor), HasSubstr(each.said)) << each.is;
+    EXPECT_EQ(errors(motor).contains("required_values"), each.is_error) << each.is;
+    EXPECT_TRUE(each.is_error || checks_with(LintFinding::Level::warning, motor).contains("required_values")) << each.is;
+  }
 }
 
 // Values that are too good would make every verdict optimistic.

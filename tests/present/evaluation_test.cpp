@@ -125,7 +125,7 @@ TEST(OpenShare, is_the_share_whose_interval_covers_a_threshold) {
 
 TEST(PassingText, agrees_in_number) {
   EXPECT_EQ(passing_text(1, 1, "motor"), "1 of 1 motor passes");
-  EXPECT_EQ(passing_text(0, 1, "motor"), "0 of 1 motor passes");
+  EXPECT_EQ(passing_text(0, 1, "motor"), "0 of 1 motors pass");
   EXPECT_EQ(passing_text(1, 2, "motor"), "1 of 2 motors passes");
   EXPECT_EQ(passing_text(0, 2, "motor"), "0 of 2 motors pass");
 }

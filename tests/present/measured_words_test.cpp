@@ -217,7 +217,7 @@ TEST(WordsOfFailures, OfRunsAndDiagnoses) {
             "no log has a heat input for ecx; expected current_A, or power_in_W with an effect input_power_loss; add one to the logs");
   EXPECT_THAT(in_words(diagnosis::NoEffectFollows({"stator_C", 31.26, 8.04})).message(),
               HasSubstr("no effect makes the model follow these logs: stator_C has an error of 31 K rms, more than its variation (standard "
-                        "deviation 8.0 K)\n  check for another motor"));
+                        "deviation 8 K)\n  check for another motor"));
 }
 
 TEST(WordsOfCalibration, OpenDirections) {

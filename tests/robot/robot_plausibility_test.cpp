@@ -40,6 +40,11 @@ TEST(RobotPlausibility, diameter_in_place_of_the_radius_makes_wheels_overlap) {
   EXPECT_THAT(findings_with("\nradius = \"28 mm\"", "\nradius = \"62 mm\""), Contains("wheels error"));
 }
 
+// Not their radius, which is right, but their angles are wrong.
+TEST(RobotPlausibility, two_wheels_at_one_angle_are_named) {
+  EXPECT_THAT(findings_with("axis_angles = \\[\"-30 deg\", \"30 deg\"", "axis_angles = [\"30 deg\", \"30 deg\""), Contains("axes error"));
+}
+
 // Two wheels at ±30° on a circle of 80.4 mm touch if their radius is 80.4 mm · tan 30° = 46.4 mm.
 TEST(RobotPlausibility, wheels_overlap_from_the_radius_of_geometry_on) {
   EXPECT_THAT(findings_with("\nradius = \"28 mm\"", "\nradius = \"46 mm\""), IsEmpty());

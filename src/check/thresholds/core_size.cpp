@@ -30,6 +30,10 @@ ThresholdType core_size() {
           .example = "at most 400 kbyte",
           .needs = {Setting::robot, Setting::motor},
           .takes = {Setting::conditions, Setting::derate},
+          .loosest = [](const Check& check) -> std::optional<LoosestLimit> {
+            return LoosestLimit{2.0 * static_cast<double>(firmware::largest_core_bytes(check.derate.table.most_bytes)),
+                                "twice all texts of the drive core with the largest guard table"};
+          },
           .measure = measure_core_size};
 }
 

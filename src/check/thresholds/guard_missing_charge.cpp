@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "check/computations.h"
+#include "check/thresholds/duty_duration.h"
 
 namespace heatsoak::check::thresholds {
 namespace {
@@ -9,6 +10,21 @@ Measured measure_guard_missing_charge(const Check& check, Computations& computat
   const GuardedDrive& drive = computations.guarded_drive(check);
   return {drive.score.guard_missing_A_s, 0.0,
           fmt::format("the guard would limit for {:.1f} of {:.0f} s", drive.score.guard_limited_s, drive.duration_s)};
+}
+
+/// The guard cannot take away more than the largest current of all wheels during the whole duty.
+std::optional<LoosestLimit> most_charge(const Check& check) {
+  const std::optional<double> duration_s = duty_duration_s(check);
+  if (!duration_s || !check.motor) {
+    return std::nullopt;
+  }
+  try {
+    const double most_A = derate::barrier_rules(*check.motor, *check.robot, check.derate).most_current_A;
+    const auto wheels = static_cast<double>(check.robot->wheels.axis_rad.size());
+    return LoosestLimit{*duration_s * most_A * wheels, "the largest current of all wheels during the whole duty", true};
+  } catch (const base::Failure&) {
+    return std::nullopt;  // the evaluation reports it
+  }
 }
 
 }  // namespace
@@ -23,6 +39,7 @@ ThresholdType guard_missing_charge() {
           .example = "at most 0 A s",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::seed, Setting::conditions, Setting::derate},
+          .loosest = most_charge,
           .measure = measure_guard_missing_charge};
 }
 

@@ -50,6 +50,15 @@ Measured measure_lint_problems(const Check& check, Computations& /*computations*
                              : fmt::format("{}:{}:{}: {}", first->at.file, first->at.line, first->at.column, motor::words_of(*first))};
 }
 
+/// Files with as many problems as a motor file has values are no data.
+std::optional<LoosestLimit> one_for_each_value(const Check& check) {
+  const std::size_t own = (check.motor ? 1U : 0U) + (check.robot ? 1U : 0U) + (check.duty ? 1U : 0U);
+  const std::size_t files = check.files.empty() ? own : check.files.size();
+  return files > 0 ? std::optional<LoosestLimit>({static_cast<double>(files * motor::motor_parameter_specs().size()),
+                                                  "the number of values in a complete motor file, for every file", true})
+                   : std::nullopt;
+}
+
 }  // namespace
 
 ThresholdType lint_problems() {
@@ -62,6 +71,7 @@ ThresholdType lint_problems() {
           .example = "at most 0",
           .needs = {},
           .takes = {Setting::robot, Setting::duty, Setting::motor, Setting::conditions, Setting::files},
+          .loosest = one_for_each_value,
           .measure = measure_lint_problems};
 }
 

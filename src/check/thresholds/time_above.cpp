@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "check/computations.h"
+#include "check/thresholds/duty_duration.h"
 #include "select/trace.h"
 
 namespace heatsoak::check::thresholds {
@@ -38,20 +39,17 @@ Measured measure_time_above(const Check& check, Computations& computations) {
                       result.winding_peak_C.nominal)};
 }
 
-/// Returns the duration of the duty, which the time above a temperature never exceeds; nothing if the duty cannot be computed.
-std::optional<LoosestLimit> duration(const Check& check) {
-  if (!check.robot || !check.duty) {
-    return std::nullopt;
+/// The time above a temperature never exceeds the duration of the duty, and time above more than the motor's own limit comes too late.
+std::optional<LoosestLimit> loosest(const Check& check) {
+  if (check.motor && check.temperature_C && *check.temperature_C > check.motor->nominal.winding_limit_C) {
+    return LoosestLimit{.value = 0.0,
+                        .what = {},
+                        .refusal = fmt::format("counts only above the motor's own winding limit: 'temperature' is {:.1f} °C, the limit "
+                                               "{:.1f} °C; expected a 'temperature' up to that limit",
+                                               *check.temperature_C, check.motor->nominal.winding_limit_C)};
   }
-  try {
-    double longest_s = 0.0;
-    for (const duty::WheelDemand& each : check.duty->demand(*check.robot, check.seed)) {
-      longest_s = std::max(longest_s, each.duration_s());
-    }
-    return LoosestLimit{longest_s, "the duration of the duty", true};
-  } catch (const base::Failure&) {
-    return std::nullopt;  // the evaluation reports it
-  }
+  const std::optional<double> duration_s = duty_duration_s(check);
+  return duration_s ? std::optional<LoosestLimit>({*duration_s, "the duration of the duty", true}) : std::nullopt;
 }
 
 }  // namespace
@@ -64,7 +62,7 @@ ThresholdType time_above() {
           .example = "at most 60 s",
           .needs = {Setting::robot, Setting::duty, Setting::motor, Setting::temperature},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},
-          .loosest = duration,
+          .loosest = loosest,
           .measure = measure_time_above};
 }
 

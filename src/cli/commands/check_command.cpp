@@ -70,14 +70,15 @@ Command check_command() {
                 ->required()
                 ->type_name("FILE.toml");
             app.add_option("--junit", options->junit, "write the result as JUnit XML, for CI services")->type_name("FILE.xml");
-            app.add_flag(
+            CLI::Option* const update = app.add_flag(
                 "--update", options->job.updates,
                 "rewrite the limits in the files to the present values with some room; limits that cannot be evaluated stay unchanged");
             add_quantity(
                 app, "--margin", options->job.margin_share,
                 {"margin", "", base::Range::between(0.0, 10.0),
                  "room that --update leaves, as a share of the value, or of the rise over the air for a temperature; 5 % unless given"})
-                ->type_name("SHARE");
+                ->type_name("SHARE")
+                ->needs(update);
             app.add_option("--threads", options->job.threads, "number of threads, 0 for all cores; the result does not depend on it")
                 ->check(whole_number(1024))
                 ->capture_default_str();

@@ -2,6 +2,7 @@
 
 #include "derate/c_header/c_text.h"
 #include "derate/c_header/parts.h"
+#include "derate/plausible_range.h"
 
 namespace heatsoak::derate::c_header {
 
@@ -12,7 +13,8 @@ std::string constants(const Source& source) {
   };
   return define("PERIOD_S", derating.options.period_s) + define("WINDING_LIMIT_C", derating.rules.limits.winding_C) +
          define("HOTTEST_AMBIENT_C", derating.rules.hottest_ambient_C) + define("COLDEST_AMBIENT_C", derating.options.coldest_ambient_C) +
-         define("MOST_CURRENT_A", derating.table.most_current_A) + define("MOST_SPEED_RAD_PER_S", derating.table.most_speed_rad_per_s) +
+         define("MOST_STATE_C", kMostState_C) + define("MOST_CURRENT_A", derating.table.most_current_A) +
+         define("MOST_SPEED_RAD_PER_S", derating.table.most_speed_rad_per_s) +
          define("NO_CURRENT_SPEED_RAD_PER_S", derating.table.no_current_speed_rad_per_s) +
          define("STRAIGHT_BELOW_A", derating.table.straight_below_A) + define("WINDING_PER_STATOR_K", derating.table.winding_per_stator_K) +
          define("REACHABLE_SPEED_RAD_PER_S", derating.reachable_speed_rad_per_s) +

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "base/version.h"
@@ -50,20 +50,25 @@ std::string laws_text(const Derating& derating) {
 std::string guarantee_text(const Derating& derating) {
   const Guarantee& checked = derating.guarantee;
   return fmt::format(
-      " * Winding at most {:.0f} degC{}, air from {:.0f} to {:.0f} degC; thermal data: {}.\n"
+      " * Winding at most {:.0f} degC{}{}, air from {:.0f} to {:.0f} degC; thermal data: {}.\n"
       " * While the current is at most allowed_current_A and the air no hotter than that, the observer's winding temperature never exceeds "
       "its\n"
-      " * limit. The safety factor on heat is {:.3g}, for a confidence of {:.3g}: of {} motors drawn from the declared tolerances, {} "
-      "exceeded a\n"
-      " * limit in one of the {} hardest uses ({:.1f} %; other draws give {:.1f} to {:.1f} %). The hottest winding reached {:.0f} degC.\n"
+      " * limit. The safety factor on heat is {:.3g}, for a confidence of {:.3g}: with {:.0f} % certainty at least {:.1f} % of the motors "
+      "within\n"
+      " * their tolerances keep every limit in the {} hardest uses. Of {} motors drawn independently, {} exceeded one; the hottest winding "
+      "reached\n"
+      " * {:.0f} degC. The factor is the smallest at which this bound holds for these motors (order statistic, Wilks 1941): other draws "
+      "give another.\n"
       "{}"
       " * Computed, not measured; plausible but wrong readings of current, speed and air are not covered.\n",
       derating.rules.limits.winding_C,
+      derating.rules.limits.winding_C < derating.nominal.winding_limit_C
+          ? fmt::format(" (lower end of the limit's range around {:.0f} degC)", derating.nominal.winding_limit_C)
+          : "",
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
       derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),
-      derating.options.guarantee.confidence, checked.samples, checked.over, derating.uses.size(),
-      100.0 * checked.over / std::max(1, checked.samples), 100.0 * checked.over_share.low, 100.0 * checked.over_share.high,
-      checked.winding_most_C,
+      derating.options.guarantee.confidence, 100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0,
+      derating.uses.size(), checked.samples, checked.over, checked.winding_most_C,
       derating.sensor ? fmt::format(" * All this is without the temperature sensor; with it the safety factor on heat is {:.3g}, see "
                                     "SENSOR_MOST_GAIN_A below.\n",
                                     derating.sensor->observer.heat_safety_factor())
@@ -87,7 +92,9 @@ std::string head_comment(const Source& source) {
              " * Once, after a long rest:      {0}_start(&motor, board_C);   a state that was never started counts as hot as its limit\n"
              " * every {1:.9g} s:                out = {0}_step(&motor, &in);   then |current| <= out.allowed_current_A until the next "
              "call\n"
-             " * A state that is kept in RAM continues after a reset. */\n",
+             " * A state that is kept in RAM continues after a reset.\n"
+             " * GCC: compile with -fno-math-errno, else the square root of a negative number would call sqrtf of the C library (-lm). "
+             "*/\n",
              source.prefix, derating.options.period_s);
 }
 

@@ -202,8 +202,10 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, f
   bool is_whole = @_unpack(buffer) == @CAP@_SIGNATURE &&
                        @_unpack(&buffer[@CAP@_SAVED_SIZE - 4]) == heatsoak_crc_32(buffer, @CAP@_SAVED_SIZE - 4);
   for (node = 0; node < @NODES@; ++node) {
-    state->state_C[node] = @_number(@_unpack(&buffer[4 + 4 * node]));
-    state->nominal_C[node] = @_number(@_unpack(&buffer[4 + 4 * (@NODES@ + node)]));
+    const float saved_C = @_number(@_unpack(&buffer[4 + 4 * node]));
+    const float saved_nominal_C = @_number(@_unpack(&buffer[4 + 4 * (@NODES@ + node)]));
+    state->state_C[node] = saved_C > @CAP@_MOST_STATE_C ? @CAP@_MOST_STATE_C : saved_C;
+    state->nominal_C[node] = saved_nominal_C > @CAP@_MOST_STATE_C ? @CAP@_MOST_STATE_C : saved_nominal_C;
     is_whole = is_whole && @_is_temperature(state->state_C[node]) && @_is_temperature(state->nominal_C[node]);
   }
   if (!is_whole) {

@@ -21,9 +21,10 @@ typedef struct {
   @_state model;                /* guard without the sensor, driven by the measured current */
   float state_C[@NODES@];             /* corrected by the sensor; safety factor on heat @RESERVE@ while it is used */
   float carry_K[@NODES@];
-  float capped_C[@NODES@];            /* guard without the sensor, driven by at most the current that it would have allowed */
+  float capped_C[@NODES@];            /* guard without the sensor, driven by at most the current that it would have allowed and the excess over allowed_A */
   float capped_carry_K[@NODES@];
   float capped_A;
+  float allowed_A;              /* current that the last step allowed */
   float lag_C;                  /* temperature of the sensor itself */
   float last_C;                 /* last plausible reading */
   float unread_s;               /* time since a reading was used */
@@ -53,6 +54,7 @@ static inline void @_begin_sensed(@_sensed_state *state) {
     state->capped_carry_K[node] = 0.0f;
   }
   state->capped_A = 0.0f;
+  state->allowed_A = 0.0f;
   state->lag_C = state->model.state_C[0];
   state->last_C = state->model.state_C[0];
   state->frozen_C = state->model.state_C[0];
@@ -129,8 +131,7 @@ static inline void @_correct(@_sensed_state *state, float reading_C) {
   const float innovation_K = reading_C + @CAP@_SENSOR_ACCURACY_K - @PREDICTED@;
   int node;
   for (node = 0; node < @NODES@; ++node) {
-    const float next_C = state->state_C[node] + gain[node] * innovation_K;
-    state->state_C[node] = next_C > @CAP@_COLDEST_AMBIENT_C ? next_C : @CAP@_COLDEST_AMBIENT_C;
+    state->state_C[node] = @_bounded_C(state->state_C[node] + gain[node] * innovation_K);
   }
 @CORRECT_LAG@}
 
@@ -147,6 +148,7 @@ static inline void @_forget_sensor(@_sensed_state *state, float allowed_A) {
     state->capped_carry_K[node] = 0.0f;
   }
   state->capped_A = allowed_A;
+  state->allowed_A = allowed_A;
   state->lag_C = state->model.state_C[@SENSOR_NODE@];
   state->unread_s = @CAP@_SENSOR_HOLD_S;
 }
@@ -155,6 +157,7 @@ static inline bool @_is_sensed_started(const @_sensed_state *state) {
   int node;
   bool is_started = state->started == @CAP@_STARTED && @_is_temperature(state->lag_C) &&
                          @_is_between(0.0f, state->capped_A, @CAP@_MOST_CURRENT_A) &&
+                         @_is_between(0.0f, state->allowed_A, @CAP@_MOST_CURRENT_A) &&
                          @_is_between(0.0f, state->unread_s, 2.0f * @CAP@_SENSOR_HOLD_S) && @_is_between(0.0f, state->gap_s, 2e6f) &&
                          @_is_between(0.0f, state->jumped_s, 2.0f * @CAP@_SENSOR_CONTRADICTION_S) &&
                          @_is_between(0.0f, state->cold_s, 2.0f * @CAP@_SENSOR_CONTRADICTION_S);
@@ -169,7 +172,7 @@ static inline bool @_is_sensed_started(const @_sensed_state *state) {
    all of it. */
 static inline bool @_is_over_allowed(const @_sensed_state *state, float current_A) {
   const float size_A = current_A < 0.0f ? -current_A : current_A;
-  return size_A > @CAP@_SENSOR_RIPPLE_RATIO * (state->capped_A + @CAP@_SENSOR_MOST_GAIN_A);
+  return size_A > @CAP@_SENSOR_RIPPLE_RATIO * state->allowed_A;
 }
 
 /* A correct sensor keeps the winding within its limit while the current is that allowed, so the guard without the sensor is capped at that
@@ -185,13 +188,16 @@ static inline void @_cap_model(@_sensed_state *state, const float *last_C) {
   }
 }
 
-/* One period of both observers; the current of the capped one is limited to the current that it would have allowed. */
+/* One period of both observers. The capped one counts the current up to that which it would have allowed, and what flowed beyond the allowed
+   current: the two currents then never differ by more than the sensor may add. */
 static inline void @_advance_sensed(@_sensed_state *state, const @_input *measured, bool is_over) {
   @_input capped = *measured;
   float rate_K_per_s[@NODES@];
   if (!is_over) {
-    capped.current_A = capped.current_A < state->capped_A ? capped.current_A : state->capped_A;
-    capped.current_A = capped.current_A > -state->capped_A ? capped.current_A : -state->capped_A;
+    const float size_A = capped.current_A < 0.0f ? -capped.current_A : capped.current_A;
+    const float most_A = state->capped_A + (size_A > state->allowed_A ? size_A - state->allowed_A : 0.0f);
+    capped.current_A = capped.current_A < most_A ? capped.current_A : most_A;
+    capped.current_A = capped.current_A > -most_A ? capped.current_A : -most_A;
   }
   @_rates(&capped, state->capped_C, rate_K_per_s);
   @_advance(state->capped_C, state->capped_carry_K, rate_K_per_s);
@@ -249,10 +255,12 @@ static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_
   sensed_A = sensed_A < most_A ? sensed_A : most_A;
   sensed_A = sensed_A < @CAP@_MOST_CURRENT_A ? sensed_A : @CAP@_MOST_CURRENT_A;
   out.model_only_A = state->capped_A;
+  state->allowed_A = out.guard.allowed_current_A;
   if (state->dropped != @_sensor_used) {
     return out;
   }
   out.guard.allowed_current_A = sensed_A > 0.0f ? sensed_A : 0.0f;
+  state->allowed_A = out.guard.allowed_current_A;
   out.guard.guarded_winding_C = state->state_C[0];
   out.guard.reason = @_reason_for(sensed_A, @_hottest_body_C(state->state_C), state->state_C[0]);
   if (out.guard.reason == @_full) {
@@ -332,7 +340,7 @@ std::string comment(const SensorPlan& plan) {
       "\n"
       "/* With {} at the {} (largest error {:.3g} K{}): safety factor on heat {:.3g} instead of the above while the sensor is used.\n"
       " * With {:.0f} % certainty at least {:.1f} % of the motors keep every limit although each sensor reads too little by that error;\n"
-      " * {} of {} fresh draws exceeded one. The cross-check drops the correct sensor of {}.\n"
+      " * {} of {} drawn motors exceeded one. The cross-check drops the correct sensor of {}.\n"
       " * A PLAUSIBLE BUT WRONG SENSOR allows at most SENSOR_MOST_GAIN_A more than without one: the nominal motor then reaches {:.0f} "
       "degC\n"
       " * from a start at the hottest air, and {:.0f} degC from a warmer start, all nodes equally warm up to the winding limit; {} of {} "

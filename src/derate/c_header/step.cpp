@@ -11,7 +11,13 @@ namespace {
 
 constexpr std::string_view kStart = R"(/* Both return false for NaN; the second also for a temperature that no motor can have. */
 static inline bool @_is_between(float low, float x, float high) { return x >= low && x <= high; }
-static inline bool @_is_temperature(float x) { return @_is_between(@CAP@_COLDEST_AMBIENT_C - 1.0f, x, 1000.0f); }
+static inline bool @_is_temperature(float x) { return @_is_between(@CAP@_COLDEST_AMBIENT_C - 1.0f, x, @CAP@_MOST_STATE_C); }
+
+/* Keeps a node between the coldest air and @CAP@_MOST_STATE_C: a hotter one counts as that hot. */
+static inline float @_bounded_C(float x) {
+  const float above_C = x > @CAP@_COLDEST_AMBIENT_C ? x : @CAP@_COLDEST_AMBIENT_C;
+  return above_C < @CAP@_MOST_STATE_C ? above_C : @CAP@_MOST_STATE_C;
+}
 
 /* body_C: temperature of the whole motor after a rest; an implausible value counts as the limit. */
 static inline void @_start(@_state *state, float body_C) {
@@ -59,7 +65,7 @@ static inline void @_advance(float *state_C, float *carry_K, const float *rate_K
     const float change_K = @CAP@_PERIOD_S * rate_K_per_s[node] - carry_K[node];
     const float next_C = state_C[node] + change_K;
     carry_K[node] = (next_C - state_C[node]) - change_K;
-    state_C[node] = next_C > @CAP@_COLDEST_AMBIENT_C ? next_C : @CAP@_COLDEST_AMBIENT_C;
+    state_C[node] = @_bounded_C(next_C);
   }
 }
 

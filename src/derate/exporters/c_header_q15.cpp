@@ -114,7 +114,7 @@ static inline int32_t @_quotient(int32_t a, int32_t b, int64_t factor) {
 )";
 
 constexpr std::string_view kStep = R"(static inline bool @_is_temperature(int64_t stored) {
-  return (stored >= (((int64_t)@CAP@_COLDEST_AMBIENT_MC - 1000) * @CAP@_STORED_PER_K / 1000)) && (stored <= (1000 * @CAP@_STORED_PER_K));
+  return (stored >= (((int64_t)@CAP@_COLDEST_AMBIENT_MC - 1000) * @CAP@_STORED_PER_K / 1000)) && (stored <= (@MOST_STATE@ * @CAP@_STORED_PER_K));
 }
 
 /* body_mC: temperature of the whole motor after a rest in 0.001 degC; an implausible value counts as the limit. */
@@ -150,6 +150,7 @@ static inline void @_sweep(const @_input *input, int32_t *which, const int32_t *
 
 static inline @_output @_step(@_state *state, const @_input *measured) {
   const int64_t coldest = (int64_t)@CAP@_COLDEST_AMBIENT_MC * @CAP@_STORED_PER_K / 1000;
+  const int64_t hottest = @MOST_STATE@ * @CAP@_STORED_PER_K;
   @_output out;
   @_input in = *measured;
   int64_t change[@NODES@];
@@ -182,6 +183,7 @@ static inline @_output @_step(@_state *state, const @_input *measured) {
   for (node = 0; node < @NODES@; ++node) {
     const int64_t next = state->stored[node] + change[node];
     state->stored[node] = (next > coldest) ? next : coldest;
+    state->stored[node] = (state->stored[node] < hottest) ? state->stored[node] : hottest;
   }
   out.guarded_winding_mC = (int32_t)((state->stored[0] * 1000) / @CAP@_STORED_PER_K) + @READ_HOTTER@;
   hottest_body_mC = (int32_t)((state->stored[1] * 1000) / @CAP@_STORED_PER_K) + @READ_HOTTER@;
@@ -337,6 +339,7 @@ std::string write_c_header_q15(const Derating& derating) {
                               {"@NODES@", std::to_string(nodes)},
                               {"@CURRENTS@", std::to_string(currents.size())},
                               {"@SPEEDS@", std::to_string(speeds.size())},
+                              {"@MOST_STATE@", std::to_string(static_cast<int>(kMostState_C))},
                               {"@READ_HOTTER@", std::to_string(kReadHotter_mC)},
                               {"@PER_STATE@", std::to_string(1 << (kStoredBits - integer_form::kStateBits))},
                               {"@CAP@", capital},

@@ -15,7 +15,6 @@ namespace {
 
 constexpr int kNumberBits = 30;  ///< bits of a magnitude, so that the sum of two fits in 32 bits
 constexpr int kMostBits = 44;    ///< most fraction bits, so that no shift of a product exceeds 62
-constexpr double kHottest_C = 1000.0;
 
 double unit(int bits) { return std::ldexp(1.0, -bits); }
 
@@ -92,7 +91,7 @@ class Writer {
   void add_input(int place, std::size_t input) {
     if (input >= observed::kSignalCount) {
       const double coldest_C = derating_.options.coldest_ambient_C - 1.0;
-      return set(place, {.low = coldest_C, .high = kHottest_C, .bits = kStateBits, .absolute = unit(kStateBits)},
+      return set(place, {.low = coldest_C, .high = double{kMostState_C}, .bits = kStateBits, .absolute = unit(kStateBits)},
                  fmt::format("state_C[{}]", input - observed::kSignalCount));
     }
     const auto signal = static_cast<observed::Signal>(input);

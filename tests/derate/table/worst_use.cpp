@@ -1,8 +1,8 @@
 // Regenerates reports/derate: millions of loads and motors test the guarantee of `derate`. Every run writes the same bytes except for the
 // time, unless MINUTES ends it.
 //   heatsoak_worst_use [FOLDER [TRIALS [MINUTES]]]
-//   FOLDER: reports/derate of the checkout by default. TRIALS: per class, 1 000 000 by default. MINUTES: for all classes, unlimited by
-//   default.
+//   FOLDER: reports/derate of the checkout by default. TRIALS: per class, 1 000 000 by default; 0 only draws the picture again from the
+//   table in FOLDER. MINUTES: for all classes, unlimited by default.
 //   The files are rewritten after every class with the trials made until then. Progress goes to stderr.
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <numeric>
@@ -292,6 +293,35 @@ std::string csv_text(std::span<const Tally> tallies) {
   return text;
 }
 
+/// Classes of attack without trials.
+std::vector<Tally> no_trials() {
+  return {{"adversary", "on and off by an adversary that learns"},
+          {"match", "wheels of division A matches, 1 to 3 times the current"},
+          {"ambient", "the same adversary in air that jumps"},
+          {"cold_observer", "observer starts 20 K below the motor"},
+          {"ends", "every value at an end of its tolerance, all combinations"}};
+}
+
+/// Reads what csv_text() wrote.
+std::vector<Tally> tallies_in(const std::filesystem::path& file) {
+  std::vector<Tally> tallies = no_trials();
+  std::ifstream table(file);
+  std::string line;
+  std::getline(table, line);
+  for (std::string name; std::getline(table, name, ',');) {
+    int below_C = 0;
+    char comma = '\0';
+    std::uint64_t count = 0;
+    table >> below_C >> comma >> count >> std::ws;
+    const auto tally = std::ranges::find(tallies, name, &Tally::name);
+    if (tally != tallies.end()) {
+      tally->peaks.at(static_cast<std::size_t>(below_C - Tally::kFrom_C - 1)) += count;
+      tally->trials += count;
+    }
+  }
+  return tallies;
+}
+
 report::Chart chart_of(std::span<const Tally> tallies, double limit_C) {
   report::Chart chart{
       .title = "Peak temperature of the winding with the guard, in each class of attack",
@@ -301,7 +331,7 @@ report::Chart chart_of(std::span<const Tally> tallies, double limit_C) {
       .x_label = "peak winding temperature / °C",
       .panels = {{.title = "share of trials with a higher peak", .y_label = "share / %", .levels = {{"5 %", 5.0}}, .logarithmic = true}}};
   for (std::size_t i = 0; i < tallies.size(); ++i) {
-    report::ChartCurve curve{.name = tallies[i].name, .color_index = static_cast<int>(i)};
+    report::ChartCurve curve{.name = tallies[i].meaning, .color_index = static_cast<int>(i)};
     std::uint64_t above = tallies[i].trials;
     for (int cell = 0; cell < Tally::kCells && above > 0; ++cell) {
       above -= tallies[i].peaks[static_cast<std::size_t>(cell)];
@@ -312,6 +342,12 @@ report::Chart chart_of(std::span<const Tally> tallies, double limit_C) {
     }
     chart.panels[0].curves.push_back(curve);
   }
+  constexpr int kLimitColor = 7;
+  chart.panels[0].curves.push_back({.name = fmt::format("limit of {:.0f} °C", limit_C),
+                                    .x = {limit_C, limit_C},
+                                    .y = {1e-4, 100.0},
+                                    .color_index = kLimitColor,
+                                    .dashed = true});
   return chart;
 }
 
@@ -319,11 +355,7 @@ report::Chart chart_of(std::span<const Tally> tallies, double limit_C) {
 std::vector<Tally> run_all(const Subject& subject, std::uint64_t trials, Clock& clock, Adversary& adversary,
                            const std::function<void(std::span<const Tally>)>& written) {
   const BarrierRules& rules = subject.derating.rules;
-  std::vector<Tally> tallies{{"adversary", "on and off by an adversary that learns"},
-                             {"match", "wheels of division A matches, 1 to 3 times the current"},
-                             {"ambient", "the same adversary in air that jumps"},
-                             {"cold_observer", "observer starts 20 K below the motor"},
-                             {"ends", "every value at an end of its tolerance, all combinations"}};
+  std::vector<Tally> tallies = no_trials();
   int classes_left = static_cast<int>(tallies.size());
   const auto end_class = [&](std::size_t done) {
     written(std::span(tallies).first(done));
@@ -375,6 +407,11 @@ void write(const std::filesystem::path& folder, const Subject& subject, std::spa
 void run(const std::filesystem::path& folder, std::uint64_t trials, double minutes) {
   Clock clock(minutes);
   const Subject subject;
+  if (trials == 0) {
+    const std::vector<Tally> tallies = tallies_in(folder / "worst_use.csv");
+    base::write_file(folder / "worst_use.svg", report::draw_svg(chart_of(tallies, subject.derating.rules.limits.winding_C)));
+    return;
+  }
   Adversary adversary(subject);
   const std::vector<Tally> tallies = run_all(subject, trials, clock, adversary, [&](std::span<const Tally> done) {
     write(folder, subject, done, clock.elapsed_min(), "The run has not ended: classes are missing.\n");

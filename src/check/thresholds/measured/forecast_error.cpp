@@ -41,6 +41,14 @@ Measured measure_forecast_error(const Check& check, Computations& /*computations
   return {worst_K, 0.0, detail};
 }
 
+/// A model that is wrong by the whole range of the motor's temperatures predicts nothing.
+std::optional<LoosestLimit> whole_range(const Check& check) {
+  constexpr double kUsualAir_C = 25.0;
+  return check.motor ? std::optional<LoosestLimit>({check.motor->nominal.winding_limit_C - check.air_C.value_or(kUsualAir_C),
+                                                    "the motor's range from the air to its winding limit", true})
+                     : std::nullopt;
+}
+
 }  // namespace
 
 ThresholdType forecast_error() {
@@ -53,6 +61,7 @@ ThresholdType forecast_error() {
           .example = "at most 5 K",
           .needs = {Setting::motor, Setting::logs},
           .takes = {Setting::conditions, Setting::mapping, Setting::air},
+          .loosest = whole_range,
           .measure = measure_forecast_error};
 }
 
