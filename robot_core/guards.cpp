@@ -97,8 +97,8 @@ void take_stator_sample(const GuardModel& model, State& state, const Input& inpu
   if (sample_C > -50.0F && sample_C < 400.0F) {
     wheel.has_stator = 1;
     if (GuardState& guard = state.guard[i]; sample_C > guard.state_C[1] && is_started(model, guard)) {
-      constexpr float kMostRise_K = 2.0F;
-      guard.state_C[1] = smaller(sample_C, guard.state_C[1] + kMostRise_K);
+      constexpr float kMostRise_K_per_s = 20.0F;
+      guard.state_C[1] = smaller(sample_C, guard.state_C[1] + kMostRise_K_per_s * model.period_s);
       seal(guard);
     }
     wheel.guard_fault = wheel.guard_fault == static_cast<std::uint8_t>(Reason::stator_missing) ? 0 : wheel.guard_fault;

@@ -277,16 +277,16 @@ void find_from_all(const Config& config, Validated& validated) {
   }
 }
 
-/// True if a rejected sample may be the correct one: without a spare sensor and a current sensor, if it jumped or was constant, unless it
-/// stays constant.
+/// True if a rejected sample may be the correct one: without a spare sensor and a current sensor, after fault 111 to 113, unless it stays
+/// constant.
 bool is_rejection_doubtful(const Config& config, const State& state, const Validated& validated) {
-  bool is_any_doubtful = false;
+  bool is_doubtful = false;
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelState& wheel = state.wheel[i];
-    const bool may_be_correct = wheel.speed_fault == code(Reason::wheel_speed_jump) || wheel.speed_fault == code(Reason::wheel_speed_stuck);
-    is_any_doubtful |= may_be_correct && wheel.has_current == 0 && static_cast<float>(wheel.same_steps) * config.period_s < kDead_s;
+    is_doubtful |= wheel.speed_fault >= code(Reason::wheel_speed_jump) && wheel.speed_fault <= code(Reason::wheel_speed_swapped) &&
+                   wheel.has_current == 0 && static_cast<float>(wheel.same_steps) * config.period_s < kDead_s;
   }
-  return is_any_doubtful && !validated.is_checked;
+  return is_doubtful && !validated.is_checked;
 }
 
 /// Calculates speeds and body velocity from the remaining sensors if some are missing.

@@ -68,10 +68,10 @@
 //   - Without a trusted current sensor a wrong wheel speed would hide heat. If one of four wheel speeds alone contradicts the others by
 //     more than 0.06 m/s plus 6 % of the speed limit, or any does with a sensor less, the guard counts the larger current of the two at its
 //     own and at the implied speed. A wheel that slides that much therefore counts as hotter than it is. Without a spare sensor it counts
-//     at least the limp current, and a sample rejected by code 111 or 112 may be the correct one, unless it stays constant for a second:
+//     at least the limp current, and a sample rejected by code 111 to 113 may be the correct one, unless it stays constant for a second:
 //     the voltage then keeps the limp current for that sample, too, or the bridge opens.
 //   - If the sample of the air temperature falls, the core follows it by at most 0.02 K/s; if it rises, by at most 0.01 K per step. A
-//     stator sample above the guard's temperature raises it by at most 2 K per guard step.
+//     stator sample above the guard's temperature raises it by at most 20 K/s.
 //   - Periods of unequal length are rounded up for heat; a guard cools only for the time that has passed.
 //   - Each voltage keeps the current limit for every speed that the wheel may have. These speeds come from its own sensor, from each two
 //     other wheels with the gyro, and from three other wheels. With four wheel sensors and a gyro, any two may be wrong without a higher
@@ -98,9 +98,14 @@
 //     0.06 m/s plus 6 % of the speed limit are not found, larger ones of a fifth come and go with the speed, and none is found on three
 //     wheels. Where opposite wheels are parallel, nothing tells which one is wrong: both stay rejected until the robot turns, without
 //     current sensors with open bridges (114). A slipping wheel with a faulty speed sensor and no current sensor may exceed its limit.
-//   - Without current sensors and with wheel torques commanded: three wheels with one wrong speed that spin faster than the gyro can
-//     measure exceed the limp current up to fourfold for seconds. Two wheel speeds of twice their value hide heat: 187 degC at a computed
-//     120 degC.
+//   - Three wheels without current sensors that spin faster than the gyro can measure, with one wrong speed: the gyro stays rejected (140),
+//     and the wheel exceeds the limp current up to fourfold for a minute; the winding is up to 21 K hotter than the guard. If two wheel
+//     sensors report twice their speed, a winding reaches 187 degC at a computed 120 degC.
+//   - A current sensor that fails in step with the comparisons (every 16 periods), as an ADC shared with the control loop may: valid in each
+//     second period only, a winding was 10 K hotter than the guard, in each eighth 42 to 53 K (193 degC). A sensor that reads 0 hides the
+//     heat of a torque that is 0 in each compared period and not between them.
+//   - Three wheels, one of whose speeds drifts: its correct current sensor is distrusted (121), and a current of twice the limp current may
+//     flow for seconds. The guard counts it.
 //   - A wheel speed and the current sensor of the same wheel, both wrong: 166 degC at a computed 144 degC.
 //   - A wheel that carries less than a third of its load slides so often that it can get fault 117, and recovers only now and then: with a
 //     tenth of its load the robot loses up to 40 % of its speed.
@@ -116,10 +121,14 @@
 //   - A gyro with a wrong sign, scale or offset: the robot turns at a wrong rate. If the axles of the front wheels are within 20 degrees of
 //     the x axis, or those of the rear wheels beyond 160 degrees, it can look like a wrong wheel sensor (117).
 //   - A pose that jumps, or is wrong although its age is valid: a pose target then leads to a wrong place.
-//   - An air temperature that is too low from the start: the guard is too cold by the same amount.
-//   - An invalid timer (102) that hides a gap longer than kWatchdog_s, in firmware without such a watchdog.
+//   - An air temperature that is too low, from the start or later: in the end the guard is too cold by the same amount.
+//   - A correct robot on slippery ground (grip below a half) with three wheels and a coarse encoder: short faults 112. A robot with a grip
+//     of 0.3 was once in 400 drives left with fault 113 without a push.
+//   - An invalid timer (102) that hides a gap longer than kWatchdog_s, in firmware without such a watchdog. If the timer reports half of the
+//     true period, the winding is up to 18 K hotter than the guard. The same holds for firmware without a timer whose loop is too slow.
 //   - A battery sensor with a constant wrong factor since the start or a fault, or one that sinks more slowly than 0.4 % of the full
-//     battery per second, or reads too low for minutes: the current may exceed its limit by that factor.
+//     battery per second, or reads too low for minutes: the voltage exceeds its limit by that factor and the current by more: twice its
+//     limit for a second with a factor of 1.25.
 //   - A wrong command with plausible values.
 // A restart is one by fault 101, or one after a loss of power with restore() of guard_memory.h.
 // Faults 111, 112 and 121 are found later or never if the robot file has no current limit of the driver.

@@ -357,7 +357,7 @@ CheckFile read_check_file(const fs::path& path, const input::DataFolders& folder
   if (tables.empty() && diagnostics.empty()) {
     diagnostics.add({path.string(), 1, 1}, "", "has no [[check]] table; `heatsoak check --help` shows an example");
   }
-  std::vector<const input::Value*> written;  // of the same tables
+  std::vector<const input::Value*> written;  // one value of the file for each of `tables`
   for (const input::Value& item : tables.empty() ? std::span<const input::Value>() : std::span(root.find("check")->items)) {
     if (item.kind == input::Value::Kind::table) {
       written.push_back(&item);

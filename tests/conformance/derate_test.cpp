@@ -55,7 +55,7 @@ TEST(DerateCommand, TellsWhatItGuarantees) {
   EXPECT_LE(answer["guarantee"]["over"].get<int>(), 0.05 * answer["guarantee"]["samples"].get<int>());
   const nlohmann::json& table = answer["table"];
   EXPECT_EQ(table["current_A"].size(), table["speed_rad_per_s"].size() * table["stator_C"].size() * table["winding_C"].size());
-  EXPECT_THAT(done.err, HasSubstr("fresh draws exceeded a limit"));
+  EXPECT_THAT(done.err, HasSubstr("drawn motors exceeded a limit"));
   EXPECT_THAT(content_of(folder.path() / "guard.h"), HasSubstr("maxon_ecx_flat_32l_48v_step"));
 }
 

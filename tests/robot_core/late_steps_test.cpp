@@ -118,6 +118,10 @@ TEST(LateSteps, AWrongTemperatureSampleHardlyCounts) {
   run(50, 25.0F, 25.0F);
   EXPECT_GE(out.allowed_current_A[0], 0.97F * usual_A);
   EXPECT_LE(state.ambient_C, 25.1F);
+  // A plausible but wrong sensor of two seconds must not stop a cold robot for minutes.
+  run(2000, 390.0F, 25.0F);
+  run(50, 25.0F, 25.0F);
+  EXPECT_GE(out.allowed_current_A[0], config.limp_current_A);
   run(12'000, 120.0F, 60.0F);
   EXPECT_GE(state.guard[0].state_C[1], 119.0F);
   EXPECT_NEAR(state.ambient_C, 60.0F, 0.1F);
