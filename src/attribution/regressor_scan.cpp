@@ -213,7 +213,7 @@ class Scanner {
         take_better(narrower[i], score(narrower[i], shared, family.scored.place));
       });
       Family& best = *std::ranges::max_element(narrower, {}, [](const Family& each) { return each.scored.nats; });
-      if (best.scored.nats < family.scored.nats + estimation::decisive_nats()) {
+      if (best.scored.nats < family.scored.nats + estimation::thresholds().distinct_nats) {
         return;
       }
       climb(best);

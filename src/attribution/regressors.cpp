@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/unknown.h"
+#include "estimation/thresholds.h"
 
 namespace heatsoak::attribution {
 namespace {
@@ -71,7 +72,7 @@ class Collector {
     driver.high = known[known.size() - 1 - known.size() / 100];
     const double size = std::max(std::abs(driver.low), std::abs(driver.high));
     constexpr double kPoint_share = 1e-6;
-    if (!(driver.high - driver.low > kPoint_share * size)) {
+    if (!(driver.high - driver.low > kPoint_share * size) || is_copy(driver)) {
       return;
     }
     double width = driver.high - driver.low;
@@ -86,6 +87,25 @@ class Collector {
     kept_.push_back(std::move(driver));
   }
 
+  [[nodiscard]] bool is_copy(const Regressor& driver) const {
+    return std::ranges::any_of(
+        kept_, [&](const Regressor& other) { return std::abs(correlation(driver, other)) > estimation::thresholds().same_signal_ratio; });
+  }
+
+  static double correlation(const Regressor& a, const Regressor& b) {
+    double count = 0.0, sum_a = 0.0, sum_b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
+    for (std::size_t r = 0; r < a.values.size(); ++r) {
+      for (Eigen::Index k = 0; k < a.values[r].size(); ++k) {
+        const double x = a.values[r][k], y = b.values[r][k];
+        if (!std::isnan(x) && !std::isnan(y)) {
+          count += 1.0, sum_a += x, sum_b += y, aa += x * x, bb += y * y, ab += x * y;
+        }
+      }
+    }
+    const double spread = (aa - sum_a * sum_a / count) * (bb - sum_b * sum_b / count);
+    return count > 0.0 && spread > 0.0 ? (ab - sum_a * sum_b / count) / std::sqrt(spread) : 0.0;
+  }
+
   const std::vector<estimation::MeasuredRun>& runs_;
   std::vector<Regressor> kept_;
 };
@@ -96,6 +116,7 @@ void add_operating_points(Collector& all) {
     if (each.is_driver) {
       all.add_where({each.signal.value()}, std::string(each.name), std::string(each.unit), [&](const Point& at) { return at.*each.value; });
     }
+    // The later of two signals that are nearly copies is left out.
     if (each.signal == thermal::Signal::input_power) {
       all.add_where({thermal::Signal::current, thermal::Signal::speed}, "current_speed_squared", "A rad2/s2",
                     [](const Point& at) { return at.current_rms_A * at.speed_rms_rad_per_s * at.speed_rms_rad_per_s; });

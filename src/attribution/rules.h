@@ -17,7 +17,7 @@ struct SelectionRules {
   double curve_step_precision_ratio = 2.0;   ///< prior precision of the steps between knots: standard deviation 0.7 typical sizes
 
   /// Smallest expected gain of a typical effect that counts as visible in the runs: it outweighs the prior odds and suffices for a name.
-  [[nodiscard]] double seen_nats() const { return estimation::decisive_nats() - inclusion_nats; }
+  [[nodiscard]] double seen_nats() const { return estimation::named_nats() - inclusion_nats; }
 
   // Limits of the computation, not meant to influence the result.
   /// Largest number of effects in a set. Lags of both sensors and a wrong current sensor in one run often take three places.

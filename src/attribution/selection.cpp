@@ -64,7 +64,7 @@ class Selector : Rounds {
       return;
     }
     const std::vector<ScanResult>& scan = out_.rounds.back().scan;
-    if (!scan.empty() && scan.front().gain_nats > estimation::thresholds().curve_gain_nats) {
+    if (!scan.empty() && scan.front().gain_nats > estimation::thresholds().clear_nats) {
       if (const std::optional<std::size_t> same = same_effect(best, scan.front())) {
         if (std::ranges::find(named, *same) == named.end()) {
           named.push_back(*same);
@@ -261,7 +261,7 @@ class Selector : Rounds {
       term.probability = search_->family_probability(best, m);
       term.loss_without_nats = search_->loss_without_nats(best, m);
       term.visibility_ratio = search_->visibility_ratio(member);
-      for (const int other : search_->stand_ins(best, m, estimation::decisive_nats())) {
+      for (const int other : search_->stand_ins(best, m, estimation::thresholds().distinct_nats)) {
         if (!is_parameter(other)) {
           const Candidate& rival = candidates()[static_cast<std::size_t>(other)];
           if (std::ranges::find(term.confusable_with, rival.id) == term.confusable_with.end()) {
@@ -303,7 +303,7 @@ class Selector : Rounds {
     term.probability = 1.0;
     for (const ScanResult& each : out_.rounds.back().scan) {
       const std::string& other = out_.drivers[static_cast<std::size_t>(each.term.driver)].name;
-      if (each.gain_nats > curve.gain_nats - estimation::decisive_nats() && other != driver.name &&
+      if (each.gain_nats > curve.gain_nats - estimation::thresholds().distinct_nats && other != driver.name &&
           std::ranges::find(term.confusable_with, other) == term.confusable_with.end()) {
         term.confusable_with.push_back(other);
       }

@@ -269,7 +269,7 @@ class Fitting {
     if (best_.drift_K.empty() && is_much) {
       const Supposition drifting = most_probable(evidence, range_, with_drift(range_, best_));
       const std::vector<double> values = evidences({best_, drifting});
-      best_ = values[1] > values[0] + decisive_nats() ? drifting : best_;
+      best_ = values[1] > values[0] + thresholds().clear_nats ? drifting : best_;
     }
   }
 
@@ -334,8 +334,9 @@ class Fitting {
     fit_.has_converged = fit_.iterations >= 2 && found.converged && ((theta_ - before).array().abs() <= kSmall * sd).all();
   }
 
-  /// Replaces θ by the result of the free-run fit if that predicts whole runs clearly better, left-out runs included. If the motor has more
-  /// bodies than the model, slow unknown heat hides the misfit and biases the parameters; the free-run fit predicts better.
+  /// Replaces θ by the result of the free-run fit if that predicts whole runs clearly better, left-out runs included, and by more than
+  /// chance. If the motor has more bodies than the model, slow unknown heat hides the misfit and biases the parameters; the free-run fit
+  /// predicts better.
   void prefer_free_runs() {
     if (!options_.with_flux || fit_.sensor_nodes.size() < model_.flux_nodes.size()) {
       return;
@@ -353,13 +354,20 @@ class Fitting {
       return;
     }
     const FreeRunFit& found = *search;
+    // Test whether the two estimates differ more than their covariances allow (after Hausman 1978). The covariances are added, because
+    // neither estimate is efficient if the model is wrong.
+    const Eigen::VectorXd apart = found.theta - theta_;
+    const LinearFit here = fits({best_}).front();
+    const Eigen::MatrixXd allowed = found.covariance + here.covariance;
+    if (apart.dot(allowed.ldlt().solve(apart)) < thresholds().beyond_chance_ratio * static_cast<double>(apart.size())) {
+      return;
+    }
     // Guards against overfitting a single run: the parameters must predict left-out runs equally well.
     if (const double unseen_K = left_out_rmse_K(model_here(), counted, found); !(now_K > clearly_ratio * unseen_K)) {
       return;
     }
-    const Eigen::VectorXd apart = found.theta - theta_;
     fit_.free_run_error_K = found.rmse_K;
-    fit_.log_evidence = fits({best_}).front().log_evidence;
+    fit_.log_evidence = here.log_evidence;
     theta_ = found.theta;
     for (std::size_t r = 0; r < starts_.size(); ++r) {
       starts_[r].state_C = Eigen::Map<const Eigen::VectorXd>(found.start_C[r].data(), std::ssize(found.start_C[r]));

@@ -106,14 +106,13 @@ void hide_outliers(const LinearisedRun& fitted, const MeasuredRun& run, const La
       if (std::isnan(off) || std::abs(off) < most_sd || noise.weight[row] == 0.0) {
         continue;
       }
-      const double reading_C = run.measured_C(k, sensor);
-      const double expected_C = reading_C - off * noise_K / std::sqrt(innovations.noise_share[row]);
+      const double off_K = std::abs(off) * noise_K / std::sqrt(innovations.noise_share[row]);
       Eigen::Index next = k + 1;
       while (next < run.samples() && (std::isnan(run.measured_C(next, sensor)) || noise.weight[next * sensors + sensor] == 0.0)) {
         ++next;
       }
-      const double next_C = next < run.samples() ? run.measured_C(next, sensor) : expected_C;
-      const bool is_confirmed = std::abs(next_C - reading_C) < std::abs(next_C - expected_C);
+      const bool is_confirmed =
+          next < run.samples() && std::abs(run.measured_C(next, sensor) - run.measured_C(k, sensor)) < thresholds().confirms_share * off_K;
       if (!is_confirmed) {
         noise.weight[row] = 0.0;
       }

@@ -20,7 +20,7 @@ void set_thresholds(const Thresholds& changed) { in_use() = changed; }
 
 double named_probability() { return 1.0 - thresholds().wrong_answer_share; }
 
-double decisive_nats() { return std::log(named_probability() / (1.0 - named_probability())); }
+double named_nats() { return std::log(named_probability() / (1.0 - named_probability())); }
 
 double rejected_sd() { return largest_sd(thresholds().wrong_rejection_share, 1); }
 

@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "../../support/measured_data.h"
 #include "estimation/thresholds.h"
+#include "measured_cases.h"
 #include "scoring.h"
 #include "spoilt_logs.h"
 
@@ -145,33 +147,76 @@ std::string in_short(const Marks& marks) {
   return text + fmt::format("{:.3f} K", std::exp(marks.log_error / marks.count));
 }
 
-/// Motors that exercise some of the thresholds.
+/// Returns the marks with the thresholds in use.
+using Study = std::function<std::string(const attribution::SelectionRules& rules)>;
+
+Study study_of(const std::vector<Sealed>& sealed) {
+  return [sealed](const attribution::SelectionRules& rules) { return in_short(marks_of(sealed, rules)); };
+}
+
+/// Real motors: how many of the effects that are known to be there are named, and the geometric mean of the errors on unseen recordings.
+std::string marks_of_measured() {
+  using namespace attribution::measured;
+  Share named;
+  double log_error = 0.0;
+  int count = 0;
+  const auto add = [&](const Diagnosed& found, std::string_view id) {
+    named.add(id.empty() ? !found.diagnosis.effects.empty() : effect_of(found.diagnosis, id) != nullptr);
+    for (const auto& [signal, error] : found.score.after) {
+      log_error += std::log(error.rmse_K);
+      ++count;
+    }
+  };
+  const std::filesystem::path bench = *measured_data("ksu_propeller_bench");
+  Drone flying = drone(*measured_data("tasrv_uav_motor"), false);
+  add(diagnosed(flying, 0.6), "airflow");
+  const PropellerBench mega = propeller_bench(bench);
+  add(diagnosed(mega.start, {mega.january}, {mega.march}), "speed_dependent_convection");
+  const recording::Recording other = of_bench(bench, "P80-1700_2020-02-11_162559");
+  add(diagnosed(mega.start, {recording::part_of(other, 0.0, 0.7)}, {recording::part_of(other, 0.7, 1.0)}), "speed_dependent_convection");
+  add(of_traction_motor(*measured_data("paderborn_pmsm"), 0.7), "");
+  return fmt::format("{}/{}, {:.3g} K", named.right, named.of, std::exp(log_error / count));
+}
+
+/// Motors that exercise some of the thresholds; all thresholds if there are no names.
 struct Group {
   const char* title;
-  std::vector<Sealed> (*make)();
+  Study (*make)();
   std::vector<std::string_view> names;
-  std::vector<Sealed> motors = {};
+  bool has_priors = false;
+  Study study = {};
   std::string usual = {};
+
+  [[nodiscard]] bool has(std::string_view name) const { return names.empty() || std::ranges::find(names, name) != names.end(); }
 };
 
 std::vector<Group> groups() {
-  return {{"Motors with ordinary logs: false alarms, single effects, outside the catalogue, heat without a logged input signal; error",
-           ordinary_motors,
-           {"wrong_answer_share", "material_K", "clearly_other_ratio", "beside_unknown_share", "same_shape_ratio", "least_seen_share"}},
-          {"Calibrated motors: false alarms, single effects; error",
-           calibrated_motors,
-           {"better_share", "well_known_ratio", "suspect_sd", "material_share", "seen_share", "matters_K"}},
-          {"Motors with defects in the logs: false alarms, single effects; error",
-           motors_with_spoilt_logs,
-           {"wrong_rejection_share", "least_equal_count", "most_rejected_share", "least_rows_count", "longest_pause_s", "jump_K", "slow_s",
-            "most_unused_share", "off_step_ratio"}}};
+  std::vector<Group> all{
+      {"Motors with ordinary logs: false alarms, single effects, outside the catalogue, heat without a logged input signal; error",
+       [] { return study_of(ordinary_motors()); },
+       {"wrong_answer_share", "material_K", "clear_nats", "distinct_nats", "clearly_other_ratio", "beside_unknown_share",
+        "same_signal_ratio", "same_shape_ratio", "least_seen_share"},
+       true},
+      {"Calibrated motors: false alarms, single effects; error",
+       [] { return study_of(calibrated_motors()); },
+       {"better_share", "well_known_ratio", "suspect_sd", "material_share", "beyond_chance_ratio", "seen_share", "matters_K"}},
+      {"Motors with defects in the logs: false alarms, single effects; error",
+       [] { return study_of(motors_with_spoilt_logs()); },
+       {"wrong_rejection_share", "least_equal_count", "confirms_share", "most_rejected_share", "least_rows_count", "longest_pause_s",
+        "jump_K", "slow_s", "most_unused_share", "off_step_ratio"}}};
+  if (measured_data("ksu_propeller_bench") && measured_data("tasrv_uav_motor") && measured_data("paderborn_pmsm")) {
+    all.push_back({"Measured motors: effects named; error on unseen recordings",
+                   [] { return Study([](const attribution::SelectionRules&) { return marks_of_measured(); }); },
+                   {}});
+  }
+  return all;
 }
 
 std::string marks_with(const Group& group, const estimation::Thresholds& changed, const attribution::SelectionRules& rules) {
   estimation::set_thresholds(changed);
   std::string text;
   try {
-    text = in_short(marks_of(group.motors, rules));
+    text = group.study(rules);
   } catch (const std::exception&) {
     text = "refused";
   }
@@ -211,12 +256,12 @@ const std::vector<PriorSpec>& priors() {
 bool is_in(const std::vector<std::string_view>& names, std::string_view name) { return std::ranges::find(names, name) != names.end(); }
 
 void study(Group& group, const std::vector<std::string_view>& wanted) {
-  group.motors = group.make();
-  group.usual = in_short(marks_of(group.motors, {}));
+  group.study = group.make();
+  group.usual = group.study({});
   fmt::print("\n{}. With all values as they are: {}.\n\n", group.title, group.usual);
   fmt::print("| threshold | value | unit | origin | off | half | double |\n|---|---|---|---|---|---|---|\n");
   for (const estimation::ThresholdSpec& spec : estimation::kThresholds) {
-    if (is_in(group.names, spec.name) && is_in(wanted, spec.name)) {
+    if (group.has(spec.name) && is_in(wanted, spec.name)) {
       print_row(spec.name, estimation::Thresholds{}.*spec.value, fmt::format("{} | {}", spec.unit, spec.origin), spec.off_value,
                 [&](double value) {
                   estimation::Thresholds changed;
@@ -226,7 +271,7 @@ void study(Group& group, const std::vector<std::string_view>& wanted) {
     }
   }
   for (const PriorSpec& spec : priors()) {
-    if (group.make == ordinary_motors && is_in(wanted, spec.name)) {
+    if (group.has_priors && is_in(wanted, spec.name)) {
       print_row(spec.name, attribution::SelectionRules{}.*spec.value, " | prior", spec.off_value, [&](double value) {
         attribution::SelectionRules rules;
         rules.*spec.value = value;
@@ -248,8 +293,7 @@ int main(int argc, char** argv) {
   std::vector<Group> all = groups();
   for (Group& group : all) {
     const auto is_wanted = [&](std::string_view name) {
-      return is_in(group.names, name) ||
-             (group.make == ordinary_motors && std::ranges::find(priors(), name, &PriorSpec::name) != priors().end());
+      return group.has(name) || (group.has_priors && std::ranges::find(priors(), name, &PriorSpec::name) != priors().end());
     };
     if (std::ranges::any_of(wanted, is_wanted)) {
       study(group, wanted);
