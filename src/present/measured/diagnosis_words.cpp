@@ -13,6 +13,7 @@
 
 #include "base/quantity.h"
 #include "calibration/unlogged_speed.h"
+#include "estimation/thresholds.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/log.h"
 
@@ -95,11 +96,11 @@ std::string reservations(const diagnosis::Diagnosis& diagnosis, const diagnosis:
   };
   report_growth(score.before, score.after, "the hold-out runs");
   report_growth(diagnosis.before_train, diagnosis.after_train, "the training runs");
-  if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * estimation::kMatters_K) {
+  if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * estimation::thresholds().matters_K) {
     text += fmt::format(
         " The error on the hold-out runs is {:.0f} times that on the training runs: they contain an effect that the training runs do not "
         "show.",
-        after_K / std::max(estimation::kMatters_K, train_K));
+        after_K / std::max(estimation::thresholds().matters_K, train_K));
   }
   return text;
 }
