@@ -8,6 +8,7 @@
 
 #include "base/copper.h"
 #include "base/diagnostic.h"
+#include "base/unknown.h"
 #include "recording/clock_offset.h"
 #include "recording/fingerprint.h"
 #include "recording/quality.h"

@@ -22,8 +22,8 @@ Counts counts_of(std::span<const Outcome> outcomes) {
   Counts counts;
   for (const Outcome& each : outcomes) {
     ++counts.all;
-    counts.exceeded += !each.passed && each.is_evaluated ? 1 : 0;
-    counts.not_evaluated += each.is_evaluated ? 0 : 1;
+    counts.exceeded += !each.passed && each.measured ? 1 : 0;
+    counts.not_evaluated += each.measured ? 0 : 1;
   }
   return counts;
 }
@@ -49,14 +49,14 @@ std::string count_attributes(const Counts& counts) {
 std::string test_case(const Outcome& each) {
   std::string text = fmt::format(R"(    <testcase name="{}" classname="{}" file="{}" line="{}")", each.limit.type->name,
                                  base::xml_attribute(each.check->name), base::xml_attribute(each.limit.at.file), each.limit.at.line);
-  const std::string facts = fmt::format("value {}, limit {}, margin {}\n{}", shown(each.measured.value, *each.limit.type), limit_text(each),
-                                        margin_text(each), each.measured.detail);
+  const std::string facts = fmt::format("value {}, limit {}, margin {}\n{}", value_text(each), limit_text(each), margin_text(each),
+                                        each.measured ? each.measured->detail : "");
   if (each.passed) {
     return text + fmt::format(">\n      <system-out>{}</system-out>\n    </testcase>\n", base::xml_attribute(facts));
   }
-  const std::string_view element = each.is_evaluated ? "failure" : "error";
+  const std::string_view element = each.measured ? "failure" : "error";
   return text + fmt::format(">\n      <{0} type=\"{1}\" message=\"{2}\">{3}:{4}: {5}</{0}>\n    </testcase>\n", element,
-                            each.is_evaluated ? "limit_exceeded" : "not_evaluated", base::xml_attribute(each.reason),
+                            each.measured ? "limit_exceeded" : "not_evaluated", base::xml_attribute(each.reason),
                             base::xml_attribute(each.limit.at.file), each.limit.at.line, base::xml_attribute(facts));
 }
 
@@ -98,11 +98,13 @@ std::string conclusion_text(std::span<const Outcome> outcomes) {
   return text;
 }
 
+std::string value_text(const Outcome& outcome) { return outcome.measured ? shown(outcome.measured->value, *outcome.limit.type) : "–"; }
+
 std::string margin_text(const Outcome& outcome) {
-  const double margin = outcome.margin_value();
-  if (!std::isfinite(margin)) {
+  if (!outcome.measured) {
     return "–";
   }
+  const double margin = *outcome.margin_value();
   const ThresholdType& type = *outcome.limit.type;
   if (type.unit == "degC") {
     return fmt::format("{:+.1f} K", margin);
@@ -131,9 +133,11 @@ std::string things_of(const Check& check) {
 }
 
 std::string explanation(const Outcome& outcome) {
-  return !outcome.is_evaluated                               ? outcome.reason
-         : outcome.passed || outcome.measured.detail.empty() ? outcome.measured.detail
-                                                             : fmt::format("{}: {}", outcome.reason, outcome.measured.detail);
+  if (!outcome.measured) {
+    return outcome.reason;
+  }
+  const std::string& detail = outcome.measured->detail;
+  return outcome.passed || detail.empty() ? detail : fmt::format("{}: {}", outcome.reason, detail);
 }
 
 std::string junit_xml(std::span<const Outcome> outcomes, std::string_view version) {
@@ -156,8 +160,7 @@ std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view
   text += "| | check | threshold | value | limit | margin | |\n|---|---|---|--:|--:|--:|---|\n";
   for (const Outcome& each : outcomes) {
     text += fmt::format("| {} | {} | `{}` | {} | {} | {} | {} |\n", each.passed ? "✅" : "❌", in_markdown(each.check->name),
-                        each.limit.type->name, shown(each.measured.value, *each.limit.type), limit_text(each), margin_text(each),
-                        in_markdown(explanation(each)));
+                        each.limit.type->name, value_text(each), limit_text(each), margin_text(each), in_markdown(explanation(each)));
   }
   return text + fmt::format("\nheatsoak {}\n", version);
 }

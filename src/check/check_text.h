@@ -13,6 +13,8 @@ namespace heatsoak::check {
 /// Returns how many limits hold, do not hold and cannot be evaluated, without a full stop.
 std::string conclusion_text(std::span<const Outcome> outcomes);
 
+/// Returns the measured value with its unit; "–" if the threshold was not evaluated.
+std::string value_text(const Outcome& outcome);
 /// Returns the margin with its sign and unit; "–" if the threshold was not evaluated.
 std::string margin_text(const Outcome& outcome);
 

@@ -23,8 +23,9 @@ constexpr int kFewestForRange = 20;
 
 std::string peak_text(const select::MotorEvaluation& motor) {
   const select::Spread95& peak = motor.winding_peak_C;
-  return motor.samples >= kFewestForRange ? fmt::format("{:.0f} [{:.0f}…{:.0f}]", peak.nominal, peak.p05, peak.p95)
-                                          : fmt::format("{:.0f}", peak.nominal);
+  return motor.samples >= kFewestForRange && peak.p05 && peak.p95
+             ? fmt::format("{:.0f} [{:.0f}…{:.0f}]", peak.nominal, *peak.p05, *peak.p95)
+             : fmt::format("{:.0f}", peak.nominal);
 }
 
 Text verdict_cell(const select::MotorEvaluation& motor) {
@@ -86,7 +87,7 @@ std::vector<Text> row(std::size_t rank, const select::MotorEvaluation& motor, do
           {fmt::format("{:.0f}", motor.winding_limit_C)},
           {fmt::format("{:+.0f}", select::nearest_margin_K(motor))},
           {sparkline(motor, ambient_C), tone},
-          {std::isfinite(motor.probability_over_limit) ? fmt::format("{:.0f}", 100.0 * motor.probability_over_limit) : "–"},
+          {motor.probability_over_limit ? fmt::format("{:.0f}", 100.0 * *motor.probability_over_limit) : "–"},
           {motor.time_to_limit_s ? duration_text(*motor.time_to_limit_s) : "–"},
           {std::string(factor_text(motor))},
           {fmt::format("{:.2f}", motor.current_rms_A)},
@@ -107,8 +108,8 @@ std::string peak_words(const select::MotorEvaluation& motor) {
   const select::Spread95& peak_C = is_stator ? motor.stator_peak_C : motor.winding_peak_C;
   const double limit_C = is_stator ? motor.stator_limit_C.value_or(motor.winding_limit_C) : motor.winding_limit_C;
   const std::string_view node = is_stator ? "stator" : "winding";
-  if (motor.games > 0 && motor.samples >= kFewestForRange) {
-    return fmt::format("the {} reaches at most {:.0f} °C in 95 % of the samples (limit {:.0f} °C)", node, peak_C.p95, limit_C);
+  if (motor.games > 0 && motor.samples >= kFewestForRange && peak_C.p95) {
+    return fmt::format("the {} reaches at most {:.0f} °C in 95 % of the samples (limit {:.0f} °C)", node, *peak_C.p95, limit_C);
   }
   const std::string when = motor.verdict == select::Verdict::fail && motor.time_to_limit_s
                                ? fmt::format(", exceeded after {}", duration_text(*motor.time_to_limit_s))
@@ -118,7 +119,9 @@ std::string peak_words(const select::MotorEvaluation& motor) {
 
 /// Formats as "fails: the winding reaches 162 °C (limit 155 °C, exceeded after 5 min)".
 std::string what_happens(const select::MotorEvaluation& motor) {
-  const std::string over = fmt::format("{:.0f} % of the samples exceed a limit", 100.0 * motor.probability_over_limit);
+  const double over_ratio = motor.probability_over_limit.value_or(0.0);
+  const double short_ratio = motor.short_probability.value_or(0.0);
+  const std::string over = fmt::format("{:.0f} % of the samples exceed a limit", 100.0 * over_ratio);
   switch (shown_verdict(motor)) {
     case ShownVerdict::infeasible:
       return fmt::format("cannot drive this duty{}: {} does not suffice", nominal_words(motor), select::to_string(motor.limiting_factor));
@@ -127,10 +130,9 @@ std::string what_happens(const select::MotorEvaluation& motor) {
     case ShownVerdict::fail:
       return fmt::format("fails{}: {}", nominal_words(motor), motor.games > 0 ? over : peak_words(motor));
     case ShownVerdict::marginal:
-      return fmt::format("is marginal: {}",
-                         motor.short_probability > std::max(motor.probability_over_limit, select::kMarginalProbability)
-                             ? fmt::format("{:.0f} % of the samples cannot deliver the demand", 100.0 * motor.short_probability)
-                             : over);
+      return fmt::format("is marginal: {}", short_ratio > std::max(over_ratio, select::kMarginalProbability)
+                                                ? fmt::format("{:.0f} % of the samples cannot deliver the demand", 100.0 * short_ratio)
+                                                : over);
     case ShownVerdict::pass:
       break;
   }
@@ -213,7 +215,7 @@ void add_notes(Document& document, const select::MotorEvaluation& motor, const s
   }
   if (motor.verdict != select::Verdict::infeasible && motor.short_probability > select::kMarginalProbability) {
     document.add_note(Severity::note, fmt::format("{}: {:.0f} % of the samples cannot deliver what is demanded ({})", motor.motor_id,
-                                                  100.0 * motor.short_probability, select::to_string(motor.short_limit)));
+                                                  100.0 * *motor.short_probability, select::to_string(motor.short_limit)));
   }
 }
 

@@ -69,8 +69,8 @@ std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95
       most = needed;
     }
   };
-  const std::array kinds{std::pair(motor.probability_over_limit, *motor.probability_interval),
-                         std::pair(motor.short_probability, short_interval)};
+  const std::array kinds{std::pair(motor.probability_over_limit.value_or(0.0), *motor.probability_interval),
+                         std::pair(motor.short_probability.value_or(0.0), short_interval)};
   if (is_drawn) {
     for (const auto& [probability_ratio, interval] : kinds) {
       take(needed_for(kMajority, probability_ratio, interval, motor.samples, is_drawn));

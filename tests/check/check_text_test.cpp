@@ -61,8 +61,7 @@ class Outcomes : public testing::Test {
     outcome.check = &checks_.at(check);
     const int line = 10 + static_cast<int>(outcomes_.size());
     outcome.limit = {find_threshold(threshold), limit, "", "", {"/repository/checks/robot,1.toml", line, 5}};
-    outcome.measured = {value, 0.0, is_evaluated ? "what it rests on" : ""};
-    outcome.is_evaluated = is_evaluated;
+    outcome.measured = is_evaluated ? std::optional(Measured{value, 0.0, "what it rests on"}) : std::nullopt;
     outcome.passed = reason.empty();
     outcome.reason = std::move(reason);
     outcomes_.push_back(std::move(outcome));
