@@ -46,6 +46,16 @@ std::string count_attributes(const Counts& counts) {
   return fmt::format(R"(tests="{}" failures="{}" errors="{}" skipped="0")", counts.all, counts.exceeded, counts.not_evaluated);
 }
 
+std::string suites_begin(const Counts& counts) {
+  return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"heatsoak check\" {}>\n", count_attributes(counts));
+}
+
+std::string suite_begin(std::string_view name, const Counts& counts, std::string_view version) {
+  return fmt::format(
+      "  <testsuite name=\"{}\" {}>\n    <properties>\n      <property name=\"heatsoak\" value=\"{}\"/>\n    </properties>\n",
+      base::xml_attribute(name), count_attributes(counts), base::xml_attribute(version));
+}
+
 std::string test_case(const Outcome& each) {
   std::string text = fmt::format(R"(    <testcase name="{}" classname="{}" file="{}" line="{}")", each.limit.type->name,
                                  base::xml_attribute(each.check->name), base::xml_attribute(each.limit.at.file), each.limit.at.line);
@@ -141,18 +151,26 @@ std::string explanation(const Outcome& outcome) {
 }
 
 std::string junit_xml(std::span<const Outcome> outcomes, std::string_view version) {
-  std::string text = fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"heatsoak check\" {}>\n",
-                                 count_attributes(counts_of(outcomes)));
+  std::string text = suites_begin(counts_of(outcomes));
   for (const std::span<const Outcome> group : by_check(outcomes)) {
-    text +=
-        fmt::format("  <testsuite name=\"{}\" {}>\n    <properties>\n      <property name=\"heatsoak\" value=\"{}\"/>\n    </properties>\n",
-                    base::xml_attribute(group.front().check->name), count_attributes(counts_of(group)), base::xml_attribute(version));
+    text += suite_begin(group.front().check->name, counts_of(group), version);
     for (const Outcome& each : group) {
       text += test_case(each);
     }
     text += "  </testsuite>\n";
   }
   return text + "</testsuites>\n";
+}
+
+std::string junit_xml(const base::Failure& failure, std::string_view version) {
+  constexpr Counts kOneError{.all = 1, .exceeded = 0, .not_evaluated = 1};
+  const std::string all = failure.what();
+  return suites_begin(kOneError) + suite_begin("heatsoak check", kOneError, version) +
+         fmt::format(
+             "    <testcase name=\"check files\" classname=\"heatsoak check\">\n      <error type=\"not_evaluated\" "
+             "message=\"{}\">{}</error>\n"
+             "    </testcase>\n  </testsuite>\n</testsuites>\n",
+             base::xml_attribute(all.substr(0, all.find('\n'))), base::xml_attribute(all));
 }
 
 std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view version) {

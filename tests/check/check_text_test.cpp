@@ -94,6 +94,17 @@ TEST_F(Outcomes, AreJunitThatParses) {
   EXPECT_EQ(by_name["error"][0].attributes.at("message"), "guard.h:3:1: is\nno table, 100 %");
 }
 
+TEST(JunitOfAFailure, is_one_error_with_every_problem) {
+  const base::Failure failure(base::ExitCode::bad_input, "",
+                              {{{"a<b.toml", 3, 9}, "check[0].robot", "there is no robot"}, {{"missing.toml"}, {}, "cannot be read"}});
+  const std::vector<Element> elements = parsed(junit_xml(failure, "1.2.3"));
+  EXPECT_EQ(elements.front().attributes.at("tests"), "1");
+  EXPECT_EQ(elements.front().attributes.at("errors"), "1");
+  EXPECT_EQ(elements.back().name, "error");
+  EXPECT_THAT(elements.back().attributes.at("message"), HasSubstr("a<b.toml:3:9: error: check[0].robot: there is no robot"));
+  EXPECT_THAT(elements.back().text, HasSubstr("missing.toml: error: cannot be read"));
+}
+
 TEST_F(Outcomes, AreAnnotationsAtFileAndLine) {
   const std::string text = annotations(outcomes_, "/repository");
   EXPECT_THAT(text, HasSubstr("::error file=checks/robot%2C1.toml,line=11,col=5,title=a <b> & \"c\" | 100 %25%2C d%3A "));
