@@ -111,8 +111,8 @@ void add_sandwich(const Eigen::MatrixXd& X, const Eigen::VectorXd& residuals, do
 
 }  // namespace
 
-Estimate estimate_around(double value, double half_value) {
-  return {value, std::isfinite(half_value) ? std::optional(Interval{value - half_value, value + half_value}) : std::nullopt};
+Estimate estimate_around(double value, double spread) {
+  return {value, std::isfinite(spread) ? std::optional(Interval{value - spread, value + spread}) : std::nullopt};
 }
 
 double median(std::span<double> values) {

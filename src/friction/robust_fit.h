@@ -18,8 +18,8 @@ struct Estimate {
   double value = 0.0;
   std::optional<Interval> interval = {};
 };
-/// Returns the value with the interval value ± half_value; without an interval if `half_value` is not finite.
-Estimate estimate_around(double value, double half_value);
+/// Returns the value with the interval value ± spread; without an interval if `spread` is not finite.
+Estimate estimate_around(double value, double spread);
 
 /// Median of the finite values; NaN if there are none. Reorders `values`.
 double median(std::span<double> values);
