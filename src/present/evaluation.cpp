@@ -49,25 +49,31 @@ std::string_view factor_text(const select::MotorEvaluation& motor) {
 /// A narrower terminal shows the winding temperature over time, scaled to the limit, instead of rank, limit and margin.
 constexpr std::size_t kLeastForLimit = 70;
 
-std::vector<Column> columns() {
+/// If `is_drawn`, the nominal run is one of many games.
+std::vector<Column> columns(bool is_drawn) {
   constexpr auto kLeft = Alignment::left;
-  return {{"", "", 0, Alignment::right, kLeastForLimit},
+  constexpr auto kRight = Alignment::right;
+  const auto nominal = [is_drawn](std::string_view what) {
+    return fmt::format("{}{}", what, is_drawn ? " in the game of the seed" : " with nominal values");
+  };
+  return {{"", "", 0, kRight, kLeastForLimit},
           {"motor", "", 0, kLeft},
-          {"verdict", "", 0, kLeft},
-          {"peak", "°C", 0},
-          {"limit", "°C", 0, Alignment::right, kLeastForLimit},
-          {"margin", "K", 0, Alignment::right, kLeastForLimit},
-          {"winding", "", 1, kLeft},
-          {"P over", "%", 2},
-          {"reached after", "", 3},
-          {"limited by", "", 4, kLeft},
-          {"rms", "A", 5},
-          {"spare rms", "A", 6},
-          {"stator", "°C", 7},
+          {"verdict", "", 0, kLeft, 0, false, "see `heatsoak describe verdict`"},
+          {"peak", "°C", 0, kRight, 0, false, nominal("winding") + " [5th…95th percentile of the samples]"},
+          {"limit", "°C", 0, kRight, kLeastForLimit, false, "of the winding"},
+          {"margin", "K", 0, kRight, kLeastForLimit, false, nominal("to the nearer limit")},
+          {"winding", "", 1, kLeft, 0, false, nominal("temperature over time, from ambient to limit,")},
+          {"P over", "%", 2, kRight, 0, false, "share of samples over a limit"},
+          {"reached after", "", 3, kRight, 0, false, nominal("time until the first limit is exceeded")},
+          {"limited by", "", 4, kLeft, 0, false, "limit that decides the verdict"},
+          {"rms", "A", 5, kRight, 0, false, nominal("heating current")},
+          {"spare rms", "A", 6, kRight, 0, false, "possible increase of rms until a limit"},
+          {"stator", "°C", 7, kRight, 0, false, nominal("peak of the stator")},
           {"stator limit", "°C", 8},
-          {"data", "", 9, kLeft},
-          {"P interval", "%", 10},
-          {"p95 interval", "°C", 11}};
+          {"data", "", 9, kLeft, 0, false, "worst origin of the thermal values"},
+          {"P interval", "%", 10, kRight, 0, false,
+           "P over of other samples, with 95 % for all looks at the samples together, 97.5 % or more for each"},
+          {"p95 interval", "°C", 11, kRight, 0, false, "upper end of the peak with other samples, 95 %"}};
 }
 
 std::string p95_text(const select::MotorEvaluation& motor) {
@@ -288,7 +294,7 @@ namespace {
 Document ranking_document(const simulate::EvaluationAnswer& answer) {
   const std::vector<select::MotorEvaluation>& results = answer.results;
   Document document{.headline = headline(answer), .paragraphs = paragraphs(answer)};
-  Table table{.columns = columns()};
+  Table table{.columns = columns(answer.draw_count > 0)};
   for (std::size_t i = 0; i < results.size(); ++i) {
     table.rows.push_back(row(i + 1, results[i], answer.duty.ambient_C.value));
   }
@@ -304,19 +310,9 @@ Document ranking_document(const simulate::EvaluationAnswer& answer) {
         "slip add heat there; grip, voltage and current limits take heat away. --closed-loop ranks motors with all that.");
   }
   document.add_note(Severity::background, fmt::format("The load is {}.", answer.duty.origin));
-  if (answer.draw_count > 0) {
-    document.add_note(
-        Severity::background,
-        "The columns peak (before the brackets), margin, reached after, rms and spare rms are of one game, that of the seed.");
-  } else if (results.front().samples > 0) {
+  if (answer.draw_count == 0 && results.front().samples > 0) {
     document.add_note(Severity::background, sampling_error(results));
   }
-  document.add_note(
-      Severity::background,
-      "Columns: peak of the winding, nominal [5th…95th percentile]; margin to the nearer limit; winding over time, from "
-      "ambient to limit; P over, share of samples over a limit; reached after, time until the first limit; rms, heating current; spare "
-      "rms, how much it may rise; P interval and p95 interval, the range that other samples would give (P: 95 % for all looks at the games "
-      "together, 97.5 % or more for each). `heatsoak describe verdict` defines the verdicts.");
   return document;
 }
 
