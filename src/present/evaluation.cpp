@@ -190,20 +190,28 @@ std::string sampling_error(std::span<const select::MotorEvaluation> results) {
                      std::isfinite(p95_K) ? fmt::format("±{:.0f} K", std::ceil(p95_K)) : "unknown: take more samples");
 }
 
-std::string undecided_note(const select::MotorEvaluation& motor) {
+/// Returns how many more games or samples decide the verdict, with which probability.
+std::string deciding_words(const select::MotorEvaluation& motor) {
   const bool is_drawn = motor.games > 0;
   const std::string_view unit = is_drawn ? "games" : "samples";
-  const int done = is_drawn ? motor.games : motor.samples;
   const int most = select::most_samples_at_all(is_drawn);
+  const auto [half, nine_in_ten] = select::deciding_samples(motor);
   const auto number = [&](int samples) { return is_drawn ? samples / base::kLanes : samples; };
-  const OpenShare open = *open_share(motor);
-  const std::string needed =
-      *motor.samples_needed >= most
-          ? fmt::format("over {} more {}; --samples takes {} at most", number(most), unit, most)
-          : fmt::format("about {} more {} (--samples {})", number(*motor.samples_needed) - done, unit, *motor.samples_needed);
-  return fmt::format("{} counts as {} until more {} decide: {}{}. If the share of {:.1f} % stays, this takes {}.", motor.motor_id,
-                     select::to_string(motor.verdict), unit, is_drawn ? fmt::format("in {} games ", done) : "",
-                     words_of(open, motor.samples), 100.0 * open.share, needed);
+  const auto more = [&](int samples) { return number(samples) - (is_drawn ? motor.games : motor.samples); };
+  if (!half) {
+    return fmt::format("The share is close to the threshold: {} {}, the most that --samples takes ({}), will probably not decide",
+                       number(most), unit, most);
+  }
+  return fmt::format("With a probability of 50 % {} more {} decide (--samples {}), with 90 % {}", more(*half), unit, *half,
+                     nine_in_ten ? fmt::format("{} more (--samples {})", more(*nine_in_ten), *nine_in_ten)
+                                 : fmt::format("over {} (--samples takes {} at most)", number(most), most));
+}
+
+std::string undecided_note(const select::MotorEvaluation& motor) {
+  const bool is_drawn = motor.games > 0;
+  return fmt::format("{} counts as {} until more {} decide: {}{}. {}.", motor.motor_id, select::to_string(motor.verdict),
+                     is_drawn ? "games" : "samples", is_drawn ? fmt::format("in {} games ", motor.games) : "",
+                     words_of(*open_share(motor), motor.samples), deciding_words(motor));
 }
 
 void add_notes(Document& document, const select::MotorEvaluation& motor, const simulate::EvaluationAnswer& answer) {

@@ -4,6 +4,7 @@
 #include "present/closed_loop_json.h"
 #include "present/default_spreads_json.h"
 #include "present/evaluation.h"
+#include "select/decision.h"
 
 namespace heatsoak::present {
 namespace {
@@ -14,6 +15,8 @@ Json json(const select::Spread95& peak) {
 }
 
 Json json(const select::MotorEvaluation& each) {
+  const auto number = [](const std::optional<int>& value) { return value ? Json(*value) : Json(); };
+  const select::DecidingSamples deciding = select::deciding_samples(each);
   const auto interval = [](const std::optional<select::Interval95>& value, int decimals) {
     return value ? Json{rounded(value->low, decimals), rounded(value->high, decimals)} : Json();
   };
@@ -22,7 +25,8 @@ Json json(const select::MotorEvaluation& each) {
           {"winding_peak_C", json(each.winding_peak_C)},
           {"stator_peak_C", json(each.stator_peak_C)},
           {"samples", each.samples},
-          {"samples_needed", each.samples_needed ? Json(*each.samples_needed) : Json()},
+          {"samples_needed", number(each.samples_needed)},
+          {"deciding_samples", {{"p50", number(deciding.half)}, {"p90", number(deciding.nine_in_ten)}}},
           {"probability_over_limit", rounded(each.probability_over_limit, 4)},
           {"probability_ci95", interval(each.probability_interval, 4)},
           {"winding_p95_ci95_C", interval(each.winding_p95_interval_C, 2)},
