@@ -239,7 +239,10 @@ TEST(WordsOfFailures, OfRunsThatCountTwiceOrCannotBeSimulated) {
 
 TEST(WordsOfDiagnosis, RunDeviationsAreNotesOfTheModelFile) {
   diagnosis::Diagnosis found;
-  diagnosis::FoundEffect deviation{.id = "heat_share", .node = "winding", .parameters = {{"deviation", "", -0.3052}}};
+  diagnosis::FoundEffect deviation;
+  deviation.id = "heat_share";
+  deviation.node = "winding";
+  deviation.parameters = {{"deviation", "", -0.3052}};
   deviation.condition = {{"run", "run4"}};
   diagnosis::FoundEffect named = deviation;
   named.name = "fan";

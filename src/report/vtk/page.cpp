@@ -292,7 +292,8 @@ class PageBuilder {
       const AxisRange& shown = vertical.range;
       const std::string arrow = level.y > shown.high ? "↑ " : level.y < shown.low ? "↓ " : "";
       const std::string name = arrow + printable(level.name);
-      const double width_px = text_width_px(name, limit_style);
+      constexpr double kBetweenNames_px = 12.0;
+      const double width_px = text_width_px(name, limit_style) + (arrow.empty() ? 0.0 : kBetweenNames_px);
       const double line_px = vertical.to_px(std::clamp(level.y, shown.low, shown.high));
       std::vector<Box> taken = names;
       for (const ChartLevel& other : panel.levels) {
