@@ -154,7 +154,7 @@ std::optional<int> deciding_draws(const Predicted& predicted, int draws, int mos
   int high = draws + 1 + draws / 20;
   while (high < most && !suffices(high)) {
     low = high;
-    high = std::min(most, high + high / 3);
+    high = std::min(most, high + 1 + high / 3);
   }
   return first_that_holds(low, high, suffices);
 }

@@ -89,6 +89,15 @@ TEST(DecidingSamples, near_the_threshold_are_fewer_than_with_the_same_share) {
   EXPECT_GT(*found.half, motor.samples);
 }
 
+TEST(DecidingSamples, are_predicted_from_a_single_game_too) {
+  for (const int games : {1, 2, 3}) {
+    const DecidingSamples found = deciding_samples(of_games(0, games));
+    ASSERT_TRUE(found.half && found.nine_in_ten) << games;
+    EXPECT_GT(*found.half, 8 * games);
+    EXPECT_GE(*found.nine_in_ten, 72 * 8) << "fewer games without a hit do not exclude 5 %";
+  }
+}
+
 // 600 and 3000 samples are needed after 500: both motors take 1000, the second one then 2000 and 4000.
 TEST(LaterWork, counts_a_motor_until_its_number_is_reached) {
   const std::array<int, 2> needed{600, 3000};
