@@ -363,7 +363,8 @@ class Fitting {
       return;
     }
     // Guards against overfitting a single run: the parameters must predict left-out runs equally well.
-    if (const double unseen_K = left_out_rmse_K(model_here(), counted, found); !(now_K > clearly_ratio * unseen_K)) {
+    if (const std::optional<double> unseen_K = left_out_rmse_K(model_here(), counted, found);
+        !unseen_K || !(now_K > clearly_ratio * *unseen_K)) {
       return;
     }
     fit_.free_run_error_K = found.rmse_K;

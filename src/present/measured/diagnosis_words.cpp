@@ -14,6 +14,7 @@
 #include "base/quantity.h"
 #include "calibration/unlogged_speed.h"
 #include "estimation/thresholds.h"
+#include "motor/sensor_effect.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/log.h"
 
@@ -357,6 +358,20 @@ std::vector<std::string> diagnosis_words(const diagnosis::Diagnosis& diagnosis, 
                   (next.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats).", next.expected_nats) : std::string(".")));
   }
   return all;
+}
+
+std::vector<std::string> notes_of_model_file(const diagnosis::Diagnosis& diagnosis) {
+  std::vector<std::string> notes;
+  for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
+    if (!effect.name.empty() || motor::find_sensor_effect(effect.id) || effect.parameters.empty()) {
+      continue;
+    }
+    const diagnosis::FittedParameter& size = effect.parameters.front();
+    notes.push_back(fmt::format("{} at the {}{}: {} {:.3g} {}; found in measurements, not a property of the motor", effect.id, effect.node,
+                                effect.condition.empty() ? "" : fmt::format(" in {}", estimation::in_words(effect.condition)), size.name,
+                                size.value, size.unit));
+  }
+  return notes;
 }
 
 std::vector<std::string> refusal_words(const attribution::Selection& selection) {
