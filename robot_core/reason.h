@@ -65,8 +65,7 @@
 // Without a code:
 //   - A low battery sample is no fault: a kicker may be charging. Limits use the sample; the PWM ratio uses the last open-circuit voltage.
 //   - If a current sensor reads too low, the guard still counts the heat: it compares all samples with all voltages and speeds. A sensor
-//   that
-//     fails in step with the control loop, as a shared ADC may, hides no heat either: a winding was at most 2.2 K above its guard
+//     that fails in step with the control loop, as a shared ADC may, hides no heat either: a winding was at most 2.2 K above its guard
 //     (tests/robot_core/sensor_heat_test.cpp).
 //   - Without a trusted current sensor a wrong wheel speed would hide heat. If one of four wheel speeds alone contradicts the others by
 //     more than 0.06 m/s plus 6 % of the speed limit, or any does with a sensor less, the guard counts the larger current of the two at its
@@ -127,8 +126,7 @@
 //   - A correct robot on slippery ground (grip below a half) with three wheels and a coarse encoder: short faults 112. A robot with a grip
 //     of 0.3 was once in 400 drives left with fault 113 without a push.
 //   - An invalid timer (102) that hides a gap longer than kWatchdog_s, in firmware without such a watchdog. If the timer reports half of
-//   the
-//     true period, the winding is up to 18 K hotter than the guard. The same holds for firmware without a timer whose loop is too slow.
+//     the true period, the winding is up to 18 K hotter than the guard. The same holds for firmware without a timer whose loop is too slow.
 //   - A battery sensor with a constant wrong factor since the start or a fault, or one that sinks more slowly than 0.4 % of the full
 //     battery per second, or reads too low for minutes: the voltage exceeds its limit by that factor and the current by more: twice its
 //     limit for a second with a factor of 1.25.

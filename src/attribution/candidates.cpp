@@ -103,10 +103,9 @@ std::vector<double> scaled(const thermal::EffectType& type, std::vector<double> 
   return parameters;
 }
 
-/// Returns the ratio of the 98th percentile of the current to 8 A; 1 if it is within a factor of 2.5, or without current.
+/// Returns the ratio of the 98th percentile of the current to 8 A, the current of the typical sizes; 1 without current.
 double current_ratio_of(const std::vector<estimation::MeasuredRun>& runs) {
   constexpr double kUsual_A = 8.0;
-  constexpr double kOrder_ratio = 2.5;
   constexpr double kTop_share = 0.98;
   std::vector<double> current_A;
   for (const estimation::MeasuredRun& run : runs) {
@@ -119,8 +118,7 @@ double current_ratio_of(const std::vector<estimation::MeasuredRun>& runs) {
   }
   const auto top = current_A.begin() + static_cast<std::ptrdiff_t>(kTop_share * static_cast<double>(current_A.size() - 1));
   std::ranges::nth_element(current_A, top);
-  const double ratio = *top / kUsual_A;
-  return ratio < 1.0 / kOrder_ratio || ratio > kOrder_ratio ? ratio : 1.0;
+  return *top / kUsual_A;
 }
 
 MotorSize size_of(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {

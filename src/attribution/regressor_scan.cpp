@@ -10,6 +10,7 @@
 
 #include "attribution/curve.h"
 #include "base/parallel.h"
+#include "estimation/thresholds.h"
 
 namespace heatsoak::attribution {
 namespace {
@@ -212,7 +213,7 @@ class Scanner {
         take_better(narrower[i], score(narrower[i], shared, family.scored.place));
       });
       Family& best = *std::ranges::max_element(narrower, {}, [](const Family& each) { return each.scored.nats; });
-      if (best.scored.nats < family.scored.nats + rules_.distinct_nats) {
+      if (best.scored.nats < family.scored.nats + estimation::thresholds().distinct_nats) {
         return;
       }
       climb(best);
@@ -366,8 +367,8 @@ class Scanner {
 
   [[nodiscard]] Scored score(const Family& family, const std::vector<SharedRun>& shared, const estimation::FluxPlace& place) const {
     Scored best = best_subset(reduced_with(family, shared), true, place);
-    const double second_nats = spec_of(family.term.multiplier).second_signal.empty() ? 0.0 : rules_.second_signal_nats;
-    best.nats += rules_.curve_nats - second_nats;
+    const double signals = spec_of(family.term.multiplier).second_signal.empty() ? 1.0 : 2.0;
+    best.nats += signals * rules_.curve_nats;
     return best;
   }
 

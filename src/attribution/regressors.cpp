@@ -7,12 +7,10 @@
 #include <set>
 
 #include "base/unknown.h"
+#include "estimation/thresholds.h"
 
 namespace heatsoak::attribution {
 namespace {
-
-/// Signals with a larger correlation are copies; the earlier one is kept.
-constexpr double kSameCorrelation_ratio = 0.9995;
 
 Regressor driver_of(std::string name, std::string unit, DriverKind kind) {
   Regressor driver;
@@ -73,14 +71,15 @@ class Collector {
     driver.low = known[known.size() / 100];
     driver.high = known[known.size() - 1 - known.size() / 100];
     const double size = std::max(std::abs(driver.low), std::abs(driver.high));
-    if (!(driver.high - driver.low > 1e-6 * size) || is_copy(driver)) {
+    constexpr double kPoint_share = 1e-6;
+    if (!(driver.high - driver.low > kPoint_share * size) || is_copy(driver)) {
       return;
     }
     double width = driver.high - driver.low;
     for (const std::size_t part : {10, 4}) {
       const double low = known[known.size() / part];
       const double high = known[known.size() - 1 - known.size() / part];
-      if (high - low < 0.8 * width && high - low > 0.02 * (driver.high - driver.low)) {
+      if (high - low < width && high - low > kPoint_share * (driver.high - driver.low)) {
         driver.inner.push_back({low, high});
         width = high - low;
       }
@@ -89,8 +88,8 @@ class Collector {
   }
 
   [[nodiscard]] bool is_copy(const Regressor& driver) const {
-    return std::ranges::any_of(kept_,
-                               [&](const Regressor& other) { return std::abs(correlation(driver, other)) > kSameCorrelation_ratio; });
+    return std::ranges::any_of(
+        kept_, [&](const Regressor& other) { return std::abs(correlation(driver, other)) > estimation::thresholds().same_signal_ratio; });
   }
 
   static double correlation(const Regressor& a, const Regressor& b) {

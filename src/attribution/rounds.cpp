@@ -16,6 +16,7 @@
 #include "estimation/left_out_runs.h"
 #include "estimation/model_screening.h"
 #include "estimation/smoothed_path.h"
+#include "estimation/thresholds.h"
 #include "estimation/usual_heat.h"
 
 namespace heatsoak::attribution {
@@ -51,12 +52,14 @@ std::vector<CandidateRule> rules_of(const std::vector<Candidate>& candidates, co
   return all;
 }
 
-/// Returns the coordinates of positive parameters whose prior standard deviation is less than half of that of a value on a data sheet.
+/// Returns the coordinates of positive parameters whose prior standard deviation is below that of a value on a data sheet times
+/// `well_known_ratio`.
 std::vector<Eigen::Index> well_known_values(const estimation::Model& model) {
   std::vector<Eigen::Index> known;
   const Eigen::MatrixXd precision = model.full_prior().precision;
   for (Eigen::Index i = 0; i < model.network_count(); ++i) {
-    const bool is_well_known = precision(i, i) * calibration::kSheet_sd * calibration::kSheet_sd > 4.0;
+    const double known_sd = estimation::thresholds().well_known_ratio * calibration::kSheet_sd;
+    const bool is_well_known = precision(i, i) * known_sd * known_sd > 1.0;
     if (is_well_known && model.free[static_cast<std::size_t>(i)].by_log) {
       known.push_back(i);
     }
@@ -95,9 +98,10 @@ void Rounds::begin() {
     merged_.push_back(estimation::mergeable_samples(paths.back()));
   }
   out_.mean_heat_W = estimation::usual_heat_W(input_.model, input_.runs, start_C);
-  unit_W_ = estimation::material_heat_W(paths, rules_.material_K);
+  unit_W_ = estimation::material_heat_W(paths, estimation::thresholds().material_K);
   now_ = estimation::posterior_of(input_.model, input_.runs, start_C, plain_options());
-  out_.material_W = std::max({unit_W_, rules_.material_share * out_.mean_heat_W, rules_.as_usual_ratio * input_.usual.flux_W});
+  const estimation::Thresholds& limits = estimation::thresholds();
+  out_.material_W = std::max({unit_W_, limits.material_share * out_.mean_heat_W, limits.clearly_other_ratio * input_.usual.flux_W});
   grid_ = estimation::flux_grid(unit_W_, estimation::travel_K(input_.runs), input_.model.flux_nodes.size());
   out_.weights = estimation::weights_by_model(now_.fitted, input_.runs, unit_W_);
   list_ = candidates_for(input_.model, input_.runs);

@@ -12,6 +12,7 @@
 #include "estimation/left_out_runs.h"
 #include "estimation/log_columns.h"
 #include "estimation/smoothed_path.h"
+#include "estimation/thresholds.h"
 
 namespace heatsoak::attribution {
 namespace {
@@ -36,6 +37,7 @@ class Selector : Rounds {
 
  private:
   void decide(const Judged& judged) {
+    const double sure = estimation::named_probability();
     const EffectSet& best = search_->sets().front();
     const estimation::PosteriorOptions options = options_with(grid_.at(judged.best_place));
     const estimation::Model with_best = with_members(best.members, judged.at_best, ShapesAre::held);
@@ -46,13 +48,13 @@ class Selector : Rounds {
       const double probability = search_->family_probability(best, m);
       if (is_parameter(best.members[m])) {
         out_.changed_nats[parameter_of(best.members[m])] = search_->loss_without_nats(best, m);
-      } else if (probability > rules_.named_probability) {
+      } else if (probability > sure) {
         named.push_back(m);
       } else {
-        refuse({id_of(best.members[m]), RefusalReason::improbable, probability, rules_.named_probability});
+        refuse({id_of(best.members[m]), RefusalReason::improbable, probability, sure});
       }
     }
-    const bool is_something_missing = out_.is_material() || out_.nothing_probability < 1.0 - rules_.named_probability;
+    const bool is_something_missing = out_.is_material() || out_.nothing_probability < 1.0 - sure;
     if (rules_.scans_drivers && !is_speed_open_ && (is_something_missing || !named.empty())) {
       scan(judged, best);
     }
@@ -62,7 +64,7 @@ class Selector : Rounds {
       return;
     }
     const std::vector<ScanResult>& scan = out_.rounds.back().scan;
-    if (!scan.empty() && scan.front().gain_nats > rules_.curve_gain_nats) {
+    if (!scan.empty() && scan.front().gain_nats > estimation::thresholds().clear_nats) {
       if (const std::optional<std::size_t> same = same_effect(best, scan.front())) {
         if (std::ranges::find(named, *same) == named.end()) {
           named.push_back(*same);
@@ -73,7 +75,7 @@ class Selector : Rounds {
       }
     }
     if (out_.is_material()) {
-      keep_what_reduces_error(best, named, rules_.beside_unknown_share, RefusalReason::unknown_heat_remains);
+      keep_what_reduces_error(best, named, estimation::thresholds().beside_unknown_share, RefusalReason::unknown_heat_remains);
       out_.is_unexplained = named.empty();
     }
     if (input_.usual.flux_W > 0.0) {
@@ -114,7 +116,7 @@ class Selector : Rounds {
   /// Returns the member of the best set that has the same shape as the curve, if there is one.
   [[nodiscard]] std::optional<std::size_t> same_effect(const EffectSet& best, const ScanResult& curve) const {
     for (std::size_t m = 0; m < best.members.size(); ++m) {
-      if (!is_parameter(best.members[m]) && curve.shape_ratio[m] > rules_.same_shape_ratio) {
+      if (!is_parameter(best.members[m]) && curve.shape_ratio[m] > estimation::thresholds().same_shape_ratio) {
         return m;
       }
     }
@@ -136,7 +138,7 @@ class Selector : Rounds {
     const std::vector<std::size_t> stay = beside(curve, named);
     const bool replaces = stay.size() < named.size();
     return left_out_share(fit_with(judged, best, stay), fit_with(judged, best, named), curve) <
-           (replaces ? rules_.plainly_better_share : rules_.curve_left_out_share);
+           (replaces ? estimation::thresholds().better_share : 1.0 / estimation::thresholds().clearly_other_ratio);
   }
 
   /// Replaces the effects that the curve explains better by the curve.
@@ -176,7 +178,7 @@ class Selector : Rounds {
   /// True if whole runs decided the file's parameters, and the model predicts these runs about as well as those.
   [[nodiscard]] bool are_runs_as_usual() const {
     return input_.usual.flux_W > 0.0 && input_.usual.error_K > 0.0 &&
-           free_run_error_K(input_.model) < rules_.as_usual_ratio * input_.usual.error_K;
+           free_run_error_K(input_.model) < estimation::thresholds().clearly_other_ratio * input_.usual.error_K;
   }
 
   void keep_as_it_is(const Judged& judged) {
@@ -202,8 +204,7 @@ class Selector : Rounds {
 
   /// Evidence alone is not sufficient: a calibrated model leaves some unknown heat even in the runs it was fitted to.
   void keep_what_helps(const EffectSet& best, std::vector<std::size_t>& named) {
-    keep_what_reduces_error(best, named, input_.usual.error_K > 0.0 ? rules_.plainly_better_share : rules_.better_share,
-                            RefusalReason::hardly_improves_whole_runs);
+    keep_what_reduces_error(best, named, estimation::thresholds().better_share, RefusalReason::hardly_improves_whole_runs);
   }
 
   /// Returns the named members and the changed parameters, ascending.
@@ -260,7 +261,7 @@ class Selector : Rounds {
       term.probability = search_->family_probability(best, m);
       term.loss_without_nats = search_->loss_without_nats(best, m);
       term.visibility_ratio = search_->visibility_ratio(member);
-      for (const int other : search_->stand_ins(best, m, rules_.distinct_nats)) {
+      for (const int other : search_->stand_ins(best, m, estimation::thresholds().distinct_nats)) {
         if (!is_parameter(other)) {
           const Candidate& rival = candidates()[static_cast<std::size_t>(other)];
           if (std::ranges::find(term.confusable_with, rival.id) == term.confusable_with.end()) {
@@ -302,7 +303,7 @@ class Selector : Rounds {
     term.probability = 1.0;
     for (const ScanResult& each : out_.rounds.back().scan) {
       const std::string& other = out_.drivers[static_cast<std::size_t>(each.term.driver)].name;
-      if (each.gain_nats > curve.gain_nats - rules_.distinct_nats && other != driver.name &&
+      if (each.gain_nats > curve.gain_nats - estimation::thresholds().distinct_nats && other != driver.name &&
           std::ranges::find(term.confusable_with, other) == term.confusable_with.end()) {
         term.confusable_with.push_back(other);
       }

@@ -98,9 +98,7 @@ struct Selection {
   /// True if the unknown heat at some node exceeds `material_W`.
   [[nodiscard]] bool is_material() const;
   /// True if an effect is probably missing but none can be named.
-  [[nodiscard]] bool is_undecided(const SelectionRules& rules = {}) const {
-    return terms.empty() && nothing_probability < 1.0 - rules.named_probability;
-  }
+  [[nodiscard]] bool is_undecided() const { return terms.empty() && nothing_probability < 1.0 - estimation::named_probability(); }
 };
 
 /// Selects the effects. Throws Failure (numerics_failed) if the model cannot be simulated along the runs.

@@ -7,6 +7,8 @@
 #include <limits>
 #include <set>
 
+#include "estimation/thresholds.h"
+
 namespace heatsoak::attribution {
 namespace {
 
@@ -182,7 +184,7 @@ void SetSearch::reconsider(const std::function<double(const std::vector<int>&, c
     change_nats.push_back(fitted_nats(sets_[i].members, at) - at.evidence_nats);
     const auto nats = [&](std::size_t set) { return sets_[set].log_probability_nats + change_nats[set]; };
     winner = nats(i) > nats(winner) ? i : winner;
-    if (change_nats.back() > -rules_.distinct_nats) {
+    if (change_nats.back() > -estimation::thresholds().distinct_nats) {
       break;
     }
   }

@@ -29,12 +29,8 @@ std::string to_string(const Range& range, std::string_view unit) {
 }
 
 std::string_view unit_of(std::span<const ParameterSpec> specs, std::size_t place, std::span<const double> values) {
-  const int decided_by = specs[place].unit_of;
-  if (decided_by < 0) {
-    return specs[place].unit;
-  }
-  const auto at = static_cast<std::size_t>(decided_by);
-  return specs[at].choices[static_cast<std::size_t>(values[at])].unit;
+  const std::optional<std::size_t> decided_by = specs[place].unit_of;
+  return decided_by ? specs[*decided_by].choices[static_cast<std::size_t>(values[*decided_by])].unit : specs[place].unit;
 }
 
 }  // namespace heatsoak::base

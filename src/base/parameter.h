@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,7 +42,7 @@ struct ParameterSpec {
   std::string_view meaning;
   /// If not empty, a file gives the name of one choice and the value is its index; never sampled, never fitted. Static storage.
   std::span<const Choice> choices = {};
-  int unit_of = -1;  ///< index of the choice parameter that decides this one's unit; -1: `unit` applies
+  std::optional<std::size_t> unit_of = {};  ///< index of the choice parameter that decides this one's unit; empty: `unit` applies
 
   static constexpr ParameterSpec choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning) {
     return {key, "", Range::between(0.0, static_cast<double>(choices.size() - 1)), meaning, choices};

@@ -1,13 +1,12 @@
 #include "calibration/admission.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/copper.h"
 #include "base/diagnostic.h"
+#include "base/unknown.h"
 #include "recording/clock_offset.h"
 #include "recording/fingerprint.h"
 #include "recording/quality.h"
@@ -19,11 +18,11 @@ namespace {
 /// Ratio to the value that the nominal voltage can produce. A larger current or speed is probably in another unit.
 constexpr double kMost_ratio = 3.0;
 
-/// Throws Failure (bad_input) if two logs share rows. A run that counts twice makes the confidence intervals too narrow; a fitted run
+/// Throws RowsGivenTwice if two logs share rows. A run that counts twice makes the confidence intervals too narrow; a fitted run
 /// cannot serve as hold-out run.
 void refuse_repeated(std::span<const recording::Recording> fitted, std::span<const recording::Recording> held_out) {
   std::vector<std::pair<std::string, const recording::Recording*>> seen;
-  std::vector<base::Diagnostic> repeated;
+  std::vector<recording::RowsGivenTwice::Pair> repeated;
   for (const auto& recordings : {fitted, held_out}) {
     for (const recording::Recording& recording : recordings) {
       std::string fingerprint = recording::fingerprint_of(recording);
@@ -32,13 +31,13 @@ void refuse_repeated(std::span<const recording::Recording> fitted, std::span<con
                recording::is_cut_from(*other.second, recording);
       });
       if (found != seen.end()) {
-        repeated.push_back({{recording.file.string()}, {}, fmt::format("holds the same rows as {}", found->second->file.string())});
+        repeated.push_back({recording.file, found->second->file});
       }
       seen.emplace_back(std::move(fingerprint), &recording);
     }
   }
   if (!repeated.empty()) {
-    throw base::Failure(base::ExitCode::bad_input, "rows of a log are given twice", std::move(repeated));
+    throw recording::RowsGivenTwice(std::move(repeated));
   }
 }
 
@@ -244,24 +243,28 @@ Admission admit(const motor::Motor& motor, std::span<const recording::Recording>
   return admission;
 }
 
+RunsOfTheFile::RunsOfTheFile(std::string motor_id, std::vector<std::filesystem::path> files)
+    : base::Failure(base::ExitCode::bad_input,
+                    "a run would count twice; start from the file as it was before that fit, or use --as-is if it is another run"),
+      motor_id_(std::move(motor_id)),
+      files_(std::move(files)) {}
+
 bool was_fitted_to(const motor::MotorFit& fit, const recording::Recording& recording) {
   return std::ranges::any_of(fit.runs, [&recording](const std::string& run) { return recording::is_of_run(recording, run); });
 }
 
 void refuse_runs_of_the_file(const motor::Motor& motor, std::span<const recording::Recording> fitted,
                              std::span<const recording::Recording> held_out) {
-  std::vector<base::Diagnostic> known;
+  std::vector<std::filesystem::path> known;
   for (const auto& recordings : {fitted, held_out}) {
     for (const recording::Recording& recording : recordings) {
       if (motor.fit && was_fitted_to(*motor.fit, recording)) {
-        known.push_back({{recording.file.string()}, {}, fmt::format("{} was fitted to these rows (fit.runs)", motor.id)});
+        known.push_back(recording.file);
       }
     }
   }
   if (!known.empty()) {
-    throw base::Failure(base::ExitCode::bad_input,
-                        "a run would count twice; start from the file as it was before that fit, or use --as-is if it is another run",
-                        std::move(known));
+    throw RunsOfTheFile(motor.id, std::move(known));
   }
 }
 

@@ -61,6 +61,18 @@ class LogsLookWrong : public base::Failure {
   std::vector<Finding> findings_;
 };
 
+/// Logs contain rows to which the motor's file was fitted before (bad_input).
+class RunsOfTheFile : public base::Failure {
+ public:
+  RunsOfTheFile(std::string motor_id, std::vector<std::filesystem::path> files);
+  [[nodiscard]] const std::string& motor_id() const { return motor_id_; }
+  [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
+
+ private:
+  std::string motor_id_;
+  std::vector<std::filesystem::path> files_;
+};
+
 /// A recording states that it is of another motor.
 struct OfOtherMotor {
   std::string recording;

@@ -8,6 +8,7 @@
 
 #include "estimation/interval.h"
 #include "estimation/open_loop.h"
+#include "estimation/thresholds.h"
 #include "motor/motor.h"
 
 namespace heatsoak::calibration {
@@ -22,7 +23,7 @@ bool is_better_than_innovations(const Forecast& forecast) {
   const RivalScore other = rival(ForecastSource::innovations);
   const auto matters = [&](const auto& signal_and_error) {
     const auto same = std::ranges::find(best.rmse_K, signal_and_error.first, [](const auto& each) { return each.first; });
-    return same == best.rmse_K.end() || signal_and_error.second > same->second + estimation::kMatters_K;
+    return same == best.rmse_K.end() || signal_and_error.second > same->second + estimation::thresholds().matters_K;
   };
   return other.score_nats > best.score_nats + kLeastGain_nats && std::ranges::any_of(other.rmse_K, matters);
 }

@@ -22,8 +22,8 @@ Counts counts_of(std::span<const Outcome> outcomes) {
   Counts counts;
   for (const Outcome& each : outcomes) {
     ++counts.all;
-    counts.exceeded += !each.passed && each.is_evaluated ? 1 : 0;
-    counts.not_evaluated += each.is_evaluated ? 0 : 1;
+    counts.exceeded += !each.passed && each.measured ? 1 : 0;
+    counts.not_evaluated += each.measured ? 0 : 1;
   }
   return counts;
 }
@@ -46,17 +46,27 @@ std::string count_attributes(const Counts& counts) {
   return fmt::format(R"(tests="{}" failures="{}" errors="{}" skipped="0")", counts.all, counts.exceeded, counts.not_evaluated);
 }
 
+std::string suites_begin(const Counts& counts) {
+  return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"heatsoak check\" {}>\n", count_attributes(counts));
+}
+
+std::string suite_begin(std::string_view name, const Counts& counts, std::string_view version) {
+  return fmt::format(
+      "  <testsuite name=\"{}\" {}>\n    <properties>\n      <property name=\"heatsoak\" value=\"{}\"/>\n    </properties>\n",
+      base::xml_attribute(name), count_attributes(counts), base::xml_attribute(version));
+}
+
 std::string test_case(const Outcome& each) {
   std::string text = fmt::format(R"(    <testcase name="{}" classname="{}" file="{}" line="{}")", each.limit.type->name,
                                  base::xml_attribute(each.check->name), base::xml_attribute(each.limit.at.file), each.limit.at.line);
-  const std::string facts = fmt::format("value {}, limit {}, margin {}\n{}", shown(each.measured.value, *each.limit.type), limit_text(each),
-                                        margin_text(each), each.measured.detail);
+  const std::string facts = fmt::format("value {}, limit {}, margin {}\n{}", value_text(each), limit_text(each), margin_text(each),
+                                        each.measured ? each.measured->detail : "");
   if (each.passed) {
     return text + fmt::format(">\n      <system-out>{}</system-out>\n    </testcase>\n", base::xml_attribute(facts));
   }
-  const std::string_view element = each.is_evaluated ? "failure" : "error";
+  const std::string_view element = each.measured ? "failure" : "error";
   return text + fmt::format(">\n      <{0} type=\"{1}\" message=\"{2}\">{3}:{4}: {5}</{0}>\n    </testcase>\n", element,
-                            each.is_evaluated ? "limit_exceeded" : "not_evaluated", base::xml_attribute(each.reason),
+                            each.measured ? "limit_exceeded" : "not_evaluated", base::xml_attribute(each.reason),
                             base::xml_attribute(each.limit.at.file), each.limit.at.line, base::xml_attribute(facts));
 }
 
@@ -98,11 +108,13 @@ std::string conclusion_text(std::span<const Outcome> outcomes) {
   return text;
 }
 
+std::string value_text(const Outcome& outcome) { return outcome.measured ? shown(outcome.measured->value, *outcome.limit.type) : "–"; }
+
 std::string margin_text(const Outcome& outcome) {
-  const double margin = outcome.margin_value();
-  if (!std::isfinite(margin)) {
+  if (!outcome.measured) {
     return "–";
   }
+  const double margin = *outcome.margin_value();
   const ThresholdType& type = *outcome.limit.type;
   if (type.unit == "degC") {
     return fmt::format("{:+.1f} K", margin);
@@ -131,18 +143,17 @@ std::string things_of(const Check& check) {
 }
 
 std::string explanation(const Outcome& outcome) {
-  return !outcome.is_evaluated                               ? outcome.reason
-         : outcome.passed || outcome.measured.detail.empty() ? outcome.measured.detail
-                                                             : fmt::format("{}: {}", outcome.reason, outcome.measured.detail);
+  if (!outcome.measured) {
+    return outcome.reason;
+  }
+  const std::string& detail = outcome.measured->detail;
+  return outcome.passed || detail.empty() ? detail : fmt::format("{}: {}", outcome.reason, detail);
 }
 
 std::string junit_xml(std::span<const Outcome> outcomes, std::string_view version) {
-  std::string text = fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"heatsoak check\" {}>\n",
-                                 count_attributes(counts_of(outcomes)));
+  std::string text = suites_begin(counts_of(outcomes));
   for (const std::span<const Outcome> group : by_check(outcomes)) {
-    text +=
-        fmt::format("  <testsuite name=\"{}\" {}>\n    <properties>\n      <property name=\"heatsoak\" value=\"{}\"/>\n    </properties>\n",
-                    base::xml_attribute(group.front().check->name), count_attributes(counts_of(group)), base::xml_attribute(version));
+    text += suite_begin(group.front().check->name, counts_of(group), version);
     for (const Outcome& each : group) {
       text += test_case(each);
     }
@@ -151,13 +162,23 @@ std::string junit_xml(std::span<const Outcome> outcomes, std::string_view versio
   return text + "</testsuites>\n";
 }
 
+std::string junit_xml(const base::Failure& failure, std::string_view version) {
+  constexpr Counts kOneError{.all = 1, .exceeded = 0, .not_evaluated = 1};
+  const std::string all = failure.what();
+  return suites_begin(kOneError) + suite_begin("heatsoak check", kOneError, version) +
+         fmt::format(
+             "    <testcase name=\"check files\" classname=\"heatsoak check\">\n      <error type=\"not_evaluated\" "
+             "message=\"{}\">{}</error>\n"
+             "    </testcase>\n  </testsuite>\n</testsuites>\n",
+             base::xml_attribute(all.substr(0, all.find('\n'))), base::xml_attribute(all));
+}
+
 std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view version) {
   std::string text = fmt::format("### heatsoak check: {}\n\n", conclusion_text(outcomes));
   text += "| | check | threshold | value | limit | margin | |\n|---|---|---|--:|--:|--:|---|\n";
   for (const Outcome& each : outcomes) {
     text += fmt::format("| {} | {} | `{}` | {} | {} | {} | {} |\n", each.passed ? "✅" : "❌", in_markdown(each.check->name),
-                        each.limit.type->name, shown(each.measured.value, *each.limit.type), limit_text(each), margin_text(each),
-                        in_markdown(explanation(each)));
+                        each.limit.type->name, value_text(each), limit_text(each), margin_text(each), in_markdown(explanation(each)));
   }
   return text + fmt::format("\nheatsoak {}\n", version);
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/diagnostic.h"
 #include "check/run_checks.h"
 
 namespace heatsoak::check {
@@ -13,6 +14,8 @@ namespace heatsoak::check {
 /// Returns how many limits hold, do not hold and cannot be evaluated, without a full stop.
 std::string conclusion_text(std::span<const Outcome> outcomes);
 
+/// Returns the measured value with its unit; "–" if the threshold was not evaluated.
+std::string value_text(const Outcome& outcome);
 /// Returns the margin with its sign and unit; "–" if the threshold was not evaluated.
 std::string margin_text(const Outcome& outcome);
 
@@ -28,6 +31,9 @@ std::string explanation(const Outcome& outcome);
 /// Returns JUnit XML as GitHub, GitLab and Jenkins read it: one <testsuite> per check and one <testcase> per threshold. An exceeded limit
 /// is a <failure>, a threshold that could not be evaluated an <error>.
 std::string junit_xml(std::span<const Outcome> outcomes, std::string_view version);
+
+/// Returns JUnit XML of a run that ended with the failure, such as a check file that cannot be read: one <testcase> with an <error>.
+std::string junit_xml(const base::Failure& failure, std::string_view version);
 
 /// Returns a Markdown table for $GITHUB_STEP_SUMMARY.
 std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view version);

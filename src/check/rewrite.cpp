@@ -35,11 +35,11 @@ std::string with_new_limits(const std::string& content, std::span<Outcome> outco
   // Maps begin to length and text. Descending order, so that a replacement does not move the places still to be replaced.
   std::map<std::size_t, std::pair<std::size_t, std::string>, std::greater<>> by_place;
   for (Outcome& outcome : outcomes) {
-    if (!outcome.is_evaluated) {
+    if (!outcome.measured) {
       continue;
     }
     Limit& limit = outcome.limit;
-    const std::string text = updated_limit(outcome.measured, *limit.type, limit.unit, margin_share);
+    const std::string text = updated_limit(*outcome.measured, *limit.type, limit.unit, margin_share);
     const ParsedLimit parsed = parse_limit(text, *limit.type);
     const std::string problem =
         parsed.problem.empty() ? looseness_problem(parsed.value, text, *limit.type, *outcome.check) : parsed.problem;

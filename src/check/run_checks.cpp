@@ -36,15 +36,17 @@ void require_readable(const Check& check, const ThresholdType& type) {
 }
 
 void evaluate_one(Outcome& outcome, Computations& computations) {
-  outcome.measured.value = std::numeric_limits<double>::quiet_NaN();
   try {
     require_readable(*outcome.check, *outcome.limit.type);
     if (outcome.check->robot && std::ranges::find(outcome.limit.type->needs, Setting::robot) != outcome.limit.type->needs.end()) {
       robot::require_sound(*outcome.check->robot);
     }
-    outcome.measured = outcome.limit.type->measure(*outcome.check, computations);
-    outcome.is_evaluated = std::isfinite(outcome.measured.value);
-    outcome.reason = outcome.is_evaluated ? "" : "the result is not a number";
+    Measured measured = outcome.limit.type->measure(*outcome.check, computations);
+    if (std::isfinite(measured.value)) {
+      outcome.measured = std::move(measured);
+    } else {
+      outcome.reason = "the result is not a number";
+    }
   } catch (const base::Failure& failure) {
     outcome.reason = reason_of(failure);
   } catch (const std::bad_alloc&) {
@@ -55,19 +57,22 @@ void evaluate_one(Outcome& outcome, Computations& computations) {
 
 }  // namespace
 
-double Outcome::margin_value() const {
-  return limit.type->direction == Bound::at_most ? limit.value - measured.value : measured.value - limit.value;
+std::optional<double> Outcome::margin_value() const {
+  if (!measured) {
+    return std::nullopt;
+  }
+  return limit.type->direction == Bound::at_most ? limit.value - measured->value : measured->value - limit.value;
 }
 
 void judge(Outcome& outcome) {
-  if (!outcome.is_evaluated) {
+  if (!outcome.measured) {
     outcome.passed = false;
     return;
   }
   const ThresholdType& type = *outcome.limit.type;
-  outcome.passed = keeps(type.direction, outcome.measured.value, outcome.limit.value);
+  outcome.passed = keeps(type.direction, outcome.measured->value, outcome.limit.value);
   outcome.reason = outcome.passed ? std::string()
-                                  : fmt::format("{} is {} the limit of {}", shown(outcome.measured.value, type),
+                                  : fmt::format("{} is {} the limit of {}", shown(outcome.measured->value, type),
                                                 type.direction == Bound::at_most ? "above" : "below", shown(outcome.limit.value, type));
 }
 
@@ -77,7 +82,7 @@ std::vector<Outcome> run_checks(const CheckFile& file, int threads, const base::
   for (const Check& check : file.checks) {
     const std::size_t first = outcomes.size();
     for (const Limit& limit : check.limits) {
-      outcomes.push_back({.check = &check, .limit = limit, .measured = {}, .reason = {}});
+      outcomes.push_back({.check = &check, .limit = limit, .reason = {}});
     }
     ranges.emplace_back(first, outcomes.size());
   }

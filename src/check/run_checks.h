@@ -12,15 +12,14 @@ namespace heatsoak::check {
 struct Outcome {
   const Check* check = nullptr;
   Limit limit;
-  Measured measured;           ///< value is NaN if it could not be evaluated
-  std::string reason;          ///< why it fails; empty if it passes
-  std::string before = {};     ///< text of the limit before --update; empty if unchanged
-  bool failed_before = false;  ///< the value did not keep the limit before --update
-  bool is_evaluated = false;
+  std::optional<Measured> measured = {};  ///< empty if it could not be evaluated
+  std::string reason;                     ///< why it fails; empty if it passes
+  std::string before = {};                ///< text of the limit before --update; empty if unchanged
+  bool failed_before = false;             ///< the value did not keep the limit before --update
   bool passed = false;
 
-  /// Returns the distance from the value to the limit in the type's unit: positive on the safe side, NaN without a value.
-  [[nodiscard]] double margin_value() const;
+  /// Returns the distance from the value to the limit in the type's unit: positive on the safe side; nothing without a value.
+  [[nodiscard]] std::optional<double> margin_value() const;
 };
 
 /// Returns one outcome per limit, in the order of the file. Thresholds that cannot be evaluated fail with a reason; all others are still

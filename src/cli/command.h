@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/counted.h"
@@ -51,6 +52,10 @@ class Session {
   void make_folder(std::filesystem::path path) { folders_.push_back(std::move(path)); }
   /// Sets a function that runs after all files are written and before the text; for the rename that completes a folder.
   void complete_with(std::function<void()> last) { last_ = std::move(last); }
+  /// Adds a file that is written only if the command fails, in place of all its other files.
+  void write_after_failure(std::filesystem::path path, std::function<std::string(const base::Failure&)> text) {
+    after_failure_.emplace_back(std::move(path), std::move(text));
+  }
   /// Sets the JSON answer; ignored without --json. The program's version is inserted after the schema.
   void answer(const nlohmann::ordered_json& json);
   void finish();
@@ -71,6 +76,7 @@ class Session {
   std::vector<base::OutputFile> rewritten_;
   std::vector<std::unique_ptr<base::StreamedFile>> streams_;
   std::function<void()> last_;
+  std::vector<std::pair<std::filesystem::path, std::function<std::string(const base::Failure&)>>> after_failure_;
 };
 
 /// A topic of `list` and `describe` other than a file or an effect of the network, such as a sensor effect or a threshold.

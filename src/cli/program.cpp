@@ -12,6 +12,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <utility>
 
 #include "base/files.h"
 #include "base/version.h"
@@ -282,6 +283,7 @@ void Session::answer(const nlohmann::ordered_json& json) {
 }
 
 void Session::finish() {
+  after_failure_.clear();  // a failure from here on concerns the files themselves
   std::vector<base::Diagnostic> read;
   const auto check = [&read](const std::filesystem::path& path) {
     if (base::is_input(path)) {
@@ -326,6 +328,9 @@ void Session::answer_failure(const base::Failure& failure) {
   rewritten_.clear();
   streams_.clear();
   last_ = nullptr;
+  for (const auto& [path, text] : std::exchange(after_failure_, {})) {
+    files_.push_back({path, text(failure)});
+  }
   answer(present::failure_json(failure));
   try {
     finish();

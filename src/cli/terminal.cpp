@@ -92,8 +92,9 @@ class Bar {
     } else if (const Clock::time_point now = Clock::now(); now - shown_ > kBetween) {
       shown_ = now;
       is_visible_ = true;
-      fmt::print(stderr, "\r\x1b[K{}: {:.0f} %{}", what_, 100.0 * static_cast<double>(done) / static_cast<double>(total),
-                 remaining_.text(done, total));
+      // A job that turns out to be longer keeps its percentage until the work has caught up; the remaining time grows.
+      most_share_ = std::max(most_share_, static_cast<double>(done) / static_cast<double>(total));
+      fmt::print(stderr, "\r\x1b[K{}: {:.0f} %{}", what_, 100.0 * most_share_, remaining_.text(done, total));
     }
   }
 
@@ -109,6 +110,7 @@ class Bar {
   std::string what_;
   Remaining remaining_;
   Clock::time_point shown_ = Clock::now();
+  double most_share_ = 0.0;
   bool is_visible_ = false;
 };
 

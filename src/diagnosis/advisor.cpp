@@ -19,7 +19,6 @@ struct Levels {
   double speed_rad_per_s = 0.0;
   double bus_V = 0.0;
   double input_power_W = 0.0;
-  double vehicle_speed_m_per_s = 0.0;
   double shaft_W_per_A_rad_per_s = 0.0;
   double ambient_C = 25.0;
   double measured_C = 0.0;
@@ -36,7 +35,6 @@ Levels levels_of(const std::vector<estimation::MeasuredRun>& runs) {
       if (const double turns_A_rad_per_s = at.current_rms_A * at.speed_mean_rad_per_s; turns_A_rad_per_s > 0.0) {
         most.shaft_W_per_A_rad_per_s = std::max(most.shaft_W_per_A_rad_per_s, std::abs(at.shaft_power_W) / turns_A_rad_per_s);
       }
-      most.vehicle_speed_m_per_s = std::max(most.vehicle_speed_m_per_s, at.vehicle_speed_m_per_s);
     }
   }
   most.ambient_C = runs.front().at.front().ambient_C;

@@ -19,6 +19,7 @@
 #include "estimation/interval.h"
 #include "estimation/log_columns.h"
 #include "estimation/smoothed_path.h"
+#include "estimation/thresholds.h"
 #include "estimation/turning_rows.h"
 
 namespace heatsoak::diagnosis {
@@ -39,8 +40,7 @@ estimation::Errors errors_of_file(estimation::Model model, const std::vector<est
 
 class DiagnosisReport {
  public:
-  DiagnosisReport(const DiagnosisInput& input, const attribution::SelectionRules& rules, attribution::Selection selection)
-      : rules_(rules), input_(input) {
+  DiagnosisReport(const DiagnosisInput& input, attribution::Selection selection) : input_(input) {
     out_.selection = std::move(selection);
     estimation::set_columns(input_.train, out_.selection.after.model.columns);
   }
@@ -233,12 +233,11 @@ class DiagnosisReport {
     const bool is_same_mounting = std::ranges::none_of(out_.changed, [](const ChangedParameter& parameter) {
       return std::abs(std::log(parameter.value / parameter.before)) > kOtherMounting;
     });
-    const bool would_show = out_.selection.seen_share >= rules_.least_seen_share;
-    return !out_.selection.is_undecided(rules_) && is_same_mounting && would_show ? DiagnosisVerdict::nothing_missing
-                                                                                  : DiagnosisVerdict::not_identifiable;
+    const bool would_show = out_.selection.seen_share >= estimation::thresholds().least_seen_share;
+    return !out_.selection.is_undecided() && is_same_mounting && would_show ? DiagnosisVerdict::nothing_missing
+                                                                            : DiagnosisVerdict::not_identifiable;
   }
 
-  const attribution::SelectionRules& rules_;
   DiagnosisInput input_;
   Diagnosis out_;
 };
@@ -246,7 +245,7 @@ class DiagnosisReport {
 }  // namespace
 
 bool is_plainly_worse(double error_K, double than_K) {
-  return error_K > than_K + estimation::kMatters_K && error_K > kWorse_ratio * than_K;
+  return error_K > than_K + estimation::thresholds().matters_K && error_K > kWorse_ratio * than_K;
 }
 
 std::string_view to_string(DiagnosisVerdict verdict) {
@@ -278,7 +277,7 @@ void settle_turning_rows(DiagnosisInput& input) {
 }
 
 Diagnosis diagnose(const DiagnosisInput& input, const attribution::SelectionRules& rules) {
-  return DiagnosisReport(input, rules, attribution::select_effects({input.model, input.train, input.usual}, rules)).tell();
+  return DiagnosisReport(input, attribution::select_effects({input.model, input.train, input.usual}, rules)).tell();
 }
 
 HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<estimation::MeasuredRun> holdout) {

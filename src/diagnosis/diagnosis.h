@@ -108,7 +108,7 @@ struct HoldoutScore {
   std::vector<BeyondTraining> beyond_training;
 };
 
-/// True if the error is larger than the other by more than 10 % and by more than kMatters_K.
+/// True if the error is larger than the other by more than 10 % and by more than the threshold `matters_K`.
 bool is_plainly_worse(double error_K, double than_K);
 
 /// Decides by evidence whether the motor reverses within rows of the log. If so, replaces the training runs by turning_within_rows() and

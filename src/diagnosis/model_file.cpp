@@ -304,11 +304,6 @@ motor::Motor extended_motor(const motor::Motor& motor, const ModelOfLogs& model,
       result.effects.push_back(motor_effect(effect, diagnosis.selection.after));
     } else if (const motor::SensorEffectType* type = motor::find_sensor_effect(effect.id); type && !effect.parameters.empty()) {
       sensors.push_back(motor_sensor(*type, effect.parameters.front()));
-    } else if (!effect.parameters.empty()) {
-      const FittedParameter& size = effect.parameters.front();
-      result.notes.push_back(fmt::format(
-          "{} at the {}{}: {} {:.3g} {}; found in measurements, not a property of the motor", effect.id, effect.node,
-          effect.condition.empty() ? "" : fmt::format(" in {}", estimation::in_words(effect.condition)), size.name, size.value, size.unit));
     }
   }
   for (const motor::MotorSensor& sensor : sensors) {

@@ -28,7 +28,7 @@ struct ModelOfLogs {
 ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording::Recording>& recordings);
 
 /// Returns the motor with the parameters, effects and sensor errors of the diagnosis; to_toml() writes it as a motor file. Run deviations
-/// are not properties of a motor and become notes.
+/// are not properties of a motor and are left out.
 motor::Motor extended_motor(const motor::Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis);
 
 /// Predicts the hold-out recordings from both motor files with predict(), and replaces the errors before and after in `score`. Per signal

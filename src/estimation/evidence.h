@@ -11,9 +11,6 @@
 
 namespace heatsoak::estimation {
 
-/// Gain in ln evidence from which a more complicated explanation is accepted: odds of 1 to 22 000, far beyond the number of those tried.
-inline constexpr double kClear_nats = 10.0;
-
 /// Information of one run about the coefficients of c columns, with its start temperatures eliminated.
 struct RunEvidence {
   /// (c + 1) × (c + 1), upper triangular: the factor R of the whitened [columns, residual]. RᵀR contains all products of these columns.

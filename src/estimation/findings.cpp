@@ -6,6 +6,9 @@
 
 namespace heatsoak::estimation {
 
+RunNotSimulated::RunNotSimulated(const std::string& run, const base::Failure& cause)
+    : base::Failure(cause.code(), fmt::format("{}: {}", run, cause.message())) {}
+
 NoUsableInterval::NoUsableInterval(const std::string& recording, std::filesystem::path file, std::size_t least_rows,
                                    std::vector<LossOfRows> reasons)
     : base::Failure(base::ExitCode::cannot_answer,

@@ -13,14 +13,12 @@
 #include "estimation/model_along_run.h"
 #include "estimation/model_screening.h"
 #include "estimation/posterior.h"
+#include "estimation/thresholds.h"
 #include "estimation/usual_heat.h"
 
 namespace heatsoak::estimation {
 namespace {
 
-/// Innovations beyond kSuspect standard deviations are down-weighted, those beyond kHopeless are rejected.
-constexpr double kSuspect = 2.5;
-constexpr double kHopeless = 6.0;
 /// Mean square (kInsideSquare) of a standard normal variable truncated to ±kInside.
 constexpr double kInside = 3.0;
 constexpr double kInsideSquare = 0.9733;
@@ -263,16 +261,15 @@ class Fitting {
     }
     const Evidence evidence = [&](const auto& suppositions) { return evidences(suppositions); };
     best_ = most_probable(evidence, range_, best_);
-    constexpr double kMuch_share = 0.05;
     bool is_much = false;
     for (std::size_t i = 0; i < range_.fluxes; ++i) {
       const bool is_certain = !range_.least_W.empty() && range_.least_W[i] > 0.0;
-      is_much = is_much || (!is_certain && best_.flux.rms_W[i] > kMuch_share * range_.unit_W);
+      is_much = is_much || (!is_certain && best_.flux.rms_W[i] > thresholds().material_share * range_.unit_W);
     }
     if (best_.drift_K.empty() && is_much) {
       const Supposition drifting = most_probable(evidence, range_, with_drift(range_, best_));
       const std::vector<double> values = evidences({best_, drifting});
-      best_ = values[1] > values[0] + kClear_nats ? drifting : best_;
+      best_ = values[1] > values[0] + thresholds().clear_nats ? drifting : best_;
     }
   }
 
@@ -281,6 +278,7 @@ class Fitting {
     const Eigen::VectorXd coefficients = fits({best_}).front().coefficients;
     std::vector<double> weight_sum(fit_.sensor_nodes.size(), 0.0);
     std::vector<double> square_sum(fit_.sensor_nodes.size(), 0.0);
+    const double suspect_sd = thresholds().suspect_sd, most_sd = rejected_sd();
     std::size_t rejected = 0;
     std::size_t counted = 0;
     for (std::size_t r = 0; r < runs_.size(); ++r) {
@@ -296,17 +294,17 @@ class Fitting {
           continue;
         }
         ++counted;
-        hopeless += size > kHopeless ? 1 : 0;
-        fit_.weights[r][row] = size > kSuspect ? kSuspect / size : 1.0;
+        hopeless += size > most_sd ? 1 : 0;
+        fit_.weights[r][row] = std::min(1.0, suspect_sd / size);
         if (size < kInside) {
           const std::size_t kind = place_of(fit_.sensor_nodes, runs_[r].sensors[static_cast<std::size_t>(row % run.sensors())].node);
           weight_sum[kind] += found.noise_share[row];
           square_sum[kind] += found.noise_share[row] * size * size / kInsideSquare;
         }
       }
-      if (static_cast<double>(hopeless) < kMostRejected_share * static_cast<double>(whitened.count())) {
+      if (static_cast<double>(hopeless) < thresholds().most_rejected_share * static_cast<double>(whitened.count())) {
         for (Eigen::Index row = 0; row < residual_K.size(); ++row) {
-          if (std::abs(found.standardised[row]) > kHopeless) {
+          if (std::abs(found.standardised[row]) > most_sd) {
             fit_.weights[r][row] = 0.0;
             ++rejected;
           }
@@ -336,40 +334,37 @@ class Fitting {
     fit_.has_converged = fit_.iterations >= 2 && found.converged && ((theta_ - before).array().abs() <= kSmall * sd).all();
   }
 
-  /// Replaces θ by the result of the free-run fit if that predicts whole runs clearly better, accurately, and by more than chance. If the
-  /// motor has more bodies than the model, slow unknown heat hides the misfit and biases the parameters; the free-run fit predicts better.
+  /// Replaces θ by the result of the free-run fit if that predicts whole runs clearly better, left-out runs included, and by more than
+  /// chance. If the motor has more bodies than the model, slow unknown heat hides the misfit and biases the parameters; the free-run fit
+  /// predicts better.
   void prefer_free_runs() {
     if (!options_.with_flux || fit_.sensor_nodes.size() < model_.flux_nodes.size()) {
       return;
     }
-    constexpr double kPlainly_ratio = 1.5;
-    constexpr double kWell_share = 0.02;
+    const double clearly_ratio = thresholds().clearly_other_ratio;
     const double now_K = free_run_rmse_K(linearised_);
     const double least_K = std::ranges::min(runs_.front().sensors, {}, &Sensor::noise_K).noise_K;
     // No parameters can predict better than the sensors' noise allows.
-    if (now_K < kPlainly_ratio * least_K) {
+    if (now_K < clearly_ratio * least_K) {
       return;
     }
     const std::vector<MeasuredRun> counted = without(runs_, fit_.weights);
     const std::optional<FreeRunFit> search = fit_free_runs(model_here(), counted, start_C());
-    const double travel_K =
-        std::sqrt(std::inner_product(range_.drift_unit_K.begin(), range_.drift_unit_K.end(), range_.drift_unit_K.begin(), 0.0) /
-                  static_cast<double>(range_.drift_unit_K.size()));
-    if (!search || search->rmse_K > kWell_share * travel_K || now_K < kPlainly_ratio * search->rmse_K) {
+    if (!search || now_K < clearly_ratio * search->rmse_K) {
       return;
     }
     const FreeRunFit& found = *search;
     // Test whether the two estimates differ more than their covariances allow (after Hausman 1978). The covariances are added, because
     // neither estimate is efficient if the model is wrong.
-    constexpr double kBeyondChance = 8.0;
     const Eigen::VectorXd apart = found.theta - theta_;
     const LinearFit here = fits({best_}).front();
     const Eigen::MatrixXd allowed = found.covariance + here.covariance;
-    if (apart.dot(allowed.ldlt().solve(apart)) < kBeyondChance * static_cast<double>(apart.size())) {
+    if (apart.dot(allowed.ldlt().solve(apart)) < thresholds().beyond_chance_ratio * static_cast<double>(apart.size())) {
       return;
     }
     // Guards against overfitting a single run: the parameters must predict left-out runs equally well.
-    if (const double unseen_K = left_out_rmse_K(model_here(), counted, found); !(now_K > kPlainly_ratio * unseen_K)) {
+    if (const std::optional<double> unseen_K = left_out_rmse_K(model_here(), counted, found);
+        !unseen_K || !(now_K > clearly_ratio * *unseen_K)) {
       return;
     }
     fit_.free_run_error_K = found.rmse_K;

@@ -15,9 +15,6 @@ namespace heatsoak::estimation {
 /// sensor drift and its correlation time.
 using FluxPlace = std::vector<int>;
 
-/// Temperature rise of the outermost body from which unknown heat matters.
-inline constexpr double kMaterial_K = 1.8;
-
 struct FluxGrid {
   std::vector<double> rms_W;         ///< ascending
   std::vector<double> time_scale_s;  ///< ascending
@@ -35,7 +32,7 @@ struct FluxGrid {
 };
 
 /// Returns the heat in W that warms the outermost body by `rise_K` in the steady state, as a mean over the runs.
-double material_heat_W(const std::vector<LinearisedRun>& runs, double rise_K = kMaterial_K);
+double material_heat_W(const std::vector<LinearisedRun>& runs, double rise_K);
 /// Returns the range of the readings in K, RMS over all sensors and runs.
 double travel_K(std::span<const MeasuredRun> runs);
 

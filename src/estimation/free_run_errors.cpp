@@ -5,12 +5,10 @@
 
 #include "base/parallel.h"
 #include "estimation/open_loop.h"
+#include "estimation/thresholds.h"
 
 namespace heatsoak::estimation {
 namespace {
-
-/// Largest gap between two runs of one recording at which the second continues the first.
-constexpr double kContinues_s = 30.0;
 
 std::string recording_of(const MeasuredRun& run) {
   const auto found = run.conditions.find("run");
@@ -32,7 +30,7 @@ std::vector<double> start_C(const Model& model, const MeasuredRun& run, const st
   const thermal::Network& network = model.network;
   for (const MeasuredRun& before : before_it) {
     const double gap_s = run.time_s.front() - before.time_s.back();
-    if (recording_of(before) == recording_of(run) && gap_s > -1e-9 && gap_s < kContinues_s) {
+    if (recording_of(before) == recording_of(run) && gap_s > -1e-9 && gap_s < thresholds().slow_s) {
       const LinearisedRun path = linearise(network, model.values_in(before), {}, {}, start_C(model, before, {}), before);
       const Eigen::VectorXd end_C = path.state_C.rightCols(1);
       return {end_C.begin(), end_C.end()};

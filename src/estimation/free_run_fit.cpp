@@ -82,7 +82,7 @@ std::optional<FreeRunFit> fit_free_runs(const Model& model, const std::vector<Me
   return found;
 }
 
-double left_out_rmse_K(const Model& model, const std::vector<MeasuredRun>& runs, const FreeRunFit& found) {
+std::optional<double> left_out_rmse_K(const Model& model, const std::vector<MeasuredRun>& runs, const FreeRunFit& found) {
   Model near = model;
   near.set_theta(found.theta);
   std::vector<LinearisedRun> paths;
@@ -94,7 +94,7 @@ double left_out_rmse_K(const Model& model, const std::vector<MeasuredRun>& runs,
     start_C.erase(start_C.begin() + out);
     const std::optional<Posterior> fit = others.empty() ? std::nullopt : least_squares(near, others, start_C);
     if (!fit) {
-      return std::numeric_limits<double>::quiet_NaN();
+      return std::nullopt;
     }
     paths.push_back(linearise(fit->model, found.start_C[r], runs[r]));
   }

@@ -27,8 +27,8 @@ std::optional<FreeRunFit> fit_free_runs(const Model& model, const std::vector<Me
                                         const std::vector<std::vector<double>>& start_C);
 
 /// Leave-one-out cross-validation: RMS error in K of each run, simulated with the parameters fitted to the other runs. The searches start
-/// from `found`. NaN if there is only one run or a search does not converge.
-double left_out_rmse_K(const Model& model, const std::vector<MeasuredRun>& runs, const FreeRunFit& found);
+/// from `found`. Nothing if there is only one run or a search does not converge.
+std::optional<double> left_out_rmse_K(const Model& model, const std::vector<MeasuredRun>& runs, const FreeRunFit& found);
 
 /// RMS of residual_K over all samples of all paths, without NaN.
 double free_run_rmse_K(std::span<const LinearisedRun> paths);

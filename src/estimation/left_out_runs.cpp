@@ -4,14 +4,16 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "estimation/thresholds.h"
 
 namespace heatsoak::estimation {
 namespace {
 
-/// Fits the first two thirds of every run and returns the RMS error in K of the predicted last thirds; ∞ if the fit fails.
+/// Fits the first `seen_share` of every run and returns the RMS error in K of the predicted rest; ∞ if the fit fails.
 double error_of_ends_K(const Posterior& start, const std::vector<MeasuredRun>& runs, PosteriorOptions options) {
-  constexpr double kSeen_share = 2.0 / 3.0;
-  const auto seen = [](const MeasuredRun& run) { return static_cast<Eigen::Index>(kSeen_share * static_cast<double>(run.samples())); };
+  const auto seen = [](const MeasuredRun& run) {
+    return static_cast<Eigen::Index>(thresholds().seen_share * static_cast<double>(run.samples()));
+  };
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const MeasuredRun& run = runs[r];
     const auto sensors = static_cast<Eigen::Index>(run.sensors.size());

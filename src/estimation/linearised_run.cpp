@@ -1,8 +1,7 @@
 #include "estimation/linearised_run.h"
 
-#include <fmt/format.h>
-
 #include "base/diagnostic.h"
+#include "estimation/findings.h"
 #include "estimation/spans.h"
 #include "thermal/tangent_run.h"
 
@@ -135,17 +134,13 @@ LinearisedRun linearise_unnamed(const thermal::Network& network, std::span<const
   return out;
 }
 
-/// Calls `make`; adds the name of the run to the message of any Failure.
+/// Calls `make`; throws RunNotSimulated for any Failure.
 template <class Make>
 LinearisedRun named(const MeasuredRun& run, const Make& make) {
   try {
     return make();
   } catch (const base::Failure& failure) {
-    throw base::Failure(
-        failure.code(),
-        fmt::format("{}: {}; check the units of the log's columns (milliamperes, a sensor's gain) and the resistances of the "
-                    "model; `heatsoak log inspect` shows the log, `heatsoak lint` checks the motor",
-                    run.name, failure.message()));
+    throw RunNotSimulated(run.name, failure);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/unknown.h"
+#include "estimation/thresholds.h"
 
 namespace heatsoak::estimation {
 namespace {
@@ -34,24 +35,25 @@ const std::vector<double>* values(std::string_view key, const recording::Recordi
   const recording::Channel* const channel = recording.find(key);
   return has_values(channel) ? &channel->values : nullptr;
 }
-/// Fills gaps shorter than 60 s by linear interpolation, at the ends by the nearest value. Air and coolant change slowly enough for that.
+/// Fills gaps shorter than `slow_s` by linear interpolation, at the ends by the nearest value. Air and coolant change slowly enough for
+/// that.
 std::vector<double> bridged(const std::vector<double>* values, const std::vector<double>& time_s) {
-  constexpr double kSlow_s = 60.0;
+  const double slow_s = thresholds().slow_s;
   std::vector<double> all = values ? *values : std::vector<double>();
   std::size_t last = all.size();
   for (std::size_t row = 0; row < all.size(); ++row) {
     if (std::isnan(all[row])) {
       continue;
     }
-    for (std::size_t gap = last + 1; last < row && time_s[row] - time_s[last] < kSlow_s && gap < row; ++gap) {
+    for (std::size_t gap = last + 1; last < row && time_s[row] - time_s[last] < slow_s && gap < row; ++gap) {
       all[gap] = all[last] + (all[row] - all[last]) * (time_s[gap] - time_s[last]) / (time_s[row] - time_s[last]);
     }
-    if (last == all.size() && row > 0 && time_s[row] - time_s.front() < kSlow_s) {
+    if (last == all.size() && row > 0 && time_s[row] - time_s.front() < slow_s) {
       std::fill(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(row), all[row]);
     }
     last = row;
   }
-  if (last < all.size() && time_s.back() - time_s[last] < kSlow_s) {
+  if (last < all.size() && time_s.back() - time_s[last] < slow_s) {
     std::fill(all.begin() + static_cast<std::ptrdiff_t>(last), all.end(), all[last]);
   }
   return all;

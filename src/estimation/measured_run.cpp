@@ -12,16 +12,16 @@
 #include "estimation/log_rows.h"
 #include "estimation/row_steps.h"
 #include "estimation/segment_inputs.h"
+#include "estimation/thresholds.h"
 #include "recording/noise.h"
 #include "recording/row_order.h"
 
 namespace heatsoak::estimation {
 namespace {
 
-/// A segment with fewer samples contains no information about thermal time constants.
-constexpr std::size_t kLeastSamples = 10;
-/// 10 s plus a margin for rounding errors of the time stamps.
-constexpr double kLongestPause_s = 10.0 * (1.0 + 1e-6);
+std::size_t least_samples() { return static_cast<std::size_t>(thresholds().least_rows_count); }
+/// The margin is for rounding errors of the time stamps.
+double longest_pause_s() { return thresholds().longest_pause_s * (1.0 + 1e-6); }
 
 /// Assigns temperatures of a recording to nodes. If a recording has two for one node, the first is used.
 struct SensorPlace {
@@ -85,7 +85,7 @@ class Builder {
   MeasuredRuns build() {
     check();
     for (const auto& [begin, end] : segments()) {
-      const double longest_s = std::max(recording::kLongestStep_ratio * steps_of(begin, end).usual_s, kLongestPause_s);
+      const double longest_s = std::max(recording::kLongestStep_ratio * steps_of(begin, end).usual_s, longest_pause_s());
       for (std::size_t first = begin; first < end;) {
         std::size_t last = first;
         while (last + 1 < end && rows_.is_known(last)) {
@@ -97,11 +97,10 @@ class Builder {
       }
     }
     if (all_.runs.empty()) {
-      throw NoUsableInterval(recording_.name, recording_.file, kLeastSamples, reasons_of_loss());
+      throw NoUsableInterval(recording_.name, recording_.file, least_samples(), reasons_of_loss());
     }
-    constexpr double kMostUnused_share = 0.1;
     const std::size_t unused = recording_.rows() - used_rows_;
-    if (static_cast<double>(unused) > kMostUnused_share * static_cast<double>(recording_.rows())) {
+    if (static_cast<double>(unused) > thresholds().most_unused_share * static_cast<double>(recording_.rows())) {
       all_.notes.emplace_back(RowsUnused{recording_.name, unused, recording_.rows(), reasons_of_loss()});
     }
     if (all_.runs.size() > 1) {
@@ -128,10 +127,10 @@ class Builder {
   }
 
   [[nodiscard]] bool is_pause(std::size_t last, std::size_t first, double usual_s) const {
-    constexpr double kJump_K = 5.0;
     const double step_s = recording_.time_s[first] - recording_.time_s[last];
-    return step_s > recording::kLongestStep_ratio * usual_s && step_s <= kLongestPause_s &&
-           std::ranges::none_of(sensor_values_, [&](const auto* values) { return std::abs((*values)[first] - (*values)[last]) > kJump_K; });
+    return step_s > recording::kLongestStep_ratio * usual_s && step_s <= longest_pause_s() &&
+           std::ranges::none_of(sensor_values_,
+                                [&](const auto* values) { return std::abs((*values)[first] - (*values)[last]) > thresholds().jump_K; });
   }
 
   void check() const {
@@ -178,7 +177,7 @@ class Builder {
     add(RowsLack::What::temperature, {}, [&](std::size_t row) { return !is_sampled(row); });
     if (reasons.empty()) {
       const double whole_s = recording_.time_s.back() - recording_.time_s.front();
-      reasons.push_back(all_.runs.empty() ? LossOfRows(TooFewIntervals{whole_s, kLeastSamples - 1, options_.longest_step_s})
+      reasons.push_back(all_.runs.empty() ? LossOfRows(TooFewIntervals{whole_s, least_samples() - 1, options_.longest_step_s})
                                           : LossOfRows(IntervalsTooShort{}));
     }
     return reasons;
@@ -200,12 +199,12 @@ class Builder {
     return std::ranges::any_of(sensor_values_, [&](const auto* values) { return !std::isnan((*values)[row]); });
   }
 
-  /// Appends rows first … last as one run; skips it if fewer than kLeastSamples remain.
+  /// Appends rows first … last as one run; skips it if fewer than least_samples() remain.
   void take(std::size_t first, std::size_t last) {
     while (first < last && (!is_sampled(first) || !rows_.is_known(first))) {
       ++first;
     }
-    if (last < first + kLeastSamples - 1) {
+    if (last < first + least_samples() - 1) {
       return;
     }
     MeasuredRun run;
@@ -242,7 +241,7 @@ class Builder {
             sample_at(time_s, *sensor_values_[sensor], first, last + 1, kept[k], reach_s);
       }
     }
-    if (kept.size() >= kLeastSamples) {
+    if (kept.size() >= least_samples()) {
       run.name = all_.runs.empty() ? recording_.name : fmt::format("{}#{}", recording_.name, all_.runs.size() + 1);
       run.columns = columns_along(recording_, run.time_s);
       set_columns(run, options_.columns);

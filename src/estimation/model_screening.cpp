@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "estimation/smoothed_path.h"
+#include "estimation/thresholds.h"
 #include "estimation/whitening.h"
 
 namespace heatsoak::estimation {
@@ -16,7 +17,7 @@ struct EqualReadings {
   std::vector<Eigen::Index> samples;
 };
 
-std::vector<EqualReadings> equal_readings(const MeasuredRun& run, const ModelScreeningRules& rules) {
+std::vector<EqualReadings> equal_readings(const MeasuredRun& run) {
   // Averages of equal values may differ by rounding.
   constexpr double kEqual_K = 1e-9;
   std::vector<EqualReadings> all;
@@ -24,7 +25,7 @@ std::vector<EqualReadings> equal_readings(const MeasuredRun& run, const ModelScr
     EqualReadings now{sensor, {}};
     double value_C = 0.0;
     const auto close = [&] {
-      if (static_cast<int>(now.samples.size()) >= rules.least_equal) {
+      if (static_cast<double>(now.samples.size()) >= thresholds().least_equal_count) {
         all.push_back(now);
       }
       now.samples.clear();
@@ -93,17 +94,16 @@ void hide(const EqualReadings& equal, Eigen::Index sensors, double weight, Eigen
 }
 
 /// Sets the weight of outliers to 0: samples beyond the gate of the filter that the next sample does not confirm.
-void hide_outliers(const LinearisedRun& fitted, const MeasuredRun& run, const LatentFlux& loose, const ModelScreeningRules& rules,
-                   SensorNoise& noise) {
-  constexpr double kConfirms_share = 0.5;
+void hide_outliers(const LinearisedRun& fitted, const MeasuredRun& run, const LatentFlux& loose, SensorNoise& noise) {
   const Innovations innovations = Whitening(fitted, loose, noise).innovations(fitted.residual_K);
+  const double most_sd = rejected_sd();
   const Eigen::Index sensors = fitted.sensors();
   for (Eigen::Index sensor = 0; sensor < sensors; ++sensor) {
     const double noise_K = noise.noise_K[static_cast<std::size_t>(sensor)];
     for (Eigen::Index k = 0; k < run.samples(); ++k) {
       const Eigen::Index row = k * sensors + sensor;
       const double off = innovations.standardised[row];
-      if (std::isnan(off) || std::abs(off) < rules.gate_sd || noise.weight[row] == 0.0) {
+      if (std::isnan(off) || std::abs(off) < most_sd || noise.weight[row] == 0.0) {
         continue;
       }
       const double off_K = std::abs(off) * noise_K / std::sqrt(innovations.noise_share[row]);
@@ -112,7 +112,7 @@ void hide_outliers(const LinearisedRun& fitted, const MeasuredRun& run, const La
         ++next;
       }
       const bool is_confirmed =
-          next < run.samples() && std::abs(run.measured_C(next, sensor) - run.measured_C(k, sensor)) < kConfirms_share * off_K;
+          next < run.samples() && std::abs(run.measured_C(next, sensor) - run.measured_C(k, sensor)) < thresholds().confirms_share * off_K;
       if (!is_confirmed) {
         noise.weight[row] = 0.0;
       }
@@ -134,23 +134,23 @@ std::vector<Eigen::VectorXd> weights_by_model(const std::vector<LinearisedRun>& 
       noise.noise_K.push_back(sensor.noise_K);
     }
     noise.weight = Eigen::VectorXd::Ones(path.residual_K.size());
-    const std::vector<EqualReadings> equal = equal_readings(run, rules);
+    const std::vector<EqualReadings> equal = equal_readings(run);
     for (const EqualReadings& each : equal) {
       hide(each, path.sensors(), 0.0, noise.weight);
     }
     if (!equal.empty()) {
       const Eigen::MatrixXd sensor_C = smoothed_C(path, {std::vector<double>(fluxes, unknown_W), rules.smooth_time_scale_s}, noise);
       for (const EqualReadings& each : equal) {
-        if (equal_nats(each, run, sensor_C, rules.shift_sd_K) >= rules.stuck_nats) {
+        if (equal_nats(each, run, sensor_C, rules.shift_sd_K) >= std::log(thresholds().wrong_rejection_share)) {
           hide(each, path.sensors(), 1.0, noise.weight);
         }
       }
     }
     const LatentFlux loose{std::vector<double>(fluxes, rules.loose_ratio * unknown_W), rules.loose_time_scale_s};
-    hide_outliers(path, run, loose, rules, noise);
+    hide_outliers(path, run, loose, noise);
     for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
       auto of_sensor = noise.weight(Eigen::seq(sensor, noise.weight.size() - 1, path.sensors()));
-      if (of_sensor.sum() < (1.0 - kMostRejected_share) * static_cast<double>(of_sensor.size())) {
+      if (of_sensor.sum() < (1.0 - thresholds().most_rejected_share) * static_cast<double>(of_sensor.size())) {
         of_sensor.setOnes();
       }
     }

@@ -6,18 +6,17 @@
 #include <limits>
 #include <optional>
 
+#include "estimation/thresholds.h"
+
 namespace heatsoak::estimation {
 
 RunStart start_of(const thermal::Network& network, const MeasuredRun& run) {
   const Eigen::Index states = network.state_count();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kSensed_K = 5.0;
-  /// If two or more sensors are all this close to ambient, the motor is at ambient temperature, nodes without sensors included.
-  constexpr double kRest_K = 2.0;
   const double ambient_C = run.at.front().ambient_C;
   RunStart start{Eigen::VectorXd::Constant(states, nan), {}, Eigen::VectorXd::Constant(states, kSensed_K)};
   double sum_C = 0.0;
-  double farthest_K = 0.0;
   int seen = 0;
   for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
     const auto sensor_C = run.measured_C.col(static_cast<Eigen::Index>(sensor));
@@ -26,19 +25,14 @@ RunStart start_of(const thermal::Network& network, const MeasuredRun& run) {
       const double true_C = motor::true_at_rest_C(run.sensors[sensor].faults, *first);
       start.state_C[*node] = true_C;
       sum_C += true_C;
-      farthest_K = std::max(farthest_K, std::abs(true_C - ambient_C));
       ++seen;
     }
-  }
-  const bool rests = seen > 1 && farthest_K < kRest_K;
-  if (rests) {
-    start.prior_sd_K.setConstant(1.0);
   }
   for (Eigen::Index node = 0; node < states; ++node) {
     if (std::isnan(start.state_C[node])) {
       // The motor may just have been used: an unmeasured node may differ from the sensors as much as these differ from ambient.
       start.state_C[node] = seen > 0 ? sum_C / seen : ambient_C;
-      start.prior_sd_K[node] = (rests ? 1.0 : kSensed_K) + std::abs(start.state_C[node] - ambient_C);
+      start.prior_sd_K[node] = kSensed_K + std::abs(start.state_C[node] - ambient_C);
     }
   }
   start.prior_C = start.state_C;
@@ -57,9 +51,8 @@ Eigen::Index deciding_samples(const thermal::Network& network, const MeasuredRun
   if (all_are_sensed) {
     return kFew;
   }
-  constexpr double kAWhile_s = 60.0;
   constexpr double kMost_share = 0.1;
-  const double until_s = run.time_s.front() + std::min(kAWhile_s, kMost_share * (run.time_s.back() - run.time_s.front()));
+  const double until_s = run.time_s.front() + std::min(thresholds().slow_s, kMost_share * (run.time_s.back() - run.time_s.front()));
   return std::max<Eigen::Index>(kFew, std::ranges::upper_bound(run.time_s, until_s) - run.time_s.begin());
 }
 

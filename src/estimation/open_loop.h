@@ -12,8 +12,6 @@
 
 namespace heatsoak::estimation {
 
-inline constexpr double kMatters_K = 0.1;  ///< smaller differences between errors are below the accuracy of ordinary sensors
-
 /// Start temperatures of a run, per state node. prior_sd_K states how well the first samples determine them.
 struct RunStart {
   Eigen::VectorXd state_C;  ///< fitted start

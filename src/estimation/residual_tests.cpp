@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "estimation/thresholds.h"
+
 namespace heatsoak::estimation {
 namespace {
 
@@ -114,18 +116,18 @@ InnovationTests test_innovations(std::string signal, const Eigen::VectorXd& inno
   const Eigen::VectorXd z = standardised(innovation);
   out.ljung_box_probability = ljung_box(z, count);
   out.periodogram_ratio = periodogram(z, count);
+  const double limit_sd = largest_sd(thresholds().wrong_answer_share, kCrossLags + 1);
   for (const NamedInput& input : inputs) {
     const Eigen::VectorXd u = standardised(input.values);
-    int beyond = 0;
+    bool is_beyond = false;
     double largest = 0.0;
     for (int lag = 0; lag <= kCrossLags; ++lag) {
       const LaggedSum pair = lagged(z, u, lag);
       const double correlation = pair.count > 0.0 ? pair.sum / pair.count : 0.0;
-      beyond += std::abs(correlation) > 2.0 / std::sqrt(std::max(1.0, pair.count)) ? 1 : 0;
+      is_beyond = is_beyond || std::abs(correlation) > limit_sd / std::sqrt(std::max(1.0, pair.count));
       largest = std::abs(correlation) > std::abs(largest) ? correlation : largest;
     }
-    // One lag in twenty may exceed the limit by chance; four of 21 are significant even for an input that correlates with itself.
-    if (beyond >= 4) {
+    if (is_beyond) {
       out.correlated_with.emplace_back(input.name, largest);
     }
   }

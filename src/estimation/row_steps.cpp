@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "estimation/thresholds.h"
 #include "recording/spread.h"
 
 namespace heatsoak::estimation {
@@ -17,17 +18,13 @@ RowSteps row_steps(std::span<const double> time_s) {
     return {};
   }
   const double usual_s = recording::middle_of(steps_s);
-  // Timing jitter and the loss of a third of the rows still count as regular.
-  constexpr double kJitter_ratio = 0.25;
-  constexpr double kUsual_share = 0.6;
-  constexpr double kMultiples_share = 0.9;
-  const auto share_of = [&](auto&& is_such) {
-    return static_cast<double>(std::ranges::count_if(steps_s, is_such)) / static_cast<double>(steps_s.size());
-  };
-  const auto is_near = [&](double step_s, double times) { return std::abs(step_s / usual_s - times) <= kJitter_ratio; };
-  const bool is_regular =
-      share_of([&](double step_s) { return is_near(step_s, 1.0); }) >= kUsual_share &&
-      share_of([&](double step_s) { return is_near(step_s, std::max(1.0, std::round(step_s / usual_s))); }) >= kMultiples_share;
+  // Lost rows make whole numbers of steps.
+  double off_steps = 0.0;
+  for (const double step_s : steps_s) {
+    const double steps = step_s / usual_s;
+    off_steps += std::abs(steps - std::max(1.0, std::round(steps)));
+  }
+  const bool is_regular = off_steps <= thresholds().off_step_ratio * static_cast<double>(steps_s.size());
   return {usual_s, is_regular};
 }
 

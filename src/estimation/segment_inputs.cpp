@@ -8,9 +8,6 @@
 namespace heatsoak::estimation {
 namespace {
 
-/// Ratio to the usual step above which a row is missing.
-constexpr double kLostRow_ratio = 1.5;
-
 double square_A2(const thermal::OperatingPoint<double>& at) { return at.current_rms_A * at.current_rms_A; }
 
 std::vector<double> along(const LogRows& rows, std::size_t first, std::size_t last,
@@ -51,7 +48,7 @@ void SegmentInputs::add(std::size_t row, std::size_t next, MeanInputs& mean, con
   const double duration_s = recording_.time_s[next] - recording_.time_s[row];
   const double own_s = recording_.time_s[row + 1] - recording_.time_s[row];
   const bool lacks_rows =
-      steps_.is_regular && own_s > kLostRow_ratio * steps_.usual_s && recording_.inputs != recording::InputConvention::linear;
+      steps_.is_regular && std::lround(own_s / steps_.usual_s) > 1 && recording_.inputs != recording::InputConvention::linear;
   const bool speaks_of_end = lacks_rows && next == row + 1 && recording_.inputs == recording::InputConvention::previous_interval;
   const double unknown_s = duration_s - (lacks_rows ? steps_.usual_s : own_s);
   const std::size_t behind = speaks_of_end ? row : next;

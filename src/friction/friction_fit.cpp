@@ -52,7 +52,9 @@ struct SineAndPhase {
 };
 
 Estimate moved(const Estimate& estimate, double value) {
-  return {value, value + estimate.low - estimate.value, value + estimate.high - estimate.value};
+  const auto& interval = estimate.interval;
+  return {value, interval ? std::optional(Interval{value + interval->low - estimate.value, value + interval->high - estimate.value})
+                          : std::nullopt};
 }
 
 /// Converts A and B to a and φ − φ_0. The interval of φ is Fieller's; value and interval are limited to the bounds.
@@ -73,8 +75,8 @@ SineAndPhase sine_and_phase(const RobustFit& fit, Eigen::Index sine, Eigen::Inde
   const double past_rad = value_rad - offset_rad;
   const double low_rad = std::min(interval_rad.first, interval_rad.first + past_rad);
   const double high_rad = std::max(interval_rad.second, interval_rad.second + past_rad);
-  return {{sine_V, sine_V - half_V, sine_V + half_V},
-          {value_rad, std::clamp(low_rad, bounds_rad.first, value_rad), std::clamp(high_rad, value_rad, bounds_rad.second)}};
+  return {estimate_around(sine_V, half_V),
+          {value_rad, Interval{std::clamp(low_rad, bounds_rad.first, value_rad), std::clamp(high_rad, value_rad, bounds_rad.second)}}};
 }
 
 /// Returns the best a and b for a fixed φ, with all other coefficients as fitted.
@@ -107,10 +109,14 @@ std::vector<Estimate> estimates_with_phase_error(const std::vector<WheelPoint>& 
     for (Eigen::Index term = 0; term < std::ssize(terms); ++term) {
       Estimate& estimate = estimates[static_cast<std::size_t>(term)];
       const Estimate end = there.estimate(term);
-      const double half = end.high - end.value;
+      if (!end.interval || !estimate.interval) {
+        continue;
+      }
+      const double half = end.interval->high - end.value;
       const double by = end.value - estimate.value;
-      estimate.low = std::min(estimate.low, estimate.value - std::hypot(std::min(0.0, by), half));
-      estimate.high = std::max(estimate.high, estimate.value + std::hypot(std::max(0.0, by), half));
+      Interval& interval = *estimate.interval;
+      interval.low = std::min(interval.low, estimate.value - std::hypot(std::min(0.0, by), half));
+      interval.high = std::max(interval.high, estimate.value + std::hypot(std::max(0.0, by), half));
     }
   }
   return estimates;
@@ -129,8 +135,9 @@ void judge(const std::vector<WheelPoint>& points, const Eigen::VectorXd& weights
     const double weight = weights(static_cast<Eigen::Index>(i));
     const SteadyPart& part = *points[i].part;
     const double speed_rad_per_s = part.wheel_speed_rad_per_s[wheel];
-    const double expected_V = part.is_rotation ? found.damping_V_s_per_rad.value * speed_rad_per_s + found.rotation_V.value * points[i].side
-                                               : found.voltage_V(part.heading_rad, speed_rad_per_s);
+    const double expected_V = part.is_rotation
+                                  ? found.damping_V_s_per_rad->value * speed_rad_per_s + found.rotation_V->value * points[i].side
+                                  : found.voltage_V(part.heading_rad, speed_rad_per_s);
     error_V2 += weight * (part.voltage_V[wheel] - expected_V) * (part.voltage_V[wheel] - expected_V);
     variance_V2 += weight * (part.voltage_V[wheel] - mean_V) * (part.voltage_V[wheel] - mean_V);
     const bool outlies = weight <= 0.0;
@@ -175,7 +182,9 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, std::span<const int> he
   const auto has = [&](WheelTerm term) { return place(term) < std::ssize(chosen.terms); };
   const std::vector<Estimate> estimates = estimates_with_phase_error(points, wheel, chosen.terms, given, fit, left_V,
                                                                      chosen.phase_is_given ? settings.phase_uncertainty_rad : 0.0);
-  const auto estimate = [&](WheelTerm term) { return has(term) ? estimates[static_cast<std::size_t>(place(term))] : Estimate{}; };
+  const auto estimate = [&](WheelTerm term) {
+    return has(term) ? std::optional(estimates[static_cast<std::size_t>(place(term))]) : std::nullopt;
+  };
   found.damping_V_s_per_rad = has(WheelTerm::damping) ? estimate(WheelTerm::damping) : Estimate{.value = given};
   found.rotation_V = estimate(WheelTerm::rotation);
   found.constant_V = estimate(WheelTerm::constant);
@@ -191,13 +200,13 @@ WheelFriction fit_wheel(const WheelPoints& wheel_points, std::span<const int> he
       // Keep the width of the intervals without the bound.
       const Eigen::Vector2d held_V = sine_and_constant_at(X, voltage_V, legs, fit, {sine, cosine, place(WheelTerm::constant)}, offset_rad);
       both.sine_V = moved(both.sine_V, held_V.x());
-      found.constant_V = moved(found.constant_V, held_V.y());
+      found.constant_V = moved(*found.constant_V, held_V.y());
     }
     found.sine_V = both.sine_V;
     found.phase_rad = moved(both.offset_rad, wrapped_rad(phase_rad + offset_rad));
   } else if (has(WheelTerm::sine)) {
     found.sine_V = estimate(WheelTerm::sine);
-    found.phase_rad.value = wrapped_rad(phase_rad);
+    found.phase_rad = Estimate{.value = wrapped_rad(phase_rad)};
   }
   if (chosen.damping_is_given && has(WheelTerm::sine)) {
     Eigen::VectorXd driven_V(points.size());
@@ -237,7 +246,7 @@ StraightLine straight_line(const std::vector<const SteadyPart*>& parts, int whee
   Eigen::VectorXd voltage_V(X.rows());
   for (Eigen::Index i = 0; i < X.rows(); ++i) {
     const SteadyPart& part = *parts[static_cast<std::size_t>(i)];
-    voltage_V(i) = part.voltage_V[wheel] - (has_slope ? 0.0 : found.damping_V_s_per_rad.value * part.wheel_speed_rad_per_s[wheel]);
+    voltage_V(i) = part.voltage_V[wheel] - (has_slope ? 0.0 : found.damping_V_s_per_rad->value * part.wheel_speed_rad_per_s[wheel]);
     if (has_slope) {
       X(i, 1) = part.wheel_speed_rad_per_s[wheel];
     }
@@ -276,10 +285,10 @@ std::vector<HeadingLine> lines_of(const std::vector<WheelPoint>& points, const E
       line.fit.covariance = line.inverse * error_V2 / freedom_count;
       line.fit.freedom_counts = Eigen::VectorXd::Constant(line.fit.coefficients.size(), freedom_count);
       made.offset_V = line.fit.estimate(0);
-      made.damping_V_s_per_rad = has_slope ? line.fit.estimate(1) : Estimate{};
+      made.damping_V_s_per_rad = has_slope ? std::optional(line.fit.estimate(1)) : std::nullopt;
     } else {
       made.offset_V.value = line.fit.coefficients(0);
-      made.damping_V_s_per_rad.value = has_slope ? line.fit.coefficients(1) : made.damping_V_s_per_rad.value;
+      made.damping_V_s_per_rad = has_slope ? std::optional(Estimate{.value = line.fit.coefficients(1)}) : std::nullopt;
     }
   }
   std::ranges::sort(lines, {}, [](const HeadingLine& line) { return line.heading_rad; });
@@ -289,13 +298,13 @@ std::vector<HeadingLine> lines_of(const std::vector<WheelPoint>& points, const E
 }  // namespace
 
 double WheelFriction::friction_V(double heading_rad) const {
-  const double s = std::sin(heading_rad + phase_rad.value);
-  return sine_V.value * s + (s >= 0.0 ? constant_V.value : -constant_V.value);
+  const double s = std::sin(heading_rad + phase_rad->value);
+  return sine_V->value * s + (s >= 0.0 ? constant_V->value : -constant_V->value);
 }
 
 double WheelFriction::voltage_V(double heading_rad, double wheel_speed_rad_per_s) const {
-  const double size_V = std::copysign(1.0, std::sin(heading_rad + phase_rad.value)) * friction_V(heading_rad);
-  return damping_V_s_per_rad.value * wheel_speed_rad_per_s + (wheel_speed_rad_per_s < 0.0 ? -size_V : size_V);
+  const double size_V = std::copysign(1.0, std::sin(heading_rad + phase_rad->value)) * friction_V(heading_rad);
+  return damping_V_s_per_rad->value * wheel_speed_rad_per_s + (wheel_speed_rad_per_s < 0.0 ? -size_V : size_V);
 }
 
 bool FrictionFit::is_learned() const {
@@ -367,21 +376,22 @@ HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, co
   double all = 0.0;
   for (int wheel = 0; wheel < kinematics.wheel_count; ++wheel) {
     const WheelFriction& learned = fit.wheels[static_cast<std::size_t>(wheel)];
+    const bool predicts = learned.constant_V.has_value();
     double before_of_wheel_V2 = 0.0;
     double after_of_wheel_V2 = 0.0;
     double count = 0.0;
     for (const WheelPoint& point : points_of(held_out, kinematics, wheel, settings).points) {
       const SteadyPart& part = *point.part;
       const double measured_V = part.voltage_V[wheel];
-      const double after_V = measured_V - learned.voltage_V(part.heading_rad, part.wheel_speed_rad_per_s[wheel]);
+      const double after_V = predicts ? measured_V - learned.voltage_V(part.heading_rad, part.wheel_speed_rad_per_s[wheel]) : 0.0;
       const double before_V = before ? measured_V - before(part)[wheel] : 0.0;
       before_of_wheel_V2 += before_V * before_V;
       after_of_wheel_V2 += after_V * after_V;
       count += 1.0;
     }
     error.before_of_wheel_V.push_back(before ? rms(before_of_wheel_V2, count) : std::nullopt);
-    error.after_of_wheel_V.push_back(learned.is_learned() ? rms(after_of_wheel_V2, count) : std::nullopt);
-    if (learned.is_learned()) {
+    error.after_of_wheel_V.push_back(predicts ? rms(after_of_wheel_V2, count) : std::nullopt);
+    if (predicts) {
       before_V2 += before_of_wheel_V2;
       after_V2 += after_of_wheel_V2;
       all += count;

@@ -31,18 +31,19 @@ struct LackOfFit {
 };
 
 struct WheelFriction {
-  Estimate damping_V_s_per_rad;         ///< d
-  Estimate sine_V;                      ///< a
-  Estimate constant_V;                  ///< b
-  Estimate phase_rad;                   ///< φ, −π to π
-  Estimate rotation_V;                  ///< c; NaN without rotation legs
-  bool damping_is_given = false;        ///< true: d was not fitted but taken from FitSettings
-  double sine_per_damping_V = 0.0;      ///< decrease of a if the given d were twice as large
-  bool phase_is_given = false;          ///< true: too few headings, so φ is that of the rolling direction
-  bool phase_is_bounded = false;        ///< true: φ is at its limit; beyond it the wheel would turn the other way than measured
-  std::optional<double> r2_ratio = {};  ///< coefficient of determination of the voltage; empty if the voltage does not vary
-  std::optional<double> rmse_V = {};    ///< empty if the wheel was not fitted
-  LackOfFit lack;                       ///< if found, the intervals include it
+  // All of them are empty if the wheel was not fitted.
+  std::optional<Estimate> damping_V_s_per_rad;  ///< d
+  std::optional<Estimate> sine_V;               ///< a; empty if the legs only turn on the spot, like b and φ
+  std::optional<Estimate> constant_V;           ///< b
+  std::optional<Estimate> phase_rad;            ///< φ, −π to π
+  std::optional<Estimate> rotation_V;           ///< c; empty without rotation legs
+  bool damping_is_given = false;                ///< true: d was not fitted but taken from FitSettings
+  double sine_per_damping_V = 0.0;              ///< decrease of a if the given d were twice as large
+  bool phase_is_given = false;                  ///< true: too few headings, so φ is that of the rolling direction
+  bool phase_is_bounded = false;                ///< true: φ is at its limit; beyond it the wheel would turn the other way than measured
+  std::optional<double> r2_ratio = {};          ///< coefficient of determination of the voltage; empty if the voltage does not vary
+  std::optional<double> rmse_V = {};            ///< empty if the wheel was not fitted
+  LackOfFit lack;                               ///< if found, the intervals include it
   int parts_used = 0;
   int parts_standing = 0;  ///< parts in which the wheel should stand, or does
   int parts_outlying = 0;
@@ -51,17 +52,17 @@ struct WheelFriction {
 
   [[nodiscard]] bool is_learned() const { return !problem.has_value(); }
   /// Voltage of the motor driver in steady motion. The friction always opposes the wheel's speed, even if sin(θ + φ) has another sign than
-  /// the speed, as is possible near headings on which the wheel stands.
+  /// the speed, as is possible near headings on which the wheel stands. Only for a wheel that has a, b and φ.
   [[nodiscard]] double voltage_V(double heading_rad, double wheel_speed_rad_per_s) const;
-  /// Friction voltage f(θ).
+  /// Friction voltage f(θ). Only for a wheel that has a, b and φ.
   [[nodiscard]] double friction_V(double heading_rad) const;
 };
 
 /// Straight line of voltage over speed of one wheel on one heading (Figs. 4, 6, 8 of the paper).
 struct HeadingLine {
   double heading_rad = 0.0;
-  Estimate offset_V;             ///< at zero speed, the static friction; its interval uses the scatter of all headings
-  Estimate damping_V_s_per_rad;  ///< NaN if the heading has only one speed
+  Estimate offset_V;                            ///< at zero speed, the static friction; its interval uses the scatter of all headings
+  std::optional<Estimate> damping_V_s_per_rad;  ///< empty if the heading has only one speed
 };
 
 struct FrictionFit {

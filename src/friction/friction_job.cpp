@@ -28,8 +28,7 @@ void refuse_repeated(const recording::Recording& recording, std::vector<std::pai
     std::ranges::for_each(channel.values, add);
   }
   if (const auto found = std::ranges::find(seen, held, &std::pair<std::filesystem::path, std::size_t>::second); found != seen.end()) {
-    throw base::Failure(base::ExitCode::bad_input, "a log is given twice",
-                        {{{recording.file.string()}, {}, fmt::format("holds the same rows as {}", found->first.string())}});
+    throw recording::RowsGivenTwice({{recording.file, found->first}});
   }
   seen.emplace_back(recording.file, held);
 }

@@ -73,12 +73,15 @@ std::optional<FrictionSuspicion> suspicion_of_wheel(const SteadyParts& steady, c
   if (!wheel.is_learned()) {
     return std::nullopt;
   }
-  const double damping = wheel.damping_is_given ? back_emf_V_s_per_rad : wheel.damping_V_s_per_rad.value;
+  const double damping = wheel.damping_is_given ? back_emf_V_s_per_rad : wheel.damping_V_s_per_rad->value;
   if (damping < 0.0) {
     return WheelVoltageFallsWithSpeed{number};
   }
-  if (wheel.constant_V.high < 0.0 || wheel.sine_V.high + wheel.constant_V.high < 0.0) {
-    return FrictionDrivesWheel{number, wheel.sine_V.value, wheel.constant_V.value};
+  if (wheel.sine_V && wheel.sine_V->interval && wheel.constant_V && wheel.constant_V->interval) {
+    const double highest_V = wheel.constant_V->interval->high;
+    if (highest_V < 0.0 || wheel.sine_V->interval->high + highest_V < 0.0) {
+      return FrictionDrivesWheel{number, wheel.sine_V->value, wheel.constant_V->value};
+    }
   }
   if (wheel.r2_ratio && *wheel.r2_ratio < kLeastExplained_ratio) {
     return WheelVoltageUnexplained{number, *wheel.r2_ratio};
@@ -104,7 +107,7 @@ std::vector<FrictionSuspicion> friction_suspicions(const SteadyParts& steady, co
   std::vector<double> dampings;
   for (const WheelFriction& wheel : fit.wheels) {
     if (wheel.is_learned() && !wheel.damping_is_given) {
-      dampings.push_back(wheel.damping_V_s_per_rad.value);
+      dampings.push_back(wheel.damping_V_s_per_rad->value);
     }
   }
   const double damping = dampings.empty() ? std::numeric_limits<double>::quiet_NaN() : median(dampings);

@@ -37,7 +37,7 @@ std::string quoted(const std::string& text) { return fmt::format("{:?}", text); 
 std::string parameter(const Estimate& estimate, double scale, const std::string& unit, double least, const std::string& source,
                       const std::string& derivation) {
   const auto kept = [&](double value) { return std::max(value, least) * scale; };
-  const double width = estimate.is_known() ? kept(estimate.high) - kept(estimate.low) : 0.0;
+  const double width = estimate.interval ? kept(estimate.interval->high) - kept(estimate.interval->low) : 0.0;
   const double smallest = width > 0.0 ? width : std::max(std::abs(kept(estimate.value)), 1e-3) * 0.01;
   const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(smallest))), 0, 9);
   const auto text = [&](double value) {
@@ -46,7 +46,7 @@ std::string parameter(const Estimate& estimate, double scale, const std::string&
   };
   std::string range;
   if (width > 0.0) {
-    range = fmt::format(", range = [{}, {}]", text(kept(estimate.low)), text(kept(estimate.high)));
+    range = fmt::format(", range = [{}, {}]", text(kept(estimate.interval->low)), text(kept(estimate.interval->high)));
   }
   return fmt::format("{{ value = {}, origin = \"measured\", source = {}{}, derivation = {} }}", text(kept(estimate.value)), quoted(source),
                      range, quoted(derivation));
@@ -128,44 +128,49 @@ void set_damping(Lines& lines, const robot::Robot& robot, const std::string& val
   lines.erase(first + 1, end);
 }
 
-/// Mean of the wheels; the interval covers the intervals of all wheels.
-Estimate over_wheels(const std::vector<Estimate>& wheels) {
-  Estimate all{0.0, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (const Estimate& wheel : wheels) {
-    all.value += wheel.value / static_cast<double>(wheels.size());
-    all.low = std::min(all.low, std::isnan(wheel.low) ? wheel.value : wheel.low);
-    all.high = std::max(all.high, std::isnan(wheel.high) ? wheel.value : wheel.high);
+/// Mean of the wheels; the interval covers the intervals of all wheels. Nothing if a wheel has no value.
+std::optional<Estimate> over_wheels(const std::vector<std::optional<Estimate>>& wheels) {
+  double mean = 0.0;
+  Interval all{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const std::optional<Estimate>& wheel : wheels) {
+    if (!wheel) {
+      return std::nullopt;
+    }
+    const Interval own = wheel->interval.value_or(Interval{wheel->value, wheel->value});
+    mean += wheel->value / static_cast<double>(wheels.size());
+    all = {std::min(all.low, own.low), std::max(all.high, own.high)};
   }
-  return all;
+  return Estimate{mean, all};
 }
 
 template <class Convert>
 Estimate converted(const Estimate& estimate, const Convert& convert) {
-  return {convert(estimate.value), convert(estimate.low), convert(estimate.high)};
+  const auto& interval = estimate.interval;
+  return {convert(estimate.value), interval ? std::optional(Interval{convert(interval->low), convert(interval->high)}) : std::nullopt};
 }
 
 std::string volts(const Estimate& estimate) {
-  return estimate.is_known() ? fmt::format("{:.3f} V, 95 % in {:.3f} to {:.3f} V", estimate.value, estimate.low, estimate.high)
-                             : fmt::format("{:.3f} V", estimate.value);
+  const auto& interval = estimate.interval;
+  return interval ? fmt::format("{:.3f} V, 95 % in {:.3f} to {:.3f} V", estimate.value, interval->low, interval->high)
+                  : fmt::format("{:.3f} V", estimate.value);
 }
 
 /// Lines of the table of one wheel.
 Lines wheel_table(const WheelFriction& wheel, const robot::DriveConstants& drive, const std::string& conversion,
                   const std::string& source) {
   const double Nm_per_V = drive.torque_constant_Nm_per_A / drive.resistance_ohm * drive.gear_ratio * drive.gear_efficiency;
-  const Estimate constant = converted(wheel.constant_V, [&](double value_V) {
-    return std::isnan(value_V) ? value_V : robot::friction_torque_of_voltage_Nm(drive, value_V);
-  });
-  Estimate sine = converted(wheel.sine_V, [&](double value_V) { return value_V * Nm_per_V; });
+  const Estimate constant =
+      converted(*wheel.constant_V, [&](double value_V) { return robot::friction_torque_of_voltage_Nm(drive, value_V); });
+  Estimate sine = converted(*wheel.sine_V, [&](double value_V) { return value_V * Nm_per_V; });
   // Friction must not drive the wheel on any heading.
   sine = converted(sine, [&](double value) { return std::max(value, -constant.value); });
   const auto degrees = [&](double angle_rad) { return angle_rad * 180.0 / std::numbers::pi; };
   const double none = -std::numeric_limits<double>::infinity();
   return {"", "[[friction.heading.wheel]]",
           "constant = " + parameter(constant, 1e3, "mN m", 0.0, source,
-                                    "b = " + volts(wheel.constant_V) + "; " + conversion + ", less the motor's drag"),
-          "sine = " + parameter(sine, 1e3, "mN m", none, source, "a = " + volts(wheel.sine_V) + "; " + conversion),
-          "phase = " + parameter(converted(wheel.phase_rad, degrees), 1.0, "deg", none, source,
+                                    "b = " + volts(*wheel.constant_V) + "; " + conversion + ", less the motor's drag"),
+          "sine = " + parameter(sine, 1e3, "mN m", none, source, "a = " + volts(*wheel.sine_V) + "; " + conversion),
+          "phase = " + parameter(converted(*wheel.phase_rad, degrees), 1.0, "deg", none, source,
                                  wheel.phase_is_given ? "the wheel's rolling direction: too few headings to determine it" : "fitted")};
 }
 
@@ -174,10 +179,10 @@ void note_what_is_cut(const FrictionFit& fit, const robot::DriveConstants& drive
   const double back_emf_V_s_per_rad = drive.torque_constant_Nm_per_A * drive.gear_ratio;
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
     const WheelFriction& wheel = fit.wheels[i];
-    if (wheel.constant_V.value < drag_V) {
+    if (wheel.constant_V->value < drag_V) {
       notes.emplace_back(DragExceedsOffset{i + 1, drag_V});
     }
-    if (!wheel.damping_is_given && wheel.damping_V_s_per_rad.value < back_emf_V_s_per_rad) {
+    if (!wheel.damping_is_given && wheel.damping_V_s_per_rad->value < back_emf_V_s_per_rad) {
       notes.emplace_back(BackEmfExceedsDamping{i + 1, back_emf_V_s_per_rad});
     }
   }
@@ -205,7 +210,7 @@ WheelNotIdentifiable::WheelNotIdentifiable(std::size_t wheel, std::optional<Whee
 std::string with_measured_friction(const std::string& text, const robot::Robot& robot, const robot::DriveConstants& drive,
                                    const FrictionFit& fit, const std::string& source, std::vector<WrittenAsZero>& notes) {
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-    if (!fit.wheels[i].is_learned() || std::isnan(fit.wheels[i].constant_V.value)) {
+    if (!fit.wheels[i].is_learned() || !fit.wheels[i].constant_V) {
       throw WheelNotIdentifiable(i + 1, fit.wheels[i].problem);
     }
   }
@@ -227,28 +232,26 @@ std::string with_measured_friction(const std::string& text, const robot::Robot& 
       fmt::format("as voltage at the driver, / {:.4g} ohm x {:.4g} mN m/A{}", drive.resistance_ohm, 1e3 * drive.torque_constant_Nm_per_A,
                   drive.gear_ratio == 1.0 ? "" : fmt::format(" x {:.4g} of the gear", drive.gear_ratio * drive.gear_efficiency));
   if (std::ranges::none_of(fit.wheels, &WheelFriction::damping_is_given)) {
-    std::vector<Estimate> dampings;
+    std::vector<std::optional<Estimate>> dampings;
     for (const WheelFriction& wheel : fit.wheels) {
       dampings.push_back(
-          converted(wheel.damping_V_s_per_rad, [&](double value) { return robot::damping_of_voltage_Nm_s_per_rad(drive, value); }));
+          converted(*wheel.damping_V_s_per_rad, [&](double value) { return robot::damping_of_voltage_Nm_s_per_rad(drive, value); }));
     }
-    const Estimate all = over_wheels(dampings);
     set_damping(lines, robot,
-                parameter(all, 1e3, "mN m s/rad", 0.0, source,
+                parameter(over_wheels(dampings).value(), 1e3, "mN m s/rad", 0.0, source,
                           "mean of the wheels, the interval covers those of all; " + conversion + ", without the back-EMF"));
   }
   remove_heading(lines);
   Lines table{"", "# f = a sin(heading + phase) + b sign(sin(heading + phase)); torques at the wheel, without the drag of the motor",
               "[friction.heading]"};
-  std::vector<Estimate> rotations;
+  std::vector<std::optional<Estimate>> rotations;
   for (const WheelFriction& wheel : fit.wheels) {
-    rotations.push_back(converted(wheel.rotation_V, [&](double value_V) {
-      return std::isnan(value_V) ? value_V : robot::friction_torque_of_voltage_Nm(drive, value_V);
-    }));
+    const auto torque_Nm = [&](double value_V) { return robot::friction_torque_of_voltage_Nm(drive, value_V); };
+    rotations.push_back(wheel.rotation_V ? std::optional(converted(*wheel.rotation_V, torque_Nm)) : std::nullopt);
   }
-  if (const Estimate all = over_wheels(rotations); std::isfinite(all.value)) {
+  if (const std::optional<Estimate> all = over_wheels(rotations)) {
     table.push_back("rotation = " +
-                    parameter(all, 1e3, "mN m", 0.0, source, "mean of the wheels; " + conversion + ", less the motor's drag"));
+                    parameter(*all, 1e3, "mN m", 0.0, source, "mean of the wheels; " + conversion + ", less the motor's drag"));
   } else {
     table.insert(table.end(), rotation_lines.begin(), rotation_lines.end());
   }
@@ -261,11 +264,14 @@ std::string with_measured_friction(const std::string& text, const robot::Robot& 
 }
 
 std::string with_measured_damping(const std::string& text, const robot::Robot& robot,
-                                  const std::vector<Estimate>& wheel_damping_Nm_s_per_rad, const std::string& source) {
+                                  const std::vector<std::optional<Estimate>>& wheel_damping_Nm_s_per_rad, const std::string& source) {
+  const std::optional<Estimate> all = over_wheels(wheel_damping_Nm_s_per_rad);
+  if (!all) {
+    throw base::Failure(base::ExitCode::cannot_answer,
+                        "no robot file is written, because a wheel has no roll-out; expected one or more of every wheel");
+  }
   Lines lines = lines_of(text);
-  set_damping(lines, robot,
-              parameter(over_wheels(wheel_damping_Nm_s_per_rad), 1e3, "mN m s/rad", 0.0, source,
-                        "mean of the wheels over roll-outs with open motors"));
+  set_damping(lines, robot, parameter(*all, 1e3, "mN m s/rad", 0.0, source, "mean of the wheels over roll-outs with open motors"));
   return checked(lines, robot);
 }
 

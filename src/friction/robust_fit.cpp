@@ -111,7 +111,9 @@ void add_sandwich(const Eigen::MatrixXd& X, const Eigen::VectorXd& residuals, do
 
 }  // namespace
 
-bool Estimate::is_known() const { return std::isfinite(value) && std::isfinite(low) && std::isfinite(high); }
+Estimate estimate_around(double value, double spread) {
+  return {value, std::isfinite(spread) ? std::optional(Interval{value - spread, value + spread}) : std::nullopt};
+}
 
 double median(std::span<double> values) {
   const auto end = std::partition(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
@@ -162,7 +164,7 @@ double RobustFit::quantile_factor(Eigen::Index coefficient) const {
 
 Estimate RobustFit::estimate(Eigen::Index coefficient) const {
   const double half = quantile_factor(coefficient) * std::sqrt(std::max(0.0, covariance(coefficient, coefficient)));
-  return {coefficients(coefficient), coefficients(coefficient) - half, coefficients(coefficient) + half};
+  return estimate_around(coefficients(coefficient), half);
 }
 
 RobustFit robust_fit(const Eigen::MatrixXd& X, const Eigen::VectorXd& y, std::span<const int> cluster) {

@@ -2,18 +2,24 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace heatsoak::friction {
 
-/// A value with its 95 % interval; NaN if the data do not determine it.
-struct Estimate {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  double low = std::numeric_limits<double>::quiet_NaN();
-  double high = std::numeric_limits<double>::quiet_NaN();
-  [[nodiscard]] bool is_known() const;
+/// Interval in the unit of its value.
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
 };
+/// A value with its 95 % interval. The interval is empty if the data do not determine it.
+struct Estimate {
+  double value = 0.0;
+  std::optional<Interval> interval = {};
+};
+/// Returns the value with the interval value ± spread; without an interval if `spread` is not finite.
+Estimate estimate_around(double value, double spread);
 
 /// Median of the finite values; NaN if there are none. Reorders `values`.
 double median(std::span<double> values);

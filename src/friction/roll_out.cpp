@@ -271,23 +271,19 @@ void add_lifted(const FrictionLog& log, const robot::BodyConfig& body, RollOutRe
 }
 
 /// Mean over runs with an interval from their scatter (robust mean from three runs on).
-Estimate over_runs(const std::vector<double>& values) {
+std::optional<Estimate> over_runs(const std::vector<double>& values) {
   const auto count = static_cast<double>(values.size());
   const Eigen::Map<const Eigen::VectorXd> all(values.data(), static_cast<Eigen::Index>(values.size()));
-  Estimate found;
   if (values.empty()) {
-    return found;
+    return std::nullopt;
   }
-  found.value = all.mean();
   if (values.size() >= 3) {
     const RobustLocation typical = robust_location(values, 0.0);
-    found.value = typical.value;
-    const double deviation = std::sqrt((all.array() - found.value).square().sum() / (count - 1.0));
+    const double deviation = std::sqrt((all.array() - typical.value).square().sum() / (count - 1.0));
     const double half = boost::math::quantile(boost::math::students_t(count - 1.0), 0.975) * deviation / std::sqrt(count);
-    found.low = found.value - half;
-    found.high = found.value + half;
+    return estimate_around(typical.value, half);
   }
-  return found;
+  return Estimate{.value = all.mean()};
 }
 
 }  // namespace
@@ -320,22 +316,24 @@ RollOutResult roll_out(const std::vector<FrictionLog>& logs, const robot::Robot&
   for (int i = 0; i < kDraws; ++i) {
     drawn.push_back(roll_out(logs, robot::make_body(robot::draw_sample(robot, random), motor), is_lifted));
   }
-  const auto widen = [&](std::vector<Estimate> RollOutResult::*which) {
+  const auto widen = [&](std::vector<std::optional<Estimate>> RollOutResult::*which) {
     for (std::size_t wheel = 0; wheel < (result.*which).size(); ++wheel) {
-      Estimate& estimate = (result.*which)[wheel];
+      std::optional<Estimate>& estimate = (result.*which)[wheel];
       std::vector<double> values;
       for (const RollOutResult& each : drawn) {
-        if ((each.*which).size() > wheel && std::isfinite((each.*which)[wheel].value)) {
-          values.push_back((each.*which)[wheel].value);
+        if ((each.*which).size() > wheel && (each.*which)[wheel]) {
+          values.push_back((each.*which)[wheel]->value);
         }
       }
       std::ranges::sort(values);
-      if (values.size() == drawn.size()) {
+      if (estimate && estimate->interval && values.size() == drawn.size()) {
         const auto quantile = [&values](double share) {
           return values[static_cast<std::size_t>(share * static_cast<double>(values.size()))];
         };
-        estimate.low = estimate.value - std::hypot(estimate.value - estimate.low, std::max(0.0, estimate.value - quantile(0.025)));
-        estimate.high = estimate.value + std::hypot(estimate.high - estimate.value, std::max(0.0, quantile(0.975) - estimate.value));
+        const double value = estimate->value;
+        Interval& interval = *estimate->interval;
+        interval.low = value - std::hypot(value - interval.low, std::max(0.0, value - quantile(0.025)));
+        interval.high = value + std::hypot(interval.high - value, std::max(0.0, quantile(0.975) - value));
       }
     }
   };

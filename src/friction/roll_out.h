@@ -33,9 +33,10 @@ struct RollOutRun {
 
 struct RollOutResult {
   std::vector<RollOutRun> runs;
-  /// Mechanical damping per wheel, without back-EMF. The interval follows from the scatter between runs; NaN with fewer than three.
-  std::vector<Estimate> wheel_damping_Nm_s_per_rad;
-  std::vector<Estimate> wheel_torque_Nm;
+  /// Mechanical damping per wheel, without back-EMF. The interval follows from the scatter between runs; it is empty with fewer
+  /// than three, and the whole entry without a run.
+  std::vector<std::optional<Estimate>> wheel_damping_Nm_s_per_rad;
+  std::vector<std::optional<Estimate>> wheel_torque_Nm;
   std::size_t rows = 0;
 };
 

@@ -9,6 +9,7 @@
 
 #include "base/copper.h"
 #include "base/quantity.h"
+#include "base/unknown.h"
 #include "motor/lint_checks.h"
 
 namespace heatsoak::motor {
@@ -28,9 +29,9 @@ LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_l
   return rests_on_estimate ? LintFinding::Level::warning : LintFinding::Level::error;
 }
 
-bool is_complete(const MotorValues& values) {
+bool is_complete(const Motor& motor) {
   return std::ranges::all_of(motor_parameter_specs(), [&](const MotorParameterSpec& each) {
-    return each.need == input::Need::optional || value_of(values, each).has_value();
+    return each.need == input::Need::optional || motor.parameters.contains(each.spec.key);
   });
 }
 
@@ -92,6 +93,17 @@ constexpr std::array kChecks = {
     NamedCheck{"heat_counted_twice", lint_checks::heat_counted_twice, false},
 };
 
+/// Returns the motor with NaN for each required value that its file lacks.
+Motor with_unknown_values(const Motor& file) {
+  Motor motor = file;
+  for (const MotorParameterSpec& each : motor_parameter_specs()) {
+    if (each.need == input::Need::required && !motor.parameters.contains(each.spec.key)) {
+      std::visit([&](const auto member) { motor.nominal.*member = base::kUnknown; }, each.value);
+    }
+  }
+  return motor;
+}
+
 }  // namespace
 
 std::string_view to_string(LintFinding::Level level) {
@@ -110,7 +122,8 @@ std::string words_of(const LintFinding& finding) {
   return fmt::format("{}: {}", finding.key.empty() ? finding.check : finding.key, finding.message);
 }
 
-std::vector<LintFinding> lint(const Motor& motor) {
+std::vector<LintFinding> lint(const Motor& file) {
+  const Motor motor = with_unknown_values(file);
   std::vector<LintFinding> list;
   for (const NamedCheck& check : kChecks) {
     lint_checks::Findings findings(motor, check.name, list);

@@ -47,13 +47,14 @@ struct Bounds {
   [[nodiscard]] bool excludes(double value) const { return value < low || value > high; }
 };
 
-/// Returns the value, or NaN if it is absent: every comparison with it is false, so that the check finds nothing.
+/// Returns the value, or NaN if it is absent: every comparison with it is false, so that the check finds nothing. lint() gives the checks a
+/// motor whose missing required values are NaN for the same reason.
 inline double plain(const std::optional<double>& value) { return value.value_or(base::kUnknown); }
 
 /// Returns error, or warning if one of the contradicting values is an estimate.
 LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_list<std::string_view> keys);
 /// Returns whether all values that a thermal network needs are present; a file that was read incompletely may lack some.
-bool is_complete(const MotorValues& values);
+bool is_complete(const Motor& motor);
 /// Returns the terminal resistance at `temperature_C`, in ohm.
 double resistance_ohm(const MotorValues& values, double temperature_C);
 

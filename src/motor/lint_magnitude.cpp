@@ -117,7 +117,7 @@ void thermal_ratios(const MotorValues& v, Findings& findings) {
 }  // namespace
 
 void required_values(const Motor& motor, Findings& findings) {
-  if (!is_complete(motor.nominal)) {
+  if (!is_complete(motor)) {
     return;
   }
   if (motor.nominal.winding_limit_C > kSheetAmbient_C) {  // else limits() reports it

@@ -238,7 +238,7 @@ void nominal_point_heat_check(const Motor& motor, Findings& findings) {
 /// Coarser check for sheets without nominal torque or speed: copper loss alone, at standstill.
 void copper_limit(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  if (!v.nominal_current_A || !is_complete(v) || nominal_point_heat(motor) || v.winding_limit_C <= kSheetAmbient_C) {
+  if (!v.nominal_current_A || !is_complete(motor) || nominal_point_heat(motor) || v.winding_limit_C <= kSheetAmbient_C) {
     return;
   }
   const double limit_A = limit_current_A(motor, 0.0);
@@ -259,7 +259,7 @@ namespace heatsoak::motor {
 
 std::optional<NominalPointHeat> nominal_point_heat(const Motor& motor) {
   const MotorValues& v = motor.nominal;
-  if (!v.nominal_torque_Nm || !v.nominal_speed_rad_per_s || !lint_checks::is_complete(v) ||
+  if (!v.nominal_torque_Nm || !v.nominal_speed_rad_per_s || !lint_checks::is_complete(motor) ||
       v.winding_limit_C <= lint_checks::kSheetAmbient_C) {
     return std::nullopt;
   }

@@ -256,10 +256,6 @@ void refresh_values(Motor& motor) {
 
 std::span<const MotorParameterSpec> motor_parameter_specs() { return kSpecs; }
 
-std::optional<double> value_of(const MotorValues& values, const MotorParameterSpec& spec) {
-  const std::optional<double> value = std::visit([&](const auto member) { return std::optional<double>(values.*member); }, spec.value);
-  return value && !std::isnan(*value) ? value : std::nullopt;
-}
 bool is_agreed(std::string_view key) { return std::ranges::find(kAgreed, key) != kAgreed.end(); }
 
 Motor read_motor(const std::filesystem::path& path) {

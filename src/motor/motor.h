@@ -12,7 +12,6 @@
 #include "base/parameter.h"
 #include "base/parameter_value.h"
 #include "base/random.h"
-#include "base/unknown.h"
 #include "input/reader.h"
 #include "motor/fit_table.h"
 #include "motor/sensor_effect.h"
@@ -23,17 +22,17 @@ namespace heatsoak::motor {
 /// Values as numbers in this program's conventions: resistance and inductance between two terminals, torque constant per DC ampere of block
 /// commutation. A file may lack the optional ones.
 struct MotorValues {
-  // Required values; kUnknown only in a motor whose file has problems, see read_motor.h.
-  double nominal_voltage_V = base::kUnknown;
-  double no_load_current_A = base::kUnknown;
-  double terminal_resistance_ohm = base::kUnknown;
-  double torque_constant_Nm_per_A = base::kUnknown;
-  double winding_limit_C = base::kUnknown;
-  double temperature_coefficient_per_K = base::kUnknown;
-  double thermal_resistance_winding_stator_K_per_W = base::kUnknown;
-  double thermal_resistance_stator_ambient_K_per_W = base::kUnknown;
-  double thermal_time_constant_winding_s = base::kUnknown;
-  double thermal_time_constant_stator_s = base::kUnknown;
+  // Required values. Every motor that read_motor(path) returns has them.
+  double nominal_voltage_V = 0.0;
+  double no_load_current_A = 0.0;
+  double terminal_resistance_ohm = 0.0;
+  double torque_constant_Nm_per_A = 0.0;
+  double winding_limit_C = 0.0;
+  double temperature_coefficient_per_K = 0.0;
+  double thermal_resistance_winding_stator_K_per_W = 0.0;
+  double thermal_resistance_stator_ambient_K_per_W = 0.0;
+  double thermal_time_constant_winding_s = 0.0;
+  double thermal_time_constant_stator_s = 0.0;
 
   std::optional<double> no_load_speed_rad_per_s = {};
   std::optional<double> nominal_speed_rad_per_s = {};
@@ -71,8 +70,6 @@ struct MotorParameterSpec {
   bool is_thermal = false;  ///< temperatures depend on it
 };
 std::span<const MotorParameterSpec> motor_parameter_specs();
-/// Returns the value that the specification declares; nothing if the file lacks it.
-std::optional<double> value_of(const MotorValues& values, const MotorParameterSpec& spec);
 /// Returns whether the value is set by agreement, such as a limit or the nominal voltage. It is the same for all parts and needs no
 /// tolerance.
 bool is_agreed(std::string_view key);

@@ -99,7 +99,7 @@ void read_parameters(input::Reader& reader, const thermal::EffectType& type, Mot
       chosen = chosen && name;
       parameter.printed = name.value_or("");
       parameter.value = name ? static_cast<double>(std::ranges::find(names, *name) - names.begin()) : 0.0;
-    } else if (spec.unit_of >= 0 && !chosen) {
+    } else if (spec.unit_of && !chosen) {
       reader.pass_over(spec.key);
     } else {
       spec.unit = base::unit_of(type.parameters, i, values);

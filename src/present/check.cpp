@@ -47,12 +47,12 @@ Document check_document(std::span<const check::Outcome> outcomes, bool is_update
     if (!each.before.empty()) {
       why += fmt::format("{}limit {} → {}", why.empty() ? "" : "; ", each.before, each.limit.text);
     }
-    document.tables.back().rows.push_back({{each.passed         ? "ok"
-                                            : each.is_evaluated ? "FAIL"
-                                                                : "ERROR",
+    document.tables.back().rows.push_back({{each.passed     ? "ok"
+                                            : each.measured ? "FAIL"
+                                                            : "ERROR",
                                             each.passed ? Tone::good : Tone::bad},
                                            {std::string(each.limit.type->name)},
-                                           {check::shown(each.measured.value, *each.limit.type)},
+                                           {check::value_text(each)},
                                            {check::limit_text(each)},
                                            {check::margin_text(each)},
                                            {std::move(why)}});

@@ -77,9 +77,9 @@ void add_table_notes(Document& document, const derate::Derating& derating) {
   document.add_note(
       Severity::background,
       fmt::format(
-          "Table: {} bytes. Its current is never above the exact answer of the network, and at most {:.1f} % below it from {:.2g} A up. "
+          "Table: {} bytes. Its current is never above the exact answer of the network, and at most {:.1f} % below it from {} A up. "
           "The current changes by at most {} A per K of the winding, {} A per K of the stator and {} A per rad/s.",
-          derating.table.size_bytes(), 100.0 * bound.shortfall_ratio, derating.table.straight_below_A,
+          derating.table.size_bytes(), 100.0 * bound.shortfall_ratio, base::significant(derating.table.straight_below_A, 2),
           base::significant(bound.winding_slope_A_per_K, 2), base::significant(bound.stator_slope_A_per_K, 2),
           base::significant(bound.speed_slope_A_s_per_rad, 2)));
 }

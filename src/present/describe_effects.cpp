@@ -28,8 +28,8 @@ void add_key(Table& table, std::string_view key, std::string_view unit, std::str
 Table parameters_of(const thermal::EffectType& effect) {
   Table table = keys_table();
   for (const base::ParameterSpec& spec : effect.parameters) {
-    const std::string unit = spec.unit_of >= 0 ? fmt::format("as {}", effect.parameters[static_cast<std::size_t>(spec.unit_of)].key)
-                                               : std::string(base::unit_for_display(spec.unit));
+    const std::string unit =
+        spec.unit_of ? fmt::format("as {}", effect.parameters[*spec.unit_of].key) : std::string(base::unit_for_display(spec.unit));
     add_key(table, spec.key, unit,
             fmt::format("{}; {}", spec.meaning, spec.choices.empty() ? base::to_string(spec.range, spec.unit) : "one of"));
     for (const base::Choice& choice : spec.choices) {

@@ -27,6 +27,7 @@ struct Column {
   Alignment alignment = Alignment::right;
   std::size_t least_width = 0;  ///< a narrower terminal drops the column, whatever its priority
   bool is_prose = false;        ///< long text, broken into lines; only the last column may be prose
+  std::string meaning = {};     ///< explanation, shown as a note where the column is shown; may be empty
 };
 
 /// Each row has one cell for each column. If no column has a name, no head is shown.

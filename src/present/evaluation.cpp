@@ -23,8 +23,9 @@ constexpr int kFewestForRange = 20;
 
 std::string peak_text(const select::MotorEvaluation& motor) {
   const select::Spread95& peak = motor.winding_peak_C;
-  return motor.samples >= kFewestForRange ? fmt::format("{:.0f} [{:.0f}…{:.0f}]", peak.nominal, peak.p05, peak.p95)
-                                          : fmt::format("{:.0f}", peak.nominal);
+  return motor.samples >= kFewestForRange && peak.p05 && peak.p95
+             ? fmt::format("{:.0f} [{:.0f}…{:.0f}]", peak.nominal, *peak.p05, *peak.p95)
+             : fmt::format("{:.0f}", peak.nominal);
 }
 
 Text verdict_cell(const select::MotorEvaluation& motor) {
@@ -48,25 +49,31 @@ std::string_view factor_text(const select::MotorEvaluation& motor) {
 /// A narrower terminal shows the winding temperature over time, scaled to the limit, instead of rank, limit and margin.
 constexpr std::size_t kLeastForLimit = 70;
 
-std::vector<Column> columns() {
+/// If `is_drawn`, the nominal run is one of many games.
+std::vector<Column> columns(bool is_drawn) {
   constexpr auto kLeft = Alignment::left;
-  return {{"", "", 0, Alignment::right, kLeastForLimit},
+  constexpr auto kRight = Alignment::right;
+  const auto nominal = [is_drawn](std::string_view what) {
+    return fmt::format("{}{}", what, is_drawn ? " in the game of the seed" : " with nominal values");
+  };
+  return {{"", "", 0, kRight, kLeastForLimit},
           {"motor", "", 0, kLeft},
-          {"verdict", "", 0, kLeft},
-          {"peak", "°C", 0},
-          {"limit", "°C", 0, Alignment::right, kLeastForLimit},
-          {"margin", "K", 0, Alignment::right, kLeastForLimit},
-          {"winding", "", 1, kLeft},
-          {"P over", "%", 2},
-          {"reached after", "", 3},
-          {"limited by", "", 4, kLeft},
-          {"rms", "A", 5},
-          {"spare rms", "A", 6},
-          {"stator", "°C", 7},
+          {"verdict", "", 0, kLeft, 0, false, "see `heatsoak describe verdict`"},
+          {"peak", "°C", 0, kRight, 0, false, nominal("winding") + " [5th…95th percentile of the samples]"},
+          {"limit", "°C", 0, kRight, kLeastForLimit, false, "of the winding"},
+          {"margin", "K", 0, kRight, kLeastForLimit, false, nominal("to the nearer limit")},
+          {"winding", "", 1, kLeft, 0, false, nominal("temperature over time, from ambient to limit,")},
+          {"P over", "%", 2, kRight, 0, false, "share of samples over a limit"},
+          {"reached after", "", 3, kRight, 0, false, nominal("time until the first limit is exceeded")},
+          {"limited by", "", 4, kLeft, 0, false, "limit that decides the verdict"},
+          {"rms", "A", 5, kRight, 0, false, nominal("heating current")},
+          {"spare rms", "A", 6, kRight, 0, false, "possible increase of rms until a limit"},
+          {"stator", "°C", 7, kRight, 0, false, nominal("peak of the stator")},
           {"stator limit", "°C", 8},
-          {"data", "", 9, kLeft},
-          {"P interval", "%", 10},
-          {"p95 interval", "°C", 11}};
+          {"data", "", 9, kLeft, 0, false, "worst origin of the thermal values"},
+          {"P interval", "%", 10, kRight, 0, false,
+           "P over of other samples, with 95 % for all looks at the samples together, 97.5 % or more for each"},
+          {"p95 interval", "°C", 11, kRight, 0, false, "upper end of the peak with other samples, 95 %"}};
 }
 
 std::string p95_text(const select::MotorEvaluation& motor) {
@@ -86,7 +93,7 @@ std::vector<Text> row(std::size_t rank, const select::MotorEvaluation& motor, do
           {fmt::format("{:.0f}", motor.winding_limit_C)},
           {fmt::format("{:+.0f}", select::nearest_margin_K(motor))},
           {sparkline(motor, ambient_C), tone},
-          {std::isfinite(motor.probability_over_limit) ? fmt::format("{:.0f}", 100.0 * motor.probability_over_limit) : "–"},
+          {motor.probability_over_limit ? fmt::format("{:.0f}", 100.0 * *motor.probability_over_limit) : "–"},
           {motor.time_to_limit_s ? duration_text(*motor.time_to_limit_s) : "–"},
           {std::string(factor_text(motor))},
           {fmt::format("{:.2f}", motor.current_rms_A)},
@@ -107,8 +114,8 @@ std::string peak_words(const select::MotorEvaluation& motor) {
   const select::Spread95& peak_C = is_stator ? motor.stator_peak_C : motor.winding_peak_C;
   const double limit_C = is_stator ? motor.stator_limit_C.value_or(motor.winding_limit_C) : motor.winding_limit_C;
   const std::string_view node = is_stator ? "stator" : "winding";
-  if (motor.games > 0 && motor.samples >= kFewestForRange) {
-    return fmt::format("the {} reaches at most {:.0f} °C in 95 % of the samples (limit {:.0f} °C)", node, peak_C.p95, limit_C);
+  if (motor.games > 0 && motor.samples >= kFewestForRange && peak_C.p95) {
+    return fmt::format("the {} reaches at most {:.0f} °C in 95 % of the samples (limit {:.0f} °C)", node, *peak_C.p95, limit_C);
   }
   const std::string when = motor.verdict == select::Verdict::fail && motor.time_to_limit_s
                                ? fmt::format(", exceeded after {}", duration_text(*motor.time_to_limit_s))
@@ -118,7 +125,9 @@ std::string peak_words(const select::MotorEvaluation& motor) {
 
 /// Formats as "fails: the winding reaches 162 °C (limit 155 °C, exceeded after 5 min)".
 std::string what_happens(const select::MotorEvaluation& motor) {
-  const std::string over = fmt::format("{:.0f} % of the samples exceed a limit", 100.0 * motor.probability_over_limit);
+  const double over_ratio = motor.probability_over_limit.value_or(0.0);
+  const double short_ratio = motor.short_probability.value_or(0.0);
+  const std::string over = fmt::format("{:.0f} % of the samples exceed a limit", 100.0 * over_ratio);
   switch (shown_verdict(motor)) {
     case ShownVerdict::infeasible:
       return fmt::format("cannot drive this duty{}: {} does not suffice", nominal_words(motor), select::to_string(motor.limiting_factor));
@@ -127,10 +136,9 @@ std::string what_happens(const select::MotorEvaluation& motor) {
     case ShownVerdict::fail:
       return fmt::format("fails{}: {}", nominal_words(motor), motor.games > 0 ? over : peak_words(motor));
     case ShownVerdict::marginal:
-      return fmt::format("is marginal: {}",
-                         motor.short_probability > std::max(motor.probability_over_limit, select::kMarginalProbability)
-                             ? fmt::format("{:.0f} % of the samples cannot deliver the demand", 100.0 * motor.short_probability)
-                             : over);
+      return fmt::format("is marginal: {}", short_ratio > std::max(over_ratio, select::kMarginalProbability)
+                                                ? fmt::format("{:.0f} % of the samples cannot deliver the demand", 100.0 * short_ratio)
+                                                : over);
     case ShownVerdict::pass:
       break;
   }
@@ -182,20 +190,28 @@ std::string sampling_error(std::span<const select::MotorEvaluation> results) {
                      std::isfinite(p95_K) ? fmt::format("±{:.0f} K", std::ceil(p95_K)) : "unknown: take more samples");
 }
 
-std::string undecided_note(const select::MotorEvaluation& motor) {
+/// Returns how many more games or samples decide the verdict, with which probability.
+std::string deciding_words(const select::MotorEvaluation& motor) {
   const bool is_drawn = motor.games > 0;
   const std::string_view unit = is_drawn ? "games" : "samples";
-  const int done = is_drawn ? motor.games : motor.samples;
   const int most = select::most_samples_at_all(is_drawn);
+  const auto [half, nine_in_ten] = select::deciding_samples(motor);
   const auto number = [&](int samples) { return is_drawn ? samples / base::kLanes : samples; };
-  const OpenShare open = *open_share(motor);
-  const std::string needed =
-      *motor.samples_needed >= most
-          ? fmt::format("over {} more {}; --samples takes {} at most", number(most), unit, most)
-          : fmt::format("about {} more {} (--samples {})", number(*motor.samples_needed) - done, unit, *motor.samples_needed);
-  return fmt::format("{} counts as {} until more {} decide: {}{}. If the share of {:.1f} % stays, this takes {}.", motor.motor_id,
-                     select::to_string(motor.verdict), unit, is_drawn ? fmt::format("in {} games ", done) : "",
-                     words_of(open, motor.samples), 100.0 * open.share, needed);
+  const auto more = [&](int samples) { return number(samples) - (is_drawn ? motor.games : motor.samples); };
+  if (!half) {
+    return fmt::format("The share is close to the threshold: {} {}, the most that --samples takes ({}), will probably not decide",
+                       number(most), unit, most);
+  }
+  return fmt::format("With a probability of 50 % {} more {} decide (--samples {}), with 90 % {}", more(*half), unit, *half,
+                     nine_in_ten ? fmt::format("{} more (--samples {})", more(*nine_in_ten), *nine_in_ten)
+                                 : fmt::format("over {} (--samples takes {} at most)", number(most), most));
+}
+
+std::string undecided_note(const select::MotorEvaluation& motor) {
+  const bool is_drawn = motor.games > 0;
+  return fmt::format("{} counts as {} until more {} decide: {}{}. {}.", motor.motor_id, select::to_string(motor.verdict),
+                     is_drawn ? "games" : "samples", is_drawn ? fmt::format("in {} games ", motor.games) : "",
+                     words_of(*open_share(motor), motor.samples), deciding_words(motor));
 }
 
 void add_notes(Document& document, const select::MotorEvaluation& motor, const simulate::EvaluationAnswer& answer) {
@@ -213,7 +229,7 @@ void add_notes(Document& document, const select::MotorEvaluation& motor, const s
   }
   if (motor.verdict != select::Verdict::infeasible && motor.short_probability > select::kMarginalProbability) {
     document.add_note(Severity::note, fmt::format("{}: {:.0f} % of the samples cannot deliver what is demanded ({})", motor.motor_id,
-                                                  100.0 * motor.short_probability, select::to_string(motor.short_limit)));
+                                                  100.0 * *motor.short_probability, select::to_string(motor.short_limit)));
   }
 }
 
@@ -286,7 +302,7 @@ namespace {
 Document ranking_document(const simulate::EvaluationAnswer& answer) {
   const std::vector<select::MotorEvaluation>& results = answer.results;
   Document document{.headline = headline(answer), .paragraphs = paragraphs(answer)};
-  Table table{.columns = columns()};
+  Table table{.columns = columns(answer.draw_count > 0)};
   for (std::size_t i = 0; i < results.size(); ++i) {
     table.rows.push_back(row(i + 1, results[i], answer.duty.ambient_C.value));
   }
@@ -302,19 +318,9 @@ Document ranking_document(const simulate::EvaluationAnswer& answer) {
         "slip add heat there; grip, voltage and current limits take heat away. --closed-loop ranks motors with all that.");
   }
   document.add_note(Severity::background, fmt::format("The load is {}.", answer.duty.origin));
-  if (answer.draw_count > 0) {
-    document.add_note(
-        Severity::background,
-        "The columns peak (before the brackets), margin, reached after, rms and spare rms are of one game, that of the seed.");
-  } else if (results.front().samples > 0) {
+  if (answer.draw_count == 0 && results.front().samples > 0) {
     document.add_note(Severity::background, sampling_error(results));
   }
-  document.add_note(
-      Severity::background,
-      "Columns: peak of the winding, nominal [5th…95th percentile]; margin to the nearer limit; winding over time, from "
-      "ambient to limit; P over, share of samples over a limit; reached after, time until the first limit; rms, heating current; spare "
-      "rms, how much it may rise; P interval and p95 interval, the range that other samples would give (P: 95 % for all looks at the games "
-      "together, 97.5 % or more for each). `heatsoak describe verdict` defines the verdicts.");
   return document;
 }
 

@@ -4,6 +4,7 @@
 #include "present/closed_loop_json.h"
 #include "present/default_spreads_json.h"
 #include "present/evaluation.h"
+#include "select/decision.h"
 
 namespace heatsoak::present {
 namespace {
@@ -14,7 +15,8 @@ Json json(const select::Spread95& peak) {
 }
 
 Json json(const select::MotorEvaluation& each) {
-  const auto optional = [](const std::optional<double>& value, int decimals) { return value ? rounded(*value, decimals) : Json(); };
+  const auto number = [](const std::optional<int>& value) { return value ? Json(*value) : Json(); };
+  const select::DecidingSamples deciding = select::deciding_samples(each);
   const auto interval = [](const std::optional<select::Interval95>& value, int decimals) {
     return value ? Json{rounded(value->low, decimals), rounded(value->high, decimals)} : Json();
   };
@@ -23,20 +25,21 @@ Json json(const select::MotorEvaluation& each) {
           {"winding_peak_C", json(each.winding_peak_C)},
           {"stator_peak_C", json(each.stator_peak_C)},
           {"samples", each.samples},
-          {"samples_needed", each.samples_needed ? Json(*each.samples_needed) : Json()},
+          {"samples_needed", number(each.samples_needed)},
+          {"deciding_samples", {{"p50", number(deciding.half)}, {"p90", number(deciding.nine_in_ten)}}},
           {"probability_over_limit", rounded(each.probability_over_limit, 4)},
           {"probability_ci95", interval(each.probability_interval, 4)},
           {"winding_p95_ci95_C", interval(each.winding_p95_interval_C, 2)},
-          {"time_to_limit_s", optional(each.time_to_limit_s, 3)},
+          {"time_to_limit_s", rounded(each.time_to_limit_s, 3)},
           {"current_rms_A", rounded(each.current_rms_A, 4)},
           {"verdict", select::to_string(each.verdict)},
           {"limiting_factor", select::to_string(each.limiting_factor)},
           {"data_quality", each.data_quality},
           {"wheel", each.wheel},
           {"margin_K", rounded(each.margin_K, 2)},
-          {"stator_margin_K", optional(each.stator_margin_K, 2)},
-          {"margin_A", optional(each.margin_A, 4)},
-          {"stator_limit_C", optional(each.stator_limit_C, 2)},
+          {"stator_margin_K", rounded(each.stator_margin_K, 2)},
+          {"margin_A", rounded(each.margin_A, 4)},
+          {"stator_limit_C", rounded(each.stator_limit_C, 2)},
           {"delivered_share", rounded(each.least_torque_share, 4)},
           {"short_time_share", rounded(each.short_time_share, 4)},
           {"short_probability", rounded(each.short_probability, 4)},

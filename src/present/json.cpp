@@ -15,6 +15,8 @@ Json rounded(double value, int decimals) {
   return std::round(value * scale) / scale;
 }
 
+Json rounded(const std::optional<double>& value, int decimals) { return value ? rounded(*value, decimals) : nullptr; }
+
 Json failure_json(const base::Failure& failure) {
   Json diagnostics = Json::array();
   for (const base::Diagnostic& each : failure.diagnostics()) {

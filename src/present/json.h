@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 
 #include "base/diagnostic.h"
 
@@ -11,6 +12,8 @@ using Json = nlohmann::ordered_json;
 
 /// Returns a JSON number rounded to `decimals`, or null for NaN and infinity.
 Json rounded(double value, int decimals);
+/// Does the same for a value that may be absent, which is null.
+Json rounded(const std::optional<double>& value, int decimals);
 
 /// Returns the answer of a command that failed.
 Json failure_json(const base::Failure& failure);

@@ -33,7 +33,7 @@ std::vector<report::ChartPanel> detail(const simulate::MatchSimulation& match, c
   }
   heat.curves.push_back(
       curve(fmt::format("stator {}", hottest + 1), 4, [&](const simulate::MatchRow& row) { return row.stator_C[hottest]; }));
-  heat.levels.push_back({fmt::format("limit {:.0f} °C", match.motor.nominal.winding_limit_C), match.motor.nominal.winding_limit_C});
+  heat.levels.push_back({fmt::format("limit {:.0f} °C", match.motor.nominal.winding_limit_C), match.motor.nominal.winding_limit_C, true});
   const auto single = [](std::string title, std::string label, report::ChartCurve one) {
     return report::ChartPanel{
         .title = std::move(title), .y_label = std::move(label), .curves = {std::move(one)}, .bands = {}, .levels = {}};
@@ -74,7 +74,8 @@ std::vector<report::ChartPanel> comparison(const simulate::MatchSimulation& matc
     panels[2].curves.push_back(
         {"", minutes, column(driven.rows, [](const simulate::MatchRow& row) { return 1e3 * row.tracking_error_m; }), color, false});
   }
-  panels[0].levels.push_back({fmt::format("limit {:.0f} °C", match.motor.nominal.winding_limit_C), match.motor.nominal.winding_limit_C});
+  panels[0].levels.push_back(
+      {fmt::format("limit {:.0f} °C", match.motor.nominal.winding_limit_C), match.motor.nominal.winding_limit_C, true});
   return panels;
 }
 

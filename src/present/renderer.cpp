@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
+#include <utility>
 
 #include "base/diagnostic.h"
 #include "present/renderers_registry.h"
@@ -46,6 +48,28 @@ std::string rendered_for(const std::string& file, const Document& document) {
 std::vector<Note> by_urgency(std::vector<Note> notes) {
   std::ranges::stable_sort(notes, std::ranges::greater(), &Note::severity);
   return notes;
+}
+
+std::string legend_of(const Table& table, std::span<const std::size_t> shown) {
+  std::string text;
+  for (const std::size_t i : shown) {
+    if (const Column& column = table.columns[i]; !column.meaning.empty()) {
+      text += fmt::format("{}{}: {}", text.empty() ? "Columns. " : "; ", column.name, column.meaning);
+    }
+  }
+  return text.empty() ? text : text + ".";
+}
+
+std::vector<Note> notes_with_legends(const Document& document) {
+  std::vector<Note> notes = document.notes;
+  for (const Table& table : document.tables) {
+    std::vector<std::size_t> all(table.columns.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    if (std::string legend = legend_of(table, all); !legend.empty()) {
+      notes.push_back({Severity::background, std::move(legend)});
+    }
+  }
+  return by_urgency(std::move(notes));
 }
 
 }  // namespace heatsoak::present

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,5 +40,10 @@ std::string rendered_for(const std::string& file, const Document& document);
 
 /// Sorts notes by falling severity; the order within one severity is kept.
 std::vector<Note> by_urgency(std::vector<Note> notes);
+
+/// Returns the meanings of the given columns as the words of a note; empty if none has a meaning.
+std::string legend_of(const Table& table, std::span<const std::size_t> shown);
+/// Returns the notes by urgency, and at the end the legends of all columns of all tables.
+std::vector<Note> notes_with_legends(const Document& document);
 
 }  // namespace heatsoak::present

@@ -90,7 +90,7 @@ report::ChartPanel panel(const std::vector<const select::MotorEvaluation*>& show
     const std::string whose = limits_C.size() == 1 ? ""
                               : motors.size() == 1 ? fmt::format(" of {}", motors.front())
                                                    : fmt::format(" of {} motors", motors.size());
-    result.levels.push_back({fmt::format("limit {:.0f} °C{}", limit_C, whose), limit_C});
+    result.levels.push_back({fmt::format("limit {:.0f} °C{}", limit_C, whose), limit_C, true});
   }
   return result;
 }

@@ -30,7 +30,9 @@ std::string undecided_meaning() {
   return fmt::format(
       "The interval of the share of samples over a limit contains the threshold of two verdicts ({:.0f} %, and {:.0f} % on a duty that "
       "is drawn). Without --samples the program doubles the samples if that can decide the verdict: up to five times, or once on a duty "
-      "that is drawn. To continue, give --samples the number that the answer states. The interval allows for the repeated tests: the "
+      "that is drawn. The answer states with how many samples the verdict is decided with a probability of 50 % and of 90 %; to continue, "
+      "give "
+      "--samples one of these numbers. The interval allows for the repeated tests: the "
       "first may err with a probability of 2.5 %, each later one with 0.36 %, so a verdict is wrong with a probability of at most 5 % "
       "(Clopper and Pearson 1934; alpha spending, Jennison and Turnbull 2000). Samples of one game count as one. Until the verdict is "
       "decided, exit code and JSON use that of the samples so far; the JSON key samples_needed is then a number, and --fail-on undecided "

@@ -46,8 +46,9 @@ std::optional<OpenShare> open_share(const select::MotorEvaluation& motor) {
   if (!motor.samples_needed) {
     return std::nullopt;
   }
-  const std::array kinds{OpenShare{false, motor.probability_over_limit, motor.probability_interval.value_or(select::Interval95{}), 0.0},
-                         OpenShare{true, motor.short_probability, motor.short_interval.value_or(select::Interval95{}), 0.0}};
+  const std::array kinds{
+      OpenShare{false, motor.probability_over_limit.value_or(0.0), motor.probability_interval.value_or(select::Interval95{}), 0.0},
+      OpenShare{true, motor.short_probability.value_or(0.0), motor.short_interval.value_or(select::Interval95{}), 0.0}};
   const bool is_bad = motor.verdict == select::Verdict::fail || motor.verdict == select::Verdict::infeasible;
   for (const double threshold : {select::kMajority, select::kMarginalProbability}) {
     for (OpenShare open : kinds) {

@@ -249,6 +249,9 @@ NothingAboutHeat::NothingAboutHeat(const std::filesystem::path& file, std::vecto
     : base::Failure(base::ExitCode::cannot_answer, file.string() + ": this log contains no information about heat"),
       lacks_(std::move(lacks)) {}
 
+RowsGivenTwice::RowsGivenTwice(std::vector<Pair> pairs)
+    : base::Failure(base::ExitCode::bad_input, "rows of a log are given twice"), pairs_(std::move(pairs)) {}
+
 void require_thermal(const Recording& recording, const DataQuality& quality) {
   if (!quality.thermal.is_good()) {
     throw NothingAboutHeat(recording.file, quality.thermal.lacks);

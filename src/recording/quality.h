@@ -121,6 +121,20 @@ class NothingAboutHeat : public base::Failure {
   std::vector<Lack> lacks_;
 };
 
+/// Logs share rows, so that a run would count twice (bad_input).
+class RowsGivenTwice : public base::Failure {
+ public:
+  struct Pair {
+    std::filesystem::path file;
+    std::filesystem::path earlier;  ///< log that holds the same rows
+  };
+  explicit RowsGivenTwice(std::vector<Pair> pairs);
+  [[nodiscard]] const std::vector<Pair>& pairs() const { return pairs_; }
+
+ private:
+  std::vector<Pair> pairs_;
+};
+
 /// Throws NothingAboutHeat if the recording contains no information about a thermal network: too short, no changes, no temperature or no
 /// heat input.
 void require_thermal(const Recording& recording, const DataQuality& quality);

@@ -27,10 +27,13 @@ struct ChartBand {
   int color_index = 0;
 };
 
-/// A horizontal line across the panel, such as a temperature limit; the y range always includes it.
+/// A horizontal line across the panel, such as a temperature limit. The y range includes it.
 struct ChartLevel {
   std::string name = {};  ///< written at the line
   double y = 0.0;
+  /// Leaves the level out of the y range if it would make more than a third of the panel empty. Its name then stands at the edge with an
+  /// arrow.
+  bool may_be_outside = false;
 };
 
 /// One pair of axes. The panels of a chart are stacked and share the x range.

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/distributions/beta.hpp>
+#include <boost/math/distributions/binomial.hpp>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -17,12 +20,9 @@ namespace {
 constexpr int kFirstGames = 75;
 constexpr int kFirstSamples = 500;
 
-/// Returns the smallest number of samples at which the interval around the same probability lies on one side of the threshold; nothing if
-/// it already does.
-std::optional<int> needed_for(double threshold_ratio, double probability_ratio, const Interval95& interval, int samples, bool is_drawn) {
-  if (interval.low > threshold_ratio || interval.high <= threshold_ratio) {
-    return std::nullopt;
-  }
+/// Returns the smallest number of samples at which the interval around the same probability lies on one side of the threshold, if the
+/// interval of `samples` samples covers it.
+int needed_for(double threshold_ratio, double probability_ratio, int samples, bool is_drawn) {
   const int per_draw = is_drawn ? base::kLanes : 1;
   const auto decides = [&](int draws) {
     const base::ShareInterval then = base::share_interval(probability_ratio, draws, error_share(draws, is_drawn));
@@ -58,35 +58,146 @@ double error_share(int count, bool is_drawn) {
 
 int most_samples_at_all(bool is_drawn) { return is_drawn ? 80'000 : 1'000'000; }
 
-std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn) {
+namespace {
+
+/// A threshold that the interval of a share covers, with that share.
+struct OpenThreshold {
+  double threshold_ratio = 0.0;
+  double share_ratio = 0.0;
+};
+
+/// Returns the thresholds of the verdict that the intervals cover. On a duty with draws `short_interval` and the majority count too.
+std::vector<OpenThreshold> open_thresholds(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn) {
   const bool is_nominally_bad = motor.verdict == Verdict::fail || motor.verdict == Verdict::infeasible;
+  std::vector<OpenThreshold> open;
   if (motor.samples == 0 || (!is_drawn && is_nominally_bad)) {
-    return std::nullopt;
+    return open;
   }
-  std::optional<int> most;
-  const auto take = [&most](const std::optional<int>& needed) {
-    if (needed && *needed > most.value_or(0)) {
-      most = needed;
-    }
-  };
-  const std::array kinds{std::pair(motor.probability_over_limit, *motor.probability_interval),
-                         std::pair(motor.short_probability, short_interval)};
-  if (is_drawn) {
-    for (const auto& [probability_ratio, interval] : kinds) {
-      take(needed_for(kMajority, probability_ratio, interval, motor.samples, is_drawn));
-    }
-  }
-  if (!is_nominally_bad) {
-    // If one probability is certainly above the threshold, the motor is marginal, whatever the other is.
-    const bool is_marginal_for_certain =
-        std::ranges::any_of(kinds, [](const auto& kind) { return kind.second.low > kMarginalProbability; });
-    for (const auto& [probability_ratio, interval] : kinds) {
-      if (!is_marginal_for_certain) {
-        take(needed_for(kMarginalProbability, probability_ratio, interval, motor.samples, is_drawn));
+  const std::array kinds{std::pair(motor.probability_over_limit.value_or(0.0), *motor.probability_interval),
+                         std::pair(motor.short_probability.value_or(0.0), short_interval)};
+  const auto add = [&](double threshold_ratio) {
+    for (const auto& [share_ratio, interval] : kinds) {
+      if (interval.low <= threshold_ratio && interval.high > threshold_ratio) {
+        open.push_back({threshold_ratio, share_ratio});
       }
     }
+  };
+  if (is_drawn) {
+    add(kMajority);
+  }
+  // If one probability is certainly above the threshold, the motor is marginal, whatever the other is.
+  const bool is_marginal_for_certain = std::ranges::any_of(kinds, [](const auto& kind) { return kind.second.low > kMarginalProbability; });
+  if (!is_nominally_bad && !is_marginal_for_certain) {
+    add(kMarginalProbability);
+  }
+  return open;
+}
+
+/// Returns the smallest number in (low, high] for which `holds`, which must be true from some number on; nothing if it is false at `high`.
+template <class Holds>
+std::optional<int> first_that_holds(int low, int high, const Holds& holds) {
+  if (!holds(high)) {
+    return std::nullopt;
+  }
+  while (high - low > 1) {
+    const int middle = std::midpoint(low, high);
+    (holds(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+/// Predicts whether a number of draws decides on which side of a threshold a share lies.
+class Predicted {
+ public:
+  Predicted(const OpenThreshold& open, int draws, bool is_drawn)
+      : threshold_ratio_(open.threshold_ratio), over_count_(std::round(open.share_ratio * draws)), draws_(draws), is_drawn_(is_drawn) {
+    const boost::math::beta_distribution<> share(over_count_ + 0.5, draws - over_count_ + 0.5);
+    for (std::size_t i = 0; i < shares_.size(); ++i) {
+      shares_[i] = boost::math::quantile(share, (static_cast<double>(i) + 0.5) / static_cast<double>(shares_.size()));
+    }
+  }
+
+  /// Returns the probability that the interval of `draws` draws in total excludes the threshold.
+  [[nodiscard]] double probability(int draws) const {
+    const auto interval = [&](int over) {
+      return base::share_interval(static_cast<double>(over) / draws, draws, error_share(draws, is_drawn_));
+    };
+    const int near = static_cast<int>(threshold_ratio_ * draws);
+    const std::optional<int> least_above =
+        first_that_holds(near - 1, draws, [&](int over) { return interval(over).low > threshold_ratio_; });
+    const std::optional<int> least_open = first_that_holds(-1, near + 1, [&](int over) { return interval(over).high > threshold_ratio_; });
+    const double more = draws - draws_;
+    const auto at_most = [&](double over, double share_ratio) {
+      const double later = over - over_count_;
+      return later < 0.0 ? 0.0 : later >= more ? 1.0 : boost::math::cdf(boost::math::binomial_distribution<>(more, share_ratio), later);
+    };
+    double sum = 0.0;
+    for (const double share_ratio : shares_) {
+      sum += least_open ? at_most(*least_open - 1.0, share_ratio) : 1.0;
+      sum += least_above ? 1.0 - at_most(*least_above - 1.0, share_ratio) : 0.0;
+    }
+    return sum / static_cast<double>(shares_.size());
+  }
+
+ private:
+  double threshold_ratio_;
+  double over_count_;
+  int draws_;
+  bool is_drawn_;
+  std::array<double, 64> shares_{};  ///< quantiles of the share's distribution
+};
+
+/// Returns the number of draws that decide with the probability: at most 5 % more than the smallest.
+std::optional<int> deciding_draws(const Predicted& predicted, int draws, int most, double probability_ratio) {
+  const auto suffices = [&](int count) { return predicted.probability(count) >= probability_ratio; };
+  int low = draws;
+  int high = draws + 1 + draws / 20;
+  while (high < most && !suffices(high)) {
+    low = high;
+    high = std::min(most, high + 1 + high / 3);
+  }
+  return first_that_holds(low, high, suffices);
+}
+
+}  // namespace
+
+std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn) {
+  std::optional<int> most;
+  for (const auto& [threshold_ratio, share_ratio] : open_thresholds(motor, short_interval, is_drawn)) {
+    most = std::max(most.value_or(0), needed_for(threshold_ratio, share_ratio, motor.samples, is_drawn));
   }
   return most;
+}
+
+DecidingSamples deciding_samples(const MotorEvaluation& motor) {
+  const bool is_drawn = motor.games > 0;
+  const int per_draw = is_drawn ? base::kLanes : 1;
+  const int draws = (motor.samples + per_draw - 1) / per_draw;
+  const int most = most_samples_at_all(is_drawn) / per_draw;
+  DecidingSamples found;
+  bool is_first = true;
+  const auto take = [&](std::optional<int>& all, std::optional<int> one) {
+    const std::optional<int> samples = one ? std::optional(*one * per_draw) : std::nullopt;
+    all = is_first ? samples : all && samples ? std::optional(std::max(*all, *samples)) : std::nullopt;
+  };
+  for (const OpenThreshold& each : open_thresholds(motor, motor.short_interval.value_or(Interval95{}), is_drawn)) {
+    const Predicted predicted(each, draws, is_drawn);
+    take(found.half, deciding_draws(predicted, draws, most, 0.5));
+    take(found.nine_in_ten, deciding_draws(predicted, draws, most, 0.9));
+    is_first = false;
+  }
+  return found;
+}
+
+LaterWork later_work(std::span<const int> needed, int samples, int most) {
+  LaterWork work;
+  for (int count = samples; count < most;) {
+    const auto open = static_cast<double>(std::ranges::count_if(needed, [count](int each) { return each > count; }));
+    count = std::min(most, 2 * count);
+    work.evaluations_count += open;
+    work.samples_count += open * count;
+  }
+  return work;
 }
 
 int most_samples(const duty::Duty& duty) {
@@ -101,23 +212,53 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-/// Reports the rounds after the first look as one job. Its length is estimated from the duration of the first look and the samples needed,
-/// and is updated after each round.
+/// Durations of a round of evaluations, measured.
+struct RoundTimes {
+  double play_s = 0.0;     ///< playing the new games
+  double nominal_s = 0.0;  ///< all motors together, before the first block of samples
+  double samples_s = 0.0;  ///< all samples of all motors
+};
+
+/// Measures one round from its progress: the first finished block of samples ends the nominal runs.
+class RoundClock {
+ public:
+  void begin_evaluation() { evaluation_ = Clock::now(); }
+  /// Returns a progress that takes the times and passes the calls on.
+  [[nodiscard]] base::Progress timed(base::Progress progress) {
+    return [this, progress = std::move(progress)](std::size_t done, std::size_t total) {
+      if (first_ == Clock::time_point()) {
+        first_ = Clock::now();
+      }
+      if (progress) {
+        progress(done, total);
+      }
+    };
+  }
+  [[nodiscard]] RoundTimes times() const {
+    const auto between = [](Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double>(to - from).count(); };
+    const Clock::time_point now = Clock::now();
+    const Clock::time_point first = first_ == Clock::time_point() ? now : first_;
+    return {between(begin_, evaluation_), between(evaluation_, first), between(first, now)};
+  }
+
+ private:
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point evaluation_ = begin_;
+  Clock::time_point first_;
+};
+
+/// Reports the rounds after the first look as one job in milliseconds. Its length is predicted from the durations of the round before and
+/// the samples needed, and again for each round.
 class LaterRounds {
  public:
-  LaterRounds(double s_per_draw, double s_per_sample, base::Progress progress)
-      : s_per_draw_(s_per_draw), s_per_sample_(s_per_sample), progress_(std::move(progress)) {}
+  explicit LaterRounds(base::Progress progress) : progress_(std::move(progress)) {}
 
-  /// Begins a round with `draws` new draws and `samples` samples of `motors` motors. Later rounds double the samples until `needed` or
-  /// `most`.
-  void begin(double draws, double samples, double motors, double needed, double most) {
+  /// Begins a round that plays for `play_s` and evaluates for `evaluate_s`; later rounds take `later_s`.
+  void begin(double play_s, double evaluate_s, double later_s) {
     done_s_ = seconds_since(begin_);
-    play_s_ = s_per_draw_ * draws;
-    evaluate_s_ = s_per_sample_ * samples * motors;
-    later_s_ = 0.0;
-    for (double factor = 2.0; factor * samples / 2.0 < needed && factor * samples / 2.0 < most; factor *= 2.0) {
-      later_s_ += factor * (play_s_ + evaluate_s_);
-    }
+    play_s_ = play_s;
+    evaluate_s_ = evaluate_s;
+    later_s_ = later_s;
   }
   [[nodiscard]] base::Progress playing() const { return part(done_s_, play_s_, evaluate_s_ + later_s_); }
   [[nodiscard]] base::Progress evaluating() const { return part(done_s_ + play_s_, evaluate_s_, later_s_); }
@@ -134,8 +275,6 @@ class LaterRounds {
       progress(std::min(all_ms - 1, in_ms(before_s + part_s * share)), all_ms);
     };
   }
-  double s_per_draw_;
-  double s_per_sample_;
   base::Progress progress_;
   Clock::time_point begin_ = Clock::now();
   double done_s_ = 0.0;
@@ -150,41 +289,47 @@ std::vector<MotorEvaluation> evaluate_until_decided(const robot::Robot& robot, c
                                                     std::span<const duty::WheelDemand> wheels, std::span<const motor::Motor> motors,
                                                     EvaluateOptions options, int most, std::vector<duty::WheelDemand>& draws,
                                                     const base::ProgressFor& progress) {
-  double play_s = 0.0;
-  double evaluate_s = 0.0;
+  RoundTimes times;
   const auto run = [&](std::span<const motor::Motor> wanted, const base::Progress& playing, const base::Progress& evaluating) {
-    const Clock::time_point begin = Clock::now();
+    RoundClock clock;
     add_draws(draws, duty, robot, options.seed, draw_count(duty, options.samples), options.threads, playing);
-    play_s = seconds_since(begin);
+    clock.begin_evaluation();
     options.draws = draws;
-    std::vector<MotorEvaluation> found = evaluate(robot, duty, wheels, wanted, options, evaluating);
-    evaluate_s = seconds_since(begin) - play_s;
+    std::vector<MotorEvaluation> found = evaluate(robot, duty, wheels, wanted, options, clock.timed(evaluating));
+    times = clock.times();
     return found;
   };
   std::vector<MotorEvaluation> results =
       run(motors, base::progress_of(progress, "playing games"), base::progress_of(progress, "evaluating"));
   std::optional<LaterRounds> later;
   const bool is_drawn = duty.shape_data->has_unknowns();
+  int new_draws = static_cast<int>(draws.size());
+  auto evaluated = static_cast<double>(motors.size());
   while (options.samples < most) {
     std::vector<motor::Motor> open;
-    int needed = 0;
+    std::vector<int> needed;
     for (const MotorEvaluation& each : results) {
       if (each.samples_needed && (!is_drawn || *each.samples_needed <= most)) {
         open.push_back(*std::ranges::find(motors, each.motor_id, &motor::Motor::id));
-        needed = std::max(needed, *each.samples_needed);
+        needed.push_back(*each.samples_needed);
       }
     }
     if (open.empty()) {
       break;
     }
     if (!later) {
-      const auto samples = static_cast<double>(options.samples) * static_cast<double>(motors.size());
-      later.emplace(play_s / static_cast<double>(std::max<std::size_t>(1, draws.size())), evaluate_s / samples,
-                    base::progress_of(progress, "undecided, drawing more samples"));
+      later.emplace(base::progress_of(progress, "undecided, drawing more samples"));
     }
+    const auto evaluation_s = [&, nominal_s = times.nominal_s / evaluated, sample_s = times.samples_s / (evaluated * options.samples)](
+                                  const LaterWork& work) { return nominal_s * work.evaluations_count + sample_s * work.samples_count; };
+    const double all_s = evaluation_s(later_work(needed, options.samples, most));
+    const double draw_s = times.play_s / std::max(1, new_draws);
     const int before = draw_count(duty, options.samples);
     options.samples = std::min(most, 2 * options.samples);
-    later->begin(draw_count(duty, options.samples) - before, options.samples, static_cast<double>(open.size()), needed, most);
+    new_draws = draw_count(duty, options.samples) - before;
+    evaluated = static_cast<double>(open.size());
+    const double round_s = evaluation_s({evaluated, evaluated * options.samples});
+    later->begin(draw_s * new_draws, round_s, all_s - round_s);
     for (MotorEvaluation& longer : run(open, later->playing(), later->evaluating())) {
       *std::ranges::find(results, longer.motor_id, &MotorEvaluation::motor_id) = std::move(longer);
     }

@@ -24,6 +24,26 @@ double error_share(int count, bool is_drawn);
 /// values alone decide. If `is_drawn`, the duty has draws, and kMajority is a second threshold.
 std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn);
 
+/// Numbers of samples with which the verdict is decided with a probability of 50 % and 90 %, counting the samples so far. Empty if not even
+/// most_samples_at_all() reach the probability.
+struct DecidingSamples {
+  std::optional<int> half;
+  std::optional<int> nine_in_ten;
+};
+/// Predicts them from the samples so far. samples_needed() takes the observed share as the true one. Near a threshold it is several times
+/// too large, because a share that is a little different needs far fewer samples. Here the true share is uncertain: its distribution is
+/// that of Jeffreys' prior and the samples so far (predictive probability: Spiegelhalter et al. 1986), each game counted as one. If several
+/// thresholds are open, the largest numbers count. Both are empty if the verdict is decided.
+DecidingSamples deciding_samples(const MotorEvaluation& motor);
+
+/// Work of the rounds that double the samples of open motors, from `samples` on: sums over rounds and motors. `needed` has samples_needed()
+/// of each open motor. A motor leaves after the round that reaches its number; the rounds end with `most`.
+struct LaterWork {
+  double evaluations_count = 0.0;
+  double samples_count = 0.0;
+};
+LaterWork later_work(std::span<const int> needed, int samples, int most);
+
 /// Returns the largest number of samples per motor that evaluate_until_decided() uses by default, some seconds of work. It is a count and
 /// not a time, so that the same command gives the same answer on every computer.
 int most_samples(const duty::Duty& duty);

@@ -26,7 +26,6 @@ namespace {
 using motor::states::stator;
 using motor::states::winding;
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kBandCells = 160;
 /// Random streams of robots are separate from those of motors, so that all motors are evaluated with the same drawn robots.
 constexpr std::uint64_t kRobotStreams = std::uint64_t{1} << 40U;
@@ -375,15 +374,14 @@ void conclude(Work& work, const EvaluateOptions& options) {
   result.games = static_cast<int>(options.draws.size());
   result.winding_peak_C = spread(result.winding_peak_C.nominal, work.winding_peak_C);
   result.stator_peak_C = spread(result.stator_peak_C.nominal, work.stator_peak_C);
-  result.probability_over_limit =
-      options.samples > 0 ? static_cast<double>(std::ranges::count(work.over_limit, char{1})) / options.samples : kNothing;
   const auto by_voltage = std::ranges::count(work.short_of_demand, robot::DriveLimit::voltage);
   const auto by_current = std::ranges::count(work.short_of_demand, robot::DriveLimit::current);
-  result.short_probability = options.samples > 0 ? static_cast<double>(by_voltage + by_current) / options.samples : kNothing;
   if (result.verdict != Verdict::infeasible) {
     result.short_limit = by_current > by_voltage ? LimitingFactor::current : LimitingFactor::voltage;
   }
   if (options.samples > 0) {
+    result.probability_over_limit = static_cast<double>(std::ranges::count(work.over_limit, char{1})) / options.samples;
+    result.short_probability = static_cast<double>(by_voltage + by_current) / options.samples;
     const bool is_drawn = !options.draws.empty();
     const double wrong = error_share(is_drawn ? result.games : result.samples, is_drawn);
     const auto intervals_of = [&](std::span<const double> peak_C, std::span<const char> flags) {
@@ -403,8 +401,8 @@ void conclude(Work& work, const EvaluateOptions& options) {
     decide_by_majority(result);
   }
   // With few games a small observed share proves little, so the upper end of the interval decides.
-  const double over = options.draws.empty() ? result.probability_over_limit : result.probability_interval->high;
-  if (result.verdict == Verdict::pass && std::max(over, result.short_probability) > kMarginalProbability) {
+  const double over = options.draws.empty() ? result.probability_over_limit.value_or(0.0) : result.probability_interval->high;
+  if (result.verdict == Verdict::pass && std::max(over, result.short_probability.value_or(0.0)) > kMarginalProbability) {
     result.verdict = Verdict::marginal;
     result.limiting_factor = result.short_probability > result.probability_over_limit ? result.short_limit : hotter_limit(result);
   }

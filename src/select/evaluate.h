@@ -41,12 +41,12 @@ struct EvaluateOptions {
   std::span<const duty::WheelDemand> draws{};
 };
 
-/// Nominal value, and 5th, 50th and 95th percentile of the samples (NaN without samples).
+/// Nominal value, and 5th, 50th and 95th percentile of the samples; percentiles are empty without samples.
 struct Spread95 {
   double nominal = 0.0;
-  double p05 = 0.0;
-  double p50 = 0.0;
-  double p95 = 0.0;
+  std::optional<double> p05 = {};
+  std::optional<double> p50 = {};
+  std::optional<double> p95 = {};
 };
 
 /// 95 % confidence interval of a statistic of the samples.
@@ -78,7 +78,7 @@ struct MotorEvaluation {
   int games = 0;    ///< number of draws that the samples share; 0 for a duty without draws
   /// Number of samples that would decide the verdict, from samples_needed() in select/decision.h; empty if it is decided.
   std::optional<int> samples_needed;
-  double probability_over_limit = 0.0;  ///< share of samples over any temperature limit; NaN without samples
+  std::optional<double> probability_over_limit = {};  ///< share of samples over any temperature limit; empty without samples
   /// Confidence intervals of the 95th percentiles and of the probability, for repeated samples or, on a duty with draws, repeated draws.
   /// The interval of the probability holds for all looks of error_share() in select/decision.h together. Empty without samples.
   std::optional<Interval95> winding_p95_interval_C;
@@ -94,7 +94,8 @@ struct MotorEvaluation {
   double least_torque_share = 1.0;  ///< smallest ratio of delivered to demanded current
   double short_time_share = 0.0;    ///< share of the time in which the demand is not met; winding at its peak, at most at its limit
   LimitingFactor short_limit = LimitingFactor::voltage;  ///< limit that causes the shortfall, if there is one
-  double short_probability = 0.0;  ///< share of samples that miss the demand for longer than kTolerableShortTime; NaN without samples
+  /// Share of samples that miss the demand for longer than kTolerableShortTime; empty without samples.
+  std::optional<double> short_probability = {};
   std::optional<Interval95> short_interval;  ///< confidence interval of short_probability, like probability_interval
   double highest_voltage_V = 0.0;            ///< largest demanded voltage at the terminals with the hot winding
   bool destroyed = false;                    ///< thermal runaway: the nominal run ended at 1000 °C

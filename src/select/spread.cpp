@@ -31,8 +31,7 @@ double quantile(std::span<const double> sorted_C, double share) {
 
 Spread95 spread(double nominal_C, std::vector<double> samples_C) {
   if (samples_C.empty()) {
-    constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-    return {nominal_C, kNothing, kNothing, kNothing};
+    return {.nominal = nominal_C};
   }
   std::ranges::sort(samples_C);
   return {nominal_C, quantile(samples_C, 0.05), quantile(samples_C, 0.5), quantile(samples_C, 0.95)};

@@ -12,7 +12,7 @@ namespace heatsoak::select {
 /// Returns the quantile by linear interpolation between neighbouring samples. `sorted_C` must be sorted and not empty.
 double quantile(std::span<const double> sorted_C, double share);
 
-/// Returns the nominal value and the percentiles; without samples the percentiles are NaN.
+/// Returns the nominal value and the percentiles; without samples the percentiles are empty.
 Spread95 spread(double nominal_C, std::vector<double> samples_C);
 
 /// Assignment of samples to draws. Samples come in blocks of block_size; block b uses draw b mod draw_count.

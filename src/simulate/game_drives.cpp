@@ -8,11 +8,8 @@
 namespace heatsoak::simulate {
 
 GameSpread GameDrives::spread(double DriveScore::*value) const {
-  GameSpread made;
-  if (games.empty()) {
-    return {base::kUnknown, base::kUnknown, base::kUnknown};
-  }
-  made.nominal = made.low = made.high = games.front().*value;
+  const double first = games.front().*value;
+  GameSpread made{first, first, first};
   for (const DriveScore& each : games) {
     made.low = std::min(made.low, each.*value);
     made.high = std::max(made.high, each.*value);

@@ -33,6 +33,7 @@ struct GameDrives {
   std::string why_no_guard;       ///< as MotorGuard::why_none
   std::vector<DriveScore> games;  ///< in the order of the seeds
 
+  /// Returns value and range of one score; needs one or more games.
   [[nodiscard]] GameSpread spread(double DriveScore::*value) const;
 };
 

@@ -56,7 +56,6 @@ struct OperatingPoint {
 /// Signals, other than temperatures, that a law may need. A log without one of them holds no evidence about the law. The copper loss is
 /// computed from the current; velocity and acceleration need the speed.
 enum class Signal { current, speed, shaft_power, input_power, modulation, bus_voltage, vehicle_speed, neighbour_temperature, age };
-inline constexpr std::size_t kSignalCount = 9;
 
 /// Rule for averaging a quantity over time. `rms` averages its square. `limit` marks a quantity that is not averaged.
 enum class AveragingRule { mean, rms, limit };
@@ -138,20 +137,33 @@ inline constexpr std::array kQuantities{
 inline constexpr std::size_t kQuantityCount = kQuantities<double>.size();
 static_assert(sizeof(OperatingPoint<double>) == (kQuantityCount + 1) * sizeof(double), "every number of OperatingPoint needs one row");
 
-/// Returns the number of signals that have a log column in the table.
-constexpr std::size_t logged_signal_count() {
+/// Returns the number of rows that give a signal its log column.
+constexpr std::size_t log_columns_of(std::size_t signal) {
   std::size_t count = 0;
-  for (std::size_t signal = 0; signal <= kQuantityCount; ++signal) {
-    for (const OperatingQuantity<double>& each : kQuantities<double>) {
-      if (each.signal == static_cast<Signal>(signal) && !each.column.empty()) {
-        ++count;
-        break;
-      }
-    }
+  for (const OperatingQuantity<double>& each : kQuantities<double>) {
+    count += each.signal == static_cast<Signal>(signal) && !each.column.empty() ? 1 : 0;
   }
   return count;
 }
-static_assert(logged_signal_count() == kSignalCount, "kSignalCount is the number of signals, and each has a log column");
+
+/// Number of signals: one more than the last enumerator in the table.
+inline constexpr std::size_t kSignalCount = [] {
+  std::size_t count = 0;
+  for (const OperatingQuantity<double>& each : kQuantities<double>) {
+    count = each.signal && static_cast<std::size_t>(*each.signal) >= count ? static_cast<std::size_t>(*each.signal) + 1 : count;
+  }
+  return count;
+}();
+static_assert(
+    [] {
+      for (std::size_t signal = 0; signal < kSignalCount; ++signal) {
+        if (log_columns_of(signal) != 1) {
+          return false;
+        }
+      }
+      return true;
+    }(),
+    "each signal has one log column");
 
 /// Returns the number of quantities that are inputs of the firmware.
 constexpr std::size_t firmware_input_count() {

@@ -130,11 +130,13 @@ estimation::Model model_before(const MotorMake& make, std::uint64_t seed) {
   return out;
 }
 
-estimation::MeasuredRun measured(const TrueRun& run) {
+std::vector<estimation::MeasuredRun> measured_pieces(const TrueRun& run) {
   estimation::MeasuredRunOptions options;
   options.needed = {thermal::Signal::current};
-  return estimation::measured_runs(run.log, options).runs.front();
+  return estimation::measured_runs(run.log, options).runs;
 }
+
+estimation::MeasuredRun measured(const TrueRun& run) { return measured_pieces(run).front(); }
 
 double rms_error_K(const estimation::Model& model, const std::vector<TrueRun>& runs) {
   double squares_K2 = 0.0;
@@ -164,7 +166,7 @@ diagnosis::DiagnosisInput question(const Case& sealed, const Runs& runs) {
   input.model = std::move(before.model);
   input.usual = before.usual;
   for (const TrueRun& run : runs.training) {
-    input.train.push_back(measured(run));
+    std::ranges::copy(measured_pieces(run), std::back_inserter(input.train));
   }
   return input;
 }

@@ -45,7 +45,9 @@ struct Calibrated {
 /// Calibrates model_before() with runs of that motor.
 Calibrated calibrated(const Case& sealed, const MotorMake& make, const std::vector<TrueRun>& runs);
 
-/// Converts a run to the log format of the tool.
+/// Converts a run to the log format of the tool. A log with gaps has several pieces.
+std::vector<estimation::MeasuredRun> measured_pieces(const TrueRun& run);
+/// Returns the first piece.
 estimation::MeasuredRun measured(const TrueRun& run);
 
 /// Input of the diagnosis, without any hint of the missing effect.

@@ -5,101 +5,21 @@
 
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 
 #include "../support/measured_data.h"
 #include "calibration/calibrate.h"
-#include "diagnosis/model_file.h"
-#include "recording/mapping.h"
-#include "recording/read_recording.h"
-#include "scoring.h"
+#include "measured_cases.h"
 #include "support/source_folder.h"
 
 namespace heatsoak::attribution {
 namespace {
 
+using namespace measured;
 using truth::account;
-
-const std::filesystem::path kReports = kSource / "reports/diagnosis";
-
-recording::Recording read(const std::filesystem::path& log, const std::filesystem::path& map) {
-  recording::RecordingReport report;
-  return recording::read_recording(log, recording::mapping_for(log.string(), map.string()), report);
-}
-
-std::vector<estimation::MeasuredRun> runs_of(const diagnosis::ModelOfLogs& model, const std::vector<recording::Recording>& recordings,
-                                             std::optional<double> ambient_C = {}) {
-  std::vector<estimation::MeasuredRun> all;
-  estimation::MeasuredRunOptions how = model.how;
-  how.ambient_C = ambient_C;
-  for (const recording::Recording& recording : recordings) {
-    std::ranges::move(estimation::measured_runs(recording, how).runs, std::back_inserter(all));
-  }
-  return all;
-}
-
-/// Diagnosis of some recordings and its score on others.
-struct Diagnosed {
-  diagnosis::ModelOfLogs model;
-  diagnosis::DiagnosisInput input;
-  diagnosis::Diagnosis diagnosis;
-  diagnosis::HoldoutScore score;
-};
-
-Diagnosed diagnosed(const motor::Motor& motor, const std::vector<recording::Recording>& train,
-                    const std::vector<recording::Recording>& holdout, std::optional<double> ambient_C = {}) {
-  Diagnosed out{diagnosis::model_of_logs(motor, train), {}, {}, {}};
-  out.input = {out.model.model, runs_of(out.model, train, ambient_C), out.model.usual};
-  out.diagnosis = diagnosis::diagnose(out.input, {});
-  out.score = diagnosis::score_holdout(out.input, out.diagnosis, runs_of(out.model, holdout, ambient_C));
-  return out;
-}
 
 /// RMS error of a free-running simulation over all samples of one signal.
 double rms_K(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs, const char* signal) {
   return estimation::open_loop_errors(model, runs, {}).at(signal).rmse_K;
-}
-
-const diagnosis::FoundEffect* effect_of(const diagnosis::Diagnosis& diagnosis, std::string_view id) {
-  const auto found = std::ranges::find(diagnosis.effects, id, &diagnosis::FoundEffect::id);
-  return found == diagnosis.effects.end() ? nullptr : &*found;
-}
-
-struct Drone {
-  std::map<std::string, recording::Recording> run;
-  motor::Motor motor;  ///< calibrated with runs 1, 3 and 5
-};
-
-/// Returns the motor with its initial parameter values multiplied by the factors.
-motor::Motor guessed_otherwise(motor::Motor motor, const std::map<std::string, double>& factor) {
-  for (const auto& [key, by] : factor) {
-    base::ParameterValue& figure = *motor::find_parameter(motor, key);
-    figure.value *= by;
-    figure.spread->low *= by;
-    figure.spread->high *= by;
-  }
-  motor::refresh_values(motor);
-  return motor;
-}
-
-Drone drone(const std::filesystem::path& folder, bool is_for_forecasts = true, const std::map<std::string, double>& factor = {}) {
-  Drone all;
-  for (const char* const name : {"run1", "run2", "run3", "run4", "run5"}) {
-    all.run[name] = read(folder / (std::string(name) + ".csv"), kReports / "uav_fan/recordings.map.toml");
-    EXPECT_THAT(all.run[name].conditions, testing::IsEmpty());
-  }
-  const motor::Motor start = guessed_otherwise(motor::read_motor(kReports / "uav_motor.toml"), factor);
-  all.motor = calibration::calibrated_motor(
-      start, calibration::calibrate(
-                 start, std::vector{all.run["run1"], all.run["run3"], all.run["run5"]}, {},
-                 {.fit = {}, .written = is_for_forecasts ? calibration::WrittenFit::forecast : calibration::WrittenFit::innovations}));
-  return all;
-}
-
-/// Trains with the first part of run 4, among others, and scores its second part.
-Diagnosed diagnosed(Drone& all, double cut) {
-  return diagnosed(all.motor, {all.run["run1"], all.run["run3"], all.run["run5"], recording::part_of(all.run["run4"], 0.0, cut)},
-                   {recording::part_of(all.run["run4"], cut, 1.0), all.run["run2"]});
 }
 
 /// Checks the fitted first part of run 4 and the unseen second part.
@@ -118,6 +38,9 @@ TEST(MeasuredMotors, an_undocumented_fan_is_found_in_the_run_that_had_it) {
   SKIP_WITHOUT_MEASURED_DATA("tasrv_uav_motor");
   const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
   Drone all = drone(*folder, false);
+  for (const auto& [name, run] : all.run) {
+    EXPECT_THAT(run.conditions, testing::IsEmpty()) << name;
+  }
   const Diagnosed found = diagnosed(all, 0.6);
   expect_follows_the_fan(all, found);
   const std::vector<estimation::MeasuredRun> run2 = runs_of(found.model, {all.run["run2"]});
@@ -165,21 +88,6 @@ TEST_P(DroneWithFan, is_named_wherever_its_run_is_cut) {
 }
 INSTANTIATE_TEST_SUITE_P(MeasuredMotors, DroneWithFan, testing::Values(50, 60, 70),
                          [](const auto& each) { return "first_" + std::to_string(each.param) + "_percent"; });
-
-/// Two recordings of the outrunner "Mega" with a propeller on a bench, on two days.
-struct PropellerBench {
-  recording::Recording january;
-  recording::Recording march;
-  motor::Motor start = motor::read_motor(kReports / "propeller_bench/start.toml");
-};
-
-recording::Recording of_bench(const std::filesystem::path& folder, const char* name) {
-  return read(folder / ("cooling_slopes__Spike-" + std::string(name) + ".csv"), kReports / "propeller_bench/recordings.map.toml");
-}
-
-PropellerBench propeller_bench(const std::filesystem::path& folder) {
-  return {of_bench(folder, "Mega-1700_2020-01-27_105922"), of_bench(folder, "Mega-1700_2020-03-05_145559")};
-}
 
 /// The probe at the coils is in the propeller's air flow. The copper behind it is hotter, so the probe's temperature rises after
 /// switch-off.
@@ -253,7 +161,7 @@ TEST(MeasuredMotors, another_outrunner_of_the_bench_gets_the_air_of_its_propelle
   SKIP_WITHOUT_MEASURED_DATA("ksu_propeller_bench");
   const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
   const recording::Recording all = of_bench(*folder, "P80-1700_2020-02-11_162559");
-  const motor::Motor start = motor::read_motor(kReports / "propeller_bench/start.toml");
+  const motor::Motor start = motor::read_motor(reports() / "propeller_bench/start.toml");
   const auto [model, input, diagnosis, score] = diagnosed(start, {recording::part_of(all, 0.0, 0.7)}, {recording::part_of(all, 0.7, 1.0)});
   ASSERT_TRUE(effect_of(diagnosis, "speed_dependent_convection")) << account(diagnosis);
   EXPECT_LE(diagnosis.after_train.at("stator_C").rmse_K, 0.5 * diagnosis.refitted_train.at("stator_C").rmse_K);
@@ -266,7 +174,7 @@ TEST(MeasuredMotors, locked_and_free_runs_of_a_frameless_motor_come_under_one_mo
   const std::filesystem::path map = kSource / "tests/data/mappings/umich_ri50.map.toml";
   const recording::Recording stall = read(*folder / "stall_staircase.csv", map);
   const recording::Recording no_load = read(*folder / "no_load_staircase.csv", map);
-  const motor::Motor start = motor::read_motor(kReports / "../calibration/ri50.toml");
+  const motor::Motor start = motor::read_motor(reports() / "../calibration/ri50.toml");
   constexpr double kAmbient_C = 22.0;
   const motor::Motor motor = calibration::calibrated_motor(
       start, calibration::calibrate(start, std::vector{stall}, {}, {{}, kAmbient_C, calibration::WrittenFit::innovations}));
@@ -277,12 +185,6 @@ TEST(MeasuredMotors, locked_and_free_runs_of_a_frameless_motor_come_under_one_mo
   EXPECT_LT(diagnosis.after_train.at("winding_C").rmse_K, 0.7 * diagnosis.before_train.at("winding_C").rmse_K);
   // The data are 37 samples with a resolution of 1 K, so a tiny p-value would be wrong.
   EXPECT_THAT(diagnosis.effects, testing::Each(testing::Field(&diagnosis::FoundEffect::p_value, testing::Gt(1e-60))));
-}
-
-Diagnosed of_traction_motor(const std::filesystem::path& folder, double cut) {
-  const recording::Recording all = read(folder / "profile24_2.5s.csv", kReports / "traction_motor/recording.map.toml");
-  return diagnosed(motor::read_motor(kReports / "traction_motor/start.toml"), {recording::part_of(all, 0.0, cut)},
-                   {recording::part_of(all, cut, 1.0)});
 }
 
 TEST(MeasuredMotors, a_traction_motor_said_to_have_copper_loss_only_is_predicted_after_two_loads) {

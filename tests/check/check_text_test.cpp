@@ -61,8 +61,7 @@ class Outcomes : public testing::Test {
     outcome.check = &checks_.at(check);
     const int line = 10 + static_cast<int>(outcomes_.size());
     outcome.limit = {find_threshold(threshold), limit, "", "", {"/repository/checks/robot,1.toml", line, 5}};
-    outcome.measured = {value, 0.0, is_evaluated ? "what it rests on" : ""};
-    outcome.is_evaluated = is_evaluated;
+    outcome.measured = is_evaluated ? std::optional(Measured{value, 0.0, "what it rests on"}) : std::nullopt;
     outcome.passed = reason.empty();
     outcome.reason = std::move(reason);
     outcomes_.push_back(std::move(outcome));
@@ -93,6 +92,17 @@ TEST_F(Outcomes, AreJunitThatParses) {
   EXPECT_EQ(by_name["failure"][0].attributes.at("message"), "0.5 A is below the limit of 1 A");
   ASSERT_EQ(by_name["error"].size(), 1U);
   EXPECT_EQ(by_name["error"][0].attributes.at("message"), "guard.h:3:1: is\nno table, 100 %");
+}
+
+TEST(JunitOfAFailure, is_one_error_with_every_problem) {
+  const base::Failure failure(base::ExitCode::bad_input, "",
+                              {{{"a<b.toml", 3, 9}, "check[0].robot", "there is no robot"}, {{"missing.toml"}, {}, "cannot be read"}});
+  const std::vector<Element> elements = parsed(junit_xml(failure, "1.2.3"));
+  EXPECT_EQ(elements.front().attributes.at("tests"), "1");
+  EXPECT_EQ(elements.front().attributes.at("errors"), "1");
+  EXPECT_EQ(elements.back().name, "error");
+  EXPECT_THAT(elements.back().attributes.at("message"), HasSubstr("a<b.toml:3:9: error: check[0].robot: there is no robot"));
+  EXPECT_THAT(elements.back().text, HasSubstr("missing.toml: error: cannot be read"));
 }
 
 TEST_F(Outcomes, AreAnnotationsAtFileAndLine) {

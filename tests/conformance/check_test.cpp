@@ -94,7 +94,7 @@ TEST_F(CheckCommand, SummaryThatCannotBeWrittenIsNoFailure) {
   EXPECT_THAT(done.err, HasSubstr("warning: the summary"));
 }
 
-TEST_F(CheckCommand, WrongFilesAreExitTwoAllAtOnceAndLeaveNothing) {
+TEST_F(CheckCommand, WrongFilesAreExitTwoAllAtOnceAndLeaveOnlyTheJunit) {
   write(folder_.path() / "other.toml", "[[check]]\nname = \"x\"\nrobot = \"nobody\"\n[check.limits]\nlint_problems = \"at most 0\"\n");
   options_.environment = {"GITHUB_ACTIONS=true", "GITHUB_WORKSPACE"};
   const ProgramRun done = check("[[check]]\nname = \"y\"\n[check.limits]\nwinding_paek_p95 = \"at most 1 degC\"\n",
@@ -107,7 +107,10 @@ TEST_F(CheckCommand, WrongFilesAreExitTwoAllAtOnceAndLeaveNothing) {
   }
   EXPECT_EQ(done.json().at("error").at("diagnostics").size(), 3U);
   EXPECT_TRUE(done.json().at("version").is_string());
-  EXPECT_THAT(folder_.names(), ElementsAre("other.toml", "robot.check.toml"));
+  EXPECT_THAT(folder_.names(), ElementsAre("check.xml", "other.toml", "robot.check.toml"));
+  EXPECT_THAT(content_of(folder_.path() / "check.xml"),
+              testing::AllOf(HasSubstr("tests=\"1\" failures=\"0\" errors=\"1\""), HasSubstr("<error type=\"not_evaluated\""),
+                             HasSubstr("missing.toml: error: cannot be read")));
 }
 
 TEST_F(CheckCommand, MissingMotorFileIsAFailedLimitInEveryReport) {

@@ -107,7 +107,7 @@ struct Coverage {
   double worst = 0.0;
   void add(double truth, const Estimate& found) {
     ++all;
-    inside += found.low <= truth && truth <= found.high ? 1 : 0;
+    inside += found.interval->low <= truth && truth <= found.interval->high ? 1 : 0;
     worst = std::max(worst, std::abs(found.value - truth));
   }
 };
@@ -124,13 +124,13 @@ TEST(FrictionFit, intervals_hold_the_truth_of_95_percent_of_drives) {
     for (std::size_t i = 0; i < 4; ++i) {
       ASSERT_TRUE(fit.wheels[i].is_learned()) << testing::PrintToString(fit.wheels[i].problem);
       alarms += fit.wheels[i].lack.is_found ? 1 : 0;
-      damping.add(known.truth.damping_V_s_per_rad, fit.wheels[i].damping_V_s_per_rad);
-      sine.add(known.truth.sine_V[i], fit.wheels[i].sine_V);
-      constant.add(known.truth.constant_V[i], fit.wheels[i].constant_V);
-      const double turns = std::remainder(known.truth.phase_rad[i] - fit.wheels[i].phase_rad.value, 2.0 * std::numbers::pi);
-      phase.add(fit.wheels[i].phase_rad.value + turns, fit.wheels[i].phase_rad);
+      damping.add(known.truth.damping_V_s_per_rad, *fit.wheels[i].damping_V_s_per_rad);
+      sine.add(known.truth.sine_V[i], *fit.wheels[i].sine_V);
+      constant.add(known.truth.constant_V[i], *fit.wheels[i].constant_V);
+      const double turns = std::remainder(known.truth.phase_rad[i] - fit.wheels[i].phase_rad->value, 2.0 * std::numbers::pi);
+      phase.add(fit.wheels[i].phase_rad->value + turns, *fit.wheels[i].phase_rad);
       for (const HeadingLine& line : fit.lines[i]) {
-        if (line.damping_V_s_per_rad.is_known()) {
+        if (line.damping_V_s_per_rad && line.damping_V_s_per_rad->interval) {
           offset.add(friction_V(known.truth, i, line.heading_rad), line.offset_V);
         }
       }
@@ -171,10 +171,10 @@ TEST(FrictionFit, an_undisturbed_drive_gives_the_friction_within_millivolts) {
   const FrictionFit fit = fit_friction(steady.parts, known.plant.body.kinematics, {});
   for (std::size_t i = 0; i < 4; ++i) {
     const WheelFriction& wheel = fit.wheels[i];
-    EXPECT_NEAR(wheel.damping_V_s_per_rad.value, known.truth.damping_V_s_per_rad, 4e-4);
-    EXPECT_NEAR(wheel.sine_V.value, known.truth.sine_V[i], 0.015);
-    EXPECT_NEAR(wheel.constant_V.value, known.truth.constant_V[i], 0.010);
-    EXPECT_NEAR(wheel.rotation_V.value, known.truth.rotation_V, 0.010);
+    EXPECT_NEAR(wheel.damping_V_s_per_rad->value, known.truth.damping_V_s_per_rad, 4e-4);
+    EXPECT_NEAR(wheel.sine_V->value, known.truth.sine_V[i], 0.015);
+    EXPECT_NEAR(wheel.constant_V->value, known.truth.constant_V[i], 0.010);
+    EXPECT_NEAR(wheel.rotation_V->value, known.truth.rotation_V, 0.010);
     EXPECT_GT(wheel.r2_ratio, 0.999);
     // voltage offset from each heading alone
     for (const HeadingLine& line : fit.lines[i]) {
@@ -244,8 +244,8 @@ TEST(FrictionFit, says_what_a_drive_cannot_tell) {
   ASSERT_TRUE(given.is_learned());
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_TRUE(given.wheels[i].damping_is_given);
-    EXPECT_TRUE(std::isnan(given.wheels[i].damping_V_s_per_rad.low));
-    EXPECT_NEAR(given.wheels[i].constant_V.value, known.truth.constant_V[i], 0.2);
+    EXPECT_FALSE(given.wheels[i].damping_V_s_per_rad->interval);
+    EXPECT_NEAR(given.wheels[i].constant_V->value, known.truth.constant_V[i], 0.2);
   }
 }
 
@@ -265,9 +265,9 @@ TEST(FrictionFit, few_headings_leave_wide_intervals_or_nothing) {
     for (std::size_t i = 0; i < 2; ++i) {
       ASSERT_TRUE(diagonal.wheels[i].is_learned()) << testing::PrintToString(diagonal.wheels[i].problem);
       EXPECT_TRUE(diagonal.wheels[i].phase_is_given);
-      sine.add(known.truth.sine_V[i], diagonal.wheels[i].sine_V);
-      constant.add(known.truth.constant_V[i], diagonal.wheels[i].constant_V);
-      damping.add(known.truth.damping_V_s_per_rad, diagonal.wheels[i].damping_V_s_per_rad);
+      sine.add(known.truth.sine_V[i], *diagonal.wheels[i].sine_V);
+      constant.add(known.truth.constant_V[i], *diagonal.wheels[i].constant_V);
+      damping.add(known.truth.damping_V_s_per_rad, *diagonal.wheels[i].damping_V_s_per_rad);
     }
     const FrictionFit nearly_alike = fitted(7.0);
     for (const std::size_t i : {0U, 2U, 3U}) {
@@ -339,8 +339,8 @@ TEST(FrictionFit, of_a_third_harmonic_is_reported_and_covered) {
       EXPECT_LT(fit.wheels[i].lack.left_V.value(), 0.075);
       EXPECT_LT(fit.wheels[i].lack.repeats_V.value(), fit.wheels[i].lack.left_V.value());
       EXPECT_GT(fit.wheels[i].r2_ratio, 0.998);
-      sine.add(known.truth.sine_V[i], fit.wheels[i].sine_V);
-      constant.add(known.truth.constant_V[i], fit.wheels[i].constant_V);
+      sine.add(known.truth.sine_V[i], *fit.wheels[i].sine_V);
+      constant.add(known.truth.constant_V[i], *fit.wheels[i].constant_V);
     }
   }
   EXPECT_GE(sine.inside, 0.9 * sine.all);
@@ -363,8 +363,8 @@ TEST(FrictionFit, of_another_law_is_reported_and_still_predicts) {
   EXPECT_TRUE(std::ranges::any_of(fit.wheels, &WheelFriction::phase_is_bounded));
   EXPECT_TRUE(std::ranges::all_of(fit.wheels, [](const WheelFriction& wheel) { return wheel.lack.is_found; }));
   for (const WheelFriction& wheel : fit.wheels) {
-    EXPECT_LT(wheel.phase_rad.low, wheel.phase_rad.high) << "an interval of no width would be a false certainty";
-    EXPECT_NEAR(wheel.damping_V_s_per_rad.value, known.truth.damping_V_s_per_rad, 0.006);
+    EXPECT_LT(wheel.phase_rad->interval->low, wheel.phase_rad->interval->high) << "an interval of no width would be a false certainty";
+    EXPECT_NEAR(wheel.damping_V_s_per_rad->value, known.truth.damping_V_s_per_rad, 0.006);
   }
   const HeldOutError error = error_on_held_out_headings(steady.parts, known.plant.body.kinematics, {}, {});
   // The total friction is 0.7 V to 1.4 V, and the RMS of its double-angle term is 0.27 V.

@@ -3,6 +3,7 @@
 
 #include <iomanip>
 #include <iostream>
+#include <sstream>
 
 #include "../support/measured_data.h"
 #include "friction/friction_fit.h"
@@ -48,15 +49,24 @@ SteadyParts robotino_parts(const std::filesystem::path& surface, int first, int 
   return find_steady_parts(logs, robot::make_kinematics(robotino()));
 }
 
+std::string shown(const std::optional<Estimate>& estimate) {
+  std::ostringstream text;
+  if (estimate) {
+    text << estimate->value;
+  }
+  if (estimate && estimate->interval) {
+    text << " [" << estimate->interval->low << ", " << estimate->interval->high << "]";
+  }
+  return text.str();
+}
+
 void print(const std::string& name, const SteadyParts& steady, const FrictionFit& fit, const HeldOutError& error) {
   std::cout << name << ": " << steady.legs << " legs, " << steady.rows_steady << " of " << steady.rows << " rows steady; on "
             << error.headings << " of " << error.all_headings << " headings " << error.before_V.value_or(NAN) << " V before, "
             << error.after_V.value_or(NAN) << " V after\n";
   for (const WheelFriction& wheel : fit.wheels) {
-    std::cout << "  d " << wheel.damping_V_s_per_rad.value << " [" << wheel.damping_V_s_per_rad.low << ", "
-              << wheel.damping_V_s_per_rad.high << "]  a " << wheel.sine_V.value << " [" << wheel.sine_V.low << ", " << wheel.sine_V.high
-              << "]  b " << wheel.constant_V.value << " [" << wheel.constant_V.low << ", " << wheel.constant_V.high << "]  phase "
-              << wheel.phase_rad.value << "  R2 " << wheel.r2_ratio.value_or(NAN) << "  " << wheel.parts_used << " legs, "
+    std::cout << "  d " << shown(wheel.damping_V_s_per_rad) << "  a " << shown(wheel.sine_V) << "  b " << shown(wheel.constant_V)
+              << "  phase " << shown(wheel.phase_rad) << "  R2 " << wheel.r2_ratio.value_or(NAN) << "  " << wheel.parts_used << " legs, "
               << wheel.parts_standing << " standing, " << wheel.parts_outlying << " outlying\n";
   }
 }
@@ -85,7 +95,7 @@ TEST(FrictionOfRecordings, robotino_on_two_surfaces) {
       EXPECT_TRUE(wheel.damping_is_given);
       EXPECT_GT(wheel.r2_ratio, 0.98);
       // The recordings' robots.md states about 0.15 A to keep a wheel turning, 5.95 Ω.
-      EXPECT_NEAR(wheel.constant_V.value, 0.15 * 5.95, 0.5);
+      EXPECT_NEAR(wheel.constant_V->value, 0.15 * 5.95, 0.5);
     }
   }
 }
@@ -105,9 +115,9 @@ TEST(FrictionOfRecordings, robotino_on_carpet_at_three_speeds) {
     EXPECT_FALSE(wheel.damping_is_given);
     EXPECT_GT(wheel.r2_ratio, 0.98);
     // The damping is at least the back-EMF constant unless friction falls with speed. The measured interval must not contradict this.
-    EXPECT_GT(wheel.damping_V_s_per_rad.high, 0.0514 * 16.0);
-    EXPECT_GT(wheel.damping_V_s_per_rad.value, 0.95 * 0.0514 * 16.0);
-    EXPECT_LT(wheel.damping_V_s_per_rad.value, 1.5 * 0.0514 * 16.0);
+    EXPECT_GT(wheel.damping_V_s_per_rad->interval->high, 0.0514 * 16.0);
+    EXPECT_GT(wheel.damping_V_s_per_rad->value, 0.95 * 0.0514 * 16.0);
+    EXPECT_LT(wheel.damping_V_s_per_rad->value, 1.5 * 0.0514 * 16.0);
   }
 }
 
@@ -147,12 +157,11 @@ TEST(FrictionOfRecordings, a_team_wheel_motors_voltage_over_speed) {
     const double offset_V = (y - slope * x) / n;
     const WheelFriction& wheel = fit.wheels[i];
     ASSERT_TRUE(wheel.is_learned()) << testing::PrintToString(wheel.problem);
-    std::cout << "wheel " << i + 1 << ": " << wheel.damping_V_s_per_rad.value << " [" << wheel.damping_V_s_per_rad.low << ", "
-              << wheel.damping_V_s_per_rad.high << "] V s/rad, offset " << wheel.rotation_V.value << " V, R2 "
-              << wheel.r2_ratio.value_or(NAN) << ", legs " << wheel.parts_used << "; line through the rows " << slope << ", " << offset_V
-              << "\n";
-    EXPECT_NEAR(wheel.damping_V_s_per_rad.value, slope, 0.02 * slope);
-    EXPECT_NEAR(wheel.rotation_V.value, offset_V, 0.04);
+    std::cout << "wheel " << i + 1 << ": " << shown(wheel.damping_V_s_per_rad) << " V s/rad, offset " << shown(wheel.rotation_V)
+              << " V, R2 " << wheel.r2_ratio.value_or(NAN) << ", legs " << wheel.parts_used << "; line through the rows " << slope << ", "
+              << offset_V << "\n";
+    EXPECT_NEAR(wheel.damping_V_s_per_rad->value, slope, 0.02 * slope);
+    EXPECT_NEAR(wheel.rotation_V->value, offset_V, 0.04);
     EXPECT_GT(wheel.r2_ratio, 0.998);
   }
 }

@@ -22,17 +22,15 @@ const std::filesystem::path kFile = kSource / "robot_core/robots/roboteam_twente
 std::string file_text() { return base::read_file(kFile, 1'000'000); }
 motor::MotorValues motor() { return motor::read_motor(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml").nominal; }
 
-Estimate around(double value, double half) { return {value, value - half, value + half}; }
-
 FrictionFit any_fit(const robot::Robot& robot) {
   FrictionFit fit;
   for (std::size_t i = 0; i < robot.wheels.axis_rad.size(); ++i) {
     WheelFriction& wheel = fit.wheels.emplace_back();
     const auto n = static_cast<double>(i);
-    wheel.damping_V_s_per_rad = around(0.0375, 0.0004);
-    wheel.sine_V = around(0.30 - 0.2 * n, 0.05);
-    wheel.constant_V = around(1.1 + 0.05 * n, 0.03);
-    wheel.phase_rad = around(std::remainder(-robot.wheels.axis_rad[i] + 0.03 * n, 2.0 * std::numbers::pi), 0.05);
+    wheel.damping_V_s_per_rad = estimate_around(0.0375, 0.0004);
+    wheel.sine_V = estimate_around(0.30 - 0.2 * n, 0.05);
+    wheel.constant_V = estimate_around(1.1 + 0.05 * n, 0.03);
+    wheel.phase_rad = estimate_around(std::remainder(-robot.wheels.axis_rad[i] + 0.03 * n, 2.0 * std::numbers::pi), 0.05);
   }
   return fit;
 }
@@ -102,9 +100,9 @@ TEST(RobotFile, of_a_robot_without_friction_gets_its_tables) {
 TEST(RobotFile, says_where_the_motor_alone_is_more_than_what_was_measured) {
   const robot::Robot robot = robot::read_robot(kFile);
   FrictionFit fit = any_fit(robot);
-  fit.wheels[2].constant_V = around(0.1, 0.05);
-  fit.wheels[2].sine_V = around(0.0, 0.05);
-  fit.wheels[3].damping_V_s_per_rad = around(0.03, 0.001);
+  fit.wheels[2].constant_V = estimate_around(0.1, 0.05);
+  fit.wheels[2].sine_V = estimate_around(0.0, 0.05);
+  fit.wheels[3].damping_V_s_per_rad = estimate_around(0.03, 0.001);
   std::vector<WrittenAsZero> notes;
   const robot::Robot after = robot::parse_robot(
       with_measured_friction(file_text(), robot, robot::drive_constants(robot, motor()), fit, "drive.csv", notes), kFile);

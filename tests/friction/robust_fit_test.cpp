@@ -63,7 +63,7 @@ TEST(RobustFit, intervals_of_unequal_scatter) {
       y(i) = 0.5 + 2.0 * x + (0.1 + 0.2 * std::abs(x)) * normal(engine) + (any(engine) < 0.15 ? 10.0 * (any(engine) - 0.5) : 0.0);
     }
     const Estimate slope = robust_fit(X, y, cluster).estimate(1);
-    inside += slope.low <= 2.0 && 2.0 <= slope.high ? 1 : 0;
+    inside += slope.interval->low <= 2.0 && 2.0 <= slope.interval->high ? 1 : 0;
   }
   EXPECT_GE(inside, 0.93 * kSamples);
   EXPECT_LE(inside, 0.98 * kSamples);
@@ -87,7 +87,7 @@ TEST(RobustFit, intervals_of_what_few_clusters_tell) {
     const RobustFit fit = robust_fit(X, y, cluster);
     EXPECT_LT(fit.freedom_counts(1), 7.0);
     const Estimate step = fit.estimate(1);
-    inside += step.low <= 2.0 && 2.0 <= step.high ? 1 : 0;
+    inside += step.interval->low <= 2.0 && 2.0 <= step.interval->high ? 1 : 0;
   }
   EXPECT_GE(inside, 0.93 * kSamples);
   EXPECT_LE(inside, 0.98 * kSamples);

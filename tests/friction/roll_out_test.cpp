@@ -64,10 +64,10 @@ TEST(RollOut, of_the_plant_gives_its_damping_and_friction) {
     EXPECT_NEAR(run.wheel_torque_Nm, 0.012 + 0.0066, 0.001);
     EXPECT_GT(run.r2_ratio, 0.999);
   }
-  const Estimate& damping = found.wheel_damping_Nm_s_per_rad[0];
+  const Estimate& damping = *found.wheel_damping_Nm_s_per_rad[0];
   EXPECT_NEAR(damping.value, 4e-4, 2e-5);
-  EXPECT_LT(damping.low, 4e-4);
-  EXPECT_GT(damping.high, 4e-4);
+  EXPECT_LT(damping.interval->low, 4e-4);
+  EXPECT_GT(damping.interval->high, 4e-4);
 }
 
 /// Closed-form solution of J·dω/dt = −τ − D·ω:  ω = (ω_0 + τ/D)·exp(−D·t/J) − τ/D.
@@ -96,8 +96,8 @@ TEST(RollOut, of_lifted_wheels_gives_each_its_own) {
   const RollOutResult found = roll_out(logs, plant.body, true);
   EXPECT_EQ(found.runs.size(), 16U);
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_NEAR(found.wheel_damping_Nm_s_per_rad[i].value, damping[i], 0.03 * damping[i] + 1e-6);
-    EXPECT_NEAR(found.wheel_torque_Nm[i].value, torque[i], 0.03 * torque[i]);
+    EXPECT_NEAR(found.wheel_damping_Nm_s_per_rad[i]->value, damping[i], 0.03 * damping[i] + 1e-6);
+    EXPECT_NEAR(found.wheel_torque_Nm[i]->value, torque[i], 0.03 * torque[i]);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "base/unknown.h"
 #include "thermal/steady_state.h"
 
 namespace heatsoak::motor {

@@ -22,10 +22,10 @@ class CheckAnswer : public testing::Test {
     checks_[0].name = "robot at the tournament";
     checks_[1].name = "second";
     add(0, "winding_peak_p95", 100.0, 90.0, true, "");
-    outcomes_.back().measured.detail =
+    outcomes_.back().measured->detail =
         "nominal 47.0 °C, median 47.2 °C, 500 samples of all declared tolerances and the wheel front_left of it, 10 A";
     add(0, "current_margin", 1.0, 0.5, true, "0.5 A is below the limit of 1 A");
-    outcomes_.back().measured.detail = "hottest wheel";
+    outcomes_.back().measured->detail = "hottest wheel";
     add(1, "derating_excess", 0.0, std::numeric_limits<double>::quiet_NaN(), false, "guard.h:3:1: has no table");
   }
 
@@ -33,8 +33,7 @@ class CheckAnswer : public testing::Test {
     check::Outcome outcome;
     outcome.check = &checks_.at(check);
     outcome.limit = {check::find_threshold(threshold), limit, "", "", {"/repository/robot.toml", 10, 5}};
-    outcome.measured = {value, 0.0, ""};
-    outcome.is_evaluated = is_evaluated;
+    outcome.measured = is_evaluated ? std::optional(check::Measured{value, 0.0, ""}) : std::nullopt;
     outcome.passed = reason.empty();
     outcome.reason = std::move(reason);
     outcomes_.push_back(std::move(outcome));

@@ -204,7 +204,7 @@ TEST(EvaluationDocument, nominal_values_are_named_whatever_the_verdict) {
   for (const select::Verdict verdict : {select::Verdict::pass, select::Verdict::fail, select::Verdict::infeasible}) {
     select::MotorEvaluation motor;
     motor.verdict = verdict;
-    motor.probability_over_limit = std::numeric_limits<double>::quiet_NaN();
+    motor.probability_over_limit = {};
     EXPECT_NE(evaluation_document(answer_with({motor})).headline.at(1).words.find("nominal values"), std::string::npos);
   }
 }

@@ -14,6 +14,7 @@
 #include "friction/friction_job.h"
 #include "friction/robot_file.h"
 #include "present/measured/calibration_words.h"
+#include "present/measured/diagnosis_words.h"
 #include "present/measured/failure_words.h"
 #include "present/measured/friction_words.h"
 #include "present/measured/log_words.h"
@@ -218,6 +219,39 @@ TEST(WordsOfFailures, OfRunsAndDiagnoses) {
   EXPECT_THAT(in_words(diagnosis::NoEffectFollows({"stator_C", 31.26, 8.04})).message(),
               HasSubstr("no effect makes the model follow these logs: stator_C has an error of 31 K rms, more than its variation (standard "
                         "deviation 8 K)\n  check for another motor"));
+}
+
+TEST(WordsOfFailures, OfRunsThatCountTwiceOrCannotBeSimulated) {
+  const base::Failure twice = in_words(recording::RowsGivenTwice({{"logs/b.csv", "logs/a.csv"}, {"logs/c.csv", "logs/a.csv"}}));
+  EXPECT_EQ(twice.code(), base::ExitCode::bad_input);
+  ASSERT_EQ(twice.diagnostics().size(), 2U);
+  EXPECT_EQ(twice.diagnostics()[1].at.file, "logs/c.csv");
+  EXPECT_EQ(twice.diagnostics()[1].message, "holds the same rows as logs/a.csv");
+  const base::Failure again = in_words(calibration::RunsOfTheFile("ecx", {"logs/a.csv"}));
+  EXPECT_EQ(again.code(), base::ExitCode::bad_input);
+  ASSERT_EQ(again.diagnostics().size(), 1U);
+  EXPECT_EQ(again.diagnostics()[0].message, "ecx was fitted to these rows (fit.runs)");
+  const base::Failure cause(base::ExitCode::numerics_failed, "too fast");
+  const base::Failure failed = in_words(estimation::RunNotSimulated("run1", cause));
+  EXPECT_EQ(failed.code(), base::ExitCode::numerics_failed);
+  EXPECT_THAT(failed.message(), testing::StartsWith("run1: too fast; check the units of the log's columns"));
+}
+
+TEST(WordsOfDiagnosis, RunDeviationsAreNotesOfTheModelFile) {
+  diagnosis::Diagnosis found;
+  diagnosis::FoundEffect deviation;
+  deviation.id = "heat_share";
+  deviation.node = "winding";
+  deviation.parameters = {{"deviation", "", -0.3052}};
+  deviation.condition = {{"run", "run4"}};
+  diagnosis::FoundEffect named = deviation;
+  named.name = "fan";
+  diagnosis::FoundEffect sensor = deviation;
+  sensor.id = "sensor_offset_winding";
+  found.effects = {named, deviation, sensor};
+  EXPECT_EQ(notes_of_model_file(found),
+            std::vector<std::string>{
+                "heat_share at the winding in run4: deviation -0.305 ; found in measurements, not a property of the motor"});
 }
 
 TEST(WordsOfCalibration, OpenDirections) {

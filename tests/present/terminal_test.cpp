@@ -143,6 +143,19 @@ TEST(Terminal, three_notes_are_shown_the_most_urgent_first) {
   EXPECT_THAT(terminal_text(example(), {.explains = true}), HasSubstr("- third"));
 }
 
+TEST(Terminal, explains_only_the_columns_that_are_shown) {
+  Document document = example();
+  document.tables[0].columns[1].meaning = "best first";
+  document.tables[0].columns.back().meaning = "the widest terminal shows it";
+  document.tables[0].columns.back().priority = 9;
+  const auto text = [&](std::size_t width) { return terminal_text(document, {.width = width, .explains = true}); };
+  EXPECT_THAT(text(400), HasSubstr("Columns. motor: best first; "));
+  EXPECT_THAT(text(400), HasSubstr("the widest terminal shows it."));
+  EXPECT_THAT(text(40), Not(HasSubstr("the widest")));
+  EXPECT_THAT(text(40), HasSubstr("best first."));
+  EXPECT_THAT(rendered_for("x.md", document), HasSubstr("the widest terminal shows it."));
+}
+
 TEST(Terminal, quiet_is_the_headline) {
   EXPECT_EQ(terminal_text(example(), {.is_quiet = true}), "One motor passes.\nAnother one fails.\n");
 }

@@ -409,6 +409,33 @@ TEST_F(ChartTest, EverythingIsInsideThePlotWithHeadroom) {
   EXPECT_NEAR(plot.low.y_px, winding.y.px(-125.0), 1.0);
 }
 
+// A level that may be outside stays in the range if at most a third of the panel is empty; else only its name is shown, at the edge.
+TEST_F(ChartTest, AFarLimitIsAnAnnotation) {
+  Chart chart = warm_up();
+  double lowest = std::numeric_limits<double>::infinity();
+  double high = -lowest;
+  for (const ChartCurve& curve : chart.panels[1].curves) {
+    lowest = std::min(lowest, std::ranges::min(curve.y));
+    high = std::max(high, std::ranges::max(curve.y));
+  }
+  for (const ChartBand& band : chart.panels[1].bands) {
+    lowest = std::min(lowest, std::ranges::min(band.low));
+    high = std::max(high, std::ranges::max(band.high));
+  }
+  const auto is_named = [](const std::vector<Element>& elements, const std::string& name) {
+    return std::ranges::any_of(elements, [&](const Element& each) { return each.name == "text" && each.text == name; });
+  };
+  chart.panels[1].levels = {{"limit", high + 0.48 * (high - lowest), true}};
+  const auto near = drawn(chart);
+  EXPECT_EQ(lines(near, red, 2).size(), 1U);
+  EXPECT_TRUE(is_named(near, "limit"));
+  chart.panels[1].levels = {{"limit", high + 0.6 * (high - lowest), true}, {"lower limit", lowest - (high - lowest), true}};
+  const auto far = drawn(chart);
+  EXPECT_TRUE(lines(far, red, 2).empty());
+  EXPECT_TRUE(is_named(far, "↑ limit"));
+  EXPECT_TRUE(is_named(far, "↓ lower limit"));
+}
+
 TEST_F(ChartTest, NanBreaksLineAndBand) {
   Chart chart = warm_up();
   const double gap = std::numeric_limits<double>::quiet_NaN();

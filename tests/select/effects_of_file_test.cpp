@@ -133,8 +133,8 @@ TEST_F(EffectsOfAFile, evaluate_shows_them_in_the_nominal_run_and_in_the_samples
       evaluation(MotorFile("\n[effects.lamp]\ntype = \"constant_heat\"\n" + estimated("power", "2 W")).read(), 40);
   EXPECT_LT(cooled.stator_peak_C.nominal, plain.stator_peak_C.nominal - 1.0);
   EXPECT_GT(heated.stator_peak_C.nominal, plain.stator_peak_C.nominal + 1.0);
-  EXPECT_LT(cooled.stator_peak_C.p50, plain.stator_peak_C.p50 - 1.0);
-  EXPECT_GT(heated.stator_peak_C.p50, plain.stator_peak_C.p50 + 1.0);
+  EXPECT_LT(*cooled.stator_peak_C.p50, *plain.stator_peak_C.p50 - 1.0);
+  EXPECT_GT(*heated.stator_peak_C.p50, *plain.stator_peak_C.p50 + 1.0);
 }
 
 /// Sets a nearly zero spread. Without any spread the default would apply.
@@ -169,8 +169,8 @@ TEST_F(EffectsOfAFile, samples_agree_with_the_reference_where_nothing_is_uncerta
   options.samples = 8;
   const std::vector<motor::Motor> one{motor};
   const MotorEvaluation result = evaluate_as_stated(robot_, duty_, duty_.demand(robot_, 1), one, options).front();
-  EXPECT_NEAR(result.winding_peak_C.p50, result.winding_peak_C.nominal, 2e-3);
-  EXPECT_NEAR(result.stator_peak_C.p50, result.stator_peak_C.nominal, 2e-3);
+  EXPECT_NEAR(*result.winding_peak_C.p50, result.winding_peak_C.nominal, 2e-3);
+  EXPECT_NEAR(*result.stator_peak_C.p50, result.stator_peak_C.nominal, 2e-3);
 }
 
 std::string under_a_condition(const std::string& name, const std::string& type, const std::string& size) {

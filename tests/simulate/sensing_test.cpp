@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/unknown.h"
 #include "simulate/radio.h"
 #include "support/shipped.h"
 

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "estimation/thresholds.h"
 
 namespace heatsoak::calibration {
 namespace {
@@ -144,7 +145,7 @@ class Search {
     const auto after = rival_score(out_.source, score, runs_).rmse_K;
     return std::ranges::any_of(before, [&](const auto& each) {
       const auto same = std::ranges::find(after, each.first, [](const auto& other) { return other.first; });
-      return same != after.end() && same->second < each.second - estimation::kMatters_K;
+      return same != after.end() && same->second < each.second - estimation::thresholds().matters_K;
     });
   }
 

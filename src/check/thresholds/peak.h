@@ -26,7 +26,7 @@ inline Measured measured_peak(const Check& check, Computations& computations, se
   const select::MotorEvaluation& result = computations.feasible_evaluation(check);
   const select::Spread95& peak_C = result.*peak;
   const std::optional<select::Interval95>& bounds_C = result.*interval;
-  if (!bounds_C || !std::isfinite(bounds_C->high)) {
+  if (!bounds_C || !peak_C.p50 || !peak_C.p95 || !std::isfinite(bounds_C->high)) {
     throw base::Failure(
         base::ExitCode::bad_input,
         fmt::format("a bound of the 95th percentile needs 72 samples or more, or 160 if the duty is drawn at random; the check has {}",
@@ -35,7 +35,7 @@ inline Measured measured_peak(const Check& check, Computations& computations, se
   return {
       bounds_C->high, check.duty->ambient_C.value,
       fmt::format("percentile {:.1f} °C, its bound with 97.5 % confidence {:.1f} °C; nominal {:.1f} °C, median {:.1f} °C, {} samples, {}",
-                  peak_C.p95, bounds_C->high, peak_C.nominal, peak_C.p50, check.samples, result.wheel)};
+                  *peak_C.p95, bounds_C->high, peak_C.nominal, *peak_C.p50, check.samples, result.wheel)};
 }
 
 }  // namespace heatsoak::check::thresholds

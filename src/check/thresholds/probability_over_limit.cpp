@@ -26,7 +26,7 @@ Measured measure_probability_over_limit(const Check& check, Computations& comput
   const select::MotorEvaluation& result = computations.feasible_evaluation(check);
   const int draws = Computations::independent_draws(check);
   const bool is_drawn = draws != check.samples;
-  const double share = result.probability_over_limit;
+  const double share = result.probability_over_limit.value();
   double bound = base::upper_bound_share(share * draws, draws, kConfidence);
   std::string detail = fmt::format("{} of {} samples over, bound of {:.0f} % confidence", std::lround(share * check.samples), check.samples,
                                    100.0 * kConfidence);

@@ -43,6 +43,10 @@ void write_github(const std::vector<check::Outcome>& outcomes, Session& session)
 }
 
 base::ExitCode run(const CheckOptions& options, Session& session) {
+  if (!options.junit.empty()) {
+    session.write_after_failure(options.junit,
+                                [](const base::Failure& failure) { return check::junit_xml(failure, base::program_version()); });
+  }
   const check::CheckAnswer answer = check::run_check_job(options.job, session.folders(), progress_bar);
   for (const check::RewrittenFile& each : answer.rewritten) {
     session.rewrite(each.path, each.text);

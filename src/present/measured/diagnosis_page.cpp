@@ -10,6 +10,7 @@
 
 #include "base/quantity.h"
 #include "base/xml_text.h"
+#include "estimation/thresholds.h"
 #include "present/measured/diagnosis_answer.h"
 #include "present/measured/diagnosis_words.h"
 
@@ -265,7 +266,7 @@ std::string diagnosis_page(const diagnosis::DiagnosisAnswer& answer, std::span<c
           "<h2>Evidence ladder</h2><p>Each candidate alone: its gain in evidence over the model without any candidate, averaged over the "
           "probable unknown heat. Its probability is that of all sets of effects that contain it; a name needs {:.0f} % for all effects of "
           "one kind together. Visibility is the share of an effect that no change of the model's own parameters can imitate.</p>",
-          100.0 * attribution::SelectionRules{}.named_probability) +
+          100.0 * estimation::named_probability()) +
       ladder_table(diagnosis);
   text += "<h2>Power balance</h2>" + balance_table(diagnosis);
   text += "<h2>Residual tests</h2>" + test_table(diagnosis);

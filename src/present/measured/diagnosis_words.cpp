@@ -13,6 +13,8 @@
 
 #include "base/quantity.h"
 #include "calibration/unlogged_speed.h"
+#include "estimation/thresholds.h"
+#include "motor/sensor_effect.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/log.h"
 
@@ -95,11 +97,11 @@ std::string reservations(const diagnosis::Diagnosis& diagnosis, const diagnosis:
   };
   report_growth(score.before, score.after, "the hold-out runs");
   report_growth(diagnosis.before_train, diagnosis.after_train, "the training runs");
-  if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * estimation::kMatters_K) {
+  if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * estimation::thresholds().matters_K) {
     text += fmt::format(
         " The error on the hold-out runs is {:.0f} times that on the training runs: they contain an effect that the training runs do not "
         "show.",
-        after_K / std::max(estimation::kMatters_K, train_K));
+        after_K / std::max(estimation::thresholds().matters_K, train_K));
   }
   return text;
 }
@@ -356,6 +358,20 @@ std::vector<std::string> diagnosis_words(const diagnosis::Diagnosis& diagnosis, 
                   (next.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats).", next.expected_nats) : std::string(".")));
   }
   return all;
+}
+
+std::vector<std::string> notes_of_model_file(const diagnosis::Diagnosis& diagnosis) {
+  std::vector<std::string> notes;
+  for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
+    if (!effect.name.empty() || motor::find_sensor_effect(effect.id) || effect.parameters.empty()) {
+      continue;
+    }
+    const diagnosis::FittedParameter& size = effect.parameters.front();
+    notes.push_back(fmt::format("{} at the {}{}: {} {:.3g} {}; found in measurements, not a property of the motor", effect.id, effect.node,
+                                effect.condition.empty() ? "" : fmt::format(" in {}", estimation::in_words(effect.condition)), size.name,
+                                size.value, size.unit));
+  }
+  return notes;
 }
 
 std::vector<std::string> refusal_words(const attribution::Selection& selection) {

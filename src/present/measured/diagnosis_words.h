@@ -24,6 +24,9 @@ std::string untested_words(const attribution::UntestedEffect& untested);
 std::string rivals_of(const diagnosis::Experiment& experiment);
 std::string experiment_words(const diagnosis::Experiment& experiment);
 
+/// Returns the notes of the extended motor's file: run deviations, which are not properties of the motor.
+std::vector<std::string> notes_of_model_file(const diagnosis::Diagnosis& diagnosis);
+
 struct DiagnosisNote {
   Severity severity = Severity::note;
   std::string words;

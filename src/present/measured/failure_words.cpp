@@ -26,6 +26,28 @@ base::Failure worded(const recording::NothingAboutHeat& failure) {
   return with_message(failure, fmt::format("{}: {}", failure.message(), fmt::join(words_of(failure.lacks()), "; ")));
 }
 
+base::Failure worded(const recording::RowsGivenTwice& failure) {
+  std::vector<base::Diagnostic> diagnostics;
+  for (const auto& [file, earlier] : failure.pairs()) {
+    diagnostics.push_back({{file.string()}, {}, fmt::format("holds the same rows as {}", earlier.string())});
+  }
+  return {failure.code(), failure.message(), std::move(diagnostics)};
+}
+
+base::Failure worded(const calibration::RunsOfTheFile& failure) {
+  std::vector<base::Diagnostic> diagnostics;
+  for (const std::filesystem::path& file : failure.files()) {
+    diagnostics.push_back({{file.string()}, {}, fmt::format("{} was fitted to these rows (fit.runs)", failure.motor_id())});
+  }
+  return {failure.code(), failure.message(), std::move(diagnostics)};
+}
+
+base::Failure worded(const estimation::RunNotSimulated& failure) {
+  return with_message(failure, failure.message() +
+                                   "; check the units of the log's columns (milliamperes, a sensor's gain) and the resistances of the "
+                                   "model; `heatsoak log inspect` shows the log, `heatsoak lint` checks the motor");
+}
+
 base::Failure worded(const friction::WheelNotIdentifiable& failure) {
   return with_message(failure, fmt::format("{}: {}", failure.message(),
                                            failure.problem() ? words_of(*failure.problem()) : "its logs only turn on the spot"));
@@ -124,9 +146,10 @@ base::Failure worded_as(const base::Failure& failure) {
 }  // namespace
 
 base::Failure in_words(const base::Failure& failure) {
-  return worded_as<recording::NothingAboutHeat, calibration::NothingLearned, calibration::NothingFollows, calibration::LogsLookWrong,
-                   friction::LogsLookWrong, friction::NothingIdentifiable, friction::WheelNotIdentifiable, estimation::NoUsableInterval,
-                   diagnosis::NoHeatInput, diagnosis::NoEffectFollows>(failure);
+  return worded_as<recording::NothingAboutHeat, recording::RowsGivenTwice, calibration::RunsOfTheFile, estimation::RunNotSimulated,
+                   calibration::NothingLearned, calibration::NothingFollows, calibration::LogsLookWrong, friction::LogsLookWrong,
+                   friction::NothingIdentifiable, friction::WheelNotIdentifiable, estimation::NoUsableInterval, diagnosis::NoHeatInput,
+                   diagnosis::NoEffectFollows>(failure);
 }
 
 }  // namespace heatsoak::present

@@ -16,14 +16,15 @@ namespace {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// Formats a value with its interval; `without_interval` explains why there is none.
-std::string estimate_text(const friction::Estimate& estimate, int decimals, double scale = 1.0,
+std::string estimate_text(const std::optional<friction::Estimate>& estimate, int decimals, double scale = 1.0,
                           const std::string& without_interval = "given") {
-  if (!std::isfinite(estimate.value)) {
+  if (!estimate) {
     return "–";
   }
-  return estimate.is_known() ? fmt::format("{:.{}f} [{:.{}f}…{:.{}f}]", scale * estimate.value, decimals, scale * estimate.low, decimals,
-                                           scale * estimate.high, decimals)
-                             : fmt::format("{:.{}f} ({})", scale * estimate.value, decimals, without_interval);
+  const auto& interval = estimate->interval;
+  return interval ? fmt::format("{:.{}f} [{:.{}f}…{:.{}f}]", scale * estimate->value, decimals, scale * interval->low, decimals,
+                                scale * interval->high, decimals)
+                  : fmt::format("{:.{}f} ({})", scale * estimate->value, decimals, without_interval);
 }
 
 std::string plural_of(std::size_t count, std::string_view what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
@@ -92,12 +93,14 @@ void add_wheel_notes(Document& document, const friction::FrictionFit& fit) {
                                                     "follows a sin(θ+φ) + b sign.",
                                                     i + 1));
     }
-    if (std::isfinite(wheel.rotation_V.value)) {
+    if (wheel.rotation_V) {
       document.add_note(Severity::background,
                         fmt::format("Wheel {} turning on the spot: {} V.", i + 1, estimate_text(wheel.rotation_V, 3)));
     }
   }
-  if (std::ranges::any_of(fit.wheels, [](const friction::WheelFriction& wheel) { return wheel.rotation_V.high < 0.0; })) {
+  if (std::ranges::any_of(fit.wheels, [](const friction::WheelFriction& wheel) {
+        return wheel.rotation_V && wheel.rotation_V->interval && wheel.rotation_V->interval->high < 0.0;
+      })) {
     document.add_note(Severity::warning,
                       "A friction below 0 V is impossible: the voltage is not proportional to the modulation, or the assumed battery "
                       "voltage is wrong.");
@@ -150,9 +153,17 @@ std::vector<std::string> lack_of_fit_words(const friction::FrictionFit& fit) {
   return found;
 }
 
-friction::Estimate damping_with_back_emf(const robot::DriveConstants& drive, const friction::Estimate& mechanical_Nm_s_per_rad) {
+std::optional<friction::Estimate> damping_with_back_emf(const robot::DriveConstants& drive,
+                                                        const std::optional<friction::Estimate>& mechanical_Nm_s_per_rad) {
+  if (!mechanical_Nm_s_per_rad) {
+    return std::nullopt;
+  }
   const auto volts = [&](double damping) { return robot::steady_voltage_V(drive, damping, 1.0); };
-  return {volts(mechanical_Nm_s_per_rad.value), volts(mechanical_Nm_s_per_rad.low), volts(mechanical_Nm_s_per_rad.high)};
+  friction::Estimate found{.value = volts(mechanical_Nm_s_per_rad->value)};
+  if (const auto& interval = mechanical_Nm_s_per_rad->interval) {
+    found.interval = {volts(interval->low), volts(interval->high)};
+  }
+  return found;
 }
 
 Document roll_out_document(const robot::Robot& robot, const friction::RollOutResult& result, const robot::DriveConstants& drive,
@@ -160,12 +171,12 @@ Document roll_out_document(const robot::Robot& robot, const friction::RollOutRes
   Document document{.headline = {{fmt::format("{}: {} in {}, motors assumed open.", robot.id, plural_of(result.runs.size(), "roll-out"),
                                               plural_of(logs, "log"))}},
                     .paragraphs = {"Torque and damping of a wheel without the motor's back-EMF; d with it."}};
-  const auto fitted = [](const friction::Estimate& estimate, int decimals, double scale) {
+  const auto fitted = [](const std::optional<friction::Estimate>& estimate, int decimals, double scale) {
     return estimate_text(estimate, decimals, scale, "no interval");
   };
   Table wheels{.columns = {{"wheel", "", 0}, {"torque", "mN m", 0}, {"damping", "mN m s/rad", 1}, {"d", "V s/rad", 0}}, .rows = {}};
   for (std::size_t i = 0; i < result.wheel_damping_Nm_s_per_rad.size(); ++i) {
-    const friction::Estimate& mechanical = result.wheel_damping_Nm_s_per_rad[i];
+    const std::optional<friction::Estimate>& mechanical = result.wheel_damping_Nm_s_per_rad[i];
     wheels.rows.push_back({{fmt::format("{}", i + 1)},
                            {fitted(result.wheel_torque_Nm[i], 2, 1e3)},
                            {fitted(mechanical, 4, 1e3)},

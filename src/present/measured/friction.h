@@ -40,8 +40,9 @@ Document roll_out_document(const robot::Robot& robot, const friction::RollOutRes
 Json roll_out_json(const robot::Robot& robot, const friction::RollOutResult& result, const robot::DriveConstants& drive,
                    const FrictionRemarks& remarks);
 
-/// Returns the voltage per wheel speed that mechanical damping and back-EMF need together.
-friction::Estimate damping_with_back_emf(const robot::DriveConstants& drive, const friction::Estimate& mechanical_Nm_s_per_rad);
+/// Returns the voltage per wheel speed that mechanical damping and back-EMF need together; nothing without a damping.
+std::optional<friction::Estimate> damping_with_back_emf(const robot::DriveConstants& drive,
+                                                        const std::optional<friction::Estimate>& mechanical_Nm_s_per_rad);
 
 /// Returns the remarks of a test. `motor` is the id of the robot's motor, which has no file if `has_motor` is false. `of_fit` follow last.
 FrictionRemarks friction_remarks(const std::string& motor, bool has_motor, const friction::FrictionRun& run,

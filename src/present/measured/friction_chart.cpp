@@ -26,9 +26,9 @@ report::ChartCurve dots(std::size_t wheel, const std::string& name) {
 
 /// Adds the interval as a vertical line at `x`.
 void add_interval(report::ChartCurve& bars, double x, const friction::Estimate& estimate) {
-  if (estimate.is_known()) {
+  if (const auto& interval = estimate.interval) {
     bars.x.insert(bars.x.end(), {x, x, x});
-    bars.y.insert(bars.y.end(), {estimate.low, estimate.high, kNaN});
+    bars.y.insert(bars.y.end(), {interval->low, interval->high, kNaN});
   }
 }
 
@@ -40,7 +40,7 @@ report::ChartCurve fitted_curve(const friction::WheelFriction& wheel, std::size_
   for (int i = -720; i <= 720; ++i) {
     const double heading_rad = 0.25 * i / kDegrees_per_rad;
     const double value_V = wheel.friction_V(heading_rad);
-    const bool jumps = std::abs(value_V - before_V) > std::abs(wheel.constant_V.value);
+    const bool jumps = std::abs(value_V - before_V) > std::abs(wheel.constant_V->value);
     curve.x.push_back(0.25 * i);
     curve.y.push_back(jumps ? kNaN : value_V);
     before_V = value_V;
@@ -58,21 +58,24 @@ report::ChartPanel heading_panel(const friction::FrictionFit& fit, bool of_dampi
     report::ChartCurve points = dots(i, wheel_name(i));
     report::ChartCurve bars{.color_index = static_cast<int>(i)};
     for (const friction::HeadingLine& line : fit.lines[i]) {
-      const friction::Estimate& estimate = of_damping ? line.damping_V_s_per_rad : line.offset_V;
+      const std::optional<friction::Estimate> estimate = of_damping ? line.damping_V_s_per_rad : line.offset_V;
+      if (!estimate) {
+        continue;
+      }
       const double x =
           line.heading_rad * kDegrees_per_rad + 0.8 * (static_cast<double>(i) - 0.5 * static_cast<double>(fit.wheels.size() - 1));
       points.x.push_back(x);
-      points.y.push_back(estimate.value);
-      add_interval(bars, x, estimate);
+      points.y.push_back(estimate->value);
+      add_interval(bars, x, *estimate);
     }
     panel.curves.push_back(points);
     panel.curves.push_back(bars);
     if (of_damping && wheel.is_learned()) {
       panel.curves.push_back({.x = {-180.0, 180.0},
-                              .y = {wheel.damping_V_s_per_rad.value, wheel.damping_V_s_per_rad.value},
+                              .y = {wheel.damping_V_s_per_rad->value, wheel.damping_V_s_per_rad->value},
                               .color_index = static_cast<int>(i),
                               .dashed = true});
-    } else if (wheel.is_learned() && std::isfinite(wheel.constant_V.value)) {
+    } else if (wheel.is_learned() && wheel.constant_V) {
       panel.curves.push_back(fitted_curve(wheel, i));
     }
   }
@@ -123,10 +126,10 @@ class Drives {
       const auto line = std::ranges::find_if(fit_.lines[i], [&](const friction::HeadingLine& each) {
         return std::abs(std::remainder(each.heading_rad - heading_rad, 2.0 * std::numbers::pi)) < kSameHeading_rad;
       });
-      if (line != fit_.lines[i].end() && std::isfinite(line->damping_V_s_per_rad.value)) {
+      if (line != fit_.lines[i].end() && line->damping_V_s_per_rad) {
         const double end_rad_per_s = *std::ranges::max_element(points.x, {}, [](double speed) { return std::abs(speed); });
         panel.curves.push_back({.x = {0.0, end_rad_per_s},
-                                .y = {line->offset_V.value, line->offset_V.value + line->damping_V_s_per_rad.value * end_rad_per_s},
+                                .y = {line->offset_V.value, line->offset_V.value + line->damping_V_s_per_rad->value * end_rad_per_s},
                                 .color_index = static_cast<int>(i)});
         has_line = true;
       }
@@ -151,9 +154,9 @@ class Drives {
       if (points.x.empty()) {
         return std::nullopt;
       }
-      if (wheel.is_learned()) {
-        const double slope = wheel.damping_V_s_per_rad.value;
-        const double offset_V = wheel.rotation_V.value;
+      if (wheel.is_learned() && wheel.rotation_V) {
+        const double slope = wheel.damping_V_s_per_rad->value;
+        const double offset_V = wheel.rotation_V->value;
         for (const auto& [end_rad_per_s, side] : {std::pair(std::ranges::min(points.x), -1.0), {std::ranges::max(points.x), 1.0}}) {
           if (side * end_rad_per_s > 0.0) {
             panel.curves.push_back({.x = {0.0, end_rad_per_s},
@@ -177,17 +180,18 @@ class Drives {
       report::ChartCurve points = dots(i, wheel_name(i));
       for (const auto& [part, number] : parts_) {
         const double speed_rad_per_s = part->wheel_speed_rad_per_s[i];
-        if (part->is_rotation || !friction::should_stand(kinematics_.wheels[i], part->heading_rad)) {
+        const bool is_fitted = part->is_rotation ? wheel.rotation_V.has_value() : wheel.constant_V.has_value();
+        if (is_fitted && (part->is_rotation || !friction::should_stand(kinematics_.wheels[i], part->heading_rad))) {
           const double friction_V =
-              part->is_rotation ? wheel.rotation_V.value * (speed_rad_per_s > 0.0 ? 1.0 : -1.0)
-                                : wheel.voltage_V(part->heading_rad, speed_rad_per_s) - wheel.damping_V_s_per_rad.value * speed_rad_per_s;
+              part->is_rotation ? wheel.rotation_V->value * (speed_rad_per_s > 0.0 ? 1.0 : -1.0)
+                                : wheel.voltage_V(part->heading_rad, speed_rad_per_s) - wheel.damping_V_s_per_rad->value * speed_rad_per_s;
           points.x.push_back(speed_rad_per_s);
           points.y.push_back(part->voltage_V[i] - friction_V);
         }
       }
       if (wheel.is_learned() && !points.x.empty()) {
         const auto [least, most] = std::ranges::minmax(points.x);
-        const double slope = wheel.damping_V_s_per_rad.value;
+        const double slope = wheel.damping_V_s_per_rad->value;
         panel.curves.push_back({.x = {least, most}, .y = {slope * least, slope * most}, .color_index = static_cast<int>(i)});
       }
       panel.curves.push_back(points);
@@ -226,7 +230,7 @@ report::Chart friction_chart(const friction::FrictionFit& fit, const std::string
   report::Chart chart;
   chart.title = fmt::format("Friction of {} over the direction of travel", robot);
   const bool has_intervals = std::ranges::any_of(fit.lines, [](const std::vector<friction::HeadingLine>& lines) {
-    return std::ranges::any_of(lines, [](const friction::HeadingLine& line) { return line.offset_V.is_known(); });
+    return std::ranges::any_of(lines, [](const friction::HeadingLine& line) { return line.offset_V.interval.has_value(); });
   });
   const bool is_given =
       std::ranges::any_of(fit.wheels, [](const friction::WheelFriction& wheel) { return wheel.is_learned() && wheel.damping_is_given; });

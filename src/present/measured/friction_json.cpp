@@ -6,10 +6,13 @@
 namespace heatsoak::present {
 namespace {
 
-/// Unknown (NaN) values become null.
 Json number_or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
-Json json(const friction::Estimate& estimate) { return {{"value", estimate.value}, {"ci95", {estimate.low, estimate.high}}}; }
+Json json(const std::optional<friction::Estimate>& estimate) {
+  const std::optional<friction::Interval> interval = estimate ? estimate->interval : std::nullopt;
+  return {{"value", estimate ? Json(estimate->value) : Json()},
+          {"ci95", interval ? Json{interval->low, interval->high} : Json{nullptr, nullptr}}};
+}
 
 Json wheels_json(const friction::FrictionFit& fit, const friction::HeldOutError& error, std::size_t rows) {
   Json wheels = Json::array();
@@ -69,16 +72,16 @@ Json roll_out_json(const robot::Robot& robot, const friction::RollOutResult& res
                    const FrictionRemarks& remarks) {
   Json wheels = Json::array();
   for (std::size_t i = 0; i < result.wheel_damping_Nm_s_per_rad.size(); ++i) {
-    const friction::Estimate& mechanical = result.wheel_damping_Nm_s_per_rad[i];
+    const std::optional<friction::Estimate>& mechanical = result.wheel_damping_Nm_s_per_rad[i];
     std::size_t used = 0;
     for (const friction::RollOutRun& run : result.runs) {
       used += !run.wheel || run.wheel == static_cast<int>(i) ? static_cast<std::size_t>(run.rows_used) : 0U;
     }
     wheels.push_back({{"index", i + 1},
                       {"damping_V_s_per_rad", json(damping_with_back_emf(drive, mechanical))},
-                      {"a_V", json(friction::Estimate{})},
-                      {"b_V", json(friction::Estimate{})},
-                      {"phase_rad", json(friction::Estimate{})},
+                      {"a_V", json(std::nullopt)},
+                      {"b_V", json(std::nullopt)},
+                      {"phase_rad", json(std::nullopt)},
                       {"wheel_damping_Nm_s_per_rad", json(mechanical)},
                       {"wheel_torque_Nm", json(result.wheel_torque_Nm[i])},
                       {"r2", Json()},

@@ -96,11 +96,12 @@ std::string render_html(const Document& document, const RenderOptions& /*options
   for (const Table& table : document.tables) {
     text += table_of(table);
   }
-  text += document.notes.empty() ? "" : "<ul>\n";
-  for (const Note& note : by_urgency(document.notes)) {
+  const std::vector<Note> notes = notes_with_legends(document);
+  text += notes.empty() ? "" : "<ul>\n";
+  for (const Note& note : notes) {
     text += fmt::format("<li>{}{}</li>\n", note.severity == Severity::warning ? "<b>warning:</b> " : "", in_html(note.words));
   }
-  text += document.notes.empty() ? "" : "</ul>\n";
+  text += notes.empty() ? "" : "</ul>\n";
   for (const std::string& file : document.files) {
     text += fmt::format("<p>written: {}</p>\n", in_html(file));
   }

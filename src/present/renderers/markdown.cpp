@@ -48,7 +48,7 @@ std::string render_markdown(const Document& document, const RenderOptions& /*opt
   for (const Table& table : document.tables) {
     text += text_of(table);
   }
-  for (const Note& note : by_urgency(document.notes)) {
+  for (const Note& note : notes_with_legends(document)) {
     text += fmt::format("- {}{}\n", note.severity == Severity::warning ? "warning: " : "", escaped(note.words));
   }
   for (const std::string& file : document.files) {

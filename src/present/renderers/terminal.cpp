@@ -227,7 +227,13 @@ std::string render_terminal(const Document& document, const RenderOptions& given
   for (const Table& table : document.tables) {
     add_block(text_of(table, options));
   }
-  add_block(text_of(document.notes, options));
+  std::vector<Note> notes = document.notes;
+  for (const Table& table : document.tables) {
+    if (std::string legend = legend_of(table, shown_columns(table, widths_of(table), options.width)); !legend.empty()) {
+      notes.push_back({Severity::background, std::move(legend)});
+    }
+  }
+  add_block(text_of(notes, options));
   for (const std::string& file : document.files) {
     text += wrapped(printable(file), "written: ", options.width) + "\n";
   }

@@ -182,6 +182,9 @@ void add_panel(vtkContextScene* scene, const ChartPanel& panel, const PanelPlace
     }
   }
   for (const ChartLevel& level : panel.levels) {
+    if (level.y < up.range.low || level.y > up.range.high) {
+      continue;
+    }
     const ChartCurve line{.name = "", .x = {across.range.low, across.range.high}, .y = {level.y, level.y}};
     for (const std::vector<CurvePoint>& piece : reduce(line, across, up)) {
       // White line below, so that the dashes are visible on curves that they cross.

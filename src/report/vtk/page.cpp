@@ -71,6 +71,19 @@ AxisRange x_range(const Chart& chart) {
   return range.with_headroom(0.0);
 }
 
+/// Returns whether more than a third of a range that includes `value` would contain no data.
+bool is_far_from(const AxisRange& data, double value) {
+  constexpr double kMostEmpty_share = 1.0 / 3.0;
+  const auto place = [&data](double y) { return data.is_logarithmic ? std::log10(y) : y; };
+  if (data.low > data.high || !std::isfinite(place(value))) {
+    return false;
+  }
+  const double low = place(data.low);
+  const double high = place(data.high);
+  const double beyond = std::max(place(value) - high, low - place(value));
+  return beyond > kMostEmpty_share * (beyond + high - low);
+}
+
 AxisRange y_range(const ChartPanel& panel) {
   AxisRange range;
   range.is_logarithmic = panel.logarithmic;
@@ -81,8 +94,11 @@ AxisRange y_range(const ChartPanel& panel) {
     range.include(band.low);
     range.include(band.high);
   }
+  const AxisRange of_data = range;
   for (const ChartLevel& level : panel.levels) {
-    range.include(level.y);
+    if (!level.may_be_outside || !is_far_from(of_data, level.y)) {
+      range.include(level.y);
+    }
   }
   return range.with_headroom(headroom);
 }
@@ -273,12 +289,15 @@ class PageBuilder {
     std::erase_if(from_above, [](const ChartLevel& level) { return level.name.empty() || !std::isfinite(level.y); });
     std::ranges::stable_sort(from_above, std::greater(), &ChartLevel::y);
     for (const ChartLevel& level : from_above) {
-      const std::string name = printable(level.name);
-      const double width_px = text_width_px(name, limit_style);
-      const double line_px = vertical.to_px(level.y);
+      const AxisRange& shown = vertical.range;
+      const std::string arrow = level.y > shown.high ? "↑ " : level.y < shown.low ? "↓ " : "";
+      const std::string name = arrow + printable(level.name);
+      constexpr double kBetweenNames_px = 12.0;
+      const double width_px = text_width_px(name, limit_style) + (arrow.empty() ? 0.0 : kBetweenNames_px);
+      const double line_px = vertical.to_px(std::clamp(level.y, shown.low, shown.high));
       std::vector<Box> taken = names;
       for (const ChartLevel& other : panel.levels) {
-        if (other.y != level.y && std::isfinite(other.y)) {
+        if (other.y != level.y && other.y >= shown.low && other.y <= shown.high) {
           taken.push_back({left_px_, right_px_, vertical.to_px(other.y) - 1.0, vertical.to_px(other.y) + 1.0});
         }
       }

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "base/unknown.h"
 #include "limiters.h"
 
 namespace heatsoak::simulate::studies {

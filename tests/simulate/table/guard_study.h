@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/unknown.h"
 #include "drive_core_studies.h"
 #include "simulate/guarded_core.h"
 #include "simulate/match_run.h"

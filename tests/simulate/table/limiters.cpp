@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/diagnostic.h"
+#include "base/unknown.h"
 #include "motor/datasheet_network.h"
 
 namespace heatsoak::simulate::studies {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "base/unknown.h"
 #include "cost_study.h"
 #include "limiters.h"
 #include "robot_core/thermal_guard.h"

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +15,7 @@
 #include "motor/write_motor.h"
 #include "present/measured/diagnosis.h"
 #include "present/measured/diagnosis_answer.h"
+#include "present/measured/diagnosis_words.h"
 #include "present/measured/failure_words.h"
 
 namespace heatsoak::cli::commands {
@@ -35,7 +38,9 @@ void write_folder(const DiagnoseOptions& options, const diagnosis::DiagnosisAnsw
     svg.emplace_back(picture.name, report::draw_svg(picture.chart));
     session.write(folder / (picture.name + ".svg"), svg.back().second);
   }
-  session.write(folder / (answer.motor.id + ".toml"), motor::to_toml(answer.motor));
+  motor::Motor motor = answer.motor;
+  std::ranges::move(present::notes_of_model_file(answer.diagnosis), std::back_inserter(motor.notes));
+  session.write(folder / (motor.id + ".toml"), motor::to_toml(motor));
   session.write(folder / "diagnosis.json", present::diagnosis_json(answer, readings).dump(2) + "\n");
   session.write(folder / "diagnosis.html", present::diagnosis_page(answer, readings, svg));
 }
