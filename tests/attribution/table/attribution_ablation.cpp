@@ -225,9 +225,11 @@ std::string marks_with(const Group& group, const estimation::Thresholds& changed
 }
 
 void print_row(std::string_view name, double value, std::string_view rest, double off, const std::function<std::string(double)>& marks_at) {
-  fmt::print("| `{}` | {:.3g} | {} |", name, value, rest);
+  fmt::print("| `{}` | {:.4g} | {} |", name, value, rest);
   for (const double changed : {off, 0.5 * value, 2.0 * value}) {
-    fmt::print(" {} |", marks_at(changed));
+    // A part of a run cannot be larger than the run.
+    const bool is_possible = name != "seen_share" || changed < 1.0;
+    fmt::print(" {} |", is_possible ? marks_at(changed) : "impossible");
     std::fflush(stdout);
   }
   fmt::print("\n");
