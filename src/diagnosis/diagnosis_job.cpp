@@ -61,6 +61,15 @@ void add_lacking_columns(std::span<const std::string> columns, const std::vector
   }
 }
 
+void add_fitted_holdouts(const motor::Motor& motor, const std::vector<recording::Recording>& held_out,
+                         std::vector<DiagnosisFinding>& findings) {
+  for (const recording::Recording& each : held_out) {
+    if (motor.fit && calibration::was_fitted_to(*motor.fit, each)) {
+      findings.emplace_back(HoldoutWasFitted{each.name});
+    }
+  }
+}
+
 }  // namespace
 
 NoEffectFollows::NoEffectFollows(calibration::PoorFit worst)
@@ -98,6 +107,7 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job) {
   answer.score = score_holdout(input, answer.diagnosis, runs_of(held_out, how, findings));
   score_files(job.motor, answer.motor, held_out, {choice.ambient_C, input.turns_within_rows}, answer.score);
   add_lacking_columns(columns, held_out, findings);
+  add_fitted_holdouts(job.motor, held_out, findings);
   return answer;
 }
 

@@ -34,6 +34,10 @@ struct ConditionNeverMet {
 };
 /// The file was fitted to some of these runs. Its intervals are replaced by those of a data sheet.
 struct IntervalsOfDataSheet {};
+/// The file was fitted to this hold-out run, so its errors are not those of an unseen run.
+struct HoldoutWasFitted {
+  std::string recording;
+};
 /// Logs have a current but no speed. The loss at speed, up to `most_W`, is part of the unknown heat.
 struct LossInUnknownHeat {
   double most_W = 0.0;
@@ -46,8 +50,8 @@ struct ColumnsNotSearched {
 };
 
 using DiagnosisFinding = std::variant<ExtensionsMayImitate, ContradictingRun, ColumnsTakenAsZero, ConditionNotApplied, ConditionNeverMet,
-                                      IntervalsOfDataSheet, LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn,
-                                      calibration::HeldValue, estimation::RunNote>;
+                                      IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched,
+                                      calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
 
 /// Thrown if no log has a heat input that the motor's model uses.
 class NoHeatInput : public base::Failure {

@@ -1,4 +1,5 @@
-// Decision thresholds of the estimation and the attribution: numbers that change an answer when they are moved. Each is declared here once.
+// Decision thresholds of the estimation and the attribution: a value is compared with them, and the comparison decides on a name, a
+// verdict, a sample, a run or a fit. Priors, scales of physics, tolerances and limits of the search are beside the code that uses them.
 // heatsoak_attribution_ablation switches every one off, halves and doubles it, and prints the table in reports/attribution/README.md.
 #pragma once
 
@@ -53,14 +54,15 @@ inline constexpr std::array kThresholds{
                   &Thresholds::clear_nats, 0.0},
     ThresholdSpec{"distinct_nats", "", "false-alarm rate: odds of 1 to 150, as many as there are candidates", &Thresholds::distinct_nats,
                   0.0},
-    ThresholdSpec{"clearly_other_ratio", "", "between 1.25 (no heat) and 1.8 (heat), 30 synthetic motors each",
+    ThresholdSpec{"clearly_other_ratio", "",
+                  "1/0.65: left-out error at most 0.55 with heat, at least 0.8 without (30 synthetic motors each); other uses: judgement",
                   &Thresholds::clearly_other_ratio, 1.0},
     ThresholdSpec{"beside_unknown_share", "", "judgement: a name must explain more than the unknown heat beside it",
                   &Thresholds::beside_unknown_share, 1e9},
     ThresholdSpec{"better_share", "", "judgement", &Thresholds::better_share, 1e9},
     ThresholdSpec{"same_signal_ratio", "", "judgement: 0.1 % of the variance differs, less than sensors resolve",
                   &Thresholds::same_signal_ratio, 1.0},
-    ThresholdSpec{"same_shape_ratio", "", "three quarters of the variance of the response", &Thresholds::same_shape_ratio, 2.0},
+    ThresholdSpec{"same_shape_ratio", "", "judgement: three quarters of the variance of the response", &Thresholds::same_shape_ratio, 2.0},
     ThresholdSpec{"least_seen_share", "", "judgement: \"nothing missing\" needs most effects to be visible", &Thresholds::least_seen_share,
                   0.0},
     ThresholdSpec{"well_known_ratio", "", "judgement: half of the standard deviation of a data sheet", &Thresholds::well_known_ratio, 0.0},
@@ -75,7 +77,7 @@ inline constexpr std::array kThresholds{
                   &Thresholds::beyond_chance_ratio, 0.0},
     ThresholdSpec{"seen_share", "", "judgement", &Thresholds::seen_share, 0.9},
     ThresholdSpec{"matters_K", "K", "accuracy of ordinary sensors", &Thresholds::matters_K, 0.0},
-    ThresholdSpec{"least_rows_count", "rows", "physical size: shorter runs contain no time constant", &Thresholds::least_rows_count, 2.0},
+    ThresholdSpec{"least_rows_count", "rows", "judgement: shorter runs contain no time constant", &Thresholds::least_rows_count, 2.0},
     ThresholdSpec{"longest_pause_s", "s", "physical size: time constants of small motors (judgement)", &Thresholds::longest_pause_s, 0.0},
     ThresholdSpec{"jump_K", "K", "physical size: heating of a winding within a pause (judgement)", &Thresholds::jump_K, 1e9},
     ThresholdSpec{"slow_s", "s", "physical size: time constant of a room and of a small motor's housing (judgement)", &Thresholds::slow_s,

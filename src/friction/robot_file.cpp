@@ -270,6 +270,12 @@ std::string with_measured_damping(const std::string& text, const robot::Robot& r
     throw base::Failure(base::ExitCode::cannot_answer,
                         "no robot file is written, because a wheel has no roll-out; expected one or more of every wheel");
   }
+  if (all->interval->high < 0.0) {
+    throw base::Failure(base::ExitCode::cannot_answer,
+                        fmt::format("no robot file is written, because the damping is negative ({:.3g} mN m s/rad): the motors drove the "
+                                    "wheels; expected logs of robots that roll out with open motors, or columns with the PWM",
+                                    1e3 * all->value));
+  }
   Lines lines = lines_of(text);
   set_damping(lines, robot, parameter(*all, 1e3, "mN m s/rad", 0.0, source, "mean of the wheels over roll-outs with open motors"));
   return checked(lines, robot);

@@ -33,7 +33,7 @@ class WheelNotIdentifiable : public base::Failure {
 std::string with_measured_friction(const std::string& text, const robot::Robot& robot, const robot::DriveConstants& drive,
                                    const FrictionFit& fit, const std::string& source, std::vector<WrittenAsZero>& notes);
 
-/// Same for the mechanical damping of a roll-out only. Throws Failure (cannot_answer) if a wheel has none.
+/// Same for the mechanical damping of a roll-out only. Throws Failure (cannot_answer) if a wheel has none, or if it is certainly negative.
 std::string with_measured_damping(const std::string& text, const robot::Robot& robot,
                                   const std::vector<std::optional<Estimate>>& wheel_damping_Nm_s_per_rad, const std::string& source);
 

@@ -60,10 +60,11 @@ int most_samples_at_all(bool is_drawn) { return is_drawn ? 80'000 : 1'000'000; }
 
 namespace {
 
-/// A threshold that the interval of a share covers, with that share.
+/// A threshold that the interval of a share covers, with that share. `kind`: 0 over the limit, 1 short of the demand.
 struct OpenThreshold {
   double threshold_ratio = 0.0;
   double share_ratio = 0.0;
+  std::size_t kind = 0;
 };
 
 /// Returns the thresholds of the verdict that the intervals cover. On a duty with draws `short_interval` and the majority count too.
@@ -76,9 +77,10 @@ std::vector<OpenThreshold> open_thresholds(const MotorEvaluation& motor, const I
   const std::array kinds{std::pair(motor.probability_over_limit.value_or(0.0), *motor.probability_interval),
                          std::pair(motor.short_probability.value_or(0.0), short_interval)};
   const auto add = [&](double threshold_ratio) {
-    for (const auto& [share_ratio, interval] : kinds) {
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+      const auto& [share_ratio, interval] = kinds.at(kind);
       if (interval.low <= threshold_ratio && interval.high > threshold_ratio) {
-        open.push_back({threshold_ratio, share_ratio});
+        open.push_back({threshold_ratio, share_ratio, kind});
       }
     }
   };
@@ -147,8 +149,33 @@ class Predicted {
   std::array<double, 64> shares_{};  ///< quantiles of the share's distribution
 };
 
+/// Predicts whether a number of draws decides all open thresholds.
+class AllPredicted {
+ public:
+  AllPredicted(const std::vector<OpenThreshold>& open, int draws, bool is_drawn) {
+    for (const OpenThreshold& each : open) {
+      of_kind_.at(each.kind).emplace_back(each, draws, is_drawn);
+    }
+  }
+  /// The shares are taken as independent. Of two thresholds of one share the less certain one counts, because both depend on that share.
+  [[nodiscard]] double probability(int draws) const {
+    double all = 1.0;
+    for (const std::vector<Predicted>& kind : of_kind_) {
+      double least = 1.0;
+      for (const Predicted& each : kind) {
+        least = std::min(least, each.probability(draws));
+      }
+      all *= least;
+    }
+    return all;
+  }
+
+ private:
+  std::array<std::vector<Predicted>, 2> of_kind_;
+};
+
 /// Returns the number of draws that decide with the probability: at most 5 % more than the smallest.
-std::optional<int> deciding_draws(const Predicted& predicted, int draws, int most, double probability_ratio) {
+std::optional<int> deciding_draws(const AllPredicted& predicted, int draws, int most, double probability_ratio) {
   const auto suffices = [&](int count) { return predicted.probability(count) >= probability_ratio; };
   int low = draws;
   int high = draws + 1 + draws / 20;
@@ -163,7 +190,7 @@ std::optional<int> deciding_draws(const Predicted& predicted, int draws, int mos
 
 std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn) {
   std::optional<int> most;
-  for (const auto& [threshold_ratio, share_ratio] : open_thresholds(motor, short_interval, is_drawn)) {
+  for (const auto& [threshold_ratio, share_ratio, kind] : open_thresholds(motor, short_interval, is_drawn)) {
     most = std::max(most.value_or(0), needed_for(threshold_ratio, share_ratio, motor.samples, is_drawn));
   }
   return most;
@@ -174,18 +201,18 @@ DecidingSamples deciding_samples(const MotorEvaluation& motor) {
   const int per_draw = is_drawn ? base::kLanes : 1;
   const int draws = (motor.samples + per_draw - 1) / per_draw;
   const int most = most_samples_at_all(is_drawn) / per_draw;
+  const std::vector<OpenThreshold> open = open_thresholds(motor, motor.short_interval.value_or(Interval95{}), is_drawn);
   DecidingSamples found;
-  bool is_first = true;
-  const auto take = [&](std::optional<int>& all, std::optional<int> one) {
-    const std::optional<int> samples = one ? std::optional(*one * per_draw) : std::nullopt;
-    all = is_first ? samples : all && samples ? std::optional(std::max(*all, *samples)) : std::nullopt;
-  };
-  for (const OpenThreshold& each : open_thresholds(motor, motor.short_interval.value_or(Interval95{}), is_drawn)) {
-    const Predicted predicted(each, draws, is_drawn);
-    take(found.half, deciding_draws(predicted, draws, most, 0.5));
-    take(found.nine_in_ten, deciding_draws(predicted, draws, most, 0.9));
-    is_first = false;
+  if (open.empty()) {
+    return found;
   }
+  const AllPredicted predicted(open, draws, is_drawn);
+  const auto samples_for = [&](double probability_ratio) {
+    const std::optional<int> count = deciding_draws(predicted, draws, most, probability_ratio);
+    return count ? std::optional(*count * per_draw) : std::nullopt;
+  };
+  found.half = samples_for(0.5);
+  found.nine_in_ten = samples_for(0.9);
   return found;
 }
 

@@ -226,11 +226,11 @@ TEST(WordsOfFailures, OfRunsThatCountTwiceOrCannotBeSimulated) {
   EXPECT_EQ(twice.code(), base::ExitCode::bad_input);
   ASSERT_EQ(twice.diagnostics().size(), 2U);
   EXPECT_EQ(twice.diagnostics()[1].at.file, "logs/c.csv");
-  EXPECT_EQ(twice.diagnostics()[1].message, "holds the same rows as logs/a.csv");
+  EXPECT_EQ(twice.diagnostics()[1].message, "holds the same rows as logs/a.csv; give each row once, to fit or as hold-out");
   const base::Failure again = in_words(calibration::RunsOfTheFile("ecx", {"logs/a.csv"}));
   EXPECT_EQ(again.code(), base::ExitCode::bad_input);
   ASSERT_EQ(again.diagnostics().size(), 1U);
-  EXPECT_EQ(again.diagnostics()[0].message, "ecx was fitted to these rows (fit.runs)");
+  EXPECT_EQ(again.diagnostics()[0].message, "the motor file of ecx was fitted to these rows (fit.runs)");
   const base::Failure cause(base::ExitCode::numerics_failed, "too fast");
   const base::Failure failed = in_words(estimation::RunNotSimulated("run1", cause));
   EXPECT_EQ(failed.code(), base::ExitCode::numerics_failed);
@@ -249,9 +249,9 @@ TEST(WordsOfDiagnosis, RunDeviationsAreNotesOfTheModelFile) {
   diagnosis::FoundEffect sensor = deviation;
   sensor.id = "sensor_offset_winding";
   found.effects = {named, deviation, sensor};
-  EXPECT_EQ(notes_of_model_file(found),
-            std::vector<std::string>{
-                "heat_share at the winding in run4: deviation -0.305 ; found in measurements, not a property of the motor"});
+  EXPECT_EQ(
+      notes_of_model_file(found),
+      std::vector<std::string>{"heat_share at the winding in run4: deviation -0.305 ; found in measurements, not a property of the motor"});
 }
 
 TEST(WordsOfCalibration, OpenDirections) {

@@ -288,6 +288,10 @@ std::string say(const diagnosis::IntervalsOfDataSheet& /*of*/) {
          "twice";
 }
 
+std::string say(const diagnosis::HoldoutWasFitted& of) {
+  return fmt::format("the errors of {} are not those of an unseen run, because the motor's file was fitted to it", of.recording);
+}
+
 std::string say(const diagnosis::LossInUnknownHeat& of) {
   return fmt::format(
       "not every log has a speed: the loss at speed, up to {} W, is part of the unknown heat; no effect at the stator is named, and no "

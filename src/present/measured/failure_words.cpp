@@ -29,7 +29,8 @@ base::Failure worded(const recording::NothingAboutHeat& failure) {
 base::Failure worded(const recording::RowsGivenTwice& failure) {
   std::vector<base::Diagnostic> diagnostics;
   for (const auto& [file, earlier] : failure.pairs()) {
-    diagnostics.push_back({{file.string()}, {}, fmt::format("holds the same rows as {}", earlier.string())});
+    diagnostics.push_back(
+        {{file.string()}, {}, fmt::format("holds the same rows as {}; give each row once, to fit or as hold-out", earlier.string())});
   }
   return {failure.code(), failure.message(), std::move(diagnostics)};
 }
@@ -37,7 +38,8 @@ base::Failure worded(const recording::RowsGivenTwice& failure) {
 base::Failure worded(const calibration::RunsOfTheFile& failure) {
   std::vector<base::Diagnostic> diagnostics;
   for (const std::filesystem::path& file : failure.files()) {
-    diagnostics.push_back({{file.string()}, {}, fmt::format("{} was fitted to these rows (fit.runs)", failure.motor_id())});
+    diagnostics.push_back(
+        {{file.string()}, {}, fmt::format("the motor file of {} was fitted to these rows (fit.runs)", failure.motor_id())});
   }
   return {failure.code(), failure.message(), std::move(diagnostics)};
 }
