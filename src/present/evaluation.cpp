@@ -209,9 +209,11 @@ std::string deciding_words(const select::MotorEvaluation& motor) {
 
 std::string undecided_note(const select::MotorEvaluation& motor) {
   const bool is_drawn = motor.games > 0;
-  return fmt::format("{} counts as {} until more {} decide: {}{}. {}.", motor.motor_id, select::to_string(motor.verdict),
+  const int usual = select::first_samples(is_drawn);
+  return fmt::format("{} counts as {} until more {} decide: {}{}. {}.{}", motor.motor_id, select::to_string(motor.verdict),
                      is_drawn ? "games" : "samples", is_drawn ? fmt::format("in {} games ", motor.games) : "",
-                     words_of(*open_share(motor), motor.samples), deciding_words(motor));
+                     words_of(*open_share(motor), motor.samples), deciding_words(motor),
+                     motor.samples < usual ? fmt::format(" Without --samples, {} are drawn, and more if needed.", usual) : "");
 }
 
 void add_notes(Document& document, const select::MotorEvaluation& motor, const simulate::EvaluationAnswer& answer) {

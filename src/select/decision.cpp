@@ -48,7 +48,7 @@ int needed_for(double threshold_ratio, double probability_ratio, int samples, bo
 
 }  // namespace
 
-int first_samples(const duty::Duty& duty) { return duty.shape_data->has_unknowns() ? kFirstGames * base::kLanes : kFirstSamples; }
+int first_samples(bool is_drawn) { return is_drawn ? kFirstGames * base::kLanes : kFirstSamples; }
 
 double error_share(int count, bool is_drawn) {
   constexpr double kFirst_share = 0.5;
@@ -230,7 +230,8 @@ LaterWork later_work(std::span<const int> needed, int samples, int most) {
 int most_samples(const duty::Duty& duty) {
   constexpr int kOneDoubling = 2;
   constexpr int kFiveDoublings = 32;
-  return first_samples(duty) * (duty.shape_data->has_unknowns() ? kOneDoubling : kFiveDoublings);
+  const bool is_drawn = duty.shape_data->has_unknowns();
+  return first_samples(is_drawn) * (is_drawn ? kOneDoubling : kFiveDoublings);
 }
 
 namespace {

@@ -9,8 +9,9 @@
 namespace heatsoak::select {
 
 /// Returns the number of samples of the first look of evaluate_until_decided(). If no sample exceeds a limit, this number suffices to
-/// decide that the probability is at most kMarginalProbability; 72 independent draws are needed at the error of that look.
-int first_samples(const duty::Duty& duty);
+/// decide that the probability is at most kMarginalProbability; 72 independent draws are needed at the error of that look. `is_drawn`: the
+/// duty draws games.
+int first_samples(bool is_drawn);
 
 /// Returns the probability of a wrong verdict that a look after `count` independent draws (games, or samples of a duty without draws) may
 /// spend: half of kError_share up to the first look, a seventh of the other half for each later look. evaluate_until_decided() makes at

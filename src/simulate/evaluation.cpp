@@ -60,7 +60,7 @@ EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::ProgressFo
                           .motors = job.motors,
                           .conditions = job.conditions,
                           .seed = job.seed,
-                          .samples = job.samples.value_or(select::first_samples(job.duty)),
+                          .samples = job.samples.value_or(select::first_samples(job.duty.shape_data->has_unknowns())),
                           .demand = {},
                           .results = {},
                           .closed_loop = job.closed_loop,

@@ -630,8 +630,9 @@ TEST(UntilDecided, takes_more_samples_only_near_a_threshold) {
   far.id = "far";
   const std::vector<motor::Motor> motors{near, far};
   std::vector<duty::WheelDemand> draws;
-  const std::vector<MotorEvaluation> results = evaluate_until_decided(simple_robot(), duty, duty.demand(simple_robot(), 1), motors,
-                                                                      {.samples = first_samples(duty)}, most_samples(duty), draws);
+  const std::vector<MotorEvaluation> results =
+      evaluate_until_decided(simple_robot(), duty, duty.demand(simple_robot(), 1), motors,
+                             {.samples = first_samples(duty.shape_data->has_unknowns())}, most_samples(duty), draws);
   const auto of = [&](std::string_view id) { return *std::ranges::find(results, id, &MotorEvaluation::motor_id); };
   EXPECT_EQ(of("far").samples, 500);
   EXPECT_EQ(of("far").verdict, Verdict::pass);
@@ -671,9 +672,10 @@ MotorEvaluation until_decided(double heavy_share) {
   duty.shape_data = std::make_shared<DrawnLoad>(heavy_share);
   const motor::Motor motor = simple_motor();
   std::vector<duty::WheelDemand> draws;
-  const MotorEvaluation result = evaluate_until_decided(simple_robot(), duty, duty.demand(simple_robot(), 1), std::span(&motor, 1),
-                                                        {.samples = first_samples(duty)}, most_samples(duty), draws)
-                                     .front();
+  const MotorEvaluation result =
+      evaluate_until_decided(simple_robot(), duty, duty.demand(simple_robot(), 1), std::span(&motor, 1),
+                             {.samples = first_samples(duty.shape_data->has_unknowns())}, most_samples(duty), draws)
+          .front();
   EXPECT_EQ(draws.size(), static_cast<std::size_t>(result.games));
   return result;
 }
