@@ -46,11 +46,12 @@ std::array<float, 4> torques_against_each_other(const Config& config) {
 
 struct Heat {
   double hottest_C = 0.0;
-  double limited_s = 0.0;  ///< time in which the guard limits a wheel
+  double above_guard_K = -1e9;  ///< largest difference between a winding and its guard
+  double limited_s = 0.0;       ///< time in which the guard limits a wheel
 };
 
-/// Wheels on rubber that work against each other with up to 0.21 N m for two minutes.
-Heat push(const Config& config, const std::function<void(Input&)>& spoil, double air_C = 25.0) {
+/// Wheels on rubber that work against each other with up to `torque_Nm`. `change` gets each input and its step.
+Heat drive(const Config& config, double duration_s, float torque_Nm, double air_C, const std::function<void(Input&, int)>& change) {
   Truth truth;
   truth.air_C = air_C;
   truth.grip_ratio = 2.0;
@@ -60,26 +61,34 @@ Heat push(const Config& config, const std::function<void(Input&)>& spoil, double
   EXPECT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
   const std::array<float, 4> torque = torques_against_each_other(config);
   Heat heat;
-  for (int k = 0; k < static_cast<int>(kDuration_s / static_cast<double>(config.period_s)); ++k) {
+  for (int k = 0; k < static_cast<int>(duration_s / static_cast<double>(config.period_s)); ++k) {
     Input input = plant.sense(random, 0.3F, true);
     input.ambient_C = static_cast<float>(air_C);
     input.command.mode = Mode::wheel_torque;
     for (std::size_t i = 0; i < 4; ++i) {
-      input.command.wheel_torque_Nm[i] = 0.21F * torque.at(i);
+      input.command.wheel_torque_Nm[i] = torque_Nm * torque.at(i);
     }
-    if (k > 5000) {
-      spoil(input);
-    }
+    change(input, k);
     const robot_core::Output out = robot_core::step(config, state, input);
     plant.move(out);
     bool is_limited = false;
     for (int i = 0; i < 4; ++i) {
       heat.hottest_C = std::max(heat.hottest_C, plant.winding_C(i));
+      heat.above_guard_K = std::max(heat.above_guard_K, plant.winding_C(i) - static_cast<double>(out.winding_C[i]));
       is_limited = is_limited || out.reason[i] == robot_core::Reason::guard;
     }
     heat.limited_s += is_limited ? static_cast<double>(config.period_s) : 0.0;
   }
   return heat;
+}
+
+/// Two minutes with up to 0.21 N m. `spoil` changes the inputs from 5 s on.
+Heat push(const Config& config, const std::function<void(Input&)>& spoil, double air_C = 25.0) {
+  return drive(config, kDuration_s, 0.21F, air_C, [&](Input& input, int k) {
+    if (k > 5000) {
+      spoil(input);
+    }
+  });
 }
 
 // The winding is at most as hot as without a sensor, where the guard uses the current from voltage and speed.
@@ -112,30 +121,9 @@ TEST(SensorHeat, CurrentSensorThatReadsTooLittleHidesNoHeat) {
   }
 }
 
-/// Largest difference between a winding and its guard within 10 s. The wheels, on rubber, work against each other. `change` gets the step.
+/// Largest difference between a winding and its guard within 10 s with up to 0.3 N m.
 double most_above_guard_K(const Config& config, const std::function<void(Input&, int)>& change) {
-  Truth truth;
-  truth.grip_ratio = 2.0;
-  Plant plant(config, truth);
-  State state;
-  Random random(3);
-  EXPECT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
-  const std::array<float, 4> torque = torques_against_each_other(config);
-  double most_K = -1e9;
-  for (int k = 0; k < 10'000; ++k) {
-    Input input = plant.sense(random, 0.3F, true);
-    input.command.mode = Mode::wheel_torque;
-    for (std::size_t i = 0; i < 4; ++i) {
-      input.command.wheel_torque_Nm[i] = 0.3F * torque.at(i);
-    }
-    change(input, k);
-    const Output out = robot_core::step(config, state, input);
-    plant.move(out);
-    for (int i = 0; i < 4; ++i) {
-      most_K = std::max(most_K, plant.winding_C(i) - static_cast<double>(out.winding_C[i]));
-    }
-  }
-  return most_K;
+  return drive(config, 10.0, 0.3F, 25.0, change).above_guard_K;
 }
 
 // An ADC that the control loop shares may fail in step with it. The sensors are compared with each other in some of the steps only.
