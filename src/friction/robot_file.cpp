@@ -207,6 +207,10 @@ WheelNotIdentifiable::WheelNotIdentifiable(std::size_t wheel, std::optional<Whee
           fmt::format("no robot file is written, because the friction of wheel {} over the directions is not identifiable", wheel)),
       problem_(problem) {}
 
+DampingNegative::DampingNegative(double damping_Nm_s_per_rad)
+    : base::Failure(base::ExitCode::cannot_answer, "no robot file is written, because the damping is negative"),
+      damping_Nm_s_per_rad_(damping_Nm_s_per_rad) {}
+
 std::string with_measured_friction(const std::string& text, const robot::Robot& robot, const robot::DriveConstants& drive,
                                    const FrictionFit& fit, const std::string& source, std::vector<WrittenAsZero>& notes) {
   for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
@@ -271,10 +275,7 @@ std::string with_measured_damping(const std::string& text, const robot::Robot& r
                         "no robot file is written, because a wheel has no roll-out; expected one or more of every wheel");
   }
   if (all->interval->high < 0.0) {
-    throw base::Failure(base::ExitCode::cannot_answer,
-                        fmt::format("no robot file is written, because the damping is negative ({:.3g} mN m s/rad): the motors drove the "
-                                    "wheels; expected logs of robots that roll out with open motors, or columns with the PWM",
-                                    1e3 * all->value));
+    throw DampingNegative(all->value);
   }
   Lines lines = lines_of(text);
   set_damping(lines, robot, parameter(*all, 1e3, "mN m s/rad", 0.0, source, "mean of the wheels over roll-outs with open motors"));

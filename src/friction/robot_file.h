@@ -24,6 +24,16 @@ class WheelNotIdentifiable : public base::Failure {
   std::optional<WheelProblem> problem_;
 };
 
+/// No robot file is written, because the damping from the roll-outs is certainly negative: the motors drove the wheels (cannot_answer).
+class DampingNegative : public base::Failure {
+ public:
+  explicit DampingNegative(double damping_Nm_s_per_rad);
+  [[nodiscard]] double damping_Nm_s_per_rad() const { return damping_Nm_s_per_rad_; }
+
+ private:
+  double damping_Nm_s_per_rad_;
+};
+
 /// Returns the text of the robot file with new friction values of origin "measured"; everything else, comments included, is unchanged.
 /// friction.wheel_damping is the mean of the wheels, [friction.heading] has one table per wheel. As in all robot files, they are torques
 /// at the wheel without drag and back-EMF of the motor, so that they hold for another motor too. With the motor of the measurement,
@@ -33,7 +43,8 @@ class WheelNotIdentifiable : public base::Failure {
 std::string with_measured_friction(const std::string& text, const robot::Robot& robot, const robot::DriveConstants& drive,
                                    const FrictionFit& fit, const std::string& source, std::vector<WrittenAsZero>& notes);
 
-/// Same for the mechanical damping of a roll-out only. Throws Failure (cannot_answer) if a wheel has none, or if it is certainly negative.
+/// Same for the mechanical damping of a roll-out only. Throws Failure (cannot_answer) if a wheel has none, and
+/// DampingNegative if its whole interval is below 0.
 std::string with_measured_damping(const std::string& text, const robot::Robot& robot,
                                   const std::vector<std::optional<Estimate>>& wheel_damping_Nm_s_per_rad, const std::string& source);
 

@@ -127,6 +127,17 @@ TEST(RobotFile, is_not_written_with_a_wheel_that_was_not_learned) {
   }
 }
 
+// The motors drove the wheels. A damping of 0 in the file would look measured.
+TEST(RobotFile, is_not_written_with_a_damping_that_is_certainly_negative) {
+  const robot::Robot robot = robot::read_robot(kFile);
+  const auto written = [&](const Estimate& estimate) {
+    return with_measured_damping(file_text(), robot, std::vector<std::optional<Estimate>>(4, estimate), "roll-outs");
+  };
+  EXPECT_THROW(written({-0.016, {}}), DampingNegative);
+  EXPECT_THROW(written({-0.016, Interval{-0.02, -0.001}}), DampingNegative);
+  EXPECT_THAT(written({-0.001, Interval{-0.02, 0.01}}), testing::HasSubstr("wheel_damping"));
+}
+
 TEST(RobotFile, friction_in_another_form_is_refused_by_name) {
   std::string text = file_text();
   text.replace(text.find("[friction.heading]"), 18, "[friction.'heading']");

@@ -55,6 +55,12 @@ base::Failure worded(const friction::WheelNotIdentifiable& failure) {
                                            failure.problem() ? words_of(*failure.problem()) : "its logs only turn on the spot"));
 }
 
+base::Failure worded(const friction::DampingNegative& failure) {
+  return with_message(failure, fmt::format("{} ({:.3g} mN m s/rad): the motors drove the wheels. Expected a robot that rolls out with open "
+                                           "motors, or a log with the PWM, which shows when the motors are off",
+                                           failure.message(), 1e3 * failure.damping_Nm_s_per_rad()));
+}
+
 /// The problem of wheel 1 serves as the example.
 base::Failure worded(const friction::NothingIdentifiable& failure) {
   const friction::NothingIdentifiable::Reason& reason = failure.reason();
@@ -150,8 +156,8 @@ base::Failure worded_as(const base::Failure& failure) {
 base::Failure in_words(const base::Failure& failure) {
   return worded_as<recording::NothingAboutHeat, recording::RowsGivenTwice, calibration::RunsOfTheFile, estimation::RunNotSimulated,
                    calibration::NothingLearned, calibration::NothingFollows, calibration::LogsLookWrong, friction::LogsLookWrong,
-                   friction::NothingIdentifiable, friction::WheelNotIdentifiable, estimation::NoUsableInterval, diagnosis::NoHeatInput,
-                   diagnosis::NoEffectFollows>(failure);
+                   friction::DampingNegative, friction::NothingIdentifiable, friction::WheelNotIdentifiable, estimation::NoUsableInterval,
+                   diagnosis::NoHeatInput, diagnosis::NoEffectFollows>(failure);
 }
 
 }  // namespace heatsoak::present
