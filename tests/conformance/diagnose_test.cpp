@@ -69,6 +69,23 @@ TEST(Diagnose, NamesOfHeldOutFilesDoNotChangeTheModel) {
   EXPECT_EQ(models[0], models[1]);
 }
 
+TEST(Diagnose, SaysThatAHoldoutRunWasFitted) {
+  const TemporaryFolder folder;
+  const ProgramRun fitted =
+      run({"calibrate", "--motor", kMotor, log("match_1.csv"), log("match_2.csv"), "--out", "fitted.toml"}, in(folder));
+  ASSERT_EQ(fitted.exit_code, 0) << fitted.err;
+  const auto notes_with = [&](const char* holdout) {
+    const ProgramRun done =
+        run({"diagnose", "--model", "fitted.toml", "--train", log("match_3.csv"), "--holdout", log(holdout), "--explain"}, in(folder));
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    std::string words = done.out + done.err;
+    std::ranges::replace(words, '\n', ' ');
+    return words;
+  };
+  EXPECT_THAT(notes_with("match_1.csv"), testing::HasSubstr("the errors of match_1 are not those of an unseen run"));
+  EXPECT_THAT(notes_with("bench.csv"), testing::Not(testing::HasSubstr("not those of an unseen run")));
+}
+
 // Too few samples for any curve over a signal must give an answer instead of a crash.
 TEST(Diagnose, AnswersOnLogsOfSeconds) {
   for (const char* part : {"@0-1%", "@0-2%", "@0-4%"}) {
