@@ -64,9 +64,9 @@
 //
 // Without a code:
 //   - A low battery sample is no fault: a kicker may be charging. Limits use the sample; the PWM ratio uses the last open-circuit voltage.
-//   - If a current sensor reads too low, the guard still counts the heat: it compares all samples with all voltages and speeds. A sensor
-//     that fails in step with the control loop, as a shared ADC may, hides no heat either: a winding was at most 2.2 K above its guard
-//     (tests/robot_core/sensor_heat_test.cpp).
+//   - If a current sensor reads too low, the guard still counts the heat: it compares all samples with all voltages and speeds. This
+//     includes a sensor that fails in step with the control loop, such as one with a shared ADC. In tests a winding was at most 2.2 K above
+//     its guard (tests/robot_core/sensor_heat_test.cpp).
 //   - Without a trusted current sensor a wrong wheel speed would hide heat. If one of four wheel speeds alone contradicts the others by
 //     more than 0.06 m/s plus 6 % of the speed limit, or any does with a sensor less, the guard counts the larger current of the two at its
 //     own and at the implied speed. A wheel that slides that much therefore counts as hotter than it is. Without a spare sensor it counts

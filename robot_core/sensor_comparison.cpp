@@ -218,8 +218,8 @@ bool is_wrong(const Config& config, const State& state, const Validated& validat
                                                                                  contradiction_m2_per_s2(config, state, validated, 0, 0));
 }
 
-/// Without a trusted current sensor the guard counts the current from voltage and speed, and a wrong wheel speed hides heat. Then the speed
-/// that heats more counts, its own or that of the other wheels.
+/// Without a trusted current sensor the guard calculates the current from voltage and speed, and a wrong wheel speed hides heat. The guard
+/// then uses the measured speed or the speed implied by the other wheels, whichever gives more heat.
 void compare_heat(const Config& config, State& state, const Validated& validated, float sensed_A, bool is_speed_wrong, int i) {
   const WheelState& wheel = state.wheel[i];
   const float constant_V_s_per_rad = config.derived.geared_constant_V_s_per_rad;

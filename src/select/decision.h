@@ -32,13 +32,14 @@ struct DecidingSamples {
   std::optional<int> nine_in_ten;
 };
 /// Predicts them from the samples so far. samples_needed() takes the observed share as the true one. Near a threshold it is several times
-/// too large, because a share that is a little different needs far fewer samples. Here the true share is uncertain: its distribution is
-/// that of Jeffreys' prior and the samples so far (predictive probability: Spiegelhalter et al. 1986), each game counted as one. If several
-/// thresholds are open, the largest numbers count. Both are empty if the verdict is decided.
+/// too large, because a slightly different share needs far fewer samples. Here the true share is uncertain. Its distribution follows from
+/// Jeffreys' prior and the samples so far, with each game counted as one sample (predictive probability: Spiegelhalter et al. 1986). If the
+/// share over the limit and the share short of the demand are both open, the probability is that of deciding both; the shares are taken as
+/// independent. Both members are empty if the verdict is decided.
 DecidingSamples deciding_samples(const MotorEvaluation& motor);
 
 /// Work of the rounds that double the samples of open motors, from `samples` on: sums over rounds and motors. `needed` has samples_needed()
-/// of each open motor. A motor leaves after the round that reaches its number; the rounds end with `most`.
+/// of each open motor. A motor has no further round once it has its number of samples. The last round has at most `most` samples.
 struct LaterWork {
   double evaluations_count = 0.0;
   double samples_count = 0.0;

@@ -337,7 +337,7 @@ TEST(Examination, LooseWindingInOneRunIsAnotherContactThere) {
 }
 
 /// The effect is less than half as wide as a seventh of the stator's temperature range. Knots spread over the whole range would not resolve
-/// where the fan starts. The test succeeds for 6 of the 8 motors.
+/// the start temperature of the fan. The test succeeds for 6 of the 8 motors.
 TEST(Examination, KnotsAreDrawnToWhereSomethingHappens) {
   const auto fan = std::ranges::find(outsiders(), "a fan that starts at 45 °C of the stator", &Outsider::name);
   const SeedRate rate = rate_over_seeds(kSeeds, [&](std::uint64_t seed, Claim& claim) {
