@@ -131,7 +131,6 @@ inline constexpr SignalText kSignals[] = {
     {"State", "wheel.guard_fault", "code", run_guards, only(apply_limits)},
     {"State", "wheel.has_stator", "flag", run_guards, only(validate_input)},
     {"State", "wheel.conductance_A_per_V", "A/V", run_guards, only(validate_input)},
-    {"State", "comparison.hidden_V2", "V2", validate_input, only(run_guards)},
     {"State", "guard.state_C", "°C", run_guards, only(make_output)},
     {"State", "guard.time_to_limit_s", "s", run_guards, only(make_output)},
     {"BodyReference", "velocity", "m/s, rad/s", control_body_velocity, find_wheel_speeds | feed_forward},

@@ -165,7 +165,7 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
     const float leverage =
         derived.plane_xx_factor * t_x * t_x + 2.0F * derived.plane_xy_factor * t_x * t_y + derived.plane_yy_factor * t_y * t_y;
     constexpr float kMostLeverage = 0.98F;  // above this the other wheels hardly determine this wheel's direction
-    wheel.others_factor = leverage < kMostLeverage ? 1.0F / (1.0F - leverage) : 0.0F;
+    wheel.others_rad_per_m = leverage < kMostLeverage ? wheel.speed_per_rim_per_m / (1.0F - leverage) : 0.0F;
     const float force_N = config.traction_ratio * wheel.level_load_share * config.mass_kg * kGravity_m_per_s2;
     const float nominal_A = force_N * config.wheel_radius_m / (derived.geared_constant_V_s_per_rad * config.gear_efficiency) +
                             absolute(wheel.sign_V) / config.resistance_ohm;

@@ -55,8 +55,9 @@ struct WheelConfig {
   float rim_per_speed_m = 0.0F;          ///< wheel radius divided by slip_factor
   float speed_per_rim_per_m = 0.0F;      ///< reciprocal of rim_per_speed_m
   float per_damping_rad_per_V_s = 0.0F;  ///< 1/d
-  /// 1/(1 − tᵀ·P·t): converts the residual of the fit over all wheels into the residual of a fit without this wheel. 0: no such fit.
-  float others_factor = 0.0F;
+  /// speed_per_rim_per_m/(1 − tᵀ·P·t): converts the rim speed's residual of the fit over all wheels into the difference between the wheel
+  /// speed and the one that the other wheels imply. 0: they imply none.
+  float others_rad_per_m = 0.0F;
   float body_limit_A = 0.0F;        ///< smaller one of driver limit and grip limit on level ground
   std::uint32_t is_grip_limit = 0;  ///< 1 if the grip limit is the smaller one, else 0
 };
@@ -215,10 +216,7 @@ struct alignas(8) ComparisonState {
   float evidence_s[kMostWheels] = {};
   float with_V_rad_per_s[6] = {};     ///< per pair of wheels: leaky sum of evidence that its currents accelerate its speed difference
   float against_V_rad_per_s[6] = {};  ///< per pair of wheels: leaky sum of evidence that its currents decelerate that difference
-  /// Squared voltage minus back-EMF at the other speed that a wheel without a trusted current sensor may have, minus the square at its
-  /// validated speed, in the last comparison.
-  float hidden_V2[kMostWheels] = {};
-  float residual_m2_per_s2 = 0.0F;  ///< leaky mean square of the samples' residuals against one motion of the body
+  float residual_m2_per_s2 = 0.0F;    ///< leaky mean square of the samples' residuals against one motion of the body
   float yaw_disagreement_s = 0.0F;
   float yaw_agreement_s = 0.0F;
   std::uint8_t confirmations[6] = {};  ///< per pair of wheels: comparisons that showed it not to be swapped

@@ -11,11 +11,10 @@ namespace robot_core {
 
 /// Stage 1: validated signals of one wheel.
 struct ValidatedWheel {
-  float speed_rad_per_s;  ///< sensed, else implied, else 0
-  /// Implied by the other wheels and the gyro, else the sensed speed; only if is_wheel_compared() or are_samples_compared.
-  float implied_rad_per_s;
-  float current_A;      ///< sensed, else estimated from voltage and speed
-  bool is_speed_known;  ///< speed sensed or implied
+  float speed_rad_per_s;    ///< sensed, else implied, else 0
+  float implied_rad_per_s;  ///< implied by the other wheels and the gyro, else speed_rad_per_s
+  float current_A;          ///< sensed, else estimated from voltage and speed
+  bool is_speed_known;      ///< speed sensed or implied
   bool is_speed_sensed;
   bool is_current_sensed;
 };
@@ -139,8 +138,6 @@ inline float cross(const WheelConfig& a, const WheelConfig& b) {
 inline constexpr float kPeriodParts_ratio = 1024.0F;
 
 inline constexpr std::uint32_t kStepsPerComparison = 16;
-/// Returns true if compare_sensors() compares two wheels with the others in this step.
-inline bool is_wheel_compared(const State& state) { return state.steps % (kStepsPerComparison / 2) == 0; }
 
 /// Compares sensors with each other: finds stuck and swapped ones, and accepts those again that have recovered.
 void compare_sensors(const Config& config, State& state, const Input& input, Validated& validated);

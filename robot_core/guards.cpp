@@ -70,7 +70,12 @@ void step_wheel_guard(const Config& config, State& state, const Validated& valid
   const float hidden_A2 = square_per_ohm2 * wheel.driven_squared_V2 / periods - plausible_square_A2(model, counted_A2);
   time.hidden_A2 = state.guard[i].hidden_A2;
   time.hidden_A2 += smaller(1.0F, periods * config.period_s / kHidden_s) * (hidden_A2 - time.hidden_A2);
-  const float rms_A = square_root(counted_A2 + larger(0.0F, time.hidden_A2) + square_per_ohm2 * state.comparison.hidden_V2[i]);
+  float square_A2 = counted_A2 + larger(0.0F, time.hidden_A2);
+  // Without a spare sensor the limits keep the limp current for every speed that the wheel may have.
+  if (!validated.is_checked && !sensed.is_current_sensed && wheel.driven_squared_V2 > 0.0F) {
+    square_A2 = larger(square_A2, config.limp_current_A * config.limp_current_A);
+  }
+  const float rms_A = square_root(square_A2);
   const float speed_rad_per_s = sensed.speed_rad_per_s * config.gear_ratio;
   float signal[kGuardSignals];
   signal[guard_current_A] = sensed.current_A < 0.0F ? -rms_A : rms_A;

@@ -228,22 +228,13 @@ void find_from_all(const Config& config, Validated& validated) {
   for (int i = 0; i < config.wheel_count; ++i) {
     const float residual_m_per_s =
         rim_m_per_s[i] - config.wheel[i].rolling_x_share * validated.velocity.x - config.wheel[i].rolling_y_share * validated.velocity.y;
-    validated.wheel[i].is_speed_known = true;
+    ValidatedWheel& found = validated.wheel[i];
+    found.is_speed_known = true;
+    // Leaving one wheel out multiplies its residual by 1/(1 − leverage) (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, eq. 2.8).
+    found.implied_rad_per_s = found.speed_rad_per_s - residual_m_per_s * config.wheel[i].others_rad_per_m;
     disagreement_m_per_s += absolute(residual_m_per_s);
   }
   validated.spread_V = derived.spread_V_s_per_m * disagreement_m_per_s;
-}
-
-/// Speed of each wheel implied by the others, for the comparison in this step. Leaving one wheel out multiplies its residual by
-/// 1/(1 − leverage) (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, equation 2.8).
-[[gnu::cold, gnu::noinline]] void imply_from_all(const Config& config, Validated& validated) {
-  for (int i = 0; i < config.wheel_count; ++i) {
-    const WheelConfig& wheel = config.wheel[i];
-    const float residual_m_per_s =
-        validated.rim_m_per_s[i] - wheel.rolling_x_share * validated.velocity.x - wheel.rolling_y_share * validated.velocity.y;
-    validated.wheel[i].implied_rad_per_s =
-        validated.wheel[i].speed_rad_per_s - residual_m_per_s * wheel.others_factor * wheel.speed_per_rim_per_m;
-  }
 }
 
 /// Three wheels, or a rejected sensor: at most one more may be wrong.
@@ -415,18 +406,21 @@ void take_samples(const Config& config, State& state, const Input& input, Valida
 }
 
 /// Current that the last voltage drives through the nominal motor, for a wheel without a current sensor. With another resistance the heat
-/// differs as much as with a sensed current, in the opposite sense, so the safety factor on heat covers it.
-float estimated_current_A(const Config& config, const WheelState& wheel, float speed_rad_per_s) {
+/// differs as much as with a sensed current, in the opposite sense, so the safety factor on heat covers it. A wrong wheel speed would hide
+/// heat, so the speed that the other wheels imply counts if it gives more.
+float estimated_current_A(const Config& config, const WheelState& wheel, const ValidatedWheel& validated) {
   if (wheel.is_open != 0) {
     return 0.0F;
   }
-  return (wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * speed_rad_per_s) * wheel.conductance_A_per_V;
+  const float own_V = wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * validated.speed_rad_per_s;
+  const float implied_V = wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * validated.implied_rad_per_s;
+  return (absolute(implied_V) > absolute(own_V) ? implied_V : own_V) * wheel.conductance_A_per_V;
 }
 
 /// Handles a missing sample, or one of a sensor that contradicts voltage and speed.
 [[gnu::noinline]] void estimate_current(const Config& config, WheelState& wheel, float sample_A, bool is_sample,
                                         ValidatedWheel& validated) {
-  const float estimate_A = estimated_current_A(config, wheel, validated.speed_rad_per_s);
+  const float estimate_A = estimated_current_A(config, wheel, validated);
   validated.is_current_sensed = false;
   validated.current_A = estimate_A;
   wheel.current_fault = code(wheel.has_current != 0 ? Reason::current_missing : Reason::none);
@@ -469,9 +463,6 @@ Validated validate_input(const Config& config, State& state, const Input& input)
   validate_yaw_rate(config, state, input, validated);
   if (validated.are_all_sensed) {
     find_from_all(config, validated);
-    if (is_wheel_compared(state)) {
-      imply_from_all(config, validated);
-    }
   }
   if (!validated.are_all_sensed || state.yaw_fault != 0 || config.wheel_count < kMostWheels) {
     check_redundancy(config, state, validated);

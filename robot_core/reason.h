@@ -67,11 +67,11 @@
 //   - If a current sensor reads too low, the guard still counts the heat: it compares all samples with all voltages and speeds. This
 //     includes a sensor that fails in step with the control loop, such as one with a shared ADC. In tests a winding was at most 2.2 K above
 //     its guard (tests/robot_core/sensor_heat_test.cpp).
-//   - Without a trusted current sensor a wrong wheel speed would hide heat. If one of four wheel speeds alone contradicts the others by
-//     more than 0.06 m/s plus 6 % of the speed limit, or any does with a sensor less, the guard counts the larger current of the two at its
-//     own and at the implied speed. A wheel that slides that much therefore counts as hotter than it is. Without a spare sensor it counts
-//     at least the limp current, and a sample rejected by code 111 to 113 may be the correct one, unless it stays constant for a second:
-//     the voltage then keeps the limp current for that sample, too, or the bridge opens.
+//   - Without a trusted current sensor a wrong wheel speed would hide heat. In every period the guard therefore counts the larger current
+//     of the two at the wheel's own speed and at the speed that the other wheels and the gyro imply. A wheel that slides more than the
+//     others counts as hotter than it is: with a grip of 0.3 the guards were 1.3 K hotter, and 6 K with wheels that work against each other.
+//     Without a spare sensor it counts at least the limp current, and a sample rejected by code 111 to 113 may be the correct one, unless
+//     it stays constant for a second: the voltage then keeps the limp current for that sample, too, or the bridge opens.
 //   - If the sample of the air temperature falls, the core follows it by at most 0.02 K/s; if it rises, by at most 0.01 K per step. A
 //     stator sample above the guard's temperature raises it by at most 20 K/s.
 //   - Periods of unequal length are rounded up for heat; a guard cools only for the time that has passed.
@@ -100,12 +100,9 @@
 //     0.06 m/s plus 6 % of the speed limit are not found, larger ones of a fifth come and go with the speed, and none is found on three
 //     wheels. Where opposite wheels are parallel, nothing tells which one is wrong: both stay rejected until the robot turns, without
 //     current sensors with open bridges (114). A slipping wheel with a faulty speed sensor and no current sensor may exceed its limit.
-//     Without current sensors, with torque commands and a sensor that reads 1.5 times the speed plus 40 rad/s, a winding was up to 9 K
-//     hotter than the guard in the first seconds, at 43 degC.
-//   - Without current sensors, a wheel speed that is wrong except in the periods that are compared (every 16): a triangle of 400 rad/s hid
-//     35 to 53 K (173 degC at a computed 138 degC), an offset of 28 rad/s 5 K. Correct current sensors show all of this heat. The same
-//     triangle in the mode body_velocity can get a correct wheel rejected (117): the robot then spins until its gyro is out of range (140),
-//     and even with correct current sensors a wheel had twice its current limit for 0.3 s, several times.
+//   - A wheel speed that is wrong except in the periods that are compared (every 16), for example by a triangle of 200 rad/s, in the mode
+//     body_velocity: a correct wheel can get rejected (117). The robot then spins until its gyro is out of range (140), and even with
+//     correct current sensors a wheel had twice its current limit for 0.3 s, several times.
 //   - Three wheels without current sensors that spin faster than the gyro can measure, with one wrong speed: the gyro stays rejected (140),
 //     and the wheel exceeds the limp current up to fourfold for a minute; the winding is up to 21 K hotter than the guard. If two wheel
 //     sensors report twice their speed, a winding reaches 187 degC at a computed 120 degC.

@@ -211,30 +211,12 @@ void find_responses(const Config& config, State& state, const Validated& validat
 /// `apart_rad_per_s`: size of the difference from the speed that the others imply. Leaving the wheel out of the fit lowers the sum of
 /// squared residuals by d²·(1 − leverage), where d is that difference.
 bool is_wrong(const Config& config, const State& state, const Validated& validated, float apart_rad_per_s, float most_rad_per_s, int i) {
-  const float apart_m_per_s = rim_speed_m_per_s(config, i, apart_rad_per_s);
+  const WheelConfig& wheel = config.wheel[i];
+  constexpr float kShare_ratio = kAlone_share * static_cast<float>(kMostWheels);
   return apart_rad_per_s > most_rad_per_s &&
-         (validated.is_redundancy_reduced || apart_m_per_s * apart_m_per_s > kAlone_share * static_cast<float>(kMostWheels) *
-                                                                                 config.wheel[i].others_factor *
-                                                                                 contradiction_m2_per_s2(config, state, validated, 0, 0));
-}
-
-/// Without a trusted current sensor the guard calculates the current from voltage and speed, and a wrong wheel speed hides heat. The guard
-/// then uses the measured speed or the speed implied by the other wheels, whichever gives more heat.
-void compare_heat(const Config& config, State& state, const Validated& validated, float sensed_A, bool is_speed_wrong, int i) {
-  const WheelState& wheel = state.wheel[i];
-  const float constant_V_s_per_rad = config.derived.geared_constant_V_s_per_rad;
-  const float counted_V = absolute(wheel.voltage_V - constant_V_s_per_rad * validated.wheel[i].speed_rad_per_s);
-  float driven_V = counted_V;
-  if (wheel.is_open == 0 && (!(absolute(sensed_A) <= config.derived.most_sensed_A) || wheel.is_current_distrusted != 0)) {
-    if (is_speed_wrong) {
-      driven_V = larger(driven_V, absolute(wheel.voltage_V - constant_V_s_per_rad * validated.wheel[i].implied_rad_per_s));
-    }
-    // Without a spare sensor the limits keep the limp current for every speed that the wheel may have.
-    if (!validated.is_checked) {
-      driven_V = larger(driven_V, config.lowest_resistance_ohm * config.limp_current_A);
-    }
-  }
-  state.comparison.hidden_V2[i] = driven_V * driven_V - counted_V * counted_V;
+         (validated.is_redundancy_reduced ||
+          apart_rad_per_s * apart_rad_per_s >
+              kShare_ratio * wheel.others_rad_per_m * wheel.speed_per_rim_per_m * contradiction_m2_per_s2(config, state, validated, 0, 0));
 }
 
 /// Rejects the wrong sensor, and that of an opposite wheel, which contradicts the others almost equally. The right one then agrees with the
@@ -301,7 +283,6 @@ void compare_heat(const Config& config, State& state, const Validated& validated
     }
   }
   wheel.has_spoken_wrongly = 0;
-  compare_heat(config, state, validated, input.motor_current_A[i], is_wrong_now, i);
 }
 
 /// Returns true if the evidence that does not depend on pushes also speaks for a swap of two sensors: their exchange makes four speeds fit

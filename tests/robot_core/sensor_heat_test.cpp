@@ -50,11 +50,16 @@ struct Heat {
   double limited_s = 0.0;       ///< time in which the guard limits a wheel
 };
 
-/// Wheels on rubber that work against each other with up to `torque_Nm`. `change` gets each input and its step.
-Heat drive(const Config& config, double duration_s, float torque_Nm, double air_C, const std::function<void(Input&, int)>& change) {
+/// Truth of a robot on rubber.
+Truth on_rubber(double air_C = 25.0) {
   Truth truth;
   truth.air_C = air_C;
   truth.grip_ratio = 2.0;
+  return truth;
+}
+
+/// Wheels that work against each other with up to `torque_Nm`. `change` gets each input and its step.
+Heat drive(const Config& config, const Truth& truth, double duration_s, float torque_Nm, const std::function<void(Input&, int)>& change) {
   Plant plant(config, truth);
   State state;
   Random random(3);
@@ -63,7 +68,7 @@ Heat drive(const Config& config, double duration_s, float torque_Nm, double air_
   Heat heat;
   for (int k = 0; k < static_cast<int>(duration_s / static_cast<double>(config.period_s)); ++k) {
     Input input = plant.sense(random, 0.3F, true);
-    input.ambient_C = static_cast<float>(air_C);
+    input.ambient_C = static_cast<float>(truth.air_C);
     input.command.mode = Mode::wheel_torque;
     for (std::size_t i = 0; i < 4; ++i) {
       input.command.wheel_torque_Nm[i] = torque_Nm * torque.at(i);
@@ -84,7 +89,7 @@ Heat drive(const Config& config, double duration_s, float torque_Nm, double air_
 
 /// Two minutes with up to 0.21 N m. `spoil` changes the inputs from 5 s on.
 Heat push(const Config& config, const std::function<void(Input&)>& spoil, double air_C = 25.0) {
-  return drive(config, kDuration_s, 0.21F, air_C, [&](Input& input, int k) {
+  return drive(config, on_rubber(air_C), kDuration_s, 0.21F, [&](Input& input, int k) {
     if (k > 5000) {
       spoil(input);
     }
@@ -122,8 +127,8 @@ TEST(SensorHeat, CurrentSensorThatReadsTooLittleHidesNoHeat) {
 }
 
 /// Largest difference between a winding and its guard within 10 s with up to 0.3 N m.
-double most_above_guard_K(const Config& config, const std::function<void(Input&, int)>& change) {
-  return drive(config, 10.0, 0.3F, 25.0, change).above_guard_K;
+double most_above_guard_K(const Config& config, const std::function<void(Input&, int)>& change, const Truth& truth = on_rubber()) {
+  return drive(config, truth, 10.0, 0.3F, change).above_guard_K;
 }
 
 // An ADC that the control loop shares may fail in step with it. The sensors are compared with each other in some of the steps only.
@@ -169,6 +174,54 @@ TEST(SensorHeat, ImplausibleSpikesOfAFailingSensorHideNoHeat) {
     }
     std::printf("spikes every %d steps: %.1f K above the guard\n", steps_between, most_K);
     EXPECT_LT(most_K, 3.0) << steps_between;
+  }
+}
+
+// Without current sensors the guard calculates the currents from the wheel speeds. Four of them and the gyro contradict a wrong one in
+// every step, not only in those that compare the sensors.
+TEST(SensorHeat, WheelSpeedThatFailsInStepHidesNoHeatWithoutCurrentSensors) {
+  const Config config = make_config(4);
+  const float slope_rad_per_s = 0.8F * config.derived.jump_rad_per_s;  // a larger one would be found as a jump
+  for (const int period : {2, 4, 8, 15, 16, 17, 32}) {
+    double most_K = -1e9;
+    for (int phase = 0; phase < period; ++phase) {
+      for (const float sign : {1.0F, -1.0F}) {
+        most_K = std::max(most_K, most_above_guard_K(config, [&](Input& input, int k) {
+                            std::ranges::fill(input.motor_current_A, robot_core::kNoSample);
+                            const int since = (k + phase) % period;
+                            const auto from_valid = static_cast<float>(std::min(since, period - since));
+                            input.wheel_speed_rad_per_s[0] += k > 1000 ? sign * slope_rad_per_s * from_valid : 0.0F;
+                          }));
+      }
+    }
+    std::printf("triangle, period %d: %.1f K above the guard\n", period, most_K);
+    EXPECT_LT(most_K, 3.0) << period;
+  }
+}
+
+TEST(SensorHeat, WheelSpeedWithAWrongScaleOrOffsetHidesNoHeatWithoutCurrentSensors) {
+  const Config config = make_config(4);
+  struct Error {
+    float scale;
+    float offset_rad_per_s;
+  };
+  for (const Error& error : {Error{1.0F, 9.0F}, Error{1.0F, 28.0F}, Error{1.0F, 100.0F}, Error{0.5F, 0.0F}, Error{-1.0F, 0.0F},
+                             Error{1.5F, 40.0F}, Error{2.0F, 9.0F}}) {
+    double most_K = -1e9;
+    for (int which = 0; which < 16; ++which) {
+      const int wheel = which % 4;
+      const float sign = which / 4 % 2 == 0 ? 1.0F : -1.0F;
+      const auto change = [&](Input& input, int k) {
+        std::ranges::fill(input.motor_current_A, robot_core::kNoSample);
+        float& sample = input.wheel_speed_rad_per_s[wheel];
+        const float wrong_rad_per_s = error.scale * sample + sign * error.offset_rad_per_s;
+        sample = std::lerp(sample, wrong_rad_per_s, std::clamp(0.02F * static_cast<float>(k - 1000), 0.0F, 1.0F));
+      };
+      most_K = std::max(most_K, most_above_guard_K(config, change, which < 8 ? on_rubber() : Truth{}));
+    }
+    std::printf("scale %.1f, offset %.0f rad/s: %.1f K above the guard\n", static_cast<double>(error.scale),
+                static_cast<double>(error.offset_rad_per_s), most_K);
+    EXPECT_LT(most_K, 3.0) << error.scale << " " << error.offset_rad_per_s;
   }
 }
 
