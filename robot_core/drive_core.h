@@ -214,16 +214,13 @@ struct alignas(8) ComparisonState {
   /// Evidence against the present verdict on the speed sensor, reset when the verdict changes. Accepted sensor: time for which it alone has
   /// contradicted all others, minus the time for which it has not, at least 0. Rejected sensor: time of its agreement with the others.
   float evidence_s[kMostWheels] = {};
-  float with_V_rad_per_s[6] = {};     ///< per pair of wheels: leaky sum of evidence that its currents accelerate its speed difference
-  float against_V_rad_per_s[6] = {};  ///< per pair of wheels: leaky sum of evidence that its currents decelerate that difference
-  float residual_m2_per_s2 = 0.0F;    ///< leaky mean square of the samples' residuals against one motion of the body
-  float yaw_disagreement_s = 0.0F;
-  float yaw_agreement_s = 0.0F;
+  float with_V_rad_per_s[6] = {};      ///< per pair of wheels: leaky sum of evidence that its currents accelerate its speed difference
+  float against_V_rad_per_s[6] = {};   ///< per pair of wheels: leaky sum of evidence that its currents decelerate that difference
+  float residual_m2_per_s2 = 0.0F;     ///< leaky mean square of the samples' residuals against one motion of the body
+  float yaw_evidence_s = 0.0F;         ///< evidence against the present verdict on the gyro, as evidence_s
+  float runaway_s = 0.0F;              ///< time for which the wheels turn without slowing down although the robot should stand
+  float runaway_m_per_s = 0.0F;        ///< sum of the rim speeds at the start of that time
   std::uint8_t confirmations[6] = {};  ///< per pair of wheels: comparisons that showed it not to be swapped
-  std::uint16_t runaway_mm_per_s = 0;  ///< sum of the rim speeds in the first comparison that counts in runaway_count
-  std::uint8_t runaway_count = 0;      ///< comparisons in a row that showed a runaway
-  /// 1 if the wheels have turned for kRunaway_s without slowing down although the robot should stand, until they stand.
-  std::uint8_t is_runaway = 0;
   std::uint8_t unused[2] = {};
   float current_error_s[kMostWheels] = {};  ///< time for which the current sensor has contradicted voltage and speed
   float last_rad_per_s[kMostWheels] = {};   ///< speed samples at the last comparison of pairs

@@ -192,16 +192,14 @@ struct PlaneFit {
   }
   float rim_of(const WheelConfig& wheel) const { return wheel.rolling_x_share * x_m_per_s + wheel.rolling_y_share * y_m_per_s; }
   /// Sets `rim_m_per_s` of a wheel of the fit to the speed that the others imply: its residual grows by 1/(1 − leverage), as in
-  /// find_from_all(). Returns false if they do not determine it.
-  bool leave_out(const WheelConfig& wheel, float& rim_m_per_s) const {
+  /// find_from_all(). They may not determine it: then it stays.
+  void leave_out(const WheelConfig& wheel, float& rim_m_per_s) const {
     const float t_x = wheel.rolling_x_share;
     const float t_y = wheel.rolling_y_share;
     const float of_others = determinant - (yy * t_x * t_x - 2.0F * xy * t_x * t_y + xx * t_y * t_y);
-    if (!(of_others > kLeastDeterminant)) {
-      return false;
+    if (of_others > kLeastDeterminant) {
+      rim_m_per_s -= (rim_m_per_s - rim_of(wheel)) * determinant / of_others;
     }
-    rim_m_per_s -= (rim_m_per_s - rim_of(wheel)) * determinant / of_others;
-    return true;
   }
 
  private:
@@ -251,21 +249,28 @@ void find_from_all(const Config& config, Validated& validated) {
   validated.is_any_possible = sensed == kMostWheels && state.comparison.is_checked == 0;
 }
 
-/// If too few sensors are left, every sample is compared with all others, even with rejected ones. Sensors that were lost together and
-/// agree with each other again are so accepted again.
-[[gnu::cold]] void compare_samples(const Config& config, const State& state, Validated& validated) {
+/// Fits the velocity of the body to the accepted samples, or to all, and finds the speed that the others imply for each of them. Returns
+/// false if they do not determine the velocity. Writes their rim speeds without the rotation, NaN for the other samples.
+bool imply_from(const Config& config, const State& state, Validated& validated, bool are_all, PlaneFit& fit, PerWheel& rim_m_per_s) {
   const float turning_m_per_s = config.contact_radius_m * validated.velocity.yaw;
-  PlaneFit all;
   for (int i = 0; i < config.wheel_count; ++i) {
-    all.add(config.wheel[i], rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - turning_m_per_s);
+    rim_m_per_s[i] = kNoSample;
+    if (are_all || validated.wheel[i].is_speed_sensed) {
+      rim_m_per_s[i] = rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - turning_m_per_s;
+      fit.add(config.wheel[i], rim_m_per_s[i]);
+    }
   }
-  all.solve();
+  const bool is_known = fit.solve();
   for (int i = 0; i < config.wheel_count; ++i) {
-    float implied_m_per_s = rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - turning_m_per_s;
-    if (all.leave_out(config.wheel[i], implied_m_per_s)) {
+    float implied_m_per_s = rim_m_per_s[i];
+    if (implied_m_per_s == implied_m_per_s) {  // not NaN
+      if (is_known) {
+        fit.leave_out(config.wheel[i], implied_m_per_s);
+      }
       validated.wheel[i].implied_rad_per_s = (implied_m_per_s + turning_m_per_s) * config.wheel[i].speed_per_rim_per_m;
     }
   }
+  return is_known;
 }
 
 /// True if a rejected sample may be the correct one: without a spare sensor and a current sensor, after fault 111 to 113, unless it stays
@@ -283,36 +288,24 @@ bool is_rejection_doubtful(const Config& config, const State& state, const Valid
 /// Calculates speeds and body velocity from the remaining sensors if some are missing.
 [[gnu::cold]] void find_from_some(const Config& config, const State& state, Validated& validated) {
   const float turning_m_per_s = config.contact_radius_m * validated.velocity.yaw;
-  PlaneFit all;
-  for (int i = 0; i < config.wheel_count; ++i) {
-    float& rim_m_per_s = validated.rim_m_per_s[i];
-    rim_m_per_s = kNoSample;
-    if (validated.wheel[i].is_speed_sensed) {
-      rim_m_per_s = rim_speed_m_per_s(config, i, validated.wheel[i].speed_rad_per_s) - turning_m_per_s;
-      all.add(config.wheel[i], rim_m_per_s);
-    }
-  }
-  const bool is_known = all.solve();
+  PlaneFit fit;
+  const bool is_known = imply_from(config, state, validated, false, fit, validated.rim_m_per_s);
   if (!is_known) {
-    all.x_m_per_s = state.velocity_reference.x;
-    all.y_m_per_s = state.velocity_reference.y;
+    fit.x_m_per_s = state.velocity_reference.x;
+    fit.y_m_per_s = state.velocity_reference.y;
   }
-  validated.velocity.x = all.x_m_per_s;
-  validated.velocity.y = all.y_m_per_s;
-  validated.are_samples_compared = !is_known || is_rejection_doubtful(config, state, validated);
+  validated.velocity.x = fit.x_m_per_s;
+  validated.velocity.y = fit.y_m_per_s;
   float disagreement_m_per_s = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
     const WheelConfig& wheel = config.wheel[i];
     ValidatedWheel& found = validated.wheel[i];
     if (found.is_speed_sensed) {
-      float rim_m_per_s = validated.rim_m_per_s[i];
-      disagreement_m_per_s += absolute(rim_m_per_s - all.rim_of(wheel));
+      disagreement_m_per_s += absolute(validated.rim_m_per_s[i] - fit.rim_of(wheel));
       found.is_speed_known = true;
-      const bool is_implied = is_known && all.leave_out(wheel, rim_m_per_s);
-      found.implied_rad_per_s = is_implied ? (rim_m_per_s + turning_m_per_s) * wheel.speed_per_rim_per_m : found.speed_rad_per_s;
       continue;
     }
-    found.speed_rad_per_s = (all.rim_of(wheel) + turning_m_per_s) * wheel.speed_per_rim_per_m;
+    found.speed_rad_per_s = (fit.rim_of(wheel) + turning_m_per_s) * wheel.speed_per_rim_per_m;
     found.is_speed_known = is_known;
     if (state.yaw_fault != 0) {
       // Without the gyro three wheels still determine the fourth, but two do not determine a third.
@@ -324,8 +317,13 @@ bool is_rejection_doubtful(const Config& config, const State& state, const Valid
     found.implied_rad_per_s = found.speed_rad_per_s;
   }
   validated.spread_V = config.derived.spread_V_s_per_m * disagreement_m_per_s;
+  // If too few sensors are left, every sample is compared with all others, even with rejected ones. Sensors that were lost together and
+  // agree with each other again are so accepted again.
+  validated.are_samples_compared = !is_known || is_rejection_doubtful(config, state, validated);
   if (validated.are_samples_compared) {
-    compare_samples(config, state, validated);
+    PlaneFit all;
+    PerWheel rim_m_per_s;
+    imply_from(config, state, validated, true, all, rim_m_per_s);
   }
 }
 
@@ -480,7 +478,7 @@ Validated validate_input(const Config& config, State& state, const Input& input)
     validated.is_checked = false;
     validated.spread_V = std::numeric_limits<float>::infinity();
   }
-  if (state.comparison.is_runaway != 0) {
+  if (state.comparison.runaway_s >= kRunaway_s) {
     validated.mode = Mode::coast;
     validated.robot_fault = validated.robot_fault == Reason::none ? Reason::runaway : validated.robot_fault;
   }

@@ -38,7 +38,7 @@ constexpr float kWheelwise_ratio = 10.0F;
 // Sums of the sizes of the rim speeds: of a robot that runs away, of one that stands again, and the decrease of one that slows down.
 constexpr float kRuns_m_per_s = 0.5F;
 constexpr float kStands_m_per_s = 0.1F;
-constexpr float kSlows_mm_per_s = 50.0F;
+constexpr float kSlows_m_per_s = 0.05F;
 // Reference velocity from which currents are compared with what they do.
 constexpr float kDriven_m_per_s = 0.1F;
 // A wheel that accelerates by more than this multiple of the acceleration limits slides.
@@ -93,12 +93,12 @@ bool current_contradicts(const Config& config, const WheelState& wheel, float se
   ComparisonState& comparison = state.comparison;
   const float apart_rad_per_s = absolute(state.raw_yaw_rate_rad_per_s - yaw_rate_of_wheels(config, validated));
   const bool disagrees = validated.are_all_sensed && apart_rad_per_s > kYawDisagreement_rad_per_s;
-  comparison.yaw_disagreement_s = state.is_yaw_same != 0 && disagrees ? comparison.yaw_disagreement_s + since_s : 0.0F;
-  comparison.yaw_agreement_s = state.has_yaw_spoken_wrongly == 0 && !disagrees ? comparison.yaw_agreement_s + since_s : 0.0F;
-  if (state.yaw_fault == 0 && comparison.yaw_disagreement_s > kStuck_s) {
-    state.yaw_fault = code(Reason::yaw_rate_stuck);
-  } else if (comparison.yaw_agreement_s >= kSteadyAgain_s) {
-    state.yaw_fault = 0;
+  const bool is_accepted = state.yaw_fault == 0;
+  const bool is_evidence = is_accepted ? state.is_yaw_same != 0 && disagrees : state.has_yaw_spoken_wrongly == 0 && !disagrees;
+  comparison.yaw_evidence_s = is_evidence ? comparison.yaw_evidence_s + since_s : 0.0F;
+  if (comparison.yaw_evidence_s > (is_accepted ? kStuck_s : kSteadyAgain_s)) {
+    state.yaw_fault = is_accepted ? code(Reason::yaw_rate_stuck) : 0;
+    comparison.yaw_evidence_s = 0.0F;
   }
   state.has_yaw_spoken_wrongly = 0;
 }
@@ -143,22 +143,17 @@ bool is_controlled(Mode mode) { return mode == Mode::body_velocity || mode == Mo
   const Vector3& asked = validated.mode == Mode::pose_target ? state.plan_velocity : input.command.velocity;
   const bool should_stand = (is_controlled(validated.mode) || validated.mode == Mode::brake) &&
                             !is_asked_to_move(config, asked, validated) && comparison.is_checked == 0;
-  if (!should_stand || !(rim_m_per_s > (comparison.is_runaway != 0 ? kStands_m_per_s : kRuns_m_per_s))) {
-    comparison.is_runaway = comparison.runaway_count = 0;
+  const bool is_runaway = comparison.runaway_s >= kRunaway_s;
+  if (!should_stand || !(rim_m_per_s > (is_runaway ? kStands_m_per_s : kRuns_m_per_s))) {
+    comparison.runaway_s = 0.0F;
     return;
   }
-  const float rim_mm_per_s = smaller(1000.0F * rim_m_per_s, 65535.0F);
-  if (comparison.runaway_count == 0 || rim_mm_per_s < static_cast<float>(comparison.runaway_mm_per_s) - kSlows_mm_per_s) {
-    comparison.runaway_count = 0;
-    comparison.runaway_mm_per_s = static_cast<std::uint16_t>(rim_mm_per_s);
+  const bool slows = rim_m_per_s < comparison.runaway_m_per_s - kSlows_m_per_s && !is_runaway;
+  if (comparison.runaway_s == 0.0F || slows) {
+    comparison.runaway_s = 0.0F;
+    comparison.runaway_m_per_s = rim_m_per_s;
   }
-  constexpr std::uint8_t kMostCount = 255;
-  if (comparison.runaway_count < kMostCount) {
-    ++comparison.runaway_count;
-  }
-  if (static_cast<float>(comparison.runaway_count) * since_s >= kRunaway_s || comparison.runaway_count == kMostCount) {
-    comparison.is_runaway = 1;
-  }
+  comparison.runaway_s += since_s;
 }
 
 /// Reaction of one wheel: driving voltage (V − K·n·ω), and speed gained since the last comparison.
@@ -403,6 +398,7 @@ float yaw_rate_of_wheels(const Config& config, const Validated& validated) {
       state.wheel[i].is_current_distrusted = known.current_error_s[i] > kStuck_s ? 1 : 0;
     }
     state.yaw_fault = known.yaw_fault;
+    state.has_yaw_spoken_wrongly = 1;
   }
 }
 
