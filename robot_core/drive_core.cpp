@@ -5,7 +5,6 @@
 namespace robot_core {
 namespace {
 
-constexpr std::uint32_t kStarted = 0x4452564EU;
 // Makes a state of zeros invalid.
 constexpr std::uint64_t kSeed = 0x9E3779B97F4A7C15U;
 

@@ -142,6 +142,36 @@ inline constexpr std::uint32_t kStepsPerComparison = 16;
 /// Compares sensors with each other: finds stuck and swapped ones, and accepts those again that have recovered.
 void compare_sensors(const Config& config, State& state, const Input& input, Validated& validated);
 
+/// Value of State::is_valid after start(). It contains the places of the members that restore() reads from a copy, so that a copy from
+/// firmware with another layout is refused. Change kMeaning if one of them gets another meaning in the same place.
+constexpr std::uint32_t started_mark() {
+  constexpr std::uint32_t kMeaning = 0x4452564EU;
+  constexpr std::uint32_t kPlaces[] = {sizeof(State),
+                                       __builtin_offsetof(State, wheel),
+                                       sizeof(WheelState),
+                                       __builtin_offsetof(WheelState, current_squared_A2),
+                                       __builtin_offsetof(WheelState, driven_squared_V2),
+                                       __builtin_offsetof(WheelState, guard_clock),
+                                       __builtin_offsetof(WheelState, is_open),
+                                       __builtin_offsetof(State, guard_clock),
+                                       __builtin_offsetof(State, next_guard),
+                                       __builtin_offsetof(State, comparison),
+                                       __builtin_offsetof(ComparisonState, fitted),
+                                       __builtin_offsetof(ComparisonState, ambient_C),
+                                       __builtin_offsetof(State, guard),
+                                       sizeof(GuardState),
+                                       __builtin_offsetof(GuardState, state_C),
+                                       __builtin_offsetof(GuardState, carry_K),
+                                       __builtin_offsetof(GuardState, hidden_A2),
+                                       __builtin_offsetof(GuardState, gap_bits)};
+  std::uint32_t mark = kMeaning;
+  for (const std::uint32_t place : kPlaces) {
+    mark = (mark ^ place) * 0x01000193U;  // FNV-1a
+  }
+  return mark;
+}
+inline constexpr std::uint32_t kStarted = started_mark();
+
 /// Check sum of the State from the member after the sum up to the comparisons.
 std::uint64_t check_sum_of(const State& state);
 

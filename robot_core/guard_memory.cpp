@@ -101,24 +101,60 @@ Restored restore_guard(const GuardModel& model, GuardState& state, const GuardSt
     state.state_C[node] = larger(peak_C[node], least_C);
   }
   set_gap(state, gap_s(saved));
+  state.hidden_A2 = saved.hidden_A2;
   seal(state);
   return is_known ? Restored::cooled : Restored::time_unknown;
 }
 
+namespace {
+
+/// Periods of current that the guard of a wheel had not counted yet when the copy was made. A guard waits at most for two guard periods.
+int waiting_periods(const State& saved, int i) { return static_cast<std::uint16_t>(saved.guard_clock - saved.wheel[i].guard_clock); }
+float longest_wait_s(const Config& config) { return 2.0F * config.guard->period_s + 0.5F * config.period_s; }
+
+/// Copy of a guard, or an empty one if the copy cannot be trusted: other layout, or firmware that restarted before any guard had its turn.
+GuardState copy_of(const Config& config, const State& saved, int i) {
+  const bool has_waited_long = static_cast<float>(waiting_periods(saved, i)) * config.period_s > longest_wait_s(config);
+  const bool is_trusted = saved.is_valid == kStarted && !(has_waited_long && saved.check_sum == check_sum_of(saved));
+  return is_trusted ? saved.guard[i] : GuardState{};
+}
+
+/// Continues the guard's unfinished period. Since the copy was made, the last voltage may have acted until the watchdog opened the bridge.
+void continue_period(const Config& config, const State& saved, float elapsed_s, State& state, int i) {
+  const float since_s = elapsed_s >= 0.0F ? smaller(kWatchdog_s, elapsed_s + config.period_s) : kWatchdog_s;
+  if (saved.check_sum != check_sum_of(saved)) {
+    add_gap(state.guard[i], since_s + longest_wait_s(config));
+    return;
+  }
+  WheelState& wheel = state.wheel[i];
+  const WheelState& before = saved.wheel[i];
+  wheel.current_squared_A2 = before.current_squared_A2;
+  wheel.driven_squared_V2 = before.driven_squared_V2;
+  wheel.guard_clock = static_cast<std::uint16_t>(state.guard_clock - waiting_periods(saved, i));
+  state.next_guard = saved.next_guard;
+  if (before.is_open == 0) {
+    add_gap(state.guard[i], since_s);
+  }
+}
+
+}  // namespace
+
 bool restore(const Config& config, State& state, const State& saved, float elapsed_s, float board_C) {
   const bool was_valid = state.check_sum == check_sum_of(state);
-  if (recall_sensors(saved.comparison, state)) {
+  if (saved.is_valid == kStarted && recall_sensors(saved.comparison, state)) {
     note_faults(state);
   }
   bool are_all = config.guard != nullptr;
   for (int i = 0; i < config.wheel_count && config.guard != nullptr; ++i) {
-    GuardState& guard = state.guard[i];
-    if (restore_guard(*config.guard, guard, saved.guard[i], elapsed_s, board_C) == Restored::nothing) {
-      are_all = false;
-      continue;
-    }
     WheelState& wheel = state.wheel[i];
-    wheel.guard_fault = 0;
+    GuardState& guard = state.guard[i];
+    if (restore_guard(*config.guard, guard, copy_of(config, saved, i), elapsed_s, board_C) == Restored::nothing) {
+      are_all = false;
+      wheel.guard_fault = static_cast<std::uint8_t>(Reason::guard_unknown);
+    } else {
+      continue_period(config, saved, elapsed_s, state, i);
+      wheel.guard_fault = 0;
+    }
     float body_C = guard.state_C[1];
     for (int node = 2; node < config.guard->node_count; ++node) {
       body_C = larger(body_C, guard.state_C[node]);

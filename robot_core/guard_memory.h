@@ -24,8 +24,9 @@ Restored restore_guard(const GuardModel& model, GuardState& state, const GuardSt
 
 inline constexpr int kMostCoolingSteps = 4096;
 
-/// Restores all guards from an earlier State with the same Config; call it after start(). Wheels without a valid copy keep the temperature
-/// limit. Returns false if there is such a wheel or no guard. Also restores which sensors are fitted, so that a missing sample of a
+/// Restores all guards from an earlier State with the same Config, and goes on with their unfinished periods; call it after start(). The
+/// guard of a wheel without a valid copy starts at its temperature limit. A copy from firmware with another layout of State is not valid.
+/// Returns false if there is such a wheel or no guard. Also restores which sensors are fitted, so that a missing sample of a
 /// current, stator or air temperature stays a fault (120, 150, 151).
 bool restore(const Config& config, State& state, const State& saved, float elapsed_s, float board_C);
 

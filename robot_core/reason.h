@@ -75,6 +75,9 @@
 //   - If the sample of the air temperature falls, the core follows it by at most 0.02 K/s; if it rises, by at most 0.01 K per step. A
 //     stator sample above the guard's temperature raises it by at most 20 K/s.
 //   - Periods of unequal length are rounded up for heat; a guard cools only for the time that has passed.
+//   - After a restart with restore(), the guards continue their periods and count the largest current for the time in which the last voltage
+//     may have acted. With restarts every 1 to 100 periods a winding was at most 0.3 K above its guard. A guard that could not count for two
+//     of its periods, and a copy from firmware with another layout of the State, count as unknown (160).
 //   - Each voltage keeps the current limit for every speed that the wheel may have. These speeds come from its own sensor, from each two
 //     other wheels with the gyro, and from three other wheels. With four wheel sensors and a gyro, any two may be wrong without a higher
 //     current while the wheels roll. With one sensor less (three wheels, or after a fault) one may be wrong. Swapped wheel sensors are then
@@ -134,8 +137,6 @@
 //   - A battery sensor with a constant wrong factor since the start or a fault, or one that sinks more slowly than 0.4 % of the full
 //     battery per second, or reads too low for minutes: the voltage exceeds its limit by that factor and the current by more: twice its
 //     limit for a second with a factor of 1.25. Without current sensors a sensor that reads 20 % too little hides up to 7 K.
-//   - Resets that follow each other faster than the guard's period, with restore(): the currents of an unfinished period are lost. After
-//     30 s of resets every 9 periods a winding was 43 K hotter than the guard. Firmware that restarts repeatedly must not drive.
 //   - A wrong command with plausible values.
 // A restart is one by fault 101, or one after a loss of power with restore() of guard_memory.h.
 // Faults 111, 112 and 121 are found later or never if the robot file has no current limit of the driver.

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "robot_core/drive_stages.h"
 #include "test_robot.h"
 
 namespace heatsoak {
@@ -104,6 +105,22 @@ Input standing(const Config& config) {
   return input;
 }
 
+/// A State that has seen currents, stator temperatures and air of 30 degC.
+State with_all_sensors(const Config& config) {
+  State state;
+  EXPECT_TRUE(start(config, state, {.is_rested = true, .body_C = 30.0F}));
+  Input input = standing(config);
+  input.ambient_C = 30.0F;
+  for (int i = 0; i < kMostWheels; ++i) {
+    input.motor_current_A[i] = 0.0F;
+    input.stator_C[i] = 30.0F;
+  }
+  for (int k = 0; k < 40; ++k) {
+    EXPECT_EQ(step(config, state, input).robot_reason, Reason::none);
+  }
+  return state;
+}
+
 TEST(GuardMemory, TheDriveCoreGoesOnFromIt) {
   const Config config = make_config(4);
   State state;
@@ -126,6 +143,41 @@ TEST(GuardMemory, AWheelWithoutACopyStaysAtItsLimit) {
   EXPECT_EQ(state.guard[1].state_C[0], config.guard->winding_limit_C);
 }
 
+// The mark contains the places of the members that restore() reads. Firmware with another layout writes another one.
+TEST(GuardMemory, ACopyFromFirmwareWithAnotherLayoutIsRefused) {
+  const Config config = make_config(4);
+  for (const unsigned bits : {1U, 0x80000000U, 0x4452564EU, ~0U}) {
+    State saved = with_all_sensors(config);
+    saved.is_valid ^= bits;
+    saved.check_sum = check_sum_of(saved);
+    State state;
+    ASSERT_TRUE(start(config, state, {.is_rested = true, .body_C = 30.0F}));
+    EXPECT_FALSE(restore(config, state, saved, 1.0F, 25.0F));
+    for (const GuardState& guard : state.guard) {
+      EXPECT_EQ(guard.state_C[0], config.guard->winding_limit_C);
+    }
+    EXPECT_EQ(state.wheel[2].has_current, 0);
+    const Output out = step(config, state, standing(config));
+    EXPECT_EQ(out.allowed_current_A[0], 0.0F);
+    EXPECT_EQ(out.reason[0], Reason::guard_unknown);
+  }
+}
+
+// Guards need some steps between two restarts.
+TEST(GuardMemory, AGuardThatCouldNotCountForTwoPeriodsStartsAtItsLimit) {
+  const Config config = make_config(4);
+  const int most_periods = static_cast<int>(std::lround(2.0F * config.guard->period_s / config.period_s));
+  for (const int more : {0, 1}) {
+    State saved = with_all_sensors(config);
+    saved.wheel[1].guard_clock = static_cast<std::uint16_t>(saved.guard_clock - most_periods - more);
+    saved.check_sum = check_sum_of(saved);
+    State state;
+    ASSERT_TRUE(start(config, state, {}));
+    EXPECT_EQ(restore(config, state, saved, 1.0F, 25.0F), more == 0);
+    EXPECT_EQ(state.guard[1].state_C[0] == config.guard->winding_limit_C, more == 1);
+  }
+}
+
 // An invalid State must stay invalid.
 TEST(GuardMemory, HealsNoCorruptState) {
   const Config config = make_config(4);
@@ -134,22 +186,6 @@ TEST(GuardMemory, HealsNoCorruptState) {
   state.yaw_integral_rad = 3.0F;
   restore(config, state, worked_state(config, 100, 4.0F), 2.0F, 25.0F);
   EXPECT_EQ(step(config, state, standing(config)).robot_reason, Reason::state_corrupted);
-}
-
-/// A State that has seen currents, stator temperatures and air of 30 degC.
-State with_all_sensors(const Config& config) {
-  State state;
-  EXPECT_TRUE(start(config, state, {.is_rested = true, .body_C = 30.0F}));
-  Input input = standing(config);
-  input.ambient_C = 30.0F;
-  for (int i = 0; i < kMostWheels; ++i) {
-    input.motor_current_A[i] = 0.0F;
-    input.stator_C[i] = 30.0F;
-  }
-  for (int k = 0; k < 40; ++k) {
-    EXPECT_EQ(step(config, state, input).robot_reason, Reason::none);
-  }
-  return state;
 }
 
 /// Runs without these sensors and expects faults 150 of the robot, and 120 or else 151 of a wheel.

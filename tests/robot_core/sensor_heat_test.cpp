@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <functional>
 
+#include "robot_core/guard_memory.h"
 #include "test_robot.h"
 
 namespace heatsoak::test_robot {
@@ -85,6 +86,38 @@ Heat drive(const Config& config, const Truth& truth, double duration_s, float to
     heat.limited_s += is_limited ? static_cast<double>(config.period_s) : 0.0;
   }
   return heat;
+}
+
+/// Largest difference between a winding and its guard in 10 s in which the controller restarts every `periods`, from the State of the step
+/// before. Each restart takes `off_s` with open bridges.
+double most_above_guard_with_restarts_K(const Config& config, int periods, double off_s, bool has_current_sensors) {
+  Plant plant(config, on_rubber());
+  State state;
+  Random random(3);
+  EXPECT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
+  const std::array<float, 4> torque = torques_against_each_other(config);
+  double most_K = -1e9;
+  for (int k = 1; k <= 10000; ++k) {
+    if (k % periods == 0) {
+      for (double time_s = 0.0; time_s < off_s; time_s += static_cast<double>(config.period_s)) {
+        plant.move(Output{});
+      }
+      const State saved = state;
+      robot_core::start(config, state, {});
+      robot_core::restore(config, state, saved, static_cast<float>(off_s), 25.0F);
+    }
+    Input input = plant.sense(random, 0.3F, has_current_sensors);
+    input.command.mode = Mode::wheel_torque;
+    for (std::size_t i = 0; i < 4; ++i) {
+      input.command.wheel_torque_Nm[i] = 0.3F * torque.at(i);
+    }
+    const Output out = robot_core::step(config, state, input);
+    plant.move(out);
+    for (int i = 0; i < 4; ++i) {
+      most_K = std::max(most_K, plant.winding_C(i) - static_cast<double>(out.winding_C[i]));
+    }
+  }
+  return most_K;
 }
 
 /// Two minutes with up to 0.21 N m. `spoil` changes the inputs from 5 s on.
@@ -222,6 +255,21 @@ TEST(SensorHeat, WheelSpeedWithAWrongScaleOrOffsetHidesNoHeatWithoutCurrentSenso
     std::printf("scale %.1f, offset %.0f rad/s: %.1f K above the guard\n", static_cast<double>(error.scale),
                 static_cast<double>(error.offset_rad_per_s), most_K);
     EXPECT_LT(most_K, 3.0) << error.scale << " " << error.offset_rad_per_s;
+  }
+}
+
+// A guard counts the current of its period at the end. A restart within the period must not lose it.
+TEST(SensorHeat, RestartsWithACopyOfTheStateHideNoHeat) {
+  const Config config = make_config(4);
+  for (const int periods : {1, 2, 3, 5, 9, 10, 11, 15, 30, 100}) {
+    for (const double off_s : {0.0, 0.003, 0.02}) {
+      const double with_K = most_above_guard_with_restarts_K(config, periods, off_s, true);
+      const double without_K = most_above_guard_with_restarts_K(config, periods, off_s, false);
+      std::printf("restart every %d periods, off for %.0f ms: %.1f K above the guard, without current sensors %.1f K\n", periods,
+                  1000.0 * off_s, with_K, without_K);
+      EXPECT_LT(with_K, 1.0) << periods << " " << off_s;
+      EXPECT_LT(without_K, 1.0) << periods << " " << off_s;
+    }
   }
 }
 
