@@ -38,6 +38,12 @@ ut_system* unit_system() {
   return system;
 }
 
+/// UDUNITS-2 parses with global variables, and checks of several motors lint their files at the same time.
+std::mutex& parsing() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 /// Replaces data sheet spellings that UDUNITS-2 does not know.
 std::string as_udunits(std::string_view unit) {
   std::string text(unit);
@@ -157,6 +163,7 @@ ParsedQuantity parse_quantity(std::string_view text, std::string_view wanted_uni
   if (const std::string wrong = misread_as_unit(unit); !wrong.empty()) {
     return {0.0, fmt::format("\"{}\" {}; {}", shown(text), wrong, example_for(wanted_unit))};
   }
+  const std::lock_guard lock(parsing());
   const Unit from = parse_unit(unit);
   if (!from) {
     return {0.0, fmt::format("'{}' is not a unit; {}", shown(unit), example_for(wanted_unit))};
@@ -181,6 +188,7 @@ ParsedQuantity parse_quantity(std::string_view text, std::string_view wanted_uni
 }
 
 double convert(double value, std::string_view from, std::string_view to) {
+  const std::lock_guard lock(parsing());
   const Unit from_unit = parse_unit(from);
   const Unit to_unit = parse_unit(to);
   const Converter converter(from_unit && to_unit ? ut_get_converter(from_unit.get(), to_unit.get()) : nullptr);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <clocale>
 #include <cmath>
 #include <limits>
@@ -9,6 +10,8 @@
 #include <numbers>
 #include <random>
 #include <stdexcept>
+#include <thread>
+#include <vector>
 
 namespace heatsoak::base {
 namespace {
@@ -178,6 +181,28 @@ INSTANTIATE_TEST_SUITE_P(Numbers, Significant,
                                          Rounded{1e15, 3, "1000000000000000"}, Rounded{-1.2345e308, 3, "-1.23e+308"},
                                          Rounded{1e-300, 3, "1e-300"}, Rounded{2.0, 5, "2"}, Rounded{100.0, 6, "100"},
                                          Rounded{-0.0004, 1, "-0.0004"}, Rounded{1234.5, 5, "1234.5"}));
+
+TEST(Quantity, IsParsedInSeveralThreads) {
+  std::vector<std::thread> threads;
+  std::atomic<int> wrong = 0;
+  for (int i = 0; i < 8; ++i) {
+    threads.emplace_back([&wrong] {
+      for (int repeat = 0; repeat < 2000; ++repeat) {
+        try {
+          const bool is_right =
+              std::abs(convert(60.0, "rpm", "rad/s") - 60.0 * kRpm_rad_per_s) < 1e-12 && parse_quantity("36.9 mN m/A", "N m/A").ok();
+          wrong += is_right ? 0 : 1;
+        } catch (const std::logic_error&) {
+          ++wrong;
+        }
+      }
+    });
+  }
+  for (std::thread& each : threads) {
+    each.join();
+  }
+  EXPECT_EQ(wrong, 0);
+}
 
 TEST(Significant, is_within_half_a_digit) {
   std::mt19937_64 engine(902);
