@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string_view>
 
 #include "base/binomial_bound.h"
 #include "base/diagnostic.h"
 #include "derate/motor_verdicts.h"
+#include "derate/predicted_factor.h"
 #include "derate/sensed/sensor_plan.h"
 #include "derate/smallest_factor.h"
 #include "motor/datasheet_network.h"
@@ -123,6 +126,15 @@ void require_samples(const GuaranteeOptions& options) {
   }
 }
 
+/// Returns the largest number of drawn motors over a limit with which the lower bound on all motors reaches the confidence.
+int most_over(const GuaranteeOptions& goal) {
+  int most = -1;
+  while (most < goal.samples && 1.0 - base::upper_bound_share(most + 1, goal.samples, kCertainty_share) >= goal.confidence) {
+    ++most;
+  }
+  return most;
+}
+
 /// One safety factor on heat and the guard that follows from it.
 struct Attempt {
   double safety_factor;
@@ -153,14 +165,7 @@ class Search {
     constexpr double kGrowth = 1.5;
     const GuaranteeOptions& goal = options_.guarantee;
     MotorVerdicts motors(motor_, reachable_.limits, goal, 0);
-    return smallest(1.0, kGrowth, [&](double tried) {
-      Attempt with = attempt(tried);
-      const bool holds = count_over(motors, with) <= (1.0 - goal.confidence) * goal.samples;
-      if (holds) {
-        last_.emplace(std::move(with));
-      }
-      return holds;
-    });
+    return smallest(1.0, kGrowth, motors, static_cast<int>((1.0 - goal.confidence) * goal.samples));
   }
 
   struct Promise {
@@ -178,16 +183,7 @@ class Search {
     const GuaranteeOptions& goal = options_.guarantee;
     MotorVerdicts motors(motor_, reachable_.limits, goal, kStreamsApart);
     for (;;) {
-      const double found = smallest(from, kGrowth, [&](double tried) {
-        // The search has played the uses of its result already.
-        Attempt with = last_ && last_->safety_factor == tried ? std::move(*last_) : attempt(tried);
-        const int over = count_over(motors, with);
-        const bool holds = 1.0 - base::upper_bound_share(over, goal.samples, kCertainty_share) >= goal.confidence;
-        if (holds) {
-          last_.emplace(std::move(with));
-        }
-        return holds;
-      });
+      const double found = smallest(from, kGrowth, motors, most_over(goal));
       Attempt last = std::move(*last_);
       std::vector<UsePlayed> uses = all_uses(last);
       const Guarantee guarantee = check(motor_, reachable_.limits, uses, goal, kStreamsApart);
@@ -232,37 +228,67 @@ class Search {
     return {reserve, std::move(observer), rules, std::move(table), std::move(patterns), std::vector<std::optional<UsePlayed>>(count)};
   }
 
-  /// Plays a use unless that is done. Throws too_hot() if the observer itself exceeds its limit: with a temperature-dependent law a node
-  /// may heat again before it reaches the temperature at which it would cool.
-  const UsePlayed& use(Attempt& with, std::size_t index) const {
-    std::optional<UsePlayed>& played = with.uses[index];
-    if (!played) {
-      played = play(with.observer, with.table, with.rules, motor_, robot_, with.patterns[index], options_.period_s);
-    }
+  /// Throws too_hot() if the observer itself exceeds its limit: with a temperature-dependent law a node may heat again before it reaches
+  /// the temperature at which it would cool.
+  const UsePlayed& kept(const Attempt& with, const UsePlayed& played) const {
     constexpr double kRounding_K = 0.5;
-    return played->winding_peak_C > with.rules.limits.winding_C + kRounding_K ? throw too_hot() : *played;
+    return played.winding_peak_C > with.rules.limits.winding_C + kRounding_K ? throw too_hot() : played;
+  }
+
+  /// Plays the uses that are not played yet.
+  void play_uses(Attempt& with) const {
+    std::vector<std::size_t> missing;
+    for (std::size_t index = 0; index < with.uses.size(); ++index) {
+      if (!with.uses[index]) {
+        missing.push_back(index);
+      }
+    }
+    base::in_parallel((missing.size() + base::kLanes - 1) / base::kLanes, options_.guarantee.threads, [&](std::size_t block) {
+      const std::span<const std::size_t> rest = std::span(missing).subspan(block * base::kLanes);
+      const std::span<const std::size_t> own = rest.first(std::min<std::size_t>(rest.size(), base::kLanes));
+      std::vector<LoadPattern> patterns;
+      std::ranges::transform(own, std::back_inserter(patterns), [&](std::size_t index) { return with.patterns[index]; });
+      std::vector<UsePlayed> played = play(with.observer, with.table, with.rules, motor_, robot_, patterns, options_.period_s);
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        with.uses[own[i]] = std::move(played[i]);
+      }
+    });
   }
 
   [[nodiscard]] std::vector<UsePlayed> all_uses(Attempt& with) const {
-    std::vector<UsePlayed> uses(with.patterns.size());
-    base::in_parallel(uses.size(), options_.guarantee.threads, [&](std::size_t i) { uses[i] = use(with, i); });
+    play_uses(with);
+    std::vector<UsePlayed> uses;
+    std::ranges::transform(with.uses, std::back_inserter(uses), [&](const std::optional<UsePlayed>& each) { return kept(with, *each); });
     return uses;
   }
 
-  int count_over(MotorVerdicts& motors, Attempt& with) const {
-    if (motors.knows_nothing()) {
-      static_cast<void>(all_uses(with));  // all are needed, and several can be played at once
+  /// Nearly always all uses are needed.
+  const UsePlayed& use(Attempt& with, std::size_t index) const {
+    if (!with.uses[index]) {
+      play_uses(with);
     }
-    return motors.count_over(with.safety_factor, with.patterns, [&](std::size_t index) -> const UsePlayed& { return use(with, index); });
+    return kept(with, *with.uses[index]);
   }
 
   /// Typical number of attempts for motors of the database, including those of the check.
   static constexpr std::size_t kUsualRounds = 10;
 
-  /// Returns the smallest sufficient safety factor, at least `from`. Throws too_hot() if there is none.
-  template <class IsEnough>
-  [[nodiscard]] double smallest(double from, double growth, const IsEnough& is_enough) const {
-    const std::optional<double> found = smallest_factor(from, kLargestReserve, growth, is_enough);
+  /// Returns the smallest safety factor, at least `from`, at which at most `most_over` motors exceed a limit. Throws too_hot() if there is
+  /// none.
+  [[nodiscard]] double smallest(double from, double growth, MotorVerdicts& motors, int most_over) {
+    PredictedFactor predicted(options_.guarantee.samples, most_over);
+    const auto is_enough = [&](double tried) {
+      // The search has played the uses of its result already.
+      Attempt with = last_ && last_->safety_factor == tried ? std::move(*last_) : attempt(tried);
+      const auto played = [&](std::size_t index) -> const UsePlayed& { return use(with, index); };
+      const int over = motors.count_over(tried, with.patterns, played);
+      predicted.take(tried, over);
+      if (over <= most_over) {
+        last_.emplace(std::move(with));
+      }
+      return over <= most_over;
+    };
+    const std::optional<double> found = smallest_factor(from, kLargestReserve, growth, is_enough, predicted);
     return found ? *found : throw too_hot();
   }
 

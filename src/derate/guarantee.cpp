@@ -121,28 +121,46 @@ std::vector<LoadPattern> hardest_patterns(const Observer& observer, const Barrie
   return uses;
 }
 
-UsePlayed play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const motor::Motor& motor,
-               const robot::Robot& robot, const LoadPattern& use, double period_s) {
-  UsePlayed result;
-  result.use = use;
-  ObserverRun<float> run(observer, static_cast<float>(period_s), static_cast<float>(rules.hottest_ambient_C));
+std::vector<UsePlayed> play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const motor::Motor& motor,
+                            const robot::Robot& robot, std::span<const LoadPattern> uses, double period_s) {
+  std::vector<UsePlayed> result(uses.size());
+  std::vector<PlayedIntervals> intervals;
+  std::array<thermal::SingleLanes, observed::kSignalCount> signals;
+  signals.fill(thermal::SingleLanes::Zero());
+  for (std::size_t lane = 0; lane < uses.size(); ++lane) {
+    result[lane].use = uses[lane];
+    intervals.emplace_back(result[lane], motor, robot, rules);
+  }
+  ObserverRun<thermal::SingleLanes> run(observer, thermal::SingleLanes::Constant(static_cast<float>(period_s)),
+                                        thermal::SingleLanes::Constant(static_cast<float>(rules.hottest_ambient_C)));
+  thermal::SingleLanes winding_peak_C = thermal::SingleLanes::Zero();
+  thermal::SingleLanes stator_peak_C = thermal::SingleLanes::Zero();
   const auto periods = static_cast<std::int64_t>(use_duration_s(motor.nominal) / period_s);
-  PlayedIntervals intervals(result, motor, robot, rules);
   for (std::int64_t i = 0; i < periods; ++i) {
     const double time_s = static_cast<double>(i) * period_s;
-    const bool is_on = use.on_s <= 0.0 || std::fmod(time_s, use.on_s + use.off_s) < use.on_s;
-    const double speed_rad_per_s = (is_on ? use.speed_share : use.off_speed_share) * rules.most_speed_rad_per_s;
-    const float allowed_A =
-        is_on ? table.allowed_A(static_cast<float>(speed_rad_per_s), run.hottest_body_C(), run.state_C()[motor::states::winding]) : 0.0F;
-    intervals.take(time_s, allowed_A, speed_rad_per_s, period_s);
-    std::array<float, observed::kSignalCount> signals{};
-    std::ranges::transform(use.hot_case.signals(rules, allowed_A, speed_rad_per_s), signals.begin(),
-                           [](double value) { return static_cast<float>(value); });
+    const thermal::SingleLanes body_C = run.hottest_body_C();
+    const thermal::SingleLanes winding_C = run.state_C()[motor::states::winding];
+    for (std::size_t lane = 0; lane < uses.size(); ++lane) {
+      const LoadPattern& use = uses[lane];
+      const auto place = static_cast<Eigen::Index>(lane);
+      const bool is_on = use.on_s <= 0.0 || std::fmod(time_s, use.on_s + use.off_s) < use.on_s;
+      const double speed_rad_per_s = (is_on ? use.speed_share : use.off_speed_share) * rules.most_speed_rad_per_s;
+      const float allowed_A = is_on ? table.allowed_A(static_cast<float>(speed_rad_per_s), body_C[place], winding_C[place]) : 0.0F;
+      intervals[lane].take(time_s, allowed_A, speed_rad_per_s, period_s);
+      const Signals all = use.hot_case.signals(rules, allowed_A, speed_rad_per_s);
+      for (std::size_t signal = 0; signal < all.size(); ++signal) {
+        signals[signal][place] = static_cast<float>(all[signal]);
+      }
+    }
     run.step(signals);
-    result.winding_peak_C = std::max<double>(result.winding_peak_C, run.state_C()[motor::states::winding]);
-    result.stator_peak_C = std::max<double>(result.stator_peak_C, run.state_C()[motor::states::stator]);
+    winding_peak_C = winding_peak_C.max(run.state_C()[motor::states::winding]);
+    stator_peak_C = stator_peak_C.max(run.state_C()[motor::states::stator]);
   }
-  intervals.end(static_cast<double>(periods) * period_s);
+  for (std::size_t lane = 0; lane < uses.size(); ++lane) {
+    intervals[lane].end(static_cast<double>(periods) * period_s);
+    result[lane].winding_peak_C = winding_peak_C[static_cast<Eigen::Index>(lane)];
+    result[lane].stator_peak_C = stator_peak_C[static_cast<Eigen::Index>(lane)];
+  }
   return result;
 }
 

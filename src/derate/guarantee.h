@@ -66,9 +66,10 @@ class PlayedIntervals {
 /// Duration of a use: four stator time constants of the nominal motor, limited to 900 s to 4 h.
 double use_duration_s(const motor::MotorValues& motor);
 
-/// Simulates one use for use_duration_s(), from a motor at the temperature of the hottest air. Single precision, as in the firmware.
-UsePlayed play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const motor::Motor& motor,
-               const robot::Robot& robot, const LoadPattern& use, double period_s);
+/// Simulates up to kLanes uses for use_duration_s(), from a motor at the temperature of the hottest air. Single precision, as in the
+/// firmware.
+std::vector<UsePlayed> play(const Observer& observer, const CurrentTable& table, const BarrierRules& rules, const motor::Motor& motor,
+                            const robot::Robot& robot, std::span<const LoadPattern> uses, double period_s);
 
 /// Peak temperature of one motor over all uses.
 struct MotorPeak {

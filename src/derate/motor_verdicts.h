@@ -22,9 +22,6 @@ class MotorVerdicts {
   /// Draws options.samples motors from the random streams from `first_stream` on.
   MotorVerdicts(const motor::Motor& motor, const TemperatureLimits& limits, const GuaranteeOptions& options, std::uint64_t first_stream);
 
-  /// Returns true before the first count.
-  [[nodiscard]] bool knows_nothing() const { return known_.empty(); }
-
   /// Returns how many motors exceed a limit in at least one use. Calls `play` only for uses that are needed, from one thread.
   int count_over(double safety_factor, std::span<const LoadPattern> patterns, const Play& play);
 

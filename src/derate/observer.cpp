@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <type_traits>
 
 #include "robot/machine_point.h"
 #include "thermal/lanes.h"
@@ -109,7 +110,7 @@ ObserverRun<Number>::ObserverRun(const Observer& observer, Number period_s, Numb
     : rates_(observer.formula(), observer.rate_steps()),
       period_s_(period_s),
       state_C_(observer.state_count(), start_C),
-      carry_K_(observer.state_count(), Number{0}),
+      carry_K_(observer.state_count(), Number(start_C - start_C)),
       inputs_(observed::kSignalCount + observer.state_count()),
       rate_(observer.state_count()) {}
 
@@ -128,10 +129,19 @@ void ObserverRun<Number>::step(std::span<const Number, observed::kSignalCount> s
 
 template <class Number>
 Number ObserverRun<Number>::hottest_body_C() const {
-  return *std::max_element(state_C_.begin() + 1, state_C_.end());
+  if constexpr (std::is_arithmetic_v<Number>) {
+    return *std::max_element(state_C_.begin() + 1, state_C_.end());
+  } else {
+    Number hottest_C = state_C_[1];
+    for (std::size_t i = 2; i < state_C_.size(); ++i) {
+      hottest_C = hottest_C.max(state_C_[i]);
+    }
+    return hottest_C;
+  }
 }
 
 template class ObserverRun<float>;
 template class ObserverRun<double>;
+template class ObserverRun<thermal::SingleLanes>;
 
 }  // namespace heatsoak::derate

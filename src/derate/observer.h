@@ -10,6 +10,7 @@
 
 #include "motor/motor.h"
 #include "robot/robot.h"
+#include "thermal/lanes.h"
 #include "thermal/network.h"
 #include "thermal/operating_point.h"
 #include "thermal/traced.h"
@@ -75,7 +76,8 @@ class Observer {
 };
 
 /// Runs the observer as the generated code does: explicit Euler steps of one period with compensated summation (Kahan 1965). In single
-/// precision a step of a slow stator is smaller than the last digit of its temperature.
+/// precision a step of a slow stator is smaller than the last digit of its temperature. Number is float, double or SingleLanes, whose lanes
+/// have the bits of float.
 template <class Number>
 class ObserverRun {
  public:
@@ -97,5 +99,6 @@ class ObserverRun {
 };
 extern template class ObserverRun<float>;
 extern template class ObserverRun<double>;
+extern template class ObserverRun<thermal::SingleLanes>;
 
 }  // namespace heatsoak::derate

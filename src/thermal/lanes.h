@@ -9,6 +9,8 @@
 namespace heatsoak::thermal {
 
 using Lanes = Eigen::Array<double, base::kLanes, 1>;
+/// Lanes in the precision of the controller.
+using SingleLanes = Eigen::Array<float, base::kLanes, 1>;
 
 // The functions of scalar.h.
 inline Lanes magnitude(const Lanes& x) { return x.abs(); }

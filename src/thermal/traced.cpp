@@ -22,27 +22,38 @@ float power_of(float base, float exponent) { return heatsoak_pow(base, exponent)
 // Evaluated lane by lane, because Eigen's own functions differ in the last digit.
 Lanes exponential_of(const Lanes& x) { return exponential(x); }
 Lanes power_of(const Lanes& base, const Lanes& exponent) { return power(base, exponent); }
+SingleLanes exponential_of(const SingleLanes& x) {
+  return x.unaryExpr([](float each) { return exponential_of(each); });
+}
+SingleLanes power_of(const SingleLanes& base, const SingleLanes& exponent) {
+  return base.binaryExpr(exponent, [](float b, float e) { return power_of(b, e); });
+}
 
 template <class Number>
 Number magnitude_of(Number x) {
   return std::abs(x);
 }
 Lanes magnitude_of(const Lanes& x) { return x.abs(); }
+SingleLanes magnitude_of(const SingleLanes& x) { return x.abs(); }
 template <class Number>
 Number positive_part_of(Number x) {
   return x > Number{0} ? x : Number{0};
 }
 Lanes positive_part_of(const Lanes& x) { return x.max(0.0); }
+SingleLanes positive_part_of(const SingleLanes& x) { return x.max(0.0F); }
 template <class Number>
 Number square_root_of(Number x) {
   return std::sqrt(x);
 }
 Lanes square_root_of(const Lanes& x) { return x.sqrt(); }
+SingleLanes square_root_of(const SingleLanes& x) { return x.sqrt(); }
 
 template <class Number>
 Number constant_of(double value) {
   if constexpr (std::is_same_v<Number, Lanes>) {
     return Lanes::Constant(value);
+  } else if constexpr (std::is_same_v<Number, SingleLanes>) {
+    return SingleLanes::Constant(static_cast<float>(value));
   } else {
     return static_cast<Number>(value);
   }
@@ -180,6 +191,7 @@ void FormulaRun<Number>::run(std::span<const Number> inputs, std::span<Number> r
 template class FormulaRun<float>;
 template class FormulaRun<double>;
 template class FormulaRun<Lanes>;
+template class FormulaRun<SingleLanes>;
 
 Traced Traced::joined(Operation operation, const Traced& a, const Traced& b) {
   if (a.is_constant() && b.is_constant()) {

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <span>
+
 #include "base/diagnostic.h"
 #include "derate/derating.h"
 #include "guarded_motor.h"
@@ -43,7 +45,7 @@ TEST(DerateWithoutSpreads, DrawsMotorsThatGetNoLessHot) {
     std::vector<UsePlayed> uses;
     for (const LoadPattern& use : hardest_patterns(guarded.observer, guarded.rules)) {
       if (uses.size() < 3) {
-        uses.push_back(play(guarded.observer, guarded.table, guarded.rules, honest, twente(), use, kPeriod_s));
+        uses.push_back(play(guarded.observer, guarded.table, guarded.rules, honest, twente(), std::span(&use, 1), kPeriod_s).front());
       }
     }
     const Guarantee with = check(honest, guarded.rules.limits, uses, options, 0);

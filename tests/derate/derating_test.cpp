@@ -5,11 +5,13 @@
 #include <fstream>
 #include <limits>
 #include <set>
+#include <span>
 
 #include "base/diagnostic.h"
 #include "derate/barrier.h"
 #include "derate/exporter.h"
 #include "derate/motor_verdicts.h"
+#include "derate/smallest_factor.h"
 #include "guarded_motor.h"
 #include "thermal/transient.h"
 
@@ -62,7 +64,7 @@ TEST(MotorVerdicts, CountIsThatOfACheckOfAllMotorsAndUses) {
       const std::vector<LoadPattern> patterns = hardest_patterns(guarded.observer, rules);
       std::vector<UsePlayed> uses;
       for (const LoadPattern& each : patterns) {
-        uses.push_back(play(guarded.observer, guarded.table, rules, motor, twente(), each, 0.05));
+        uses.push_back(play(guarded.observer, guarded.table, rules, motor, twente(), std::span(&each, 1), 0.05).front());
       }
       const int over = check(motor, rules.limits, uses, options, 0).over;
       EXPECT_EQ(verdicts.count_over(safety_factor, patterns, [&](std::size_t i) -> const UsePlayed& { return uses[i]; }), over)
@@ -70,6 +72,69 @@ TEST(MotorVerdicts, CountIsThatOfACheckOfAllMotorsAndUses) {
       counts.insert(over);
     }
     EXPECT_GT(counts.size(), 3U);  // the safety factors give different counts
+  }
+}
+
+TEST(Play, UsesTogetherHaveTheBitsOfEachAlone) {
+  const motor::Motor motor = ecx_32();
+  const BarrierRules rules = rules_for(motor);
+  const GuardedMotor guarded(motor, rules, 1.7);
+  std::vector<LoadPattern> patterns = hardest_patterns(guarded.observer, rules);
+  patterns.resize(base::kLanes);
+  const std::vector<UsePlayed> together = play(guarded.observer, guarded.table, rules, motor, twente(), patterns, 0.05);
+  ASSERT_EQ(together.size(), patterns.size());
+  for (std::size_t i = 0; i < patterns.size(); ++i) {
+    const UsePlayed alone = play(guarded.observer, guarded.table, rules, motor, twente(), std::span(&patterns[i], 1), 0.05).front();
+    EXPECT_TRUE(together[i].use == patterns[i]) << i;
+    EXPECT_EQ(together[i].time_s, alone.time_s) << i;
+    EXPECT_EQ(together[i].current_A, alone.current_A) << i;
+    EXPECT_EQ(together[i].winding_peak_C, alone.winding_peak_C) << i;
+    EXPECT_EQ(together[i].stator_peak_C, alone.stator_peak_C) << i;
+  }
+}
+
+TEST(ObserverRun, LanesHaveTheBitsOfSinglePrecision) {
+  const motor::Motor motor = ecx_32();
+  const GuardedMotor guarded(motor, rules_for(motor), 1.7);
+  ObserverRun<thermal::SingleLanes> lanes(guarded.observer, thermal::SingleLanes::Constant(0.01F), thermal::SingleLanes::Constant(40.0F));
+  std::vector<ObserverRun<float>> scalars(base::kLanes, ObserverRun<float>(guarded.observer, 0.01F, 40.0F));
+  base::Random random(11, 0);
+  for (int period = 0; period < 2000; ++period) {
+    std::array<thermal::SingleLanes, observed::kSignalCount> all;
+    for (int lane = 0; lane < base::kLanes; ++lane) {
+      std::array<float, observed::kSignalCount> one{};
+      for (std::size_t signal = 0; signal < one.size(); ++signal) {
+        all[signal][lane] = one[signal] = static_cast<float>(40.0 * random.uniform() - 10.0);
+      }
+      scalars[static_cast<std::size_t>(lane)].step(one);
+    }
+    lanes.step(all);
+  }
+  for (int lane = 0; lane < base::kLanes; ++lane) {
+    const ObserverRun<float>& one = scalars[static_cast<std::size_t>(lane)];
+    EXPECT_EQ(lanes.hottest_body_C()[lane], one.hottest_body_C()) << lane;
+    for (std::size_t state = 0; state < one.state_C().size(); ++state) {
+      EXPECT_EQ(lanes.state_C()[state][lane], one.state_C()[state]) << lane;
+    }
+  }
+}
+
+TEST(SmallestFactor, NoPredictionChangesTheResult) {
+  base::Random random(5, 0);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const double from = 1.0 + random.uniform();
+    const double needed = from * std::exp(2.0 * random.uniform() - 0.2);
+    const double growth = 1.02 + random.uniform();
+    double last_accepted = 0.0;
+    const auto is_enough = [&](double tried) {
+      last_accepted = tried >= needed ? tried : last_accepted;
+      return tried >= needed;
+    };
+    const std::optional<double> plain = smallest_factor(from, 16.0, growth, is_enough);
+    const double bias = std::exp(0.4 * random.uniform() - 0.2);
+    const auto predicted = [&](const FactorBracket&) { return needed * bias; };
+    EXPECT_EQ(smallest_factor(from, 16.0, growth, is_enough, predicted), plain);
+    EXPECT_EQ(last_accepted, plain.value_or(0.0)) << "the search keeps the guard of the last accepted factor";
   }
 }
 
@@ -97,7 +162,7 @@ TEST(Derate, NominalParametersAloneAreNotEnough) {
   const GuardedMotor bare(motor, derating.rules, 1.0);
   std::vector<UsePlayed> uses;
   for (const LoadPattern& use : hardest_patterns(bare.observer, bare.rules)) {
-    uses.push_back(play(bare.observer, bare.table, bare.rules, motor, twente(), use, 0.01));
+    uses.push_back(play(bare.observer, bare.table, bare.rules, motor, twente(), std::span(&use, 1), 0.01).front());
   }
   EXPECT_GT(check(motor, derating.rules.limits, uses, {}, 0).over, 100) << "of 400";
 }
