@@ -22,6 +22,11 @@ std::string key_of(const motor::Motor& motor) {
   return key;
 }
 
+/// Returns the duty as a match; null if it has another shape.
+std::shared_ptr<const duty::MatchDuty> match_of(const Check& check) {
+  return std::dynamic_pointer_cast<const duty::MatchDuty>(check.duty->shape_data);
+}
+
 std::string key_of_load(const Check& check) {
   return fmt::format("{}|{}|{}", check.robot->file.string(), check.duty->file.string(), check.seed);
 }
@@ -33,14 +38,45 @@ int Computations::independent_draws(const Check& check) {
   return games > 0 ? games : check.samples;
 }
 
+const duty::MatchLoad& Computations::nominal_game(const Check& check) {
+  const std::shared_ptr<const duty::MatchDuty> match = match_of(check);
+  if (!match) {
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("the drive core can drive only a match; {} is {}. Expected a duty of the shape match", check.duty->id,
+                                    check.duty->shape));
+  }
+  return nominal_games_.get(key_of_load(check), [&] { return duty::play_nominal(match->inputs(), *check.robot, check.seed); });
+}
+
 const std::vector<duty::WheelDemand>& Computations::demand(const Check& check) {
+  if (match_of(check)) {
+    return nominal_game(check).wheels;
+  }
   return demands_.get(key_of_load(check), [&] { return check.duty->demand(*check.robot, check.seed); });
 }
 
 const std::vector<duty::WheelDemand>& Computations::draws(const Check& check) {
   const int count = select::draw_count(*check.duty, check.samples);
-  return draws_.get(fmt::format("{}|{}", key_of_load(check), count),
-                    [&] { return select::draw_demands(*check.duty, *check.robot, check.seed, count, threads_); });
+  return draws_.get(fmt::format("{}|{}", key_of_load(check), count), [&] {
+    std::vector<duty::WheelDemand> draws(static_cast<std::size_t>(count));
+    // The nominal game takes as long as several draws, so it is played beside them.
+    base::in_parallel(draws.size() + 1, threads_, [&](std::size_t job) {
+      if (job == 0) {
+        static_cast<void>(demand(check));
+      } else {
+        draws[job - 1] = check.duty->shape_data->draw(*check.robot, check.seed, job - 1);
+      }
+    });
+    return draws;
+  });
+}
+
+void Computations::play_games(const Check& check) {
+  try {
+    static_cast<void>(draws(check));
+  } catch (const base::Failure&) {
+    return;  // kept
+  }
 }
 
 const select::MotorEvaluation& Computations::evaluation(const Check& check, const motor::Motor& motor) {
@@ -77,12 +113,7 @@ const derate::Derating& Computations::derating(const Check& check, const derate:
 }
 
 const GuardedDrive& Computations::guarded_drive(const Check& check) {
-  const auto match = std::dynamic_pointer_cast<const duty::MatchDuty>(check.duty->shape_data);
-  if (!match) {
-    throw base::Failure(base::ExitCode::bad_input,
-                        fmt::format("the drive core can drive only a match; {} is {}. Expected a duty of the shape match", check.duty->id,
-                                    check.duty->shape));
-  }
+  const duty::MatchLoad& load = nominal_game(check);
   if (!check.motor->nominal.rotor_inertia_kg_m2) {
     throw base::Failure(base::ExitCode::bad_input, fmt::format("{} has no rotor_inertia, which is needed for the acceleration of a wheel",
                                                                check.motor->file.string()));
@@ -96,8 +127,7 @@ const GuardedDrive& Computations::guarded_drive(const Check& check) {
     guard.derating.emplace(derating(check, options));
     guard.guard.emplace(*guard.derating);
     const simulate::GuardedCore core(*check.robot, *check.motor, simulate::GuardUse::shadow, guard);
-    const simulate::Game& game =
-        games_.get(key_of_load(check), [&] { return simulate::play_game(match->inputs(), *check.robot, check.seed); });
+    const simulate::Game game = simulate::game_of(match_of(check)->inputs(), load);
     simulate::MatchRunOptions run;
     run.ambient_C = check.duty->ambient_C.value;
     run.drive = simulate::real_drive(*check.robot, check.seed);

@@ -70,6 +70,10 @@ class Computations {
  public:
   explicit Computations(int threads) : threads_(threads) {}
 
+  /// Plays the games of the check on all threads. Without this call, checks that run at the same time and need the same games would wait
+  /// for one of them, which plays them alone. A failure is kept for the threshold that needs the games.
+  void play_games(const Check& check);
+
   /// Returns the evaluation of `motor` alone on the check's robot and duty. `heatsoak evaluate` gives the same numbers, whatever motors it
   /// compares.
   const select::MotorEvaluation& evaluation(const Check& check, const motor::Motor& motor);
@@ -85,13 +89,15 @@ class Computations {
 
  private:
   const std::vector<duty::WheelDemand>& draws(const Check& check);
+  /// Returns the nominal game of a match, which gives the demand and is driven. Throws Failure if the duty is no match.
+  const duty::MatchLoad& nominal_game(const Check& check);
 
   int threads_ = 0;
+  Kept<duty::MatchLoad> nominal_games_;
   Kept<std::vector<duty::WheelDemand>> demands_;
   Kept<std::vector<duty::WheelDemand>> draws_;
   Kept<select::MotorEvaluation> evaluations_;
   Kept<derate::Derating> deratings_;
-  Kept<simulate::Game> games_;
   Kept<GuardedDrive> drives_;
 };
 

@@ -35,6 +35,14 @@ void require_readable(const Check& check, const ThresholdType& type) {
   }
 }
 
+/// Returns whether a limit of the check needs the drawn samples of its duty.
+bool needs_samples(const Check& check) {
+  return check.robot && check.duty && std::ranges::any_of(check.limits, [](const Limit& limit) {
+           const std::vector<Setting>& takes = limit.type->takes;
+           return std::ranges::find(takes, Setting::samples) != takes.end();
+         });
+}
+
 void evaluate_one(Outcome& outcome, Computations& computations) {
   try {
     require_readable(*outcome.check, *outcome.limit.type);
@@ -87,6 +95,11 @@ std::vector<Outcome> run_checks(const CheckFile& file, int threads, const base::
     ranges.emplace_back(first, outcomes.size());
   }
   Computations computations(threads);
+  for (const Check& check : file.checks) {
+    if (needs_samples(check)) {
+      computations.play_games(check);
+    }
+  }
   // Thresholds of one check mostly need the same results, so each check is one job.
   base::in_parallel(ranges.size(), threads, 0, ranges.size(), progress, [&](std::size_t job) {
     for (std::size_t i = ranges[job].first; i < ranges[job].second; ++i) {

@@ -8,10 +8,12 @@
 
 namespace heatsoak::simulate {
 
+Game game_of(const duty::MatchInputs& inputs, const duty::MatchLoad& load) {
+  return {load.script, load.duration_s, inputs.nominal().aggressiveness};
+}
+
 Game play_game(const duty::MatchInputs& inputs, const robot::Robot& robot, std::uint64_t seed) {
-  const duty::MatchValues values = inputs.nominal();
-  duty::MatchLoad load = duty::play_match(inputs, values, robot, seed, duty::Planner::jerk_limited);
-  return {std::move(load.script), load.duration_s, values.aggressiveness};
+  return game_of(inputs, duty::play_nominal(inputs, robot, seed));
 }
 
 MatchRun run_match(const Game& game, const robot::Robot& robot, const motor::Motor& motor, const robot_core::Config& core,

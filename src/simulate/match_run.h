@@ -37,6 +37,8 @@ struct Game {
 };
 /// Plays the game with nominal inputs.
 Game play_game(const duty::MatchInputs& inputs, const robot::Robot& robot, std::uint64_t seed);
+/// Returns the game of a load from duty::play_nominal() with the same inputs.
+Game game_of(const duty::MatchInputs& inputs, const duty::MatchLoad& load);
 
 /// Throws Failure (bad_input) if the motor file has no rotor inertia.
 void require_rotor_inertia(const motor::Motor& motor);

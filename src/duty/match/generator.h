@@ -85,6 +85,11 @@ inline constexpr double kDrawnGameStep_s = 4e-3;
 MatchLoad play_match(const MatchInputs& inputs, const MatchValues& values, const robot::Robot& robot, std::uint64_t seed, Planner planner,
                      double bin_s = kBin_s, const MatchObserver& observer = {}, double step_s = kGameStep_s);
 
+/// Plays the game with nominal inputs and the jerk-limited planner.
+inline MatchLoad play_nominal(const MatchInputs& inputs, const robot::Robot& robot, std::uint64_t seed) {
+  return play_match(inputs, inputs.nominal(), robot, seed, Planner::jerk_limited);
+}
+
 /// Returns the demand of the wheel with the largest ∫M²dt of the same game; faster than play_match().
 WheelDemand hardest_wheel_of_match(const MatchInputs& inputs, const MatchValues& values, const robot::Robot& robot, std::uint64_t seed,
                                    Planner planner, double bin_s, double step_s);

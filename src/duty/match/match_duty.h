@@ -14,7 +14,7 @@ class MatchDuty final : public DutyShape {
 
   [[nodiscard]] const MatchInputs& inputs() const { return inputs_; }
   [[nodiscard]] std::vector<WheelDemand> demand(const robot::Robot& robot, std::uint64_t seed) const override {
-    return play_match(inputs_, inputs_.nominal(), robot, seed, Planner::jerk_limited).wheels;
+    return play_nominal(inputs_, robot, seed).wheels;
   }
   [[nodiscard]] bool depends_on_robot() const override { return true; }
   [[nodiscard]] bool has_unknowns() const override { return true; }
