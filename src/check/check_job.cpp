@@ -14,15 +14,14 @@ namespace {
 
 constexpr std::size_t kLargestCheckFile_bytes = 1'000'000;
 
-/// Reads all files and reports the problems of all of them together.
-std::vector<CheckFile> read_check_files(const std::vector<std::string>& names, const input::DataFolders& folders) {
-  std::vector<CheckFile> files;
+/// Reads all files; the problems of the invalid ones become one failure.
+void read_check_files(const std::vector<std::string>& names, const input::DataFolders& folders, CheckAnswer& answer) {
   std::string message;
   std::vector<base::Diagnostic> problems;
   for (const std::string& name : names) {
     try {
       // The example in the help is a file that came with the program.
-      files.push_back(read_check_file(input::log_named(folders, name), folders));
+      answer.files.push_back(read_check_file(input::log_named(folders, name), folders));
     } catch (const base::Failure& failure) {
       if (failure.code() != base::ExitCode::bad_input) {
         throw;
@@ -32,9 +31,8 @@ std::vector<CheckFile> read_check_files(const std::vector<std::string>& names, c
     }
   }
   if (!problems.empty() || !message.empty()) {
-    throw base::Failure(base::ExitCode::bad_input, std::move(message), std::move(problems));
+    answer.invalid.emplace(base::ExitCode::bad_input, std::move(message), std::move(problems));
   }
-  return files;
 }
 
 /// Throws if the file was found beside the program, because it is not the user's.
@@ -47,13 +45,17 @@ void refuse_shipped(const std::filesystem::path& path, const CheckJob& job) {
 
 }  // namespace
 
-bool CheckAnswer::passed() const { return std::ranges::all_of(outcomes, &Outcome::passed); }
+bool CheckAnswer::passed() const { return !invalid && std::ranges::all_of(outcomes, &Outcome::passed); }
 
 CheckAnswer run_check_job(const CheckJob& job, const input::DataFolders& folders, const base::ProgressFor& progress) {
-  CheckAnswer answer{.files = read_check_files(job.files, folders), .outcomes = {}, .rewritten = {}};
+  CheckAnswer answer;
+  read_check_files(job.files, folders, answer);
+  if (answer.invalid && !job.evaluates_beside_invalid) {
+    throw base::Failure(*answer.invalid);
+  }
   for (const CheckFile& file : answer.files) {
     std::vector<Outcome> of_file = run_checks(file, job.threads, base::progress_of(progress, "checking"));
-    if (job.updates) {
+    if (job.updates && !answer.invalid) {
       refuse_shipped(file.path, job);
       const std::string before = base::read_file(file.path, kLargestCheckFile_bytes);
       if (std::string after = with_new_limits(before, of_file, job.margin_share); after != before) {

@@ -70,6 +70,19 @@ std::string test_case(const Outcome& each) {
                             base::xml_attribute(each.limit.at.file), each.limit.at.line, base::xml_attribute(facts));
 }
 
+/// Returns one test suite per check.
+std::string suites_of(std::span<const Outcome> outcomes, std::string_view version) {
+  std::string text;
+  for (const std::span<const Outcome> group : by_check(outcomes)) {
+    text += suite_begin(group.front().check->name, counts_of(group), version);
+    for (const Outcome& each : group) {
+      text += test_case(each);
+    }
+    text += "  </testsuite>\n";
+  }
+  return text;
+}
+
 /// Escapes text for a cell of a Markdown table.
 std::string in_markdown(std::string_view text) {
   std::string result;
@@ -151,21 +164,16 @@ std::string explanation(const Outcome& outcome) {
 }
 
 std::string junit_xml(std::span<const Outcome> outcomes, std::string_view version) {
-  std::string text = suites_begin(counts_of(outcomes));
-  for (const std::span<const Outcome> group : by_check(outcomes)) {
-    text += suite_begin(group.front().check->name, counts_of(group), version);
-    for (const Outcome& each : group) {
-      text += test_case(each);
-    }
-    text += "  </testsuite>\n";
-  }
-  return text + "</testsuites>\n";
+  return suites_begin(counts_of(outcomes)) + suites_of(outcomes, version) + "</testsuites>\n";
 }
 
-std::string junit_xml(const base::Failure& failure, std::string_view version) {
+std::string junit_xml(std::span<const Outcome> outcomes, const base::Failure& failure, std::string_view version) {
   constexpr Counts kOneError{.all = 1, .exceeded = 0, .not_evaluated = 1};
+  Counts counts = counts_of(outcomes);
+  counts.all += kOneError.all;
+  counts.not_evaluated += kOneError.not_evaluated;
   const std::string all = failure.what();
-  return suites_begin(kOneError) + suite_begin("heatsoak check", kOneError, version) +
+  return suites_begin(counts) + suites_of(outcomes, version) + suite_begin("heatsoak check", kOneError, version) +
          fmt::format(
              "    <testcase name=\"check files\" classname=\"heatsoak check\">\n      <error type=\"not_evaluated\" "
              "message=\"{}\">{}</error>\n"

@@ -32,8 +32,9 @@ std::string explanation(const Outcome& outcome);
 /// is a <failure>, a threshold that could not be evaluated an <error>.
 std::string junit_xml(std::span<const Outcome> outcomes, std::string_view version);
 
-/// Returns JUnit XML of a run that ended with the failure, such as a check file that cannot be read: one <testcase> with an <error>.
-std::string junit_xml(const base::Failure& failure, std::string_view version);
+/// Returns JUnit XML of a run that ended with the failure, such as a check file that cannot be read: the outcomes of the other files, and
+/// one <testcase> with an <error>.
+std::string junit_xml(std::span<const Outcome> outcomes, const base::Failure& failure, std::string_view version);
 
 /// Returns a Markdown table for $GITHUB_STEP_SUMMARY.
 std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view version);

@@ -335,6 +335,19 @@ TEST_F(CheckFiles, LimitsLooserThanTheMotorsOwnAreRefused) {
   EXPECT_THAT(message, HasSubstr("\"at least -0.1 A\" is looser than the motor's own limits, 0 A"));
 }
 
+// A guard that limits nearly all the time is no harmless one. "at most 0 %" means not for one period.
+TEST_F(CheckFiles, GuardThatLimitsForMostOfTheMatchIsRefusedAsALimit) {
+  const auto message = [&](const std::string& limit) {
+    return message_of(
+        "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"division_a_match\"\nmotor = \"maxon_ecx_flat_32l_48v\"\n"
+        "[check.limits]\nguard_active_share = \"" +
+        limit + "\"\n");
+  };
+  EXPECT_THAT(message("at most 99.9 %"), HasSubstr("\"at most 99.9 %\" is looser than half of the match, 50 %"));
+  EXPECT_EQ(message("at most 50 %"), "nothing was wrong");
+  EXPECT_EQ(message("at most 0 %"), "nothing was wrong");
+}
+
 TEST_F(CheckFiles, TimeAboveLongerThanTheDutyIsRefused) {
   const auto message = [&](const std::string& limit) {
     return message_of(kHead + "temperature = \"100 degC\"\n[check.limits]\ntime_above = \"at most " + limit + "\"\n");

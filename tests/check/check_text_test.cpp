@@ -4,6 +4,7 @@
 #include <expat.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <sstream>
@@ -97,11 +98,22 @@ TEST_F(Outcomes, AreJunitThatParses) {
 TEST(JunitOfAFailure, is_one_error_with_every_problem) {
   const base::Failure failure(base::ExitCode::bad_input, "",
                               {{{"a<b.toml", 3, 9}, "check[0].robot", "there is no robot"}, {{"missing.toml"}, {}, "cannot be read"}});
-  const std::vector<Element> elements = parsed(junit_xml(failure, "1.2.3"));
+  const std::vector<Element> elements = parsed(junit_xml({}, failure, "1.2.3"));
   EXPECT_EQ(elements.front().attributes.at("tests"), "1");
   EXPECT_EQ(elements.front().attributes.at("errors"), "1");
   EXPECT_EQ(elements.back().name, "error");
   EXPECT_THAT(elements.back().attributes.at("message"), HasSubstr("a<b.toml:3:9: error: check[0].robot: there is no robot"));
+  EXPECT_THAT(elements.back().text, HasSubstr("missing.toml: error: cannot be read"));
+}
+
+TEST_F(Outcomes, StandInTheJunitBesideAFailure) {
+  const base::Failure failure(base::ExitCode::bad_input, "", {{{"missing.toml"}, {}, "cannot be read"}});
+  const std::vector<Element> elements = parsed(junit_xml(outcomes_, failure, "1.2.3"));
+  EXPECT_EQ(elements.front().attributes.at("tests"), "4");
+  EXPECT_EQ(elements.front().attributes.at("failures"), "1");
+  EXPECT_EQ(elements.front().attributes.at("errors"), "2");
+  EXPECT_EQ(std::ranges::count(elements, "testcase", &Element::name), 4);
+  EXPECT_EQ(std::ranges::count(elements, "testsuite", &Element::name), 3);
   EXPECT_THAT(elements.back().text, HasSubstr("missing.toml: error: cannot be read"));
 }
 

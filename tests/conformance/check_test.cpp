@@ -113,6 +113,23 @@ TEST_F(CheckCommand, WrongFilesAreExitTwoAllAtOnceAndLeaveOnlyTheJunit) {
                              HasSubstr("missing.toml: error: cannot be read")));
 }
 
+TEST_F(CheckCommand, JunitHasTheLimitsOfTheGoodFileBesideABadOne) {
+  const ProgramRun done = check(check_with(120.0, 1.0), {"missing.toml", "--junit", "check.xml", "--update"});
+  EXPECT_EQ(done.exit_code, 2);
+  EXPECT_THAT(done.err, HasSubstr("missing.toml: error: cannot be read"));
+  EXPECT_THAT(content_of(folder_.path() / "check.xml"),
+              testing::AllOf(HasSubstr("tests=\"3\" failures=\"0\" errors=\"1\""), HasSubstr("<testcase name=\"winding_peak_p95\""),
+                             HasSubstr("missing.toml: error: cannot be read")));
+  EXPECT_EQ(content_of(folder_.path() / "robot.check.toml"), check_with(120.0, 1.0)) << "nothing is updated beside a bad file";
+}
+
+TEST_F(CheckCommand, JunitOnStdoutIsRefused) {
+  const ProgramRun done = check(check_with(120.0, 1.0), {"--junit", "-"});
+  EXPECT_EQ(done.exit_code, 2);
+  EXPECT_THAT(done.err, HasSubstr("expected the name of a file"));
+  EXPECT_THAT(folder_.names(), ElementsAre("robot.check.toml"));
+}
+
 TEST_F(CheckCommand, MissingMotorFileIsAFailedLimitInEveryReport) {
   const ProgramRun done = check(
       "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"ours.toml\"\n"

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "check/computations.h"
+#include "select/evaluate.h"
 
 namespace heatsoak::check::thresholds {
 namespace {
@@ -21,11 +22,14 @@ ThresholdType guard_active_share() {
           .range = base::Range::between(0.0, 1.0),
           .meaning =
               "share of a match in which the motor's thermal guard would limit any wheel: one game of 'seed', driven by the drive core in "
-              "a closed loop with real sensing, the guard in shadow mode. \"at most 0 %\": the guard never engages",
+              "a closed loop with real sensing, the guard in shadow mode. \"at most 0 %\": the guard never engages, not for one control "
+              "period. A limit above 50 % is refused, because a guard that limits for most of the match shows that the motor is too small",
           .example = "at most 0 %",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::seed, Setting::conditions, Setting::derate},
-          .loosest = [](const Check&) -> std::optional<LoosestLimit> { return largest_share_limit(); },
+          .loosest = [](const Check&) -> std::optional<LoosestLimit> {
+            return LoosestLimit{select::kMajority, "half of the match"};
+          },
           .measure = measure_guard_active_share};
 }
 

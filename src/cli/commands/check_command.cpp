@@ -42,12 +42,18 @@ void write_github(const std::vector<check::Outcome>& outcomes, Session& session)
   }
 }
 
-base::ExitCode run(const CheckOptions& options, Session& session) {
+base::ExitCode run(CheckOptions& options, Session& session) {
+  options.job.evaluates_beside_invalid = !options.junit.empty();
+  const auto kept = std::make_shared<check::CheckAnswer>();
   if (!options.junit.empty()) {
-    session.write_after_failure(options.junit,
-                                [](const base::Failure& failure) { return check::junit_xml(failure, base::program_version()); });
+    session.write_after_failure(
+        options.junit, [kept](const base::Failure& failure) { return check::junit_xml(kept->outcomes, failure, base::program_version()); });
   }
-  const check::CheckAnswer answer = check::run_check_job(options.job, session.folders(), progress_bar);
+  *kept = check::run_check_job(options.job, session.folders(), progress_bar);
+  const check::CheckAnswer& answer = *kept;
+  if (answer.invalid) {
+    throw base::Failure(*answer.invalid);
+  }
   for (const check::RewrittenFile& each : answer.rewritten) {
     session.rewrite(each.path, each.text);
   }
@@ -73,7 +79,11 @@ Command check_command() {
             app.add_option("files", options->job.files, "check files (`heatsoak list thresholds` shows what can have a limit)")
                 ->required()
                 ->type_name("FILE.toml");
-            app.add_option("--junit", options->junit, "write the result as JUnit XML, for CI services")->type_name("FILE.xml");
+            app.add_option("--junit", options->junit, "write the result as JUnit XML, for CI services")
+                ->type_name("FILE.xml")
+                ->check([](const std::string& word) {
+                  return word == "-" ? "is stdout, which has the answer for people; expected the name of a file" : std::string();
+                });
             CLI::Option* const update = app.add_flag(
                 "--update", options->job.updates,
                 "rewrite the limits in the files to the present values with some room; limits that cannot be evaluated stay unchanged");
