@@ -13,7 +13,6 @@
 #include "base/binomial_bound.h"
 #include "base/diagnostic.h"
 #include "derate/motor_verdicts.h"
-#include "derate/predicted_factor.h"
 #include "derate/sensed/sensor_plan.h"
 #include "derate/smallest_factor.h"
 #include "motor/datasheet_network.h"
@@ -276,19 +275,17 @@ class Search {
   /// Returns the smallest safety factor, at least `from`, at which at most `most_over` motors exceed a limit. Throws too_hot() if there is
   /// none.
   [[nodiscard]] double smallest(double from, double growth, MotorVerdicts& motors, int most_over) {
-    PredictedFactor predicted(options_.guarantee.samples, most_over);
     const auto is_enough = [&](double tried) {
       // The search has played the uses of its result already.
       Attempt with = last_ && last_->safety_factor == tried ? std::move(*last_) : attempt(tried);
       const auto played = [&](std::size_t index) -> const UsePlayed& { return use(with, index); };
       const int over = motors.count_over(tried, with.patterns, played);
-      predicted.take(tried, over);
       if (over <= most_over) {
         last_.emplace(std::move(with));
       }
       return over <= most_over;
     };
-    const std::optional<double> found = smallest_factor(from, kLargestReserve, growth, is_enough, predicted);
+    const std::optional<double> found = smallest_factor(from, kLargestReserve, growth, is_enough);
     return found ? *found : throw too_hot();
   }
 

@@ -11,7 +11,6 @@
 #include "derate/barrier.h"
 #include "derate/exporter.h"
 #include "derate/motor_verdicts.h"
-#include "derate/smallest_factor.h"
 #include "guarded_motor.h"
 #include "thermal/transient.h"
 
@@ -116,25 +115,6 @@ TEST(ObserverRun, LanesHaveTheBitsOfSinglePrecision) {
     for (std::size_t state = 0; state < one.state_C().size(); ++state) {
       EXPECT_EQ(lanes.state_C()[state][lane], one.state_C()[state]) << lane;
     }
-  }
-}
-
-TEST(SmallestFactor, NoPredictionChangesTheResult) {
-  base::Random random(5, 0);
-  for (int trial = 0; trial < 2000; ++trial) {
-    const double from = 1.0 + random.uniform();
-    const double needed = from * std::exp(2.0 * random.uniform() - 0.2);
-    const double growth = 1.02 + random.uniform();
-    double last_accepted = 0.0;
-    const auto is_enough = [&](double tried) {
-      last_accepted = tried >= needed ? tried : last_accepted;
-      return tried >= needed;
-    };
-    const std::optional<double> plain = smallest_factor(from, 16.0, growth, is_enough);
-    const double bias = std::exp(0.4 * random.uniform() - 0.2);
-    const auto predicted = [&](const FactorBracket&) { return needed * bias; };
-    EXPECT_EQ(smallest_factor(from, 16.0, growth, is_enough, predicted), plain);
-    EXPECT_EQ(last_accepted, plain.value_or(0.0)) << "the search keeps the guard of the last accepted factor";
   }
 }
 
