@@ -10,6 +10,7 @@
 
 #include "attribution/curve.h"
 #include "base/parallel.h"
+#include "estimation/left_out_runs.h"
 #include "estimation/thresholds.h"
 
 namespace heatsoak::attribution {
@@ -103,7 +104,7 @@ class Scanner {
     constexpr std::size_t kClimbed = 12;
     constexpr std::size_t kZoomed = 4;
     std::vector<Family> families = all_families();
-    const double without_nats = best_without_nats();
+    const Scored without = best_without();
     for (const estimation::FluxPlace& place : beginnings()) {
       const std::vector<SharedRun>& shared = shared_at(place);
       base::in_parallel(families.size(), 0, [&](std::size_t i) { take_better(families[i], score(families[i], shared, place)); });
@@ -123,7 +124,7 @@ class Scanner {
     keep_best(most);
     std::vector<ScanResult> results;
     for (const Family& each : families) {
-      results.push_back(result(each, without_nats));
+      results.push_back(result(each, without));
     }
     return results;
   }
@@ -221,22 +222,20 @@ class Scanner {
     }
   }
 
-  /// Returns ln P of the best subset without a curve, at its own unknown heat.
-  double best_without_nats() {
-    double best_nats = -std::numeric_limits<double>::infinity();
+  /// Returns the best subset without a curve, at its own unknown heat.
+  Scored best_without() {
+    Scored best;
     for (const estimation::FluxPlace& start : input_.places) {
       (void)estimation::most_probable(input_.grid, start, [&](const estimation::FluxPlace& place) {
-        const std::vector<SharedRun>& shared = shared_at(place);
-        estimation::Products sum;
-        for (std::size_t r = 0; r < shared.size(); ++r) {
-          estimation::add_without_starts(shared[r].products, (*input_.designs)[r], shared[r].whitening, sum);
+        Scored own = best_subset(estimation::reduced(estimation::sum_of(without_starts(nullptr, shared_at(place))), prior_), false, place);
+        const double nats = own.nats;
+        if (nats > best.nats) {
+          best = std::move(own);
         }
-        const double own_nats = best_subset(estimation::reduced(sum, prior_), false, place).nats;
-        best_nats = std::max(best_nats, own_nats);
-        return own_nats;
+        return nats;
       });
     }
-    return best_nats;
+    return best;
   }
 
   void set_responses(Family& family) const {
@@ -330,28 +329,33 @@ class Scanner {
     return set_gain_nats(all.products(places, places), all.right(places), precision, has_sign, sizes);
   }
 
-  /// Returns the normal equations of [members, hats] with θ eliminated.
-  [[nodiscard]] estimation::Reduced reduced_with(const Family& family, const std::vector<SharedRun>& shared) const {
-    estimation::Products sum;
+  /// Returns the products of a run with the hats of a family between the members and the residual.
+  [[nodiscard]] static Eigen::MatrixXd with_hats(const SharedRun& shared, HatColumns shown) {
+    shared.whitening.apply(shown);
+    const auto hats = shown.leftCols<kKnots>();
+    const Eigen::Index before = shared.columns.cols() - 1;
+    const Eigen::MatrixXd across = shared.columns.transpose() * hats;
+    Eigen::MatrixXd square(before + kKnots + 1, before + kKnots + 1);
+    square.topLeftCorner(before, before) = shared.products.topLeftCorner(before, before);
+    square.block(0, before, before, kKnots) = across.topRows(before);
+    square.block(before, 0, kKnots, before) = across.topRows(before).transpose();
+    square.block(before, before, kKnots, kKnots).noalias() = hats.transpose() * hats;
+    square.block(0, before + kKnots, before, 1) = shared.products.block(0, before, before, 1);
+    square.block(before + kKnots, 0, 1, before) = shared.products.block(before, 0, 1, before);
+    square.block(before, before + kKnots, kKnots, 1) = across.bottomRows(1).transpose();
+    square.block(before + kKnots, before, 1, kKnots) = across.bottomRows(1);
+    square(before + kKnots, before + kKnots) = shared.products(before, before);
+    return square;
+  }
+
+  /// Returns the products of every run without its start temperatures; with the hats of a family, if there is one.
+  [[nodiscard]] std::vector<estimation::Products> without_starts(const Family* family, const std::vector<SharedRun>& shared) const {
+    std::vector<estimation::Products> parts(shared.size());
     for (std::size_t r = 0; r < shared.size(); ++r) {
-      HatColumns shown = family.shown[r];
-      shared[r].whitening.apply(shown);
-      const auto hats = shown.leftCols<kKnots>();
-      const Eigen::Index before = shared[r].columns.cols() - 1;
-      const Eigen::MatrixXd across = shared[r].columns.transpose() * hats;
-      Eigen::MatrixXd square(before + kKnots + 1, before + kKnots + 1);
-      square.topLeftCorner(before, before) = shared[r].products.topLeftCorner(before, before);
-      square.block(0, before, before, kKnots) = across.topRows(before);
-      square.block(before, 0, kKnots, before) = across.topRows(before).transpose();
-      square.block(before, before, kKnots, kKnots).noalias() = hats.transpose() * hats;
-      square.block(0, before + kKnots, before, 1) = shared[r].products.block(0, before, before, 1);
-      square.block(before + kKnots, 0, 1, before) = shared[r].products.block(before, 0, 1, before);
-      square.block(before, before + kKnots, kKnots, 1) = across.bottomRows(1).transpose();
-      square.block(before + kKnots, before, 1, kKnots) = across.bottomRows(1);
-      square(before + kKnots, before + kKnots) = shared[r].products(before, before);
-      estimation::add_without_starts(square, (*input_.designs)[r], shared[r].whitening, sum);
+      estimation::add_without_starts(family ? with_hats(shared[r], family->shown[r]) : shared[r].products, (*input_.designs)[r],
+                                     shared[r].whitening, parts[r]);
     }
-    return estimation::reduced(sum, prior_);
+    return parts;
   }
 
   [[nodiscard]] Scored best_subset(const estimation::Reduced& all, bool with_curve, const estimation::FluxPlace& place) const {
@@ -366,7 +370,7 @@ class Scanner {
   }
 
   [[nodiscard]] Scored score(const Family& family, const std::vector<SharedRun>& shared, const estimation::FluxPlace& place) const {
-    Scored best = best_subset(reduced_with(family, shared), true, place);
+    Scored best = best_subset(estimation::reduced(estimation::sum_of(without_starts(&family, shared)), prior_), true, place);
     const double signals = spec_of(family.term.multiplier).second_signal.empty() ? 1.0 : 2.0;
     best.nats += signals * rules_.curve_nats;
     return best;
@@ -380,43 +384,54 @@ class Scanner {
     return nats;
   }
 
-  [[nodiscard]] ScanResult result(const Family& family, double without_nats) {
+  [[nodiscard]] ScanResult result(const Family& family, const Scored& without) {
     const std::size_t subset = family.scored.subset;
     ScanResult out;
     out.term = family.term;
     out.usual = family.usual;
     out.knots = family.knots;
-    out.gain_nats = family.scored.nats - without_nats;
-    const estimation::Reduced at = reduced_with(family, shared_at(family.scored.place));
+    out.gain_nats = family.scored.nats - without.nats;
+    const std::vector<estimation::Products> parts = without_starts(&family, shared_at(family.scored.place));
+    const estimation::Reduced at = estimation::reduced(estimation::sum_of(parts), prior_);
     Eigen::VectorXd sizes;
     (void)gain_of(at, subset, true, &sizes);
     const Eigen::VectorXd hats = sizes.tail<kKnots>();
     out.curve = family.usual * hats;
+    const Eigen::MatrixXd by_hats = at.products.block(members_, members_, kKnots, kKnots);
+    out.curve_sd = family.usual * (by_hats + precision_).inverse().diagonal().cwiseSqrt();
     for (const Eigen::Index member : members_of(subset)) {
       out.beside.push_back(static_cast<int>(member));
     }
-    const double own = hats.dot(at.products.block(members_, members_, kKnots, kKnots) * hats);
-    for (Eigen::Index member = 0; member < members_; ++member) {
-      const double across = hats.dot(at.products.block(members_, member, kKnots, 1).col(0));
-      out.shape_ratio.push_back(across * across / std::max(1e-300, own * at.products(member, member)));
+    const auto left_out_nats = [&](const std::vector<estimation::Products>& all, std::size_t members, bool with_curve) {
+      return estimation::left_out_nats(
+          all, prior_, [&](const estimation::Reduced& rest) { return rest.base_nats + gain_of(rest, members, with_curve); });
+    };
+    const Eigen::VectorXd gain_nats =
+        left_out_nats(parts, subset, true) - left_out_nats(without_starts(nullptr, shared_at(without.place)), without.subset, false);
+    const Eigen::Index first = prior_.mean.size() + members_;
+    for (std::size_t r = 0; r < parts.size(); ++r) {
+      const double expected_nats = 0.5 * hats.dot(parts[r].square.block(first, first, kKnots, kKnots) * hats);
+      out.left_out.push_back({gain_nats[static_cast<Eigen::Index>(r)], expected_nats});
     }
-    out.mean_W = mean_W(family, out.curve);
+    set_heat(family, out);
     return out;
   }
 
-  [[nodiscard]] double mean_W(const Family& family, const Eigen::VectorXd& curve) const {
+  /// Sets the mean and the largest magnitude of the curve's heat.
+  void set_heat(const Family& family, ScanResult& out) const {
     const Regressor& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
-    double sum_W = 0.0;
     double count = 0.0;
     for (std::size_t r = 0; r < family.multiplier.size(); ++r) {
       for (Eigen::Index k = 0; k < family.multiplier[r].size(); ++k) {
         if (const double value = driver.values[r][k]; !std::isnan(value)) {
-          sum_W += std::abs(value_at(family.knots, curve, value) * family.multiplier[r][k]);
+          const double heat_W = std::abs(value_at(family.knots, out.curve, value) * family.multiplier[r][k]);
+          out.mean_W += heat_W;
+          out.peak_W = std::max(out.peak_W, heat_W);
           count += 1.0;
         }
       }
     }
-    return sum_W / std::max(1.0, count);
+    out.mean_W /= std::max(1.0, count);
   }
 
   const ScanInput& input_;
@@ -430,6 +445,14 @@ class Scanner {
 };
 
 }  // namespace
+
+bool ScanResult::predicts_left_out_runs() const {
+  const double clear_nats = estimation::thresholds().clear_nats;
+  const auto is_clear = [&](const LeftOutRun& run) { return run.gain_nats > clear_nats; };
+  return std::ranges::count_if(left_out, is_clear) > 1 && std::ranges::all_of(left_out, [&](const LeftOutRun& run) {
+           return is_clear(run) || std::max(run.expected_nats, -run.gain_nats) < estimation::thresholds().distinct_nats;
+         });
+}
 
 std::vector<ScanResult> scan_drivers(const ScanInput& input, const SelectionRules& rules, std::size_t most) {
   return input.drivers->empty() ? std::vector<ScanResult>() : Scanner(input, rules).run(most);

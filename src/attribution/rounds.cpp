@@ -213,8 +213,7 @@ void Rounds::add_points(const std::vector<estimation::DesignRun>& designs, const
   });
 }
 
-estimation::FluxPlace Rounds::best_place(const std::vector<estimation::DesignRun>& designs, const estimation::ThetaPrior& prior,
-                                         const std::vector<int>& members, const estimation::FluxPlace& start) const {
+std::pair<SetColumns, std::vector<Eigen::Index>> Rounds::own_columns(const std::vector<int>& members) const {
   SetColumns set = columns_of(members, set_rules_, rules_.size_sd);
   std::vector<Eigen::Index> columns;
   for (Eigen::Index i = 0; i < free_count(); ++i) {
@@ -224,6 +223,22 @@ estimation::FluxPlace Rounds::best_place(const std::vector<estimation::DesignRun
     columns.push_back(free_count() + column);
     column = static_cast<Eigen::Index>(columns.size()) - 1 - free_count();
   }
+  return {std::move(set), std::move(columns)};
+}
+
+Eigen::VectorXd Rounds::left_out_nats(const Judged& judged, const std::vector<int>& members) const {
+  const auto [set, columns] = own_columns(members);
+  std::vector<estimation::Products> parts;
+  for (const estimation::DesignRun& design : judged.designs) {
+    parts.push_back(estimation::products_of({&design, 1}, grid_.at(judged.best_place), columns));
+  }
+  return estimation::left_out_nats(parts, estimation::prior_here(base_here()),
+                                   [&](const estimation::Reduced& at) { return at.base_nats + set_gain_nats(at, set); });
+}
+
+estimation::FluxPlace Rounds::best_place(const std::vector<estimation::DesignRun>& designs, const estimation::ThetaPrior& prior,
+                                         const std::vector<int>& members, const estimation::FluxPlace& start) const {
+  const auto [set, columns] = own_columns(members);
   return estimation::most_probable(grid_, start, [&](const estimation::FluxPlace& place) {
     const estimation::Reduced own = estimation::reduced(estimation::products_of(designs, grid_.at(place), columns), prior);
     return own.base_nats + set_gain_nats(own, set);

@@ -39,13 +39,15 @@ class Selector : Rounds {
   void decide(const Judged& judged) {
     const double sure = estimation::named_probability();
     const EffectSet& best = search_->sets().front();
-    const estimation::PosteriorOptions options = options_with(grid_.at(judged.best_place));
-    const estimation::Model with_best = with_members(best.members, judged.at_best, ShapesAre::held);
-    const estimation::Posterior full = estimation::try_posterior_of(with_best, input_.runs, starts_of(with_best), options);
-    out_.left_W = left_by(std::isfinite(full.evidence_nats) ? full : out_.before);
+    std::vector<int> supported;
     std::vector<std::size_t> named;
     for (std::size_t m = 0; m < best.members.size(); ++m) {
       const double probability = search_->family_probability(best, m);
+      if (!is_parameter(best.members[m]) && probability > sure && rests_on_one_run(judged, best, m)) {
+        refuse({.id = id_of(best.members[m]), .reason = RefusalReason::one_run_only});
+        continue;
+      }
+      supported.push_back(best.members[m]);
       if (is_parameter(best.members[m])) {
         out_.changed_nats[parameter_of(best.members[m])] = search_->loss_without_nats(best, m);
       } else if (probability > sure) {
@@ -54,6 +56,10 @@ class Selector : Rounds {
         refuse({id_of(best.members[m]), RefusalReason::improbable, probability, sure});
       }
     }
+    const estimation::Model with_best = with_members(supported, search_->at_best(supported), ShapesAre::held);
+    const estimation::Posterior full =
+        estimation::try_posterior_of(with_best, input_.runs, starts_of(with_best), options_with(grid_.at(judged.best_place)));
+    out_.left_W = left_by(std::isfinite(full.evidence_nats) ? full : out_.before);
     const bool is_something_missing = out_.is_material() || out_.nothing_probability < 1.0 - sure;
     if (rules_.scans_drivers && !is_speed_open_ && (is_something_missing || !named.empty())) {
       scan(judged, best);
@@ -64,15 +70,9 @@ class Selector : Rounds {
       return;
     }
     const std::vector<ScanResult>& scan = out_.rounds.back().scan;
-    if (!scan.empty() && scan.front().gain_nats > estimation::thresholds().clear_nats) {
-      if (const std::optional<std::size_t> same = same_effect(best, scan.front())) {
-        if (std::ranges::find(named, *same) == named.end()) {
-          named.push_back(*same);
-        }
-      } else if (predicts_better(judged, best, named, scan.front())) {
-        follow_curve(judged, best, named, scan.front());
-        return;
-      }
+    if (!scan.empty() && scan.front().gain_nats > estimation::thresholds().clear_nats && scan.front().predicts_left_out_runs()) {
+      follow_curve(judged, best, named, scan.front());
+      return;
     }
     if (out_.is_material()) {
       keep_what_reduces_error(best, named, estimation::thresholds().beside_unknown_share, RefusalReason::unknown_heat_remains);
@@ -85,6 +85,17 @@ class Selector : Rounds {
   }
 
   [[nodiscard]] const std::string& id_of(int member) const { return set_rules_[static_cast<std::size_t>(member)].id; }
+
+  /// True for an effect of all runs with which only one run becomes clearly more probable when it is predicted by the others.
+  [[nodiscard]] bool rests_on_one_run(const Judged& judged, const EffectSet& best, std::size_t member) const {
+    if (judged.designs.size() < 2 || !candidates()[static_cast<std::size_t>(best.members[member])].condition.empty()) {
+      return false;
+    }
+    std::vector<int> others = best.members;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(member));
+    const Eigen::VectorXd gain_nats = left_out_nats(judged, best.members) - left_out_nats(judged, others);
+    return gain_nats.sum() - gain_nats.maxCoeff() < estimation::thresholds().clear_nats;
+  }
 
   void refuse(Refusal refusal) {
     if (std::ranges::find(out_.refused, refusal) == out_.refused.end()) {
@@ -113,39 +124,13 @@ class Selector : Rounds {
     out_.rounds.back().scan = scan_drivers(input, rules_, kMostReported);
   }
 
-  /// Returns the member of the best set that has the same shape as the curve, if there is one.
-  [[nodiscard]] std::optional<std::size_t> same_effect(const EffectSet& best, const ScanResult& curve) const {
-    for (std::size_t m = 0; m < best.members.size(); ++m) {
-      if (!is_parameter(best.members[m]) && curve.shape_ratio[m] > estimation::thresholds().same_shape_ratio) {
-        return m;
-      }
-    }
-    return std::nullopt;
-  }
-
-  /// Returns the members with a name that stay beside the curve.
-  static std::vector<std::size_t> beside(const ScanResult& curve, const std::vector<std::size_t>& named) {
-    std::vector<std::size_t> stay;
-    std::ranges::copy_if(named, std::back_inserter(stay),
-                         [&](std::size_t m) { return std::ranges::find(curve.beside, static_cast<int>(m)) != curve.beside.end(); });
-    return stay;
-  }
-
-  /// Returns true if the model with the curve predicts left-out training runs clearly better than the model with the names. Evidence has
-  /// already preferred the curve to the names that it replaces; a curve in addition to all names must reduce the error further.
-  [[nodiscard]] bool predicts_better(const Judged& judged, const EffectSet& best, const std::vector<std::size_t>& named,
-                                     const ScanResult& curve) const {
-    const std::vector<std::size_t> stay = beside(curve, named);
-    const bool replaces = stay.size() < named.size();
-    return left_out_share(fit_with(judged, best, stay), fit_with(judged, best, named), curve) <
-           (replaces ? estimation::thresholds().better_share : 1.0 / estimation::thresholds().clearly_other_ratio);
-  }
-
   /// Replaces the effects that the curve explains better by the curve.
   void follow_curve(const Judged& judged, const EffectSet& best, const std::vector<std::size_t>& named, const ScanResult& curve) {
-    std::vector<std::size_t> stay = beside(curve, named);
+    std::vector<std::size_t> stay;
     for (const std::size_t m : named) {
-      if (std::ranges::find(stay, m) == stay.end()) {
+      if (std::ranges::find(curve.beside, static_cast<int>(m)) != curve.beside.end()) {
+        stay.push_back(m);
+      } else {
         refuse({.id = id_of(best.members[m]),
                 .reason = RefusalReason::curve_is_better,
                 .signal = out_.drivers[static_cast<std::size_t>(curve.term.driver)].name});
@@ -274,31 +259,19 @@ class Selector : Rounds {
     }
   }
 
-  /// Returns the ratio of two errors of left-out training runs: `beside` with the curve, divided by `without`. Returns ∞ for a single run,
-  /// and for a curve that the model cannot contain.
-  [[nodiscard]] double left_out_share(const estimation::Posterior& beside, const estimation::Posterior& without,
-                                      const ScanResult& curve) const {
-    const Regressor& driver = out_.drivers[static_cast<std::size_t>(curve.term.driver)];
-    const bool are_fitted = std::isfinite(beside.evidence_nats) && std::isfinite(without.evidence_nats);
-    const std::optional<estimation::Model> curved = are_fitted ? with_curve(beside.model, curve, driver) : std::nullopt;
-    if (!curved || input_.runs.size() < 2 || driver.name == kTimeDriver) {
-      return std::numeric_limits<double>::infinity();
-    }
-    std::vector<estimation::MeasuredRun> runs = input_.runs;
-    estimation::set_columns(runs, curved->columns);
-    return estimation::left_out_ratio(*curved, beside.start_C, without.model, without.start_C, runs, plain_options());
-  }
-
-  /// Adds the curve to the model.
+  /// Adds the curve to the answer, and to the model if that can contain it: a motor has no law over the time since the start of a log.
   void add_curve(const Judged& judged, const ScanResult& curve) {
     const Regressor& driver = out_.drivers[static_cast<std::size_t>(curve.term.driver)];
-    const estimation::Model curved = with_curve(out_.after.model, curve, driver).value();
-    std::vector<estimation::MeasuredRun> runs = input_.runs;
-    estimation::set_columns(runs, curved.columns);
-    estimation::Posterior fit = estimation::posterior_of(curved, runs, out_.after.start_C, final_options(judged.best_place));
     AcceptedTerm term;
     term.curve = curve;
-    term.effect_name = fit.model.network.effects().back().name;
+    if (const std::optional<estimation::Model> curved = with_curve(out_.after.model, curve, driver)) {
+      std::vector<estimation::MeasuredRun> runs = input_.runs;
+      estimation::set_columns(runs, curved->columns);
+      estimation::Posterior fit = estimation::posterior_of(*curved, runs, out_.after.start_C, final_options(judged.best_place));
+      term.effect_name = fit.model.network.effects().back().name;
+      // With material unknown heat, whitened residuals determine the parameters less well than whole runs.
+      out_.after = out_.is_material() ? more_predictive(std::move(fit), runs) : std::move(fit);
+    }
     term.loss_without_nats = curve.gain_nats;
     term.probability = 1.0;
     for (const ScanResult& each : out_.rounds.back().scan) {
@@ -308,8 +281,6 @@ class Selector : Rounds {
         term.confusable_with.push_back(other);
       }
     }
-    // With material unknown heat, whitened residuals determine the parameters less well than whole runs.
-    out_.after = out_.is_material() ? more_predictive(std::move(fit), runs) : std::move(fit);
     // The terms are in order of evidence.
     const auto behind =
         std::ranges::find_if(out_.terms, [&](const AcceptedTerm& other) { return other.loss_without_nats < term.loss_without_nats; });

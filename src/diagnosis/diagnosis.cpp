@@ -47,6 +47,9 @@ class DiagnosisReport {
 
   Diagnosis tell() {
     for (const attribution::AcceptedTerm& term : out_.selection.terms) {
+      if (term.curve && term.effect_name.empty()) {
+        continue;  // the model does not contain it
+      }
       out_.effects.push_back(found_effect(term, out_.selection, input_.train));
     }
     report_changed_parameters();

@@ -87,7 +87,7 @@ class UnexplainedHeatReport {
     return heat;
   }
 
-  /// Reports the fitted curve of the model.
+  /// Reports an accepted curve, with the fitted values of the model if that contains it.
   void add_curve(const attribution::AcceptedTerm& term) {
     const attribution::ScanTerm& scanned = term.curve->term;
     const attribution::Regressor& driver = told_.selection.drivers[static_cast<std::size_t>(scanned.driver)];
@@ -97,13 +97,23 @@ class UnexplainedHeatReport {
     heat.drivers = {driver.name};
     heat.drivers.insert(heat.drivers.end(), term.confusable_with.begin(), term.confusable_with.end());
     heat.times = attribution::spec_of(scanned.multiplier).second_signal;
-    heat.mean_W = heat.rms_W = effect->mean_W;
-    heat.peak_W = effect->peak_W;
     heat.time_scale_s = time_scale_s();
     heat.gain_nats = term.curve->gain_nats;
     heat.curve_unit = attribution::spec_of(scanned.multiplier).unit;
     heat.driver_unit = driver.unit;
+    if (effect == told_.effects.end()) {
+      const Eigen::VectorXd& curve = term.curve->curve;
+      heat.mean_W = heat.rms_W = term.curve->mean_W;
+      heat.peak_W = term.curve->peak_W;
+      heat.knots = term.curve->knots;
+      heat.curve.assign(curve.begin(), curve.end());
+      heat.curve_sd.assign(term.curve->curve_sd.begin(), term.curve->curve_sd.end());
+      heats_.push_back(std::move(heat));
+      return;
+    }
     heat.is_in_model = true;
+    heat.mean_W = heat.rms_W = effect->mean_W;
+    heat.peak_W = effect->peak_W;
     const estimation::Model& model = after().model;
     const std::vector<int>& parameters = effect_named(model.network, term.effect_name)->parameter_index;
     const auto value = [&](std::size_t parameter) { return model.values[static_cast<std::size_t>(parameters[parameter])]; };

@@ -64,7 +64,7 @@ void add_without_starts(const Eigen::MatrixXd& square, const DesignRun& design, 
       whitening.log_determinant() + 2.0 * start.matrixLLT().diagonal().array().log().sum() + 2.0 * design.start.sd_K.array().log().sum();
 }
 
-Products products_of(const std::vector<DesignRun>& runs, const LatentFlux& flux, const std::vector<Eigen::Index>& columns) {
+Products products_of(std::span<const DesignRun> runs, const LatentFlux& flux, const std::vector<Eigen::Index>& columns) {
   Products out;
   for (const DesignRun& design : runs) {
     const Whitening whitening(design.run, flux, design.noise);

@@ -1,6 +1,7 @@
 // The linearised runs as least squares: columns of all free parameters and candidates, and the residual.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "estimation/evidence.h"
@@ -46,7 +47,7 @@ void add_start_prior(const StartPrior& start, Eigen::MatrixXd& square);
 /// Eliminates the start temperatures from such products of one run, with their prior, and adds the rest to `sum`.
 void add_without_starts(const Eigen::MatrixXd& square, const DesignRun& design, const Whitening& whitening, Products& sum);
 /// Computes the products of the columns with these indices, in this order; empty: all columns.
-Products products_of(const std::vector<DesignRun>& runs, const LatentFlux& flux, const std::vector<Eigen::Index>& columns);
+Products products_of(std::span<const DesignRun> runs, const LatentFlux& flux, const std::vector<Eigen::Index>& columns);
 
 /// Normal equations of e candidates after the t parameters θ of the model have been eliminated.
 struct Reduced {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/parallel.h"
+#include "estimation/free_run_errors.h"
 #include "estimation/thresholds.h"
 
 namespace heatsoak::estimation {
@@ -42,32 +42,18 @@ double error_of_ends_K(const Posterior& start, const std::vector<MeasuredRun>& r
 
 }  // namespace
 
-Posterior fit_of(const Model& model, const SomeRuns& some) { return try_posterior_of(model, some.runs, some.start_C, some.options); }
-
-std::vector<Errors> errors_by_others(const Model& model, const std::vector<MeasuredRun>& runs,
-                                     const std::vector<std::vector<double>>& start_C, const PosteriorOptions& options) {
-  std::vector<Errors> errors(runs.size());
-  base::in_parallel(runs.size(), 0, [&](std::size_t r) {
-    const SomeRuns others = some_of(runs, start_C, options, [&](const MeasuredRun& run) { return &run != &runs[r]; });
-    const Posterior fit = fit_of(model, others);
-    if (std::isfinite(fit.evidence_nats)) {
-      errors[r] = open_loop_errors(fit.model, {runs[r]}, others.runs);
+Products sum_of(const std::vector<Products>& parts, std::optional<std::size_t> left_out) {
+  Products sum{Eigen::MatrixXd::Zero(parts.front().square.rows(), parts.front().square.cols())};
+  for (std::size_t r = 0; r < parts.size(); ++r) {
+    if (r != left_out) {
+      sum.square += parts[r].square;
+      sum.log_determinant += parts[r].log_determinant;
     }
-  });
-  return errors;
+  }
+  return sum;
 }
 
-double left_out_ratio(const Model& model, const std::vector<std::vector<double>>& start_C, const Model& other,
-                      const std::vector<std::vector<double>>& other_C, const std::vector<MeasuredRun>& runs,
-                      const PosteriorOptions& options) {
-  const std::vector<Errors> with = errors_by_others(model, runs, start_C, options);
-  const std::vector<Errors> own = errors_by_others(other, runs, other_C, options);
-  double sum = 0.0;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    sum += with[r].empty() ? std::numeric_limits<double>::infinity() : std::log(rms_K(with[r]) / rms_K(own[r]));
-  }
-  return std::exp(sum / static_cast<double>(runs.size()));
-}
+Posterior fit_of(const Model& model, const SomeRuns& some) { return try_posterior_of(model, some.runs, some.start_C, some.options); }
 
 Posterior more_predictive(Posterior fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& own, const PosteriorOptions& plain) {
   if (!std::isfinite(fit.evidence_nats)) {

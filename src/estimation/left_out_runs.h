@@ -1,12 +1,29 @@
 // Fits to some of the runs, and predictions of the runs that such a fit did not use.
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
-#include "estimation/free_run_errors.h"
+#include "estimation/design.h"
 #include "estimation/posterior.h"
 
 namespace heatsoak::estimation {
+
+/// Returns the sum over all runs but one.
+Products sum_of(const std::vector<Products>& parts, std::optional<std::size_t> left_out = std::nullopt);
+
+/// Returns ln p of every run, given all other runs. `parts`: products of each run, its start temperatures eliminated;
+/// `evidence_nats(reduced)`: ln evidence of a set of effects.
+template <class Evidence>
+Eigen::VectorXd left_out_nats(const std::vector<Products>& parts, const ThetaPrior& prior, Evidence evidence_nats) {
+  Eigen::VectorXd nats = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(parts.size()), evidence_nats(reduced(sum_of(parts), prior)));
+  for (std::size_t r = 0; r < parts.size(); ++r) {
+    nats[static_cast<Eigen::Index>(r)] -= evidence_nats(reduced(sum_of(parts, r), prior));
+  }
+  return nats;
+}
 
 /// Some of the runs, with their start temperatures, weights and averaging.
 struct SomeRuns {
@@ -39,18 +56,6 @@ SomeRuns some_of(const std::vector<MeasuredRun>& runs, const std::vector<std::ve
 
 /// Fits the model to these runs; the evidence is −∞ if the fit fails.
 Posterior fit_of(const Model& model, const SomeRuns& some);
-
-/// Returns the RMS errors of each run, predicted with parameters from a fit to all other runs; empty errors if that fit fails. `start_C` as
-/// in posterior_of(); weights and averaging in `options` are per run.
-std::vector<Errors> errors_by_others(const Model& model, const std::vector<MeasuredRun>& runs,
-                                     const std::vector<std::vector<double>>& start_C, const PosteriorOptions& options);
-
-/// Returns the error of `model` divided by that of `other`, for runs predicted with fits to all other runs. The ratio is the geometric mean
-/// over the runs, so that one run outside the range of the others does not decide. ∞ if a fit of `model` fails. `start_C` and `other_C`:
-/// the start temperatures of the two models.
-double left_out_ratio(const Model& model, const std::vector<std::vector<double>>& start_C, const Model& other,
-                      const std::vector<std::vector<double>>& other_C, const std::vector<MeasuredRun>& runs,
-                      const PosteriorOptions& options);
 
 /// Returns `fit`, or a fit with the options `plain` that starts from it if that predicts the last thirds of the runs better after a fit to
 /// the first two thirds. The difference of the two is added to the covariance. `own`: the options of `fit`. Weights and averaging are per

@@ -10,15 +10,14 @@ namespace heatsoak::estimation {
 
 struct Thresholds {
   // Attribution.
-  double wrong_answer_share = 0.05;   ///< allowed share of wrong decisions by evidence
-  double material_K = 1.8;            ///< temperature rise of the outermost body from which unknown heat matters
-  double clear_nats = 10.0;           ///< gain in ln P from which a curve over a signal, or the drift of a sensor, is accepted
-  double distinct_nats = 5.0;         ///< difference of ln P below which explanations cannot be distinguished
+  double wrong_answer_share = 0.05;  ///< allowed share of wrong decisions by evidence
+  double material_K = 1.8;           ///< temperature rise of the outermost body from which unknown heat matters
+  double clear_nats = 10.0;    ///< gain in ln P from which a curve, or a sensor's drift, is accepted, and from which left-out runs confirm
+  double distinct_nats = 5.0;  ///< difference of ln P below which explanations cannot be distinguished
   double clearly_other_ratio = 1.54;  ///< ratio from which two errors, or two amounts of unknown heat, clearly differ
   double beside_unknown_share = 0.5;  ///< ratio of errors below which a name may stand beside material unknown heat
   double better_share = 0.85;         ///< ratio of errors below which a name improves a good model
   double same_signal_ratio = 0.9995;  ///< correlation above which two signals cannot be distinguished, and the first is used
-  double same_shape_ratio = 0.75;     ///< squared correlation of the responses above which a curve is another shape of an effect
   double least_seen_share = 0.5;      ///< smallest fraction of visible effects for the result "nothing missing"
   double well_known_ratio = 0.5;      ///< prior of a well-known parameter divided by that of a value on a data sheet
   // Samples.
@@ -54,15 +53,12 @@ inline constexpr std::array kThresholds{
                   &Thresholds::clear_nats, 0.0},
     ThresholdSpec{"distinct_nats", "", "false-alarm rate: odds of 1 to 150, as many as there are candidates", &Thresholds::distinct_nats,
                   0.0},
-    ThresholdSpec{"clearly_other_ratio", "",
-                  "1/0.65: left-out error at most 0.55 with heat, at least 0.8 without (30 synthetic motors each); other uses: judgement",
-                  &Thresholds::clearly_other_ratio, 1.0},
+    ThresholdSpec{"clearly_other_ratio", "", "judgement: one and a half times", &Thresholds::clearly_other_ratio, 1.0},
     ThresholdSpec{"beside_unknown_share", "", "judgement: a name must explain more than the unknown heat beside it",
                   &Thresholds::beside_unknown_share, 1e9},
     ThresholdSpec{"better_share", "", "judgement", &Thresholds::better_share, 1e9},
     ThresholdSpec{"same_signal_ratio", "", "judgement: 0.1 % of the variance differs, less than sensors resolve",
                   &Thresholds::same_signal_ratio, 1.0},
-    ThresholdSpec{"same_shape_ratio", "", "judgement: three quarters of the variance of the response", &Thresholds::same_shape_ratio, 2.0},
     ThresholdSpec{"least_seen_share", "", "judgement: \"nothing missing\" needs most effects to be visible", &Thresholds::least_seen_share,
                   0.0},
     ThresholdSpec{"well_known_ratio", "", "judgement: half of the standard deviation of a data sheet", &Thresholds::well_known_ratio, 0.0},

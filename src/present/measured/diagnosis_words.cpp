@@ -240,6 +240,8 @@ std::string reason_in_words(const attribution::Refusal& refused) {
       // Rounded down, so that 94.6 % does not read as the required 95 %.
       return fmt::format("its probability is {:.0f} %, but a name requires {:.0f} %", std::floor(100.0 * refused.probability),
                          100.0 * refused.needed_probability);
+    case attribution::RefusalReason::one_run_only:
+      return "only one run supports it, and the other runs do not become clearly more probable";
     case attribution::RefusalReason::curve_is_better:
       return fmt::format("a curve over {} explains the runs better", refused.signal);
     case attribution::RefusalReason::unknown_heat_remains:

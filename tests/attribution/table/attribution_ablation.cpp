@@ -195,7 +195,7 @@ std::vector<Group> groups() {
       {"Motors with ordinary logs: false alarms, single effects, outside the catalogue, heat without a logged input signal; error",
        [] { return study_of(ordinary_motors()); },
        {"wrong_answer_share", "material_K", "clear_nats", "distinct_nats", "clearly_other_ratio", "beside_unknown_share",
-        "same_signal_ratio", "same_shape_ratio", "least_seen_share"},
+        "same_signal_ratio", "least_seen_share"},
        true},
       {"Calibrated motors: false alarms, single effects; error",
        [] { return study_of(calibrated_motors()); },
