@@ -31,7 +31,7 @@ void refuse_repeated(std::span<const recording::Recording> fitted, std::span<con
                recording::is_cut_from(*other.second, recording);
       });
       if (found != seen.end()) {
-        repeated.push_back({recording.file, found->second->file});
+        repeated.push_back({recording::RowsGivenTwice::Rows(recording), recording::RowsGivenTwice::Rows(*found->second)});
       }
       seen.emplace_back(std::move(fingerprint), &recording);
     }
@@ -229,13 +229,19 @@ Admission admit(const motor::Motor& motor, std::span<const recording::Recording>
       wrong.push_back({recording.file.string(), std::move(each)});
     }
   };
+  std::vector<recording::NothingAboutHeat::Log> without_heat;
   for (const recording::Recording& recording : fitted) {
     const recording::DataQuality quality = recording::assess(recording, {}, ambient_C);
-    recording::require_thermal(recording, quality);
+    if (!quality.thermal.is_good()) {
+      without_heat.push_back({recording.file, quality.thermal.lacks});
+    }
     look(recording, quality);
   }
   for (const recording::Recording& recording : held_out) {
     look(recording, recording::assess(recording, {}, ambient_C));
+  }
+  if (!without_heat.empty()) {
+    throw recording::NothingAboutHeat(std::move(without_heat));
   }
   if (!wrong.empty() && !takes_logs_as_they_are) {
     throw LogsLookWrong(std::move(wrong));

@@ -96,7 +96,7 @@ struct Admission {
 /// - Failure (bad_input) if rows are given twice, or are both fitted and held out;
 /// - LogsLookWrong with the findings of every log if units, signs or sensors look wrong in themselves or for this motor (only notes if
 ///   `takes_logs_as_they_are`);
-/// - NothingAboutHeat if a fitted log contains no information about heat.
+/// - NothingAboutHeat, before LogsLookWrong, with all fitted logs that contain no information about heat.
 /// `ambient_C` is the user's air temperature for logs without one.
 Admission admit(const motor::Motor& motor, std::span<const recording::Recording> fitted, std::span<const recording::Recording> held_out,
                 bool takes_logs_as_they_are, std::optional<double> ambient_C = {});

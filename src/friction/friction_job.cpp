@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <utility>
 
+#include "base/collected_failures.h"
 #include "base/files.h"
 #include "friction/expected_voltage.h"
 #include "friction/friction_suspicions.h"
@@ -19,18 +21,22 @@ namespace {
 
 constexpr std::size_t kLargestRobotFile_bytes = 1'000'000;
 
-/// Throws if a log is given twice, because it would make the intervals too narrow. `seen` holds files and the hash of their content.
-void refuse_repeated(const recording::Recording& recording, std::vector<std::pair<std::filesystem::path, std::size_t>>& seen) {
+using Rows = recording::RowsGivenTwice::Rows;
+
+/// Adds a log that is given twice to `repeated`, because it would make the intervals too narrow. `seen` holds each log's rows and the
+/// hash of their content.
+void note_if_repeated(const recording::Recording& recording, std::vector<std::pair<Rows, std::size_t>>& seen,
+                      std::vector<recording::RowsGivenTwice::Pair>& repeated) {
   std::size_t held = recording.rows();
   const auto add = [&held](double value) { held = held * 1'000'003 + std::hash<double>{}(value); };
   std::ranges::for_each(recording.time_s, add);
   for (const recording::Channel& channel : recording.channels) {
     std::ranges::for_each(channel.values, add);
   }
-  if (const auto found = std::ranges::find(seen, held, &std::pair<std::filesystem::path, std::size_t>::second); found != seen.end()) {
-    throw recording::RowsGivenTwice({{recording.file, found->first}});
+  if (const auto found = std::ranges::find(seen, held, &std::pair<Rows, std::size_t>::second); found != seen.end()) {
+    repeated.push_back({Rows(recording), found->first});
   }
-  seen.emplace_back(recording.file, held);
+  seen.emplace_back(Rows(recording), held);
 }
 
 void refuse_what_looks_wrong(const FrictionJob& job, const std::vector<LogsLookWrong::Finding>& blocking) {
@@ -44,20 +50,35 @@ struct FrictionInput {
   std::vector<LogsLookWrong::Finding> blocking;  ///< the suspicions (units, signs, wheel order) that would make the answer wrong if true
 };
 
-FrictionInput read_logs(const FrictionJob& job, bool needs_voltage, FrictionRun& run, const base::Progress& progress) {
+struct ReadLog {
+  recording::Recording recording;
+  recording::RecordingReport report;
+  FrictionLog log;
+};
+
+ReadLog read_log(const FrictionJob& job, const std::string& name, const FrictionLogNeeds& needs, FrictionFindings& findings) {
+  ReadLog read;
+  const std::filesystem::path file = input::log_named(job.folders, name);
+  read.recording = recording::read_recording(file, recording::mapping_for(file, job.map), read.report);
+  read.log = friction_log(read.recording, job.robot, needs, findings);
+  return read;
+}
+
+/// Throws Failure with the problems of all logs.
+FrictionInput read_logs(const FrictionJob& job, FrictionLogNeeds needs, FrictionRun& run, const base::Progress& progress) {
   FrictionInput input;
-  FrictionLogNeeds needs;
-  needs.voltage = needs_voltage;
-  needs.direction = job.direction;
   if (job.motor) {
     needs.drive = robot::drive_constants(job.robot, *job.motor);
   }
-  std::vector<std::pair<std::filesystem::path, std::size_t>> seen;
+  std::vector<std::pair<Rows, std::size_t>> seen;
+  std::vector<recording::RowsGivenTwice::Pair> repeated;
+  base::CollectedFailures failures;
   for (std::size_t i = 0; i < job.logs.size(); ++i) {
-    recording::RecordingReport report;
-    const std::filesystem::path file = input::log_named(job.folders, job.logs[i]);
-    const recording::Recording recording = recording::read_recording(file, recording::mapping_for(file, job.map), report);
-    input.logs.push_back(friction_log(recording, job.robot, needs, run.findings));
+    std::optional<ReadLog> read = failures.attempt([&] { return read_log(job, job.logs[i], needs, run.findings); });
+    if (!read) {
+      continue;
+    }
+    const auto& [recording, report, log] = *read;
     const recording::DataQuality quality = recording::assess(recording, report);
     for (const recording::Suspicion& suspicion : quality.suspicions) {
       run.suspicions.push_back({recording.name, suspicion});
@@ -65,10 +86,15 @@ FrictionInput read_logs(const FrictionJob& job, bool needs_voltage, FrictionRun&
     for (const recording::Suspicion& suspicion : quality.blocking_for_wheels) {
       input.blocking.push_back({recording.file.string(), suspicion});
     }
-    refuse_repeated(recording, seen);
+    note_if_repeated(recording, seen, repeated);
+    input.logs.push_back(std::move(read->log));
     if (progress) {
       progress(i + 1, job.logs.size());
     }
+  }
+  failures.throw_if_any();
+  if (!repeated.empty()) {
+    throw recording::RowsGivenTwice(std::move(repeated));
   }
   return input;
 }
@@ -93,7 +119,7 @@ NothingIdentifiable::NothingIdentifiable(Reason reason)
 
 SteadyFriction steady_friction(const FrictionJob& job, const base::Progress& progress) {
   SteadyFriction answer;
-  FrictionInput input = read_logs(job, true, answer, progress);
+  FrictionInput input = read_logs(job, {.direction = job.direction}, answer, progress);
   const robot::Kinematics kinematics = robot::make_kinematics(job.robot);
   answer.steady = find_steady_parts(input.logs, kinematics);
   answer.settings.use_return_legs = job.use_return_legs;
@@ -131,10 +157,10 @@ SteadyFriction steady_friction(const FrictionJob& job, const base::Progress& pro
 
 RollOutFriction roll_out_friction(const FrictionJob& job, const base::Progress& progress) {
   RollOutFriction answer;
-  const FrictionInput input = read_logs(job, false, answer, progress);
   if (!job.motor) {
     throw base::Failure(base::ExitCode::bad_input, "a roll-out needs the inertia of the motor's rotor; --motor must name the motor");
   }
+  const FrictionInput input = read_logs(job, {.all_wheels = !job.is_lifted, .voltage = false, .direction = std::nullopt}, answer, progress);
   refuse_what_looks_wrong(job, input.blocking);
   answer.result = roll_out(input.logs, job.robot, *job.motor, job.is_lifted);
   if (answer.result.runs.empty()) {

@@ -23,17 +23,26 @@ class ColumnsOfRobot {
     log.name = recording_.name;
     log.time_s = recording_.time_s;
     log.run_begins = recording_.run_begins;
+    std::vector<std::size_t> without_speed;
     for (std::size_t wheel = 0; wheel < robot_.wheels.axis_rad.size(); ++wheel) {
       if (const Column* speed = numbered("wheel_speed_rad_per_s", wheel)) {
         log.wheel_speed_rad_per_s[wheel] = *speed;
         std::ranges::for_each(log.wheel_speed_rad_per_s[wheel], [&](double& each) { each /= robot_.drive.gear_ratio; });
       } else {
+        without_speed.push_back(wheel);
+      }
+    }
+    if (needs_.all_wheels || without_speed.size() == robot_.wheels.axis_rad.size()) {
+      for (const std::size_t wheel : without_speed) {
         missing(fmt::format("wheel_speed_rad_per_s_{}", wheel + 1), "speed of the wheel's motor");
       }
     }
     diagnostics_.throw_if_any();
     add_voltages(log);
     diagnostics_.throw_if_any();
+    if (!needs_.direction) {
+      return log;
+    }
     if (const Column* yaw = column("yaw_rad")) {
       log.yaw_rad = *yaw;
     }
@@ -65,7 +74,8 @@ class ColumnsOfRobot {
         note(VoltageFrom{VoltageFrom::Source::log});
       } else if (const Column* modulation = numbered("wheel_pwm_ratio", wheel)) {
         log.voltage_V[wheel] = modulated(*modulation);
-      } else if (const Column* current = numbered("wheel_current_A", wheel); current && needs_.drive) {
+      } else if (const Column* current = numbered("wheel_current_A", wheel);
+                 current && needs_.drive && !log.wheel_speed_rad_per_s[wheel].empty()) {
         log.voltage_V[wheel] = of_current(*current, log.wheel_speed_rad_per_s[wheel]);
       } else if (needs_.voltage) {
         missing(fmt::format("wheel_pwm_ratio_{}", wheel + 1),
@@ -95,7 +105,7 @@ class ColumnsOfRobot {
         return false;
       }
       const Column* speed = numbered("wheel_speed_rad_per_s", wheel);
-      turns_back = turns_back || std::ranges::any_of(*speed, [](double each) { return each < 0.0; });
+      turns_back = turns_back || (speed != nullptr && std::ranges::any_of(*speed, [](double each) { return each < 0.0; }));
     }
     return turns_back;
   }

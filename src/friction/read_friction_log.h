@@ -20,9 +20,10 @@ enum class TravelDirection {
 };
 
 struct FrictionLogNeeds {
-  bool voltage = true;                         ///< the voltage of every wheel is needed
-  std::optional<robot::DriveConstants> drive;  ///< motor constants to convert currents to voltages
-  TravelDirection direction = TravelDirection::best;
+  bool all_wheels = true;                                            ///< false: the speed of one wheel is enough
+  bool voltage = true;                                               ///< the voltage of every wheel is needed
+  std::optional<TravelDirection> direction = TravelDirection::best;  ///< empty: not needed, so neither it nor the orientation is read
+  std::optional<robot::DriveConstants> drive = {};                   ///< motor constants to convert currents to voltages
 };
 
 /// Converts speeds of motor shafts to speeds of wheels, and directions on the field to directions in the robot's frame. The voltage is

@@ -253,6 +253,9 @@ void add_lifted(const FrictionLog& log, const robot::BodyConfig& body, RollOutRe
   const std::vector<bool> off = rows_off(log, body.kinematics.wheel_count);
   for (int i = 0; i < body.kinematics.wheel_count; ++i) {
     const std::vector<double>& speed_rad_per_s = log.wheel_speed_rad_per_s[static_cast<std::size_t>(i)];
+    if (speed_rad_per_s.empty()) {
+      continue;
+    }
     Rolling rolling(log.rows());
     rolling.run = {.kind = RollOut::lifted_wheel, .wheel = i};
     rolling.speed = without_spikes(speed_rad_per_s);

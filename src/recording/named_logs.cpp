@@ -6,9 +6,11 @@
 #include <charconv>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
+#include "base/collected_failures.h"
 #include "base/diagnostic.h"
 #include "recording/mapping.h"
 #include "recording/quality.h"
@@ -45,20 +47,27 @@ LogPart log_part(const std::string& text) {
   return part;
 }
 
-std::vector<Recording> read_each(const std::vector<std::string>& texts, const LogChoice& choice, std::vector<LogReading>& readings) {
+Recording read_one(const std::string& text, const LogChoice& choice, RecordingReport& report) {
+  const LogPart part = log_part(text);
+  const std::filesystem::path file = input::log_named(choice.folders, part.file);
+  Recording whole = read_recording(file, mapping_for(file, choice.map), report);
+  if (part.from_share == 0.0 && part.to_share == 1.0) {
+    return whole;
+  }
+  Recording recording = part_of(whole, part.from_share, part.to_share);
+  recording.blocking_of_whole = assess(whole, report, choice.ambient_C).blocking;
+  return recording;
+}
+
+std::vector<Recording> read_each(const std::vector<std::string>& texts, const LogChoice& choice, std::vector<LogReading>& readings,
+                                 base::CollectedFailures& failures) {
   std::vector<Recording> all;
   for (const std::string& text : texts) {
-    const LogPart part = log_part(text);
     RecordingReport report;
-    const std::filesystem::path file = input::log_named(choice.folders, part.file);
-    Recording recording = read_recording(file, mapping_for(file, choice.map), report);
-    if (part.from_share == 0.0 && part.to_share == 1.0) {
-      all.push_back(std::move(recording));
-    } else {
-      all.push_back(part_of(recording, part.from_share, part.to_share));
-      all.back().blocking_of_whole = assess(recording, report, choice.ambient_C).blocking;
+    if (std::optional<Recording> recording = failures.attempt([&] { return read_one(text, choice, report); })) {
+      readings.push_back({recording->name, std::move(report)});
+      all.push_back(*std::move(recording));
     }
-    readings.push_back({all.back().name, std::move(report)});
   }
   return all;
 }
@@ -93,8 +102,10 @@ void make_names_distinct(std::vector<Recording>& recordings, const FilesOfName& 
 NamedLogs read_named_logs(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice) {
   NamedLogs logs;
   logs.choice = choice;
-  logs.fitted = read_each(fitted, choice, logs.readings);
-  logs.held_out = read_each(held_out, choice, logs.readings);
+  base::CollectedFailures failures;
+  logs.fitted = read_each(fitted, choice, logs.readings, failures);
+  logs.held_out = read_each(held_out, choice, logs.readings, failures);
+  failures.throw_if_any();
   FilesOfName files;
   add_files(logs.fitted, files);
   const FilesOfName of_fitted = files;

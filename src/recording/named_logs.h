@@ -32,7 +32,7 @@ struct NamedLogs {
 };
 
 /// Reads the logs. Recordings whose files have the same name in different folders get the folder as a prefix ("monday/run"); names of
-/// fitted logs do not depend on the hold-out logs. Throws Failure (bad_input).
+/// fitted logs do not depend on the hold-out logs. Throws Failure with the problems of all logs.
 NamedLogs read_named_logs(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice);
 
 }  // namespace heatsoak::recording

@@ -245,17 +245,15 @@ DataQuality assess(const Recording& recording, const RecordingReport& report, st
   return assessment.conclude(report, ambient_C);
 }
 
-NothingAboutHeat::NothingAboutHeat(const std::filesystem::path& file, std::vector<Lack> lacks)
-    : base::Failure(base::ExitCode::cannot_answer, file.string() + ": this log contains no information about heat"),
-      lacks_(std::move(lacks)) {}
+NothingAboutHeat::NothingAboutHeat(std::vector<Log> logs)
+    : base::Failure(base::ExitCode::cannot_answer, "no information about heat"), logs_(std::move(logs)) {}
+
+RowsGivenTwice::Rows::Rows(const Recording& recording)
+    : file(recording.file),
+      first_line(recording.line.empty() ? 0 : recording.line.front()),
+      last_line(recording.line.empty() ? 0 : recording.line.back()) {}
 
 RowsGivenTwice::RowsGivenTwice(std::vector<Pair> pairs)
     : base::Failure(base::ExitCode::bad_input, "rows of a log are given twice"), pairs_(std::move(pairs)) {}
-
-void require_thermal(const Recording& recording, const DataQuality& quality) {
-  if (!quality.thermal.is_good()) {
-    throw NothingAboutHeat(recording.file, quality.thermal.lacks);
-  }
-}
 
 }  // namespace heatsoak::recording

@@ -111,22 +111,35 @@ class Assessment {
 
 DataQuality assess(const Recording& recording, const RecordingReport& report, std::optional<double> ambient_C = {});
 
-/// The log `file` contains no information about heat (cannot_answer), because it lacks data.
+/// Logs contain no information about heat (cannot_answer), because they lack data.
 class NothingAboutHeat : public base::Failure {
  public:
-  NothingAboutHeat(const std::filesystem::path& file, std::vector<Lack> lacks);
-  [[nodiscard]] const std::vector<Lack>& lacks() const { return lacks_; }
+  struct Log {
+    std::filesystem::path file;
+    std::vector<Lack> lacks;
+  };
+  explicit NothingAboutHeat(std::vector<Log> logs);
+  [[nodiscard]] const std::vector<Log>& logs() const { return logs_; }
 
  private:
-  std::vector<Lack> lacks_;
+  std::vector<Log> logs_;
 };
 
 /// Logs share rows, so that a run would count twice (bad_input).
 class RowsGivenTwice : public base::Failure {
  public:
-  struct Pair {
+  /// Rows of a log, as lines of its file.
+  struct Rows {
+    explicit Rows(const Recording& recording);
+    Rows(std::filesystem::path of_file, int first, int last) : file(std::move(of_file)), first_line(first), last_line(last) {}
+
     std::filesystem::path file;
-    std::filesystem::path earlier;  ///< log that holds the same rows
+    int first_line = 0;  ///< from 1; 0: unknown
+    int last_line = 0;
+  };
+  struct Pair {
+    Rows rows;
+    Rows earlier;  ///< same rows of an earlier log
   };
   explicit RowsGivenTwice(std::vector<Pair> pairs);
   [[nodiscard]] const std::vector<Pair>& pairs() const { return pairs_; }
@@ -134,10 +147,6 @@ class RowsGivenTwice : public base::Failure {
  private:
   std::vector<Pair> pairs_;
 };
-
-/// Throws NothingAboutHeat if the recording contains no information about a thermal network: too short, no changes, no temperature or no
-/// heat input.
-void require_thermal(const Recording& recording, const DataQuality& quality);
 
 /// Returns the varying channel that heats the winding most directly: current, else power, torque, voltage, speed; nullptr if none varies.
 const Channel* heat_input_of(const Recording& recording);

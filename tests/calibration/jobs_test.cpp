@@ -32,5 +32,26 @@ TEST(Jobs, AFittedRunIsRefusedAndItsPredictionSaysSo) {
   }
 }
 
+TEST(Jobs, AllLogsWithoutHeatAreReportedAtOnce) {
+  const recording::NamedLogs logs = recording::read_named_logs({(kSource / "reports/soak/bench.csv").string()}, {}, {});
+  recording::Recording without_heat = logs.fitted[0];
+  std::erase_if(without_heat.channels, [](const recording::Channel& channel) { return channel.quantity.key != "winding_C"; });
+  recording::Recording cut = logs.fitted[0].slice(0, 5);
+  try {
+    admit(motor::read_motor(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml"), std::vector{without_heat}, {}, false);
+    FAIL();
+  } catch (const recording::NothingAboutHeat& failure) {
+    EXPECT_EQ(failure.logs().size(), 1U);
+  }
+  without_heat.content = "another";
+  try {
+    admit(motor::read_motor(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml"), std::vector{cut, without_heat}, {}, false);
+    FAIL();
+  } catch (const recording::NothingAboutHeat& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::cannot_answer);
+    EXPECT_EQ(failure.logs().size(), 2U);
+  }
+}
+
 }  // namespace
 }  // namespace heatsoak::calibration

@@ -14,6 +14,7 @@ namespace heatsoak {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
 
 using CsvCells = std::vector<std::string>;
@@ -158,8 +159,31 @@ TEST(Calibrate, OneLogDoesNotCountTwiceNorTestItself) {
     arguments.insert(arguments.end(), logs.begin(), logs.end());
     const ProgramRun found = run(arguments, in(folder.path()));
     EXPECT_EQ(found.exit_code, 2);
-    EXPECT_THAT(found.err, HasSubstr("copy.csv: error: holds the same rows as"));
+    EXPECT_THAT(found.err, AllOf(HasSubstr("copy.csv:2:1: error: lines 2 to "), HasSubstr(" share rows with lines 2 to ")));
   }
+}
+
+TEST(Calibrate, SlicesOfOneLogThatOverlapAreNamedByTheirLines) {
+  const TemporaryFolder folder;
+  const std::string log = (kSoak / "match_1.csv").string();
+  const ProgramRun found =
+      run({"calibrate", "--motor", kMotor, "--out", "model.toml", log + "@0-60%", "--holdout", log + "@40-100%"}, in(folder.path()));
+  EXPECT_EQ(found.exit_code, 2);
+  EXPECT_THAT(found.err,
+              testing::ContainsRegex(R"(match_1\.csv:[0-9]+:1: error: lines [0-9]+ to [0-9]+ share rows with lines 2 to [0-9]+ of)"));
+}
+
+TEST(Calibrate, AllBadLogsAreReportedAtOnce) {
+  const TemporaryFolder folder;
+  write(folder.path() / "no_time.csv", "current_A,winding_C\n1,25\n");
+  write(folder.path() / "unclosed.csv", "time_s,current_A,winding_C\n0,1,\"25\n");
+  const ProgramRun found = run({"calibrate", "--motor", kMotor, (kSoak / "match_1.csv").string(), "no_time.csv", "--holdout",
+                                "unclosed.csv", "missing.csv", "--out", "model.toml"},
+                               in(folder.path()));
+  EXPECT_EQ(found.exit_code, 2);
+  EXPECT_THAT(found.err,
+              AllOf(HasSubstr("no_time.csv:1:1: error: "), HasSubstr("unclosed.csv:2:1: error: "), HasSubstr("missing.csv: error: ")));
+  EXPECT_FALSE(fs::exists(folder.path() / "model.toml"));
 }
 
 TEST(Calibrate, RowsCutOutOfALogDoNotTestIt) {
@@ -173,7 +197,7 @@ TEST(Calibrate, RowsCutOutOfALogDoNotTestIt) {
   const std::string log = (kSoak / "match_1.csv").string();
   const ProgramRun found = run({"calibrate", "--motor", kMotor, "--out", "model.toml", log, "--holdout", "cut.csv"}, in(folder.path()));
   EXPECT_EQ(found.exit_code, 2);
-  EXPECT_THAT(found.err, HasSubstr("cut.csv: error: holds the same rows as"));
+  EXPECT_THAT(found.err, HasSubstr("cut.csv:2:1: error: lines 2 to "));
 }
 
 /// For a motor that starts warm, only the large error of every model reveals temperatures in degrees Fahrenheit.

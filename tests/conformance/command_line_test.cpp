@@ -19,6 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -485,7 +486,20 @@ TEST(ExitCode, of_friction_refuses_a_log_that_is_given_twice) {
   fs::copy_file(log, copy);
   const ProgramRun result = run({"friction", "--robot", "roboteam_twente_v2024", log, copy});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("holds the same rows as " + log));
+  EXPECT_THAT(result.err, AllOf(HasSubstr("copy.csv:2:1: error: lines 2 to "), HasSubstr(" of " + log)));
+}
+
+TEST(ExitCode, of_friction_reports_all_bad_logs_and_writes_nothing) {
+  const TemporaryFolder folder;
+  write(folder.path() / "few_columns.csv", "time_s,wheel_speed_rad_per_s_1\n0,1\n1,2\n");
+  write(folder.path() / "no_time.csv", "wheel_speed_rad_per_s_1\n1\n");
+  const ProgramRun result = run({"friction", "--robot", "roboteam_twente_v2024", "few_columns.csv", kFrictionLog.string(), "no_time.csv",
+                                 "missing.csv", "--out", "robot.toml"},
+                                {.folder = folder.path()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("few_columns.csv:1:1: error: wheel_speed_rad_per_s_2: is missing"),
+                                HasSubstr("no_time.csv:1:1: error: "), HasSubstr("missing.csv: error: ")));
+  EXPECT_FALSE(fs::exists(folder.path() / "robot.toml"));
 }
 
 TEST(ExitCode, of_friction_says_what_a_log_cannot_tell) {

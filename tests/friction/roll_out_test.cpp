@@ -6,6 +6,8 @@
 #include <numbers>
 #include <random>
 
+#include "base/diagnostic.h"
+#include "friction/read_friction_log.h"
 #include "robot/plant.h"
 #include "robot/robots_for_tests.h"
 
@@ -99,6 +101,35 @@ TEST(RollOut, of_lifted_wheels_gives_each_its_own) {
     EXPECT_NEAR(found.wheel_damping_Nm_s_per_rad[i]->value, damping[i], 0.03 * damping[i] + 1e-6);
     EXPECT_NEAR(found.wheel_torque_Nm[i]->value, torque[i], 0.03 * torque[i]);
   }
+}
+
+TEST(RollOut, of_one_lifted_wheel_needs_only_its_speed) {
+  const robot::PlantConfig plant = rolling_robot();
+  recording::Recording recording;
+  recording.run_begins = {0};
+  std::vector<double> speed_rad_per_s;
+  for (int row = 0; row < 300; ++row) {
+    recording.time_s.push_back(0.005 * row);
+    speed_rad_per_s.push_back(std::max(0.0, 150.0 - 0.8 * row));
+  }
+  const auto channel = [](const char* key, std::vector<double> values) {
+    recording::Channel made;
+    made.quantity.key = key;
+    made.values = std::move(values);
+    return made;
+  };
+  recording.channels = {channel("wheel_speed_rad_per_s_2", speed_rad_per_s), channel("wheel_current_A_1", std::vector<double>(300, 0.0)),
+                        channel("heading_field_rad", std::vector<double>(300, 0.0))};
+  FrictionLogNeeds needs{.all_wheels = false, .voltage = false, .direction = std::nullopt, .drive = robot::DriveConstants{}};
+  FrictionFindings findings;
+  const FrictionLog log = friction_log(recording, robot::bare_robot(), needs, findings);
+  EXPECT_TRUE(findings.empty());
+  const RollOutResult found = roll_out({log}, plant.body, true);
+  ASSERT_EQ(found.runs.size(), 1U);
+  EXPECT_EQ(found.runs[0].wheel, 1);
+  EXPECT_FALSE(found.wheel_damping_Nm_s_per_rad[0]);
+  recording.channels.erase(recording.channels.begin());
+  EXPECT_THROW(friction_log(recording, robot::bare_robot(), needs, findings), base::Failure);
 }
 
 TEST(RollOut, a_robot_that_is_driven_all_the_time_does_not_roll_out) {

@@ -222,11 +222,13 @@ TEST(WordsOfFailures, OfRunsAndDiagnoses) {
 }
 
 TEST(WordsOfFailures, OfRunsThatCountTwiceOrCannotBeSimulated) {
-  const base::Failure twice = in_words(recording::RowsGivenTwice({{"logs/b.csv", "logs/a.csv"}, {"logs/c.csv", "logs/a.csv"}}));
+  const base::Failure twice = in_words(
+      recording::RowsGivenTwice({{{"logs/b.csv", 2, 90}, {"logs/a.csv", 2, 90}}, {{"logs/a.csv", 40, 90}, {"logs/a.csv", 2, 60}}}));
   EXPECT_EQ(twice.code(), base::ExitCode::bad_input);
   ASSERT_EQ(twice.diagnostics().size(), 2U);
-  EXPECT_EQ(twice.diagnostics()[1].at.file, "logs/c.csv");
-  EXPECT_EQ(twice.diagnostics()[1].message, "holds the same rows as logs/a.csv; give each row once, to fit or as hold-out");
+  EXPECT_EQ(
+      to_string(twice.diagnostics()[1]),
+      "logs/a.csv:40:1: error: lines 40 to 90 share rows with lines 2 to 60 of logs/a.csv; give each row once, to fit or as hold-out");
   const base::Failure again = in_words(calibration::RunsOfTheFile("ecx", {"logs/a.csv"}));
   EXPECT_EQ(again.code(), base::ExitCode::bad_input);
   ASSERT_EQ(again.diagnostics().size(), 1U);
@@ -339,9 +341,12 @@ base::Failure told(const Failure& failure) {
 }
 
 TEST(WordsOfFailures, FindingsOfLogs) {
-  EXPECT_EQ(told(recording::NothingAboutHeat("a/run1.csv", {recording::TooFewRows{2, 20}, recording::NoHeatInput{}})).message(),
-            "a/run1.csv: this log contains no information about heat: it has 2 rows; at least 20 are needed; it has no heat input "
-            "(current_A, power_in_W, torque_Nm, speed_rad_per_s, …)");
+  EXPECT_STREQ(told(recording::NothingAboutHeat({{"a/run1.csv", {recording::TooFewRows{2, 20}, recording::NoHeatInput{}}},
+                                                 {"a/run2.csv", {recording::TooFewRows{3, 20}}}}))
+                   .what(),
+               "a/run1.csv: error: no information about heat: it has 2 rows; at least 20 are needed; it has no heat input "
+               "(current_A, power_in_W, torque_Nm, speed_rad_per_s, …)\n"
+               "a/run2.csv: error: no information about heat: it has 3 rows; at least 20 are needed");
   const base::Failure wrong = told(calibration::LogsLookWrong({{"run1.csv", recording::CurrentTooLarge{"current_A", 8000.0}}}));
   EXPECT_THAT(wrong.message(), EndsWith("or use --as-is if they are right"));
   ASSERT_EQ(wrong.diagnostics().size(), 1U);

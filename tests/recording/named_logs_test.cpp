@@ -54,5 +54,18 @@ TEST_F(NamedLogsTest, PartsOfOneLogKeepItsNameAndShareTheTime) {
   EXPECT_THROW(read_named_logs({log("monday") + "@70-20%"}, {}, {}), base::Failure);
 }
 
+TEST_F(NamedLogsTest, ProblemsOfAllLogsAreReportedOnce) {
+  try {
+    read_named_logs({log("sunday"), log("monday"), log("monday") + "@70-20%"}, {log("sunday"), log("saturday")}, {});
+    FAIL();
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
+    ASSERT_EQ(failure.diagnostics().size(), 3U);
+    EXPECT_EQ(failure.diagnostics()[0].at.file, log("sunday"));
+    EXPECT_THAT(failure.diagnostics()[1].message, testing::HasSubstr("expected LOG@FROM-TO%"));
+    EXPECT_EQ(failure.diagnostics()[2].at.file, log("saturday"));
+  }
+}
+
 }  // namespace
 }  // namespace heatsoak::recording

@@ -23,14 +23,20 @@ namespace {
 base::Failure with_message(const base::Failure& failure, std::string message) { return {failure.code(), std::move(message)}; }
 
 base::Failure worded(const recording::NothingAboutHeat& failure) {
-  return with_message(failure, fmt::format("{}: {}", failure.message(), fmt::join(words_of(failure.lacks()), "; ")));
+  std::vector<base::Diagnostic> diagnostics;
+  for (const auto& [file, lacks] : failure.logs()) {
+    diagnostics.push_back({{file.string()}, {}, fmt::format("{}: {}", failure.message(), fmt::join(words_of(lacks), "; "))});
+  }
+  return {failure.code(), "", std::move(diagnostics)};
 }
 
 base::Failure worded(const recording::RowsGivenTwice& failure) {
   std::vector<base::Diagnostic> diagnostics;
-  for (const auto& [file, earlier] : failure.pairs()) {
-    diagnostics.push_back(
-        {{file.string()}, {}, fmt::format("holds the same rows as {}; give each row once, to fit or as hold-out", earlier.string())});
+  for (const auto& [rows, earlier] : failure.pairs()) {
+    diagnostics.push_back({{rows.file.string(), rows.first_line, 1},
+                           {},
+                           fmt::format("lines {} to {} share rows with lines {} to {} of {}; give each row once, to fit or as hold-out",
+                                       rows.first_line, rows.last_line, earlier.first_line, earlier.last_line, earlier.file.string())});
   }
   return {failure.code(), failure.message(), std::move(diagnostics)};
 }
