@@ -120,7 +120,7 @@ report::Chart verdict_chart(const std::vector<select::MotorEvaluation>& results,
           duty.summary,
           sampled ? fmt::format("; lines: nominal, highest and lowest of each load cycle; pale areas{}: 5\u00a0% to 95\u00a0% of samples",
                                 bands_of(shown.size()) < shown.size() ? " of the first two motors" : "")
-                  : "; nominal values",
+                  : "; nominal values, highest and lowest of each load cycle",
           estimated ? "; thermal data partly estimated" : ""),
       .x_label = "time / min",
       .panels = {panel(shown, true), panel(shown, false)}};

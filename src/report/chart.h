@@ -15,7 +15,7 @@ struct ChartCurve {
   int color_index = 0;  ///< index in the palette of eight; the same index has the same colour in every panel
   bool dashed = false;
   bool dots = false;        ///< draw a square at every sample instead of a line
-  bool has_ripple = false;  ///< draw parts that oscillate within a few pixels as a light area; false: always a line
+  bool has_ripple = false;  ///< draw parts that oscillate within a few pixels as lines along maxima and minima; false: one line
 };
 
 /// The area between two curves over the same `x`, such as the 5th to 95th percentile of samples.

@@ -61,7 +61,7 @@ report::Chart calibration_chart(const motor::Motor& motor, const calibration::Ca
     trace.panel.title = title_of(calibration, each, what);
     trace.panel.y_label = what + " temperature / °C";
     trace.signal = each.signal;
-    trace.panel.curves = {{.name = "measured", .color_index = 0},
+    trace.panel.curves = {{.name = "measured", .color_index = 4, .dots = true},
                           {.name = "fit", .color_index = 1},
                           {.name = calibration.holdout_after.empty() ? "" : "held out", .color_index = 3},
                           {.name = "file", .color_index = 2, .dashed = true}};

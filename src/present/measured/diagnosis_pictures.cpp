@@ -103,6 +103,7 @@ DiagnosisPicture unknown_heat(const diagnosis::Diagnosis& diagnosis) {
       }
       old.x.push_back(old.x.back()), old.y.push_back(kGap);
       now.x.push_back(now.x.back()), now.y.push_back(kGap);
+      band.x.push_back(band.x.back()), band.low.push_back(kGap), band.high.push_back(kGap);
       begin_min = now.x.back() + 0.5;
     }
     panel.title += ": " + listed(names);

@@ -53,15 +53,13 @@ constexpr std::array<Color, 8> palette{{{0x00, 0x72, 0xB2},
                                         {0x00, 0x00, 0x00},
                                         {0xD5, 0x5E, 0x00},
                                         {0xF0, 0xE4, 0x42}}};
-constexpr unsigned char band_opacity = 51;    // 20 %
-constexpr unsigned char ripple_opacity = 46;  // 18 %
-constexpr float curve_width_px = 2.0F;
+constexpr unsigned char band_opacity = 51;  // 20 %
 
 Color palette_color(int index) { return palette[static_cast<unsigned>(index) % palette.size()]; }
 
-void set_pen(vtkPen* pen, const Color& color, float width_px, bool is_dashed) {
+void set_pen(vtkPen* pen, const Color& color, double width_px, bool is_dashed) {
   pen->SetColor(color[0], color[1], color[2]);
-  pen->SetWidth(width_px);
+  pen->SetWidth(static_cast<float>(width_px));
   pen->SetLineType(is_dashed ? vtkPen::DASH_LINE : vtkPen::SOLID_LINE);
 }
 
@@ -74,7 +72,7 @@ void add_column(vtkTable* table, const char* name, const std::vector<double>& va
   table->AddColumn(column);
 }
 
-void add_line(vtkChartXY* chart, const std::vector<CurvePoint>& points, const Color& color, float width_px, bool is_dashed) {
+void add_line(vtkChartXY* chart, const std::vector<CurvePoint>& points, const Color& color, double width_px, bool is_dashed) {
   std::vector<double> x_px, y_px;
   for (const CurvePoint& point : points) {
     x_px.push_back(point.x_px);
@@ -116,11 +114,11 @@ void add_area(vtkChartXY* chart, const std::vector<BandPoint>& points, const Col
   chart->AddPlot(area);
 }
 
-/// Draws ripple as a light area under a line along its maxima and above a thin one along its minima, the rest as a line.
+/// Draws ripple as a line along its maxima and a thin one along its minima, the rest as a line. An area between them would look like a
+/// band.
 void add_curve(vtkChartXY* chart, const RippledPiece& piece, const Color& color, bool is_dashed) {
   for (const std::vector<BandPoint>& ripple : piece.envelopes) {
-    add_area(chart, ripple, color, ripple_opacity);
-    for (const auto& [edge, width_px] : {std::pair{&BandPoint::low_px, 1.0F}, std::pair{&BandPoint::high_px, curve_width_px}}) {
+    for (const auto& [edge, width_px] : {std::pair{&BandPoint::low_px, minima_width_px}, std::pair{&BandPoint::high_px, curve_width_px}}) {
       std::vector<CurvePoint> line;
       std::ranges::transform(ripple, std::back_inserter(line), [edge = edge](const BandPoint& at) {
         return CurvePoint{at.x_px, at.*edge};
@@ -172,7 +170,7 @@ void add_panel(vtkContextScene* scene, const ChartPanel& panel, const PanelPlace
   for (const ChartCurve& curve : panel.curves) {
     if (curve.dots) {
       for (const std::vector<CurvePoint>& piece : markers(curve, across, up, marker_px)) {
-        add_line(chart, piece, palette_color(curve.color_index), static_cast<float>(marker_px), false);
+        add_line(chart, piece, palette_color(curve.color_index), marker_px, false);
       }
       continue;
     }
@@ -229,7 +227,7 @@ class Lettering : public vtkContextItem {
     } else if (swatch.is_dots) {
       const float middle_px = 0.5F * (left_px + right_px);
       const float half_px = 0.5F * static_cast<float>(marker_px);
-      set_pen(painter->GetPen(), color, static_cast<float>(marker_px), false);
+      set_pen(painter->GetPen(), color, marker_px, false);
       painter->DrawLine(middle_px - half_px, y_px, middle_px + half_px, y_px);
     } else {
       set_pen(painter->GetPen(), color, curve_width_px, swatch.is_dashed);

@@ -225,9 +225,11 @@ class PageBuilder {
       }
     }
     right_px_ = page_.width_px - margin_px;
-    // A wide legend beside several panels would leave most of its column empty.
+    // A wide legend beside several panels, or a single entry beside any, would leave most of its column empty.
     constexpr double kBroad_share = 0.27;
-    is_legend_on_top_ = chart_.panels.size() > 1 && legend_px + swatch_width_px > kBroad_share * page_.width_px;
+    const bool wastes_column =
+        entries_.size() == 1 || (chart_.panels.size() > 1 && legend_px + swatch_width_px > kBroad_share * page_.width_px);
+    is_legend_on_top_ = wastes_column && column_width_px() <= right_px_ - left_px_;
     if (!entries_.empty() && !is_legend_on_top_) {
       legend_x_px_ = std::floor(right_px_ - legend_px - swatch_width_px - 8.0);
       right_px_ = legend_x_px_ - 22.0;
@@ -349,14 +351,14 @@ class PageBuilder {
     }
   }
 
-  /// Places the legend above the panels, with as many entries in a row as fit.
+  /// Places the legend above the panels, in as many columns of one width as fit.
   void add_legend_rows() {
     constexpr double kBetween_px = 24.0;
+    const double width_px = column_width_px();
     double x_px = left_px_;
     double baseline_px = y_px_ + label_line_px;
     for (const LegendEntry& entry : entries_) {
       const std::string name = printable(entry.name);
-      const double width_px = swatch_width_px + 8.0 + text_width_px(name, label_style);
       if (x_px > left_px_ && x_px + width_px > right_px_) {
         x_px = left_px_;
         baseline_px += label_line_px + legend_gap_px;
@@ -413,6 +415,15 @@ class PageBuilder {
 
   [[nodiscard]] std::vector<std::string> y_label(const ChartPanel& panel) const {
     return wrapped(printable(panel.y_label), label_style, plot_height_px(panel));
+  }
+
+  /// Width of the widest legend entry without line breaks.
+  [[nodiscard]] double column_width_px() const {
+    double width_px = 0.0;
+    for (const LegendEntry& entry : entries_) {
+      width_px = std::max(width_px, swatch_width_px + 8.0 + text_width_px(printable(entry.name), label_style));
+    }
+    return width_px;
   }
 
   [[nodiscard]] std::vector<std::string> legend_lines(const LegendEntry& entry) const {

@@ -53,7 +53,7 @@ struct Window {
   std::size_t end = 0;
   double low_px = 0.0;
   double high_px = 0.0;
-  bool is_ripple = false;  ///< oscillates more than once, by more than a line width
+  bool is_ripple = false;  ///< oscillates more than once, by more than the lines along its maxima and minima are wide
 };
 
 /// Ripple lasts for several windows: a few windows alone are noise or a peak, and a few without ripple beside a ripple, such as the steep
@@ -74,7 +74,7 @@ void unify(std::vector<Window>& windows) {
 
 std::vector<Window> windows_of(const std::vector<CurvePoint>& piece) {
   constexpr double kSwings = 2.5;
-  constexpr double kLeast_px = 5.0;
+  constexpr double kLeast_px = curve_width_px + minima_width_px;  // below it the two lines overlap
   std::vector<Window> windows;
   for (std::size_t i = 0; i < piece.size();) {
     Window window{.begin = i, .end = i, .low_px = piece[i].y_px, .high_px = piece[i].y_px};

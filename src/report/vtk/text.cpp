@@ -32,8 +32,6 @@ std::size_t sequence_length(std::string_view text, std::size_t at) {
   return is_overlong || is_surrogate_or_beyond || is_noncharacter ? 0 : length;
 }
 
-bool may_break_after(char last) { return last == ' ' || last == '_'; }
-
 void trim_end(std::string& line) {
   while (!line.empty() && line.back() == ' ') {
     line.pop_back();
@@ -69,22 +67,26 @@ double text_width_px(const std::string& text, const TextStyle& style) {
 std::vector<std::string> wrapped(const std::string& text, const TextStyle& style, double width_px) {
   std::vector<std::string> lines;
   std::string line;
-  std::size_t breakable = 0;  // bytes of `line` after which it may be broken; 0: none
+  // Bytes of `line` after which it may be broken; 0: none. A name is broken only if it is longer than a line.
+  std::size_t after_space = 0;
+  std::size_t after_underscore = 0;
   for (std::size_t at = 0; at < text.size();) {
     const std::string character = text.substr(at, sequence_length(text, at));
     at += character.size();
     if (character != " " && !line.empty() && text_width_px(line + character, style) > width_px) {
+      const std::size_t breakable = after_space > 0 ? after_space : after_underscore;
       std::string rest = line.substr(breakable == 0 ? line.size() : breakable);
       line.resize(line.size() - rest.size());
       trim_end(line);
       lines.push_back(line);
       line = std::move(rest);
-      breakable = 0;
+      const std::size_t underscore = line.rfind('_');
+      after_underscore = underscore == std::string::npos ? 0 : underscore + 1;
+      after_space = 0;
     }
     line += character;
-    if (may_break_after(line.back())) {
-      breakable = line.size();
-    }
+    after_space = character == " " ? line.size() : after_space;
+    after_underscore = character == "_" ? line.size() : after_underscore;
   }
   trim_end(line);
   if (!line.empty()) {
