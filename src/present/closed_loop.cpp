@@ -42,7 +42,7 @@ Text sentence(const simulate::ClosedLoopRank& rank, std::string_view prefix) {
   const simulate::GameDrives& drives = rank.drives;
   const Tone tone = tone_of(rank.verdict);
   if (drives.games.empty()) {
-    return {fmt::format("{}{} was not driven: {}.", prefix, drives.motor_id, drives.why_none), tone};
+    return {fmt::format("{}{} was not driven: {}.", prefix, drives.motor_id, why_not_driven(drives)), tone};
   }
   const bool is_stator = rank.stator_limit_C && drives.spread(&simulate::DriveScore::stator_peak_C).high > *rank.stator_limit_C;
   const double peak_C = drives.spread(is_stator ? &simulate::DriveScore::stator_peak_C : &simulate::DriveScore::winding_peak_C).high;
@@ -99,6 +99,14 @@ void add_difference(Document& document, const simulate::EvaluationAnswer& answer
 
 }  // namespace
 
+std::string why_not_driven(const simulate::GameDrives& drives) {
+  if (!drives.why_none) {
+    return "";
+  }
+  const auto* const failure = std::get_if<base::Failure>(&*drives.why_none);
+  return failure ? failure->message() : "the motor's file has no rotor_inertia, which is needed for the acceleration of a wheel";
+}
+
 std::string words_of(simulate::DriveProblem problem, const simulate::DriveScore& score) {
   switch (problem) {
     case simulate::DriveProblem::battery_empty:
@@ -143,15 +151,15 @@ void add_closed_loop(Document& document, const simulate::EvaluationAnswer& answe
     table.rows.push_back(closed_loop_row(i + 1, ranks[i]));
     const simulate::GameDrives& drives = ranks[i].drives;
     if (drives.games.empty()) {
-      document.add_note(Severity::warning, fmt::format("{} was not driven: {}", drives.motor_id, drives.why_none));
+      document.add_note(Severity::warning, fmt::format("{} was not driven: {}", drives.motor_id, why_not_driven(drives)));
     }
     const auto bad =
         std::ranges::find_if(drives.games, [](const simulate::DriveScore& game) { return simulate::drive_problem(game).has_value(); });
     if (bad != drives.games.end()) {
       document.add_note(Severity::warning, fmt::format("{}: {}", drives.motor_id, words_of(*simulate::drive_problem(*bad), *bad)));
     }
-    if (!drives.why_no_guard.empty()) {
-      document.add_note(Severity::note, fmt::format("{} has no thermal guard: {}", drives.motor_id, drives.why_no_guard));
+    if (drives.why_no_guard) {
+      document.add_note(Severity::note, fmt::format("{} has no thermal guard: {}", drives.motor_id, drives.why_no_guard->message()));
     }
   }
   add_missing_sensors(document, answer.robot);

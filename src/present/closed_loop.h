@@ -15,6 +15,9 @@ void add_closed_loop(Document& document, const simulate::EvaluationAnswer& answe
 /// Adds a note if the robot has no sensors of the motor currents.
 void add_missing_sensors(Document& document, const robot::Robot& robot);
 
+/// Returns why a motor was not driven as part of a sentence; empty if it was driven.
+std::string why_not_driven(const simulate::GameDrives& drives);
+
 /// Returns the consequence of the problem as a sentence, with the values of `score`.
 std::string words_of(simulate::DriveProblem problem, const simulate::DriveScore& score);
 

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "present/closed_loop.h"
+
 namespace heatsoak::present {
 namespace {
 
@@ -14,7 +16,7 @@ Json json(const simulate::GameSpread& spread, int decimals) {
 Json closed_loop_json(const simulate::ClosedLoopRank& rank, std::uint64_t seed) {
   const simulate::GameDrives& drives = rank.drives;
   if (drives.games.empty()) {
-    return {{"verdict", select::to_string(rank.verdict)}, {"games", 0}, {"why_none", drives.why_none}};
+    return {{"verdict", select::to_string(rank.verdict)}, {"games", 0}, {"why_none", why_not_driven(drives)}};
   }
   Json answer{{"verdict", select::to_string(rank.verdict)},
               {"games", drives.games.size()},
@@ -30,7 +32,7 @@ Json closed_loop_json(const simulate::ClosedLoopRank& rank, std::uint64_t seed) 
               {"battery_empty_s", json(drives.spread(&simulate::DriveScore::battery_empty_s), 3)}};
   answer["guard_limited_s"] = drives.is_guarded ? json(drives.spread(&simulate::DriveScore::guard_limited_s), 3) : Json();
   answer["guard_winding_peak_C"] = drives.is_guarded ? json(drives.spread(&simulate::DriveScore::guard_winding_peak_C), 2) : Json();
-  answer["why_no_guard"] = drives.why_no_guard.empty() ? Json() : Json(drives.why_no_guard);
+  answer["why_no_guard"] = drives.why_no_guard ? Json(drives.why_no_guard->message()) : Json();
   return answer;
 }
 

@@ -111,8 +111,8 @@ void add_guard_notes(Document& document, const simulate::MatchSimulation& answer
     return;
   }
   if (!answer.guard.guard) {
-    document.add_note(Severity::warning,
-                      fmt::format("thermal guard: none, because this motor cannot be guarded: {}", answer.guard.why_none));
+    document.add_note(Severity::warning, fmt::format("thermal guard: none, because this motor cannot be guarded: {}",
+                                                     answer.guard.why_none ? answer.guard.why_none->message() : ""));
     return;
   }
   for (const simulate::DrivenMatch& each : answer.runs) {

@@ -16,7 +16,7 @@ Json guard_json(const simulate::MatchSimulation& match) {
   const bool is_missing = match.guard_use != simulate::GuardUse::off && !guard.guard;
   return {{"use", is_missing ? simulate::kGuardUses[0] : simulate::kGuardUses[static_cast<std::size_t>(match.guard_use)]},
           {"asked_for", simulate::kGuardUses[static_cast<std::size_t>(match.guard_use)]},
-          {"why_none", is_missing ? Json(guard.why_none) : Json()},
+          {"why_none", is_missing && guard.why_none ? Json(guard.why_none->message()) : Json()},
           {"heat_reserve_ratio", guard.derating ? rounded(guard.derating->observer.heat_safety_factor(), 4) : Json()}};
 }
 

@@ -19,10 +19,10 @@ GameSpread GameDrives::spread(double DriveScore::*value) const {
 
 namespace {
 
-/// Returns why the drive core cannot drive this motor, or an empty text. A robot file without a needed table is an error for all motors.
-std::string why_not_driven(const robot::Robot& robot, const motor::Motor& motor, GuardUse use, const MotorGuard& guard) {
+/// Returns why the drive core cannot drive this motor, or nothing. A robot file without a needed table is an error for all motors.
+std::optional<NotDriven> why_not_driven(const robot::Robot& robot, const motor::Motor& motor, GuardUse use, const MotorGuard& guard) {
   if (!motor.nominal.rotor_inertia_kg_m2) {
-    return "the motor's file has no rotor_inertia, which is needed for the acceleration of a wheel";
+    return NoRotorInertia{};
   }
   try {
     const GuardedCore core(robot, motor, use, guard);
@@ -30,9 +30,9 @@ std::string why_not_driven(const robot::Robot& robot, const motor::Motor& motor,
     if (failure.code() != base::ExitCode::bad_input || !failure.diagnostics().empty()) {
       throw;
     }
-    return failure.message();
+    return failure;
   }
-  return {};
+  return std::nullopt;
 }
 
 }  // namespace
@@ -49,18 +49,18 @@ std::vector<GameDrives> drive_games(const robot::Robot& robot, const duty::Match
   base::in_parallel(motors.size(), options.threads, games, all, progress, [&](std::size_t i) {
     drives[i].motor_id = motors[i].id;
     drives[i].why_none = why_not_driven(robot, motors[i], GuardUse::off, {});
-    if (drives[i].why_none.empty() && options.guard != GuardUse::off) {
+    if (!drives[i].why_none && options.guard != GuardUse::off) {
       guards[i] = make_guard(motors[i], robot, options.ambient_C, options.threads);
       drives[i].is_guarded = guards[i].guard.has_value();
       drives[i].why_no_guard = guards[i].why_none;
       drives[i].why_none = why_not_driven(robot, motors[i], options.guard, guards[i]);
     }
-    drives[i].games.resize(drives[i].why_none.empty() ? games : 0);
+    drives[i].games.resize(drives[i].why_none ? 0 : games);
   });
   base::in_parallel(motors.size() * games, options.threads, games + motors.size(), all, progress, [&](std::size_t job) {
     const std::size_t motor = job / games;
     const std::size_t game = job % games;
-    if (!drives[motor].why_none.empty()) {
+    if (drives[motor].why_none) {
       return;
     }
     const GuardedCore core(robot, motors[motor], options.guard, guards[motor]);

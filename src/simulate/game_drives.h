@@ -1,8 +1,10 @@
 // Drives games in closed loop with several motors, for `evaluate --closed-loop`.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "simulate/guarded_core.h"
@@ -26,12 +28,17 @@ struct GameSpread {
   double high = 0.0;
 };
 
+/// The motor's file has no rotor_inertia, which is needed for the acceleration of a wheel.
+struct NoRotorInertia {};
+/// Why a motor cannot be driven: a missing value, or the Failure of the drive core's configuration.
+using NotDriven = std::variant<NoRotorInertia, base::Failure>;
+
 struct GameDrives {
   std::string motor_id;
-  std::string why_none;  ///< reason why the motor cannot be driven; empty if it was driven
+  std::optional<NotDriven> why_none;  ///< empty if the motor was driven
   bool is_guarded = false;
-  std::string why_no_guard;       ///< as MotorGuard::why_none
-  std::vector<DriveScore> games;  ///< in the order of the seeds
+  std::optional<base::Failure> why_no_guard;  ///< as MotorGuard::why_none
+  std::vector<DriveScore> games;              ///< in the order of the seeds
 
   /// Returns value and range of one score; needs one or more games.
   [[nodiscard]] GameSpread spread(double DriveScore::*value) const;

@@ -21,7 +21,7 @@ MotorGuard make_guard(const motor::Motor& motor, const robot::Robot& robot, doub
     if (failure.code() != base::ExitCode::limit_exceeded && failure.code() != base::ExitCode::bad_input) {
       throw;
     }
-    made.why_none = failure.message();
+    made.why_none = failure;
   }
   return made;
 }

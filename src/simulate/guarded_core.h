@@ -2,9 +2,9 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <string_view>
 
+#include "base/diagnostic.h"
 #include "base/parallel.h"
 #include "firmware/core_config.h"
 #include "firmware/host_guard.h"
@@ -22,7 +22,7 @@ inline constexpr std::string_view kGuardUses[]{"off", "shadow", "on"};
 struct MotorGuard {
   std::optional<derate::Derating> derating;
   std::optional<firmware::HostGuard> guard;
-  std::string why_none;  ///< message of derate(); empty if there is a guard or none was requested
+  std::optional<base::Failure> why_none;  ///< failure of derate(); empty if there is a guard or none was requested
 };
 
 /// Runs derate() with its defaults, for air of up to 40 °C or `ambient_C`, whichever is larger. A motor that exceeds a limit without

@@ -182,7 +182,7 @@ TEST(CoreDrive, asks_for_no_memory) {
 TEST(GuardedCore, shadow_counts_and_on_limits) {
   const motor::Motor motor = ecx_32();
   const MotorGuard guard = make_guard(motor, twente(), 25.0, 2);
-  ASSERT_TRUE(guard.guard) << guard.why_none;
+  ASSERT_TRUE(guard.guard) << (guard.why_none ? guard.why_none->what() : "");
   const double hot_C = motor.nominal.winding_limit_C - 10.0;
   const GuardedCore off(twente(), motor, GuardUse::off, guard);
   const GuardedCore shadow(twente(), motor, GuardUse::shadow, guard);
@@ -209,7 +209,7 @@ TEST(GuardedCore, a_motor_that_cannot_be_guarded_says_why) {
   motor::refresh_values(motor);
   const MotorGuard guard = make_guard(motor, twente(), 25.0, 2);
   EXPECT_FALSE(guard.guard);
-  EXPECT_FALSE(guard.why_none.empty());
+  EXPECT_TRUE(guard.why_none);
   const GuardedCore core(twente(), motor, GuardUse::on, guard);
   EXPECT_EQ(core.config().guard, nullptr);
 }
@@ -240,9 +240,22 @@ TEST(GameDrives, motor_that_cannot_be_driven_says_why_and_the_others_are_driven)
   const std::vector<GameDrives> drives = drive_games(twente(), match.inputs(), motors, options);
   ASSERT_EQ(drives.size(), 2U);
   EXPECT_TRUE(drives[0].games.empty());
-  EXPECT_NE(drives[0].why_none.find("too long for the wheel-speed loop"), std::string::npos) << drives[0].why_none;
+  ASSERT_TRUE(drives[0].why_none);
+  const auto* const failure = std::get_if<base::Failure>(&*drives[0].why_none);
+  ASSERT_NE(failure, nullptr);
+  EXPECT_NE(failure->message().find("too long for the wheel-speed loop"), std::string::npos) << failure->message();
   ASSERT_EQ(drives[1].games.size(), 1U);
   EXPECT_GT(drives[1].games[0].distance_m, 100.0);
+}
+
+TEST(GameDrives, motor_without_rotor_inertia_is_not_driven) {
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/division_b_match.toml");
+  motor::Motor motor = ecx_32();
+  motor.nominal.rotor_inertia_kg_m2.reset();
+  const std::vector<GameDrives> drives = drive_games(twente(), dynamic_cast<const duty::MatchDuty&>(*duty.shape_data).inputs(),
+                                                     std::vector{motor}, {.games = 1, .guard = GuardUse::off});
+  ASSERT_TRUE(drives[0].why_none);
+  EXPECT_TRUE(std::holds_alternative<NoRotorInertia>(*drives[0].why_none));
 }
 
 TEST(GameDrives, do_not_depend_on_threads) {
@@ -271,7 +284,7 @@ TEST(GameDrives, do_not_depend_on_threads) {
     EXPECT_EQ(spread.nominal, one[i].games.front().winding_peak_C);
   }
   EXPECT_TRUE(one[2].games.empty());
-  EXPECT_FALSE(one[2].why_none.empty());
+  EXPECT_TRUE(one[2].why_none);
 }
 
 }  // namespace
