@@ -4,6 +4,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -16,6 +17,9 @@
 #include <string_view>
 #include <thread>
 #include <utility>
+
+#include "present/renderer.h"
+#include "present/wrap.h"
 
 namespace heatsoak::cli {
 namespace {
@@ -57,24 +61,24 @@ class Remaining {
 
 std::size_t terminal_width(int descriptor) {
   constexpr std::size_t kUsual = 80;
-  constexpr std::size_t kLeast = 20;
-  constexpr std::size_t kMost = 1000;
+  static constexpr std::size_t kMost = 1000;
+  const auto within = [](std::size_t width) { return std::clamp(width, present::kLeastWidth, kMost); };
   const std::string_view columns = environment("COLUMNS");
   std::size_t wanted = 0;
   const auto [end, problem] = std::from_chars(columns.data(), columns.data() + columns.size(), wanted);
-  if (problem == std::errc() && end == columns.data() + columns.size() && wanted >= kLeast && wanted <= kMost) {
-    return wanted;
+  if (problem == std::errc() && end == columns.data() + columns.size() && wanted > 0) {
+    return within(wanted);
   }
   winsize size{};
-  if (ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col >= kLeast) {
-    return size.ws_col;
-  }
-  return kUsual;
+  return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? within(size.ws_col) : kUsual;
 }
 
 bool takes_colors(int descriptor) { return isatty(descriptor) == 1 && environment("NO_COLOR").empty() && environment("TERM") != "dumb"; }
 
 namespace {
+
+/// Overwrites the line of stderr. A text that filled the line would leave copies of itself.
+void overwrite_line(std::string_view text) { fmt::print(stderr, "\r\x1b[K{}", present::leading(text, terminal_width(STDERR_FILENO) - 1)); }
 
 /// A line on stderr that is overwritten and removed at the end, even if the work ends early.
 class Bar {
@@ -94,7 +98,7 @@ class Bar {
       is_visible_ = true;
       // A job that turns out to be longer keeps its percentage until the work has caught up; the remaining time grows.
       most_share_ = std::max(most_share_, static_cast<double>(done) / static_cast<double>(total));
-      fmt::print(stderr, "\r\x1b[K{}: {:.0f} %{}", what_, 100.0 * most_share_, remaining_.text(done, total));
+      overwrite_line(fmt::format("{}: {:.0f} %{}", what_, 100.0 * most_share_, remaining_.text(done, total)));
     }
   }
 
@@ -125,7 +129,7 @@ class ElapsedLine {
     int elapsed_s = 0;
     // True if the wait ended because of the stop.
     while (!changed_.wait_for(lock, stop, std::chrono::seconds(1), [&] { return stop.stop_requested(); })) {
-      fmt::print(stderr, "\r\x1b[K{}: {} s", what, ++elapsed_s);
+      overwrite_line(fmt::format("{}: {} s", what, ++elapsed_s));
     }
     if (elapsed_s > 0) {
       static_cast<void>(std::fputs("\r\x1b[K", stderr));

@@ -9,7 +9,7 @@
 
 namespace heatsoak::cli {
 
-/// Returns the width in characters: COLUMNS if it is an integer from 20 to 1000, else the terminal's own width, else 80.
+/// Returns the width in characters, 20 to 1000: COLUMNS if it is a positive integer, else the terminal's own width, else 80.
 std::size_t terminal_width(int descriptor);
 
 /// Returns true for a terminal unless NO_COLOR or TERM=dumb is set.

@@ -257,6 +257,18 @@ TEST_F(FrontDoor, every_answer_fits_a_narrow_terminal) {
   }
 }
 
+TEST_F(FrontDoor, a_width_below_the_least_is_the_least) {
+  for (const std::string& command : kShortAnswers) {
+    const ProgramRun least = run_here("COLUMNS=20 " + command);
+    ASSERT_EQ(least.exit_code, 0) << command << least.err;
+    for (const char* width : {"1", "10"}) {
+      const ProgramRun result = run_here("COLUMNS=" + std::string(width) + " " + command);
+      EXPECT_EQ(result.exit_code, 0) << command << result.err;
+      EXPECT_EQ(result.out, least.out) << command;
+    }
+  }
+}
+
 TEST_F(FrontDoor, every_answer_has_a_short_form_and_a_document) {
   for (const std::string& command : kShortAnswers) {
     const ProgramRun quiet = run_here(command + " --quiet");
