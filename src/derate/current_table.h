@@ -15,7 +15,7 @@ inline constexpr double kSpeedFadeOut_ratio = 1.1;
 
 /// Bounds of a table relative to the exact current (Barrier), verified at points that are not breakpoints of the table.
 struct TableBound {
-  /// Above CurrentTable::straight_below_A the table is at most this share of the exact current below it, and never above it. From 0 to 1.
+  /// Above CurrentTable::straight_below_A the table lies below the exact current by at most this share of it; never above it. From 0 to 1.
   double shortfall_ratio = 0.0;
   // Upper bounds of the slope of the allowed current with respect to one quantity, computed from the table's own segments.
   double winding_slope_A_per_K = 0.0;

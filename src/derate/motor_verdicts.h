@@ -12,8 +12,8 @@
 namespace heatsoak::derate {
 
 /// Assumes that a motor which keeps its limits at one safety factor also keeps them at every larger one, in each use. At another factor
-/// only the motors and uses whose result is unknown are simulated. Up to this, the count is that of check(), which simulates all of them;
-/// the step of the integration may differ because other motors share a block.
+/// only the motors and uses whose result is unknown are simulated. If this holds, the count is that of check(), which simulates all of
+/// them, except for rounding: the integration step may differ, because other motors share a block.
 class MotorVerdicts {
  public:
   /// Returns use `index` of the patterns, simulated with the guard for this safety factor.
