@@ -35,8 +35,8 @@ RateLines::RateLines(const Observer& observer, std::span<const int> rate_steps, 
     }
     const int times = repeats_its_operand(step.operation) ? 2 : 1;
     uses_[static_cast<std::size_t>(step.left)] += times;
-    if (step.right >= 0) {
-      ++uses_[static_cast<std::size_t>(step.right)];
+    if (step.right) {
+      ++uses_[static_cast<std::size_t>(*step.right)];
     }
   }
   for (std::size_t i = 0; i < needed.size(); ++i) {
@@ -75,8 +75,8 @@ std::string RateLines::name_for(int place) {
   const auto without_unit = [](const std::string& name) { return name.substr(0, name.size() - 2); };
   std::string name(formula.name_of(place));
   if (name.empty() && step.operation == thermal::Operation::subtract && temperature(step.left).ends_with("_C") &&
-      temperature(step.right).ends_with("_C")) {
-    name = fmt::format("{}_above_{}_K", without_unit(temperature(step.left)), without_unit(temperature(step.right)));
+      temperature(*step.right).ends_with("_C")) {
+    name = fmt::format("{}_above_{}_K", without_unit(temperature(step.left)), without_unit(temperature(*step.right)));
   }
   if (name.empty()) {
     const std::string_view law = formula.law_of(place);
@@ -109,16 +109,15 @@ RateLines::Text RateLines::expression(const thermal::Formula::Step& step) {
   const std::string zero = style_.literal(0.0);
   const auto thermal_math = [&](std::string_view function) -> Text {
     calls_thermal_math_ = true;
-    return {
-        step.right < 0 ? fmt::format("{}({})", function, left) : fmt::format("{}({}, {})", function, left, written_.at(step.right).text),
-        false};
+    return {step.right ? fmt::format("{}({}, {})", function, left, written_.at(*step.right).text) : fmt::format("{}({})", function, left),
+            false};
   };
   if (is_arithmetic(step.operation)) {
     const char sign = step.operation == thermal::Operation::add        ? '+'
                       : step.operation == thermal::Operation::subtract ? '-'
                       : step.operation == thermal::Operation::multiply ? '*'
                                                                        : '/';
-    return {fmt::format("{} {} {}", operand(step.left), sign, operand(step.right)), true};
+    return {fmt::format("{} {} {}", operand(step.left), sign, operand(*step.right)), true};
   }
   switch (step.operation) {
     case thermal::Operation::magnitude:

@@ -103,7 +103,7 @@ int Formula::input(std::string name) {
   return place_of({.operation = Operation::input, .left = static_cast<int>(inputs_.size()) - 1});
 }
 
-int Formula::apply(Operation operation, int left, int right) { return place_of({operation, left, right}); }
+int Formula::apply(Operation operation, int left, std::optional<int> right) { return place_of({operation, left, right}); }
 
 void Formula::name(int step, std::string name) {
   const Operation operation = steps_[static_cast<std::size_t>(step)].operation;
@@ -137,8 +137,8 @@ std::vector<char> Formula::needed_for(std::span<const int> results) const {
       continue;
     }
     needed[static_cast<std::size_t>(step.left)] = 1;
-    if (step.right >= 0) {
-      needed[static_cast<std::size_t>(step.right)] = 1;
+    if (step.right) {
+      needed[static_cast<std::size_t>(*step.right)] = 1;
     }
   }
   return needed;
@@ -147,7 +147,7 @@ std::vector<char> Formula::needed_for(std::span<const int> results) const {
 template <class Number>
 FormulaRun<Number>::FormulaRun(const Formula& formula, std::span<const int> results) : input_count_(formula.inputs().size()) {
   const std::vector<char> needed = formula.needed_for(results);
-  std::vector<int> place(formula.steps().size(), -1);
+  std::vector<std::optional<int>> place(formula.steps().size());
   values_.resize(input_count_);
   for (std::size_t i = 0; i < place.size(); ++i) {
     const Formula::Step& step = formula.steps()[i];
@@ -160,18 +160,17 @@ FormulaRun<Number>::FormulaRun(const Formula& formula, std::span<const int> resu
   }
   first_step_ = values_.size();
   for (std::size_t i = 0; i < place.size(); ++i) {
-    if (needed[i] == 0 || place[i] >= 0) {
+    if (needed[i] == 0 || place[i]) {
       continue;
     }
-    Formula::Step step = formula.steps()[i];
-    step.left = place[static_cast<std::size_t>(step.left)];
-    step.right = step.right < 0 ? step.left : place[static_cast<std::size_t>(step.right)];
+    const Formula::Step& step = formula.steps()[i];
+    const auto place_of = [&place](int operand) { return place[static_cast<std::size_t>(operand)].value(); };
+    steps_.push_back({step.operation, place_of(step.left), place_of(step.right.value_or(step.left))});
     place[i] = static_cast<int>(values_.size());
     values_.push_back(constant_of<Number>(0.0));
-    steps_.push_back(step);
   }
   for (const int result : results) {
-    result_place_.push_back(place[static_cast<std::size_t>(result)]);
+    result_place_.push_back(place[static_cast<std::size_t>(result)].value());
   }
 }
 
@@ -179,7 +178,7 @@ template <class Number>
 void FormulaRun<Number>::run(std::span<const Number> inputs, std::span<Number> results) {
   std::copy_n(inputs.begin(), input_count_, values_.begin());
   std::size_t to = first_step_;
-  for (const Formula::Step& step : steps_) {
+  for (const Step& step : steps_) {
     values_[to++] =
         worked_out<Number>(step.operation, values_[static_cast<std::size_t>(step.left)], values_[static_cast<std::size_t>(step.right)]);
   }
@@ -218,7 +217,7 @@ std::optional<Traced> Traced::negated() const {
   const bool is_negative = step.operation == Operation::subtract &&
                            steps[static_cast<std::size_t>(step.left)].operation == Operation::constant &&
                            steps[static_cast<std::size_t>(step.left)].value == 0.0;
-  return is_negative ? std::optional(Traced(*formula_, step.right)) : std::nullopt;
+  return is_negative ? std::optional(Traced(*formula_, step.right.value())) : std::nullopt;
 }
 
 Traced operator+(const Traced& a, const Traced& b) {

@@ -21,9 +21,9 @@ class Formula {
  public:
   struct Step {
     Operation operation = Operation::constant;
-    int left = -1;       ///< index of a step, or of the input
-    int right = -1;      ///< index of a step; -1 for operations with one operand
-    double value = 0.0;  ///< value of a constant
+    int left = 0;                   ///< index of a step, or of the input; unused by a constant
+    std::optional<int> right = {};  ///< index of a step; empty for operations with one operand
+    double value = 0.0;             ///< value of a constant
   };
 
   [[nodiscard]] std::span<const Step> steps() const { return steps_; }
@@ -33,7 +33,7 @@ class Formula {
 
   int constant(double value);
   int input(std::string name);
-  int apply(Operation operation, int left, int right = -1);
+  int apply(Operation operation, int left, std::optional<int> right = {});
 
   /// Names the value of a step for generated code. The first name of a step stays; constants and inputs get none.
   void name(int step, std::string name);
@@ -50,9 +50,10 @@ class Formula {
 
   std::vector<Step> steps_;
   std::vector<std::string> inputs_;
-  std::map<int, std::string> names_;                                     ///< names by step
-  std::map<int, std::string> laws_;                                      ///< laws by their first step
-  std::map<std::tuple<Operation, int, int, std::uint64_t>, int> known_;  ///< index of each step by its content; constants by their bits
+  std::map<int, std::string> names_;  ///< names by step
+  std::map<int, std::string> laws_;   ///< laws by their first step
+  std::map<std::tuple<Operation, int, std::optional<int>, std::uint64_t>, int>
+      known_;  ///< index of each step by its content; constants by their bits
 };
 
 /// Evaluates the steps that some results need, in the precision of Number. run() does not allocate.
@@ -65,8 +66,13 @@ class FormulaRun {
   void run(std::span<const Number> inputs, std::span<Number> results);
 
  private:
-  std::vector<Formula::Step> steps_;  ///< all steps except constants and inputs, with indices into values_
-  std::vector<Number> values_;        ///< inputs, constants, then one per step
+  struct Step {
+    Operation operation;
+    int left;
+    int right;  ///< same as `left` for operations with one operand
+  };
+  std::vector<Step> steps_;     ///< all steps except constants and inputs, with indices into values_
+  std::vector<Number> values_;  ///< inputs, constants, then one per step
   std::size_t input_count_ = 0;
   std::size_t first_step_ = 0;
   std::vector<int> result_place_;
@@ -108,7 +114,7 @@ class Traced {
   [[nodiscard]] bool is(double value) const { return is_constant() && value_ == value; }
 
   Formula* formula_ = nullptr;
-  int step_ = -1;
+  int step_ = 0;  ///< unused by a constant
   double value_ = 0.0;
 };
 

@@ -39,7 +39,7 @@ std::string operand(const thermal::Formula& formula, int place) {
 
 std::string expression(const thermal::Formula& formula, const thermal::Formula::Step& step) {
   const std::string left = operand(formula, step.left);
-  const std::string right = step.right < 0 ? "" : operand(formula, step.right);
+  const std::string right = step.right ? operand(formula, *step.right) : "";
   switch (step.operation) {
     case thermal::Operation::add:
       return fmt::format("(+ {} {})", left, right);

@@ -119,19 +119,19 @@ class Writer {
 
   void add_sum(int place, const thermal::Formula::Step& step, double sign) {
     const FixedPoint& a = value(step.left);
-    const FixedPoint& b = value(step.right);
+    const FixedPoint& b = value(*step.right);
     FixedPoint made{.low = sign > 0.0 ? a.low + b.low : a.low - b.high,
                     .high = sign > 0.0 ? a.high + b.high : a.high - b.low,
                     .bits = 0,
                     .absolute = 0.0};
     made.bits = std::min({a.bits, b.bits, bits_for(made.low, made.high)});
     made.absolute = a.absolute + b.absolute + (a.bits > made.bits ? unit(made.bits) : 0.0) + (b.bits > made.bits ? unit(made.bits) : 0.0);
-    set(place, made, fmt::format("{} {} {}", shifted(step.left, made.bits), sign > 0.0 ? "+" : "-", shifted(step.right, made.bits)));
+    set(place, made, fmt::format("{} {} {}", shifted(step.left, made.bits), sign > 0.0 ? "+" : "-", shifted(*step.right, made.bits)));
   }
 
   void add_product(int place, const thermal::Formula::Step& step) {
     const FixedPoint& a = value(step.left);
-    const FixedPoint& b = value(step.right);
+    const FixedPoint& b = value(*step.right);
     const auto corners = {a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high};
     FixedPoint made{.low = std::min(corners), .high = std::max(corners), .bits = 0, .absolute = 0.0};
     if (step.left == step.right) {
@@ -142,12 +142,12 @@ class Writer {
     const double most_b = std::max(std::abs(b.low), std::abs(b.high));
     made.absolute = most_a * b.absolute + most_b * a.absolute + a.absolute * b.absolute + unit(made.bits);
     set(place, made,
-        fmt::format("{}_product({}, {}, {})", prefix_, name(step.left), name(step.right), power_of_two(a.bits + b.bits - made.bits)));
+        fmt::format("{}_product({}, {}, {})", prefix_, name(step.left), name(*step.right), power_of_two(a.bits + b.bits - made.bits)));
   }
 
   void add_quotient(int place, const thermal::Formula::Step& step) {
     const FixedPoint& a = value(step.left);
-    const FixedPoint& b = value(step.right);
+    const FixedPoint& b = value(*step.right);
     const double least = std::min(std::abs(b.low), std::abs(b.high)) - b.absolute;
     if (b.low * b.high <= 0.0 || least <= 0.0) {
       throw refusal("a law divides by a quantity that may be 0");
@@ -161,7 +161,7 @@ class Writer {
       throw refusal("a law divides numbers of too different sizes");
     }
     made.absolute = (a.absolute + most * b.absolute) / least + unit(made.bits);
-    set(place, made, fmt::format("{}_quotient({}, {}, {})", prefix_, name(step.left), name(step.right), power_of_two(shift)));
+    set(place, made, fmt::format("{}_quotient({}, {}, {})", prefix_, name(step.left), name(*step.right), power_of_two(shift)));
   }
 
   void add_magnitude(int place, const thermal::Formula::Step& step) {
