@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "present/evaluation.h"
 #include "present/verdict_words.h"
@@ -113,17 +114,18 @@ report::Chart verdict_chart(const std::vector<select::MotorEvaluation>& results,
   const std::vector<const select::MotorEvaluation*> shown = chosen(results, robot);
   const bool sampled = std::ranges::any_of(shown, [](const select::MotorEvaluation* each) { return !each->curves.band_time_s.empty(); });
   const bool estimated = std::ranges::any_of(shown, [](const select::MotorEvaluation* each) { return each->data_quality == "estimated"; });
-  return {
-      .title = title_of(results, robot, duty),
-      .subtitle = fmt::format(
-          "{}{}{}{}", shown.size() < results.size() ? fmt::format("the robot's motor and the best of {}, ", results.size()) : "",
-          duty.summary,
-          sampled ? fmt::format("; lines: nominal, highest and lowest of each load cycle; pale areas{}: 5\u00a0% to 95\u00a0% of samples",
-                                bands_of(shown.size()) < shown.size() ? " of the first two motors" : "")
-                  : "; nominal values, highest and lowest of each load cycle",
-          estimated ? "; thermal data partly estimated" : ""),
-      .x_label = "time / min",
-      .panels = {panel(shown, true), panel(shown, false)}};
+  // A load that the robot's motion demands, such as a match, does not repeat in cycles.
+  const std::string_view of_cycles = duty.shape_data->depends_on_robot() ? "" : ", highest and lowest of each load cycle";
+  return {.title = title_of(results, robot, duty),
+          .subtitle = fmt::format(
+              "{}{}{}{}", shown.size() < results.size() ? fmt::format("the robot's motor and the best of {}, ", results.size()) : "",
+              duty.summary,
+              sampled ? fmt::format("; lines: nominal{}; pale areas{}: 5\u00a0% to 95\u00a0% of samples", of_cycles,
+                                    bands_of(shown.size()) < shown.size() ? " of the first two motors" : "")
+                      : fmt::format("; nominal values{}", of_cycles),
+              estimated ? "; thermal data partly estimated" : ""),
+          .x_label = "time / min",
+          .panels = {panel(shown, true), panel(shown, false)}};
 }
 
 }  // namespace heatsoak::present
