@@ -165,7 +165,8 @@ Command friction() {
                 ->check(CLI::IsMember({"leave_out", "use"}))
                 ->capture_default_str();
             app.add_flag("--as-is", options->takes_logs_as_they_are, "continue although units, signs or the order of wheels look wrong");
-            app.add_flag("--lifted", options->is_lifted, "take the wheels as off the ground, with --method roll_out");
+            app.add_flag("--lifted", options->is_lifted,
+                         "take the wheels as off the ground, with --method roll_out; the speed of one wheel is enough then");
             app.add_option("--out", options->out, "robot file that contains the friction found")->type_name("ROBOT.toml");
             add_picture(app, options->plot,
                         "picture of offset and damping over the headings; voltage over speed is beside it, in FILE_voltage.svg");
