@@ -314,10 +314,11 @@ TEST_F(FrontDoor, pictures_are_drawn_as_png_too) {
 
 TEST_F(FrontDoor, an_interrupted_command_leaves_nothing) {
   const std::string robot = " --robot roboteam_twente_v2024 --duty division_a_match";
-  for (const std::string& line : std::vector<std::string>{
-           "timeout -s INT 1 heatsoak evaluate" + robot + " --samples 2000 --plot p.svg --json a.json",
-           "timeout -s INT 1 heatsoak simulate --motor maxon_ecx_flat_32l_48v" + robot + " --out t.csv --plot t.svg",
-           "timeout -s INT 1 heatsoak generate core --robot roboteam_twente_v2024 --motor maxon_ecx_flat_32l_48v --out core"}) {
+  for (const std::string& line :
+       std::vector<std::string>{"timeout -s INT 1 heatsoak evaluate" + robot + " --samples 2000 --plot p.svg --json a.json",
+                                "timeout -s INT 1 heatsoak simulate --motor maxon_ecx_flat_32l_48v" + robot + " --out t.csv --plot t.svg",
+                                "timeout -s INT 1 heatsoak generate core --robot roboteam_twente_v2024 --motor maxon_ecx_flat_32l_48v "
+                                "--samples 20000 --out core"}) {
     EXPECT_EQ(run_here(line).exit_code, 124) << line << " ended before it was interrupted";
     EXPECT_THAT(folder_.names(), IsEmpty()) << line;
   }
