@@ -29,7 +29,8 @@ std::pair<double, double> profile_interval(const estimation::Model& model, const
     // Start the other parameters at the values that the curvature predicts.
     estimation::Model there = model;
     there.set_theta(fit.theta + moved * direction);
-    return estimation::try_posterior_of(std::move(there), runs, start_C, options).cost_nats;
+    // Not the sum of squares: the covariance of the unknown heat changes with the parameters, and its determinant counts.
+    return -estimation::try_posterior_of(std::move(there), runs, start_C, options).evidence_nats;
   };
   const double least = cost(0.0);
   const auto end = [&](double sign) {
