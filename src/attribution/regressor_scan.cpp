@@ -104,7 +104,7 @@ class Scanner {
     constexpr std::size_t kClimbed = 12;
     constexpr std::size_t kZoomed = 4;
     std::vector<Family> families = all_families();
-    const Scored without = best_without();
+    const double without_nats = best_without_nats();
     for (const estimation::FluxPlace& place : beginnings()) {
       const std::vector<SharedRun>& shared = shared_at(place);
       base::in_parallel(families.size(), 0, [&](std::size_t i) { take_better(families[i], score(families[i], shared, place)); });
@@ -124,7 +124,7 @@ class Scanner {
     keep_best(most);
     std::vector<ScanResult> results;
     for (const Family& each : families) {
-      results.push_back(result(each, without));
+      results.push_back(result(each, without_nats));
     }
     return results;
   }
@@ -222,20 +222,18 @@ class Scanner {
     }
   }
 
-  /// Returns the best subset without a curve, at its own unknown heat.
-  Scored best_without() {
-    Scored best;
+  /// Returns ln P of the best subset without a curve, at its own unknown heat.
+  double best_without_nats() {
+    double best_nats = -std::numeric_limits<double>::infinity();
     for (const estimation::FluxPlace& start : input_.places) {
       (void)estimation::most_probable(input_.grid, start, [&](const estimation::FluxPlace& place) {
-        Scored own = best_subset(estimation::reduced(estimation::sum_of(without_starts(nullptr, shared_at(place))), prior_), false, place);
-        const double nats = own.nats;
-        if (nats > best.nats) {
-          best = std::move(own);
-        }
-        return nats;
+        const estimation::Products sum = estimation::sum_of(without_starts(nullptr, shared_at(place)));
+        const double own_nats = best_subset(estimation::reduced(sum, prior_), false, place).nats;
+        best_nats = std::max(best_nats, own_nats);
+        return own_nats;
       });
     }
-    return best;
+    return best_nats;
   }
 
   void set_responses(Family& family) const {
@@ -384,13 +382,13 @@ class Scanner {
     return nats;
   }
 
-  [[nodiscard]] ScanResult result(const Family& family, const Scored& without) {
+  [[nodiscard]] ScanResult result(const Family& family, double without_nats) {
     const std::size_t subset = family.scored.subset;
     ScanResult out;
     out.term = family.term;
     out.usual = family.usual;
     out.knots = family.knots;
-    out.gain_nats = family.scored.nats - without.nats;
+    out.gain_nats = family.scored.nats - without_nats;
     const std::vector<estimation::Products> parts = without_starts(&family, shared_at(family.scored.place));
     const estimation::Reduced at = estimation::reduced(estimation::sum_of(parts), prior_);
     Eigen::VectorXd sizes;
@@ -403,16 +401,13 @@ class Scanner {
       out.beside.push_back(static_cast<int>(member));
     }
     const auto left_out_nats = [&](const std::vector<estimation::Products>& all, std::size_t members, bool with_curve) {
-      return estimation::left_out_nats(
-          all, prior_, [&](const estimation::Reduced& rest) { return rest.base_nats + gain_of(rest, members, with_curve); });
+      return estimation::left_out_nats(estimation::by_recording(all, *input_.runs), prior_, [&](const estimation::Reduced& rest) {
+        return rest.base_nats + gain_of(rest, members, with_curve);
+      });
     };
-    const Eigen::VectorXd gain_nats =
-        left_out_nats(parts, subset, true) - left_out_nats(without_starts(nullptr, shared_at(without.place)), without.subset, false);
-    const Eigen::Index first = prior_.mean.size() + members_;
-    for (std::size_t r = 0; r < parts.size(); ++r) {
-      const double expected_nats = 0.5 * hats.dot(parts[r].square.block(first, first, kKnots, kKnots) * hats);
-      out.left_out.push_back({gain_nats[static_cast<Eigen::Index>(r)], expected_nats});
-    }
+    const std::vector<estimation::Products> bare = without_starts(nullptr, shared_at(family.scored.place));
+    const Scored rival = best_subset(estimation::reduced(estimation::sum_of(bare), prior_), false, family.scored.place);
+    out.left_out_gain_nats = left_out_nats(parts, subset, true) - left_out_nats(bare, rival.subset, false);
     set_heat(family, out);
     return out;
   }
@@ -445,14 +440,6 @@ class Scanner {
 };
 
 }  // namespace
-
-bool ScanResult::predicts_left_out_runs() const {
-  const double clear_nats = estimation::thresholds().clear_nats;
-  const auto is_clear = [&](const LeftOutRun& run) { return run.gain_nats > clear_nats; };
-  return std::ranges::count_if(left_out, is_clear) > 1 && std::ranges::all_of(left_out, [&](const LeftOutRun& run) {
-           return is_clear(run) || std::max(run.expected_nats, -run.gain_nats) < estimation::thresholds().distinct_nats;
-         });
-}
 
 std::vector<ScanResult> scan_drivers(const ScanInput& input, const SelectionRules& rules, std::size_t most) {
   return input.drivers->empty() ? std::vector<ScanResult>() : Scanner(input, rules).run(most);

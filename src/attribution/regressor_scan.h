@@ -14,28 +14,20 @@
 
 namespace heatsoak::attribution {
 
-/// Gain of a curve in one run, which is predicted with the parameters of all other runs.
-struct LeftOutRun {
-  double gain_nats = 0.0;      ///< ln p of the run with the curve minus that with the best subset without one
-  double expected_nats = 0.0;  ///< gain of a curve that is correct: half of the square of its whitened response
-};
-
 /// One curve, with the subset and the unknown heat that make it most probable.
 struct ScanResult {
   ScanTerm term;
   double usual = 1.0;  ///< typical size of the curve in the prior, in the curve's unit
   /// Gain in ln P: the best subset with the curve compared with the best subset without one. Each has its own unknown heat.
   double gain_nats = 0.0;
-  std::vector<LeftOutRun> left_out;  ///< per run
-  std::vector<double> knots;         ///< knots, in the unit of the signal
-  Eigen::VectorXd curve;             ///< values of g at the knots, in the unit of the multiplier
-  Eigen::VectorXd curve_sd;          ///< their standard deviations
-  double mean_W = 0.0;               ///< mean magnitude of the heat over the intervals with a value of the signal
-  double peak_W = 0.0;               ///< largest magnitude of that heat
-  std::vector<int> beside;           ///< indices of the members in the best subset
-
-  /// True if every left-out run that can show the curve (at least two) becomes clearly more probable, and no other contradicts it.
-  [[nodiscard]] bool predicts_left_out_runs() const;
+  /// Per recording: gain in ln p, given all others, at the same unknown heat with and without the curve.
+  Eigen::VectorXd left_out_gain_nats;
+  std::vector<double> knots;  ///< knots, in the unit of the signal
+  Eigen::VectorXd curve;      ///< values of g at the knots, in the unit of the multiplier
+  Eigen::VectorXd curve_sd;   ///< their standard deviations
+  double mean_W = 0.0;        ///< mean magnitude of the heat over the intervals with a value of the signal
+  double peak_W = 0.0;        ///< largest magnitude of that heat
+  std::vector<int> beside;    ///< indices of the members in the best subset
 };
 
 /// Input of the scan. The pointers must be set and outlive the scan.

@@ -160,8 +160,10 @@ std::vector<Regressor> drivers_of(const estimation::Model& model, const std::vec
   Collector all(runs);
   add_operating_points(all);
   add_temperatures(all, model, fitted, runs);
-  all.add(driver_of(std::string(kTimeDriver), "s", DriverKind::log_only),
-          [&](std::size_t r, Eigen::Index k) { return runs[r].time_s[static_cast<std::size_t>(k)] - runs[r].time_s.front(); });
+  all.add(driver_of(std::string(kTimeDriver), "s", DriverKind::log_only), [&](std::size_t r, Eigen::Index k) {
+    const auto first = std::ranges::find(runs, estimation::recording_of(runs[r]), estimation::recording_of);
+    return runs[r].time_s[static_cast<std::size_t>(k)] - first->time_s.front();
+  });
   std::set<std::string> names;
   for (const estimation::MeasuredRun& run : runs) {
     for (const auto& [name, values] : run.columns) {

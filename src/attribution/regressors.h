@@ -31,7 +31,7 @@ struct Regressor {
   std::string reference;     ///< node that the temperature is relative to
 };
 
-/// Name of the signal "time since the start of the run", in s.
+/// Name of the signal "time since the start of the recording", in s.
 inline constexpr std::string_view kTimeDriver = "time";
 
 /// Returns the signals that vary within at least one run and are not copies of each other.

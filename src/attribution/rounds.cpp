@@ -232,7 +232,7 @@ Eigen::VectorXd Rounds::left_out_nats(const Judged& judged, const std::vector<in
   for (const estimation::DesignRun& design : judged.designs) {
     parts.push_back(estimation::products_of({&design, 1}, grid_.at(judged.best_place), columns));
   }
-  return estimation::left_out_nats(parts, estimation::prior_here(base_here()),
+  return estimation::left_out_nats(estimation::by_recording(parts, input_.runs), estimation::prior_here(base_here()),
                                    [&](const estimation::Reduced& at) { return at.base_nats + set_gain_nats(at, set); });
 }
 

@@ -47,7 +47,7 @@ class Rounds {
                   const std::vector<estimation::FluxPlace>& places, std::map<estimation::FluxPlace, estimation::Reduced>& points) const;
   /// Returns a set's columns, and the indices of θ and of these columns in a design. The set's indices refer to that selection.
   [[nodiscard]] std::pair<SetColumns, std::vector<Eigen::Index>> own_columns(const std::vector<int>& members) const;
-  /// Returns ln p of every run with a set of effects, given all other runs.
+  /// Returns ln p of every recording with a set of effects, given all others.
   [[nodiscard]] Eigen::VectorXd left_out_nats(const Judged& judged, const std::vector<int>& members) const;
   /// Returns the most probable unknown heat for a set of effects.
   [[nodiscard]] estimation::FluxPlace best_place(const std::vector<estimation::DesignRun>& designs, const estimation::ThetaPrior& prior,

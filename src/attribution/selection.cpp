@@ -70,7 +70,8 @@ class Selector : Rounds {
       return;
     }
     const std::vector<ScanResult>& scan = out_.rounds.back().scan;
-    if (!scan.empty() && scan.front().gain_nats > estimation::thresholds().clear_nats && scan.front().predicts_left_out_runs()) {
+    if (!scan.empty() && scan.front().gain_nats > estimation::thresholds().clear_nats &&
+        estimation::is_confirmed(scan.front().left_out_gain_nats)) {
       follow_curve(judged, best, named, scan.front());
       return;
     }
@@ -86,15 +87,15 @@ class Selector : Rounds {
 
   [[nodiscard]] const std::string& id_of(int member) const { return set_rules_[static_cast<std::size_t>(member)].id; }
 
-  /// True for an effect of all runs with which only one run becomes clearly more probable when it is predicted by the others.
+  /// True for an effect of all runs that left-out recordings do not confirm.
   [[nodiscard]] bool rests_on_one_run(const Judged& judged, const EffectSet& best, std::size_t member) const {
-    if (judged.designs.size() < 2 || !candidates()[static_cast<std::size_t>(best.members[member])].condition.empty()) {
+    if (!candidates()[static_cast<std::size_t>(best.members[member])].condition.empty()) {
       return false;
     }
     std::vector<int> others = best.members;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(member));
     const Eigen::VectorXd gain_nats = left_out_nats(judged, best.members) - left_out_nats(judged, others);
-    return gain_nats.sum() - gain_nats.maxCoeff() < estimation::thresholds().clear_nats;
+    return gain_nats.size() > 1 && !estimation::is_confirmed(gain_nats);
   }
 
   void refuse(Refusal refusal) {

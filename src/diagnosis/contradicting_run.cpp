@@ -14,12 +14,6 @@ constexpr double kContradicts_K = estimation::kIncompleteModel_K;
 /// moved, at most 4 otherwise (18 synthetic motors).
 constexpr double kContradicts_ratio = 5.0;
 
-/// Returns the name of the recording that a run is a part of.
-std::string recording_of(const estimation::MeasuredRun& run) {
-  const auto found = run.conditions.find("run");
-  return found == run.conditions.end() ? run.name : found->second;
-}
-
 }  // namespace
 
 std::optional<ContradictingRun> contradicting_run(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs,
@@ -28,7 +22,7 @@ std::optional<ContradictingRun> contradicting_run(const estimation::Model& model
   // Parts of one recording belong together: nobody moves a sensor during a gap of the log.
   std::vector<std::string> recordings;
   for (const estimation::MeasuredRun& run : runs) {
-    const std::string name = recording_of(run);
+    const std::string name = estimation::recording_of(run);
     if (std::ranges::find(recordings, name) == recordings.end()) {
       recordings.push_back(name);
     }
@@ -38,10 +32,10 @@ std::optional<ContradictingRun> contradicting_run(const estimation::Model& model
     return std::nullopt;
   }
   for (const std::string& recording : recordings) {
-    const estimation::SomeRuns own =
-        estimation::some_of(runs, start_C, options, [&](const estimation::MeasuredRun& run) { return recording_of(run) == recording; });
-    const estimation::SomeRuns others =
-        estimation::some_of(runs, start_C, options, [&](const estimation::MeasuredRun& run) { return recording_of(run) != recording; });
+    const estimation::SomeRuns own = estimation::some_of(
+        runs, start_C, options, [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) == recording; });
+    const estimation::SomeRuns others = estimation::some_of(
+        runs, start_C, options, [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) != recording; });
     const estimation::Posterior alone = estimation::fit_of(model, own);
     const estimation::Posterior rest = estimation::fit_of(model, others);
     if (!std::isfinite(alone.evidence_nats) || !std::isfinite(rest.evidence_nats)) {

@@ -30,6 +30,7 @@ struct Unexplained {
   std::string node;                   ///< node whose sensor shows the heat
   std::vector<std::string> or_nodes;  ///< nodes without a sensor that the heat may enter instead
   std::vector<std::string> drivers;   ///< signals that the heat may follow, in order of evidence; empty: none
+  std::string unconfirmed_driver;     ///< signal that the heat may follow, though left-out runs do not confirm it; empty: none
   std::string times;                  ///< signal that multiplies the curve; empty: none
   double mean_W = 0.0;
   double peak_W = 0.0;

@@ -8,6 +8,7 @@
 #include "attribution/curve.h"
 #include "attribution/terms.h"
 #include "calibration/unlogged_speed.h"
+#include "estimation/thresholds.h"
 
 namespace heatsoak::diagnosis {
 namespace {
@@ -38,6 +39,10 @@ class UnexplainedHeatReport {
       if (most.node.empty() || heat.rms_W > most.rms_W) {
         most = std::move(heat);
       }
+    }
+    const std::vector<attribution::ScanResult>& scan = told_.selection.rounds.back().scan;
+    if (!scan.empty() && scan.front().gain_nats > estimation::thresholds().clear_nats) {
+      most.unconfirmed_driver = told_.selection.drivers[static_cast<std::size_t>(scan.front().term.driver)].name;
     }
     return most;
   }
@@ -101,7 +106,7 @@ class UnexplainedHeatReport {
     heat.gain_nats = term.curve->gain_nats;
     heat.curve_unit = attribution::spec_of(scanned.multiplier).unit;
     heat.driver_unit = driver.unit;
-    if (effect == told_.effects.end()) {
+    if (term.effect_name.empty()) {
       const Eigen::VectorXd& curve = term.curve->curve;
       heat.mean_W = heat.rms_W = term.curve->mean_W;
       heat.peak_W = term.curve->peak_W;

@@ -10,11 +10,6 @@
 namespace heatsoak::estimation {
 namespace {
 
-std::string recording_of(const MeasuredRun& run) {
-  const auto found = run.conditions.find("run");
-  return found == run.conditions.end() ? run.name : found->second;
-}
-
 /// Returns the stated errors of a sensor, followed by those of the model.
 std::vector<motor::SensorFault> all_faults(const Model& model, const Sensor& sensor) {
   std::vector<motor::SensorFault> faults = sensor.faults;

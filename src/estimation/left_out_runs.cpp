@@ -1,5 +1,6 @@
 #include "estimation/left_out_runs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -51,6 +52,27 @@ Products sum_of(const std::vector<Products>& parts, std::optional<std::size_t> l
     }
   }
   return sum;
+}
+
+std::vector<Products> by_recording(const std::vector<Products>& parts, const std::vector<MeasuredRun>& runs) {
+  std::vector<std::string> names;
+  std::vector<Products> sums;
+  for (std::size_t r = 0; r < parts.size(); ++r) {
+    const auto known = std::ranges::find(names, recording_of(runs[r]));
+    if (known == names.end()) {
+      names.push_back(recording_of(runs[r]));
+      sums.push_back(parts[r]);
+    } else {
+      Products& sum = sums[static_cast<std::size_t>(known - names.begin())];
+      sum.square += parts[r].square;
+      sum.log_determinant += parts[r].log_determinant;
+    }
+  }
+  return sums;
+}
+
+bool is_confirmed(const Eigen::VectorXd& gain_nats) {
+  return gain_nats.size() > 1 && gain_nats.sum() - gain_nats.maxCoeff() > thresholds().clear_nats;
 }
 
 Posterior fit_of(const Model& model, const SomeRuns& some) { return try_posterior_of(model, some.runs, some.start_C, some.options); }

@@ -14,8 +14,11 @@ namespace heatsoak::estimation {
 /// Returns the sum over all runs but one.
 Products sum_of(const std::vector<Products>& parts, std::optional<std::size_t> left_out = std::nullopt);
 
-/// Returns ln p of every run, given all other runs. `parts`: products of each run, its start temperatures eliminated;
-/// `evidence_nats(reduced)`: ln evidence of a set of effects.
+/// Adds up the products of the parts of each recording. `parts`: one per run, its start temperatures eliminated.
+std::vector<Products> by_recording(const std::vector<Products>& parts, const std::vector<MeasuredRun>& runs);
+
+/// Returns ln p of every recording, given all others. `parts` as from by_recording(); `evidence_nats(reduced)`: ln evidence of a set of
+/// effects.
 template <class Evidence>
 Eigen::VectorXd left_out_nats(const std::vector<Products>& parts, const ThetaPrior& prior, Evidence evidence_nats) {
   Eigen::VectorXd nats = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(parts.size()), evidence_nats(reduced(sum_of(parts), prior)));
@@ -24,6 +27,10 @@ Eigen::VectorXd left_out_nats(const std::vector<Products>& parts, const ThetaPri
   }
   return nats;
 }
+
+/// True if the left-out recordings, without the one that gains most, together gain enough: an explanation must not rest on one recording.
+/// `gain_nats`: gain of each recording as the difference of two results of left_out_nats(). False for a single recording.
+bool is_confirmed(const Eigen::VectorXd& gain_nats);
 
 /// Some of the runs, with their start temperatures, weights and averaging.
 struct SomeRuns {

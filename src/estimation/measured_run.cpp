@@ -308,4 +308,9 @@ MeasuredRuns measured_runs(const recording::Recording& recording, const Measured
   return Builder(recording, options).build();
 }
 
+std::string recording_of(const MeasuredRun& run) {
+  const auto found = run.conditions.find("run");
+  return found == run.conditions.end() ? run.name : found->second;
+}
+
 }  // namespace heatsoak::estimation

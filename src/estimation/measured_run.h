@@ -84,6 +84,9 @@ struct MeasuredRuns {
   std::vector<RunNote> notes;
 };
 
+/// Returns the name of the recording that a run is a part of.
+std::string recording_of(const MeasuredRun& run);
+
 /// Returns the signals that a recording has or that follow from it, for example the shaft power from torque or current.
 std::vector<thermal::Signal> signals_of(const recording::Recording& recording, const ShaftTorque& torque = {});
 

@@ -218,6 +218,28 @@ TEST(Examination, HeatThatFollowsNoLoggedSignalIsReportedInWattsAndRarelyNamed) 
   EXPECT_GE(unnamed, 0.8 * cases);
 }
 
+/// A curve over the time is no law of a motor, so the extended model does not contain it, also if a sensor error stands beside it.
+TEST(Examination, HeatOverTheTimeOfARunIsReportedBesideASensorError) {
+  Missing missing;
+  missing.sensors.stator_lag_s = 15.0;
+  missing.heat.emplace_back([](const Moment& m, PerPart& q) {
+    const double heat_W = m.time_s > 500.0 && m.time_s < 1000.0 ? 3.0 : 0.0;
+    q[tooth] += 0.5 * heat_W;
+    q[yoke] += 0.5 * heat_W;
+  });
+  const SeedRate rate = rate_over_seeds(kSeeds, [&](std::uint64_t seed, Claim& claim) {
+    const Answer answer = examine(sealed(missing, seed));
+    const std::vector<diagnosis::Unexplained>& heats = answer.diagnosis.unexplained;
+    if (claim.expect(heats.size() == 1 && heats.front().drivers == std::vector<std::string>{"time"}, account(answer))) {
+      claim.expect(!heats.front().is_in_model && heats.front().node == "stator", "not in the model, into the stator");
+      claim.expect(heats.front().peak_W > 1.5 && heats.front().peak_W < 6.0, fmt::format("{} W of 3 W", heats.front().peak_W));
+      claim.expect(heats.front().curve_sd.size() == heats.front().curve.size(), "a band");
+    }
+    claim.expect(std::ranges::find(answer.named, "sensor_lag_stator") != answer.named.end(), "the sensor error");
+  });
+  EXPECT_GE(rate.right, kSeeds - 2) << rate.misses;
+}
+
 /// The motor's file states 1.4 times the true resistance to the air with an uncertainty of 2 %, as if the motor had been mounted elsewhere.
 /// It never becomes an effect, and the refit follows the unseen runs. The parameter itself is reported in two of eight motors only.
 TEST(Examination, AnOutdatedParameterIsRefittedAndIsNoEffect) {

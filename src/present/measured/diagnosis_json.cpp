@@ -86,6 +86,9 @@ Json unexplained_json(const diagnosis::Unexplained& heat) {
             {"in_model", heat.is_in_model}};
   if (heat.drivers.empty()) {
     json["heat_W"]["rms"] = rounded(heat.rms_W, 4);
+    if (!heat.unconfirmed_driver.empty()) {
+      json["unconfirmed_driver"] = heat.unconfirmed_driver;
+    }
   }
   if (!heat.or_nodes.empty()) {
     json["or_nodes"] = heat.or_nodes;

@@ -121,8 +121,9 @@ std::string verdict_in_words(const diagnosis::Diagnosis& diagnosis) {
                    "smooth unknown heat."
                  : "These runs show no missing effect, but they contradict some of the file's parameters.";
     case diagnosis::DiagnosisVerdict::unexplained:
-      return diagnosis.effects.empty() ? "The runs show unmodelled heat, and no law of the catalogue explains it."
-                                       : "The runs show unmodelled heat. Laws of the catalogue explain only a part of it.";
+      return std::ranges::none_of(diagnosis.effects, &diagnosis::FoundEffect::is_from_catalogue)
+                 ? "The runs show unmodelled heat, and no law of the catalogue explains it."
+                 : "The runs show unmodelled heat. Laws of the catalogue explain only a part of it.";
     case diagnosis::DiagnosisVerdict::not_identifiable:
       break;
   }
@@ -170,9 +171,12 @@ std::string watts_in_words(std::span<const diagnosis::Unexplained* const> curves
 std::string unexplained_in_words(std::span<const diagnosis::Unexplained* const> curves, const diagnosis::Diagnosis& diagnosis) {
   const diagnosis::Unexplained& heat = *curves.front();
   if (heat.drivers.empty()) {
-    const std::string_view no_driver = std::ranges::any_of(diagnosis.runs, calibration::turns_unseen)
-                                           ? "no signal can be assigned to it, because not every log has a speed"
-                                           : "it follows no signal that all logs have";
+    const std::string no_driver = std::ranges::any_of(diagnosis.runs, calibration::turns_unseen)
+                                      ? "no signal can be assigned to it, because not every log has a speed"
+                                  : !heat.unconfirmed_driver.empty()
+                                      ? fmt::format("it may follow {}, but predictions of left-out runs do not confirm this{}",
+                                                    heat.unconfirmed_driver, diagnosis.runs.size() == 1 ? ": fit a second run" : "")
+                                      : "it follows no signal that all logs have";
     return fmt::format("Unexplained: unknown heat of {} W RMS into the {}{}, which varies within {:.0f} s; {}.",
                        base::significant(heat.rms_W, 2), heat.node,
                        heat.or_nodes.empty() ? "" : fmt::format(" (or the {}, which has no sensor)", fmt::join(heat.or_nodes, " or ")),
@@ -241,7 +245,7 @@ std::string reason_in_words(const attribution::Refusal& refused) {
       return fmt::format("its probability is {:.0f} %, but a name requires {:.0f} %", std::floor(100.0 * refused.probability),
                          100.0 * refused.needed_probability);
     case attribution::RefusalReason::one_run_only:
-      return "only one run supports it, and the other runs do not become clearly more probable";
+      return "only one run supports it; with it, the other runs are not predicted clearly better";
     case attribution::RefusalReason::curve_is_better:
       return fmt::format("a curve over {} explains the runs better", refused.signal);
     case attribution::RefusalReason::unknown_heat_remains:
