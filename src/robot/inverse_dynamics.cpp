@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robot/wheels.h"
-
 namespace heatsoak::robot {
 namespace {
 
@@ -121,11 +119,10 @@ double inner_force_N(const Kinematics& kinematics, const Demand& demand, double 
 /// Distributes the forces: adds inner forces, then scales the acceleration down, then lets the contacts slide.
 void deliver(const BodyConfig& body, const BodyMotion& motion, const Demand& demand, WheelDemands& out) {
   const int count = body.kinematics.wheel_count;
-  const bool all_grip = grips(body.kinematics, demand);
-  const Interval shares = all_grip ? Interval{0.0, 1.0} : possible_shares(body.kinematics, demand);
+  const Interval shares = grips(body.kinematics, demand) ? Interval{0.0, 1.0} : possible_shares(body.kinematics, demand);
   const bool slides = shares.low > shares.high;
   const double share = slides ? 0.0 : shares.high;
-  const double inner_N = all_grip ? 0.0 : inner_force_N(body.kinematics, demand, slides ? 1.0 : share);
+  const double inner_N = inner_force_N(body.kinematics, demand, slides ? 1.0 : share);
   PerWheel missing_N{};
   for (int i = 0; i < count; ++i) {
     const double shifted_N = inner_N * body.kinematics.inner_share[i];
@@ -176,10 +173,12 @@ WheelDemands inverse_dynamics(const BodyConfig& body, const BodyMotion& motion) 
   const PerWheel rim_m_per_s2 = rolling_speeds_m_per_s(body.kinematics, {rates.x_m_per_s2, rates.y_m_per_s2, rates.yaw_rad_per_s2});
   const PerWheel friction_Nm = friction_torques_Nm(body.friction, body.kinematics, motion.velocity, out.speed_rad_per_s);
   const double radius_m = body.kinematics.wheel_radius_m;
-  const Wheels ground_Nm = as_wheels(out.rolling_force_N) * radius_m;
-  const Wheels loss_Nm = loss_torque_Nm<Wheels>(1.0 / body.rolling_efficiency - 1.0, 1.0 - body.rolling_efficiency, ground_Nm,
-                                                smooth_sign<Wheels>(as_wheels(out.speed_rad_per_s), body.friction.smoothing_rad_per_s));
-  as_wheels(out.torque_Nm) = ground_Nm + loss_Nm + as_wheels(friction_Nm) + body.wheel_inertia_kg_m2 * as_wheels(rim_m_per_s2) / radius_m;
+  for (int i = 0; i < body.kinematics.wheel_count; ++i) {
+    const double ground_Nm = out.rolling_force_N[i] * radius_m;
+    out.torque_Nm[i] = ground_Nm +
+                       transmission_loss_Nm(body.rolling_efficiency, ground_Nm, out.speed_rad_per_s[i], body.friction.smoothing_rad_per_s) +
+                       friction_Nm[i] + body.wheel_inertia_kg_m2 * rim_m_per_s2[i] / radius_m;
+  }
   return out;
 }
 
