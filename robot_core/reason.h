@@ -67,9 +67,10 @@
 //   - If a current sensor reads too low, the guard still counts the heat: it compares all samples with all voltages and speeds. This
 //     includes a sensor that fails in step with the control loop, such as one with a shared ADC. In tests a winding was at most 2.2 K above
 //     its guard (tests/robot_core/sensor_heat_test.cpp).
-//   - Without a trusted current sensor a wrong wheel speed would hide heat. In every period the guard therefore counts the larger current
-//     of the two at the wheel's own speed and at the speed that the other wheels and the gyro imply. A wheel that slides more than the
-//     others counts as hotter than it is: with a grip of 0.3 the guards were 1.3 K hotter, and 6 K with wheels that work against each other.
+//   - Without a trusted current sensor a wrong wheel speed would hide heat. In every period the guard therefore calculates two currents:
+//     one from the wheel's own speed, and one from the speed that follows from the other wheels and the gyro. It counts the larger one. A
+//     wheel that slides more than the others then seems hotter than it is: with a grip of 0.3 the guards were 1.3 K hotter, and 6 K with
+//     wheels that work against each other.
 //     Without a spare sensor it counts at least the limp current, and a sample rejected by code 111 to 113 may be the correct one, unless
 //     it stays constant for a second: the voltage then keeps the limp current for that sample, too, or the bridge opens.
 //   - If the sample of the air temperature falls, the core follows it by at most 0.02 K/s; if it rises, by at most 0.01 K per step. A
@@ -77,7 +78,7 @@
 //   - Periods of unequal length are rounded up for heat; a guard cools only for the time that has passed.
 //   - After a restart with restore(), the guards continue their periods and count the largest current for the time in which the last voltage
 //     may have acted. With restarts every 1 to 100 periods a winding was at most 0.3 K above its guard. A guard that could not count for two
-//     of its periods, and a copy from firmware with another layout of the State, count as unknown (160).
+//     guard periods gets code 160, and so does a guard whose copy comes from firmware with another layout of the State.
 //   - Each voltage keeps the current limit for every speed that the wheel may have. These speeds come from its own sensor, from each two
 //     other wheels with the gyro, and from three other wheels. With four wheel sensors and a gyro, any two may be wrong without a higher
 //     current while the wheels roll. With one sensor less (three wheels, or after a fault) one may be wrong. Swapped wheel sensors are then

@@ -38,8 +38,8 @@ struct DecidingSamples {
 /// independent. Both members are empty if the verdict is decided.
 DecidingSamples deciding_samples(const MotorEvaluation& motor);
 
-/// Work of the rounds that double the samples of open motors, from `samples` on: sums over rounds and motors. `needed` has samples_needed()
-/// of each open motor. A motor has no further round once it has its number of samples. The last round has at most `most` samples.
+/// Work of the rounds that double the samples of open motors, from `samples` on: sums over rounds and motors. `needed`: per open motor, its
+/// samples_needed(); a motor that has that many takes part in no further round. `most`: largest number of samples of the last round.
 struct LaterWork {
   double evaluations_count = 0.0;
   double samples_count = 0.0;

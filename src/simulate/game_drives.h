@@ -37,7 +37,7 @@ struct GameDrives {
   std::string motor_id;
   std::optional<NotDriven> why_none;  ///< empty if the motor was driven
   bool is_guarded = false;
-  std::optional<base::Failure> why_no_guard;  ///< as MotorGuard::why_none
+  std::optional<base::Failure> why_no_guard;  ///< reason why the motor has no guard
   std::vector<DriveScore> games;              ///< in the order of the seeds
 
   /// Returns value and range of one score; needs one or more games.

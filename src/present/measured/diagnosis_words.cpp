@@ -167,6 +167,11 @@ std::string watts_in_words(std::span<const diagnosis::Unexplained* const> curves
   return curves.size() == 1 ? each.front() : fmt::format("in {} curves: {}", each.size(), fmt::join(each, "; "));
 }
 
+bool has_one_recording(const std::vector<estimation::MeasuredRun>& runs) {
+  return std::ranges::all_of(
+      runs, [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) == estimation::recording_of(runs.front()); });
+}
+
 /// Describes unexplained heat. All `curves` have the node and the signals of the first one.
 std::string unexplained_in_words(std::span<const diagnosis::Unexplained* const> curves, const diagnosis::Diagnosis& diagnosis) {
   const diagnosis::Unexplained& heat = *curves.front();
@@ -174,8 +179,9 @@ std::string unexplained_in_words(std::span<const diagnosis::Unexplained* const> 
     const std::string no_driver = std::ranges::any_of(diagnosis.runs, calibration::turns_unseen)
                                       ? "no signal can be assigned to it, because not every log has a speed"
                                   : !heat.unconfirmed_driver.empty()
-                                      ? fmt::format("it may follow {}, but predictions of left-out runs do not confirm this{}",
-                                                    heat.unconfirmed_driver, diagnosis.runs.size() == 1 ? ": fit a second run" : "")
+                                      ? fmt::format("it may follow {}, but {}", heat.unconfirmed_driver,
+                                                    has_one_recording(diagnosis.runs) ? "only a second run can confirm this; fit one more"
+                                                                                      : "predictions of left-out runs do not confirm this")
                                       : "it follows no signal that all logs have";
     return fmt::format("Unexplained: unknown heat of {} W RMS into the {}{}, which varies within {:.0f} s; {}.",
                        base::significant(heat.rms_W, 2), heat.node,
