@@ -3,22 +3,19 @@
 #include <algorithm>
 
 namespace heatsoak::base {
+namespace {
 
-bool CollectedFailures::keep(const Failure& failure) {
-  const bool is_of_input = failure.code() == ExitCode::bad_input || failure.code() == ExitCode::cannot_answer;
-  if (is_of_input) {
-    failures_.emplace_back(failure, std::current_exception());
+std::vector<Failure> first_of(const std::vector<SeveralFailures::Part>& parts) {
+  std::vector<Failure> failures;
+  for (const auto& [failure, thrown] : parts) {
+    failures.push_back(failure);
   }
-  return is_of_input;
+  return failures;
 }
 
-void CollectedFailures::throw_if_any() const {
-  if (failures_.empty()) {
-    return;
-  }
-  if (failures_.size() == 1) {
-    std::rethrow_exception(failures_.front().second);
-  }
+}  // namespace
+
+Failure joined(std::span<const Failure> failures) {
   ExitCode code = ExitCode::cannot_answer;
   std::vector<Diagnostic> all;
   const auto add = [&all](const Diagnostic& diagnostic) {
@@ -27,14 +24,35 @@ void CollectedFailures::throw_if_any() const {
       all.push_back(diagnostic);
     }
   };
-  for (const auto& [failure, thrown] : failures_) {
+  for (const Failure& failure : failures) {
     code = failure.code() == ExitCode::bad_input ? ExitCode::bad_input : code;
     if (!failure.message().empty()) {
       add({{}, {}, failure.message()});
     }
     std::ranges::for_each(failure.diagnostics(), add);
   }
-  throw Failure(code, "", std::move(all));
+  return {code, "", std::move(all)};
+}
+
+SeveralFailures::SeveralFailures(std::vector<Part> parts) : Failure(joined(first_of(parts))), parts_(std::move(parts)) {}
+
+bool CollectedFailures::keep(const Failure& failure) {
+  const bool is_of_input = failure.code() == ExitCode::bad_input || failure.code() == ExitCode::cannot_answer;
+  if (const auto* const several = dynamic_cast<const SeveralFailures*>(&failure)) {
+    failures_.insert(failures_.end(), several->parts().begin(), several->parts().end());
+  } else if (is_of_input) {
+    failures_.emplace_back(failure, std::current_exception());
+  }
+  return is_of_input;
+}
+
+void CollectedFailures::throw_if_any() const {
+  if (failures_.size() == 1) {
+    std::rethrow_exception(failures_.front().second);
+  }
+  if (!failures_.empty()) {
+    throw SeveralFailures(failures_);
+  }
 }
 
 }  // namespace heatsoak::base

@@ -4,9 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "base/collected_failures.h"
 #include "base/copper.h"
 #include "base/diagnostic.h"
 #include "base/unknown.h"
+#include "calibration/motor_model.h"
+#include "estimation/measured_run.h"
 #include "recording/clock_offset.h"
 #include "recording/fingerprint.h"
 #include "recording/quality.h"
@@ -192,6 +195,112 @@ void late_answers(const motor::Motor& motor, const recording::Recording& recordi
   }
 }
 
+bool has_it(const std::vector<recording::Suspicion>& some, const recording::Suspicion& wanted) {
+  return std::ranges::any_of(some, [&wanted](const recording::Suspicion& each) { return recording::have_one_subject(wanted, each); });
+}
+
+template <class... Kinds>
+bool has_any(const std::vector<recording::Lack>& lacks) {
+  return std::ranges::any_of(lacks, [](const recording::Lack& each) { return (std::holds_alternative<Kinds>(each) || ...); });
+}
+
+/// Checks the logs one by one and collects what is wrong with them.
+class Admitting {
+ public:
+  Admitting(const motor::Motor& motor, bool takes_logs_as_they_are, std::optional<double> ambient_C)
+      : motor_(motor), takes_logs_as_they_are_(takes_logs_as_they_are), ambient_C_(ambient_C) {}
+
+  Admission admit(std::span<const recording::Recording> fitted, std::span<const recording::Recording> held_out) {
+    base::CollectedFailures failures;
+    if (!fitted.empty()) {
+      failures.attempt([&] { refuse_repeated(fitted, held_out); });
+    }
+    for (const recording::Recording& recording : fitted) {
+      const recording::DataQuality quality = recording::assess(recording, {}, ambient_C_);
+      if (!quality.thermal.is_good()) {
+        without_heat_.push_back({recording.file, quality.thermal.lacks});
+      }
+      look(recording, quality, quality.thermal.lacks);
+    }
+    for (const recording::Recording& recording : held_out) {
+      look(recording, recording::assess(recording, {}, ambient_C_), {});
+    }
+    failures.attempt([&] { throw_findings(); });
+    failures.throw_if_any();
+    return std::move(admission_);
+  }
+
+ private:
+  /// `known`: what the log lacks and is reported for already.
+  void look(const recording::Recording& recording, const recording::DataQuality& quality, const std::vector<recording::Lack>& known) {
+    if (!recording.motor.empty() && recording.motor != motor_.id && !(motor_.fit && recording.motor == motor_.fit->motor)) {
+      admission_.notes.emplace_back(OfOtherMotor{recording.name, recording.motor, motor_.id});
+    }
+    const std::vector<recording::Suspicion>& blocking = recording.blocking_of_whole ? *recording.blocking_of_whole : quality.blocking;
+    for (const recording::Suspicion& each : quality.suspicions) {
+      const bool is_of_part = has_it(quality.blocking, each) && !has_it(blocking, each);
+      if (!is_of_part) {
+        admission_.notes.emplace_back(recording::SuspicionOfLog{recording.name, each});
+      }
+    }
+    late_answers(motor_, recording, quality, admission_);
+    std::vector<LogProblem> problems(blocking.begin(), blocking.end());
+    if (problems.empty()) {
+      beyond_the_motor(motor_, recording, problems);
+      faster_than_the_motor(motor_, recording, problems);
+    }
+    for (LogProblem& each : problems) {
+      wrong_.push_back({recording.file.string(), std::move(each)});
+    }
+    look_for_columns(recording, known);
+  }
+
+  /// Columns without which no answer is possible, whatever the other logs have.
+  void look_for_columns(const recording::Recording& recording, const std::vector<recording::Lack>& known) {
+    estimation::MeasuredRunOptions how = how_to_read(motor_, HeatInput::current);
+    how.ambient_C = ambient_C_;
+    const bool lacks_temperature = has_any<recording::NoTemperature, recording::TemperatureIsConstant>(known);
+    for (base::Diagnostic& each : estimation::lacking_columns(recording, how)) {
+      if (!lacks_temperature || each.key != "winding_C") {
+        lacking_.push_back(std::move(each));
+      }
+    }
+    if (!has_any<recording::NoHeatInput>(known)) {
+      without_source_.attempt([&] { return heat_input_of(motor_, {&recording, 1}, false); });
+    }
+  }
+
+  void throw_findings() {
+    base::CollectedFailures failures;
+    failures.attempt([this] {
+      if (!without_heat_.empty()) {
+        throw recording::NothingAboutHeat(std::move(without_heat_));
+      }
+    });
+    failures.attempt([this] { without_source_.throw_if_any(); });
+    failures.attempt([this] {
+      if (!lacking_.empty()) {
+        throw base::Failure(base::ExitCode::bad_input, "", std::move(lacking_));
+      }
+    });
+    failures.attempt([this] {
+      if (!wrong_.empty() && !takes_logs_as_they_are_) {
+        throw LogsLookWrong(std::move(wrong_));
+      }
+    });
+    failures.throw_if_any();
+  }
+
+  const motor::Motor& motor_;
+  bool takes_logs_as_they_are_;
+  std::optional<double> ambient_C_;
+  Admission admission_;
+  std::vector<recording::NothingAboutHeat::Log> without_heat_;
+  base::CollectedFailures without_source_;
+  std::vector<base::Diagnostic> lacking_;
+  std::vector<LogsLookWrong::Finding> wrong_;
+};
+
 }  // namespace
 
 LogsLookWrong::LogsLookWrong(std::vector<Finding> findings)
@@ -201,52 +310,15 @@ LogsLookWrong::LogsLookWrong(std::vector<Finding> findings)
 
 Admission admit(const motor::Motor& motor, std::span<const recording::Recording> fitted, std::span<const recording::Recording> held_out,
                 bool takes_logs_as_they_are, std::optional<double> ambient_C) {
-  refuse_repeated(fitted, held_out);
-  Admission admission;
-  std::vector<LogsLookWrong::Finding> wrong;
-  const auto look = [&](const recording::Recording& recording, const recording::DataQuality& quality) {
-    if (!recording.motor.empty() && recording.motor != motor.id && !(motor.fit && recording.motor == motor.fit->motor)) {
-      admission.notes.emplace_back(OfOtherMotor{recording.name, recording.motor, motor.id});
-    }
-    const std::vector<recording::Suspicion>& blocking = recording.blocking_of_whole ? *recording.blocking_of_whole : quality.blocking;
-    for (const recording::Suspicion& each : quality.suspicions) {
-      const auto has_it = [&each](const std::vector<recording::Suspicion>& some) {
-        return std::ranges::any_of(some, [&each](const recording::Suspicion& other) { return recording::have_one_subject(each, other); });
-      };
-      const bool is_of_part = has_it(quality.blocking) && !has_it(blocking);
-      if (is_of_part) {
-        continue;
-      }
-      admission.notes.emplace_back(recording::SuspicionOfLog{recording.name, each});
-    }
-    late_answers(motor, recording, quality, admission);
-    std::vector<LogProblem> problems(blocking.begin(), blocking.end());
-    if (problems.empty()) {
-      beyond_the_motor(motor, recording, problems);
-      faster_than_the_motor(motor, recording, problems);
-    }
-    for (LogProblem& each : problems) {
-      wrong.push_back({recording.file.string(), std::move(each)});
-    }
-  };
-  std::vector<recording::NothingAboutHeat::Log> without_heat;
-  for (const recording::Recording& recording : fitted) {
-    const recording::DataQuality quality = recording::assess(recording, {}, ambient_C);
-    if (!quality.thermal.is_good()) {
-      without_heat.push_back({recording.file, quality.thermal.lacks});
-    }
-    look(recording, quality);
-  }
-  for (const recording::Recording& recording : held_out) {
-    look(recording, recording::assess(recording, {}, ambient_C));
-  }
-  if (!without_heat.empty()) {
-    throw recording::NothingAboutHeat(std::move(without_heat));
-  }
-  if (!wrong.empty() && !takes_logs_as_they_are) {
-    throw LogsLookWrong(std::move(wrong));
-  }
-  return admission;
+  return Admitting(motor, takes_logs_as_they_are, ambient_C).admit(fitted, held_out);
+}
+
+Admission admit(const motor::Motor& motor, const recording::NamedLogs& logs) {
+  base::CollectedFailures failures = logs.unread;
+  std::optional<Admission> admission =
+      failures.attempt([&] { return admit(motor, logs.fitted, logs.held_out, logs.choice.takes_logs_as_they_are, logs.choice.ambient_C); });
+  failures.throw_if_any();
+  return *std::move(admission);
 }
 
 RunsOfTheFile::RunsOfTheFile(std::string motor_id, std::vector<std::filesystem::path> files)

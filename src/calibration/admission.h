@@ -10,6 +10,7 @@
 #include "base/diagnostic.h"
 #include "motor/motor.h"
 #include "recording/findings.h"
+#include "recording/named_logs.h"
 #include "recording/quality.h"
 #include "recording/recording.h"
 
@@ -92,14 +93,19 @@ struct Admission {
   std::vector<std::string> lagging;  ///< temperatures that lag in any log: to be changed before recording more runs
 };
 
-/// Checks all logs. Throws:
-/// - Failure (bad_input) if rows are given twice, or are both fitted and held out;
+/// Checks all logs and throws the problems of all of them, several as base::SeveralFailures:
+/// - RowsGivenTwice if logs are fitted, and rows are given twice, or are both fitted and held out (without a fit, every log is predicted on
+///   its own, so that it may be given again);
+/// - NothingAboutHeat with all fitted logs that contain no information about heat;
+/// - Failure (bad_input) with all logs that lack heat input, ambient or motor temperature;
 /// - LogsLookWrong with the findings of every log if units, signs or sensors look wrong in themselves or for this motor (only notes if
-///   `takes_logs_as_they_are`);
-/// - NothingAboutHeat, before LogsLookWrong, with all fitted logs that contain no information about heat.
+///   `takes_logs_as_they_are`).
 /// `ambient_C` is the user's air temperature for logs without one.
 Admission admit(const motor::Motor& motor, std::span<const recording::Recording> fitted, std::span<const recording::Recording> held_out,
                 bool takes_logs_as_they_are, std::optional<double> ambient_C = {});
+
+/// Same for logs as they were read, with the failures of those that could not be read.
+Admission admit(const motor::Motor& motor, const recording::NamedLogs& logs);
 
 /// Returns true if the fit used rows of this recording. Compares fingerprints of the content; older fit files stored only the name.
 bool was_fitted_to(const motor::MotorFit& fit, const recording::Recording& recording);

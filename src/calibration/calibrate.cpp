@@ -8,8 +8,10 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
+#include "base/collected_failures.h"
 #include "base/copper.h"
 #include "base/diagnostic.h"
 #include "calibration/identifiability.h"
@@ -36,10 +38,11 @@ bool has_speed(const recording::Recording& recording) {
 }
 
 /// Reads the runs of all recordings. If the heat follows from the current, a log with a speed column needs a speed in every row; a log
-/// without that column is accepted.
+/// without that column is accepted. Throws the failures of all recordings.
 std::vector<estimation::MeasuredRun> runs_of(std::span<const recording::Recording> recordings,
                                              const estimation::MeasuredRunOptions& options, std::vector<estimation::RunNote>& notes) {
   std::vector<estimation::MeasuredRun> all;
+  base::CollectedFailures failures;
   for (const recording::Recording& recording : recordings) {
     estimation::MeasuredRunOptions here = options;
     const auto needs = [&](thermal::Signal signal) { return std::ranges::find(here.needed, signal) != here.needed.end(); };
@@ -48,10 +51,12 @@ std::vector<estimation::MeasuredRun> runs_of(std::span<const recording::Recordin
     } else if (!has_speed(recording)) {
       std::erase(here.needed, thermal::Signal::speed);
     }
-    estimation::MeasuredRuns found = estimation::measured_runs(recording, here);
-    std::ranges::move(found.runs, std::back_inserter(all));
-    std::ranges::move(found.notes, std::back_inserter(notes));
+    if (std::optional<estimation::MeasuredRuns> found = failures.attempt([&] { return estimation::measured_runs(recording, here); })) {
+      std::ranges::move(found->runs, std::back_inserter(all));
+      std::ranges::move(found->notes, std::back_inserter(notes));
+    }
   }
+  failures.throw_if_any();
   return all;
 }
 

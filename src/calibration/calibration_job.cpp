@@ -1,16 +1,23 @@
 #include "calibration/calibration_job.h"
 
+#include <optional>
+#include <utility>
+
+#include "base/collected_failures.h"
+
 namespace heatsoak::calibration {
 
 CalibrationAnswer run_calibration(const CalibrationJob& job) {
   const recording::LogChoice& choice = job.logs.choice;
+  base::CollectedFailures failures;
   if (!choice.takes_logs_as_they_are) {
-    refuse_runs_of_the_file(job.motor, job.logs.fitted, job.logs.held_out);
+    failures.attempt([&] { refuse_runs_of_the_file(job.motor, job.logs.fitted, job.logs.held_out); });
   }
-  Admission admission = admit(job.motor, job.logs.fitted, job.logs.held_out, choice.takes_logs_as_they_are, choice.ambient_C);
+  std::optional<Admission> admission = failures.attempt([&] { return admit(job.motor, job.logs); });
+  failures.throw_if_any();
   Calibration calibration = calibrate(job.motor, job.logs.fitted, job.logs.held_out, {job.fit, choice.ambient_C, job.written});
   motor::Motor calibrated = calibrated_motor(job.motor, calibration);
-  return {std::move(calibration), std::move(calibrated), std::move(admission)};
+  return {std::move(calibration), std::move(calibrated), *std::move(admission)};
 }
 
 }  // namespace heatsoak::calibration

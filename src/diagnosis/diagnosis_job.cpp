@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <utility>
 
+#include "base/collected_failures.h"
 #include "base/diagnostic.h"
 #include "estimation/log_columns.h"
 #include "estimation/open_loop.h"
@@ -14,11 +16,14 @@ namespace {
 std::vector<estimation::MeasuredRun> runs_of(const std::vector<recording::Recording>& recordings,
                                              const estimation::MeasuredRunOptions& options, std::vector<DiagnosisFinding>& findings) {
   std::vector<estimation::MeasuredRun> all;
+  base::CollectedFailures failures;
   for (const recording::Recording& recording : recordings) {
-    estimation::MeasuredRuns runs = estimation::measured_runs(recording, options);
-    std::ranges::move(runs.notes, std::back_inserter(findings));
-    std::ranges::move(runs.runs, std::back_inserter(all));
+    if (std::optional<estimation::MeasuredRuns> runs = failures.attempt([&] { return estimation::measured_runs(recording, options); })) {
+      std::ranges::move(runs->notes, std::back_inserter(findings));
+      std::ranges::move(runs->runs, std::back_inserter(all));
+    }
   }
+  failures.throw_if_any();
   return all;
 }
 
@@ -76,13 +81,15 @@ NoEffectFollows::NoEffectFollows(calibration::PoorFit worst)
     : base::Failure(base::ExitCode::cannot_answer, "no effect makes the model follow these logs"), worst_(std::move(worst)) {}
 
 DiagnosisAnswer run_diagnosis(const DiagnosisJob& job) {
-  const auto& [fitted, held_out, readings, choice] = job.logs;
+  const std::vector<recording::Recording>& fitted = job.logs.fitted;
+  const std::vector<recording::Recording>& held_out = job.logs.held_out;
+  const recording::LogChoice& choice = job.logs.choice;
   DiagnosisAnswer answer;
   std::vector<DiagnosisFinding>& findings = answer.findings;
   if (job.motor.fit && !job.motor.fit->extensions.empty()) {
     findings.emplace_back(ExtensionsMayImitate{job.motor.fit->extensions});
   }
-  answer.admission = calibration::admit(job.motor, fitted, held_out, choice.takes_logs_as_they_are, choice.ambient_C);
+  answer.admission = calibration::admit(job.motor, job.logs);
   ModelOfLogs model = model_of_logs(job.motor, fitted);
   std::ranges::move(model.findings, std::back_inserter(findings));
   estimation::MeasuredRunOptions how = model.how;

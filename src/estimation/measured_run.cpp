@@ -82,6 +82,25 @@ class Builder {
     }
   }
 
+  [[nodiscard]] std::vector<base::Diagnostic> lacking() const {
+    std::vector<base::Diagnostic> lacking;
+    for (const thermal::Signal signal : options_.needed) {
+      if (std::ranges::find(signals_, signal) == signals_.end()) {
+        lacking.push_back(
+            {{recording_.file.string()}, std::string(column_of(signal)), "the model needs it, and the log has no such column"});
+      }
+    }
+    if (!rows_.has_surroundings() && !options_.ambient_C) {
+      lacking.push_back({{recording_.file.string()},
+                         "ambient_C",
+                         "the log has no ambient temperature; state it with --ambient 25degC, in a check file with air = \"25 degC\""});
+    }
+    if (sensors_.empty()) {
+      lacking.push_back({{recording_.file.string()}, "winding_C", "the log has no temperature of winding, stator or housing"});
+    }
+    return lacking;
+  }
+
   MeasuredRuns build() {
     check();
     for (const auto& [begin, end] : segments()) {
@@ -134,24 +153,8 @@ class Builder {
   }
 
   void check() const {
-    std::vector<base::Diagnostic> lacking;
-    for (const thermal::Signal signal : options_.needed) {
-      if (std::ranges::find(signals_, signal) == signals_.end()) {
-        lacking.push_back(
-            {{recording_.file.string()}, std::string(column_of(signal)), "the model needs it, and the log has no such column"});
-      }
-    }
-    if (!rows_.has_surroundings() && !options_.ambient_C) {
-      lacking.push_back({{recording_.file.string()},
-                         "ambient_C",
-                         "the log has no ambient temperature; state it with --ambient 25degC, in a check file with air = \"25 degC\""});
-    }
-    if (sensors_.empty()) {
-      lacking.push_back({{recording_.file.string()}, "winding_C", "the log has no temperature of winding, stator or housing"});
-    }
-    if (!lacking.empty()) {
-      throw base::Failure(base::ExitCode::bad_input, fmt::format("{} cannot be compared with the model", recording_.name),
-                          std::move(lacking));
+    if (std::vector<base::Diagnostic> all = lacking(); !all.empty()) {
+      throw base::Failure(base::ExitCode::bad_input, fmt::format("{} cannot be compared with the model", recording_.name), std::move(all));
     }
   }
 
@@ -302,6 +305,10 @@ bool MeasuredRun::has(const std::map<std::string, std::string>& of_conditions) c
 std::optional<Eigen::Index> MeasuredRun::sensor_at(std::string_view node) const {
   const auto found = std::ranges::find(sensors, node, &Sensor::node);
   return found == sensors.end() ? std::nullopt : std::optional<Eigen::Index>(found - sensors.begin());
+}
+
+std::vector<base::Diagnostic> lacking_columns(const recording::Recording& recording, const MeasuredRunOptions& options) {
+  return Builder(recording, options).lacking();
 }
 
 MeasuredRuns measured_runs(const recording::Recording& recording, const MeasuredRunOptions& options) {

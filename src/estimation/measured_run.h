@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.h"
 #include "estimation/findings.h"
 #include "motor/sensor_effect.h"
 #include "recording/recording.h"
@@ -89,6 +90,9 @@ std::string recording_of(const MeasuredRun& run);
 
 /// Returns the signals that a recording has or that follow from it, for example the shaft power from torque or current.
 std::vector<thermal::Signal> signals_of(const recording::Recording& recording, const ShaftTorque& torque = {});
+
+/// Returns the columns that a recording lacks for a comparison with the model: needed signals, the surroundings' temperature, any sensor.
+std::vector<base::Diagnostic> lacking_columns(const recording::Recording& recording, const MeasuredRunOptions& options);
 
 /// Splits a recording into runs whose inputs are known. Merged temperatures are means over ± a tenth of longest_step_s around the sample.
 /// Throws Failure: bad_input if a needed signal, the surroundings' temperature or every sensor is missing; NoUsableInterval

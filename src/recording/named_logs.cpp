@@ -100,12 +100,16 @@ void make_names_distinct(std::vector<Recording>& recordings, const FilesOfName& 
 }  // namespace
 
 NamedLogs read_named_logs(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice) {
+  NamedLogs logs = read_usable_logs(fitted, held_out, choice);
+  logs.unread.throw_if_any();
+  return logs;
+}
+
+NamedLogs read_usable_logs(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice) {
   NamedLogs logs;
   logs.choice = choice;
-  base::CollectedFailures failures;
-  logs.fitted = read_each(fitted, choice, logs.readings, failures);
-  logs.held_out = read_each(held_out, choice, logs.readings, failures);
-  failures.throw_if_any();
+  logs.fitted = read_each(fitted, choice, logs.readings, logs.unread);
+  logs.held_out = read_each(held_out, choice, logs.readings, logs.unread);
   FilesOfName files;
   add_files(logs.fitted, files);
   const FilesOfName of_fitted = files;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/collected_failures.h"
 #include "base/counted.h"
 #include "base/quantity.h"
 #include "calibration/admission.h"
@@ -144,6 +145,18 @@ base::Failure worded(const diagnosis::NoEffectFollows& failure) {
                            failure.message(), worst.signal, base::significant(worst.rmse_K, 2), base::significant(worst.varies_K, 2)));
 }
 
+base::Failure each_in_words(const base::SeveralFailures& several) {
+  std::vector<base::Failure> parts;
+  for (const auto& [failure, thrown] : several.parts()) {
+    try {
+      std::rethrow_exception(thrown);
+    } catch (const base::Failure& own) {
+      parts.push_back(in_words(own));
+    }
+  }
+  return base::joined(parts);
+}
+
 /// Returns the words of the first type that the failure has.
 template <class First, class... Others>
 base::Failure worded_as(const base::Failure& failure) {
@@ -160,6 +173,9 @@ base::Failure worded_as(const base::Failure& failure) {
 }  // namespace
 
 base::Failure in_words(const base::Failure& failure) {
+  if (const auto* const several = dynamic_cast<const base::SeveralFailures*>(&failure)) {
+    return each_in_words(*several);
+  }
   return worded_as<recording::NothingAboutHeat, recording::RowsGivenTwice, calibration::RunsOfTheFile, estimation::RunNotSimulated,
                    calibration::NothingLearned, calibration::NothingFollows, calibration::LogsLookWrong, friction::LogsLookWrong,
                    friction::DampingNegative, friction::NothingIdentifiable, friction::WheelNotIdentifiable, estimation::NoUsableInterval,

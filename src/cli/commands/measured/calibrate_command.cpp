@@ -30,7 +30,7 @@ struct CalibrateOptions {
 
 base::ExitCode run(const CalibrateOptions& options, Session& session) {
   calibration::CalibrationJob job{duty::motor_named(session.folders(), options.motor),
-                                  recording::read_named_logs(options.logs, options.holdout, choice_of(options.how, session)), options.fit};
+                                  recording::read_usable_logs(options.logs, options.holdout, choice_of(options.how, session)), options.fit};
   job.written = options.writes_forecast      ? calibration::WrittenFit::forecast
                 : options.writes_innovations ? calibration::WrittenFit::innovations
                                              : calibration::WrittenFit::best;

@@ -50,7 +50,7 @@ base::ExitCode run(const DiagnoseOptions& options, Session& session) {
     report::require_drawing("--out", "leave out --out for the answer without its folder");
   }
   const diagnosis::DiagnosisJob job{duty::motor_named(session.folders(), options.model),
-                                    recording::read_named_logs(options.train, options.holdout, choice_of(options.logs, session))};
+                                    recording::read_usable_logs(options.train, options.holdout, choice_of(options.logs, session))};
   std::shared_ptr<void> line = elapsed_line("searching for missing effects");
   const diagnosis::DiagnosisAnswer answer = diagnosis::run_diagnosis(job);
   line.reset();
