@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <utility>
 
@@ -21,22 +20,21 @@ namespace {
 
 constexpr std::size_t kLargestRobotFile_bytes = 1'000'000;
 
-using Rows = recording::RowsGivenTwice::Rows;
+/// Rows of a log and the content_hash() that identifies them.
+using KnownRows = std::pair<recording::RowsGivenTwice::Rows, std::string>;
 
-/// Adds a log that is given twice to `repeated`, because it would make the intervals too narrow. `seen` holds each log's rows and the
-/// hash of their content.
-void note_if_repeated(const recording::Recording& recording, std::vector<std::pair<Rows, std::size_t>>& seen,
-                      std::vector<recording::RowsGivenTwice::Pair>& repeated) {
-  std::size_t held = recording.rows();
-  const auto add = [&held](double value) { held = held * 1'000'003 + std::hash<double>{}(value); };
-  std::ranges::for_each(recording.time_s, add);
-  for (const recording::Channel& channel : recording.channels) {
-    std::ranges::for_each(channel.values, add);
+/// Throws RowsGivenTwice with all logs that are given twice, because they would make the intervals too narrow.
+void refuse_repeated(const std::vector<KnownRows>& logs) {
+  std::vector<recording::RowsGivenTwice::Pair> repeated;
+  for (auto log = logs.begin(); log != logs.end(); ++log) {
+    const auto earlier = std::find_if(logs.begin(), log, [&](const KnownRows& each) { return each.second == log->second; });
+    if (earlier != log) {
+      repeated.push_back({log->first, earlier->first});
+    }
   }
-  if (const auto found = std::ranges::find(seen, held, &std::pair<Rows, std::size_t>::second); found != seen.end()) {
-    repeated.push_back({Rows(recording), found->first});
+  if (!repeated.empty()) {
+    throw recording::RowsGivenTwice(std::move(repeated));
   }
-  seen.emplace_back(Rows(recording), held);
 }
 
 void refuse_what_looks_wrong(const FrictionJob& job, const std::vector<LogsLookWrong::Finding>& blocking) {
@@ -50,52 +48,46 @@ struct FrictionInput {
   std::vector<LogsLookWrong::Finding> blocking;  ///< the suspicions (units, signs, wheel order) that would make the answer wrong if true
 };
 
-struct ReadLog {
-  recording::Recording recording;
-  recording::RecordingReport report;
-  FrictionLog log;
-};
-
-ReadLog read_log(const FrictionJob& job, const std::string& name, const FrictionLogNeeds& needs, FrictionFindings& findings) {
-  ReadLog read;
+recording::Recording read_log(const FrictionJob& job, const std::string& name, recording::RecordingReport& report) {
   const std::filesystem::path file = input::log_named(job.folders, name);
-  read.recording = recording::read_recording(file, recording::mapping_for(file, job.map), read.report);
-  read.log = friction_log(read.recording, job.robot, needs, findings);
-  return read;
+  return recording::read_recording(file, recording::mapping_for(file, job.map), report);
 }
 
-/// Throws Failure with the problems of all logs.
+void assess(const recording::Recording& recording, const recording::RecordingReport& report, FrictionInput& input, FrictionRun& run) {
+  const recording::DataQuality quality = recording::assess(recording, report);
+  for (const recording::Suspicion& suspicion : quality.suspicions) {
+    run.suspicions.push_back({recording.name, suspicion});
+  }
+  for (const recording::Suspicion& suspicion : quality.blocking_for_wheels) {
+    input.blocking.push_back({recording.file.string(), suspicion});
+  }
+}
+
+/// Throws the problems of all logs if any cannot be used; the caller refuses logs that only look wrong.
 FrictionInput read_logs(const FrictionJob& job, FrictionLogNeeds needs, FrictionRun& run, const base::Progress& progress) {
   FrictionInput input;
   if (job.motor) {
     needs.drive = robot::drive_constants(job.robot, *job.motor);
   }
-  std::vector<std::pair<Rows, std::size_t>> seen;
-  std::vector<recording::RowsGivenTwice::Pair> repeated;
+  std::vector<KnownRows> read;
   base::CollectedFailures failures;
   for (std::size_t i = 0; i < job.logs.size(); ++i) {
-    std::optional<ReadLog> read = failures.attempt([&] { return read_log(job, job.logs[i], needs, run.findings); });
-    if (!read) {
-      continue;
+    recording::RecordingReport report;
+    std::optional<recording::Recording> recording = failures.attempt([&] { return read_log(job, job.logs[i], report); });
+    if (recording) {
+      assess(*recording, report, input, run);
+      failures.attempt([&] { input.logs.push_back(friction_log(*recording, job.robot, needs, run.findings)); });
+      read.emplace_back(recording::RowsGivenTwice::Rows(*recording), recording->content);
     }
-    const auto& [recording, report, log] = *read;
-    const recording::DataQuality quality = recording::assess(recording, report);
-    for (const recording::Suspicion& suspicion : quality.suspicions) {
-      run.suspicions.push_back({recording.name, suspicion});
-    }
-    for (const recording::Suspicion& suspicion : quality.blocking_for_wheels) {
-      input.blocking.push_back({recording.file.string(), suspicion});
-    }
-    note_if_repeated(recording, seen, repeated);
-    input.logs.push_back(std::move(read->log));
     if (progress) {
       progress(i + 1, job.logs.size());
     }
   }
-  failures.throw_if_any();
-  if (!repeated.empty()) {
-    throw recording::RowsGivenTwice(std::move(repeated));
+  failures.attempt([&] { refuse_repeated(read); });
+  if (!failures.empty()) {
+    failures.attempt([&] { refuse_what_looks_wrong(job, input.blocking); });
   }
+  failures.throw_if_any();
   return input;
 }
 
@@ -119,6 +111,10 @@ NothingIdentifiable::NothingIdentifiable(Reason reason)
 
 SteadyFriction steady_friction(const FrictionJob& job, const base::Progress& progress) {
   SteadyFriction answer;
+  if (job.writes_robot_file && !job.motor) {
+    throw base::Failure(base::ExitCode::bad_input,
+                        "--out: a robot's file has torques; --motor must name the motor that converts volts to torques");
+  }
   FrictionInput input = read_logs(job, {.direction = job.direction}, answer, progress);
   const robot::Kinematics kinematics = robot::make_kinematics(job.robot);
   answer.steady = find_steady_parts(input.logs, kinematics);
@@ -145,10 +141,6 @@ SteadyFriction steady_friction(const FrictionJob& job, const base::Progress& pro
   answer.error = error_on_held_out_headings(answer.steady.parts, kinematics, answer.settings, before.voltages);
   answer.expected_from = before.voltages ? std::optional(before.from) : std::nullopt;
   if (job.writes_robot_file) {
-    if (!drive) {
-      throw base::Failure(base::ExitCode::bad_input,
-                          "--out: a robot's file has torques; --motor must name the motor that converts volts to torques");
-    }
     answer.robot_text = with_measured_friction(base::read_file(job.robot.file, kLargestRobotFile_bytes), job.robot, *drive, answer.fit,
                                                source_of(job), answer.notes);
   }

@@ -37,7 +37,6 @@ class ColumnsOfRobot {
         missing(fmt::format("wheel_speed_rad_per_s_{}", wheel + 1), "speed of the wheel's motor");
       }
     }
-    diagnostics_.throw_if_any();
     add_voltages(log);
     diagnostics_.throw_if_any();
     if (!needs_.direction) {
