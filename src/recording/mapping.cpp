@@ -21,6 +21,8 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 3> kConventions{"held", "linear", "previous_interval"};
 constexpr std::array<std::string_view, 2> kSigns{"+", "-"};
 constexpr std::array<std::string_view, 2> kDecimals{".", ","};
+/// Keys of a quantity whose meaning depends on its unit.
+constexpr std::array<std::string_view, 4> kKeysWithUnit{"sign", "saturates_low", "saturates_high", "fill"};
 
 bool matches(const std::string& pattern, const fs::path& log) { return ::fnmatch(pattern.c_str(), log.filename().c_str(), 0) == 0; }
 
@@ -62,8 +64,8 @@ input::TableFormat read_format(input::Reader& file) {
   return format;
 }
 
-/// Reads unit and sign into value and scale_factor.
-void read_unit(input::Reader& reader, QuantityMapping& mapping) {
+/// Reads unit and sign into value and scale_factor. Returns false if the unit is unknown, so that no other value can be read with it.
+bool read_unit(input::Reader& reader, QuantityMapping& mapping) {
   const std::string& wanted = mapping.quantity.unit;
   const std::string unit = reader.text("unit", input::Need::optional).value_or(wanted);
   const base::ParsedQuantity zero = base::parse_quantity("0 " + unit, wanted);
@@ -71,7 +73,8 @@ void read_unit(input::Reader& reader, QuantityMapping& mapping) {
   if (!zero.ok() || !one.ok()) {
     reader.problem("unit", fmt::format("'{}' is not a unit of {}; expected one that converts to {}", unit, mapping.quantity.key,
                                        wanted.empty() ? "a pure number" : wanted));
-    return;
+    std::ranges::for_each(kKeysWithUnit, [&reader](std::string_view key) { reader.pass_over(key); });
+    return false;
   }
   mapping.value = zero.value;
   mapping.scale_factor = one.value - zero.value;
@@ -82,6 +85,7 @@ void read_unit(input::Reader& reader, QuantityMapping& mapping) {
     mapping.value = -mapping.value;
     mapping.scale_factor = -mapping.scale_factor;
   }
+  return true;
 }
 
 std::optional<double> limit(input::Reader& reader, const char* key, const QuantityMapping& mapping) {
@@ -118,10 +122,13 @@ std::optional<QuantityMapping> read_quantity(const std::string& key, input::Read
   if (mapping.column.empty() == mapping.expression.empty()) {
     reader.problem("", "expected one of column = \"…\" and expression = \"…\"");
   }
-  read_unit(reader, mapping);
+  const bool has_unit = read_unit(reader, mapping);
   mapping.valid = reader.text("valid", input::Need::optional).value_or("");
-  mapping.saturates_low = limit(reader, "saturates_low", mapping);
-  mapping.saturates_high = limit(reader, "saturates_high", mapping);
+  if (has_unit) {
+    mapping.saturates_low = limit(reader, "saturates_low", mapping);
+    mapping.saturates_high = limit(reader, "saturates_high", mapping);
+    read_fills(reader, mapping);
+  }
   mapping.is_optional = reader.flag("optional", input::Need::optional).value_or(false);
   if (mapping.is_optional && mapping.column.empty()) {
     reader.problem("optional", "expected for a column only");
@@ -131,7 +138,6 @@ std::optional<QuantityMapping> read_quantity(const std::string& key, input::Read
                                           "offset of this channel's clock: time of its sample minus time of the row"},
                                          input::Need::optional)
                                .value_or(0.0);
-  read_fills(reader, mapping);
   if (quantity->kind == QuantityKind::time && (mapping.clock_offset_s != 0.0 || !mapping.fills.empty())) {
     reader.problem("", "the time has no clock_offset and no fill");
   }
@@ -180,13 +186,17 @@ void read_quantities(input::Reader& root, Mapping& mapping) {
   if (!table) {
     return;
   }
+  bool is_any_unknown = false;
   for (auto& [key, reader] : table->named_tables()) {
-    if (std::optional<QuantityMapping> quantity = read_quantity(key, reader)) {
-      mapping.quantities.push_back(std::move(*quantity));
+    std::optional<QuantityMapping> quantity = read_quantity(key, reader);
+    is_any_unknown = is_any_unknown || !quantity;
+    if (quantity) {
+      mapping.quantities.push_back(*std::move(quantity));
     }
   }
   const auto is_time = [](const QuantityMapping& each) { return each.quantity.kind == QuantityKind::time; };
-  if (std::ranges::none_of(mapping.quantities, is_time)) {
+  // An unknown quantity may be the misspelt time.
+  if (!is_any_unknown && std::ranges::none_of(mapping.quantities, is_time)) {
     table->problem("", "has no time_s, which every log needs");
   }
 }

@@ -203,6 +203,18 @@ TEST(Mapping, EveryProblemWithItsPlace) {
                          HasSubstr("did you mean 'ambient_C'?"), HasSubstr("a temperature has no sign")));
 }
 
+TEST(Mapping, OneCauseHasOneMessage) {
+  const std::string of_unit =
+      failure_of("t,T\n0,20\n",
+                 "[quantities]\ntime_s = { column = \"t\" }\nbus_V = { column = \"T\", unit = \"xyz\", sign = \"-\", saturates_low = \"3 "
+                 "xyz\", saturates_high = \"3 xyz\", fill = [{ value = \"3 xyz\", where = \"T > 3\" }] }\n");
+  EXPECT_THAT(of_unit, HasSubstr("'xyz' is not a unit of bus_V"));
+  EXPECT_EQ(std::ranges::count(of_unit, '\n'), 0) << of_unit;
+  const std::string of_name = failure_of("t,T\n0,20\n", "[quantities]\ntime = { column = \"t\" }\nwinding_C = { column = \"T\" }\n");
+  EXPECT_THAT(of_name, HasSubstr("quantities.time: is not a quantity"));
+  EXPECT_EQ(std::ranges::count(of_name, '\n'), 0) << of_name;
+}
+
 TEST(Mapping, ColumnsAndExpressionsAreCheckedAgainstTheLog) {
   const std::string all = failure_of("time,Temp,power\n0,20,1\n",
                                      "[quantities]\ntime_s = { column = \"tme\" }\nwinding_C = { expression = \"Temp + offset\" }\n"
