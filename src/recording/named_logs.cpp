@@ -28,7 +28,9 @@ struct LogPart {
 /// Parses "run4.csv@0-60%": the first 60 % of the time of run4.csv.
 LogPart log_part(const std::string& text) {
   const std::size_t at = text.rfind('@');
-  if (at == std::string::npos || text.find_first_not_of("0123456789.-% ", at + 1) != std::string::npos) {
+  const bool is_part =
+      at != std::string::npos && (text.ends_with('%') || text.find_first_not_of("0123456789.-% ", at + 1) == std::string::npos);
+  if (!is_part) {
     return {text};
   }
   const std::size_t dash = text.find('-', at);
@@ -55,6 +57,11 @@ Recording read_one(const std::string& text, const LogChoice& choice, RecordingRe
     return whole;
   }
   Recording recording = part_of(whole, part.from_share, part.to_share);
+  if (recording.rows() < 2) {
+    throw base::bad_input(
+        {file.string()}, "",
+        fmt::format("'{}' has {} of the log's {} rows; expected a part with at least 2", text, recording.rows(), whole.rows()));
+  }
   recording.blocking_of_whole = assess(whole, report, choice.ambient_C).blocking;
   return recording;
 }

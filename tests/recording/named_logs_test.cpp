@@ -54,6 +54,27 @@ TEST_F(NamedLogsTest, PartsOfOneLogKeepItsNameAndShareTheTime) {
   EXPECT_THROW(read_named_logs({log("monday") + "@70-20%"}, {}, {}), base::Failure);
 }
 
+TEST_F(NamedLogsTest, APartThatIsNoneOrHasNoRowsIsRefused) {
+  for (const std::string part : {"@0-nan%", "@nan-50%", "@0-inf%", "@x-50%", "@50.1-50.2%"}) {
+    try {
+      read_named_logs({log("monday") + part}, {}, {});
+      FAIL() << part;
+    } catch (const base::Failure& failure) {
+      EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
+      EXPECT_THAT(failure.what(), testing::HasSubstr(part == "@50.1-50.2%" ? "has 0 of the log's 101 rows" : "expected LOG@FROM-TO%"));
+    }
+  }
+}
+
+TEST_F(NamedLogsTest, FailuresOfUnreadLogsAreKeptBesideTheOthers) {
+  const NamedLogs logs = read_usable_logs({log("sunday"), log("monday")}, {log("saturday")}, {});
+  ASSERT_EQ(logs.fitted.size(), 1U);
+  EXPECT_EQ(logs.fitted[0].name, "run");
+  EXPECT_TRUE(logs.held_out.empty());
+  EXPECT_FALSE(logs.unread.empty());
+  EXPECT_THROW(logs.unread.throw_if_any(), base::SeveralFailures);
+}
+
 TEST_F(NamedLogsTest, ProblemsOfAllLogsAreReportedOnce) {
   try {
     read_named_logs({log("sunday"), log("monday"), log("monday") + "@70-20%"}, {log("sunday"), log("saturday")}, {});
