@@ -11,6 +11,9 @@
 namespace heatsoak::present {
 namespace {
 
+/// Black: the colours before it belong to the windings, and the next ones resemble those of windings 1 and 2.
+constexpr int kStatorColor = 5;
+
 std::vector<double> column(const std::vector<simulate::MatchRow>& rows, const std::function<double(const simulate::MatchRow&)>& of) {
   std::vector<double> values;
   for (const simulate::MatchRow& row : rows) {
@@ -32,7 +35,7 @@ std::vector<report::ChartPanel> detail(const simulate::MatchSimulation& match, c
         curve(fmt::format("winding {}", i + 1), static_cast<int>(i), [i](const simulate::MatchRow& row) { return row.winding_peak_C[i]; }));
   }
   heat.curves.push_back(
-      curve(fmt::format("stator {}", hottest + 1), 4, [&](const simulate::MatchRow& row) { return row.stator_C[hottest]; }));
+      curve(fmt::format("stator {}", hottest + 1), kStatorColor, [&](const simulate::MatchRow& row) { return row.stator_C[hottest]; }));
   heat.levels.push_back({fmt::format("limit {:.0f} °C", match.motor.nominal.winding_limit_C), match.motor.nominal.winding_limit_C, true});
   const auto single = [](std::string title, std::string label, report::ChartCurve one) {
     return report::ChartPanel{

@@ -56,7 +56,7 @@ std::size_t bands_of(std::size_t motors) {
   return motors > kMostWithAreas ? 2 : motors;
 }
 
-report::ChartPanel panel(const std::vector<const select::MotorEvaluation*>& shown, bool of_winding) {
+report::ChartPanel panel(const std::vector<const select::MotorEvaluation*>& shown, bool of_winding, bool has_cycles) {
   report::ChartPanel result{
       .title = of_winding ? "Winding" : "Stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
   std::map<double, std::vector<std::string>> limits_C;
@@ -76,7 +76,7 @@ report::ChartPanel panel(const std::vector<const select::MotorEvaluation*>& show
     if (is_hidden && of_winding) {
       name += fmt::format(" (as {})", (*hides)->motor_id);
     }
-    result.curves.push_back({name, in_minutes(curves.time_s), values_of(curves), color, is_hidden, false, true});
+    result.curves.push_back({name, in_minutes(curves.time_s), values_of(curves), color, is_hidden, false, has_cycles});
     if (!curves.band_time_s.empty() && i < bands_of(shown.size())) {
       result.bands.push_back({"", in_minutes(curves.band_time_s), of_winding ? curves.winding_p05_C : curves.stator_p05_C,
                               of_winding ? curves.winding_p95_C : curves.stator_p95_C, color});
@@ -115,7 +115,8 @@ report::Chart verdict_chart(const std::vector<select::MotorEvaluation>& results,
   const bool sampled = std::ranges::any_of(shown, [](const select::MotorEvaluation* each) { return !each->curves.band_time_s.empty(); });
   const bool estimated = std::ranges::any_of(shown, [](const select::MotorEvaluation* each) { return each->data_quality == "estimated"; });
   // A load that the robot's motion demands, such as a match, does not repeat in cycles.
-  const std::string_view of_cycles = duty.shape_data->depends_on_robot() ? "" : ", highest and lowest of each load cycle";
+  const bool has_cycles = !duty.shape_data->depends_on_robot();
+  const std::string_view of_cycles = has_cycles ? ", highest and lowest of each load cycle" : "";
   return {.title = title_of(results, robot, duty),
           .subtitle = fmt::format(
               "{}{}{}{}", shown.size() < results.size() ? fmt::format("the robot's motor and the best of {}, ", results.size()) : "",
@@ -125,7 +126,7 @@ report::Chart verdict_chart(const std::vector<select::MotorEvaluation>& results,
                       : fmt::format("; nominal values{}", of_cycles),
               estimated ? "; thermal data partly estimated" : ""),
           .x_label = "time / min",
-          .panels = {panel(shown, true), panel(shown, false)}};
+          .panels = {panel(shown, true, has_cycles), panel(shown, false, has_cycles)}};
 }
 
 }  // namespace heatsoak::present

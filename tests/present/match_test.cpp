@@ -3,8 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
+#include "present/match_chart.h"
+#include "present/verdict_chart.h"
 #include "support/shipped.h"
 
 namespace heatsoak::present {
@@ -63,6 +69,28 @@ TEST(MatchAnswer, no_row_leans_on_the_row_above) {
                                                 driven(duty::Planner::bang_bang, select::Verdict::pass, 73.5)));
   for (const std::vector<Text>& row : document.tables.front().rows) {
     EXPECT_NE(row.front().words.front(), ' ') << row.front().words;
+  }
+}
+
+TEST(MatchChart, gives_the_stator_a_colour_that_no_winding_has) {
+  simulate::MatchSimulation match = both(driven(duty::Planner::jerk_limited, select::Verdict::pass, 71.5), {});
+  match.runs.resize(1);
+  match.runs.front().rows.resize(2);
+  const report::ChartPanel heat = match_chart(match).panels.front();
+  ASSERT_EQ(heat.curves.size(), match.robot.wheels.axis_rad.size() + 1);
+  std::set<int> colors;
+  std::ranges::transform(heat.curves, std::inserter(colors, colors.end()), &report::ChartCurve::color_index);
+  EXPECT_EQ(colors.size(), heat.curves.size());
+}
+
+TEST(VerdictChart, draws_one_line_for_a_load_that_does_not_repeat) {
+  select::MotorEvaluation motor;
+  motor.curves.time_s = {0.0, 60.0};
+  motor.curves.winding_C = motor.curves.stator_C = {25.0, 30.0};
+  for (const auto& [duty, has_ripple] : {std::pair("division_a_match", false), std::pair("paper_intermittent", true)}) {
+    const report::Chart chart =
+        verdict_chart({motor}, twente(), duty::read_duty(kSource / "duty_profiles" / (std::string(duty) + ".toml")));
+    EXPECT_EQ(chart.panels.front().curves.front().has_ripple, has_ripple) << duty;
   }
 }
 

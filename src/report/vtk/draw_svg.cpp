@@ -185,8 +185,6 @@ void add_panel(vtkContextScene* scene, const ChartPanel& panel, const PanelPlace
     }
     const ChartCurve line{.name = "", .x = {across.range.low, across.range.high}, .y = {level.y, level.y}};
     for (const std::vector<CurvePoint>& piece : reduce(line, across, up)) {
-      // White line below, so that the dashes are visible on curves that they cross.
-      add_line(chart, piece, {0xFF, 0xFF, 0xFF}, 3.0F, false);
       add_line(chart, piece, std::to_array(limit_color), 1.5F, true);
     }
   }
