@@ -64,11 +64,12 @@ Document prediction_document(const motor::Motor& motor, const calibration::Predi
               .rows = {}};
   for (const calibration::PredictedRun& run : prediction.runs) {
     for (const calibration::PredictedSignal& each : run.signals) {
+      const bool is_scored = each.samples > 0;
       table.rows.push_back({{run.name},
                             {signal_words(each)},
-                            {base::significant(each.rmse_K, 2)},
-                            {base::significant(each.max_abs_K, 2)},
-                            {fmt::format("{:.0f}", 100.0 * each.coverage_share)},
+                            {is_scored ? base::significant(each.rmse_K, 2) : "–"},
+                            {is_scored ? base::significant(each.max_abs_K, 2) : "–"},
+                            {is_scored ? fmt::format("{:.0f}", 100.0 * each.coverage_share) : "–"},
                             {fmt::format("{}", each.samples)}});
       if (worst == nullptr || each.rmse_K > worst->rmse_K) {
         worst = &each;
