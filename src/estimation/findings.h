@@ -66,7 +66,7 @@ struct ColumnsLacking {
 /// Omitted data and assumptions.
 using RunNote = std::variant<SensorNeverChanges, RowsUnused, SplitIntoRuns, ColumnsLacking>;
 
-/// Thrown if the model cannot be simulated over a run : name of the run and the cause. It has the cause's exit code.
+/// Thrown if the model cannot be simulated over a run: name of the run and the cause. It has the cause's exit code.
 class RunNotSimulated : public base::Failure {
  public:
   RunNotSimulated(const std::string& run, const base::Failure& cause);
