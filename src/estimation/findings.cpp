@@ -7,7 +7,7 @@
 namespace heatsoak::estimation {
 
 RunNotSimulated::RunNotSimulated(const std::string& run, const base::Failure& cause)
-    : base::Failure(cause.code(), fmt::format("{}: {}", run, cause.message())) {}
+    : base::Failure(cause.code(), fmt::format("{}: {}", run, cause.message()), {cause.diagnostics().begin(), cause.diagnostics().end()}) {}
 
 NoUsableInterval::NoUsableInterval(const std::string& recording, std::filesystem::path file, std::size_t least_rows,
                                    std::vector<LossOfRows> reasons)

@@ -369,7 +369,8 @@ class RecordingStream::Intake {
       }
     }
     if (std::ranges::count(has_numbers_, 1) == 0) {
-      throw base::Failure(base::ExitCode::cannot_answer, fmt::format("{}: no quantity except the time contains a number", log_.string()));
+      throw base::Failure(base::ExitCode::cannot_answer, "",
+                          {{{log_.string(), table_.header_line(), 1}, {}, "no quantity except the time contains a number"}});
     }
   }
 

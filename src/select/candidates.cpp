@@ -32,8 +32,9 @@ std::vector<motor::Motor> named_candidates(const CandidateNames& names, duty::Na
     const auto same =
         std::ranges::find_if(taken, [&](const std::filesystem::path& other) { return other != *file && other.stem() == file->stem(); });
     if (same != taken.end()) {
-      throw base::Failure(base::ExitCode::bad_input, fmt::format("{} and {} are two motors with the same id, '{}'; rename one of the files",
-                                                                 same->string(), file->string(), file->stem().string()));
+      throw base::bad_input({file->string()}, "",
+                            fmt::format("this file and {} are two motors with the same id, '{}'; rename one of the files", same->string(),
+                                        file->stem().string()));
     }
     if (const std::optional<motor::Motor> motor = files.motor(name)) {
       motors.push_back(names.model.empty() ? motor::under(*motor, names.conditions) : *motor);

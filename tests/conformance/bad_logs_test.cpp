@@ -3,10 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <functional>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
 
 #include "../friction/test_drive.h"
 #include "../recording/synthetic_log.h"
+#include "base/files.h"
 #include "motor/motor.h"
 #include "program_run.h"
 #include "robot/robot.h"
@@ -189,6 +194,80 @@ INSTANTIATE_TEST_SUITE_P(
                            3, "no quantity except the time contains a number"},
                     BadRun{"unsorted", [](std::vector<Cells>& rows) { std::ranges::reverse(rows); }, 2, "time does not increase"}),
     [](const auto& each) { return each.param.name; });
+
+TEST(BadLogs, of_friction_with_exchanged_columns_are_not_the_same_log) {
+  const TemporaryFolder folder;
+  const std::string text = friction::csv_of(driven_rows(), 4);
+  std::string exchanged = text;
+  const std::size_t first = exchanged.find("wheel_speed_rad_per_s_1");
+  exchanged.replace(first, 23, "wheel_speed_rad_per_s_2");
+  exchanged.replace(exchanged.find("wheel_speed_rad_per_s_2", first + 1), 23, "wheel_speed_rad_per_s_1");
+  write(folder.path() / "one.csv", text);
+  write(folder.path() / "copy.csv", text);
+  write(folder.path() / "exchanged.csv", exchanged);
+  const Words friction{"friction", "--robot", "roboteam_twente_v2024", "--as-is"};
+  const ProgramRun apart = run(friction + Words{"one.csv", "exchanged.csv"}, {.folder = folder.path()});
+  EXPECT_THAT(apart.err, testing::Not(testing::HasSubstr("share rows"))) << apart.err;
+  const ProgramRun same = run(friction + Words{"one.csv", "exchanged.csv", "copy.csv"}, {.folder = folder.path()});
+  EXPECT_EQ(same.exit_code, 2);
+  EXPECT_THAT(same.err, testing::HasSubstr("copy.csv:2:1: error: lines 2 to "));
+}
+
+/// Every place that the terminal shows must be in the JSON answer too.
+void expect_places_in_json(const Words& words, const fs::path& folder, std::size_t least) {
+  const ProgramRun result = run(words + Words{"--json", "error.json"}, {.folder = folder});
+  std::ifstream file(folder / "error.json");
+  const nlohmann::json error = nlohmann::json::parse(file).at("error");
+  static const std::regex kPlace("(^|\n)([^\n: ]+):(\\d+):(\\d+): error: ");
+  std::size_t places = 0;
+  for (std::sregex_iterator found(result.err.begin(), result.err.end(), kPlace), end; found != end; ++found, ++places) {
+    const bool is_listed = std::ranges::any_of(error.at("diagnostics"), [&found](const nlohmann::json& each) {
+      return each.at("file") == (*found)[2].str() && each.at("line") == std::stoi((*found)[3].str()) &&
+             each.at("column") == std::stoi((*found)[4].str());
+    });
+    EXPECT_TRUE(is_listed) << found->str() << error.dump(2);
+  }
+  EXPECT_GE(places, least) << result.err;
+  EXPECT_EQ(error.at("code"), result.exit_code);
+}
+
+TEST(BadLogs, have_their_places_in_json_and_all_kinds_in_one_run) {
+  const TemporaryFolder folder;
+  const std::string bench = base::read_file(kSource / "reports/soak/bench.csv", 10'000'000);
+  write(folder.path() / "bench.csv", bench);
+  write(folder.path() / "no_time.csv", "t,winding_C\n0,25\n1,26\n");
+  write(folder.path() / "no_number.csv", "time_s,winding_C\n0,\n1,\n");
+  std::istringstream lines(bench);
+  std::string outliers;
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    // Too many rows for a spike, less than 2 % of the log.
+    if (number > 900 && number <= 925) {
+      const std::size_t cell = line.rfind(',', line.rfind(',') - 1) + 1;
+      line.replace(cell, line.rfind(',') - cell, std::to_string(4 * number - 3200));
+    }
+    outliers += line + "\n";
+  }
+  write(folder.path() / "outliers.csv", outliers);
+  const Words logs{"bench.csv", "no_time.csv", "no_number.csv", "outliers.csv", "missing.csv"};
+  const std::string motor = "maxon_ec45_flat_70w_24v";
+  for (const Words& verb : {Words{"calibrate", "--motor", motor, "--out", "model.toml"}, Words{"predict", "--model", motor},
+                            Words{"diagnose", "--model", motor, "--train"}}) {
+    expect_places_in_json(verb + logs, folder.path(), 3);
+    const ProgramRun result = run(verb + logs, {.folder = folder.path()});
+    EXPECT_THAT(result.err, testing::AllOf(testing::HasSubstr("missing.csv: error: "),
+                                           testing::HasSubstr("outliers.csv:925:1: error: current_A reaches 500 A")));
+  }
+  write(folder.path() / "broken.toml", "name = 3\n[wheels\n");
+  for (const Words& words :
+       {Words{"lint", "broken.toml"},
+        Words{"steady", "--motor", "broken.toml", "--current-on", "1A", "--time-on", "1s", "--time-off", "1s"},
+        Words{"evaluate", "--robot", "broken.toml", "--duty", "division_a_match"}, Words{"friction", "--robot", "broken.toml", "bench.csv"},
+        Words{"predict", "--model", motor, "--map", "broken.toml", "bench.csv"}, Words{"check", "broken.toml"}}) {
+    expect_places_in_json(words, folder.path(), 1);
+  }
+}
 
 }  // namespace
 }  // namespace heatsoak

@@ -22,7 +22,7 @@ struct NewOptions {
 base::ExitCode run(const NewOptions& options, Session& session) {
   std::error_code unreadable;
   if (std::filesystem::exists(options.file, unreadable)) {
-    throw base::Failure(base::ExitCode::bad_input, fmt::format("{} exists; give the new file another name", options.file));
+    throw base::bad_input({options.file}, "", "exists; give the new file another name");
   }
   const auto texts = embedded::file_templates();
   const auto found =

@@ -21,7 +21,16 @@
 namespace heatsoak::present {
 namespace {
 
-base::Failure with_message(const base::Failure& failure, std::string message) { return {failure.code(), std::move(message)}; }
+base::Failure with_message(const base::Failure& failure, std::string message) {
+  return {failure.code(), std::move(message), {failure.diagnostics().begin(), failure.diagnostics().end()}};
+}
+
+/// Line of the log that the problem names; 0: none.
+int line_of(const calibration::LogProblem& problem) {
+  const auto* const current = std::get_if<calibration::CurrentOutliers>(&problem);
+  const auto* const speed = std::get_if<calibration::SpeedOutliers>(&problem);
+  return current != nullptr ? current->line : speed != nullptr ? speed->line : 0;
+}
 
 base::Failure worded(const recording::NothingAboutHeat& failure) {
   std::vector<base::Diagnostic> diagnostics;
@@ -94,7 +103,8 @@ base::Failure worded(const friction::LogsLookWrong& failure) {
 base::Failure worded(const calibration::LogsLookWrong& failure) {
   std::vector<base::Diagnostic> diagnostics;
   for (const auto& [file, problem] : failure.findings()) {
-    diagnostics.push_back({{file}, {}, words_of(problem)});
+    const int line = line_of(problem);
+    diagnostics.push_back({{file, line, line > 0 ? 1 : 0}, {}, words_of(problem)});
   }
   return {failure.code(), failure.message(), std::move(diagnostics)};
 }
