@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "attribution/scan_term.h"
 #include "calibration/forecast/prediction.h"
 #include "diagnosis/findings.h"
 #include "diagnosis/found_effects.h"
@@ -31,7 +32,9 @@ struct Unexplained {
   std::vector<std::string> or_nodes;  ///< nodes without a sensor that the heat may enter instead
   std::vector<std::string> drivers;   ///< signals that the heat may follow, in order of evidence; empty: none
   std::string unconfirmed_driver;     ///< signal that the heat may follow, though left-out runs do not confirm it; empty: none
-  std::string times;                  ///< signal that multiplies the curve; empty: none
+  /// Factor that multiplies the curve; `source` without a curve.
+  attribution::Multiplier multiplier = attribution::Multiplier::source;
+  std::string other_node;  ///< second node of Multiplier::difference; else empty
   double mean_W = 0.0;
   double peak_W = 0.0;
   double rms_W = 0.0;  ///< for a curve: mean magnitude
@@ -40,7 +43,6 @@ struct Unexplained {
   std::vector<double> knots;
   std::vector<double> curve;
   std::vector<double> curve_sd;
-  std::string curve_unit;
   std::string driver_unit;
   bool is_in_model = false;  ///< the extended model contains the curve
 };

@@ -101,10 +101,10 @@ class UnexplainedHeatReport {
     heat.node = scanned.node;
     heat.drivers = {driver.name};
     heat.drivers.insert(heat.drivers.end(), term.confusable_with.begin(), term.confusable_with.end());
-    heat.times = attribution::spec_of(scanned.multiplier).second_signal;
+    heat.multiplier = scanned.multiplier;
+    heat.other_node = scanned.other;
     heat.time_scale_s = time_scale_s();
     heat.gain_nats = term.curve->gain_nats;
-    heat.curve_unit = attribution::spec_of(scanned.multiplier).unit;
     heat.driver_unit = driver.unit;
     if (term.effect_name.empty()) {
       const Eigen::VectorXd& curve = term.curve->curve;

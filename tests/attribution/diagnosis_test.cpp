@@ -149,8 +149,7 @@ TEST(Examination, HeatThatFollowsTwoSignalsIsReportedAsSuch) {
       return;
     }
     const diagnosis::Unexplained& heat = answer.diagnosis.unexplained.front();
-    EXPECT_EQ(heat.times, "current");
-    EXPECT_EQ(heat.curve_unit, "W/A");
+    EXPECT_EQ(heat.multiplier, Multiplier::current);
     EXPECT_TRUE(heat.is_in_model);
     const double least_K = floor_K(sealed({}, seed));
     claim.expect(answer.after_K * answer.after_K - least_K * least_K < 0.1 * (answer.before_K * answer.before_K - least_K * least_K),

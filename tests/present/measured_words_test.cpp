@@ -181,6 +181,37 @@ TEST(WordsOfCalibration, HeldValues) {
             "no log has the stator_C to which effects.glued_on applies: the effect is not used");
 }
 
+/// The factor of the curve is part of the sentence, also if the curve is over the time.
+TEST(WordsOfDiagnosis, FactorsOfCurves) {
+  using attribution::Multiplier;
+  const auto sentence = [](const std::string& driver, Multiplier multiplier, double at_knots) {
+    diagnosis::Diagnosis diagnosis;
+    diagnosis::Unexplained heat;
+    heat.node = "winding";
+    heat.other_node = "stator";
+    heat.drivers = {driver};
+    heat.multiplier = multiplier;
+    heat.mean_W = 2.0;
+    heat.peak_W = 5.0;
+    heat.curve = {0.0, at_knots};
+    heat.is_in_model = driver != "time";
+    diagnosis.unexplained = {heat};
+    return unexplained_words(diagnosis).front();
+  };
+  EXPECT_EQ(sentence("fan_V", Multiplier::source, 5.0),
+            "Unnamed: heat into the winding that follows fan_V, 2 W on average, up to 5 W. The extended model contains it as a curve.");
+  EXPECT_THAT(sentence("fan_V", Multiplier::excess, 5.0),
+              testing::StartsWith("Unnamed: heat out of the winding that follows the temperature rise of the winding above ambient times a "
+                                  "curve over fan_V, "));
+  EXPECT_THAT(sentence("time", Multiplier::copper, 0.2),
+              testing::StartsWith("Unexplained: heat into the winding that no measured signal explains; it is the copper loss times a "
+                                  "curve over the time since the start of the recording, "));
+  EXPECT_THAT(sentence("time", Multiplier::source, -3.0),
+              testing::StartsWith("Unexplained: heat out of the winding that no measured signal explains; it is a curve over the time "));
+  EXPECT_THAT(sentence("speed", Multiplier::difference, -0.1),
+              HasSubstr("the temperature difference from winding to stator times a curve over speed, "));
+}
+
 TEST(WordsOfCalibration, NotesOfForecasts) {
   using namespace calibration;
   EXPECT_THAT(words_of(std::vector<PredictionNote>{BandIncludesLossAtSpeed{"run1", 4.21}, BandIsEstimated{"motor"},

@@ -93,13 +93,15 @@ Json unexplained_json(const diagnosis::Unexplained& heat) {
   if (!heat.or_nodes.empty()) {
     json["or_nodes"] = heat.or_nodes;
   }
-  if (!heat.times.empty()) {
-    json["drivers"].push_back(heat.times);
-    json["times"] = heat.times;
+  const attribution::MultiplierSpec& factor = attribution::spec_of(heat.multiplier);
+  if (!factor.second_signal.empty()) {
+    json["drivers"].push_back(factor.second_signal);
+    json["times"] = factor.second_signal;
   }
   if (!heat.knots.empty()) {
-    json["curve"] = {
-        {"driver", heat.knots}, {"driver_unit", heat.driver_unit}, {"value", heat.curve}, {"sd", heat.curve_sd}, {"unit", heat.curve_unit}};
+    json["curve"] = {{"driver", heat.knots}, {"driver_unit", heat.driver_unit},
+                     {"value", heat.curve},  {"sd", heat.curve_sd},
+                     {"unit", factor.unit},  {"form", factor.form}};
   }
   return json;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "attribution/scan_term.h"
 #include "estimation/interval.h"
 #include "present/measured/diagnosis_answer.h"
 
@@ -129,7 +130,8 @@ std::vector<DiagnosisPicture> diagnosis_pictures(const diagnosis::DiagnosisAnswe
         fmt::format("linear between seven knots; band: 95 %{}", heat.is_in_model ? "" : "; the extended model does not have it"),
         heat.drivers.front() + (heat.driver_unit.empty() ? "" : " / " + heat.driver_unit),
         {}};
-    report::ChartPanel panel{"", heat.curve_unit.empty() ? "share of the copper loss" : "curve / " + heat.curve_unit, {}, {}, {}};
+    const attribution::MultiplierSpec& factor = attribution::spec_of(heat.multiplier);
+    report::ChartPanel panel{"", factor.unit.empty() ? "share of the copper loss" : fmt::format("curve / {}", factor.unit), {}, {}, {}};
     report::ChartBand band{"95 %", heat.knots, {}, {}, 0};
     for (std::size_t i = 0; i < heat.curve.size(); ++i) {
       band.low.push_back(heat.curve[i] - estimation::kInterval_sd * heat.curve_sd[i]);

@@ -155,7 +155,26 @@ std::string changed_in_words(const diagnosis::ChangedParameter& parameter) {
 /// A positive conductance means heat out of the node, a positive source means heat into it.
 bool is_leaving(const diagnosis::Unexplained& heat) {
   const double largest = std::ranges::max(heat.curve, {}, [](double value) { return std::abs(value); });
-  return heat.curve_unit == "W/K" ? largest > 0.0 : largest < 0.0;
+  return attribution::spec_of(heat.multiplier).is_conductance ? largest > 0.0 : largest < 0.0;
+}
+
+/// Names the factor that multiplies a curve, with "times"; "" if there is none.
+std::string factor_in_words(const diagnosis::Unexplained& heat) {
+  switch (heat.multiplier) {
+    case attribution::Multiplier::source:
+      return "";
+    case attribution::Multiplier::excess:
+      return fmt::format("the temperature rise of the {} above ambient times ", heat.node);
+    case attribution::Multiplier::copper:
+      return "the copper loss times ";
+    case attribution::Multiplier::difference:
+      return fmt::format("the temperature difference from {} to {} times ", heat.node, heat.other_node);
+    case attribution::Multiplier::current:
+      return "the current times ";
+    case attribution::Multiplier::speed:
+      return "the speed times ";
+  }
+  return "";
 }
 
 /// Formats the heat of several curves over one signal.
@@ -190,30 +209,16 @@ std::string unexplained_in_words(std::span<const diagnosis::Unexplained* const> 
   }
   const bool goes_by_clock = heat.drivers.size() == 1 && heat.drivers.front() == attribution::kTimeDriver;
   const std::string where = fmt::format("{} the {}", is_leaving(heat) ? "out of" : "into", heat.node);
+  const std::string factor = factor_in_words(heat);
   return (goes_by_clock
-              ? fmt::format("Unexplained: heat {} that no measured signal explains; it depends on the time since the start of the run",
-                            where)
-              : fmt::format("Unnamed: heat {} that follows {}{}", where, heat.times.empty() ? "" : heat.times + " times a curve over ",
+              ? fmt::format(
+                    "Unexplained: heat {} that no measured signal explains; it is {}a curve over the time since the start of the recording",
+                    where, factor)
+              : fmt::format("Unnamed: heat {} that follows {}{}", where, factor.empty() ? "" : factor + "a curve over ",
                             fmt::join(heat.drivers, " or "))) +
          fmt::format(", {}.", watts_in_words(curves)) + (heat.drivers.size() > 1 ? " The signals are in order of evidence." : "") +
          (heat.is_in_model ? " The extended model contains it as a curve."
                            : " The extended model does not contain it: its parameters absorb a part of it.");
-}
-
-/// Reports curves with the same node and signals in one sentence.
-void add_unexplained(const diagnosis::Diagnosis& diagnosis, std::vector<std::string>& all) {
-  const auto is_shared = [](const diagnosis::Unexplained& a, const diagnosis::Unexplained& b) {
-    return !a.drivers.empty() && a.node == b.node && a.drivers == b.drivers && a.times == b.times && a.is_in_model == b.is_in_model &&
-           is_leaving(a) == is_leaving(b);
-  };
-  std::vector<std::vector<const diagnosis::Unexplained*>> groups;
-  for (const diagnosis::Unexplained& heat : diagnosis.unexplained) {
-    const auto own = std::ranges::find_if(groups, [&](const auto& group) { return is_shared(*group.front(), heat); });
-    (own == groups.end() ? groups.emplace_back() : *own).push_back(&heat);
-  }
-  for (const auto& group : groups) {
-    all.push_back(unexplained_in_words(group, diagnosis));
-  }
 }
 
 /// Reports the larger errors of the motor file alone, which does not contain run deviations.
@@ -334,6 +339,23 @@ std::string diagnosis_finding_words(const diagnosis::DiagnosisFinding& finding) 
 
 }  // namespace
 
+std::vector<std::string> unexplained_words(const diagnosis::Diagnosis& diagnosis) {
+  std::vector<std::string> all;
+  const auto is_shared = [](const diagnosis::Unexplained& a, const diagnosis::Unexplained& b) {
+    return !a.drivers.empty() && a.node == b.node && a.drivers == b.drivers && a.multiplier == b.multiplier &&
+           a.other_node == b.other_node && a.is_in_model == b.is_in_model && is_leaving(a) == is_leaving(b);
+  };
+  std::vector<std::vector<const diagnosis::Unexplained*>> groups;
+  for (const diagnosis::Unexplained& heat : diagnosis.unexplained) {
+    const auto own = std::ranges::find_if(groups, [&](const auto& group) { return is_shared(*group.front(), heat); });
+    (own == groups.end() ? groups.emplace_back() : *own).push_back(&heat);
+  }
+  for (const auto& group : groups) {
+    all.push_back(unexplained_in_words(group, diagnosis));
+  }
+  return all;
+}
+
 std::vector<std::string> diagnosis_words(const diagnosis::Diagnosis& diagnosis, const diagnosis::HoldoutScore& score) {
   std::vector<std::string> all{verdict_in_words(diagnosis)};
   for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
@@ -348,7 +370,7 @@ std::vector<std::string> diagnosis_words(const diagnosis::Diagnosis& diagnosis, 
   if (!diagnosis.changed.empty() && diagnosis.verdict != diagnosis::DiagnosisVerdict::not_identifiable) {
     all.emplace_back("These runs do not determine whether this has changed, or whether a missing effect acts like such a change.");
   }
-  add_unexplained(diagnosis, all);
+  std::ranges::move(unexplained_words(diagnosis), std::back_inserter(all));
   if (diagnosis.selection.is_as_usual) {
     all.emplace_back("The file's values are kept: the model follows these runs as well as those that it was fitted to.");
   }

@@ -14,6 +14,9 @@ namespace heatsoak::present {
 /// runs.
 std::vector<std::string> diagnosis_words(const diagnosis::Diagnosis& diagnosis, const diagnosis::HoldoutScore& score);
 
+/// Returns one sentence per unexplained heat. Curves with the same node, factor and signals share one.
+std::vector<std::string> unexplained_words(const diagnosis::Diagnosis& diagnosis);
+
 /// Returns the rejected candidates with the reason: "windage: it hardly improves the prediction of whole runs".
 std::vector<std::string> refusal_words(const attribution::Selection& selection);
 
