@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname -- "${BASH_SOURCE[0]}")/../.."
 heatsoak=${HEATSOAK:-build/release/bin/heatsoak}
-data=${HEATSOAK_MEASURED_DATA:-../shared/data}
+data=${HEATSOAK_MEASURED_DATA:?names the folder of the recordings}
 out=reports/friction
 robotino=(--robot tests/data/robots/festo_robotino.toml --motor tests/data/motors/robotino_motor.toml
           --map tests/data/mappings/robotino_omni.map.toml)

@@ -133,10 +133,8 @@ std::string verdict_in_words(const diagnosis::Diagnosis& diagnosis) {
            "fitted to these runs.";
   }
   return !diagnosis.selection.is_undecided()
-             ? fmt::format(
-                   "These runs do not determine whether an effect is missing: at typical size, only {:.0f} % of the effects of "
-                   "the catalogue would be visible in them.",
-                   100.0 * diagnosis.selection.seen_share)
+             ? fmt::format("At typical size, only {:.0f} % of the effects of the catalogue would be visible in these runs.",
+                           100.0 * diagnosis.selection.seen_share)
              : std::string(
                    "An effect may be missing, but in these runs it cannot be distinguished from a change of the model's own "
                    "resistances and capacities. No effect is named.");
