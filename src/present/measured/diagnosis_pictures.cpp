@@ -17,12 +17,11 @@ constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 /// Places runs one after the other on the time axis, with a gap between them.
 struct Axis {
   double begin_min = 0.0;
-  double put(const estimation::MeasuredRun& run, std::vector<double>& x) const {
+  void put(const estimation::MeasuredRun& run, std::vector<double>& x) const {
     for (const double time_s : run.time_s) {
       x.push_back(begin_min + (time_s - run.time_s.front()) / 60.0);
     }
     x.push_back(x.back());
-    return x.back() + 0.5;
   }
 };
 
@@ -33,13 +32,20 @@ std::string listed(const std::vector<std::string>& runs) {
                              : fmt::format("{}", fmt::join(runs, ", "));
 }
 
-report::ChartPanel residual_panel(const std::string& signal, const estimation::Model& before, const estimation::Model& after,
-                                  const std::vector<estimation::MeasuredRun>& runs, const std::vector<estimation::MeasuredRun>& before_them,
-                                  const std::string& title) {
-  report::ChartPanel panel{title, "measured − model / K", {}, {}, {}};
-  report::ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
+/// The two models whose residuals are compared.
+struct Compared {
+  const estimation::Model& before;
+  const estimation::Model& after;
+};
+
+/// Adds the residuals of the runs that have the signal to the panel, and their names to its title. `earlier`: runs before the hold-out
+/// runs, whose end may be the start of these; empty for training runs.
+void add_residuals(const std::string& signal, const Compared& models, const std::vector<estimation::MeasuredRun>& runs,
+                   const std::vector<estimation::MeasuredRun>& earlier, Axis& axis, report::ChartPanel& panel) {
+  const bool is_held_out = !earlier.empty();
+  const std::string suffix = is_held_out ? ", hold-out" : "";
+  report::ChartCurve old{"before" + suffix, {}, {}, 1, is_held_out}, now{"after" + suffix, {}, {}, 0, is_held_out};
   std::vector<std::string> names;
-  Axis axis;
   for (const estimation::MeasuredRun& run : runs) {
     const auto found = std::ranges::find(run.sensors, signal, &estimation::Sensor::signal);
     if (found == run.sensors.end()) {
@@ -47,17 +53,19 @@ report::ChartPanel residual_panel(const std::string& signal, const estimation::M
     }
     names.push_back(run.name);
     const Eigen::Index sensor = found - run.sensors.begin();
-    for (const auto& [curve, model] : {std::pair(&old, &before), std::pair(&now, &after)}) {
-      const Eigen::VectorXd off_K = run.measured_C.col(sensor) - estimation::open_loop_C(*model, run, before_them).col(sensor);
+    for (const auto& [curve, model] : {std::pair(&old, &models.before), std::pair(&now, &models.after)}) {
+      const Eigen::VectorXd off_K = run.measured_C.col(sensor) - estimation::open_loop_C(*model, run, earlier).col(sensor);
       curve->y.insert(curve->y.end(), off_K.begin(), off_K.end());
       curve->y.push_back(kGap);
       axis.put(run, curve->x);
     }
     axis.begin_min = now.x.back() + 0.5;
   }
-  panel.title += ": " + listed(names);
-  panel.curves = {old, now};
-  return panel;
+  if (!names.empty()) {
+    panel.title += fmt::format("{} {}", is_held_out ? "; hold-out" : ": training", listed(names));
+    panel.curves.push_back(std::move(old));
+    panel.curves.push_back(std::move(now));
+  }
 }
 
 DiagnosisPicture residuals(const diagnosis::Diagnosis& diagnosis, const diagnosis::DiagnosisInput& input,
@@ -66,13 +74,13 @@ DiagnosisPicture residuals(const diagnosis::Diagnosis& diagnosis, const diagnosi
                       "runs one behind the other; the model runs freely from the first measured temperatures",
                       "time / min",
                       {}};
+  const Compared models{input.model, diagnosis.selection.after.model};
   for (const auto& [signal, error] : diagnosis.before_train) {
-    const std::string name = signal.substr(0, signal.rfind('_'));
-    chart.panels.push_back(residual_panel(signal, input.model, diagnosis.selection.after.model, input.train, {}, name + ", training runs"));
-    if (!score.runs.empty()) {
-      chart.panels.push_back(
-          residual_panel(signal, input.model, diagnosis.selection.after.model, score.runs, input.train, name + ", hold-out runs"));
-    }
+    report::ChartPanel panel{signal.substr(0, signal.rfind('_')), "measured − model / K", {}, {}, {}};
+    Axis axis;
+    add_residuals(signal, models, input.train, {}, axis, panel);
+    add_residuals(signal, models, score.runs, input.train, axis, panel);
+    chart.panels.push_back(std::move(panel));
   }
   chart.panel_height_px = 260;
   return {"residual_K", chart};
