@@ -12,9 +12,9 @@ std::vector<double> knots_from(const Regressor::Range& range) {
   return knots;
 }
 
-std::vector<double> knots_between(Regressor::Range range, DriverKind kind) {
+std::vector<double> knots_between(Regressor::Range range, RegressorKind kind) {
   auto& [low, high] = range;
-  if (low < 0.0 && high > 0.0 && kind != DriverKind::node_temperature) {
+  if (low < 0.0 && high > 0.0 && kind != RegressorKind::node_temperature) {
     const double below = std::clamp(std::round(-low / (high - low) * (kKnots - 1.0)), 1.0, kKnots - 2.0);
     const double step = std::max(-low / below, high / (kKnots - 1.0 - below));
     low = -below * step;

@@ -14,7 +14,7 @@ inline constexpr int kKnots = 7;
 std::vector<double> knots_from(const Regressor::Range& range);
 /// Returns such knots, but if a signal other than a temperature changes its sign, the range is extended so that one knot is 0. The curve
 /// may then differ between forward and reverse, or driving and braking.
-std::vector<double> knots_between(Regressor::Range range, DriverKind kind);
+std::vector<double> knots_between(Regressor::Range range, RegressorKind kind);
 
 /// The two hat functions that are nonzero at a value: knots `left` and `left` + 1, with weights 1 − right_share and right_share. Values
 /// outside the knots are clamped.

@@ -45,14 +45,14 @@ HatColumns response(const estimation::LinearisedRun& run, const HatColumns& heat
   return shown;
 }
 
-/// True if a curve over `driver` may be multiplied by `multiplier`. A loss may depend on two operating signals. Heat that depends on a
+/// True if a curve over `regressor` may be multiplied by `multiplier`. A loss may depend on two operating signals. Heat that depends on a
 /// temperature is cooling, or a copper or current loss that varies with that temperature.
-bool goes_with(const Regressor& driver, Multiplier multiplier) {
-  if (driver.kind == DriverKind::node_temperature && multiplier == Multiplier::source) {
+bool goes_with(const Regressor& regressor, Multiplier multiplier) {
+  if (regressor.kind == RegressorKind::node_temperature && multiplier == Multiplier::source) {
     return false;
   }
   const std::string_view second = spec_of(multiplier).second_signal;
-  return second.empty() || (driver.kind == DriverKind::operating_point && driver.name != second);
+  return second.empty() || (regressor.kind == RegressorKind::operating_point && regressor.name != second);
 }
 
 /// Evidence of a curve with its most probable subset and unknown heat.
@@ -142,8 +142,8 @@ class Scanner {
         count += static_cast<double>(multiplier.back().size());
       }
       const double usual = kUsual_share * input_.mean_heat_W / std::max(1e-9, std::sqrt(squares / std::max(1.0, count)));
-      for (std::size_t driver = 0; driver < input_.drivers->size(); ++driver) {
-        const Regressor& of = (*input_.drivers)[driver];
+      for (std::size_t regressor = 0; regressor < input_.regressors->size(); ++regressor) {
+        const Regressor& of = (*input_.regressors)[regressor];
         if (!goes_with(of, term.multiplier)) {
           continue;
         }
@@ -153,7 +153,7 @@ class Scanner {
         }
         for (std::vector<double>& each : knots) {
           Family family{term, std::move(each), usual, multiplier, {}, {}};
-          family.term.driver = static_cast<int>(driver);
+          family.term.regressor = static_cast<int>(regressor);
           families.push_back(std::move(family));
         }
       }
@@ -197,14 +197,14 @@ class Scanner {
   /// Concentrates the knots: a thermostat or a resonance is narrower than a seventh of the signal's range.
   void zoom(Family& family) {
     constexpr int kHalvings = 3;
-    const Regressor& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
+    const Regressor& regressor = (*input_.regressors)[static_cast<std::size_t>(family.term.regressor)];
     for (int half = 0; half < kHalvings; ++half) {
       const double low = family.knots.front();
       const double quarter = 0.25 * (family.knots.back() - low);
       std::vector<Family> narrower;
       for (const double begin : {0.0, 1.0, 2.0}) {
         Family& other = narrower.emplace_back(family);
-        other.knots = knots_between({low + begin * quarter, low + (begin + 2.0) * quarter}, driver.kind);
+        other.knots = knots_between({low + begin * quarter, low + (begin + 2.0) * quarter}, regressor.kind);
         other.shown.clear();
         other.scored = {};
       }
@@ -248,10 +248,10 @@ class Scanner {
   [[nodiscard]] HatColumns heats_W(const Family& family, std::size_t r) const {
     const double sign = spec_of(family.term.multiplier).is_conductance ? -1.0 : 1.0;
     const estimation::DesignRun& design = (*input_.designs)[r];
-    const Regressor& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
+    const Regressor& regressor = (*input_.regressors)[static_cast<std::size_t>(family.term.regressor)];
     HatColumns heat_W = HatColumns::Zero(design.run.samples() - 1, kKnots + 1);
     for (Eigen::Index k = 0; k < family.multiplier[r].size(); ++k) {
-      const double value = driver.values[r][k];
+      const double value = regressor.values[r][k];
       const Eigen::Index row = design.interval_of[static_cast<std::size_t>(k)];
       if (row < 0 || std::isnan(value)) {
         continue;
@@ -414,11 +414,11 @@ class Scanner {
 
   /// Sets the mean and the largest magnitude of the curve's heat.
   void set_heat(const Family& family, ScanResult& out) const {
-    const Regressor& driver = (*input_.drivers)[static_cast<std::size_t>(family.term.driver)];
+    const Regressor& regressor = (*input_.regressors)[static_cast<std::size_t>(family.term.regressor)];
     double count = 0.0;
     for (std::size_t r = 0; r < family.multiplier.size(); ++r) {
       for (Eigen::Index k = 0; k < family.multiplier[r].size(); ++k) {
-        if (const double value = driver.values[r][k]; !std::isnan(value)) {
+        if (const double value = regressor.values[r][k]; !std::isnan(value)) {
           const double heat_W = std::abs(value_at(family.knots, out.curve, value) * family.multiplier[r][k]);
           out.mean_W += heat_W;
           out.peak_W = std::max(out.peak_W, heat_W);
@@ -441,8 +441,8 @@ class Scanner {
 
 }  // namespace
 
-std::vector<ScanResult> scan_drivers(const ScanInput& input, const SelectionRules& rules, std::size_t most) {
-  return input.drivers->empty() ? std::vector<ScanResult>() : Scanner(input, rules).run(most);
+std::vector<ScanResult> scan_regressors(const ScanInput& input, const SelectionRules& rules, std::size_t most) {
+  return input.regressors->empty() ? std::vector<ScanResult>() : Scanner(input, rules).run(most);
 }
 
 }  // namespace heatsoak::attribution

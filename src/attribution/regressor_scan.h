@@ -35,7 +35,7 @@ struct ScanInput {
   const estimation::Model* model = nullptr;
   const std::vector<estimation::MeasuredRun>* runs = nullptr;
   const std::vector<estimation::LinearisedRun>* fitted = nullptr;
-  const std::vector<Regressor>* drivers = nullptr;
+  const std::vector<Regressor>* regressors = nullptr;
   const std::vector<estimation::DesignRun>* designs = nullptr;
   estimation::ThetaPrior prior;
   const std::vector<CandidateRule>* rules = nullptr;  ///< candidates, in the order of their columns in the design after those of θ
@@ -46,6 +46,6 @@ struct ScanInput {
 };
 
 /// Returns the best curves, at most `most`, best first; empty if there are no signals. The gain may be negative.
-std::vector<ScanResult> scan_drivers(const ScanInput& input, const SelectionRules& rules, std::size_t most);
+std::vector<ScanResult> scan_regressors(const ScanInput& input, const SelectionRules& rules, std::size_t most);
 
 }  // namespace heatsoak::attribution

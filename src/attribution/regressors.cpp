@@ -12,21 +12,21 @@
 namespace heatsoak::attribution {
 namespace {
 
-Regressor driver_of(std::string name, std::string unit, DriverKind kind) {
-  Regressor driver;
-  driver.name = std::move(name);
-  driver.unit = std::move(unit);
-  driver.kind = kind;
-  return driver;
+Regressor regressor_of(std::string name, std::string unit, RegressorKind kind) {
+  Regressor regressor;
+  regressor.name = std::move(name);
+  regressor.unit = std::move(unit);
+  regressor.kind = kind;
+  return regressor;
 }
 
 /// A temperature that a curve can depend on. `choice`, `watched` and `reference` as in Regressor.
 Regressor temperature_of(std::string name, std::string unit, std::string choice, std::string_view watched, std::string_view reference) {
-  Regressor driver = driver_of(std::move(name), std::move(unit), DriverKind::node_temperature);
-  driver.choice = std::move(choice);
-  driver.watched = watched;
-  driver.reference = reference;
-  return driver;
+  Regressor regressor = regressor_of(std::move(name), std::move(unit), RegressorKind::node_temperature);
+  regressor.choice = std::move(choice);
+  regressor.watched = watched;
+  regressor.reference = reference;
+  return regressor;
 }
 
 class Collector {
@@ -34,14 +34,14 @@ class Collector {
   explicit Collector(const std::vector<estimation::MeasuredRun>& runs) : runs_(runs) {}
 
   template <class Value>
-  void add(Regressor driver, const Value& value) {
+  void add(Regressor regressor, const Value& value) {
     for (std::size_t r = 0; r < runs_.size(); ++r) {
-      Eigen::VectorXd& values = driver.values.emplace_back(runs_[r].samples() - 1);
+      Eigen::VectorXd& values = regressor.values.emplace_back(runs_[r].samples() - 1);
       for (Eigen::Index k = 0; k < values.size(); ++k) {
         values[k] = value(r, k);
       }
     }
-    keep(std::move(driver));
+    keep(std::move(regressor));
   }
 
   template <class Value>
@@ -51,45 +51,46 @@ class Collector {
         return;
       }
     }
-    Regressor driver = driver_of(name, std::move(unit), DriverKind::operating_point);
-    driver.choice = std::move(name);
-    add(std::move(driver), [&](std::size_t r, Eigen::Index k) { return value(runs_[r].at[static_cast<std::size_t>(k)]); });
+    Regressor regressor = regressor_of(name, std::move(unit), RegressorKind::operating_point);
+    regressor.choice = std::move(name);
+    add(std::move(regressor), [&](std::size_t r, Eigen::Index k) { return value(runs_[r].at[static_cast<std::size_t>(k)]); });
   }
 
   std::vector<Regressor> take() { return std::move(kept_); }
 
  private:
-  void keep(Regressor driver) {
+  void keep(Regressor regressor) {
     std::vector<double> known;
-    for (const Eigen::VectorXd& values : driver.values) {
+    for (const Eigen::VectorXd& values : regressor.values) {
       std::ranges::copy_if(values, std::back_inserter(known), [](double value) { return !std::isnan(value); });
     }
     if (known.empty()) {
       return;
     }
     std::ranges::sort(known);
-    driver.low = known[known.size() / 100];
-    driver.high = known[known.size() - 1 - known.size() / 100];
-    const double size = std::max(std::abs(driver.low), std::abs(driver.high));
+    regressor.low = known[known.size() / 100];
+    regressor.high = known[known.size() - 1 - known.size() / 100];
+    const double size = std::max(std::abs(regressor.low), std::abs(regressor.high));
     constexpr double kPoint_share = 1e-6;
-    if (!(driver.high - driver.low > kPoint_share * size) || is_copy(driver)) {
+    if (!(regressor.high - regressor.low > kPoint_share * size) || is_copy(regressor)) {
       return;
     }
-    double width = driver.high - driver.low;
+    double width = regressor.high - regressor.low;
     for (const std::size_t part : {10, 4}) {
       const double low = known[known.size() / part];
       const double high = known[known.size() - 1 - known.size() / part];
-      if (high - low < width && high - low > kPoint_share * (driver.high - driver.low)) {
-        driver.inner.push_back({low, high});
+      if (high - low < width && high - low > kPoint_share * (regressor.high - regressor.low)) {
+        regressor.inner.push_back({low, high});
         width = high - low;
       }
     }
-    kept_.push_back(std::move(driver));
+    kept_.push_back(std::move(regressor));
   }
 
-  [[nodiscard]] bool is_copy(const Regressor& driver) const {
-    return std::ranges::any_of(
-        kept_, [&](const Regressor& other) { return std::abs(correlation(driver, other)) > estimation::thresholds().same_signal_ratio; });
+  [[nodiscard]] bool is_copy(const Regressor& regressor) const {
+    return std::ranges::any_of(kept_, [&](const Regressor& other) {
+      return std::abs(correlation(regressor, other)) > estimation::thresholds().same_signal_ratio;
+    });
   }
 
   static double correlation(const Regressor& a, const Regressor& b) {
@@ -155,12 +156,12 @@ void add_temperatures(Collector& all, const estimation::Model& model, const std:
 
 }  // namespace
 
-std::vector<Regressor> drivers_of(const estimation::Model& model, const std::vector<estimation::LinearisedRun>& fitted,
-                                  const std::vector<estimation::MeasuredRun>& runs) {
+std::vector<Regressor> regressors_of(const estimation::Model& model, const std::vector<estimation::LinearisedRun>& fitted,
+                                     const std::vector<estimation::MeasuredRun>& runs) {
   Collector all(runs);
   add_operating_points(all);
   add_temperatures(all, model, fitted, runs);
-  all.add(driver_of(std::string(kTimeDriver), "s", DriverKind::log_only), [&](std::size_t r, Eigen::Index k) {
+  all.add(regressor_of(std::string(kTimeRegressor), "s", RegressorKind::log_only), [&](std::size_t r, Eigen::Index k) {
     const auto first = std::ranges::find(runs, estimation::recording_of(runs[r]), estimation::recording_of);
     return runs[r].time_s[static_cast<std::size_t>(k)] - first->time_s.front();
   });
@@ -172,9 +173,9 @@ std::vector<Regressor> drivers_of(const estimation::Model& model, const std::vec
   }
   for (const std::string& name : names) {
     const std::optional<recording::Quantity> quantity = recording::quantity_named(name);
-    Regressor driver = driver_of(name, quantity ? quantity->unit : "", DriverKind::log_only);
-    driver.choice = thermal::kColumnChoice;
-    all.add(std::move(driver), [&](std::size_t r, Eigen::Index k) {
+    Regressor regressor = regressor_of(name, quantity ? quantity->unit : "", RegressorKind::log_only);
+    regressor.choice = thermal::kColumnChoice;
+    all.add(std::move(regressor), [&](std::size_t r, Eigen::Index k) {
       const auto found = runs[r].columns.find(name);
       return found == runs[r].columns.end() ? base::kUnknown : found->second[k];
     });

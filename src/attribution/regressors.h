@@ -11,13 +11,13 @@
 namespace heatsoak::attribution {
 
 /// Origin of a signal: every operating point, a temperature, or only the log.
-enum class DriverKind { operating_point, node_temperature, log_only };
+enum class RegressorKind { operating_point, node_temperature, log_only };
 
 /// A signal that a curve may depend on.
 struct Regressor {
   std::string name;  ///< "speed", "stator_excess", "time", "thrust_N"
   std::string unit;  ///< UDUNITS text; "" for pure numbers
-  DriverKind kind = DriverKind::operating_point;
+  RegressorKind kind = RegressorKind::operating_point;
   std::vector<Eigen::VectorXd> values;  ///< per run, one value per interval; NaN: not known
   double low = 0.0;                     ///< 1st percentile of the values
   double high = 0.0;                    ///< 99th percentile of the values
@@ -32,10 +32,10 @@ struct Regressor {
 };
 
 /// Name of the signal "time since the start of the recording", in s.
-inline constexpr std::string_view kTimeDriver = "time";
+inline constexpr std::string_view kTimeRegressor = "time";
 
 /// Returns the signals that vary within at least one run and are not copies of each other.
-std::vector<Regressor> drivers_of(const estimation::Model& model, const std::vector<estimation::LinearisedRun>& fitted,
-                                  const std::vector<estimation::MeasuredRun>& runs);
+std::vector<Regressor> regressors_of(const estimation::Model& model, const std::vector<estimation::LinearisedRun>& fitted,
+                                     const std::vector<estimation::MeasuredRun>& runs);
 
 }  // namespace heatsoak::attribution

@@ -28,8 +28,8 @@ struct SelectionRules {
   int pool_of_two = 7;
   int pool_of_three = 5;
   int best_grown = 25;
-  int most_rounds = 5;        ///< largest number of rounds
-  bool scans_drivers = true;  ///< searches curves over signals, too
+  int most_rounds = 5;           ///< largest number of rounds
+  bool scans_regressors = true;  ///< searches curves over signals, too
 };
 
 }  // namespace heatsoak::attribution

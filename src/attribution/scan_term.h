@@ -36,11 +36,11 @@ struct ScanTerm {
   std::string node;
   std::string other;  ///< second node of `difference`; else empty
   Multiplier multiplier = Multiplier::source;
-  int driver = 0;  ///< index in the list of signals
+  int regressor = 0;  ///< index in the list of signals
 };
 
-/// Returns all families, without their signals. A flow between two nodes is included only if both have a sensor: the temperature of a node
-/// without one is too free. Heat that depends on current or speed as a second signal enters the stator.
+/// Returns all families, without their signals. A flow between two nodes is included only if both have a sensor: the runs hardly
+/// determine the temperature of a node without one. Heat that depends on current or speed as a second signal enters the stator.
 std::vector<ScanTerm> scan_terms(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs);
 /// Returns the index of the node among those with unknown heat; empty if it is not one of them.
 std::optional<int> flux_of(const estimation::Model& model, std::string_view node);

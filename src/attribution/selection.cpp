@@ -61,7 +61,7 @@ class Selector : Rounds {
         estimation::try_posterior_of(with_best, input_.runs, starts_of(with_best), options_with(grid_.at(judged.best_place)));
     out_.left_W = left_by(std::isfinite(full.evidence_nats) ? full : out_.before);
     const bool is_something_missing = out_.is_material() || out_.nothing_probability < 1.0 - sure;
-    if (rules_.scans_drivers && !is_speed_open_ && (is_something_missing || !named.empty())) {
+    if (rules_.scans_regressors && !is_speed_open_ && (is_something_missing || !named.empty())) {
       scan(judged, best);
     }
     if (are_runs_as_usual()) {
@@ -115,14 +115,14 @@ class Selector : Rounds {
           estimation::design(now_.model.network, {now_.fitted[r]}, {input_.runs[r]}, {out_.weights[r]}, {}, {});
       path[r].state_C = estimation::smoothed_path_C(now_.fitted[r], grid_.at(judged.best_place), own.front().noise).topRows(path[r].states);
     }
-    out_.drivers = drivers_of(base, path, input_.runs);
+    out_.regressors = regressors_of(base, path, input_.runs);
     const ScanInput input{&base,           &input_.runs,
-                          &judged.fitted,  &out_.drivers,
+                          &judged.fitted,  &out_.regressors,
                           &judged.designs, estimation::prior_here(base),
                           &set_rules_,     best.members,
                           grid_,           {judged.best_place, judged.empty_place},
                           out_.mean_heat_W};
-    out_.rounds.back().scan = scan_drivers(input, rules_, kMostReported);
+    out_.rounds.back().scan = scan_regressors(input, rules_, kMostReported);
   }
 
   /// Replaces the effects that the curve explains better by the curve.
@@ -134,7 +134,7 @@ class Selector : Rounds {
       } else {
         refuse({.id = id_of(best.members[m]),
                 .reason = RefusalReason::curve_is_better,
-                .signal = out_.drivers[static_cast<std::size_t>(curve.term.driver)].name});
+                .signal = out_.regressors[static_cast<std::size_t>(curve.term.regressor)].name});
       }
     }
     if (input_.usual.flux_W > 0.0) {
@@ -262,10 +262,10 @@ class Selector : Rounds {
 
   /// Adds the curve to the answer, and to the model if that can contain it: a motor has no law over the time since the start of a log.
   void add_curve(const Judged& judged, const ScanResult& curve) {
-    const Regressor& driver = out_.drivers[static_cast<std::size_t>(curve.term.driver)];
+    const Regressor& regressor = out_.regressors[static_cast<std::size_t>(curve.term.regressor)];
     AcceptedTerm term;
     term.curve = curve;
-    if (const std::optional<estimation::Model> curved = with_curve(out_.after.model, curve, driver)) {
+    if (const std::optional<estimation::Model> curved = with_curve(out_.after.model, curve, regressor)) {
       std::vector<estimation::MeasuredRun> runs = input_.runs;
       estimation::set_columns(runs, curved->columns);
       estimation::Posterior fit = estimation::posterior_of(*curved, runs, out_.after.start_C, final_options(judged.best_place));
@@ -276,8 +276,8 @@ class Selector : Rounds {
     term.loss_without_nats = curve.gain_nats;
     term.probability = 1.0;
     for (const ScanResult& each : out_.rounds.back().scan) {
-      const std::string& other = out_.drivers[static_cast<std::size_t>(each.term.driver)].name;
-      if (each.gain_nats > curve.gain_nats - estimation::thresholds().distinct_nats && other != driver.name &&
+      const std::string& other = out_.regressors[static_cast<std::size_t>(each.term.regressor)].name;
+      if (each.gain_nats > curve.gain_nats - estimation::thresholds().distinct_nats && other != regressor.name &&
           std::ranges::find(term.confusable_with, other) == term.confusable_with.end()) {
         term.confusable_with.push_back(other);
       }

@@ -83,7 +83,7 @@ struct Selection {
   std::map<Eigen::Index, double> changed_nats;
   std::vector<AcceptedTerm> terms;
   std::vector<Round> rounds;
-  std::vector<Regressor> drivers;  ///< signals of the scan
+  std::vector<Regressor> regressors;  ///< signals of the scan
   std::vector<UntestedEffect> not_judged;
   double mean_heat_W = 0.0;              ///< mean heat of the model along the runs, see usual_heat_W()
   double material_W = 0.0;               ///< unknown heat below this is normal for any model

@@ -129,39 +129,39 @@ Eigen::Index size_coordinate(const estimation::Model& model, const Candidate& ca
   return std::ranges::find(model.free, place, &estimation::FreeParameter::place) - model.free.begin();
 }
 
-std::optional<estimation::Model> with_curve(const estimation::Model& model, const ScanResult& curve, const Regressor& driver) {
-  if (driver.choice.empty()) {
+std::optional<estimation::Model> with_curve(const estimation::Model& model, const ScanResult& curve, const Regressor& regressor) {
+  if (regressor.choice.empty()) {
     return std::nullopt;
   }
   const thermal::EffectType& type = *thermal::find_effect("tabulated");
   const std::optional<double> form = choice_value(type.parameters[1], spec_of(curve.term.multiplier).form);
   estimation::Model out = model;
-  std::string_view driver_choice = driver.choice;
-  if (driver.choice == thermal::kColumnChoice) {
-    const auto place = static_cast<std::size_t>(std::ranges::find(out.columns, driver.name) - out.columns.begin());
+  std::string_view signal_choice = regressor.choice;
+  if (regressor.choice == thermal::kColumnChoice) {
+    const auto place = static_cast<std::size_t>(std::ranges::find(out.columns, regressor.name) - out.columns.begin());
     if (place == thermal::kLogColumns) {
       return std::nullopt;
     }
-    out.columns.resize(std::max(out.columns.size(), place + 1), driver.name);
-    driver_choice = thermal::kColumnChoices[place];
+    out.columns.resize(std::max(out.columns.size(), place + 1), regressor.name);
+    signal_choice = thermal::kColumnChoices[place];
   }
-  const std::optional<double> choice = choice_value(type.parameters[0], driver_choice);
+  const std::optional<double> choice = choice_value(type.parameters[0], signal_choice);
   if (!choice || !form) {
     return std::nullopt;
   }
   const Eigen::VectorXd values = passive(curve);
   const std::string ambient(thermal::Network::kAmbient);
   const std::string cold = curve.term.other.empty() ? ambient : curve.term.other;
-  const std::string watched = driver.watched.empty() ? curve.term.node : driver.watched;
-  const std::string reference = driver.reference.empty() ? ambient : driver.reference;
+  const std::string watched = regressor.watched.empty() ? curve.term.node : regressor.watched;
+  const std::string reference = regressor.reference.empty() ? ambient : regressor.reference;
   std::vector<double> parameters{*choice, *form, curve.knots.front(), curve.knots.back()};
   parameters.insert(parameters.end(), values.begin(), values.end());
-  const thermal::EffectInPlace effect = add(out, as_word(fmt::format("unnamed_{}_with_{}", curve.term.node, driver.name)), type,
+  const thermal::EffectInPlace effect = add(out, as_word(fmt::format("unnamed_{}_with_{}", curve.term.node, regressor.name)), type,
                                             {curve.term.node, cold, watched, reference}, parameters);
   const double gap = (curve.knots.back() - curve.knots.front()) / static_cast<double>(values.size() - 1);
   for (const std::size_t end : {2U, 3U}) {
     // The scan used measured temperatures with noise and sensor errors, so the knots may be off.
-    if (driver.kind == DriverKind::node_temperature) {
+    if (regressor.kind == RegressorKind::node_temperature) {
       const double knot = parameters[end];
       out.set_free({.place = effect.parameter_index[end], .by_log = false, .scale = gap, .low = knot - 2.0 * gap, .high = knot + 2.0 * gap},
                    kKnotSpread);

@@ -22,7 +22,7 @@ Eigen::Index size_coordinate(const estimation::Model& model, const Candidate& ca
 /// Returns the model with the curve added as an effect `tabulated` with free values. Negative values are set to 0; the minimum of a
 /// conductance is subtracted first. Returns nothing if an effect cannot depend on this signal, or if the model already uses another log
 /// column.
-std::optional<estimation::Model> with_curve(const estimation::Model& model, const ScanResult& curve, const Regressor& driver);
+std::optional<estimation::Model> with_curve(const estimation::Model& model, const ScanResult& curve, const Regressor& regressor);
 
 /// Returns `model` with the values of parameters, sensor errors and deviations that `other` also contains.
 estimation::Model with_values_of(estimation::Model model, const estimation::Model& other);

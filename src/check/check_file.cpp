@@ -24,7 +24,7 @@ constexpr std::size_t kMostChecks = 1000;
 
 class CheckReader {
  public:
-  /// `written` is the table as it stands in the file. `reported`: problems of other files that were reported before; several checks may
+  /// `written` is the table in the file. `reported`: problems of other files that were reported before; several checks may
   /// name one file.
   CheckReader(input::Reader table, const input::Value& written, fs::path folder, const input::DataFolders& folders,
               std::set<std::string>& reported)

@@ -30,8 +30,8 @@ struct DiagnosisInput {
 struct Unexplained {
   std::string node;                   ///< node whose sensor shows the heat
   std::vector<std::string> or_nodes;  ///< nodes without a sensor that the heat may enter instead
-  std::vector<std::string> drivers;   ///< signals that the heat may follow, in order of evidence; empty: none
-  std::string unconfirmed_driver;     ///< signal that the heat may follow, though left-out runs do not confirm it; empty: none
+  std::vector<std::string> signals;   ///< signals that the heat may follow, in order of evidence; empty: none
+  std::string unconfirmed_signal;     ///< signal that the heat may follow, though left-out runs do not confirm it; empty: none
   /// Factor that multiplies the curve; `source` without a curve.
   attribution::Multiplier multiplier = attribution::Multiplier::source;
   std::string other_node;  ///< second node of Multiplier::difference; else empty
@@ -43,7 +43,7 @@ struct Unexplained {
   std::vector<double> knots;
   std::vector<double> curve;
   std::vector<double> curve_sd;
-  std::string driver_unit;
+  std::string signal_unit;
   bool is_in_model = false;  ///< the extended model contains the curve
 };
 

@@ -43,9 +43,9 @@ class EffectReport {
     }
     if (term.curve) {
       effect.node = term.curve->term.node;
-      effect.drivers.push_back(selection_.drivers[static_cast<std::size_t>(term.curve->term.driver)].name);
+      effect.signals.push_back(selection_.regressors[static_cast<std::size_t>(term.curve->term.regressor)].name);
       if (const std::string_view second = attribution::spec_of(term.curve->term.multiplier).second_signal; !second.empty()) {
-        effect.drivers.emplace_back(second);
+        effect.signals.emplace_back(second);
       }
       effect.is_from_catalogue = false;
     }

@@ -147,7 +147,7 @@ motor::MotorEffect motor_effect(const FoundEffect& found, const estimation::Post
       const std::string_view name = spec.choices[static_cast<std::size_t>(value)].name;
       chosen.printed = thermal::is_column_choice(name) ? thermal::kColumnChoice : name;
       effect.parameters.push_back(chosen);
-      effect.column = chosen.printed == thermal::kColumnChoice ? found.drivers.front() : effect.column;
+      effect.column = chosen.printed == thermal::kColumnChoice ? found.signals.front() : effect.column;
       continue;
     }
     const FittedParameter& fitted = *std::ranges::find(found.parameters, spec.key, &FittedParameter::name);

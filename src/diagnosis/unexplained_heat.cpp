@@ -42,7 +42,7 @@ class UnexplainedHeatReport {
     }
     const std::vector<attribution::ScanResult>& scan = told_.selection.rounds.back().scan;
     if (!scan.empty() && scan.front().gain_nats > estimation::thresholds().clear_nats) {
-      most.unconfirmed_driver = told_.selection.drivers[static_cast<std::size_t>(scan.front().term.driver)].name;
+      most.unconfirmed_signal = told_.selection.regressors[static_cast<std::size_t>(scan.front().term.regressor)].name;
     }
     return most;
   }
@@ -95,17 +95,17 @@ class UnexplainedHeatReport {
   /// Reports an accepted curve, with the fitted values of the model if that contains it.
   void add_curve(const attribution::AcceptedTerm& term) {
     const attribution::ScanTerm& scanned = term.curve->term;
-    const attribution::Regressor& driver = told_.selection.drivers[static_cast<std::size_t>(scanned.driver)];
+    const attribution::Regressor& regressor = told_.selection.regressors[static_cast<std::size_t>(scanned.regressor)];
     const auto effect = std::ranges::find(told_.effects, term.effect_name, &FoundEffect::name);
     Unexplained heat;
     heat.node = scanned.node;
-    heat.drivers = {driver.name};
-    heat.drivers.insert(heat.drivers.end(), term.confusable_with.begin(), term.confusable_with.end());
+    heat.signals = {regressor.name};
+    heat.signals.insert(heat.signals.end(), term.confusable_with.begin(), term.confusable_with.end());
     heat.multiplier = scanned.multiplier;
     heat.other_node = scanned.other;
     heat.time_scale_s = time_scale_s();
     heat.gain_nats = term.curve->gain_nats;
-    heat.driver_unit = driver.unit;
+    heat.signal_unit = regressor.unit;
     if (term.effect_name.empty()) {
       const Eigen::VectorXd& curve = term.curve->curve;
       heat.mean_W = heat.rms_W = term.curve->mean_W;

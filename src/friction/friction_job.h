@@ -1,4 +1,4 @@
-// The answer of `friction`: logs of a test to the friction of every wheel, and the robot's file with it.
+// The answer of `friction`: fits the friction of every wheel to the logs of a test, and writes it into the robot file.
 #pragma once
 
 #include <optional>

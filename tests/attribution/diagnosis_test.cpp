@@ -66,7 +66,7 @@ TEST(Examination, CurveOverAColumnOfTheLogIsPartOfTheModel) {
     if (!claim.expect(found.effects.size() == 1U && !found.unexplained.empty(), account(answer))) {
       return;
     }
-    claim.expect(found.effects.front().drivers == std::vector<std::string>{"current_A"}, "input signals " + account(answer));
+    claim.expect(found.effects.front().signals == std::vector<std::string>{"current_A"}, "input signals " + account(answer));
     claim.expect(found.selection.after.model.columns == std::vector<std::string>{"current_A"}, "columns of the model");
     claim.expect(found.unexplained.front().is_in_model, "in the model");
     claim.expect(estimation::rms_K(answer.score.after) < 0.3 * estimation::rms_K(answer.score.refitted), "error after " + account(answer));
@@ -229,7 +229,7 @@ TEST(Examination, HeatOverTheTimeOfARunIsReportedBesideASensorError) {
   const SeedRate rate = rate_over_seeds(kSeeds, [&](std::uint64_t seed, Claim& claim) {
     const Answer answer = examine(sealed(missing, seed));
     const std::vector<diagnosis::Unexplained>& heats = answer.diagnosis.unexplained;
-    if (claim.expect(heats.size() == 1 && heats.front().drivers == std::vector<std::string>{"time"}, account(answer))) {
+    if (claim.expect(heats.size() == 1 && heats.front().signals == std::vector<std::string>{"time"}, account(answer))) {
       claim.expect(!heats.front().is_in_model && heats.front().node == "stator", "not in the model, into the stator");
       claim.expect(heats.front().peak_W > 1.5 && heats.front().peak_W < 6.0, fmt::format("{} W of 3 W", heats.front().peak_W));
       claim.expect(heats.front().curve_sd.size() == heats.front().curve.size(), "a band");
@@ -469,7 +469,7 @@ TEST(Examination, OrderOfRunsChangesNothing) {
   SelectionInput forwards, backwards;
   forwards.model = backwards.model = model_before(runs.make, one.seed);
   SelectionRules rules;
-  rules.scans_drivers = false;
+  rules.scans_regressors = false;
   for (const TrueRun& run : runs.training) {
     forwards.runs.push_back(measured(run));
     backwards.runs.insert(backwards.runs.begin(), measured(run));

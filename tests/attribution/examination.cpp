@@ -189,7 +189,7 @@ Answer examine(const Case& sealed) {
   const Selection& selection = answer.diagnosis.selection;
   for (const AcceptedTerm& term : selection.terms) {
     const std::string curve =
-        term.curve ? term.curve->term.node + "~" + selection.drivers[static_cast<std::size_t>(term.curve->term.driver)].name : "";
+        term.curve ? term.curve->term.node + "~" + selection.regressors[static_cast<std::size_t>(term.curve->term.regressor)].name : "";
     answer.named.push_back(term.candidate ? term.candidate->id : curve);
   }
   answer.before_K = rms_error_K(selection.before.model, runs.unseen);
@@ -206,7 +206,7 @@ double floor_K(Case sealed) {
   input.runs = std::move(given.train);
   input.usual = given.usual;
   SelectionRules rules;
-  rules.scans_drivers = false;
+  rules.scans_regressors = false;
   rules.most_effects = 0;
   return rms_error_K(select_effects(input, rules).before.model, runs.unseen);
 }

@@ -30,7 +30,7 @@ Missing together(Missing one, const Missing& other);
 struct Outsider {
   std::string_view name;
   std::string_view node;
-  std::vector<std::string_view> drivers;  ///< right answers: these signals are nearly proportional to each other in the runs
+  std::vector<std::string_view> regressors;  ///< right answers: these signals are nearly proportional to each other in the runs
   Missing (*make)(double size);
   std::string_view times = "";  ///< second signal that the heat is proportional to
 };

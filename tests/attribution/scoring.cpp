@@ -19,7 +19,7 @@ bool is_name_of(const std::string& id, const Subject& subject) {
 }
 
 std::string curve_name(const Selection& selection, const ScanResult& curve) {
-  return fmt::format("{}~{} x {}", curve.term.node, selection.drivers[static_cast<std::size_t>(curve.term.driver)].name,
+  return fmt::format("{}~{} x {}", curve.term.node, selection.regressors[static_cast<std::size_t>(curve.term.regressor)].name,
                      spec_of(curve.term.multiplier).name);
 }
 
@@ -71,9 +71,9 @@ bool names_only(const std::vector<std::string>& named, const std::vector<const S
 bool names_outsider(const Answer& answer, const Outsider& outsider) {
   const Selection& selection = answer.diagnosis.selection;
   const auto is_right = [&](const ScanResult& curve) {
-    const std::string& driver = selection.drivers[static_cast<std::size_t>(curve.term.driver)].name;
+    const std::string& regressor = selection.regressors[static_cast<std::size_t>(curve.term.regressor)].name;
     return curve.term.node == outsider.node && spec_of(curve.term.multiplier).second_signal == outsider.times &&
-           std::ranges::find(outsider.drivers, driver) != outsider.drivers.end();
+           std::ranges::find(outsider.regressors, regressor) != outsider.regressors.end();
   };
   // Only the first term counts as the answer; further terms may follow.
   const bool leads = !selection.terms.empty() && selection.terms.front().curve && is_right(*selection.terms.front().curve);
@@ -81,7 +81,7 @@ bool names_outsider(const Answer& answer, const Outsider& outsider) {
 }
 
 bool gives_a_name(const Answer& answer) {
-  const auto is_named = [](const diagnosis::Unexplained& heat) { return !heat.drivers.empty() && heat.drivers.front() != kTimeDriver; };
+  const auto is_named = [](const diagnosis::Unexplained& heat) { return !heat.signals.empty() && heat.signals.front() != kTimeRegressor; };
   return std::ranges::any_of(answer.diagnosis.effects, &diagnosis::FoundEffect::is_from_catalogue) ||
          std::ranges::any_of(answer.diagnosis.unexplained, is_named);
 }
@@ -120,7 +120,7 @@ std::string account(const Answer& answer) {
     }
   }
   for (const diagnosis::Unexplained& heat : answer.diagnosis.unexplained) {
-    text += fmt::format(" | unexplained {}~{} {:.2f} W", heat.node, fmt::join(heat.drivers, "/"), heat.rms_W);
+    text += fmt::format(" | unexplained {}~{} {:.2f} W", heat.node, fmt::join(heat.signals, "/"), heat.rms_W);
   }
   const estimation::LatentFlux& flux = selection.after.flux;
   return text +
@@ -137,7 +137,7 @@ std::string account(const diagnosis::Diagnosis& diagnosis) {
     text += fmt::format(" | {}: {:.3g} -> {:.3g}", parameter.name, parameter.before, parameter.value);
   }
   for (const diagnosis::Unexplained& heat : diagnosis.unexplained) {
-    text += fmt::format(" | unexplained {}~{} {:.2f} W", heat.node, fmt::join(heat.drivers, "/"), heat.rms_W);
+    text += fmt::format(" | unexplained {}~{} {:.2f} W", heat.node, fmt::join(heat.signals, "/"), heat.rms_W);
   }
   return text;
 }

@@ -177,7 +177,7 @@ TEST(Screening, FindsWrongSamplesAndLeavesGoodOnes) {
       ++log;
     }
     SelectionRules rules;
-    rules.scans_drivers = false;
+    rules.scans_regressors = false;
     const Selection selection = select_effects({model.model, runs, model.usual}, rules);
     for (std::size_t r = 0; r < runs.size(); ++r) {
       add(runs[r], selection.weights[r], log_of_run[r], motor, single);

@@ -643,6 +643,18 @@ TEST(Seed, gives_a_motor_the_same_values_beside_any_others) {
   EXPECT_EQ(of("maxon_ec45_flat_70w_24v,nanotec_df45l024048_a2"), alone);
 }
 
+TEST(Usage, evaluate_takes_motor_as_the_other_verbs_do) {
+  const Words rest{"--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--samples", "0", "maxon_ec45_flat_70w_24v"};
+  const auto answer = [&](const std::string& option) {
+    Words words{"evaluate"};
+    words.insert(words.end(), rest.begin(), rest.end() - 1);
+    words.insert(words.end(), {option, rest.back()});
+    return run(words);
+  };
+  EXPECT_EQ(answer("--motor").exit_code, 0);
+  EXPECT_EQ(answer("--motor").out, answer("--motors").out);
+}
+
 TEST(Usage, version) {
   const ProgramRun result = run({"--version"});
   EXPECT_EQ(result.exit_code, 0);

@@ -26,6 +26,14 @@ const std::map<std::string, std::string> kInstead{
     {"confounded with", "look-alikes?"},
     {"accepted, validated", "believ(e|es|ed)"},
     {"safety factor on heat", "heat reserves?"},
+    {"limit exceeded", "pass(es|ed|ing)? (a|the|its|their) limits?"},
+    {"what remains, with a noun", "what is left"},
+    {"accepted, counted", "taken in"},
+    {"steady state", "comes? to rest|has settled"},
+    {"estimate", "nobody has measured"},
+    {"hold-out run", "never saw"},
+    {"nominal, in its present form", "as it stands"},
+    {"regressor, input signal", "DriverKind|drivers?_of|kTimeDriver|scan_drivers"},
 };
 
 /// Allowed counts: `figures` is a table of motor files and a key of answers, <figure> an element of HTML.

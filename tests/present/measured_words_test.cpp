@@ -189,7 +189,7 @@ TEST(WordsOfDiagnosis, FactorsOfCurves) {
     diagnosis::Unexplained heat;
     heat.node = "winding";
     heat.other_node = "stator";
-    heat.drivers = {driver};
+    heat.signals = {driver};
     heat.multiplier = multiplier;
     heat.mean_W = 2.0;
     heat.peak_W = 5.0;

@@ -1,4 +1,4 @@
-// Topics of the deviations that single runs of a measurement may have.
+// Help topics of `describe` about effects that exist in single runs only.
 #pragma once
 
 #include <vector>

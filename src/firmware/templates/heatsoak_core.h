@@ -23,7 +23,7 @@ extern "C" {
 
 #define HEATSOAK_CORE_PERIOD_S @PERIOD_S@
 #define HEATSOAK_CORE_PERIOD_US @PERIOD_US@
-/* Longest time after which the watchdog of the firmware must have reset the controller; the core assumes no longer undetected gap. */
+/* The watchdog must reset the controller within this time: the guards count an undetected gap between two steps for this long only. */
 #define HEATSOAK_CORE_WATCHDOG_US 20000u
 #define HEATSOAK_CORE_WHEELS @WHEELS@ /* of this robot */
 #define HEATSOAK_CORE_MOST_WHEELS 4   /* size of the arrays; of a robot with three wheels the last is ignored */

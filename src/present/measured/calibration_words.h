@@ -20,7 +20,7 @@ Severity severity_of(const calibration::CalibrationFinding& finding);
 std::vector<std::string> words_of(const std::vector<calibration::CalibrationFinding>& findings);
 std::vector<std::string> words_of(const std::vector<calibration::GrownError>& errors);
 
-/// Returns what looks wrong, and the question to the user.
+/// Returns a sentence with the suspicious value and a question about its likely cause.
 std::string words_of(const calibration::LogProblem& problem);
 std::vector<std::string> words_of(const std::vector<calibration::AdmissionNote>& notes);
 std::vector<std::string> words_of(const std::vector<calibration::PredictionNote>& notes);

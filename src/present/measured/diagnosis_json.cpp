@@ -49,7 +49,7 @@ Json effect_json(const diagnosis::FoundEffect& effect) {
       {"node", effect.node},
       {"parameters", parameters},
       {"condition", effect.condition},
-      {"drivers", effect.drivers},
+      {"drivers", effect.signals},
       {"heat_W", {{"mean", rounded(effect.mean_W, 4)}, {"max", rounded(effect.peak_W, 4)}}},
       {"evidence", {{"delta_bic", rounded(effect.delta_bic, 2)}, {"p_value", effect.p_value}, {"nats", rounded(effect.gain_nats, 2)}}},
       {"confusable_with", plain_ids(effect.confusable_with)},
@@ -79,15 +79,15 @@ Json tests_json(const std::vector<estimation::InnovationTests>& tests) {
 
 Json unexplained_json(const diagnosis::Unexplained& heat) {
   Json json{{"node", heat.node},
-            {"drivers", heat.drivers},
+            {"drivers", heat.signals},
             {"heat_W", {{"mean", rounded(heat.mean_W, 4)}, {"max", rounded(heat.peak_W, 4)}}},
             {"time_scale_s", rounded(heat.time_scale_s, 1)},
             {"nats", rounded(heat.gain_nats, 2)},
             {"in_model", heat.is_in_model}};
-  if (heat.drivers.empty()) {
+  if (heat.signals.empty()) {
     json["heat_W"]["rms"] = rounded(heat.rms_W, 4);
-    if (!heat.unconfirmed_driver.empty()) {
-      json["unconfirmed_driver"] = heat.unconfirmed_driver;
+    if (!heat.unconfirmed_signal.empty()) {
+      json["unconfirmed_driver"] = heat.unconfirmed_signal;
     }
   }
   if (!heat.or_nodes.empty()) {
@@ -99,7 +99,7 @@ Json unexplained_json(const diagnosis::Unexplained& heat) {
     json["times"] = factor.second_signal;
   }
   if (!heat.knots.empty()) {
-    json["curve"] = {{"driver", heat.knots}, {"driver_unit", heat.driver_unit},
+    json["curve"] = {{"driver", heat.knots}, {"driver_unit", heat.signal_unit},
                      {"value", heat.curve},  {"sd", heat.curve_sd},
                      {"unit", factor.unit},  {"form", factor.form}};
   }
@@ -137,7 +137,7 @@ Json ladder_json(const attribution::Selection& selection) {
     for (const attribution::ScanResult& each : round.scan) {
       curves.push_back({{"node", each.term.node},
                         {"other", each.term.other},
-                        {"driver", selection.drivers[static_cast<std::size_t>(each.term.driver)].name},
+                        {"driver", selection.regressors[static_cast<std::size_t>(each.term.regressor)].name},
                         {"per", attribution::spec_of(each.term.multiplier).name},
                         {"nats", rounded(each.gain_nats, 2)}});
     }

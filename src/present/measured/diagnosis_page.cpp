@@ -56,7 +56,7 @@ std::string heat_in_words(const diagnosis::FoundEffect& effect) {
 
 /// Returns the name of an effect; a curve is named with its input signals.
 std::string named(const diagnosis::FoundEffect& effect) {
-  return effect.is_from_catalogue ? effect.id : fmt::format("{} over {}", effect.id, fmt::join(effect.drivers, " times "));
+  return effect.is_from_catalogue ? effect.id : fmt::format("{} over {}", effect.id, fmt::join(effect.signals, " times "));
 }
 
 std::string added_effects(const diagnosis::Diagnosis& diagnosis) {
@@ -121,8 +121,8 @@ std::string ladder_table(const diagnosis::Diagnosis& diagnosis) {
     }
     text += round.ladder.empty() ? row({"no effect of the catalogue makes the runs more probable", "", "", "", ""}) : "";
     for (const attribution::ScanResult& each : round.scan) {
-      const std::string& driver = diagnosis.selection.drivers[static_cast<std::size_t>(each.term.driver)].name;
-      text += row({fmt::format("curve over {} × {} at {}{}", driver, attribution::spec_of(each.term.multiplier).name, each.term.node,
+      const std::string& regressor = diagnosis.selection.regressors[static_cast<std::size_t>(each.term.regressor)].name;
+      text += row({fmt::format("curve over {} × {} at {}{}", regressor, attribution::spec_of(each.term.multiplier).name, each.term.node,
                                each.term.other.empty() ? "" : "→" + each.term.other),
                    fmt::format("{:.1f}", each.gain_nats), fmt::format("{} W mean", base::significant(each.mean_W, 2)), "", ""});
     }

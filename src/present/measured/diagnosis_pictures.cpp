@@ -136,7 +136,7 @@ std::vector<DiagnosisPicture> diagnosis_pictures(const diagnosis::DiagnosisAnswe
     report::Chart chart{
         fmt::format("Curve found at the {}", heat.node),
         fmt::format("linear between seven knots; band: 95 %{}", heat.is_in_model ? "" : "; the extended model does not have it"),
-        heat.drivers.front() + (heat.driver_unit.empty() ? "" : " / " + heat.driver_unit),
+        heat.signals.front() + (heat.signal_unit.empty() ? "" : " / " + heat.signal_unit),
         {}};
     const attribution::MultiplierSpec& factor = attribution::spec_of(heat.multiplier);
     report::ChartPanel panel{"", factor.unit.empty() ? "share of the copper loss" : fmt::format("curve / {}", factor.unit), {}, {}, {}};
@@ -149,7 +149,7 @@ std::vector<DiagnosisPicture> diagnosis_pictures(const diagnosis::DiagnosisAnswe
     panel.bands = {band};
     chart.panels = {panel};
     // The number keeps names unique: two curves may share node and input signal, such as a heating and a cooling one.
-    pictures.push_back({fmt::format("curve_{}_{}_{}", pictures.size() - 1, heat.node, heat.drivers.front()), chart});
+    pictures.push_back({fmt::format("curve_{}_{}_{}", pictures.size() - 1, heat.node, heat.signals.front()), chart});
   }
   return pictures;
 }

@@ -192,11 +192,11 @@ bool has_one_recording(const std::vector<estimation::MeasuredRun>& runs) {
 /// Describes unexplained heat. All `curves` have the node and the signals of the first one.
 std::string unexplained_in_words(std::span<const diagnosis::Unexplained* const> curves, const diagnosis::Diagnosis& diagnosis) {
   const diagnosis::Unexplained& heat = *curves.front();
-  if (heat.drivers.empty()) {
+  if (heat.signals.empty()) {
     const std::string no_driver = std::ranges::any_of(diagnosis.runs, calibration::turns_unseen)
                                       ? "no signal can be assigned to it, because not every log has a speed"
-                                  : !heat.unconfirmed_driver.empty()
-                                      ? fmt::format("it may follow {}, but {}", heat.unconfirmed_driver,
+                                  : !heat.unconfirmed_signal.empty()
+                                      ? fmt::format("it may follow {}, but {}", heat.unconfirmed_signal,
                                                     has_one_recording(diagnosis.runs) ? "only a second run can confirm this; fit one more"
                                                                                       : "predictions of left-out runs do not confirm this")
                                       : "it follows no signal that all logs have";
@@ -205,7 +205,7 @@ std::string unexplained_in_words(std::span<const diagnosis::Unexplained* const> 
                        heat.or_nodes.empty() ? "" : fmt::format(" (or the {}, which has no sensor)", fmt::join(heat.or_nodes, " or ")),
                        heat.time_scale_s, no_driver);
   }
-  const bool goes_by_clock = heat.drivers.size() == 1 && heat.drivers.front() == attribution::kTimeDriver;
+  const bool goes_by_clock = heat.signals.size() == 1 && heat.signals.front() == attribution::kTimeRegressor;
   const std::string where = fmt::format("{} the {}", is_leaving(heat) ? "out of" : "into", heat.node);
   const std::string factor = factor_in_words(heat);
   return (goes_by_clock
@@ -213,8 +213,8 @@ std::string unexplained_in_words(std::span<const diagnosis::Unexplained* const> 
                     "Unexplained: heat {} that no measured signal explains; it is {}a curve over the time since the start of the recording",
                     where, factor)
               : fmt::format("Unnamed: heat {} that follows {}{}", where, factor.empty() ? "" : factor + "a curve over ",
-                            fmt::join(heat.drivers, " or "))) +
-         fmt::format(", {}.", watts_in_words(curves)) + (heat.drivers.size() > 1 ? " The signals are in order of evidence." : "") +
+                            fmt::join(heat.signals, " or "))) +
+         fmt::format(", {}.", watts_in_words(curves)) + (heat.signals.size() > 1 ? " The signals are in order of evidence." : "") +
          (heat.is_in_model ? " The extended model contains it as a curve."
                            : " The extended model does not contain it: its parameters absorb a part of it.");
 }
@@ -340,7 +340,7 @@ std::string diagnosis_finding_words(const diagnosis::DiagnosisFinding& finding) 
 std::vector<std::string> unexplained_words(const diagnosis::Diagnosis& diagnosis) {
   std::vector<std::string> all;
   const auto is_shared = [](const diagnosis::Unexplained& a, const diagnosis::Unexplained& b) {
-    return !a.drivers.empty() && a.node == b.node && a.drivers == b.drivers && a.multiplier == b.multiplier &&
+    return !a.signals.empty() && a.node == b.node && a.signals == b.signals && a.multiplier == b.multiplier &&
            a.other_node == b.other_node && a.is_in_model == b.is_in_model && is_leaving(a) == is_leaving(b);
   };
   std::vector<std::vector<const diagnosis::Unexplained*>> groups;

@@ -11,7 +11,7 @@ namespace heatsoak::present {
 
 /// Returns how the logs were read.
 std::string words_of(const friction::FrictionFinding& finding);
-/// Returns what looks wrong, and the question to the user.
+/// Returns a sentence with the suspicious value and a question about its likely cause.
 std::string words_of(const friction::FrictionSuspicion& suspicion);
 std::vector<std::string> words_of(const std::vector<friction::SuspicionOfTest>& suspicions);
 /// Returns why 0 is written to the robot file.

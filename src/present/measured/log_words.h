@@ -8,7 +8,7 @@
 
 namespace heatsoak::present {
 
-/// Returns what looks wrong, and the question to the user.
+/// Returns a sentence with the suspicious value and a question about its likely cause.
 std::string words_of(const recording::Suspicion& suspicion);
 std::string words_of(const recording::SuspicionOfLog& suspicion);
 std::string words_of(const recording::RespondsLate& finding);

@@ -267,7 +267,7 @@ void print_table(Marks& marks) {
   row("single effects: named or confounded with it, of those detected", ">= 99 %", in_words(marks.among_confounded));
   row("pairs: both right, nothing else", ">= 90 %", in_words(marks.pairs_right));
   row("pairs: at least one right", "", in_words(marks.one_of_pair));
-  row("outside the catalogue: unexplained, node and driver right", ">= 90 %", in_words(marks.outsiders_right));
+  row("outside the catalogue: unexplained, node and input signal right", ">= 90 %", in_words(marks.outsiders_right));
   row("heat that no signal follows: given a name", "<= 5 %", in_words(marks.given_a_name));
   row("heat that no signal follows: unexplained, node right, no name", "", in_words(marks.left_unnamed));
   const auto harder = [&](const std::string& what, const Marks::Harder& share) {

@@ -44,7 +44,7 @@ bool board_motors_have_rested(float *body_C);
 bool board_has_kept_memory(void);
 
 /* The watchdog resets the controller, which opens the bridges, if it is not fed for HEATSOAK_CORE_WATCHDOG_US or less. It must not be
- * later: the core counts no longer gap. The default watchdog ends after 7.1 to 19.8 ms. */
+ * later: the guards count a gap for this long only. The default watchdog ends after 7.1 to 19.8 ms. */
 void board_start_watchdog(void);
 void board_feed_watchdog(void);
 

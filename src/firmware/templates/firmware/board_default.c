@@ -27,7 +27,7 @@
 #define WATCHDOG_CYCLES (4u * (WATCHDOG_RELOAD + 1u)) /* of the oscillator; prescaler 4 */
 #define SLOWEST_KHZ 17u
 #define FASTEST_KHZ 47u
-_Static_assert(WATCHDOG_CYCLES * 1000u <= SLOWEST_KHZ * HEATSOAK_CORE_WATCHDOG_US, "the core counts no longer gap");
+_Static_assert(WATCHDOG_CYCLES * 1000u <= SLOWEST_KHZ * HEATSOAK_CORE_WATCHDOG_US, "the watchdog is slower than the guards assume");
 _Static_assert(WATCHDOG_CYCLES * 1000u >= 2u * FASTEST_KHZ * HEATSOAK_CORE_PERIOD_US,
                "this watchdog may end within two periods: use a more accurate one of the same time");
 
