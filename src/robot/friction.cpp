@@ -11,8 +11,8 @@ namespace heatsoak::robot {
 namespace {
 
 /// Returns γ: 0 in translation, 1 if rotation moves the contact points at least as fast as translation.
-double rotation_share(const Kinematics& kinematics, const BodyVelocity& local, double speed_m_per_s) {
-  const double turning_m_per_s = kinematics.contact_radius_m * std::abs(local.yaw_rad_per_s);
+double rotation_share(double contact_radius_m, const BodyVelocity& local, double speed_m_per_s) {
+  const double turning_m_per_s = contact_radius_m * std::abs(local.yaw_rad_per_s);
   if (turning_m_per_s == 0.0) {
     return 0.0;
   }
@@ -27,12 +27,11 @@ Wheels sines(const std::array<Direction, kMostWheels>& of) {
 }
 
 /// Returns |f(θ)| of each wheel, blended with the rotation constant.
-Wheels heading_magnitudes_Nm(const HeadingFriction& heading, const Kinematics& kinematics, const BodyVelocity& local) {
+Wheels heading_magnitudes_Nm(const HeadingFriction& heading, const WheelArrays& wheels, const BodyVelocity& local) {
   const double speed_m_per_s = std::sqrt(local.x_m_per_s * local.x_m_per_s + local.y_m_per_s * local.y_m_per_s);
-  const double rotation = rotation_share(kinematics, local, speed_m_per_s);
+  const double rotation = rotation_share(wheels.arm_m[0], local, speed_m_per_s);
   const double x = speed_m_per_s > 0.0 ? local.x_m_per_s / speed_m_per_s : 0.0;
   const double y = speed_m_per_s > 0.0 ? local.y_m_per_s / speed_m_per_s : 0.0;
-  const WheelArrays wheels = wheel_arrays(kinematics);
   // sin and cos of θ + φ, φ the wheel's rolling direction
   const Wheels sine = wheels.rolling_x_share * x + wheels.rolling_y_share * y;
   const Wheels cosine = wheels.rolling_y_share * x - wheels.rolling_x_share * y;
@@ -45,14 +44,14 @@ Wheels heading_magnitudes_Nm(const HeadingFriction& heading, const Kinematics& k
 
 }  // namespace
 
-Wheels dry_friction_Nm(const FrictionConfig& friction, const Kinematics& kinematics, const BodyVelocity& local) {
-  return friction.by_heading ? heading_magnitudes_Nm(friction.heading, kinematics, local) : Wheels::Constant(friction.wheel_torque_Nm);
+Wheels dry_friction_Nm(const FrictionConfig& friction, const WheelArrays& wheels, const BodyVelocity& local) {
+  return friction.by_heading ? heading_magnitudes_Nm(friction.heading, wheels, local) : Wheels::Constant(friction.wheel_torque_Nm);
 }
 
 PerWheel friction_torques_Nm(const FrictionConfig& friction, const Kinematics& kinematics, const BodyVelocity& local,
                              const PerWheel& wheel_speed_rad_per_s) {
   const Wheels speed_rad_per_s = as_wheels(wheel_speed_rad_per_s);
-  return per_wheel(dry_friction_Nm(friction, kinematics, local) * smooth_sign(speed_rad_per_s, friction.smoothing_rad_per_s) +
+  return per_wheel(dry_friction_Nm(friction, wheel_arrays(kinematics), local) * smooth_sign(speed_rad_per_s, friction.smoothing_rad_per_s) +
                    friction.wheel_damping_Nm_s_per_rad * speed_rad_per_s);
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/wheel_laws.h"
+
 namespace heatsoak::robot {
 namespace {
 
@@ -17,12 +19,23 @@ PerWheel roller_drags_N(const BodyConfig& body, const PerWheel& lateral_m_per_s,
   return drag_N;
 }
 
+/// As rolling_speeds_m_per_s(), for all wheels at once.
+Wheels rolling_m_per_s(const WheelArrays& wheels, double x_m_per_s, double y_m_per_s, double yaw_rad_per_s) {
+  return wheels.rolling_x_share * x_m_per_s + wheels.rolling_y_share * y_m_per_s + wheels.arm_m * yaw_rad_per_s;
+}
+
+/// As rolling_forces_N(), for all wheels at once.
+Wheels rolling_of_wrench_N(const Kinematics& kinematics, const Wrench& local) {
+  return as_wheels(kinematics.inverse_x_factor) * local.x_N + as_wheels(kinematics.inverse_y_factor) * local.y_N +
+         as_wheels(kinematics.inverse_yaw_per_m) * local.yaw_Nm;
+}
+
 /// Rolling forces demanded from the contacts: rest_N for drag and push alone, part_N for the acceleration; and their limits.
 struct Demand {
   Wrench acceleration;
-  PerWheel rest_N{};
-  PerWheel part_N{};
-  PerWheel limit_N{};
+  Wheels rest_N;
+  Wheels part_N;
+  Wheels limit_N;
 };
 
 Demand demand_on_contacts(const BodyConfig& body, const BodyMotion& motion, WheelDemands& out) {
@@ -37,14 +50,11 @@ Demand demand_on_contacts(const BodyConfig& body, const BodyMotion& motion, Whee
     const PerWheel drag_N = roller_drags_N(body, lateral_speeds_m_per_s(body.kinematics, motion.velocity), loads.force_N);
     rest = rest - wrench_of_lateral_forces(body.kinematics, drag_N);
   }
-  demand.rest_N = rolling_forces_N(body.kinematics, rest);
-  demand.part_N = rolling_forces_N(body.kinematics, demand.acceleration);
+  demand.rest_N = rolling_of_wrench_N(body.kinematics, rest);
+  demand.part_N = rolling_of_wrench_N(body.kinematics, demand.acceleration);
   const double mu = body.traction.traction_ratio;
   const double c = body.traction.roller_drag_ratio;
-  const double grip_ratio = std::sqrt(std::max(mu * mu - c * c, 0.0));
-  for (int i = 0; i < body.kinematics.wheel_count; ++i) {
-    demand.limit_N[i] = grip_ratio * loads.force_N[i];
-  }
+  demand.limit_N = std::sqrt(std::max(mu * mu - c * c, 0.0)) * as_wheels(loads.force_N);
   return demand;
 }
 
@@ -93,13 +103,7 @@ Interval possible_shares(const Kinematics& kinematics, const Demand& demand) {
 }
 
 /// Returns whether the demand is within every limit without inner forces. This common case is checked first to save time.
-bool grips(const Kinematics& kinematics, const Demand& demand) {
-  bool all = true;
-  for (int i = 0; i < kinematics.wheel_count; ++i) {
-    all = all && std::abs(demand.rest_N[i] + demand.part_N[i]) <= demand.limit_N[i];
-  }
-  return all;
-}
+bool grips(const Demand& demand) { return ((demand.rest_N + demand.part_N).abs() <= demand.limit_N).all(); }
 
 /// Returns the smallest inner force that keeps the contacts within their limits at this share of the acceleration.
 double inner_force_N(const Kinematics& kinematics, const Demand& demand, double share) {
@@ -116,28 +120,27 @@ double inner_force_N(const Kinematics& kinematics, const Demand& demand, double 
   return low_N <= high_N ? std::clamp(0.0, low_N, high_N) : 0.5 * (low_N + high_N);
 }
 
-/// Distributes the forces: adds inner forces, then scales the acceleration down, then lets the contacts slide.
-void deliver(const BodyConfig& body, const BodyMotion& motion, const Demand& demand, WheelDemands& out) {
-  const int count = body.kinematics.wheel_count;
-  const Interval shares = grips(body.kinematics, demand) ? Interval{0.0, 1.0} : possible_shares(body.kinematics, demand);
+/// Distributes the forces: adds inner forces, then scales the acceleration down, then lets the contacts slide. Returns the transmitted
+/// forces.
+Wheels deliver(const BodyConfig& body, const BodyMotion& motion, const Demand& demand, WheelDemands& out) {
+  const bool all_grip = grips(demand);
+  const Interval shares = all_grip ? Interval{0.0, 1.0} : possible_shares(body.kinematics, demand);
   const bool slides = shares.low > shares.high;
   const double share = slides ? 0.0 : shares.high;
-  const double inner_N = inner_force_N(body.kinematics, demand, slides ? 1.0 : share);
-  PerWheel missing_N{};
-  for (int i = 0; i < count; ++i) {
-    const double shifted_N = inner_N * body.kinematics.inner_share[i];
-    const double wanted_N = demand.rest_N[i] + demand.part_N[i] + shifted_N;
-    out.rolling_force_N[i] =
-        slides ? std::clamp(wanted_N, -demand.limit_N[i], demand.limit_N[i]) : demand.rest_N[i] + share * demand.part_N[i] + shifted_N;
-    out.traction_use_ratio[i] = wanted_N == 0.0 ? 0.0 : std::abs(wanted_N) / demand.limit_N[i];
-    missing_N[i] = wanted_N - out.rolling_force_N[i];
-  }
+  const double inner_N = all_grip ? 0.0 : inner_force_N(body.kinematics, demand, slides ? 1.0 : share);
+  const Wheels shifted_N = inner_N * as_wheels(body.kinematics.inner_share);
+  const Wheels wanted_N = demand.rest_N + demand.part_N + shifted_N;
+  const Wheels rolling_N =
+      slides ? Wheels(wanted_N.max(-demand.limit_N).min(demand.limit_N)) : Wheels(demand.rest_N + share * demand.part_N + shifted_N);
+  as_wheels(out.rolling_force_N) = rolling_N;
+  as_wheels(out.traction_use_ratio) = (wanted_N == 0.0).select(0.0, wanted_N.abs() / demand.limit_N);
   out.achievable = motion.acceleration;
   out.transmitted_share = share;
   if (share < 1.0) {
-    out.untransmitted = wrench_of_rolling_forces(body.kinematics, missing_N);
+    out.untransmitted = wrench_of_rolling_forces(body.kinematics, per_wheel(wanted_N - rolling_N));
     out.achievable = acceleration_of_wrench(body, motion.velocity.yaw_rad_per_s, demand.acceleration - out.untransmitted);
   }
+  return rolling_N;
 }
 
 }  // namespace
@@ -166,19 +169,20 @@ BodyMotion local_motion(const BodyConfig& body, const FieldAxis& axis, const Bod
 
 WheelDemands inverse_dynamics(const BodyConfig& body, const BodyMotion& motion) {
   WheelDemands out;
-  out.speed_rad_per_s = wheel_speeds_rad_per_s(body.kinematics, motion.velocity);
-  const Demand demand = demand_on_contacts(body, motion, out);
-  deliver(body, motion, demand, out);
-  const BodyAcceleration rates = rates_from_acceleration(motion.velocity, out.achievable);
-  const PerWheel rim_m_per_s2 = rolling_speeds_m_per_s(body.kinematics, {rates.x_m_per_s2, rates.y_m_per_s2, rates.yaw_rad_per_s2});
-  const PerWheel friction_Nm = friction_torques_Nm(body.friction, body.kinematics, motion.velocity, out.speed_rad_per_s);
+  const WheelArrays wheels = wheel_arrays(body.kinematics);
   const double radius_m = body.kinematics.wheel_radius_m;
-  for (int i = 0; i < body.kinematics.wheel_count; ++i) {
-    const double ground_Nm = out.rolling_force_N[i] * radius_m;
-    out.torque_Nm[i] = ground_Nm +
-                       transmission_loss_Nm(body.rolling_efficiency, ground_Nm, out.speed_rad_per_s[i], body.friction.smoothing_rad_per_s) +
-                       friction_Nm[i] + body.wheel_inertia_kg_m2 * rim_m_per_s2[i] / radius_m;
-  }
+  const BodyVelocity& velocity = motion.velocity;
+  const Wheels speed_rad_per_s = rolling_m_per_s(wheels, velocity.x_m_per_s, velocity.y_m_per_s, velocity.yaw_rad_per_s) / radius_m;
+  as_wheels(out.speed_rad_per_s) = speed_rad_per_s;
+  const Demand demand = demand_on_contacts(body, motion, out);
+  const Wheels ground_Nm = deliver(body, motion, demand, out) * radius_m;
+  const BodyAcceleration rates = rates_from_acceleration(velocity, out.achievable);
+  const Wheels rim_m_per_s2 = rolling_m_per_s(wheels, rates.x_m_per_s2, rates.y_m_per_s2, rates.yaw_rad_per_s2);
+  const Wheels sign = smooth_sign(speed_rad_per_s, body.friction.smoothing_rad_per_s);
+  const Wheels loss_Nm = loss_torque_Nm(1.0 / body.rolling_efficiency - 1.0, 1.0 - body.rolling_efficiency, ground_Nm, sign);
+  const Wheels friction_Nm =
+      dry_friction_Nm(body.friction, wheels, velocity) * sign + body.friction.wheel_damping_Nm_s_per_rad * speed_rad_per_s;
+  as_wheels(out.torque_Nm) = ground_Nm + loss_Nm + friction_Nm + body.wheel_inertia_kg_m2 * rim_m_per_s2 / radius_m;
   return out;
 }
 

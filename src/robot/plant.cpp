@@ -319,7 +319,7 @@ Motion evaluate(const Held& held, const Motion& at, PlantOutput& out, Stiffness&
       velocity,
       acceleration_of_wrench(body, velocity.yaw_rad_per_s, {ground.x_N + push.x_N, ground.y_N + push.y_N, ground.yaw_Nm + push.yaw_Nm}));
   const BodyVelocity global = to_global(velocity, at.body[kPose + 2]);
-  const Wheels dry_Nm = dry_friction_Nm(body.friction, body.kinematics, velocity);
+  const Wheels dry_Nm = dry_friction_Nm(body.friction, held.wheels, velocity);
   return {{global.x_m_per_s, global.y_m_per_s, global.yaw_rad_per_s, rates.x_m_per_s2, rates.y_m_per_s2, rates.yaw_rad_per_s2,
            -electrics.battery.current_A},
           accelerate_wheels<kHalf>(held, at.wheels, electrics.motors.current_A, dry_Nm, contacts, out, stiffness)};

@@ -19,7 +19,7 @@ inline Wheels plane_loads_N(const WeightConfig& weight, const LoadMoment& moment
 }
 
 /// Returns the magnitude of each wheel's dry friction torque in N m: wheel_torque_Nm, or the curve over the direction of travel.
-Wheels dry_friction_Nm(const FrictionConfig& friction, const Kinematics& kinematics, const BodyVelocity& local);
+Wheels dry_friction_Nm(const FrictionConfig& friction, const WheelArrays& wheels, const BodyVelocity& local);
 
 /// Electrical constants of the motors of all wheels at their temperatures.
 struct MotorCircuits {
