@@ -42,18 +42,19 @@ std::array<MotorPeak, base::kLanes> peaks(std::span<const thermal::Network> moto
   const thermal::Network& network = motors.front();
   std::array<MotorPeak, base::kLanes> result;
   for (const UsePlayed& each : uses) {
-    const auto to_lanes = [](const thermal::OperatingPoint<double>& at) {
-      thermal::OperatingPoint<thermal::Lanes> lanes;
-      thermal::convert_point([](thermal::Lanes& to, const double& from) { to = thermal::Lanes::Constant(from); }, lanes, at);
-      return lanes;
+    thermal::OperatingPoint<thermal::Lanes> at;
+    const auto put_in_lanes = [&at](const thermal::OperatingPoint<double>& one) {
+      thermal::convert_point([](thermal::Lanes& to, const double& from) { to = thermal::Lanes::Constant(from); }, at, one);
     };
     const double ambient_C = each.intervals.front().at.ambient_C;
     const std::vector<thermal::Lanes> start_C(static_cast<std::size_t>(network.state_count()),
                                               thermal::Lanes::Constant(each.start_C.value_or(ambient_C)));
     thermal::EnsembleRun run(network, parameters, start_C);
-    const double step_s = thermal::longest_step_s(network, parameters, to_lanes(each.intervals.front().at), limits.winding_C - ambient_C);
+    put_in_lanes(each.intervals.front().at);
+    const double step_s = thermal::longest_step_s(network, parameters, at, limits.winding_C - ambient_C);
     for (const thermal::Interval& interval : each.intervals) {
-      run.over(interval.duration_s, to_lanes(interval.at), step_s);
+      put_in_lanes(interval.at);
+      run.over(interval.duration_s, at, step_s);
     }
     for (int lane = 0; lane < base::kLanes; ++lane) {
       MotorPeak& peak = result[static_cast<std::size_t>(lane)];

@@ -68,7 +68,7 @@ class Block {
     double time_s = 0.0;
     for (const duty::LoadBin& bin : demand_.bins) {
       const double parts = std::max(1.0, std::ceil(bin.duration_s / longest_visit_s));
-      const thermal::OperatingPoint<thermal::Lanes> at = point(bin);
+      thermal::OperatingPoint<thermal::Lanes> at = point(bin);
       for (int part = 0; part < static_cast<int>(parts); ++part) {
         run.over(bin.duration_s / parts, at, step_s);
         time_s += bin.duration_s / parts;

@@ -44,15 +44,14 @@ EnsembleRun::EnsembleRun(const Network& network, std::span<const Lanes> paramete
       rate_(state_C_.size()),
       sum_(state_C_.size()) {}
 
-void EnsembleRun::over(double duration_s, const OperatingPoint<Lanes>& at, double longest_step_s) {
+void EnsembleRun::over(double duration_s, OperatingPoint<Lanes>& at, double longest_step_s) {
   const double steps = std::max(1.0, std::ceil(duration_s / longest_step_s));
-  at_ = at;
   for (int i = 0; i < static_cast<int>(steps); ++i) {
-    one_step(duration_s / steps);
+    one_step(duration_s / steps, at);
   }
 }
 
-void EnsembleRun::one_step(double step_s) {
+void EnsembleRun::one_step(double step_s, OperatingPoint<Lanes>& at) {
   struct Stage {
     double share;   ///< time of the stage as a share of the step
     double weight;  ///< weight of the stage's rate in the result
@@ -65,7 +64,7 @@ void EnsembleRun::one_step(double step_s) {
     for (std::size_t i = 0; i < states; ++i) {
       stage_C_[i] = state_C_[i] + share * step_s * rate_[i];
     }
-    network_.rate_K_per_s<Lanes>(at_, parameters_, stage_C_, rate_);
+    network_.rate_K_per_s<Lanes>(at, parameters_, stage_C_, rate_);
     for (std::size_t i = 0; i < states; ++i) {
       sum_[i] += weight * rate_[i];
     }

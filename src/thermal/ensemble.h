@@ -23,17 +23,21 @@ class EnsembleRun {
  public:
   EnsembleRun(const Network& network, std::span<const Lanes> parameters, std::span<const Lanes> start_C);
 
-  /// Integrates over an interval in equal steps no longer than `longest_step_s`.
-  void over(double duration_s, const OperatingPoint<Lanes>& at, double longest_step_s);
+  /// Integrates over an interval in equal steps no longer than `longest_step_s`. `at` is modified during the call and restored, as in
+  /// Network::rate_K_per_s().
+  void over(double duration_s, OperatingPoint<Lanes>& at, double longest_step_s);
+  void over(double duration_s, const OperatingPoint<Lanes>& at, double longest_step_s) {
+    OperatingPoint<Lanes> own = at;
+    over(duration_s, own, longest_step_s);
+  }
   [[nodiscard]] const std::vector<Lanes>& state_C() const { return state_C_; }
   [[nodiscard]] const std::vector<Lanes>& peak_C() const { return peak_C_; }
 
  private:
-  void one_step(double step_s);
+  void one_step(double step_s, OperatingPoint<Lanes>& at);
 
   const Network& network_;
   std::span<const Lanes> parameters_;
-  OperatingPoint<Lanes> at_;
   std::vector<Lanes> state_C_;
   std::vector<Lanes> peak_C_;
   std::vector<Lanes> stage_C_;  ///< node_count() entries; the last is ambient

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <stdexcept>
 #include <type_traits>
 
@@ -22,6 +23,10 @@ void book(const EffectInPlace& effect, const OperatingPoint<S>& at, const S* par
     effect.type->laws->lanes(situation, heat_book);
   }
 }
+
+/// Returns whether a headroom can limit the current. The guard's motors have none, and a division takes longer than this comparison.
+bool has_limit(double headroom_V) { return headroom_V < std::numeric_limits<double>::infinity(); }
+bool has_limit(const Lanes& headroom_V) { return (headroom_V < std::numeric_limits<double>::infinity()).any(); }
 
 }  // namespace
 
@@ -121,7 +126,9 @@ void Network::evaluate(OperatingPoint<S>& at, const S* parameters, const S* temp
   const S given_W = at.copper_loss_W;
   if (drive_) {
     if constexpr (!std::is_same_v<S, Traced>) {
-      at.current_rms_A = drive_->current_A(at, parameters, temperature_C);
+      if (has_limit(at.resistive_headroom_V)) {
+        at.current_rms_A = drive_->current_A(at, parameters, temperature_C);
+      }
     }
     at.copper_loss_W = drive_->copper_loss_W(at.current_rms_A, parameters, temperature_C);
   }

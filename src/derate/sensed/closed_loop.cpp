@@ -237,7 +237,7 @@ thermal::Lanes run_use(const SensedLoop& loop, const LoadPattern& use, const Dra
     const thermal::Lanes current_A = is_on ? guard.allowed_A(speed_rad_per_s) : thermal::Lanes(thermal::Lanes::Zero());
     last_A = current_A;
     const LaneSignals signals = lane_signals(use.hot_case, rules, current_A, speed_rad_per_s);
-    const thermal::OperatingPoint<thermal::Lanes> at = operating_point<thermal::Lanes>(loop.motor.nominal, loop.robot, signals);
+    thermal::OperatingPoint<thermal::Lanes> at = operating_point<thermal::Lanes>(loop.motor.nominal, loop.robot, signals);
     if (longest_s == 0.0) {
       longest_s = thermal::longest_step_s(drawn.networks.front(), drawn.parameters, at, rules.limits.winding_C - start_C);
     }
