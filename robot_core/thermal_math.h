@@ -7,28 +7,31 @@
 
 #include <stdint.h>
 
-/* 2 to the power of a whole number from -126 to 127. */
+/* 2 to the power of a whole number from -126 to 127. Every product is exact. */
 static inline float heatsoak_two_to(int32_t n) {
-  union {
-    uint32_t bits;
-    float value;
-  } made;
-  made.bits = (uint32_t)(n + 127) << 23;
-  return made.value;
+  float square_factor = n < 0 ? 0.5f : 2.0f;
+  float factor = 1.0f;
+  int32_t left = n < 0 ? -n : n;
+  while (left > 0) {
+    factor *= left % 2 == 1 ? square_factor : 1.0f;
+    left /= 2;
+    square_factor *= left > 0 ? square_factor : 1.0f; /* the next square could be out of range */
+  }
+  return factor;
 }
 
 /* e to the power of x. Below -87 the result is 0, above 88 it is e^88 (1.65e38); NaN gives NaN. */
 static inline float heatsoak_exp(float x) {
+  const float exponent = x < 88.0f ? x : 88.0f;
+  const float rounded_exponent = exponent * 1.44269504f + (exponent < 0.0f ? -0.5f : 0.5f);
   int32_t n;
-  float rest_exponent, factor;
+  float rest_exponent;
+  float factor;
   if (!(x >= -87.0f)) {
     return x < -87.0f ? 0.0f : x;
   }
-  if (x > 88.0f) {
-    x = 88.0f;
-  }
-  n = (int32_t)(x * 1.44269504f + (x < 0.0f ? -0.5f : 0.5f));
-  rest_exponent = (x - (float)n * 0.693359375f) + (float)n * 2.12194440e-4f;
+  n = (int32_t)rounded_exponent;
+  rest_exponent = (exponent - (float)n * 0.693359375f) + (float)n * 2.12194440e-4f;
   factor = 1.38888889e-3f;
   factor = 8.33333333e-3f + rest_exponent * factor;
   factor = 4.16666667e-2f + rest_exponent * factor;
@@ -39,22 +42,36 @@ static inline float heatsoak_exp(float x) {
   return factor * heatsoak_two_to(n);
 }
 
-/* Natural logarithm of a normal number x > 0. Smaller values count as the smallest normal number. */
+/* Natural logarithm of a normal number x > 0. Smaller values count as the smallest normal number, infinity as the largest one. */
 static inline float heatsoak_log(float x) {
-  union {
-    float value;
-    uint32_t bits;
-  } of;
-  int32_t exponent;
-  float ratio, square_ratio, series_factor;
-  of.value = x > 1.17549435e-38f ? x : 1.17549435e-38f;
-  exponent = (int32_t)(of.bits >> 23) - 127;
-  of.bits = (of.bits & 0x007fffffu) | 0x3f800000u;
-  if (of.value > 1.41421356f) {
-    of.value *= 0.5f;
+  /* 2^-1, 2^-2, 2^-4, ... 2^-64 */
+  static const float halving_factor[7] = {0.5f, 0.25f, 0.0625f, 0.00390625f, 1.52587891e-5f, 2.32830644e-10f, 5.42101086e-20f};
+  float mantissa_ratio = x > 1.17549435e-38f ? x : 1.17549435e-38f;
+  int32_t first_exponent = 0;
+  int32_t exponent = 0;
+  int32_t i;
+  float ratio;
+  float square_ratio;
+  float series_factor;
+  mantissa_ratio = mantissa_ratio < 3.40282347e38f ? mantissa_ratio : 3.40282347e38f;
+  if (mantissa_ratio < 1.0f) {
+    mantissa_ratio *= 8.50705917e37f; /* 2^126 */
+    first_exponent = -126;
+  }
+  for (i = 6; i >= 0; --i) {
+    const float scaled_ratio = mantissa_ratio * halving_factor[i];
+    exponent *= 2;
+    if (scaled_ratio >= 1.0f) {
+      mantissa_ratio = scaled_ratio;
+      ++exponent;
+    }
+  }
+  exponent += first_exponent;
+  if (mantissa_ratio > 1.41421356f) {
+    mantissa_ratio *= 0.5f;
     ++exponent;
   }
-  ratio = (of.value - 1.0f) / (of.value + 1.0f);
+  ratio = (mantissa_ratio - 1.0f) / (mantissa_ratio + 1.0f);
   square_ratio = ratio * ratio;
   /* 2*artanh(ratio) */
   series_factor = 1.42857143e-1f + square_ratio * 1.11111111e-1f;

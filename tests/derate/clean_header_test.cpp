@@ -32,12 +32,33 @@ constexpr const char* kStrict =
 /// Advisory rules that the headers do not follow; src/derate/README.md has the reasons.
 const std::set<std::string> kNotKept{"2.5", "8.9", "12.1", "15.5"};
 
-class CleanHeader : public testing::TestWithParam<const char*> {
+/// Laws with a power and with exponentials.
+constexpr const char* kPowerAndExponential = R"([effects.air]
+type = "natural_convection"
+conductance = { value = "0.05 W/K", origin = "estimated", derivation = "a test" }
+exponent = { value = "0.25", origin = "estimated", derivation = "a test" }
+
+[effects.knee]
+type = "saturation"
+excess = { value = "0.3", origin = "estimated", derivation = "a test" }
+knee_current = { value = "5 A", origin = "estimated", derivation = "a test" }
+knee_width = { value = "0.1", origin = "estimated", derivation = "a test" }
+)";
+
+struct Form {
+  const char* name;
+  const char* exporter;
+  const char* laws;  ///< appended to the motor's data sheet
+};
+
+class CleanHeader : public testing::TestWithParam<Form> {
  protected:
   void SetUp() override {
     std::filesystem::create_directories(folder_);
-    std::ofstream(folder_ / "guard.h") << exported(GetParam());
-    const std::string prefix = identifier(ecx_derating().motor_id) + (std::string_view(GetParam()) == "c_header" ? "" : "_q15");
+    const std::string_view laws = GetParam().laws;
+    std::ofstream(folder_ / "guard.h") << exported(GetParam().exporter,
+                                                   laws.empty() ? ecx_derating() : derating_of(ecx_32_with(std::string(laws))));
+    const std::string prefix = identifier(ecx_derating().motor_id) + (std::string_view(GetParam().exporter) == "c_header" ? "" : "_q15");
     std::ofstream(folder_ / "use.c") << std::regex_replace(kUse, std::regex("PREFIX"), prefix);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
@@ -60,8 +81,10 @@ class CleanHeader : public testing::TestWithParam<const char*> {
   std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_clean_{}", static_cast<int>(getpid()));
 };
 
-INSTANTIATE_TEST_SUITE_P(Headers, CleanHeader, testing::Values("c_header", "c_header_q15"),
-                         [](const auto& instance) { return std::string(instance.param); });
+INSTANTIATE_TEST_SUITE_P(Headers, CleanHeader,
+                         testing::Values(Form{"c_header", "c_header", ""}, Form{"c_header_q15", "c_header_q15", ""},
+                                         Form{"c_header_with_power_and_exponential", "c_header", kPowerAndExponential}),
+                         [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST_P(CleanHeader, HasNoWarningsAsC99AndAsCpp11) {
   for (const char* const compiler : {"cc -std=c99", "c++ -x c++ -std=c++11"}) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -66,6 +67,37 @@ TEST(ThermalMath, LogarithmOverAllNormalNumbers) {
   EXPECT_LT(most, 3e-7);
   EXPECT_EQ(heatsoak_log(1.0F), 0.0F);
   EXPECT_EQ(heatsoak_log(0.0F), heatsoak_log(std::numeric_limits<float>::min()));
+}
+
+TEST(ThermalMath, PowersOfTwoAreExact) {
+  for (int n = -126; n <= 127; ++n) {
+    EXPECT_EQ(heatsoak_two_to(n), std::ldexp(1.0F, n));
+  }
+}
+
+// The reduction by products with powers of two must have the bits of one that takes exponent and mantissa from the bits of the number.
+TEST(ThermalMath, LogarithmHasTheBitsOfAnExactReduction) {
+  const auto reference = [](float x) {
+    const auto bits = std::bit_cast<std::uint32_t>(std::max(x, std::numeric_limits<float>::min()));
+    std::int32_t exponent = static_cast<std::int32_t>(bits >> 23U) - 127;
+    float mantissa = float_of((bits & 0x007fffffU) | 0x3f800000U);
+    if (mantissa > 1.41421356F) {
+      mantissa *= 0.5F;
+      ++exponent;
+    }
+    const float ratio = (mantissa - 1.0F) / (mantissa + 1.0F);
+    const float square = ratio * ratio;
+    const float last = 1.42857143e-1F + square * 1.11111111e-1F;
+    const float series = 1.0F + square * (3.33333333e-1F + square * (0.2F + square * last));
+    const auto whole = static_cast<float>(exponent);
+    return whole * 0.693359375F + (2.0F * ratio * series - whole * 2.12194440e-4F);
+  };
+  for (std::uint64_t bits = 0; bits <= 0x7F800000U; bits += 127) {
+    const float x = float_of(static_cast<std::uint32_t>(bits));
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(heatsoak_log(x)), std::bit_cast<std::uint32_t>(reference(x))) << x;
+  }
+  const float infinity = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(heatsoak_log(infinity), reference(infinity));
 }
 
 // The documented error is below 2e-6 up to |y·log2 x| = 20. Above, the error of the logarithm grows with the product.

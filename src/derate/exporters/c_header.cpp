@@ -45,7 +45,8 @@ std::string write_c_header(const Derating& derating) {
          "#include <stdbool.h>\n#include <stdint.h>\n\n" +
          "#ifdef __FAST_MATH__\n#error \"compile without -ffast-math: it removes the checks for NaN and the carried rounding "
          "error\"\n#endif\n\n" +
-         (rates.calls_thermal_math ? shared_text("thermal_math.h") + "\n" : "") + shared_text("current_table.h") + "\n" +
+         // MISRA 20.1: current_table.h includes <math.h>, so it comes before every other text.
+         shared_text("current_table.h") + "\n" + (rates.calls_thermal_math ? shared_text("thermal_math.h") + "\n" : "") +
          shared_text("crc_32.h") + "\n" + c_header::constants(source) + c_header::foc_conversion(source) + c_header::structures(source) +
          c_header::tables(source) + rates.text + c_header::candidates(source) + c_header::allowed_function(source) +
          c_header::step_functions(source) + c_header::memory_functions(source, signature) + sensor.text + "#endif\n";
