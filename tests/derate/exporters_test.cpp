@@ -239,7 +239,6 @@ TEST(RampExporters, ControllerStaysBelowTheTableAndKeepsTheWindingBelowItsLimit)
   }
 }
 
-/// VESC, motor/mc_interface.c, update_override_limits(): a filter of 0.01 at 1 kHz, full current up to 0.1 K above the start.
 // The script integrates a pause of its thread in short steps; one Euler step of 24 s would cool the winding to 0 °C.
 TEST(VescExporter, ScriptThatWasHeldUpIntegratesThePause) {
   SmallLisp script;
@@ -260,6 +259,57 @@ TEST(VescExporter, ScriptThatWasHeldUpIntegratesThePause) {
   EXPECT_NEAR(override_C, observer.state_C()[0], 1.0);
 }
 
+/// Current limit of a driving VESC in A (i_q): motor/mc_interface.c, update_override_limits(), lo_max_mot and lo_motor_temp_accel, with the
+/// default of motor/mcconf_default.h for a setting that the script does not set.
+Limit vesc_limit(const std::map<std::string, float>& settings) {
+  const auto value = [settings](const char* key) { return static_cast<double>(settings.at(key)); };
+  const double share = settings.contains("'l-temp-accel-dec") ? value("'l-temp-accel-dec") : 0.15;
+  return [=](double sensor_C) {
+    const double most_A = value("'l-current-max") * value("'l-current-max-scale");
+    double limit_A = most_A;
+    for (const double moved : {0.0, share}) {
+      const double start_C = value("'l-temp-motor-start") + moved * (25.0 - value("'l-temp-motor-start"));
+      const double end_C = value("'l-temp-motor-end") + moved * (25.0 - value("'l-temp-motor-end"));
+      const double ramp_A = sensor_C < start_C + 0.1 ? most_A
+                            : sensor_C > end_C - 0.1 ? 0.0
+                                                     : most_A * (end_C - sensor_C) / (end_C - start_C);
+      limit_A = std::min(limit_A, ramp_A);
+    }
+    return limit_A;
+  };
+}
+
+/// Mean of a current in A over the temperatures from 40 to 155 degC.
+double mean_A(const Limit& limit) {
+  double sum_A = 0.0;
+  for (int i = 0; i < 1150; ++i) {
+    sum_A += limit(40.05 + 0.1 * i);
+  }
+  return sum_A / 1150.0;
+}
+
+TEST(VescExporter, LosesWhatTheFileStates) {
+  const std::string text = exported("vesc");
+  SmallLisp script;
+  script.settings["'si-motor-poles"] = 14.0F;
+  script.extensions = {{"systime", [](const auto&) { return 0.0F; }}};
+  script.load(text);
+  const double bound_A =
+      mean_A([](double winding_C) { return ramp_bound_A(ecx_derating(), RampSignal::winding, winding_C); }) / kDcPerIq_ratio;
+  const auto stated = [&](const char* pattern) {
+    std::smatch found;
+    EXPECT_TRUE(std::regex_search(text, found, std::regex(pattern))) << pattern;
+    return found.empty() ? NAN : std::stod(found[1]);
+  };
+  const auto lost_percent = [&](const std::map<std::string, float>& settings) {
+    return 100.0 * (1.0 - mean_A(vesc_limit(settings)) / bound_A);
+  };
+  EXPECT_NEAR(lost_percent(script.settings), stated(R"(Less current than the table: [0-9.]+ A \(([0-9.]+) %\))"), 0.1);
+  std::map<std::string, float> changed = script.settings;
+  changed["'l-temp-accel-dec"] = 0.15F;
+  EXPECT_NEAR(lost_percent(changed), stated(R"(default of 0\.15 [^(]*\(([0-9.]+) %\))"), 0.1);
+}
+
 TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
   SmallLisp script;
   float override_C = NAN;
@@ -274,10 +324,8 @@ TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
                        {"get-rpm", [&](const auto&) { return static_cast<float>(speed_rad_per_s * 30.0 / std::numbers::pi) * kPolePairs; }},
                        {"override-temp-motor", [&](const auto& with) { return override_C = with.at(0); }}};
   script.load(exported("vesc"));
-  const double most_A = script.settings.at("'l-current-max");
-  const double start_C = script.settings.at("'l-temp-motor-start");
-  const double end_C = script.settings.at("'l-temp-motor-end");
-  EXPECT_EQ(script.settings.at("'l-current-min"), -most_A);
+  const Limit limit = vesc_limit(script.settings);
+  EXPECT_EQ(script.settings.at("'l-current-min"), -script.settings.at("'l-current-max"));
   for (const char* state : {"hs-state0-C", "hs-state1-C"}) {
     EXPECT_EQ(script.value(state), 155.0F) << "not started: taken as hot as its limit";
     script.set(state, 40.0F);
@@ -289,13 +337,11 @@ TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
   RandomLoad driver(5);
   for (int i = 0; i < 60'000; ++i) {
     const RandomLoad::Wish wish = driver.after(0.01);
+    // VESC, motor/mc_interface.c, update_override_limits(): a filter of 0.01 at 1 kHz.
     for (int tick = 0; tick < 10 && i > 0; ++tick) {
       filtered_C += 0.01 * (override_C - filtered_C);
     }
-    const double ramp_A = filtered_C < start_C + 0.1 ? most_A
-                          : filtered_C > end_C - 0.1 ? 0.0
-                                                     : most_A * (end_C - filtered_C) / (end_C - start_C);
-    current_A = wish.current_share * ramp_A;
+    current_A = wish.current_share * limit(filtered_C);
     speed_rad_per_s = wish.speed_share * ecx_derating().rules.most_speed_rad_per_s;
     script.cycle();
     const auto now_A = static_cast<float>(kDcPerIq_ratio) * static_cast<float>(current_A);

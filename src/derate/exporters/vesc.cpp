@@ -1,5 +1,5 @@
 // LispBM script for VESC controllers. Names and law: vedderb/bldc at b9d287b3b8323f4b02618b02dc55e57d54a84996, lispBM/README.md
-// (override-temp-motor, conf-set, get-current, get-rpm), motor/mc_interface.c (update_override_limits).
+// (override-temp-motor, conf-set, get-current, get-rpm), motor/mc_interface.c (update_override_limits), motor/mcconf_default.h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +14,11 @@ namespace {
 
 /// VESC gives the full current up to this far beyond the start of its ramp.
 constexpr double kFullBeyond_K = 0.1;
+
+/// While driving, VESC moves both ends of its ramp by the share l-temp-accel-dec towards this temperature, so that a hot motor can still
+/// brake. The share is 0.15 by default (MCCONF_L_LIM_TEMP_ACCEL_DEC); the script sets it to 0.
+constexpr double kMovedTowards_C = 25.0;
+constexpr double kDefaultMoved_share = 0.15;
 
 /// A LispBM float, the shortest decimal that reads back to it. A number without a point would be an integer.
 std::string literal(double value) {
@@ -103,8 +108,26 @@ std::string limits(const CurrentRamp& ramp, double phase_per_dc_ratio) {
       "(conf-set 'l-current-max-scale 1.0)\n"
       "(conf-set 'l-current-min-scale 1.0)\n"
       "(conf-set 'l-temp-motor-start {1:.1f})\n"
-      "(conf-set 'l-temp-motor-end {2:.1f})\n",
+      "(conf-set 'l-temp-motor-end {2:.1f})\n"
+      "(conf-set 'l-temp-accel-dec 0.0)\n",
       most_A, ramp.start_C, ramp.end_C);
+}
+
+/// Comment lines about the setting l-temp-accel-dec and the cost of its default. The default is safe, but loses more than ramp_lines()
+/// states.
+std::string moved_ramp_lines(const Derating& derating, const CurrentRamp& ramp, double phase_per_dc_ratio) {
+  const auto moved = [](double place_C) { return place_C + kDefaultMoved_share * (kMovedTowards_C - place_C); };
+  CurrentRamp driving = ramp;
+  driving.start_C = moved(ramp.start_C);
+  driving.end_C = moved(ramp.end_C);
+  const RampLoss loss = ramp_loss(derating, RampSignal::winding, driving);
+  return fmt::format(
+      "; The script sets l-temp-accel-dec to 0, for the MOSFET temperature too. A larger value moves both ramps towards {0:.0f} degC "
+      "while\n"
+      "; driving: with the controller's default of {1:.2f} this one would run from {2:.1f} to {3:.1f} degC and lose {4:.2f} A ({5:.1f} %) "
+      "on\n"
+      "; average. Writing another motor configuration, or a second script, undoes these settings until the script starts again.\n",
+      kMovedTowards_C, kDefaultMoved_share, driving.start_C, driving.end_C, phase_per_dc_ratio * loss.mean_A(), loss.mean_percent());
 }
 
 /// A script that was held up integrates the time in steps of this share of the winding's time constant.
@@ -116,6 +139,7 @@ std::string write_vesc(const Derating& derating) {
   require_three_signals("vesc", derating);
   const double dc_per_phase_ratio = derating.is_brushless ? kDcPerIq_ratio : 1.0;
   return provenance_lines(derating, ";") + ramp_lines(derating, RampSignal::winding, ramp, 1.0 / dc_per_phase_ratio, ";") +
+         moved_ramp_lines(derating, ramp, 1.0 / dc_per_phase_ratio) +
          fmt::format(
              "; Currents are {}. Set the motor temperature sensor to Disabled, or the override has no effect; set the motor's poles.\n"
              "; The motor temperature that the controller shows is the pessimistic winding temperature. The script samples the current "
