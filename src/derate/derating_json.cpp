@@ -74,6 +74,7 @@ Json table_json(const CurrentTable& table) {
     current.push_back(rounded_down(table.current_of_A(square_A2)));
     square.push_back(rounded_down(square_A2));
   }
+  const auto rounded_up = [](double value, double per_unit) { return std::ceil(value * per_unit) / per_unit; };
   const TableBound& bound = table.bound;
   return {{"order", {"speed_rad_per_s", "stator_C", "winding_C"}},
           {"units",
@@ -91,9 +92,9 @@ Json table_json(const CurrentTable& table) {
           {"winding_per_stator_K", table.winding_per_stator_K},
           {"bound",
            {{"shortfall_ratio", bound.shortfall_ratio},
-            {"winding_slope_A_per_K", rounded(bound.winding_slope_A_per_K, 3)},
-            {"stator_slope_A_per_K", rounded(bound.stator_slope_A_per_K, 3)},
-            {"speed_slope_A_s_per_rad", rounded(bound.speed_slope_A_s_per_rad, 4)}}},
+            {"winding_slope_A_per_K", rounded_up(bound.winding_slope_A_per_K, 1e3)},
+            {"stator_slope_A_per_K", rounded_up(bound.stator_slope_A_per_K, 1e3)},
+            {"speed_slope_A_s_per_rad", rounded_up(bound.speed_slope_A_s_per_rad, 1e4)}}},
           {"speed_rad_per_s", table.speed_rad_per_s},
           {"stator_C", table.stator_C},
           {"winding_C", table.winding_C},
@@ -136,6 +137,7 @@ Json sensor_json(const Derating& derating) {
           {"samples", plan.guarantee.samples},
           {"over", plan.guarantee.over},
           {"winding_peak_C", {{"p95", rounded(plan.guarantee.winding_p95_C, 2)}, {"most", rounded(plan.guarantee.winding_most_C, 2)}}},
+          {"table", table_json(plan.table)},
           {"honest_dropped", plan.dropped},
           {"lying",
            {{"most_gain_A", rounded(plan.most_gain_A, 3)},

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <regex>
 
 #include "base/diagnostic.h"
 #include "derate/sensed/kalman_design.h"
@@ -75,6 +76,31 @@ TEST(SensorPlan, ThermistorLowersTheSafetyFactor) {
   RecordProperty("sensor_fault_warm_C", fmt::format("{:.1f}", plan.sensor_fault_warm_C));
   RecordProperty("most_gain_A", fmt::format("{:.2f}", plan.most_gain_A));
   RecordProperty("honest_dropped", std::to_string(plan.dropped));
+}
+
+// The table for the lower safety factor is steeper than that of the guard without the sensor, so the header states the slopes of both.
+TEST(SensorPlan, HeaderStatesTheSlopesOfBothTables) {
+  const Derating& derating = thermistor_derating();
+  const std::string text = std::ranges::find(all_exporters(), "c_header", &ExporterType::name)->write(derating);
+  const std::regex stated(R"(changes by at most ([0-9.e-]+) A per K of\s+the winding, ([0-9.e-]+) A per K of the stator)");
+  std::sregex_iterator found(text.begin(), text.end(), stated);
+  double last_A_per_K = 0.0;
+  for (const CurrentTable* const table : {&derating.table, &derating.sensor->table}) {
+    ASSERT_NE(found, std::sregex_iterator());
+    double most_A_per_K = 0.0;
+    constexpr double kApart_K = 0.01;
+    for (double stator_C = 0.0; stator_C < 160.0; stator_C += 20.0) {
+      for (double winding_C = 0.0; winding_C < 165.0; winding_C += kApart_K) {
+        most_A_per_K = std::max(
+            most_A_per_K, (table->allowed_A(0.0, stator_C, winding_C) - table->allowed_A(0.0, stator_C, winding_C + kApart_K)) / kApart_K);
+      }
+    }
+    EXPECT_LE(most_A_per_K, std::stod((*found)[1]));
+    EXPECT_GE(most_A_per_K, 0.9 * std::stod((*found)[1])) << "the stated slope is reached";
+    EXPECT_GT(std::stod((*found)[1]), last_A_per_K);
+    last_A_per_K = std::stod((*found)[1]);
+    ++found;
+  }
 }
 
 TEST(SensorPlan, RefusesWhatIsNoSensor) {

@@ -31,6 +31,8 @@ std::string foc_conversion(const Source& source);
 std::string structures(const Source& source);
 /// The derating table; allowed_function() is its interpolation.
 std::string tables(const Source& source);
+/// States the bounds of a table: its shortfall and its largest slopes.
+std::string table_comment(const CurrentTable& table);
 std::string allowed_function(const Source& source);
 struct Rates {
   std::string text;

@@ -359,8 +359,9 @@ std::string comment(const SensorPlan& plan) {
 std::string sensed_table(const Source& source, const SensorPlan& plan) {
   const CurrentTable& table = plan.table;
   const std::string name = source.prefix + "_sensed";
-  return array(name + "_speed_rad_per_s", table.speed_rad_per_s) + array(name + "_stator_C", table.stator_C) +
-         array(name + "_winding_C", table.winding_C) + array(name + "_square_A2", table.square_A2) +
+  return "/* Table while the sensor is used. */\n" + table_comment(table) + array(name + "_speed_rad_per_s", table.speed_rad_per_s) +
+         array(name + "_stator_C", table.stator_C) + array(name + "_winding_C", table.winding_C) +
+         array(name + "_square_A2", table.square_A2) +
          fmt::format(
              "static const heatsoak_current_table {0}_table = {{\n    {{{0}_speed_rad_per_s, {1}}},\n    {{{0}_stator_C, {2}}},\n"
              "    {{{0}_winding_C, {3}}},\n    {0}_square_A2,\n    {4},\n    {5},\n    {6},\n    {7},\n    {8}}};\n\n",

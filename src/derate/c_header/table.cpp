@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "base/quantity.h"
 #include "derate/c_header/c_text.h"
 #include "derate/c_header/parts.h"
@@ -28,25 +30,34 @@ static inline float @_allowed_A(float speed_rad_per_s, float stator_C, float win
 
 )";
 
+/// Rounds a bound up to three significant digits.
+std::string significant_above(double bound) {
+  const double unit = bound > 0.0 ? std::pow(10.0, std::floor(std::log10(bound)) - 2.0) : 1.0;
+  return base::significant(std::ceil(bound / unit) * unit, 3);
+}
+
 }  // namespace
+
+std::string table_comment(const CurrentTable& table) {
+  const TableBound& bound = table.bound;
+  const std::string at_one_place = " An axis with one grid point has no influence.";
+  return fmt::format(
+      "/* Squares of the allowed current. The table is never above the exact result of the network. Between grid points it is at "
+      "most {:.1f} %\n"
+      "   below it, for currents of {} A and more and windings below their limit. The allowed current changes by at most {} A per "
+      "K of\n"
+      "   the winding, {} A per K of the stator and {} A per rad/s.{} */\n",
+      std::ceil(1000.0 * bound.shortfall_ratio) / 10.0, base::significant(table.straight_below_A, 3),
+      significant_above(bound.winding_slope_A_per_K), significant_above(bound.stator_slope_A_per_K),
+      significant_above(bound.speed_slope_A_s_per_rad),
+      table.speed_rad_per_s.size() == 1 || table.stator_C.size() == 1 ? at_one_place : "");
+}
 
 std::string tables(const Source& source) {
   const CurrentTable& table = source.derating.table;
-  const TableBound& bound = table.bound;
-  const auto rounded = [](double value) { return base::significant(value, 3); };
-  const std::string at_one_place = " An axis with one grid point has no influence.";
-  return fmt::format(
-             "/* Squares of the allowed current. The table is never above the exact result of the network. Between grid points it is at "
-             "most {:.1f} %\n"
-             "   below it, for currents of {} A and more and windings below their limit. The allowed current changes by at most {} A per "
-             "K of\n"
-             "   the winding, {} A per K of the stator and {} A per rad/s.{} */\n",
-             100.0 * bound.shortfall_ratio, rounded(table.straight_below_A), rounded(bound.winding_slope_A_per_K),
-             rounded(bound.stator_slope_A_per_K), rounded(bound.speed_slope_A_s_per_rad),
-             table.speed_rad_per_s.size() == 1 || table.stator_C.size() == 1 ? at_one_place : std::string()) +
-         array(source.prefix + "_speed_rad_per_s", table.speed_rad_per_s) + array(source.prefix + "_stator_C", table.stator_C) +
-         array(source.prefix + "_winding_C", table.winding_C) + "/* in A^2: by speed, then stator, then winding */\n" +
-         array(source.prefix + "_square_A2", table.square_A2) +
+  return table_comment(table) + array(source.prefix + "_speed_rad_per_s", table.speed_rad_per_s) +
+         array(source.prefix + "_stator_C", table.stator_C) + array(source.prefix + "_winding_C", table.winding_C) +
+         "/* in A^2: by speed, then stator, then winding */\n" + array(source.prefix + "_square_A2", table.square_A2) +
          replaced(kTable, {{"@SPEEDS@", std::to_string(table.speed_rad_per_s.size())},
                            {"@STATORS@", std::to_string(table.stator_C.size())},
                            {"@WINDINGS@", std::to_string(table.winding_C.size())},
