@@ -39,8 +39,8 @@ typedef struct {
 
 typedef struct {
   @_output guard;
-  float model_only_A;     /* A, current that the guard without the sensor would allow; |guard.allowed_current_A| is at most this plus
-                             @CAP@_SENSOR_MOST_GAIN_A */
+  float model_only_A;     /* A, current that the guard without the sensor would allow after the same load, counted up to what it allowed.
+                             guard.allowed_current_A is at most this plus @CAP@_SENSOR_MOST_GAIN_A and 1e-6 A of rounding */
   @_sensor_status sensor;
 } @_sensed_output;
 
@@ -341,7 +341,7 @@ std::string comment(const SensorPlan& plan) {
       "/* With {} at the {} (largest error {:.3g} K{}): safety factor on heat {:.3g} instead of the above while the sensor is used.\n"
       " * With {:.0f} % certainty at least {:.1f} % of the motors keep every limit although each sensor reads too little by that error;\n"
       " * {} of {} drawn motors exceeded one. The cross-check drops the correct sensor of {}.\n"
-      " * A PLAUSIBLE BUT WRONG SENSOR allows at most SENSOR_MOST_GAIN_A more than without one: the nominal motor then reaches {:.0f} "
+      " * A PLAUSIBLE BUT WRONG SENSOR allows at most SENSOR_MOST_GAIN_A more than model_only_A: the nominal motor then reaches {:.0f} "
       "degC\n"
       " * from a start at the hottest air, and {:.0f} degC from a warmer start, all nodes equally warm up to the winding limit; {} of {} "
       "drawn\n"
