@@ -95,6 +95,24 @@ TEST_P(CleanHeader, HasNoWarningsAsC99AndAsCpp11) {
   }
 }
 
+// A number that has a name appears once, where the name is defined.
+TEST_P(CleanHeader, IsReadable) {
+  std::string code = exported(GetParam().exporter);
+  std::istringstream lines(code);
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(line.size(), 140U) << line;
+  }
+  EXPECT_EQ(code.find("/ 2]"), std::string::npos) << "an index that only counts passes";
+  if (std::string_view(GetParam().exporter) == "c_header") {
+    code = std::regex_replace(code, std::regex(R"(#define [^\n]*|/\*[\s\S]*?\*/|static const float [\s\S]*?\};)"), "");
+    const std::size_t step = code.find("_step(maxon");
+    ASSERT_NE(step, std::string::npos);
+    std::smatch found;
+    const std::string body = code.substr(step, code.find("\n}\n", step) - step);
+    EXPECT_FALSE(std::regex_search(body, found, std::regex(R"(\b\d+\.\d{2,}f|\d{2,}\.\d+f)"))) << found[0];
+  }
+}
+
 TEST_P(CleanHeader, CompilesForEveryCortexM) {
   if (!has("arm-none-eabi-gcc")) {
     GTEST_SKIP() << HEATSOAK_FAILS_CI "no compiler for ARM here";

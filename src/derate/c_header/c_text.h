@@ -26,6 +26,10 @@ using Words = std::vector<std::pair<std::string, std::string>>;
 /// Replaces every first word of a pair in the pattern by the second one, pair by pair.
 std::string replaced(std::string_view pattern, const Words& words);
 
+/// Breaks lines of C text that are longer than 140 characters: comments at a space, code behind a comma or before an operator. Lines of
+/// the preprocessor stay whole.
+std::string wrapped(std::string_view text);
+
 /// Syntax of the laws in the C header; an input is a field of `input`.
 const LineStyle& line_style();
 

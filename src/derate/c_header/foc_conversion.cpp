@@ -27,7 +27,9 @@ std::string foc_conversion(const Source& source) {
       "#define {}_DC_A_PER_IQ_A {}\n"
       "static inline float {}_current_from_iq_A(float iq_A) {{ return {}_DC_A_PER_IQ_A * iq_A; }}\n"
       "/* magnitude of i_q that corresponds to allowed_current_A */\n"
-      "static inline float {}_iq_limit_A(float allowed_current_A) {{ return allowed_current_A / {}_DC_A_PER_IQ_A; }}\n"
+      "static inline float {}_iq_limit_A(float allowed_current_A) {{\n"
+      "  return allowed_current_A / {}_DC_A_PER_IQ_A;\n"
+      "}}\n"
       "\n",
       kDcPerIq_ratio * derating.heating_current_ratio, derating.heating_current_ratio < 1.0 ? "sinusoidal" : "block",
       excess_percent < 0.5 ? "torque and copper loss are both exact"

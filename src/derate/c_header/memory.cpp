@@ -10,7 +10,8 @@ namespace heatsoak::derate::c_header {
 namespace {
 
 constexpr std::string_view kPacked =
-    R"(/* Data saved over power-off: signature of motor and guard (@CAP@_SIGNATURE), temperatures, CRC-32 (IEEE 802.3); little-endian. */
+    R"(/* Data saved over power-off: signature of motor and guard (@CAP@_SIGNATURE), temperatures and
+   CRC-32 (IEEE 802.3); little-endian. */
 #define @CAP@_SAVED_SIZE @SIZE@
 typedef enum {
   @_restored,        /* cooled for the elapsed time */
@@ -100,8 +101,8 @@ static inline float @_cooling_step_s(@_law law, const @_input *off, const float 
   return fastest_per_s > 0.0f ? 0.05f / fastest_per_s : @CAP@_PERIOD_S;
 }
 
-/* Cool-down without current in the hottest air, in at most @CAP@_MOST_COOLING_STEPS steps. Time beyond them is ignored: no cooling.
-   peak_C: highest temperature of each node during this time. */
+/* Cool-down without current in the hottest air, in at most @CAP@_MOST_COOLING_STEPS steps.
+   Time beyond them is ignored: no cooling. peak_C: highest temperature of each node during this time. */
 static inline void @_cool(@_law law, float elapsed_s, float *state_C, float *peak_C) {
   @_input off;
   float rate_K_per_s[@NODES@];
@@ -151,18 +152,18 @@ static inline void @_rest(@_law law, float elapsed_s, float *state_C) {
 
 /// With saves at regular intervals the motor may have run since the last one. Assumes the highest load that the guard can have allowed.
 constexpr std::string_view kUnsaved =
-    R"(/* Worst-case heating: the driver's largest current at the accepted speed that heats most, up to the limit that the guard has kept, or up to the
-   hottest node if that is hotter. No node cools. */
+    R"(/* Worst-case heating: the driver's largest current at the accepted speed that heats most, up to the limit that the guard has
+   kept, or up to the hottest node if that is hotter. No node cools. */
 static inline void @_heat(@_law law, float unsaved_s, float *state_C) {
-  const float hottest_rad_per_s[@SPEEDS@] = {@SPEED_LIST@};
-  @_input on;
+  const float possible_A[2] = {@CAP@_MOST_CURRENT_A, -@CAP@_MOST_CURRENT_A};
+@SPEED_LIST@  @_input on;
   float rate_K_per_s[@NODES@];
   float most_K_per_s[@NODES@];
   float most_C = @CAP@_WINDING_LIMIT_C;
   float left_s = unsaved_s;
   int node;
-  int load;
-  int step;
+  int direction;
+@SPEED_INDEX@  int step;
   for (node = 0; node < @NODES@; ++node) {
     most_C = state_C[node] > most_C ? state_C[node] : most_C;
   }
@@ -170,15 +171,7 @@ static inline void @_heat(@_law law, float unsaved_s, float *state_C) {
   on.ambient_C = @CAP@_HOTTEST_AMBIENT_C;
 @ON@  for (step = 0; step < @CAP@_MOST_COOLING_STEPS && left_s > 0.0f; ++step) {
     @_clear((unsigned char *)most_K_per_s, (int)sizeof most_K_per_s);
-    for (load = 0; load < @LOADS@; ++load) {
-      on.current_A = (load % 2) == 0 ? @CAP@_MOST_CURRENT_A : -@CAP@_MOST_CURRENT_A;
-      on.speed_rad_per_s = hottest_rad_per_s[load / 2];
-      law(&on, state_C, rate_K_per_s);
-      for (node = 0; node < @NODES@; ++node) {
-        most_K_per_s[node] = rate_K_per_s[node] > most_K_per_s[node] ? rate_K_per_s[node] : most_K_per_s[node];
-      }
-    }
-    for (node = 0; node < @NODES@; ++node) {
+@LOADS@    for (node = 0; node < @NODES@; ++node) {
       const float next_C = state_C[node] + @CAP@_PERIOD_S * most_K_per_s[node];
       state_C[node] = next_C < most_C ? next_C : most_C;
     }
@@ -189,6 +182,26 @@ static inline void @_heat(@_law law, float unsaved_s, float *state_C) {
   }
 }
 
+)";
+
+constexpr std::string_view kLoadsOfOneSpeed = R"(    for (direction = 0; direction < 2; ++direction) {
+      on.current_A = possible_A[direction];
+      law(&on, state_C, rate_K_per_s);
+      for (node = 0; node < @NODES@; ++node) {
+        most_K_per_s[node] = rate_K_per_s[node] > most_K_per_s[node] ? rate_K_per_s[node] : most_K_per_s[node];
+      }
+    }
+)";
+constexpr std::string_view kLoadsOfSpeeds = R"(    for (speed = 0; speed < @SPEEDS@; ++speed) {
+      on.speed_rad_per_s = possible_rad_per_s[speed];
+      for (direction = 0; direction < 2; ++direction) {
+        on.current_A = possible_A[direction];
+        law(&on, state_C, rate_K_per_s);
+        for (node = 0; node < @NODES@; ++node) {
+          most_K_per_s[node] = rate_K_per_s[node] > most_K_per_s[node] ? rate_K_per_s[node] : most_K_per_s[node];
+        }
+      }
+    }
 )";
 
 constexpr std::string_view kRestore =
@@ -250,19 +263,22 @@ std::string memory_functions(const Source& source, unsigned signature) {
   const std::size_t nodes = source.derating.observer.state_count();
   constexpr int kMostCoolingSteps = 4096;
   const std::vector<float> speeds = plausible_range(source.derating, observed::speed).values;
+  const bool has_one_speed = speeds.size() == 1;
   std::string speed_list;
   for (const float speed_rad_per_s : speeds) {
     speed_list += (speed_list.empty() ? "" : ", ") + literal(speed_rad_per_s);
   }
-  const Words words{{"@OFF@", unwatched_signals(source, "off")},
-                    {"@ON@", unwatched_signals(source, "on")},
-                    {"@SPEEDS@", std::to_string(speeds.size())},
-                    {"@LOADS@", std::to_string(2 * speeds.size())},
-                    {"@SPEED_LIST@", speed_list},
-                    {"@SIZE@", std::to_string(4 * (2 + 2 * nodes))},
-                    {"@CAP@", source.capital},
-                    {"@NODES@", std::to_string(nodes)},
-                    {"@", source.prefix}};
+  const Words words{
+      {"@OFF@", unwatched_signals(source, "off")},
+      {"@ON@", unwatched_signals(source, "on") + (has_one_speed ? "  on.speed_rad_per_s = @CAP@_UNKNOWN_SPEED_RAD_PER_S;\n" : "")},
+      {"@SPEED_LIST@", has_one_speed ? "" : fmt::format("  const float possible_rad_per_s[@SPEEDS@] = {{{}}};\n", speed_list)},
+      {"@SPEED_INDEX@", has_one_speed ? "" : "  int speed;\n"},
+      {"@LOADS@", std::string(has_one_speed ? kLoadsOfOneSpeed : kLoadsOfSpeeds)},
+      {"@SPEEDS@", std::to_string(speeds.size())},
+      {"@SIZE@", std::to_string(4 * (2 + 2 * nodes))},
+      {"@CAP@", source.capital},
+      {"@NODES@", std::to_string(nodes)},
+      {"@", source.prefix}};
   return fmt::format("\n#define {0}_SIGNATURE 0x{1:08x}u\n#define {0}_MOST_COOLING_STEPS {2}\n", source.capital, signature,
                      kMostCoolingSteps) +
          replaced(kPacked, words) + replaced(kCool, words) + replaced(kUnsaved, words) + replaced(kRestore, words);

@@ -25,14 +25,16 @@ std::vector<observed::Signal> used_signals(const Observer& observer);
 std::string head_comment(const Source& source);
 /// "#define" lines: period, limits, and constants of the table.
 std::string constants(const Source& source);
+/// "#define" lines of the plausible range of every input, and of the value that replaces an implausible reading.
+std::string plausible_constants(const Source& source);
 /// Conversion of i_q to the equivalent DC current; empty for a brushed motor.
 std::string foc_conversion(const Source& source);
 /// Types of a step: input, state, reason and output.
 std::string structures(const Source& source);
-/// The derating table; allowed_function() is its interpolation.
-std::string tables(const Source& source);
 /// States the bounds of a table: its shortfall and its largest slopes.
 std::string table_comment(const CurrentTable& table);
+/// The derating table; allowed_function() is its interpolation.
+std::string tables(const Source& source);
 std::string allowed_function(const Source& source);
 struct Rates {
   std::string text;

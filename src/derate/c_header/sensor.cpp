@@ -34,7 +34,7 @@ typedef struct {
   float frozen_C;
   float frozen_nominal_C;
   uint32_t rejected;            /* readings that were not used */
-  @_sensor_status dropped;      /* reason why the sensor was dropped; @_sensor_used if it was not */
+  @_sensor_status dropped;      /* reason why the sensor was dropped, else @_sensor_used */
 } @_sensed_state;
 
 typedef struct {
@@ -74,7 +74,8 @@ static inline void @_sensed_start(@_sensed_state *state, float body_C) {
   @_begin_sensed(state);
 }
 
-/* As @_save and @_restore, which keep the guard without the sensor: it is at least as hot as the motor. A dropped sensor is used again. */
+/* As @_save and @_restore, which keep the guard without the sensor:
+   it is at least as hot as the motor. A dropped sensor is used again. */
 static inline void @_sensed_save(const @_sensed_state *state, uint8_t *buffer) {
   @_save(&state->model, buffer);
 }
@@ -162,8 +163,9 @@ static inline bool @_is_sensed_started(const @_sensed_state *state) {
                          @_is_between(0.0f, state->jumped_s, 2.0f * @CAP@_SENSOR_CONTRADICTION_S) &&
                          @_is_between(0.0f, state->cold_s, 2.0f * @CAP@_SENSOR_CONTRADICTION_S);
   for (node = 0; node < @NODES@; ++node) {
-    is_started = is_started && @_is_temperature(state->state_C[node]) && @_is_temperature(state->capped_C[node]) &&
-                 @_is_between(-1.0f, state->carry_K[node], 1.0f) && @_is_between(-1.0f, state->capped_carry_K[node], 1.0f);
+    is_started = is_started && @_is_temperature(state->state_C[node]) && @_is_temperature(state->capped_C[node]);
+    is_started = is_started && @_is_between(-1.0f, state->carry_K[node], 1.0f);
+    is_started = is_started && @_is_between(-1.0f, state->capped_carry_K[node], 1.0f);
   }
   return is_started;
 }
@@ -188,8 +190,8 @@ static inline void @_cap_model(@_sensed_state *state, const float *last_C) {
   }
 }
 
-/* One period of both observers. The capped one counts the current up to that which it would have allowed, and what flowed beyond the allowed
-   current: the two currents then never differ by more than the sensor may add. */
+/* One period of both observers. The capped one counts the current up to that which it would have allowed, and what flowed
+   beyond the allowed current: the two currents then never differ by more than the sensor may add. */
 static inline void @_advance_sensed(@_sensed_state *state, const @_input *measured, bool is_over) {
   @_input capped = *measured;
   float rate_K_per_s[@NODES@];
@@ -209,8 +211,8 @@ static inline void @_advance_sensed(@_sensed_state *state, const @_input *measur
   @_advance(state->state_C, state->carry_K, rate_K_per_s);
 @ADVANCE_LAG@}
 
-/* Replaces @_step. reading_C: reading of the sensor; NAN if there is none in this period. While ambient_C is not measured (the hottest
-   declared air), a sensor stuck near ambient_C may never be dropped; SENSOR_MOST_GAIN_A then still bounds its effect. */
+/* Replaces @_step. reading_C: reading of the sensor; NAN if there is none in this period.
+   While ambient_C is not measured (the hottest declared air), a sensor stuck near ambient_C may never be dropped; SENSOR_MOST_GAIN_A then still bounds its effect. */
 static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_input *measured, float reading_C) {
   @_sensed_output out;
   float last_C[@NODES@];

@@ -11,7 +11,9 @@ namespace {
 
 constexpr std::string_view kStart = R"(/* Both return false for NaN; the second also for a temperature that no motor can have. */
 static inline bool @_is_between(float low, float x, float high) { return x >= low && x <= high; }
-static inline bool @_is_temperature(float x) { return @_is_between(@CAP@_COLDEST_AMBIENT_C - 1.0f, x, @CAP@_MOST_STATE_C); }
+static inline bool @_is_temperature(float x) {
+  return @_is_between(@CAP@_COLDEST_AMBIENT_C - 1.0f, x, @CAP@_MOST_STATE_C);
+}
 
 /* Keeps a node between the coldest air and @CAP@_MOST_STATE_C: a hotter one counts as that hot. */
 static inline float @_bounded_C(float x) {
@@ -71,10 +73,11 @@ static inline void @_advance(float *state_C, float *carry_K, const float *rate_K
 
 /* stator_C: the hottest node other than the winding. Below the first points of their axes, temperatures do not reduce the current. */
 static inline @_reason @_reason_for(float allowed_A, float stator_C, float winding_C) {
+  const bool is_cool = stator_C <= @_stator_C[0] && winding_C <= @_winding_C[0];
   if (!(allowed_A > 0.0f)) {
     return @_no_current;
   }
-  return allowed_A >= @CAP@_MOST_CURRENT_A || (stator_C <= @_stator_C[0] && winding_C <= @_winding_C[0]) ? @_full : @_derated;
+  return allowed_A >= @CAP@_MOST_CURRENT_A || is_cool ? @_full : @_derated;
 }
 
 static inline @_output @_step(@_state *state, const @_input *measured) {
@@ -88,8 +91,9 @@ static inline @_output @_step(@_state *state, const @_input *measured) {
 @PASS@  bool is_started = state->started == @CAP@_STARTED;
   uint32_t unknown = 0u;
   for (node = 0; node < @NODES@; ++node) {
-    is_started = is_started && @_is_temperature(state->state_C[node]) && @_is_between(-1.0f, state->carry_K[node], 1.0f) &&
-                 @_is_temperature(state->nominal_C[node]) && @_is_between(-1.0f, state->nominal_carry_K[node], 1.0f);
+    is_started = is_started && @_is_temperature(state->state_C[node]) && @_is_temperature(state->nominal_C[node]);
+    is_started = is_started && @_is_between(-1.0f, state->carry_K[node], 1.0f);
+    is_started = is_started && @_is_between(-1.0f, state->nominal_carry_K[node], 1.0f);
   }
   if (!is_started) {
     @_start(state, @CAP@_WINDING_LIMIT_C);
@@ -128,15 +132,28 @@ std::vector<observed::Signal> swept_signals(const Source& source) {
 
 unsigned bit(observed::Signal signal) { return 1U << static_cast<unsigned>(signal); }
 
+/// Name of the constant of an input: PREFIX_LEAST_PLAUSIBLE_CURRENT_A.
+std::string constant_of(const Source& source, std::string_view what, observed::Signal signal) {
+  return fmt::format("{}_{}_{}", source.capital, what, in_capitals(std::string(name_of(signal))));
+}
+
+/// Lower end of the plausible range as an expression. That of the neighbour follows the air.
+std::string least_of(const Source& source, observed::Signal signal) {
+  const PlausibleRange validated = plausible_range(source.derating, signal);
+  if (signal == observed::neighbour) {
+    return fmt::format("in.ambient_C - {}", literal(kNeighbourBelowAir_K));
+  }
+  return validated.low == -validated.high ? fmt::format("-{}", constant_of(source, "MOST_PLAUSIBLE", signal))
+                                          : constant_of(source, "LEAST_PLAUSIBLE", signal);
+}
+
 /// Generates the checks that replace implausible readings. Each gets a value before the sweeps, because a NaN would spoil every rate.
 std::string plausible_ranges(const Source& source) {
   std::string text;
   for (const observed::Signal signal : source.signals) {
-    const PlausibleRange validated = plausible_range(source.derating, signal);
-    const bool moves = signal == observed::neighbour;
-    const std::string least = moves ? fmt::format("in.ambient_C - {}", literal(kNeighbourBelowAir_K)) : literal(validated.low);
     text += fmt::format("  if (!{0}_is_between({1}, in.{2}, {3})) {{\n    in.{2} = {4};\n    unknown |= {5}u;\n  }}\n", source.prefix,
-                        least, name_of(signal), literal(validated.high), literal(validated.values.front()), bit(signal));
+                        least_of(source, signal), name_of(signal), constant_of(source, "MOST_PLAUSIBLE", signal),
+                        constant_of(source, "UNKNOWN", signal), bit(signal));
   }
   return text;
 }
@@ -154,6 +171,19 @@ std::string sweeps(const Source& source, const std::vector<observed::Signal>& sw
 }
 
 }  // namespace
+
+std::string plausible_constants(const Source& source) {
+  std::string text = "/* A reading outside of its plausible range is replaced by the UNKNOWN value, its hottest case. */\n";
+  for (const observed::Signal signal : source.signals) {
+    const PlausibleRange range = plausible_range(source.derating, signal);
+    if (least_of(source, signal) == constant_of(source, "LEAST_PLAUSIBLE", signal)) {
+      text += fmt::format("#define {} {}\n", constant_of(source, "LEAST_PLAUSIBLE", signal), literal(range.low));
+    }
+    text += fmt::format("#define {} {}\n#define {} {}\n", constant_of(source, "MOST_PLAUSIBLE", signal), literal(range.high),
+                        constant_of(source, "UNKNOWN", signal), literal(range.values.front()));
+  }
+  return text + "\n";
+}
 
 std::string candidates(const Source& source) {
   std::string text;

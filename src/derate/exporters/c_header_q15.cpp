@@ -228,8 +228,10 @@ std::string head(const Derating& derating, const std::string& prefix, const Inte
       " * Temperatures are 0 to {0:.2g} K above those of the header in single precision. At equal temperatures the current is never above "
       "that\n"
       " * of its table and at most {1:.1f} % below it, for currents of {2:.3g} A and more.\n"
-      " * Once, after a long rest:      {3}_start(&motor, board_mC);   a state that was never started counts as hot as its limit\n"
-      " * every {4:.9g} s:                out = {3}_step(&motor, &in);   then |current| <= out.allowed_current_mA until the next call\n"
+      " * Once, after a long rest: {3}_start(&motor, board_mC);\n"
+      " *   a state that was never started counts as hot as its limit.\n"
+      " * Every {4:.9g} s: out = {3}_step(&motor, &in);\n"
+      " *   then |current| <= out.allowed_current_mA until the next call.\n"
       " */\n",
       temperature_excess_K(derating, lines) + 1e-3 * kReadHotter_mC, 100.0 * table_ratio, derating.table.straight_below_A, prefix,
       derating.options.period_s);
@@ -278,8 +280,8 @@ std::string table_text(const QuantisedTable& table, const std::string& prefix) {
          integers("int32_t", prefix + "_winding_mC", widened(table.winding_mC)) + "/* by speed, then stator, then winding */\n" +
          integers("int16_t", prefix + "_square", widened(table.square)) +
          fmt::format(
-             "static const heatsoak_integer_table {0}_table = {{\n    {{{0}_speed_mrad_per_s, {1}}}, {{{0}_stator_mC, {2}}}, "
-             "{{{0}_winding_mC, {3}}}, {0}_square,\n    {4}u, {5}, {6}, {7}, {8}, {9}}};\n\n",
+             "static const heatsoak_integer_table {0}_table = {{\n    {{{0}_speed_mrad_per_s, {1}}},\n    {{{0}_stator_mC, {2}}},\n"
+             "    {{{0}_winding_mC, {3}}},\n    {0}_square,\n    {4}u, {5}, {6}, {7}, {8}, {9}}};\n\n",
              prefix, table.speed_mrad_per_s.size(), table.stator_mC.size(), table.winding_mC.size(), table.unit_mA2, table.most_current_mA,
              table.straight_below_mA, table.most_speed_mrad_per_s, table.no_current_speed_mrad_per_s, table.winding_per_stator_K);
 }
@@ -345,17 +347,18 @@ std::string write_c_header_q15(const Derating& derating) {
                               {"@CAP@", capital},
                               {"@", prefix}};
   const auto define = [&](std::string_view name, std::int64_t value) { return fmt::format("#define {}_{} {}\n", capital, name, value); };
-  return head(derating, prefix, lines, table) +
-         fmt::format("#ifndef HEATSOAK_{0}_H\n#define HEATSOAK_{0}_H\n\n#include <stdbool.h>\n#include <stdint.h>\n\n", capital) +
-         std::string(embedded::integer_table_text().front().text) + "\n" +
-         define("WINDING_LIMIT_MC", static_cast<std::int64_t>(std::floor(1000.0 * derating.rules.limits.winding_C))) +
-         define("COLDEST_AMBIENT_MC", static_cast<std::int64_t>(std::floor(1000.0 * derating.options.coldest_ambient_C))) +
-         fmt::format("#define {}_STORED_PER_K INT64_C({})\n#define {}_STARTED 0x48454154u\n\n", capital, std::int64_t{1} << kStoredBits,
-                     capital) +
-         structures(derating, prefix) + table_text(table, prefix) + c_header::replaced(kHelpers, words) +
-         (lines.text.find("_quotient(") == std::string::npos ? "" : c_header::replaced(kQuotient, words)) +
-         changes_function(derating, prefix, lines) + integers("int32_t", prefix + "_possible_current_mA", currents) +
-         integers("int32_t", prefix + "_possible_speed_mrad_per_s", speeds) + "\n" + c_header::replaced(kStep, words) + "\n#endif\n";
+  return c_header::wrapped(
+      head(derating, prefix, lines, table) +
+      fmt::format("#ifndef HEATSOAK_{0}_H\n#define HEATSOAK_{0}_H\n\n#include <stdbool.h>\n#include <stdint.h>\n\n", capital) +
+      std::string(embedded::integer_table_text().front().text) + "\n" +
+      define("WINDING_LIMIT_MC", static_cast<std::int64_t>(std::floor(1000.0 * derating.rules.limits.winding_C))) +
+      define("COLDEST_AMBIENT_MC", static_cast<std::int64_t>(std::floor(1000.0 * derating.options.coldest_ambient_C))) +
+      fmt::format("#define {}_STORED_PER_K INT64_C({})\n#define {}_STARTED 0x48454154u\n\n", capital, std::int64_t{1} << kStoredBits,
+                  capital) +
+      structures(derating, prefix) + table_text(table, prefix) + c_header::replaced(kHelpers, words) +
+      (lines.text.find("_quotient(") == std::string::npos ? "" : c_header::replaced(kQuotient, words)) +
+      changes_function(derating, prefix, lines) + integers("int32_t", prefix + "_possible_current_mA", currents) +
+      integers("int32_t", prefix + "_possible_speed_mrad_per_s", speeds) + "\n" + c_header::replaced(kStep, words) + "\n#endif\n");
 }
 
 }  // namespace
