@@ -313,7 +313,7 @@ CommittedTable read_committed_table(const std::filesystem::path& file) {
                            .code = {}};
   std::string text = base::read_file(file, kLargestTable_bytes);
   std::erase(text, '\r');  // a checkout may have changed the line ends
-  static const std::regex kVersion(R"re((?:heatsoak |VERSION ")(\d+\.\d+\.\d+))re");
+  static const std::regex kVersion(R"re((?:heatsoak |VERSION ")(\d+\.\d+\.\d+(?:\+[0-9a-f]+)?))re");
   std::smatch version;
   const std::string head = text.substr(0, 4000);
   if (std::regex_search(head, version, kVersion)) {

@@ -27,7 +27,7 @@ struct CommittedTable {
   std::string robot_id;               ///< likewise
   bool has_sensor = false;            ///< a C header with a temperature sensor
   std::string sensor_flags;           ///< sensor_flags() of that sensor; empty if the header does not state them
-  std::string version;                ///< version of the program that wrote the file, "0.1.0"; empty if not stated
+  std::string version;                ///< version of the program that wrote the file, base::program_version(); empty if not stated
   std::string code;                   ///< full text of a C header, else empty
 };
 

@@ -658,7 +658,7 @@ TEST(Usage, evaluate_takes_motor_as_the_other_verbs_do) {
 TEST(Usage, version) {
   const ProgramRun result = run({"--version"});
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_THAT(result.out, MatchesRegex("heatsoak [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  EXPECT_THAT(result.out, MatchesRegex("heatsoak [0-9]+\\.[0-9]+\\.[0-9]+\\+[0-9a-f]{8}\n"));
 }
 
 struct Mistake {

@@ -1,0 +1,11 @@
+# source_hash.cmake runs this script at build time. It writes the hash of FILES (separated by |, paths below ROOT) to OUT.
+string(REPLACE "|" ";" FILES "${FILES}")
+set(all "")
+foreach(file IN LISTS FILES)
+  file(RELATIVE_PATH path "${ROOT}" "${file}")
+  file(SHA256 "${file}" hash)
+  string(APPEND all "${path} ${hash}\n")
+endforeach()
+string(SHA256 hash "${all}")
+string(SUBSTRING "${hash}" 0 8 short)
+file(WRITE "${OUT}" "#define HEATSOAK_SOURCE_HASH \"${short}\"\n")
