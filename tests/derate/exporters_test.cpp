@@ -359,7 +359,7 @@ TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
 constexpr const char* kSimpleFoc = R"(#pragma once
 #include <math.h>
 struct CurrentSense {};
-enum class TorqueControlType { voltage, foc_current };
+enum class TorqueControlType { voltage, dc_current, foc_current, estimated_current };
 struct DQCurrent_s { float d, q; };
 struct FOCMotor {
   CurrentSense *current_sense = nullptr;
@@ -382,8 +382,15 @@ int main() {
   maxon_ecx_flat_32l_48v_start(&guard, 40.0f);
   maxon_ecx_flat_32l_48v_limit(motor, guard, 40.0f);
   printf("%d %.9g\n", (int)motor.is_enabled, motor.current_limit);
-  motor.is_enabled = true;
   motor.current_sense = &sense;
+  const TorqueControlType modes[] = {TorqueControlType::voltage, TorqueControlType::estimated_current, TorqueControlType::dc_current,
+                                     TorqueControlType::foc_current};
+  for (const TorqueControlType mode : modes) {
+    motor.is_enabled = true;
+    motor.torque_controller = mode;
+    maxon_ecx_flat_32l_48v_limit(motor, guard, 40.0f);
+    printf("%d %d\n", (int)motor.is_enabled, (int)(motor.current_limit > 0.0f));
+  }
   for (int i = 0; i < 60000; ++i) {
     motor.shaft_velocity = -100.0f;
     motor.current.q = -motor.current_limit;
@@ -394,30 +401,63 @@ int main() {
 }
 )";
 
-TEST(SimpleFocExporter, CompilesBesideTheHeaderAndLimitsTheMotor) {
-  if (std::system("c++ --version > /dev/null 2>&1") != 0) {
-    GTEST_SKIP() << HEATSOAK_FAILS_CI "no compiler here";
+class SimpleFocExporter : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::system("c++ --version > /dev/null 2>&1") != 0) {
+      GTEST_SKIP() << HEATSOAK_FAILS_CI "no compiler here";
+    }
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "limit.h") << exported("simplefoc");
+    std::ofstream(folder / "maxon_ecx_flat_32l_48v_guard.h") << exported("c_header");
+    std::ofstream(folder / "sketch.cpp") << kSketch;
   }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  /// Compiles the sketch for this version of the library and runs it. Returns the exit code.
+  [[nodiscard]] int run(const std::string& library) const {
+    std::ofstream(folder / "SimpleFOC.h") << library;
+    return std::system(
+        fmt::format("cd {} && c++ -std=c++11 -Wall -Wextra -Werror -O1 -I. sketch.cpp -o sketch 2> errors.txt && ./sketch > out.txt",
+                    folder.string())
+            .c_str());
+  }
+  [[nodiscard]] std::string errors() const {
+    std::stringstream text;
+    text << std::ifstream(folder / "errors.txt").rdbuf();
+    return text.str();
+  }
+
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_simplefoc_{}", getpid());
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "SimpleFOC.h") << kSimpleFoc;
-  std::ofstream(folder / "limit.h") << exported("simplefoc");
-  std::ofstream(folder / "maxon_ecx_flat_32l_48v_guard.h") << exported("c_header");
-  std::ofstream(folder / "sketch.cpp") << kSketch;
-  const std::string command =
-      fmt::format("cd {} && c++ -std=c++11 -Wall -Wextra -Werror -O1 -I. sketch.cpp -o sketch && ./sketch > out.txt", folder.string());
-  ASSERT_EQ(std::system(command.c_str()), 0);
+};
+
+// v2.3.5 has neither updateCurrentLimit nor estimated_current.
+TEST_F(SimpleFocExporter, SaysWhichVersionItNeedsWhereTheLibraryIsOlder) {
+  std::string old = std::regex_replace(std::string(kSimpleFoc), std::regex(", estimated_current"), "");
+  old = std::regex_replace(old, std::regex("  void updateCurrentLimit[^\n]*\n"), "");
+  EXPECT_NE(run(old), 0);
+  EXPECT_THAT(errors().substr(0, errors().find("has no member")), HasSubstr("needs SimpleFOC 2.4.0 or later"));
+  EXPECT_THAT(exported("simplefoc"), HasSubstr("Needs SimpleFOC 2.4.0 or later"));
+}
+
+TEST_F(SimpleFocExporter, CompilesBesideTheHeaderAndLimitsTheMotor) {
+  ASSERT_EQ(run(kSimpleFoc), 0) << errors();
   std::ifstream out(folder / "out.txt");
   int is_enabled = -1;
   double limit_A = NAN;
   out >> is_enabled >> limit_A;
   EXPECT_EQ(is_enabled, 0) << "without a current sense";
   EXPECT_EQ(limit_A, 0.0);
+  for (const int measures : {0, 0, 1, 1}) {
+    int is_limited = -1;
+    out >> is_enabled >> is_limited;
+    EXPECT_EQ(is_enabled, measures) << "voltage, estimated_current, dc_current, foc_current";
+    EXPECT_EQ(is_limited, measures);
+  }
   out >> is_enabled >> limit_A;
   EXPECT_EQ(is_enabled, 1);
   // After ten minutes at the limit the current is near the permanent one.
   EXPECT_NEAR(limit_A, 2.46 / kDcPerIq_ratio, 0.1);
-  std::filesystem::remove_all(folder);
 }
 
 /// Returns the attributes of an element.
