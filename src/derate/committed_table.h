@@ -29,6 +29,7 @@ struct CommittedTable {
   std::string sensor_flags;           ///< sensor_flags() of that sensor; empty if the header does not state them
   std::string version;                ///< version of the program that wrote the file, base::program_version(); empty if not stated
   std::string code;                   ///< full text of a C header, else empty
+  bool is_integer = false;            ///< a C header in integers (c_header_q15)
 };
 
 /// Reads a C header or a CSV table of `derate`; the content decides which. Throws Failure (bad_input), with the line if there is one, for
@@ -63,9 +64,9 @@ struct TableComparison {
   [[nodiscard]] bool holds() const { return !is_other_motor && excess.difference_A == 0.0 && differing_line == 0; }
 };
 
-/// Compares a C header on the grid of all breakpoints of both tables and just beyond the ends of the axes, because both tables are
-/// piecewise linear in the squared current. Compares a CSV table in its own rows. Ignores differences below 0.05 % of the largest current
-/// (rounding of the file). In the other lines of a header, numbers that agree to 1 in 10⁴ count as equal.
+/// Compares a C header with a fresh one of the same form, on the grid of all breakpoints of both tables and just beyond the ends of the
+/// axes, because both tables are piecewise linear in the squared current. Compares a CSV table in its own rows. Ignores differences below
+/// 0.05 % of the largest current (rounding of the file). In the other lines of a header, numbers that agree to 1 in 10⁴ count as equal.
 TableComparison compare(const CommittedTable& committed, const Derating& fresh);
 
 }  // namespace heatsoak::derate

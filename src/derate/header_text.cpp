@@ -12,7 +12,8 @@
 namespace heatsoak::derate {
 namespace {
 
-constexpr std::string_view kDeclaration = "static const float ";
+/// Types of the arrays of a table; those of c_header_q15 are integers.
+constexpr std::string_view kDeclarations[] = {"static const float ", "static const int32_t ", "static const int16_t "};
 
 /// A word, a number or a sign, and its position in the text.
 struct Token {
@@ -103,6 +104,22 @@ bool say_the_same(std::string_view one, std::string_view other) {
   return std::abs(a - b) <= kSame_share * std::max(std::abs(a), std::abs(b));
 }
 
+/// Returns the values between commas.
+std::vector<double> cells(std::string_view text) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t end = std::min(text.find(',', i), text.size());
+    std::string_view cell = text.substr(i, end - i);
+    cell.remove_prefix(std::min(cell.find_first_not_of(" \t\r\n"), cell.size()));
+    cell.remove_suffix(cell.size() - std::min(cell.find_last_not_of(" \t\r\n") + 1, cell.size()));
+    if (!cell.empty()) {
+      values.push_back(number(cell));
+    }
+    i = end + 1;
+  }
+  return values;
+}
+
 std::string line_around(std::string_view text, std::size_t place) {
   const std::size_t before = text.rfind('\n', place);
   const std::size_t begin = before == std::string_view::npos || place == 0 ? 0 : before + 1;
@@ -116,26 +133,16 @@ std::string line_around(std::string_view text, std::size_t place) {
 
 std::vector<HeaderArray> header_arrays(std::string_view text) {
   std::vector<HeaderArray> all;
-  for (std::size_t at = text.find(kDeclaration); at != std::string_view::npos; at = text.find(kDeclaration, at + 1)) {
-    const std::size_t name = at + kDeclaration.size();
-    const std::size_t bracket = text.find('[', name);
-    const std::size_t open = text.find('{', name);
-    const std::size_t close = text.find("};", name);
-    if (bracket == std::string_view::npos || !(bracket < open && open < close) || close == std::string_view::npos) {
-      continue;
-    }
-    HeaderArray array{std::string(text.substr(name, bracket - name)), {}, at, close + 2};
-    for (std::size_t i = open + 1; i < close;) {
-      const std::size_t end = std::min(text.find(',', i), close);
-      std::string_view cell = text.substr(i, end - i);
-      cell.remove_prefix(std::min(cell.find_first_not_of(" \t\r\n"), cell.size()));
-      cell.remove_suffix(cell.size() - std::min(cell.find_last_not_of(" \t\r\n") + 1, cell.size()));
-      if (!cell.empty()) {
-        array.values.push_back(number(cell));
+  for (const std::string_view declaration : kDeclarations) {
+    for (std::size_t at = text.find(declaration); at != std::string_view::npos; at = text.find(declaration, at + 1)) {
+      const std::size_t name = at + declaration.size();
+      const std::size_t bracket = text.find('[', name);
+      const std::size_t open = text.find('{', name);
+      const std::size_t close = text.find("};", name);
+      if (bracket < open && open < close && close != std::string_view::npos) {
+        all.push_back({std::string(text.substr(name, bracket - name)), cells(text.substr(open + 1, close - open - 1)), at, close + 2});
       }
-      i = end + 1;
     }
-    all.push_back(std::move(array));
   }
   return all;
 }

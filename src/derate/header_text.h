@@ -8,7 +8,7 @@
 
 namespace heatsoak::derate {
 
-/// An array `static const float name[count] = {…};`.
+/// An array `static const float name[count] = {…};`, or of int32_t or int16_t.
 struct HeaderArray {
   std::string name;
   std::vector<double> values;  ///< NaN for a value that cannot be read

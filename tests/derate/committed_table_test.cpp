@@ -10,6 +10,7 @@
 #include "base/files.h"
 #include "derate/exporter.h"
 #include "derate/header_text.h"
+#include "derate/integer_form/quantised_table.h"
 #include "guarded_motor.h"
 
 namespace heatsoak::derate {
@@ -50,6 +51,11 @@ class Committed : public testing::TestWithParam<const char*> {
     return "nothing was wrong";
   }
 
+  /// Returns the table that a file of this form holds.
+  static CurrentTable table_of(const Derating& derating) {
+    return std::string_view(GetParam()) == "c_header_q15" ? integer_form::QuantisedTable(derating.table).in_units() : derating.table;
+  }
+
   static Derating* fresh_;
   fs::path file_ = fs::path(testing::TempDir()) / fmt::format("heatsoak_committed_{}", static_cast<int>(getpid()));
 };
@@ -84,8 +90,8 @@ TEST_P(Committed, OfABolderReserveIsUnsafe) {
   EXPECT_GT(found.excess.difference_A, 0.5);
   EXPECT_EQ(found.lost.difference_A, 0.0);
   EXPECT_NEAR(found.excess.committed_A - found.excess.fresh_A, found.excess.difference_A, 1e-12);
-  EXPECT_NEAR(fresh_->table.allowed_A(found.excess.speed_rad_per_s, found.excess.stator_C, found.excess.winding_C), found.excess.fresh_A,
-              1e-12);
+  EXPECT_NEAR(table_of(*fresh_).allowed_A(found.excess.speed_rad_per_s, found.excess.stator_C, found.excess.winding_C),
+              found.excess.fresh_A, 1e-12);
 }
 
 TEST_P(Committed, OfAMoreCarefulReserveGivesCurrentAway) {
@@ -100,30 +106,32 @@ TEST_P(Committed, IsComparedBetweenThePointsOfOtherAxes) {
   other.table.most_speed_rad_per_s *= 1.1;
   other.table.no_current_speed_rad_per_s *= 1.1;
   const TableComparison found = compare(read(exported_text(other, GetParam())), *fresh_);
-  EXPECT_GE(found.excess.speed_rad_per_s, fresh_->table.most_speed_rad_per_s);
+  const CurrentTable fresh = table_of(*fresh_);
+  const CurrentTable changed = table_of(other);
+  EXPECT_GE(found.excess.speed_rad_per_s, fresh.most_speed_rad_per_s);
   if (std::string_view(GetParam()) == "csv") {
     EXPECT_GT(found.excess.difference_A, 0.5);  // a CSV table contains only its own rows
     return;
   }
   // Beyond its last speed the new table allows no current.
-  EXPECT_GE(found.excess.speed_rad_per_s, fresh_->table.no_current_speed_rad_per_s);
+  EXPECT_GE(found.excess.speed_rad_per_s, fresh.no_current_speed_rad_per_s);
   EXPECT_EQ(found.excess.fresh_A, 0.0);
   EXPECT_GT(found.excess.committed_A, 1.0);
   double most_A = 0.0;
   constexpr int kPoints = 40;
-  const double speed_end = other.table.no_current_speed_rad_per_s;
+  const double speed_end = changed.no_current_speed_rad_per_s;
   for (int i = 0; i <= kPoints; ++i) {
     for (int k = 0; k <= kPoints; ++k) {
       const double speed = speed_end * i / kPoints;
-      const double winding_C = std::lerp(fresh_->table.winding_C.front(), fresh_->table.winding_C.back(), static_cast<double>(k) / kPoints);
-      const double stator_C = fresh_->table.stator_C.front();
-      most_A = std::max(most_A, other.table.allowed_A(speed, stator_C, winding_C) - fresh_->table.allowed_A(speed, stator_C, winding_C));
+      const double winding_C = std::lerp(fresh.winding_C.front(), fresh.winding_C.back(), static_cast<double>(k) / kPoints);
+      const double stator_C = fresh.stator_C.front();
+      most_A = std::max(most_A, changed.allowed_A(speed, stator_C, winding_C) - fresh.allowed_A(speed, stator_C, winding_C));
     }
   }
   EXPECT_GE(found.excess.difference_A, most_A - 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(forms, Committed, testing::Values("c_header", "csv"),
+INSTANTIATE_TEST_SUITE_P(forms, Committed, testing::Values("c_header", "c_header_q15", "csv"),
                          [](const auto& instance) { return std::string(instance.param); });
 
 using Tampered = Committed;
@@ -158,6 +166,23 @@ TEST_F(Tampered, ObserverIsFoundAtItsLineWhereverCommentsSayOtherThings) {
   const TableComparison found = compare(read(header), *fresh_);
   EXPECT_EQ(found.differing_line, 1 + std::count(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(number), '\n'));
   EXPECT_NE(found.differing_text, found.differing_fresh_text);
+}
+
+TEST_F(Tampered, IntegersOfAHeaderAreFoundOrRefused) {
+  const std::string header = exported_text(*fresh_, "c_header_q15");
+  EXPECT_EQ(compare(read(header), *fresh_).differing_line, 0);
+  const auto with = [&](const char* pattern, const char* replacement) {
+    const std::string changed = std::regex_replace(header, std::regex(pattern), replacement, std::regex_constants::format_first_only);
+    EXPECT_NE(changed, header) << pattern;
+    return changed;
+  };
+  EXPECT_GT(compare(read(with("(q15_square\\[\\d+\\] = \\{\\s*(?:-?\\d+, ){3})-?\\d+", "$0132000")), *fresh_).excess.difference_A, 0.5);
+  EXPECT_GT(compare(read(with("(_square,\\s*)\\d+u", "$0199000u")), *fresh_).excess.difference_A, 0.5);
+  EXPECT_GT(compare(read(with("(change\\[0\\] = \\(+int64_t\\)\\w+ \\+ )\\d", "$019")), *fresh_).differing_line, 0);
+  EXPECT_THAT(message_of(with("(q15_square\\[\\d+\\] = \\{\\s*)\\d+,", "$01")), HasSubstr("no whole table of integers"));
+  EXPECT_THAT(message_of(with("(q15_square\\[\\d+\\] = \\{\\s*)\\d+,", "$0140000,")), HasSubstr("no whole table of integers"));
+  EXPECT_THAT(message_of(with("(q15_winding_mC\\[\\d+\\] = \\{\\s*)-?\\d+,", "$011.5,")), HasSubstr("no whole table of integers"));
+  EXPECT_THAT(message_of(with("(q15_winding_mC\\[\\d+\\] = \\{\\s*)-?\\d+,", "$01999000,")), HasSubstr("does not increase"));
 }
 
 TEST_F(Tampered, VersionOfTheWriterIsRead) {

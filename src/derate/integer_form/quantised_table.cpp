@@ -56,6 +56,27 @@ heatsoak_integer_table QuantisedTable::table() const {
           .winding_per_stator_K = winding_per_stator_K};
 }
 
+CurrentTable QuantisedTable::in_units() const {
+  const auto in_ones = [](const std::vector<std::int32_t>& thousandths) {
+    std::vector<double> values(thousandths.size());
+    std::ranges::transform(thousandths, values.begin(), [](std::int32_t each) { return each / kPerUnit; });
+    return values;
+  };
+  CurrentTable exact{.speed_rad_per_s = in_ones(speed_mrad_per_s),
+                     .stator_C = in_ones(stator_mC),
+                     .winding_C = in_ones(winding_mC),
+                     .square_A2 = {},
+                     .most_current_A = most_current_mA / kPerUnit,
+                     .straight_below_A = straight_below_mA / kPerUnit,
+                     .most_speed_rad_per_s = most_speed_mrad_per_s / kPerUnit,
+                     .no_current_speed_rad_per_s = no_current_speed_mrad_per_s / kPerUnit,
+                     .winding_per_stator_K = static_cast<double>(winding_per_stator_K)};
+  for (const std::int16_t each : square) {
+    exact.square_A2.push_back(static_cast<double>(each) * unit_mA2 / (kPerUnit * kPerUnit));
+  }
+  return exact;
+}
+
 double quantised_shortfall_ratio(const CurrentTable& exact, const QuantisedTable& quantised) {
   constexpr int kSpeeds = 10;
   constexpr int kStators = 24;

@@ -11,6 +11,7 @@ namespace heatsoak::derate::integer_form {
 
 /// Quantised copy of a table, in thousandths of the units (mA, mrad/s, 0.001 °C). Owns the arrays that table() points to.
 struct QuantisedTable {
+  QuantisedTable() = default;
   explicit QuantisedTable(const CurrentTable& exact);
 
   std::vector<std::int32_t> speed_mrad_per_s;
@@ -25,6 +26,9 @@ struct QuantisedTable {
   std::int32_t winding_per_stator_K = 1;
 
   [[nodiscard]] heatsoak_integer_table table() const;
+  /// Returns the same table in A, rad/s and °C, without its bound. Its currents are those of the integers before they are rounded down to
+  /// mA.
+  [[nodiscard]] CurrentTable in_units() const;
 };
 
 /// Returns the largest relative shortfall of the quantised table against `exact` where that allows at least straight_below_A, on a grid of
