@@ -73,17 +73,21 @@ Rounds::Rounds(const SelectionInput& input, const SelectionRules& rules)
     : input_(input), rules_(rules), is_speed_open_(std::ranges::any_of(input.runs, calibration::turns_unseen)) {}
 
 Judged Rounds::run_rounds() {
+  input_.progress.begin(selection_phases::kFirstFit);
   begin();
   std::set<std::vector<int>> seen;
   Judged judged;
   for (int round = 0; round < rules_.most_rounds; ++round) {
+    input_.progress.begin(selection_phases::kSearching);
     judged = judge();
     best_ = judged.best;
     if (!seen.insert(judged.best).second) {
       break;
     }
+    input_.progress.begin(selection_phases::kFollowing);
     follow(judged);
   }
+  input_.progress.begin(selection_phases::kFollowing);
   own_parameters(judged);
   note_sight();
   return judged;

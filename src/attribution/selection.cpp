@@ -31,7 +31,8 @@ class Selector : Rounds {
   }
 
   Selection run() {
-    decide(run_rounds());
+    const Judged judged = run_rounds();
+    decide(judged);
     return std::move(out_);
   }
 
@@ -64,6 +65,7 @@ class Selector : Rounds {
     if (rules_.scans_regressors && !is_speed_open_ && (is_something_missing || !named.empty())) {
       scan(judged, best);
     }
+    input_.progress.begin(selection_phases::kLastFit);
     if (are_runs_as_usual()) {
       out_.is_as_usual = true;
       keep_as_it_is(judged);
@@ -105,6 +107,7 @@ class Selector : Rounds {
   }
 
   void scan(const Judged& judged, const EffectSet& best) {
+    input_.progress.begin(selection_phases::kCurves);
     constexpr std::size_t kMostReported = 8;
     const estimation::Model base = base_here();
     // With much missing heat, curves depend on smoothed measured temperatures. Multipliers stay those of the model: measurement noise in
@@ -293,6 +296,14 @@ class Selector : Rounds {
 
 bool Selection::is_material() const {
   return std::ranges::any_of(left_W, [&](const auto& each) { return each.second > material_W; });
+}
+
+std::vector<base::JobPhase> selection_work(double unit_s) {
+  // Usually the second round repeats the set of the first.
+  return {{selection_phases::kFirstFit, 0.05 * unit_s},  {selection_phases::kSearching, 0.9 * unit_s},
+          {selection_phases::kFollowing, 0.1 * unit_s},  {selection_phases::kSearching, 0.9 * unit_s},
+          {selection_phases::kFollowing, 0.15 * unit_s}, {selection_phases::kCurves, 0.4 * unit_s},
+          {selection_phases::kLastFit, 0.15 * unit_s}};
 }
 
 double evidence_without_effects_nats(const SelectionInput& input) {

@@ -10,6 +10,7 @@
 #include "attribution/candidates.h"
 #include "attribution/regressor_scan.h"
 #include "attribution/rules.h"
+#include "base/job_progress.h"
 #include "estimation/posterior.h"
 
 namespace heatsoak::attribution {
@@ -20,10 +21,23 @@ struct UsualErrors {
   double flux_W = 0.0;   ///< RMS of the unknown heat; 0: not known
 };
 
+/// Names of the phases of select_effects(), for its progress.
+namespace selection_phases {
+inline const std::string kFirstFit = "fitting the model";
+inline const std::string kSearching = "searching missing effects";
+inline const std::string kFollowing = "fitting the effects";
+inline const std::string kCurves = "searching curves";
+inline const std::string kLastFit = "fitting the extended model";
+}  // namespace selection_phases
+
+/// Returns the phases of select_effects(); rounds may repeat. `unit_s`: usual duration of one fit to the runs.
+std::vector<base::JobPhase> selection_work(double unit_s);
+
 struct SelectionInput {
   estimation::Model model;
   std::vector<estimation::MeasuredRun> runs;  ///< at least one
   UsualErrors usual = {};
+  base::JobProgress progress = {};
 };
 
 /// A candidate evaluated alone, as a set of one effect.

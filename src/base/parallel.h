@@ -3,16 +3,11 @@
 
 #include <cstddef>
 #include <functional>
-#include <string>
 
 namespace heatsoak::base {
 
 /// Called when `done` of `total` units of work are finished.
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
-
-/// Returns the progress of a part of a longer job; `what` names the part for the user. May be empty.
-using ProgressFor = std::function<Progress(const std::string& what)>;
-inline Progress progress_of(const ProgressFor& progress, const std::string& what) { return progress ? progress(what) : Progress(); }
 
 /// Runs job(0) … job(count − 1) on `threads` threads; 0 means all cores. The first exception stops the remaining jobs and is rethrown here.
 /// A job may hold a lock and call in_parallel() itself.

@@ -90,8 +90,11 @@ class Calibrating {
       setup_.opens_loss_at_speed = true;
       all_.findings.push_back(LossAtSpeedUnknown{most_loss_W});
     }
+    options_.progress.expect(calibration_work(all_.runs), true);
+    options_.progress.begin(calibration_phases::kFitting);
     all_.fit = estimation::fit(all_.motor_model.model, all_.runs, options_.fit);
     settle_turning_rows();
+    options_.progress.begin(calibration_phases::kIntervals);
     warn();
     widen_by_rows();
     parameters();
@@ -116,8 +119,11 @@ class Calibrating {
   /// Runs the forecast fit to whole runs, and writes its parameters if they predict better.
   void forecast() {
     const ForecastModel base = setup_.model();
-    all_.forecast = forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads);
+    all_.forecast =
+        forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads, options_.progress);
+    options_.progress.begin(calibration_phases::kLeavingOut);
     score_innovations(setup_.model(), options_.fit, all_);
+    options_.progress.begin(calibration_phases::kPredicting);
     const std::vector<PredictedRun> by_innovations = fitted_runs(base, base.within_bounds(all_.fit.theta));
     innovations_error_ = errors_over_runs(by_innovations, by_innovations);
     const bool is_better_fit = rms_error_K(fitted_runs(all_.forecast->model(), all_.forecast->fit.theta)) < rms_error_K(by_innovations);
@@ -171,6 +177,7 @@ class Calibrating {
     if (std::ranges::none_of(all_.runs, estimation::may_turn_within_rows)) {
       return;
     }
+    options_.progress.begin(calibration_phases::kFitting);
     std::vector<estimation::MeasuredRun> turning;
     std::ranges::transform(all_.runs, std::back_inserter(turning), estimation::turning_within_rows);
     estimation::Model near = all_.motor_model.model;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "base/job_progress.h"
 #include "calibration/error_before_after.h"
 #include "calibration/findings.h"
 #include "calibration/forecast/forecast.h"
@@ -28,6 +29,7 @@ struct CalibrationOptions {
   estimation::FitOptions fit;
   std::optional<double> ambient_C = {};  ///< ambient temperature of logs without one
   WrittenFit written = WrittenFit::best;
+  base::JobProgress progress = {};
 };
 
 struct CalibratedParameter {

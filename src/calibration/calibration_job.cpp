@@ -7,7 +7,7 @@
 
 namespace heatsoak::calibration {
 
-CalibrationAnswer run_calibration(const CalibrationJob& job) {
+CalibrationAnswer run_calibration(const CalibrationJob& job, const base::JobProgress& progress) {
   const recording::LogChoice& choice = job.logs.choice;
   base::CollectedFailures failures;
   if (!choice.takes_logs_as_they_are) {
@@ -15,7 +15,7 @@ CalibrationAnswer run_calibration(const CalibrationJob& job) {
   }
   std::optional<Admission> admission = failures.attempt([&] { return admit(job.motor, job.logs); });
   failures.throw_if_any();
-  Calibration calibration = calibrate(job.motor, job.logs.fitted, job.logs.held_out, {job.fit, choice.ambient_C, job.written});
+  Calibration calibration = calibrate(job.motor, job.logs.fitted, job.logs.held_out, {job.fit, choice.ambient_C, job.written, progress});
   motor::Motor calibrated = calibrated_motor(job.motor, calibration);
   return {std::move(calibration), std::move(calibrated), *std::move(admission)};
 }

@@ -21,6 +21,6 @@ struct CalibrationAnswer {
 };
 
 /// Throws Failure as admit(), refuse_runs_of_the_file() and calibrate() do.
-CalibrationAnswer run_calibration(const CalibrationJob& job);
+CalibrationAnswer run_calibration(const CalibrationJob& job, const base::JobProgress& progress = {});
 
 }  // namespace heatsoak::calibration

@@ -47,14 +47,19 @@ void refuse_shipped(const std::filesystem::path& path, const CheckJob& job) {
 
 bool CheckAnswer::passed() const { return !invalid && std::ranges::all_of(outcomes, &Outcome::passed); }
 
-CheckAnswer run_check_job(const CheckJob& job, const input::DataFolders& folders, const base::ProgressFor& progress) {
+CheckAnswer run_check_job(const CheckJob& job, const input::DataFolders& folders, const base::JobProgress& progress) {
   CheckAnswer answer;
   read_check_files(job.files, folders, answer);
   if (answer.invalid && !job.evaluates_beside_invalid) {
     throw base::Failure(*answer.invalid);
   }
+  std::vector<base::JobPhase> phases;
   for (const CheckFile& file : answer.files) {
-    std::vector<Outcome> of_file = run_checks(file, job.threads, base::progress_of(progress, "checking"));
+    std::ranges::move(check_phases(file), std::back_inserter(phases));
+  }
+  progress.expect(std::move(phases));
+  for (const CheckFile& file : answer.files) {
+    std::vector<Outcome> of_file = run_checks(file, job.threads, progress);
     if (job.updates && !answer.invalid) {
       refuse_shipped(file.path, job);
       const std::string before = base::read_file(file.path, kLargestCheckFile_bytes);

@@ -38,6 +38,6 @@ struct CheckAnswer {
 
 /// Throws Failure (bad_input) with the problems of all files together, unless CheckAnswer::invalid holds them, or if a file that came with
 /// the program would have to be rewritten.
-CheckAnswer run_check_job(const CheckJob& job, const input::DataFolders& folders, const base::ProgressFor& progress = {});
+CheckAnswer run_check_job(const CheckJob& job, const input::DataFolders& folders, const base::JobProgress& progress = {});
 
 }  // namespace heatsoak::check

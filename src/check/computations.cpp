@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "base/lanes.h"
 #include "duty/match/match_duty.h"
 #include "motor/default_spread.h"
 #include "simulate/core_drive.h"
@@ -31,7 +32,58 @@ std::string key_of_load(const Check& check) {
   return fmt::format("{}|{}|{}", check.robot->file.string(), check.duty->file.string(), check.seed);
 }
 
+// Usual durations in s on two cores.
+
+double evaluation_s(const Check& check) {
+  constexpr double kNominalRun_s = 0.065;
+  constexpr double kBlock_s = 0.006;
+  return kNominalRun_s + kBlock_s * check.samples / base::kLanes;
+}
+
+double derating_s(const Check& check) {
+  constexpr double kMotor_s = 0.015;
+  return kMotor_s * check.derate.guarantee.samples;
+}
+
+bool needs(const Check& check, Setting setting) {
+  return std::ranges::any_of(check.limits, [setting](const Limit& limit) {
+    return std::ranges::find(limit.type->needs, setting) != limit.type->needs.end() ||
+           std::ranges::find(limit.type->takes, setting) != limit.type->takes.end();
+  });
+}
+
 }  // namespace
+
+base::Progress Computations::reporting(const Check& check, double all_s) const {
+  if (!worked_) {
+    return {};
+  }
+  return [this, &check, all_s, last = 0.0](std::size_t done, std::size_t total) mutable {
+    const double share = static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, total));
+    if (share > last) {
+      worked_(check, all_s * (share - last));
+      last = share;
+    }
+  };
+}
+
+double Computations::usual_s(const Check& check) {
+  constexpr double kOther_s = 0.1;
+  constexpr double kLog_s = 0.5;
+  double all_s = kOther_s + kLog_s * static_cast<double>(check.logs.size());
+  if (needs(check, Setting::samples)) {
+    all_s += evaluation_s(check) * static_cast<double>(1 + check.against.size());
+  }
+  if (needs(check, Setting::derate)) {
+    all_s += derating_s(check);
+    const bool is_driven = std::ranges::any_of(check.limits, [](const Limit& limit) {
+      const auto has = [](const std::vector<Setting>& all, Setting one) { return std::ranges::find(all, one) != all.end(); };
+      return has(limit.type->needs, Setting::duty) && has(limit.type->takes, Setting::derate);
+    });
+    all_s += is_driven ? simulate::kDrive_s + simulate::kPlayedGame_s : 0.0;
+  }
+  return all_s;
+}
 
 int Computations::independent_draws(const Check& check) {
   const int games = select::draw_count(*check.duty, check.samples);
@@ -55,12 +107,12 @@ const std::vector<duty::WheelDemand>& Computations::demand(const Check& check) {
   return demands_.get(key_of_load(check), [&] { return check.duty->demand(*check.robot, check.seed); });
 }
 
-const std::vector<duty::WheelDemand>& Computations::draws(const Check& check) {
+const std::vector<duty::WheelDemand>& Computations::draws(const Check& check, const base::Progress& progress) {
   const int count = select::draw_count(*check.duty, check.samples);
   return draws_.get(fmt::format("{}|{}", key_of_load(check), count), [&] {
     std::vector<duty::WheelDemand> draws(static_cast<std::size_t>(count));
     // The nominal game takes as long as several draws, so it is played beside them.
-    base::in_parallel(draws.size() + 1, threads_, [&](std::size_t job) {
+    base::in_parallel(draws.size() + 1, threads_, 0, draws.size() + 1, progress, [&](std::size_t job) {
       if (job == 0) {
         static_cast<void>(demand(check));
       } else {
@@ -71,9 +123,9 @@ const std::vector<duty::WheelDemand>& Computations::draws(const Check& check) {
   });
 }
 
-void Computations::play_games(const Check& check) {
+void Computations::play_games(const Check& check, const base::Progress& progress) {
   try {
-    static_cast<void>(draws(check));
+    static_cast<void>(draws(check, progress));
   } catch (const base::Failure&) {
     return;  // kept
   }
@@ -87,7 +139,8 @@ const select::MotorEvaluation& Computations::evaluation(const Check& check, cons
     options.seed = check.seed;
     options.threads = threads_;
     options.draws = draws(check);
-    return select::evaluate(*check.robot, *check.duty, demand(check), std::span(&motor, 1), options).front();
+    return select::evaluate(*check.robot, *check.duty, demand(check), std::span(&motor, 1), options, reporting(check, evaluation_s(check)))
+        .front();
   });
 }
 
@@ -108,7 +161,7 @@ const derate::Derating& Computations::derating(const Check& check, const derate:
     motor::require_sound(*check.motor);
     derate::DerateOptions with_threads = options;
     with_threads.guarantee.threads = threads_;
-    return derate::derate(*check.motor, *check.robot, with_threads);
+    return derate::derate(*check.motor, *check.robot, with_threads, reporting(check, derating_s(check)));
   });
 }
 
@@ -131,6 +184,7 @@ const GuardedDrive& Computations::guarded_drive(const Check& check) {
     simulate::MatchRunOptions run;
     run.ambient_C = check.duty->ambient_C.value;
     run.drive = simulate::real_drive(*check.robot, check.seed);
+    run.progress = reporting(check, simulate::kDrive_s);
     const simulate::DriveScore score = simulate::run_match(game, *check.robot, *check.motor, core.config(), run).score;
     if (const std::optional<simulate::DriveProblem> problem = simulate::drive_problem(score)) {
       throw base::Failure(base::ExitCode::limit_exceeded, fmt::format("the match was not driven: {}", simulate::to_string(*problem)));

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "base/parallel.h"
 #include "check/check_file.h"
 #include "derate/derating.h"
 #include "select/evaluate.h"
@@ -68,11 +69,17 @@ struct GuardedDrive {
 /// there is no result.
 class Computations {
  public:
-  explicit Computations(int threads) : threads_(threads) {}
+  /// Called when a part of a check's work is done, which usually takes `work_s` on two cores.
+  using Worked = std::function<void(const Check& check, double work_s)>;
+
+  explicit Computations(int threads, Worked worked = {}) : threads_(threads), worked_(std::move(worked)) {}
 
   /// Plays the games of the check on all threads. Without this call, checks that run at the same time and need the same games would wait
   /// for one of them, which plays them alone. A failure is kept for the threshold that needs the games.
-  void play_games(const Check& check);
+  void play_games(const Check& check, const base::Progress& progress = {});
+
+  /// Returns the usual duration in s on two cores of what the limits of a check need, without the drawn games; for progress.
+  [[nodiscard]] static double usual_s(const Check& check);
 
   /// Returns the evaluation of `motor` alone on the check's robot and duty. `heatsoak evaluate` gives the same numbers, whatever motors it
   /// compares.
@@ -88,11 +95,14 @@ class Computations {
   const GuardedDrive& guarded_drive(const Check& check);
 
  private:
-  const std::vector<duty::WheelDemand>& draws(const Check& check);
+  const std::vector<duty::WheelDemand>& draws(const Check& check, const base::Progress& progress = {});
+  /// Reports the finished share of a work of `all_s` to worked_.
+  [[nodiscard]] base::Progress reporting(const Check& check, double all_s) const;
   /// Returns the nominal game of a match, which gives the demand and is driven. Throws Failure if the duty is no match.
   const duty::MatchLoad& nominal_game(const Check& check);
 
   int threads_ = 0;
+  Worked worked_;
   Kept<duty::MatchLoad> nominal_games_;
   Kept<std::vector<duty::WheelDemand>> demands_;
   Kept<std::vector<duty::WheelDemand>> draws_;

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <mutex>
 #include <new>
+#include <utility>
 
 #include "base/parallel.h"
 #include "check/computations.h"
@@ -63,6 +66,56 @@ void evaluate_one(Outcome& outcome, Computations& computations) {
   judge(outcome);
 }
 
+const std::string kPlaying = "playing games";
+const std::string kChecking = "checking";
+
+/// Finished work of the checks, which run at the same time. A check counts for its usual duration, whatever it reports.
+class CheckedWork {
+ public:
+  explicit CheckedWork(const CheckFile& file) {
+    for (const Check& check : file.checks) {
+      works_[&check].all_s = Computations::usual_s(check);
+    }
+  }
+
+  /// Takes the progress of the phase; work that was done before counts.
+  void begin(base::Progress progress) {
+    const std::lock_guard lock(mutex_);
+    progress_ = std::move(progress);
+  }
+
+  void add(const Check& check, double work_s) {
+    const std::lock_guard lock(mutex_);
+    Work& work = works_.at(&check);
+    work.done_s = std::min(work.all_s, work.done_s + work_s);
+    report();
+  }
+
+  void finish(const Check& check) { add(check, works_.at(&check).all_s); }
+
+ private:
+  struct Work {
+    double all_s = 0.0;
+    double done_s = 0.0;
+  };
+
+  void report() const {
+    if (progress_) {
+      Work sum;
+      for (const auto& [check, work] : works_) {
+        sum.all_s += work.all_s;
+        sum.done_s += work.done_s;
+      }
+      const auto in_ms = [](double time_s) { return static_cast<std::size_t>(1e3 * time_s); };
+      progress_(in_ms(sum.done_s), in_ms(sum.all_s));
+    }
+  }
+
+  std::mutex mutex_;
+  std::map<const Check*, Work> works_;
+  base::Progress progress_;
+};
+
 }  // namespace
 
 std::optional<double> Outcome::margin_value() const {
@@ -84,7 +137,7 @@ void judge(Outcome& outcome) {
                                                 type.direction == Bound::at_most ? "above" : "below", shown(outcome.limit.value, type));
 }
 
-std::vector<Outcome> run_checks(const CheckFile& file, int threads, const base::Progress& progress) {
+std::vector<Outcome> run_checks(const CheckFile& file, int threads, const base::JobProgress& progress) {
   std::vector<Outcome> outcomes;
   std::vector<std::pair<std::size_t, std::size_t>> ranges;
   for (const Check& check : file.checks) {
@@ -94,19 +147,36 @@ std::vector<Outcome> run_checks(const CheckFile& file, int threads, const base::
     }
     ranges.emplace_back(first, outcomes.size());
   }
-  Computations computations(threads);
+  CheckedWork work(file);
+  Computations computations(threads, [&work](const Check& check, double work_s) { work.add(check, work_s); });
   for (const Check& check : file.checks) {
     if (needs_samples(check)) {
-      computations.play_games(check);
+      computations.play_games(check, progress.begin(kPlaying));
     }
   }
+  work.begin(progress.begin(kChecking));
   // Thresholds of one check mostly need the same results, so each check is one job.
-  base::in_parallel(ranges.size(), threads, 0, ranges.size(), progress, [&](std::size_t job) {
+  base::in_parallel(ranges.size(), threads, [&](std::size_t job) {
     for (std::size_t i = ranges[job].first; i < ranges[job].second; ++i) {
       evaluate_one(outcomes[i], computations);
     }
+    work.finish(file.checks[job]);
   });
   return outcomes;
+}
+
+std::vector<base::JobPhase> check_phases(const CheckFile& file) {
+  constexpr double kDraw_s = 0.12;
+  std::vector<base::JobPhase> phases;
+  double all_s = 0.0;
+  for (const Check& check : file.checks) {
+    if (needs_samples(check)) {
+      phases.push_back({kPlaying, kDraw_s * select::draw_count(*check.duty, check.samples)});
+    }
+    all_s += Computations::usual_s(check);
+  }
+  phases.push_back({kChecking, all_s});
+  return phases;
 }
 
 }  // namespace heatsoak::check

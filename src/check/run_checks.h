@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/job_progress.h"
 #include "check/check_file.h"
 
 namespace heatsoak::check {
@@ -23,8 +24,12 @@ struct Outcome {
 };
 
 /// Returns one outcome per limit, in the order of the file. Thresholds that cannot be evaluated fail with a reason; all others are still
-/// evaluated. The results do not depend on `threads`; 0 means all cores. `progress` counts checks.
-std::vector<Outcome> run_checks(const CheckFile& file, int threads, const base::Progress& progress = {});
+/// evaluated. The results do not depend on `threads`; 0 means all cores. The phases are those
+/// of check_phases().
+std::vector<Outcome> run_checks(const CheckFile& file, int threads, const base::JobProgress& progress = {});
+
+/// Returns the phases of run_checks().
+std::vector<base::JobPhase> check_phases(const CheckFile& file);
 
 /// Compares the value with the limit again, after the limit was changed.
 void judge(Outcome& outcome);

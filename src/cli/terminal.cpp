@@ -29,34 +29,6 @@ std::string_view environment(const char* name) {
   return value ? value : "";
 }
 
-/// Estimates the remaining time of a job from its progress.
-class Remaining {
- public:
-  /// Time counts from the first finished unit: work before it, such as reading files, is of a different kind.
-  void start(std::size_t done) {
-    if (begin_ == Clock::time_point()) {
-      begin_ = Clock::now();
-      before_ = done;
-    }
-  }
-  /// Returns "12 s left"; empty until enough is done for an estimate within a factor of two.
-  [[nodiscard]] std::string text(std::size_t done, std::size_t total) const {
-    constexpr double kLeastElapsed_s = 1.0;
-    constexpr double kLeastShare = 0.02;
-    const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin_).count();
-    const auto finished = static_cast<double>(done - before_);
-    if (elapsed_s < kLeastElapsed_s || finished < 2.0 || finished < kLeastShare * static_cast<double>(total - before_)) {
-      return "";
-    }
-    return fmt::format(", {:.0f} s left", std::ceil(elapsed_s * static_cast<double>(total - done) / finished));
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point begin_;
-  std::size_t before_ = 0;
-};
-
 }  // namespace
 
 std::size_t terminal_width(int descriptor) {
@@ -80,58 +52,40 @@ namespace {
 /// Overwrites the line of stderr. A text that filled the line would leave copies of itself.
 void overwrite_line(std::string_view text) { fmt::print(stderr, "\r\x1b[K{}", present::leading(text, terminal_width(STDERR_FILENO) - 1)); }
 
-/// A line on stderr that is overwritten and removed at the end, even if the work ends early.
-class Bar {
- public:
-  explicit Bar(std::string what) : what_(std::move(what)) {}
-  Bar(const Bar&) = delete;
-  Bar& operator=(const Bar&) = delete;
-  ~Bar() { clear(); }
+/// Formats "evaluating: 39 %, 12 s left". `most_share`: largest share shown so far, which the shown one does not fall below.
+std::string words_of(const base::JobEstimate& estimate, double& most_share) {
+  most_share = std::max(most_share, std::min(estimate.done_share, 0.99));
+  constexpr double kLong_s = 120.0;
+  const double left_s = std::max(1.0, std::ceil(estimate.remaining_s.value_or(0.0)));
+  const std::string left = left_s > kLong_s ? fmt::format("{:.0f} min", std::ceil(left_s / 60.0)) : fmt::format("{:.0f} s", left_s);
+  return fmt::format("{}: {:.0f} %, {}{} left", estimate.what, 100.0 * most_share, estimate.is_least ? "at least " : "", left);
+}
 
-  void show(std::size_t done, std::size_t total) {
-    constexpr std::chrono::milliseconds kBetween(200);
-    remaining_.start(done);
-    if (done == total) {
-      clear();
-    } else if (const Clock::time_point now = Clock::now(); now - shown_ > kBetween) {
-      shown_ = now;
-      is_visible_ = true;
-      // A job that turns out to be longer keeps its percentage until the work has caught up; the remaining time grows.
-      most_share_ = std::max(most_share_, static_cast<double>(done) / static_cast<double>(total));
-      overwrite_line(fmt::format("{}: {:.0f} %{}", what_, 100.0 * most_share_, remaining_.text(done, total)));
-    }
-  }
+}  // namespace
+
+/// A thread that overwrites one line on stderr several times per second, and removes it at the end.
+class JobLine::Painter {
+ public:
+  explicit Painter(base::JobProgress progress)
+      : thread_([this, progress = std::move(progress)](const std::stop_token& stop) { run(progress, stop); }) {}
 
  private:
-  using Clock = std::chrono::steady_clock;
-  void clear() {
-    if (is_visible_) {
-      // A failing stderr is ignored: the result matters more.
-      static_cast<void>(std::fputs("\r\x1b[K", stderr));
-      is_visible_ = false;
-    }
-  }
-  std::string what_;
-  Remaining remaining_;
-  Clock::time_point shown_ = Clock::now();
-  double most_share_ = 0.0;
-  bool is_visible_ = false;
-};
-
-/// A thread that overwrites one line on stderr every second, and removes it at the end.
-class ElapsedLine {
- public:
-  explicit ElapsedLine(std::string what) : thread_([this, what = std::move(what)](const std::stop_token& stop) { run(what, stop); }) {}
-
- private:
-  void run(const std::string& what, const std::stop_token& stop) {
+  void run(const base::JobProgress& progress, const std::stop_token& stop) {
+    constexpr std::chrono::milliseconds kBetween(300);
+    constexpr double kFirst_s = 1.0;
     std::unique_lock lock(mutex_);
-    int elapsed_s = 0;
+    bool is_visible = false;
+    double most_share = 0.0;
     // True if the wait ended because of the stop.
-    while (!changed_.wait_for(lock, stop, std::chrono::seconds(1), [&] { return stop.stop_requested(); })) {
-      overwrite_line(fmt::format("{}: {} s", what, ++elapsed_s));
+    while (!changed_.wait_for(lock, stop, kBetween, [&] { return stop.stop_requested(); })) {
+      const base::JobEstimate estimate = progress.estimate();
+      if (estimate.elapsed_s >= kFirst_s && estimate.remaining_s) {
+        overwrite_line(words_of(estimate, most_share));
+        is_visible = true;
+      }
     }
-    if (elapsed_s > 0) {
+    if (is_visible) {
+      // A failing stderr is ignored: the result matters more.
       static_cast<void>(std::fputs("\r\x1b[K", stderr));
     }
   }
@@ -140,7 +94,15 @@ class ElapsedLine {
   std::jthread thread_;
 };
 
-}  // namespace
+JobLine::JobLine() {
+  if (isatty(STDERR_FILENO) == 1) {
+    progress_ =
+        base::JobProgress([] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); });
+    painter_ = std::make_unique<Painter>(progress_);
+  }
+}
+
+JobLine::~JobLine() = default;
 
 namespace {
 
@@ -158,17 +120,6 @@ void announce_interrupts() {
   if (isatty(STDERR_FILENO) == 1 && std::signal(SIGINT, end_by) == SIG_IGN) {
     (void)std::signal(SIGINT, SIG_IGN);
   }
-}
-
-std::shared_ptr<void> elapsed_line(std::string what) {
-  return isatty(STDERR_FILENO) == 0 ? nullptr : std::make_shared<ElapsedLine>(std::move(what));
-}
-
-base::Progress progress_bar(std::string what) {
-  if (isatty(STDERR_FILENO) == 0) {
-    return {};
-  }
-  return [bar = std::make_shared<Bar>(std::move(what))](std::size_t done, std::size_t total) { bar->show(done, total); };
 }
 
 }  // namespace heatsoak::cli

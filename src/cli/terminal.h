@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "base/parallel.h"
+#include "base/job_progress.h"
 
 namespace heatsoak::cli {
 
@@ -15,14 +15,38 @@ std::size_t terminal_width(int descriptor);
 /// Returns true for a terminal unless NO_COLOR or TERM=dumb is set.
 bool takes_colors(int descriptor);
 
-/// Returns a progress bar with the remaining time on stderr; silent if stderr is not a terminal.
-base::Progress progress_bar(std::string what);
+/// Shows the progress of a job with its remaining time as one line on stderr, from its first second until the destructor removes the line.
+/// Silent if stderr is not a terminal.
+class JobLine {
+ public:
+  JobLine();
+  JobLine(const JobLine&) = delete;
+  JobLine& operator=(const JobLine&) = delete;
+  ~JobLine();
+  /// Returns the progress that the job reports to; it ignores all reports if the line is silent.
+  [[nodiscard]] const base::JobProgress& progress() const { return progress_; }
+
+ private:
+  class Painter;
+  base::JobProgress progress_;
+  std::unique_ptr<Painter> painter_;
+};
+
+/// Runs a job with a progress line and returns its result.
+template <class Run>
+auto with_progress(const Run& run) {
+  const JobLine line;
+  return run(line.progress());
+}
+/// The same for a job of one phase, which gets a plain progress. `usual_s`: its usual duration.
+template <class Run>
+auto with_progress(const std::string& what, double usual_s, const Run& run) {
+  const JobLine line;
+  line.progress().expect({{what, usual_s}});
+  return run(line.progress().begin(what));
+}
 
 /// If stderr is a terminal, an interrupt (Ctrl-C) then replaces the progress line by the word "interrupted" before it ends the program.
 void announce_interrupts();
-
-/// Shows the elapsed time of a job without known length on stderr, from its first second until the returned object is destroyed; silent if
-/// stderr is not a terminal.
-std::shared_ptr<void> elapsed_line(std::string what);
 
 }  // namespace heatsoak::cli

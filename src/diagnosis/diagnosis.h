@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "attribution/scan_term.h"
+#include "base/job_progress.h"
 #include "calibration/forecast/prediction.h"
 #include "diagnosis/findings.h"
 #include "diagnosis/found_effects.h"
@@ -24,6 +25,7 @@ struct DiagnosisInput {
   std::vector<estimation::MeasuredRun> train;
   attribution::UsualErrors usual = {};
   bool turns_within_rows = false;  ///< set by settle_turning_rows(): the motor reverses within rows of the log
+  base::JobProgress progress = {};
 };
 
 /// Heat that no effect of the catalogue explains.

@@ -7,11 +7,16 @@
 
 #include "base/collected_failures.h"
 #include "base/diagnostic.h"
+#include "calibration/forecast/forecast.h"
 #include "estimation/log_columns.h"
 #include "estimation/open_loop.h"
 
 namespace heatsoak::diagnosis {
 namespace {
+
+const std::string kReading = "checking the runs";
+const std::string kContradiction = "comparing the runs with each other";
+const std::string kScoring = "predicting the runs";
 
 std::vector<estimation::MeasuredRun> runs_of(const std::vector<recording::Recording>& recordings,
                                              const estimation::MeasuredRunOptions& options, std::vector<DiagnosisFinding>& findings) {
@@ -80,7 +85,7 @@ void add_fitted_holdouts(const motor::Motor& motor, const std::vector<recording:
 NoEffectFollows::NoEffectFollows(calibration::PoorFit worst)
     : base::Failure(base::ExitCode::cannot_answer, "no effect makes the model follow these logs"), worst_(std::move(worst)) {}
 
-DiagnosisAnswer run_diagnosis(const DiagnosisJob& job) {
+DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& progress) {
   const std::vector<recording::Recording>& fitted = job.logs.fitted;
   const std::vector<recording::Recording>& held_out = job.logs.held_out;
   const recording::LogChoice& choice = job.logs.choice;
@@ -98,6 +103,14 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job) {
   input.model = model.model;
   input.usual = model.usual;
   input.train = runs_of(fitted, how, findings);
+  input.progress = progress;
+  const double unit_s = calibration::usual_s(input.train);
+  const std::vector<base::JobPhase> last{{kContradiction, 0.6 * unit_s}, {kScoring, 0.6 * unit_s}};
+  std::vector<base::JobPhase> phases = attribution::selection_work(unit_s);
+  phases.insert(phases.begin(), {kReading, 0.2 * unit_s});
+  phases.insert(phases.end(), last.begin(), last.end());
+  progress.expect(std::move(phases), true);
+  progress.begin(kReading);
   settle_turning_rows(input);
   if (input.turns_within_rows) {
     findings.emplace_back(calibration::RowsTurn{});
@@ -108,9 +121,12 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job) {
   answer.diagnosis = diagnose(input, {});
   const std::vector<std::string>& columns = answer.diagnosis.selection.after.model.columns;
   estimation::set_columns(input.train, columns);
+  progress.expect(last);
+  progress.begin(kContradiction);
   add_contradiction(answer.diagnosis.selection, input.train, findings);
   refuse_where_nothing_follows(answer.diagnosis, input);
   answer.motor = extended_motor(job.motor, model, answer.diagnosis);
+  progress.begin(kScoring);
   answer.score = score_holdout(input, answer.diagnosis, runs_of(held_out, how, findings));
   score_files(job.motor, answer.motor, held_out, {choice.ambient_C, input.turns_within_rows}, answer.score);
   add_lacking_columns(columns, held_out, findings);

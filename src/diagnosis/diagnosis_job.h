@@ -27,6 +27,6 @@ struct DiagnosisAnswer {
 
 /// Throws Failure as admit(), model_of_logs() and diagnose() do; bad_input if the logs cannot be read as runs; cannot_answer if not even
 /// the extended model follows the training logs.
-DiagnosisAnswer run_diagnosis(const DiagnosisJob& job);
+DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& progress = {});
 
 }  // namespace heatsoak::diagnosis

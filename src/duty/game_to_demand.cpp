@@ -97,12 +97,30 @@ WheelLoads loads_of(const MotionTrack& motion, const robot::Robot& robot, double
   return loads;
 }
 
+const std::string kReading = "reading the log";
+const std::string kLoads = "computing the loads of the wheels";
+
+/// Begins a pass over the file; the result takes the share that has been read.
+std::function<void(double)> reading(const base::JobProgress& progress) {
+  if (!progress) {
+    return {};
+  }
+  constexpr std::size_t kWhole = 1'000'000;
+  return [report = progress.begin(kReading)](double share) {
+    report(static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(kWhole)), kWhole);
+  };
+}
+
 }  // namespace
 
 GameDemand demand_of_game(const std::filesystem::path& log, const std::string& player, const robot::Robot& robot, double bin_s,
-                          const GameObserver& observer) {
+                          const GameObserver& observer, const base::JobProgress& progress) {
+  // Expected duration of one pass, as long as nothing has been measured.
+  constexpr double kPass_s = 2.0;
+  progress.expect({{kReading, kPass_s}, {kReading, kPass_s}, {kLoads, 0.5 * kPass_s}});
   ImportOptions survey;
   survey.most_points = 0;
+  survey.progress = reading(progress);
   const RecordedGame first = import_game(log, survey);
   GameDemand result;
   result.sentences = sentences(first.report);
@@ -113,6 +131,7 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
   result.player = to_string(*name);
   ImportOptions one;
   one.robot = name;
+  one.progress = reading(progress);
   const RecordedGame game = import_game(log, one);
   if (game.tracks.empty() || game.tracks.front().segments.empty()) {
     return result;
@@ -121,6 +140,7 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
   ImportReport report = first.report;
   report.full_at_s = game.report.full_at_s;
   result.sentences = sentences(report);
+  progress.begin(kLoads);
   const MotionTrack motion = smooth(game.tracks.front());
   result.sentences.push_back(fmt::format("{}: {}", result.player, to_string(motion.report())));
   if (const std::string warning = sparse(game.report, *name); !warning.empty()) {

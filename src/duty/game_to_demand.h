@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/job_progress.h"
 #include "duty/demand.h"
 #include "robot/inverse_dynamics.h"
 
@@ -24,6 +25,6 @@ using GameObserver = std::function<void(double duration_s, const robot::WheelDem
 /// with the inverse dynamics. While the robot is not seen, the wheels stand. Throws Failure (bad_input) for an unreadable log or an unknown
 /// player.
 GameDemand demand_of_game(const std::filesystem::path& log, const std::string& player, const robot::Robot& robot, double bin_s = kBin_s,
-                          const GameObserver& observer = {});
+                          const GameObserver& observer = {}, const base::JobProgress& progress = {});
 
 }  // namespace heatsoak::duty

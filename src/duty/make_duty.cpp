@@ -13,6 +13,9 @@
 namespace heatsoak::duty {
 namespace {
 
+const std::string kGame = "playing the game";
+const std::string kRoles = "playing it in every role";
+
 /// Returns the writer of the table; nothing if the job has none.
 std::optional<DutyRows> table_of(const DutyJob& job, std::size_t wheel_count, DutyKind kind) {
   return job.put_table ? std::optional<DutyRows>(std::in_place, wheel_count, kind, job.every_s, job.put_table) : std::nullopt;
@@ -36,7 +39,7 @@ PrescribedLoad put_out(const DutyJob& job, const Duty& duty) {
   return {wheels.front().duration_s()};
 }
 
-GeneratedMatch generate(const DutyJob& job, const Duty& duty, const MatchInputs& inputs) {
+GeneratedMatch generate(const DutyJob& job, const Duty& duty, const MatchInputs& inputs, const base::JobProgress& progress) {
   const Planner planner = job.planner.value_or(Planner::jerk_limited);
   GeneratedMatch match{.role = inputs.role, .seed = job.seed.value_or(1), .load = {}, .roles = {}};
   std::optional<DutyRows> rows = table_of(job, job.robot.wheels.axis_rad.size(), duty.kind);
@@ -44,15 +47,18 @@ GeneratedMatch generate(const DutyJob& job, const Duty& duty, const MatchInputs&
   if (rows) {
     observer = [&rows](const MatchMoment& now) { rows->add(now.step_s, now.wheels->torque_Nm, now.wheels->speed_rad_per_s); };
   }
+  constexpr double kGame_s = 0.5;
+  progress.expect({{kGame, (rows ? 2.0 : 1.0) * kGame_s}, {kRoles, kGame_s * static_cast<double>(match.roles.size())}});
+  progress.begin(kGame);
   match.load = play_match(inputs, inputs.nominal(), job.robot, match.seed, planner, kBin_s, observer);
-  match.roles = play_roles(inputs, job.robot, match.seed, planner);
+  match.roles = play_roles(inputs, job.robot, match.seed, planner, progress.begin(kRoles));
   if (rows) {
     rows->finish();
   }
   return match;
 }
 
-GameDemand imported_game(const DutyJob& job) {
+GameDemand imported_game(const DutyJob& job, const base::JobProgress& progress) {
   std::optional<DutyRows> rows = table_of(job, job.robot.wheels.axis_rad.size(), DutyKind::torque);
   GameObserver observer;
   if (rows) {
@@ -60,7 +66,7 @@ GameDemand imported_game(const DutyJob& job) {
       rows->add(duration_s, wheels.torque_Nm, wheels.speed_rad_per_s);
     };
   }
-  GameDemand game = demand_of_game(job.log, job.player, job.robot, kBin_s, observer);
+  GameDemand game = demand_of_game(job.log, job.player, job.robot, kBin_s, observer, progress);
   if (game.wheels.empty()) {
     throw base::Failure(base::ExitCode::cannot_answer,
                         fmt::format("{}: no robot is seen long enough to follow its motion\n{}", job.log, fmt::join(game.sentences, "\n")));
@@ -73,12 +79,12 @@ GameDemand imported_game(const DutyJob& job) {
 
 }  // namespace
 
-DutyAnswer make_duty(const DutyJob& job) {
+DutyAnswer make_duty(const DutyJob& job, const base::JobProgress& progress) {
   DutyAnswer answer{job.robot, job.duty, job.log, {}};
   if (!job.duty) {
-    answer.content = imported_game(job);
+    answer.content = imported_game(job, progress);
   } else if (const auto match = std::dynamic_pointer_cast<const MatchDuty>(job.duty->shape_data)) {
-    answer.content = generate(job, *job.duty, match->inputs());
+    answer.content = generate(job, *job.duty, match->inputs(), progress);
   } else {
     answer.content = put_out(job, *job.duty);
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <variant>
 
+#include "base/job_progress.h"
 #include "duty/duty.h"
 #include "duty/duty_rows.h"
 #include "duty/game_to_demand.h"
@@ -46,7 +47,7 @@ struct DutyAnswer {
 
 /// Computes the demand. Throws Failure: bad_input if seed or planner is given for a duty that is not a match, cannot_answer if no robot of
 /// a recorded game is seen long enough.
-DutyAnswer make_duty(const DutyJob& job);
+DutyAnswer make_duty(const DutyJob& job, const base::JobProgress& progress = {});
 
 /// Returns the duty file that describes the table `csv` beside it, so that `evaluate --duty FILE.toml` can read it.
 std::string duty_file(const DutyAnswer& answer, const std::filesystem::path& csv);

@@ -48,6 +48,18 @@ robot::Robot changed(const robot::Robot& robot, const Variant& variant) {
   return result;
 }
 
+/// Returns the changes that need games of their own.
+std::vector<Variant> variants_of(const robot::Robot& robot, const duty::Duty& duty) {
+  std::vector<Variant> variants;
+  robot::Robot own = robot;
+  for (const Variant& each : kVariants) {
+    if (duty.shape_data->depends_on_robot() && each.value(own)) {
+      variants.push_back(each);
+    }
+  }
+  return variants;
+}
+
 bool is_pause(const duty::LoadBin& bin) { return bin.torque_rms_Nm == 0.0 && bin.current_rms_A == 0.0; }
 
 double pause_s(const duty::WheelDemand& wheel) {
@@ -114,6 +126,13 @@ class ChangeWork {
  public:
   static constexpr std::size_t kEvaluation = 1;
   static constexpr std::size_t kPlayedGame = 12;
+
+  static constexpr double kUnit_s = 0.04;  ///< on two cores
+
+  /// Returns the work of all changes: those that need games of their own, those that do not, and other motors.
+  static std::size_t units(std::size_t variants, std::size_t games, std::size_t others) {
+    return kPlayedGame * (variants + 1) * games + kEvaluation * (2 * games + others);
+  }
 
   ChangeWork(std::size_t total, int threads, const base::Progress& progress) : total_(total), threads_(threads), progress_(progress) {}
 
@@ -196,21 +215,15 @@ std::vector<ChangeEffect> effects_of_changes(const robot::Robot& robot, const du
                                              const base::Progress& progress) {
   const Games games(duty, seed);
   const std::size_t count = games.count();
-  std::vector<Variant> variants;
+  const std::vector<Variant> variants = variants_of(robot, duty);
   robot::Robot own = robot;
-  for (const Variant& each : kVariants) {
-    if (duty.shape_data->depends_on_robot() && each.value(own)) {
-      variants.push_back(each);
-    }
-  }
   std::vector<const motor::Motor*> candidates;
   for (const motor::Motor& each : others) {
     if (each.id != motor.id) {
       candidates.push_back(&each);
     }
   }
-  const std::size_t played_games = (variants.size() + 1) * count;
-  ChangeWork work(ChangeWork::kPlayedGame * played_games + ChangeWork::kEvaluation * (2 * count + candidates.size()), threads, progress);
+  ChangeWork work(ChangeWork::units(variants.size(), count, candidates.size()), threads, progress);
   std::vector<std::vector<duty::WheelDemand>> demands(count);
   std::vector<Played> before(count);
   work.run(count, ChangeWork::kPlayedGame, [&](std::size_t game) {
@@ -253,6 +266,10 @@ std::vector<ChangeEffect> effects_of_changes(const robot::Robot& robot, const du
     return std::tuple(each.other_motor.empty(), each.is_deliverable, each.saved_K);
   });
   return effects;
+}
+
+double changes_work_s(const robot::Robot& robot, const duty::Duty& duty, std::size_t others) {
+  return ChangeWork::kUnit_s * static_cast<double>(ChangeWork::units(variants_of(robot, duty).size(), Games(duty, 1).count(), others));
 }
 
 std::string_view name_of(ChangedQuantity quantity) {

@@ -40,6 +40,9 @@ std::vector<ChangeEffect> effects_of_changes(const robot::Robot& robot, const du
                                              std::span<const motor::Motor> others, std::uint64_t seed, int threads,
                                              const base::Progress& progress = {});
 
+/// Returns the expected duration of effects_of_changes() in s on a usual computer, for its progress; `others`: number of other motors.
+double changes_work_s(const robot::Robot& robot, const duty::Duty& duty, std::size_t others);
+
 /// Return the name of the quantity ("acceleration limit") and the unit of ChangeEffect::before.
 std::string_view name_of(ChangedQuantity quantity);
 std::string_view unit_of(ChangedQuantity quantity);

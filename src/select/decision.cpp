@@ -4,7 +4,6 @@
 #include <array>
 #include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/binomial.hpp>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -234,133 +233,35 @@ int most_samples(const duty::Duty& duty) {
   return first_samples(is_drawn) * (is_drawn ? kOneDoubling : kFiveDoublings);
 }
 
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-/// Durations of a round of evaluations, measured.
-struct RoundTimes {
-  double play_s = 0.0;     ///< playing the new games
-  double nominal_s = 0.0;  ///< all motors together, before the first block of samples
-  double samples_s = 0.0;  ///< all samples of all motors
-};
-
-/// Measures one round from its progress: the first finished block of samples ends the nominal runs.
-class RoundClock {
- public:
-  void begin_evaluation() { evaluation_ = Clock::now(); }
-  /// Returns a progress that takes the times and passes the calls on.
-  [[nodiscard]] base::Progress timed(base::Progress progress) {
-    return [this, progress = std::move(progress)](std::size_t done, std::size_t total) {
-      if (first_ == Clock::time_point()) {
-        first_ = Clock::now();
-      }
-      if (progress) {
-        progress(done, total);
-      }
-    };
-  }
-  [[nodiscard]] RoundTimes times() const {
-    const auto between = [](Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double>(to - from).count(); };
-    const Clock::time_point now = Clock::now();
-    const Clock::time_point first = first_ == Clock::time_point() ? now : first_;
-    return {between(begin_, evaluation_), between(evaluation_, first), between(first, now)};
-  }
-
- private:
-  Clock::time_point begin_ = Clock::now();
-  Clock::time_point evaluation_ = begin_;
-  Clock::time_point first_;
-};
-
-/// Reports the rounds after the first look as one job in milliseconds. Its length is predicted from the durations of the round before and
-/// the samples needed, and again for each round.
-class LaterRounds {
- public:
-  explicit LaterRounds(base::Progress progress) : progress_(std::move(progress)) {}
-
-  /// Begins a round that plays for `play_s` and evaluates for `evaluate_s`; later rounds take `later_s`.
-  void begin(double play_s, double evaluate_s, double later_s) {
-    done_s_ = seconds_since(begin_);
-    play_s_ = play_s;
-    evaluate_s_ = evaluate_s;
-    later_s_ = later_s;
-  }
-  [[nodiscard]] base::Progress playing() const { return part(done_s_, play_s_, evaluate_s_ + later_s_); }
-  [[nodiscard]] base::Progress evaluating() const { return part(done_s_ + play_s_, evaluate_s_, later_s_); }
-
- private:
-  [[nodiscard]] base::Progress part(double before_s, double part_s, double after_s) const {
-    if (!progress_) {
-      return {};
-    }
-    return [=, progress = progress_](std::size_t done, std::size_t total) {
-      const auto in_ms = [](double time_s) { return static_cast<std::size_t>(1e3 * time_s); };
-      const std::size_t all_ms = in_ms(before_s + part_s + after_s) + 1;
-      const double share = static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, total));
-      progress(std::min(all_ms - 1, in_ms(before_s + part_s * share)), all_ms);
-    };
-  }
-  base::Progress progress_;
-  Clock::time_point begin_ = Clock::now();
-  double done_s_ = 0.0;
-  double play_s_ = 0.0;
-  double evaluate_s_ = 0.0;
-  double later_s_ = 0.0;
-};
-
-}  // namespace
-
 std::vector<MotorEvaluation> evaluate_until_decided(const robot::Robot& robot, const duty::Duty& duty,
                                                     std::span<const duty::WheelDemand> wheels, std::span<const motor::Motor> motors,
                                                     EvaluateOptions options, int most, std::vector<duty::WheelDemand>& draws,
-                                                    const base::ProgressFor& progress) {
-  RoundTimes times;
-  const auto run = [&](std::span<const motor::Motor> wanted, const base::Progress& playing, const base::Progress& evaluating) {
-    RoundClock clock;
-    add_draws(draws, duty, robot, options.seed, draw_count(duty, options.samples), options.threads, playing);
-    clock.begin_evaluation();
-    options.draws = draws;
-    std::vector<MotorEvaluation> found = evaluate(robot, duty, wheels, wanted, options, clock.timed(evaluating));
-    times = clock.times();
-    return found;
-  };
-  std::vector<MotorEvaluation> results =
-      run(motors, base::progress_of(progress, "playing games"), base::progress_of(progress, "evaluating"));
-  std::optional<LaterRounds> later;
+                                                    const RoundsProgress& progress) {
   const bool is_drawn = duty.shape_data->has_unknowns();
-  int new_draws = static_cast<int>(draws.size());
-  auto evaluated = static_cast<double>(motors.size());
+  const RoundPlan plan(robot, duty, wheels, motors, most, progress);
+  plan.foresee(options, draws);
+  const auto run = [&](std::span<const motor::Motor> wanted) {
+    add_draws(draws, duty, robot, options.seed, draw_count(duty, options.samples), options.threads, plan.playing());
+    options.draws = draws;
+    return evaluate(robot, duty, wheels, wanted, options, plan.evaluating(wanted.size(), options.samples));
+  };
+  std::vector<MotorEvaluation> results = run(motors);
+  plan.update(results, options.samples);
   while (options.samples < most) {
     std::vector<motor::Motor> open;
-    std::vector<int> needed;
     for (const MotorEvaluation& each : results) {
       if (each.samples_needed && (!is_drawn || *each.samples_needed <= most)) {
         open.push_back(*std::ranges::find(motors, each.motor_id, &motor::Motor::id));
-        needed.push_back(*each.samples_needed);
       }
     }
     if (open.empty()) {
       break;
     }
-    if (!later) {
-      later.emplace(base::progress_of(progress, "undecided, drawing more samples"));
-    }
-    const auto evaluation_s = [&, nominal_s = times.nominal_s / evaluated, sample_s = times.samples_s / (evaluated * options.samples)](
-                                  const LaterWork& work) { return nominal_s * work.evaluations_count + sample_s * work.samples_count; };
-    const double all_s = evaluation_s(later_work(needed, options.samples, most));
-    const double draw_s = times.play_s / std::max(1, new_draws);
-    const int before = draw_count(duty, options.samples);
     options.samples = std::min(most, 2 * options.samples);
-    new_draws = draw_count(duty, options.samples) - before;
-    evaluated = static_cast<double>(open.size());
-    const double round_s = evaluation_s({evaluated, evaluated * options.samples});
-    later->begin(draw_s * new_draws, round_s, all_s - round_s);
-    for (MotorEvaluation& longer : run(open, later->playing(), later->evaluating())) {
+    for (MotorEvaluation& longer : run(open)) {
       *std::ranges::find(results, longer.motor_id, &MotorEvaluation::motor_id) = std::move(longer);
     }
+    plan.update(results, options.samples);
   }
   sort_by_verdict(results);
   return results;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "select/evaluate.h"
+#include "select/round_plan.h"
 
 namespace heatsoak::select {
 
@@ -60,6 +61,6 @@ int most_samples_at_all(bool is_drawn);
 std::vector<MotorEvaluation> evaluate_until_decided(const robot::Robot& robot, const duty::Duty& duty,
                                                     std::span<const duty::WheelDemand> wheels, std::span<const motor::Motor> motors,
                                                     EvaluateOptions options, int most, std::vector<duty::WheelDemand>& draws,
-                                                    const base::ProgressFor& progress = {});
+                                                    const RoundsProgress& progress = {});
 
 }  // namespace heatsoak::select

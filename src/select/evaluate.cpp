@@ -473,12 +473,12 @@ std::vector<MotorEvaluation> evaluate_as_stated(const robot::Robot& robot, const
     works[i].winding_envelope_C.resize(options.with_bands ? samples * kBandCells : 0);
     works[i].stator_envelope_C.resize(options.with_bands ? samples * kBandCells : 0);
   }
-  // The samples need the hottest wheel, so the nominal runs come first. Their duration differs from that of a block of samples, so only
-  // samples count as progress if there are any.
-  base::in_parallel(motors.size(), options.threads, 0, motors.size(), blocks > 0 ? base::Progress() : progress,
-                    [&](std::size_t i) { evaluate_nominal(works[i], robot, duty, wheels, options); });
   const std::size_t jobs = motors.size() * blocks;
-  base::in_parallel(jobs, options.threads, 0, jobs, progress, [&](std::size_t job) {
+  const std::size_t all = motors.size() + jobs;
+  // The samples need the hottest wheel, so the nominal runs come first.
+  base::in_parallel(motors.size(), options.threads, 0, all, progress,
+                    [&](std::size_t i) { evaluate_nominal(works[i], robot, duty, wheels, options); });
+  base::in_parallel(jobs, options.threads, motors.size(), all, progress, [&](std::size_t job) {
     evaluate_samples(works[job / blocks], robot, duty, options, static_cast<int>(job % blocks) * base::kLanes);
   });
   std::vector<MotorEvaluation> results;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/job_progress.h"
 #include "select/changes.h"
 #include "select/evaluate.h"
 #include "simulate/closed_loop_rank.h"
@@ -66,6 +66,6 @@ struct EvaluationAnswer {
 };
 
 /// Runs the evaluation. Throws Failure (bad_input) if too many samples are requested, or a closed loop for a duty that is not a match.
-EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::ProgressFor& progress = {});
+EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::JobProgress& progress = {});
 
 }  // namespace heatsoak::simulate

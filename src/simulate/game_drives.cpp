@@ -19,6 +19,10 @@ GameSpread GameDrives::spread(double DriveScore::*value) const {
 
 namespace {
 
+const std::string kPlaying = "playing the games to drive";
+const std::string kGuarding = "making thermal guards";
+const std::string kDriving = "driving games";
+
 /// Returns why the drive core cannot drive this motor, or nothing. A robot file without a needed table is an error for all motors.
 std::optional<NotDriven> why_not_driven(const robot::Robot& robot, const motor::Motor& motor, GuardUse use, const MotorGuard& guard) {
   if (!motor.nominal.rotor_inertia_kg_m2) {
@@ -38,15 +42,14 @@ std::optional<NotDriven> why_not_driven(const robot::Robot& robot, const motor::
 }  // namespace
 
 std::vector<GameDrives> drive_games(const robot::Robot& robot, const duty::MatchInputs& inputs, std::span<const motor::Motor> motors,
-                                    const GameDriveOptions& options, const base::Progress& progress) {
+                                    const GameDriveOptions& options, const base::JobProgress& progress) {
   const auto games = static_cast<std::size_t>(options.games);
-  const std::size_t all = games + motors.size() * (1 + games);
   std::vector<Game> played(games);
-  base::in_parallel(games, options.threads, 0, all, progress,
+  base::in_parallel(games, options.threads, 0, games, progress.begin(kPlaying),
                     [&](std::size_t i) { played[i] = play_game(inputs, robot, options.seed + i); });
   std::vector<GameDrives> drives(motors.size());
   std::vector<MotorGuard> guards(motors.size());
-  base::in_parallel(motors.size(), options.threads, games, all, progress, [&](std::size_t i) {
+  base::in_parallel(motors.size(), options.threads, 0, motors.size(), progress.begin(kGuarding), [&](std::size_t i) {
     drives[i].motor_id = motors[i].id;
     drives[i].why_none = why_not_driven(robot, motors[i], GuardUse::off, {});
     if (!drives[i].why_none && options.guard != GuardUse::off) {
@@ -57,7 +60,8 @@ std::vector<GameDrives> drive_games(const robot::Robot& robot, const duty::Match
     }
     drives[i].games.resize(drives[i].why_none ? 0 : games);
   });
-  base::in_parallel(motors.size() * games, options.threads, games + motors.size(), all, progress, [&](std::size_t job) {
+  const std::size_t jobs = motors.size() * games;
+  base::in_parallel(jobs, options.threads, 0, jobs, progress.begin(kDriving), [&](std::size_t job) {
     const std::size_t motor = job / games;
     const std::size_t game = job % games;
     if (drives[motor].why_none) {
@@ -70,6 +74,12 @@ std::vector<GameDrives> drive_games(const robot::Robot& robot, const duty::Match
     drives[motor].games[game] = run_match(played[game], robot, motors[motor], core.config(), run).score;
   });
   return drives;
+}
+
+std::vector<base::JobPhase> drive_phases(std::size_t motors, const GameDriveOptions& options) {
+  const auto count = static_cast<double>(motors);
+  const double guard_s = options.guard == GuardUse::off ? 0.0 : kGuard_s;
+  return {{kPlaying, kPlayedGame_s * options.games}, {kGuarding, guard_s * count}, {kDriving, kDrive_s / 2.0 * count * options.games}};
 }
 
 }  // namespace heatsoak::simulate

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/job_progress.h"
 #include "simulate/guarded_core.h"
 #include "simulate/match_run.h"
 
@@ -45,8 +46,12 @@ struct GameDrives {
 };
 
 /// Drives the same games with every motor; the result has the order of `motors`. A motor whose file lacks values for motion is not driven,
-/// see GameDrives::why_none. Throws Failure (bad_input) if the robot's file lacks values. `progress` counts guards and games.
+/// see GameDrives::why_none. Throws Failure (bad_input) if the robot's file lacks values. The phases are those of
+/// drive_phases().
 std::vector<GameDrives> drive_games(const robot::Robot& robot, const duty::MatchInputs& inputs, std::span<const motor::Motor> motors,
-                                    const GameDriveOptions& options, const base::Progress& progress = {});
+                                    const GameDriveOptions& options, const base::JobProgress& progress = {});
+
+/// Returns the phases of drive_games() for a number of motors.
+std::vector<base::JobPhase> drive_phases(std::size_t motors, const GameDriveOptions& options);
 
 }  // namespace heatsoak::simulate

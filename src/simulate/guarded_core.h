@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "base/diagnostic.h"
-#include "base/parallel.h"
+#include "base/job_progress.h"
 #include "firmware/core_config.h"
 #include "firmware/host_guard.h"
 
@@ -17,6 +17,11 @@ enum class GuardUse {
   on
 };
 inline constexpr std::string_view kGuardUses[]{"off", "shadow", "on"};
+
+// Expected durations on two cores, for progress.
+inline constexpr double kPlayedGame_s = 0.5;  ///< nominal game
+inline constexpr double kGuard_s = 4.0;
+inline constexpr double kDrive_s = 4.0;  ///< one game on one core
 
 /// Guard of a motor from derate(), or the reason why there is none.
 struct MotorGuard {

@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kMostCsvRows = 500'000.0;  ///< about 250 MB of text
 constexpr double kLongestMatch_s = 1e4;
+const std::string kGuarding = "making the thermal guard";
+const std::string kGame = "playing the game";
+const std::string kDriving = "driving";
 
 void check_table(const MatchJob& job) {
   if (job.with_table && job.planners.size() > 1) {
@@ -73,8 +76,8 @@ const DrivenMatch& MatchSimulation::deciding() const {
 
 select::Verdict MatchSimulation::verdict() const { return deciding().verdict; }
 
-MatchSimulation simulate_match(const MatchJob& job, const base::ProgressFor& progress) {
-  require_rotor_inertia(job.motor);
+MatchSimulation simulate_match(const MatchJob& job, const base::JobProgress& progress) {
+  firmware::require_drive_values(robot::with_assumed_friction(job.robot), {&job.motor, 1});
   check_table(job);
   const duty::MatchInputs& inputs = dynamic_cast<const duty::MatchDuty&>(*job.duty.shape_data).inputs();
   MatchSimulation answer{.robot = robot::with_assumed_friction(job.robot),
@@ -86,14 +89,22 @@ MatchSimulation simulate_match(const MatchJob& job, const base::ProgressFor& pro
                          .guard = {},
                          .is_sensing_ideal = job.is_sensing_ideal,
                          .runs = {}};
-  if (job.guard != GuardUse::off) {
-    answer.guard = make_guard(job.motor, answer.robot, job.duty.ambient_C.value, 0, base::progress_of(progress, "making the guard"));
+  std::vector<base::JobPhase> phases{{kGame, kPlayedGame_s}};
+  for (std::size_t i = 0; i < job.planners.size(); ++i) {
+    phases.push_back({kDriving, kDrive_s});
   }
+  if (job.guard != GuardUse::off) {
+    phases.insert(phases.begin(), {kGuarding, kGuard_s});
+  }
+  progress.expect(std::move(phases));
+  if (job.guard != GuardUse::off) {
+    answer.guard = make_guard(job.motor, answer.robot, job.duty.ambient_C.value, 0, progress.begin(kGuarding));
+  }
+  progress.begin(kGame);
   const Game game = play_game(inputs, answer.robot, job.seed);
   for (const duty::Planner planner : job.planners) {
     const GuardedCore core(answer.robot, job.motor, job.guard, answer.guard);
-    answer.runs.push_back(drive_once(job, answer.robot, game, core.config(), planner,
-                                     base::progress_of(progress, fmt::format("driving, {}", duty::to_string(planner)))));
+    answer.runs.push_back(drive_once(job, answer.robot, game, core.config(), planner, progress.begin(kDriving)));
     answer.runs.back().verdict = verdict_of(answer.runs.back().run.score, job.motor.nominal);
   }
   return answer;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/job_progress.h"
 #include "select/evaluate.h"
 #include "simulate/guarded_core.h"
 #include "simulate/match_run.h"
@@ -54,6 +54,6 @@ struct MatchSimulation {
 };
 
 /// Simulates the match. Throws Failure (bad_input) if the files of robot or motor lack values for motion, or if the CSV would be too large.
-MatchSimulation simulate_match(const MatchJob& job, const base::ProgressFor& progress = {});
+MatchSimulation simulate_match(const MatchJob& job, const base::JobProgress& progress = {});
 
 }  // namespace heatsoak::simulate

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "estimation/thresholds.h"
+#include "estimation/turning_rows.h"
 
 namespace heatsoak::calibration {
 namespace {
@@ -30,13 +31,15 @@ struct Candidate {
 
 class Search {
  public:
-  Search(ForecastSetup setup, std::span<const estimation::MeasuredRun> runs, int threads) : runs_(runs), threads_(threads) {
+  Search(ForecastSetup setup, std::span<const estimation::MeasuredRun> runs, int threads, const base::JobProgress& progress)
+      : runs_(runs), threads_(threads), progress_(progress) {
     base_setup_ = std::move(setup);
     out_.setup = base_setup_;
     model_.emplace(out_.setup.model());
   }
 
   Forecast run(std::span<const Eigen::VectorXd> hints) {
+    progress_.begin(calibration_phases::kWholeRuns);
     out_.fit = best_of_starts(hints);
     if (!std::isfinite(out_.fit.cost_nats)) {
       out_.source = ForecastSource::file;
@@ -51,6 +54,8 @@ class Search {
     const bool are_runs = runs_.size() > 1;
     for (int round = 0; are_runs && out_.pieces.size() >= kLeastPieces && round < kMostExtensions && could_gain() && extend(); ++round) {
     }
+    progress_.expect(rest());
+    progress_.begin(calibration_phases::kComparing);
     if (out_.pieces.size() >= kLeastToCompare) {
       compare_with_rivals(are_runs);
     }
@@ -59,6 +64,22 @@ class Search {
   }
 
  private:
+  /// Returns what follows the extensions.
+  [[nodiscard]] std::vector<base::JobPhase> rest() const {
+    const double unit_s = usual_s(runs_);
+    return {{calibration_phases::kComparing, 0.5 * unit_s},
+            {calibration_phases::kLeavingOut, 1.5 * unit_s},
+            {calibration_phases::kPredicting, 0.1 * unit_s}};
+  }
+
+  /// Declares a round of extensions, after which another may follow.
+  void expect_extensions() const {
+    std::vector<base::JobPhase> phases = rest();
+    const bool is_first = out_.accepted.empty();
+    phases.insert(phases.begin(), {calibration_phases::kExtending, (is_first ? 4.0 : 10.0) * usual_s(runs_)});
+    progress_.expect(std::move(phases), true);
+  }
+
   [[nodiscard]] ForecastRules rules() const { return {.threads = threads_}; }
   /// Fewer steps: a fit to the other pieces starts near its optimum.
   [[nodiscard]] ForecastRules of_piece() const { return {.rounds = 2, .steps = kPieceSteps, .threads = threads_}; }
@@ -111,12 +132,18 @@ class Search {
 
   /// Accepts the extension that predicts the left-out pieces best, if the gain exceeds the penalty for its parameters.
   bool extend() {
+    expect_extensions();
+    const base::Progress progress = progress_.begin(calibration_phases::kExtending);
     const std::vector<Extension> all = extensions_for(out_.setup, *model_, out_.fit.theta, runs_);
     std::vector<Candidate> candidates = screened(all);
     Candidate* best = nullptr;
     std::optional<PieceScore> best_score;
     double best_nats = 0.0;
-    for (std::size_t i = 0; i < std::min(kRefitted, candidates.size()); ++i) {
+    const std::size_t refitted = std::min(kRefitted, candidates.size());
+    for (std::size_t i = 0; i < refitted; ++i) {
+      if (progress) {
+        progress(i + 1, refitted + 1);
+      }
       Candidate& each = candidates[i];
       each.fit = fit_forecast(*each.model, runs_, {}, each.fit.theta, rules());
       const ForecastRules rules = of_piece();
@@ -222,6 +249,7 @@ class Search {
 
   std::span<const estimation::MeasuredRun> runs_;
   int threads_;
+  const base::JobProgress& progress_;
   std::optional<ForecastModel> model_, base_;
   ForecastSetup base_setup_;
   PieceScore score_;
@@ -249,9 +277,35 @@ RivalScore rival_score(ForecastSource source, const PieceScore& score, std::span
   return rival;
 }
 
+double usual_s(std::span<const estimation::MeasuredRun> runs) {
+  constexpr double kRow_s = 1.4e-4;
+  double rows = 0.0;
+  for (const estimation::MeasuredRun& run : runs) {
+    rows += static_cast<double>(run.time_s.size());
+  }
+  return kRow_s * rows;
+}
+
+std::vector<base::JobPhase> calibration_work(std::span<const estimation::MeasuredRun> runs) {
+  const double unit_s = usual_s(runs);
+  std::vector<base::JobPhase> phases{{calibration_phases::kFitting, unit_s}};
+  if (std::ranges::any_of(runs, estimation::may_turn_within_rows)) {
+    phases.push_back({calibration_phases::kFitting, unit_s});
+  }
+  phases.push_back({calibration_phases::kIntervals, 0.1 * unit_s});
+  phases.push_back({calibration_phases::kWholeRuns, 0.7 * unit_s});
+  if (runs.size() > 1) {
+    phases.push_back({calibration_phases::kExtending, 7.0 * unit_s});
+  }
+  phases.push_back({calibration_phases::kComparing, 0.5 * unit_s});
+  phases.push_back({calibration_phases::kLeavingOut, 1.5 * unit_s});
+  phases.push_back({calibration_phases::kPredicting, 0.1 * unit_s});
+  return phases;
+}
+
 Forecast forecast_of(ForecastSetup setup, std::span<const estimation::MeasuredRun> runs, std::span<const Eigen::VectorXd> hints,
-                     int threads) {
-  return Search(std::move(setup), runs, threads).run(hints);
+                     int threads, const base::JobProgress& progress) {
+  return Search(std::move(setup), runs, threads, progress).run(hints);
 }
 
 }  // namespace heatsoak::calibration

@@ -49,7 +49,7 @@ base::ExitCode run(CheckOptions& options, Session& session) {
     session.write_after_failure(
         options.junit, [kept](const base::Failure& failure) { return check::junit_xml(kept->outcomes, failure, base::program_version()); });
   }
-  *kept = check::run_check_job(options.job, session.folders(), progress_bar);
+  *kept = with_progress([&](const base::JobProgress& progress) { return check::run_check_job(options.job, session.folders(), progress); });
   const check::CheckAnswer& answer = *kept;
   if (answer.invalid) {
     throw base::Failure(*answer.invalid);

@@ -70,7 +70,8 @@ base::ExitCode run(const DerateOptions& options, Session& session) {
   job.exporter = options.out.empty() ? nullptr : &exporter;
   job.compiler = options.compiler;
   job.committed = options.committed;
-  const derate::DeratingAnswer answer = derate::run_derating(job, progress_bar("searching the safety factor on heat"));
+  const derate::DeratingAnswer answer = with_progress("searching the safety factor on heat", 5.0,
+                                                      [&](const base::Progress& progress) { return derate::run_derating(job, progress); });
   present::Document document = present::derating_document(answer.derating, job.motor);
   present::add_robot_notes(document, job.robot);
   if (!options.out.empty()) {

@@ -76,7 +76,7 @@ base::ExitCode run(const DutyOptions& options, Session& session) {
       table->write(text);
     };
   }
-  const duty::DutyAnswer answer = duty::make_duty(job);
+  const duty::DutyAnswer answer = with_progress([&](const base::JobProgress& progress) { return duty::make_duty(job, progress); });
   present::Document document = present::duty_document(answer);
   present::add_robot_notes(document, *robot);
   if (!options.out.empty()) {

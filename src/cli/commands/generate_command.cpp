@@ -33,9 +33,10 @@ base::ExitCode run(const GenerateOptions& options, Session& session) {
   duty::NamedFiles named(session.folders());
   const std::optional<robot::Robot> robot = named.robot(options.robot);
   const motor::Motor motor = guarded_motor(options.guard, named);
-  const firmware::GeneratedCore core =
-      firmware::generate_core(*robot, motor, options.core, options.guard.derate, fmt::format("heatsoak {}", base::program_version()),
-                              progress_bar("searching the safety factor on heat"));
+  const firmware::GeneratedCore core = with_progress("searching the safety factor on heat", 5.0, [&](const base::Progress& progress) {
+    return firmware::generate_core(*robot, motor, options.core, options.guard.derate, fmt::format("heatsoak {}", base::program_version()),
+                                   progress);
+  });
   const auto staged = std::make_shared<firmware::StagedFolder>(options.out, core.folder.files, options.force);
   session.complete_with([staged] { staged->commit(); });
   present::Document document = present::core_folder_document(core.folder, core.derating, options.core, options.out);

@@ -87,7 +87,8 @@ base::ExitCode run_match(const SimulateOptions& options, simulate::MatchJob job,
   job.with_table = !options.out.empty();
   job.every_s = options.every_s;
   job.with_rows = session.draws(options.plot);
-  simulate::MatchSimulation match = simulate::simulate_match(job, progress_bar);
+  simulate::MatchSimulation match =
+      with_progress([&](const base::JobProgress& progress) { return simulate::simulate_match(job, progress); });
   if (job.with_table) {
     session.write(options.out, std::move(match.runs.front().csv));
   }
@@ -100,7 +101,9 @@ base::ExitCode run_sweep(const SimulateOptions& options, const robot::Robot& rob
   if (!options.out.empty()) {
     throw base::Failure(base::ExitCode::bad_input, "--jerk-sweep has no signals to write; expected --plot or --json in place of --out");
   }
-  const simulate::JerkSweep sweep = simulate::sweep_jerk(robot, motor, options.sensing == "ideal", options.seed, progress_bar("driving"));
+  const simulate::JerkSweep sweep = with_progress("driving", 10.0, [&](const base::Progress& progress) {
+    return simulate::sweep_jerk(robot, motor, options.sensing == "ideal", options.seed, progress);
+  });
   show(present::jerk_sweep_document(sweep), options, session, [&] { return present::jerk_sweep_chart(sweep); });
   session.answer(present::jerk_sweep_json(sweep));
   return base::ExitCode::done;

@@ -6,12 +6,16 @@
 
 namespace heatsoak::duty {
 
-RoleLoads play_roles(const MatchInputs& inputs, const robot::Robot& robot, std::uint64_t seed, Planner planner) {
+RoleLoads play_roles(const MatchInputs& inputs, const robot::Robot& robot, std::uint64_t seed, Planner planner,
+                     const base::Progress& progress) {
   RoleLoads roles;
   for (std::size_t i = 0; i < roles.size(); ++i) {
     MatchInputs as_role = inputs;
     as_role.role = static_cast<Role>(i);
     roles[i] = play_match(as_role, as_role.nominal(), robot, seed, planner);
+    if (progress) {
+      progress(i + 1, roles.size());
+    }
   }
   return roles;
 }

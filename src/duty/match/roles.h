@@ -3,13 +3,15 @@
 
 #include <array>
 
+#include "base/parallel.h"
 #include "duty/match/generator.h"
 
 namespace heatsoak::duty {
 
 /// The same game played in each role, in the order of kRoleNames.
 using RoleLoads = std::array<MatchLoad, kRoleNames.size()>;
-RoleLoads play_roles(const MatchInputs& inputs, const robot::Robot& robot, std::uint64_t seed, Planner planner);
+RoleLoads play_roles(const MatchInputs& inputs, const robot::Robot& robot, std::uint64_t seed, Planner planner,
+                     const base::Progress& progress = {});
 
 /// Returns ∫M²dt summed over all wheels. It is proportional to the copper heat of motors without drag.
 double effort_Nm2_s(const PhaseLoad& phase);

@@ -34,9 +34,8 @@ base::ExitCode run(const CalibrateOptions& options, Session& session) {
   job.written = options.writes_forecast      ? calibration::WrittenFit::forecast
                 : options.writes_innovations ? calibration::WrittenFit::innovations
                                              : calibration::WrittenFit::best;
-  std::shared_ptr<void> line = elapsed_line("calibrating");
-  const calibration::CalibrationAnswer answer = calibration::run_calibration(job);
-  line.reset();
+  const calibration::CalibrationAnswer answer =
+      with_progress([&](const base::JobProgress& progress) { return calibration::run_calibration(job, progress); });
   session.write(options.out, motor::to_toml(answer.motor));
   present::Document document = present::calibration_document(job.motor, answer, job.logs.readings);
   document.add_file(options.out);

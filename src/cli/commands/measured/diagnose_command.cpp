@@ -51,9 +51,8 @@ base::ExitCode run(const DiagnoseOptions& options, Session& session) {
   }
   const diagnosis::DiagnosisJob job{duty::motor_named(session.folders(), options.model),
                                     recording::read_usable_logs(options.train, options.holdout, choice_of(options.logs, session))};
-  std::shared_ptr<void> line = elapsed_line("searching for missing effects");
-  const diagnosis::DiagnosisAnswer answer = diagnosis::run_diagnosis(job);
-  line.reset();
+  const diagnosis::DiagnosisAnswer answer =
+      with_progress([&](const base::JobProgress& progress) { return diagnosis::run_diagnosis(job, progress); });
   const std::vector<recording::LogReading>& readings = job.logs.readings;
   present::Document document = present::diagnosis_document(answer, readings);
   if (!options.out.empty()) {

@@ -95,7 +95,8 @@ void write_robot_file(const FrictionOptions& options, const friction::FrictionRu
 
 base::ExitCode steady_state(const FrictionOptions& options, const Input& input, Session& session) {
   const robot::Robot& robot = input.job.robot;
-  const friction::SteadyFriction found = friction::steady_friction(input.job, progress_bar("reading"));
+  const friction::SteadyFriction found =
+      with_progress("reading", 2.0, [&](const base::Progress& progress) { return friction::steady_friction(input.job, progress); });
   const present::FrictionRemarks remarks =
       present::friction_remarks(input.motor_id, input.job.motor.has_value(), found, present::lack_of_fit_words(found.fit));
   const present::FrictionAnswer answer{found.steady,        found.fit,          found.error, found.settings.use_return_legs,
@@ -113,7 +114,8 @@ base::ExitCode steady_state(const FrictionOptions& options, const Input& input, 
 }
 
 base::ExitCode by_roll_out(const FrictionOptions& options, const Input& input, Session& session) {
-  const friction::RollOutFriction found = friction::roll_out_friction(input.job, progress_bar("reading"));
+  const friction::RollOutFriction found =
+      with_progress("reading", 2.0, [&](const base::Progress& progress) { return friction::roll_out_friction(input.job, progress); });
   const present::FrictionRemarks remarks = present::friction_remarks(input.motor_id, input.job.motor.has_value(), found, {});
   present::Document document = present::roll_out_document(input.job.robot, found.result, found.drive, options.logs.size());
   present::add_findings(document, remarks.findings, remarks.suspicions);

@@ -1,0 +1,148 @@
+#include "base/job_progress.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <utility>
+
+namespace heatsoak::base {
+
+struct JobProgress::State {
+  /// Measured work of one kind.
+  struct Measured {
+    double elapsed_s = 0.0;
+    double work_s = 0.0;  ///< its expected duration
+    double count = 0.0;   ///< number of ended phases
+  };
+
+  /// Returns the measured duration relative to the expected one; `otherwise` counts as if it had been measured for `assumed_s`.
+  [[nodiscard]] static double ratio(const Measured& measured, double otherwise, double assumed_s) {
+    const double work_s = measured.work_s + assumed_s;
+    return work_s > 0.0 ? (measured.elapsed_s + otherwise * assumed_s) / work_s : otherwise;
+  }
+
+  Now now;
+  double begin_s = 0.0;
+  mutable std::mutex mutex;
+  std::map<std::string, Measured> ended;  ///< by name of the phase
+  std::vector<JobPhase> later;
+  bool is_open = false;
+  std::optional<JobPhase> present;
+  double present_begin_s = 0.0;
+  double report_s = 0.0;  ///< time of the last report, or of the begin of the phase
+  double share = 0.0;     ///< finished share of the present phase at the last report
+
+  /// Returns the measured work by name, with the part of the present phase that was reported.
+  [[nodiscard]] std::map<std::string, Measured> measured() const {
+    std::map<std::string, Measured> all = ended;
+    Measured& own = all[present->what];
+    own.elapsed_s += report_s - present_begin_s;
+    own.work_s += share * present->work_s;
+    return all;
+  }
+
+  /// Returns the expected remaining time at the measured speeds.
+  [[nodiscard]] double remaining_s(double time_s) const {
+    const std::map<std::string, Measured> kinds = measured();
+    Measured job;
+    for (const auto& [what, kind] : kinds) {
+      job.elapsed_s += kind.elapsed_s;
+      job.work_s += kind.work_s;
+    }
+    const double all_s = std::accumulate(later.begin(), later.end(), job.work_s + (1.0 - share) * present->work_s,
+                                         [](double sum_s, const JobPhase& each) { return sum_s + each.work_s; });
+    // The first reports of a job, and of a kind, do not decide alone.
+    constexpr double kAssumed_share = 0.02;
+    const double job_ratio = ratio(job, 1.0, kAssumed_share * all_s);
+    const auto ratio_of = [&](const JobPhase& phase) {
+      const auto same = kinds.find(phase.what);
+      return same == kinds.end() ? job_ratio : ratio(same->second, job_ratio, kAssumed_share * phase.work_s);
+    };
+    // Without reports a phase proceeds at its speed. One that takes longer than expected is assumed to take another fifth of that time.
+    constexpr double kOverrun_ratio = 0.2;
+    const double silent_s = time_s - report_s;
+    const double rest_s = (1.0 - share) * present->work_s * ratio_of(*present);
+    const double own_s = share < 1.0 ? std::max(rest_s - silent_s, kOverrun_ratio * silent_s) : 0.0;
+    return std::accumulate(later.begin(), later.end(), own_s,
+                           [&](double sum_s, const JobPhase& each) { return sum_s + each.work_s * ratio_of(each); });
+  }
+
+  void end_present(double time_s) {
+    if (present) {
+      Measured& own = ended[present->what];
+      own.elapsed_s += time_s - present_begin_s;
+      own.work_s += present->work_s;
+      own.count += 1.0;
+      present.reset();
+    }
+  }
+};
+
+JobProgress::JobProgress(Now now) : state_(std::make_shared<State>()) {
+  state_->now = std::move(now);
+  state_->begin_s = state_->now();
+}
+
+void JobProgress::expect(std::vector<JobPhase> later, bool is_open) const {
+  if (state_) {
+    const std::lock_guard lock(state_->mutex);
+    state_->later = std::move(later);
+    state_->is_open = is_open;
+  }
+}
+
+void JobProgress::resize(double work_s) const {
+  if (state_) {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->present) {
+      state_->present->work_s = work_s;
+    }
+  }
+}
+
+Progress JobProgress::begin(const std::string& what) const {
+  if (!state_) {
+    return {};
+  }
+  State& state = *state_;
+  const std::lock_guard lock(state.mutex);
+  const double time_s = state.now();
+  state.end_present(time_s);
+  const auto expected = std::ranges::find(state.later, what, &JobPhase::what);
+  if (expected == state.later.end()) {
+    const auto same = state.ended.find(what);
+    state.present = JobPhase{what, same == state.ended.end() ? 0.0 : same->second.work_s / same->second.count};
+  } else {
+    state.present = *expected;
+    state.later.erase(state.later.begin(), std::next(expected));
+  }
+  state.present_begin_s = state.report_s = time_s;
+  state.share = 0.0;
+  return [own = state_](std::size_t done, std::size_t total) {
+    const std::lock_guard report(own->mutex);
+    own->report_s = own->now();
+    own->share = total > 0 ? std::min(1.0, static_cast<double>(done) / static_cast<double>(total)) : 0.0;
+  };
+}
+
+JobEstimate JobProgress::estimate() const {
+  JobEstimate found;
+  if (!state_) {
+    return found;
+  }
+  const State& state = *state_;
+  const std::lock_guard lock(state.mutex);
+  const double time_s = state.now();
+  found.elapsed_s = time_s - state.begin_s;
+  if (!state.present) {
+    return found;
+  }
+  found.what = state.present->what;
+  found.remaining_s = state.remaining_s(time_s);
+  found.done_share = found.elapsed_s > 0.0 ? found.elapsed_s / (found.elapsed_s + *found.remaining_s) : 0.0;
+  found.is_least = state.is_open || state.present->work_s == 0.0;
+  return found;
+}
+
+}  // namespace heatsoak::base

@@ -1,0 +1,60 @@
+// Progress of a whole job: its phases with their expected durations, and the remaining time that follows from the work done so far.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+
+namespace heatsoak::base {
+
+/// Part of a job.
+struct JobPhase {
+  std::string what;     ///< name for the user; phases of the same name are work of the same kind
+  double work_s = 0.0;  ///< expected duration in s on a usual computer, weighted with its probability if the phase may be left out
+};
+
+struct JobEstimate {
+  std::string what;                        ///< name of the present phase; empty before the first one
+  double elapsed_s = 0.0;                  ///< since the job began
+  double done_share = 0.0;                 ///< elapsed time divided by the expected total time, 0 to 1
+  std::optional<double> remaining_s = {};  ///< for the whole job; empty before the first phase
+  bool is_least = false;                   ///< the job may have phases whose length is not known yet
+};
+
+/// Handle of a job's progress; copies refer to the same job. All members may be called from any thread. A default-constructed handle
+/// ignores all calls.
+///
+/// The expected durations count only as ratios once work has been measured: each kind of phase is scaled by its own measured speed, and
+/// kinds that have not begun by the mean speed of the job.
+class JobProgress {
+ public:
+  using Now = std::function<double()>;  ///< returns a time in s that never decreases
+
+  JobProgress() = default;
+  /// Begins a job.
+  explicit JobProgress(Now now);
+
+  /// True if somebody watches the job.
+  explicit operator bool() const { return state_ != nullptr; }
+
+  /// Sets the phases that follow the present one, in order. `is_open`: more phases of unknown length may follow.
+  void expect(std::vector<JobPhase> later, bool is_open = false) const;
+  /// Changes the expected work of the present phase.
+  void resize(double work_s) const;
+  /// Ends the present phase and begins the first expected phase of this name; expected phases before it are left out. A phase that was not
+  /// expected takes as much work as an earlier one of its name, if there was one, and the expected ones remain. Returns the progress of the
+  /// phase, which may be ignored.
+  Progress begin(const std::string& what) const;  // NOLINT(modernize-use-nodiscard)
+
+  [[nodiscard]] JobEstimate estimate() const;
+
+ private:
+  struct State;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace heatsoak::base

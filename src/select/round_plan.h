@@ -1,0 +1,55 @@
+// Expected durations of the rounds of an evaluation, for its progress.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/job_progress.h"
+#include "select/evaluate.h"
+
+namespace heatsoak::select {
+
+/// Progress of an evaluation that may be a part of a longer job.
+struct RoundsProgress {
+  base::JobProgress job = {};
+  /// Returns the phases that follow an evaluation with these results, which are empty if nothing is known yet. May be null.
+  std::function<std::vector<base::JobPhase>(std::span<const MotorEvaluation>)> later = {};
+};
+
+/// Returns what an evaluation with `samples` samples will probably give, from one with few samples: the rise of the peak temperature above
+/// the air is taken as log-normal. Only verdict, shares with their intervals, and samples_needed are meaningful.
+MotorEvaluation foreseen(const MotorEvaluation& few, int samples, double ambient_C);
+
+/// Declares the phases of evaluate_until_decided(): the first round, and the later ones that the results make probable. Refers to all
+/// arguments of its constructor.
+class RoundPlan {
+ public:
+  RoundPlan(const robot::Robot& robot, const duty::Duty& duty, std::span<const duty::WheelDemand> wheels,
+            std::span<const motor::Motor> motors, int most, const RoundsProgress& progress);
+
+  /// Declares the first round. If somebody watches a job with drawn games, it plays a few games first and evaluates some motors in them,
+  /// which shows what will follow; `draws` receives these games, which the first round needs anyway.
+  void foresee(EvaluateOptions options, std::vector<duty::WheelDemand>& draws) const;
+  /// Declares the later rounds from the results of a round with `samples` samples.
+  void update(std::span<const MotorEvaluation> results, int samples) const;
+  /// Begins the games of a round.
+  [[nodiscard]] base::Progress playing() const;
+  /// Begins the evaluations of a round.
+  [[nodiscard]] base::Progress evaluating(std::size_t motors, int samples) const;
+
+ private:
+  [[nodiscard]] std::vector<base::JobPhase> round(double motors_count, int samples, int draws) const;
+  [[nodiscard]] std::vector<base::JobPhase> rounds_after(std::span<const MotorEvaluation> results, int samples) const;
+  [[nodiscard]] std::vector<base::JobPhase> later(std::span<const MotorEvaluation> results) const;
+
+  const robot::Robot& robot_;
+  const duty::Duty& duty_;
+  std::span<const duty::WheelDemand> wheels_;
+  std::span<const motor::Motor> motors_;
+  int most_ = 0;
+  const RoundsProgress& progress_;
+};
+
+}  // namespace heatsoak::select

@@ -1,0 +1,121 @@
+// Remaining time of jobs with uneven phases, on a clock that the test sets.
+#include "base/job_progress.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace heatsoak::base {
+namespace {
+
+/// A phase as it is declared, and as it happens on this computer.
+struct Played {
+  std::string what;
+  double expected_s;
+  double actual_s;
+  std::size_t steps;  ///< reports in equal intervals; 0: none until the end
+};
+
+/// Runs the phases on a simulated clock. Returns the largest ratio, in either direction, of the estimated to the true remaining time, from
+/// `from_share` to `until_share` of the job, without its last second.
+double worst_ratio(const std::vector<Played>& phases, double from_share, double until_share = 1.0) {
+  double time_s = 0.0;
+  const double all_s =
+      std::accumulate(phases.begin(), phases.end(), 0.0, [](double sum_s, const Played& each) { return sum_s + each.actual_s; });
+  const JobProgress job([&time_s] { return time_s; });
+  std::vector<JobPhase> expected;
+  for (const Played& each : phases) {
+    expected.push_back({each.what, each.expected_s});
+  }
+  job.expect(expected);
+  double worst = 1.0;
+  double begin_s = 0.0;
+  for (const Played& each : phases) {
+    const Progress progress = job.begin(each.what);
+    constexpr int kLooks = 200;
+    for (int look = 1; look < kLooks; ++look) {
+      const double share = static_cast<double>(look) / kLooks;
+      time_s = begin_s + share * each.actual_s;
+      const auto done = static_cast<std::size_t>(share * static_cast<double>(each.steps));
+      const auto before = static_cast<std::size_t>((share - 1.0 / kLooks) * static_cast<double>(each.steps));
+      if (done > before) {
+        progress(done, each.steps);
+      }
+      const double left_s = all_s - time_s;
+      if (time_s >= from_share * all_s && time_s <= until_share * all_s && left_s > 1.0) {
+        const double ratio = *job.estimate().remaining_s / left_s;
+        worst = std::max({worst, ratio, 1.0 / ratio});
+      }
+    }
+    begin_s += each.actual_s;
+  }
+  return worst;
+}
+
+// The second phase is the long one: an estimate from the first phase alone would be wrong by a factor of ten.
+TEST(JobProgress, counts_the_phases_that_follow) {
+  EXPECT_LT(worst_ratio({{"play", 10.0, 10.0, 75}, {"evaluate", 2.0, 2.0, 75}, {"change", 100.0, 100.0, 30}}, 0.0), 1.3);
+}
+
+TEST(JobProgress, is_right_within_a_factor_of_two_on_a_slower_computer_from_a_fifth_on) {
+  EXPECT_LT(worst_ratio({{"play", 5.0, 20.0, 75}, {"evaluate", 1.0, 4.0, 75}, {"change", 10.0, 40.0, 30}}, 0.05), 2.0);
+  EXPECT_LT(worst_ratio({{"play", 20.0, 5.0, 75}, {"evaluate", 4.0, 1.0, 75}, {"change", 40.0, 10.0, 30}}, 0.05), 2.0);
+}
+
+TEST(JobProgress, is_right_within_a_factor_of_two_where_declared_durations_are_off_by_half) {
+  EXPECT_LT(worst_ratio({{"play", 10.0, 15.0, 75}, {"evaluate", 10.0, 6.0, 40}, {"change", 10.0, 13.0, 20}}, 0.2), 2.0);
+}
+
+// A kind that was measured counts with its own speed, not with that of the job.
+TEST(JobProgress, measures_each_kind_of_work) {
+  EXPECT_LT(worst_ratio({{"play", 1.0, 1.0, 5}, {"evaluate", 1.0, 20.0, 5}, {"play", 10.0, 10.0, 50}, {"evaluate", 10.0, 200.0, 50}}, 0.12),
+            1.3);
+}
+
+TEST(JobProgress, a_phase_without_reports_proceeds_as_expected) {
+  EXPECT_LT(worst_ratio({{"read", 1.0, 1.0, 0}, {"fit", 9.0, 9.0, 0}, {"write", 10.0, 10.0, 0}}, 0.0), 2.0);
+  EXPECT_LT(worst_ratio({{"read", 2.0, 2.0, 0}, {"fit", 10.0, 14.0, 0}, {"write", 10.0, 12.0, 0}}, 0.2, 0.9), 2.0);
+}
+
+TEST(JobProgress, a_skipped_phase_no_longer_counts) {
+  double time_s = 0.0;
+  const JobProgress job([&time_s] { return time_s; });
+  job.expect({{"a", 1.0}, {"maybe", 100.0}, {"b", 1.0}});
+  job.begin("a");
+  time_s = 1.0;
+  EXPECT_GT(*job.estimate().remaining_s, 50.0);
+  job.begin("b");
+  EXPECT_NEAR(*job.estimate().remaining_s, 1.0, 0.1);
+}
+
+TEST(JobProgress, says_that_more_may_follow) {
+  double time_s = 0.0;
+  const JobProgress job([&time_s] { return time_s; });
+  job.expect({{"a", 2.0}}, true);
+  job.begin("a");
+  EXPECT_TRUE(job.estimate().is_least);
+  job.expect({{"b", 2.0}});
+  EXPECT_FALSE(job.estimate().is_least);
+  EXPECT_NEAR(*job.estimate().remaining_s, 4.0, 1e-9);
+}
+
+TEST(JobProgress, a_repeated_phase_takes_as_long_as_before) {
+  double time_s = 0.0;
+  const JobProgress job([&time_s] { return time_s; });
+  job.expect({{"search", 10.0}, {"write", 1.0}}, true);
+  job.begin("search");
+  time_s = 20.0;
+  job.begin("search");
+  EXPECT_NEAR(*job.estimate().remaining_s, 22.0, 0.5);
+}
+
+TEST(JobProgress, nobody_who_watches_costs_nothing) {
+  const JobProgress job;
+  job.expect({{"a", 1.0}});
+  EXPECT_FALSE(job.begin("a"));
+  EXPECT_FALSE(job.estimate().remaining_s);
+}
+
+}  // namespace
+}  // namespace heatsoak::base
