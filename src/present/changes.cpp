@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "base/quantity.h"
@@ -52,23 +54,19 @@ std::string best_change_words(const select::ChangeEffect* change, std::span<cons
       motor_id, change_words(*largest), largest->saved_K);
 }
 
-/// Returns the changes to list: another motor, if it counts, takes the last place.
+/// Returns the changes to list, the most helpful first: those that let the motor deliver the demand, then by saved kelvins.
 std::vector<const select::ChangeEffect*> listed(std::span<const select::ChangeEffect> effects) {
   constexpr std::size_t kMost = 3;
-  std::vector<const select::ChangeEffect*> own;
-  const select::ChangeEffect* motor = nullptr;
+  std::vector<const select::ChangeEffect*> shown;
   for (const select::ChangeEffect& each : effects) {
-    if (counts(each) && each.other_motor.empty()) {
-      own.push_back(&each);
-    } else if (counts(each)) {
-      motor = &each;
+    if (counts(each)) {
+      shown.push_back(&each);
     }
   }
-  own.resize(std::min(own.size(), motor == nullptr ? kMost : kMost - 1));
-  if (motor != nullptr) {
-    own.push_back(motor);
-  }
-  return own;
+  std::ranges::stable_sort(shown, std::ranges::greater(),
+                           [](const select::ChangeEffect* each) { return std::pair(each->makes_deliverable, each->saved_K); });
+  shown.resize(std::min(shown.size(), kMost));
+  return shown;
 }
 
 }  // namespace
@@ -107,9 +105,10 @@ void add_changes(Document& document, const simulate::SuggestedChanges& changes, 
                                            "two standard errors.",
                                            select::kChangeGames)
                              : "Changes: the duty with nominal values, once with and once without the change.");
-  if (!shown.back()->other_motor.empty()) {
+  if (std::ranges::any_of(shown, [](const select::ChangeEffect* each) { return !each->other_motor.empty(); })) {
     document.add_note(Severity::background,
-                      "The other motor is the one of the database with the largest margin; its mass and size are not compared.");
+                      "The other motor is the one with the largest margin of the compared motors, or of the database; its mass and size "
+                      "are not compared.");
   }
 }
 

@@ -36,7 +36,8 @@ std::optional<SuggestedChanges> changes_for(const EvaluationJob& job, const Eval
   const bool none_passes =
       std::ranges::none_of(answer.results, [](const select::MotorEvaluation& each) { return each.verdict == select::Verdict::pass; });
   const bool offers_motor = job.database && (!job.has_chosen_motors || none_passes);
-  const std::vector<motor::Motor> others = offers_motor ? job.database() : std::vector<motor::Motor>();
+  // Otherwise only the compared motors may replace it.
+  const std::vector<motor::Motor> others = offers_motor ? job.database() : job.motors;
   return SuggestedChanges{subject.motor_id, select::effects_of_changes(answer.robot, job.duty, motor, others, job.seed, job.threads,
                                                                        base::progress_of(progress, "trying changes"))};
 }

@@ -221,7 +221,8 @@ TEST(EvaluationDocument, warns_of_implausible_values_of_the_robot) {
   EXPECT_EQ(warnings(), before + 1);
 }
 
-TEST(EvaluationDocument, changes_of_the_robot_come_before_another_motor) {
+// The first line of the answer names the first row of the table.
+TEST(EvaluationDocument, lists_the_change_that_saves_most_first) {
   simulate::EvaluationAnswer answer = answer_with({sampled(0.0, {0.0, 0.01}, 500)});
   answer.changes =
       simulate::SuggestedChanges{"m",
@@ -230,7 +231,9 @@ TEST(EvaluationDocument, changes_of_the_robot_come_before_another_motor) {
   const Document document = evaluation_document(answer);
   const Table& table = document.tables.back();
   ASSERT_EQ(table.rows.size(), 2U);
-  EXPECT_EQ(table.rows.front().front().words, select::name_of(select::ChangedQuantity::gear_ratio));
+  EXPECT_EQ(table.rows.front().front().words, "motor other");
+  EXPECT_EQ(table.rows.back().front().words, select::name_of(select::ChangedQuantity::gear_ratio));
+  EXPECT_THAT(document.headline.back().words, HasSubstr("motor to other, 100 K cooler"));
   EXPECT_EQ(table.columns.size(), 4U) << "one calculation has no standard error";
 }
 
