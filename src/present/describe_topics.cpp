@@ -64,6 +64,10 @@ Document verdict_description() {
   }
   add_labelled(table, "undecided", undecided_meaning());
   document.tables.push_back(std::move(table));
+  document.add_note(
+      Severity::note,
+      "Without --closed-loop the robot follows the plan exactly. If the plan needs more grip than the wheels have in 1 % of the "
+      "time or more, the answer says so in its first lines: only a closed loop decides whether the robot can drive it.");
   document.add_note(Severity::note,
                     "With --closed-loop: fail if the first game or more than half of the games exceed a limit; infeasible if a game was "
                     "not driven; marginal if any other game exceeds a limit.");

@@ -61,7 +61,9 @@ Document document_of(const duty::DutyAnswer& answer, const duty::GeneratedMatch&
                                               load.play_s, load.distance_m / 1e3)}},
                     .paragraphs = {fmt::format("Seed {}. The load is {}.", match.seed, duty.origin)},
                     .tables = {role_table(match.roles)}};
-  add_lines(document.notes, slip_text(load.wheels.front()), Severity::note);
+  if (const std::string slip = slip_text(load.wheels.front()); !slip.empty()) {
+    document.add_note(Severity::note, slip + ": a wheel slides there (`heatsoak simulate` includes this)");
+  }
   const std::optional<double> acceleration_m_per_s2 = robot.limits.acceleration_m_per_s2;
   const std::optional<double> braking_m_per_s2 = robot.limits.braking_m_per_s2;
   if (acceleration_m_per_s2 && braking_m_per_s2 && *braking_m_per_s2 > *acceleration_m_per_s2) {

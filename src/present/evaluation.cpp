@@ -169,6 +169,12 @@ std::vector<Text> headline(const simulate::EvaluationAnswer& answer) {
   };
   const bool any_passes = std::ranges::any_of(results, [](const auto& each) { return shown_verdict(each) == ShownVerdict::pass; });
   std::vector<Text> sentences{{fmt::format("{}.", counted_verdicts(answer, load_words(answer.duty))), any_passes ? Tone::good : Tone::bad}};
+  if (const std::string slip = slip_text(answer.demand); !slip.empty()) {
+    sentences.push_back({fmt::format("This holds only for a robot that follows the plan exactly, but {}. --closed-loop, or `heatsoak "
+                                     "simulate`, shows whether this robot can drive it.",
+                                     slip),
+                         Tone::undecided});
+  }
   sentences.push_back(sentence(results.front(), results.size() > 1 ? "Best: " : ""));
   const auto own = std::ranges::find(results, answer.robot.drive.motor, &select::MotorEvaluation::motor_id);
   if (own != results.end() && own != results.begin()) {
@@ -312,7 +318,6 @@ Document ranking_document(const simulate::EvaluationAnswer& answer) {
   for (const select::MotorEvaluation& each : results) {
     add_notes(document, each, answer);
   }
-  add_lines(document.notes, slip_text(answer.demand), Severity::note);
   if (answer.duty.shape_data->depends_on_robot()) {
     document.add_note(
         Severity::background,

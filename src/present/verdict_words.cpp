@@ -73,11 +73,9 @@ std::string duration_text(double duration_s) {
 
 std::string slip_text(const duty::WheelDemand& wheel) {
   constexpr double kReported_share = 0.01;
-  return wheel.slip_share < kReported_share ? ""
-                                            : fmt::format(
-                                                  "the motion exceeds the grip in {:.0f} % of the time: a wheel slides there, and may heat "
-                                                  "its motor more than is shown (`heatsoak simulate` includes this)\n",
-                                                  100.0 * wheel.slip_share);
+  return wheel.slip_share < kReported_share
+             ? ""
+             : fmt::format("the plan needs more grip than the wheels have in {:.0f} % of the time", 100.0 * wheel.slip_share);
 }
 
 std::string why_infeasible(const select::MotorEvaluation& motor, const robot::Robot& robot) {

@@ -41,7 +41,7 @@ std::string words_of(const OpenShare& open, int samples);
 /// Formats a duration: "58 s", "12 min".
 std::string duration_text(double duration_s);
 
-/// Returns a line that the ground contacts cannot transmit the demanded motion; empty if they nearly always can.
+/// States in which share of the time the plan needs more grip than the wheels have, as part of a sentence; empty if nearly never.
 std::string slip_text(const duty::WheelDemand& wheel);
 
 /// Returns a line that explains why a motor cannot deliver the demand; empty if it can.
