@@ -7,6 +7,7 @@
 
 #include "duty/duty.h"
 #include "duty/file_kind.h"
+#include "input/document.h"
 #include "motor/read_motor.h"
 #include "robot/robot.h"
 #include "robot/robot_lint.h"
@@ -28,7 +29,13 @@ std::vector<motor::LintFinding> look_into(const std::filesystem::path& file, con
   base::Diagnostics problems;
   const motor::Motor motor = motor::read_motor(file, problems);
   if (problems.empty()) {
-    return motor::lint(motor);
+    std::vector<motor::LintFinding> findings = motor::lint(motor);
+    if (!motor.nominal.rotor_inertia_kg_m2) {
+      const std::string key = "rotor_inertia";
+      findings.push_back({motor::LintFinding::Level::note, "motion", fmt::format("is missing{}", robot::kClosedLoopNeedsIt),
+                          input::place_of(file, key), key});
+    }
+    return findings;
   }
   motor::add_lint_errors(motor, problems);
   problems.throw_if_any();

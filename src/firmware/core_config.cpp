@@ -21,13 +21,13 @@ constexpr double kPushed = 1.1;
 
 float single(double value) { return static_cast<float>(value); }
 
-void require_all(const robot::Robot& robot, const motor::MotorValues& motor) {
+/// Adds every value of the robot's file that the drive core lacks.
+void add_missing_values(const robot::Robot& robot, base::Diagnostics& diagnostics) {
   constexpr std::array<std::string_view, 6> kTables{"body", "wheels", "drive", "battery", "traction", "limits"};
   std::vector<std::string_view> tables(kTables.begin(), kTables.end());
   if (robot::has_friction(robot)) {
     tables.emplace_back("friction");
   }
-  base::Diagnostics diagnostics;
   try {
     robot::require_parameters(robot, tables);
   } catch (const base::Failure& failure) {
@@ -35,9 +35,19 @@ void require_all(const robot::Robot& robot, const motor::MotorValues& motor) {
       diagnostics.add(each.at, each.key, each.message);
     }
   }
+}
+
+/// Adds the value of the motor's file that the drive core lacks, if it lacks it. `file` may be empty.
+void add_missing_values(const std::string& file, const motor::MotorValues& motor, base::Diagnostics& diagnostics) {
   if (!motor.rotor_inertia_kg_m2) {
-    diagnostics.add({}, "figures.rotor_inertia", "is missing in the motor file: it is needed for the acceleration of a wheel");
+    diagnostics.add({file}, "figures.rotor_inertia", "is missing in the motor file: it is needed for the acceleration of a wheel");
   }
+}
+
+void require_all(const robot::Robot& robot, const motor::MotorValues& motor) {
+  base::Diagnostics diagnostics;
+  add_missing_values(robot, diagnostics);
+  add_missing_values({}, motor, diagnostics);
   diagnostics.throw_if_any();
 }
 
@@ -201,6 +211,15 @@ CoreOptions with_tolerance(CoreOptions options, const motor::Motor& motor) {
     options.lowest_resistance_ratio = spread->low / motor.nominal.terminal_resistance_ohm;
   }
   return options;
+}
+
+void require_drive_values(const robot::Robot& robot, std::span<const motor::Motor> motors) {
+  base::Diagnostics diagnostics;
+  add_missing_values(robot, diagnostics);
+  for (const motor::Motor& motor : motors) {
+    add_missing_values(motor.file.string(), motor.nominal, diagnostics);
+  }
+  diagnostics.throw_if_any();
 }
 
 robot_core::Config make_core_config(const robot::Robot& robot, const motor::MotorValues& motor, const CoreOptions& options) {

@@ -1,6 +1,7 @@
 // The drive core's configuration, from the files of robot and motor and from a derating.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "derate/derating.h"
@@ -36,6 +37,9 @@ CoreOptions with_tolerance(CoreOptions options, const motor::Motor& motor);
 ///   friction smoothing  that of the plant (FrictionConfig::smoothing) at the rim
 ///   gains               wheel_loop_gains()
 robot_core::Config make_core_config(const robot::Robot& robot, const motor::MotorValues& motor, const CoreOptions& options);
+
+/// Throws Failure (bad_input) with every value that robot and motors lack for the drive core and its simulation.
+void require_drive_values(const robot::Robot& robot, std::span<const motor::Motor> motors);
 
 /// With the guard; `guard` must be of that derating and outlive the Config. The lowest resistance follows from the motor's tolerance and
 /// the derating's coldest air. Throws Failure (bad_input) as above, and where the guard period is not a whole number of control periods.

@@ -278,6 +278,7 @@ std::size_t largest_core_bytes(std::size_t table_bytes) {
 
 GeneratedCore generate_core(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options,
                             derate::DerateOptions derate_options, std::string_view version, const base::Progress& progress) {
+  require_drive_values(robot, {&motor, 1});
   static_cast<void>(make_core_config(robot, motor.nominal, options));
   derate_options.period_s = guard_period_s(options.period_s);
   derate::Derating derating = derate::derate(motor, robot, derate_options, progress);

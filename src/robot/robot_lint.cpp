@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numbers>
 
 #include "input/document.h"
+#include "robot/assumed_friction.h"
 #include "robot/body.h"
 
 namespace heatsoak::robot {
@@ -173,21 +175,45 @@ std::vector<motor::LintFinding> lint(const Robot& robot, std::span<const std::st
                 fmt::format("there is no motor '{}'{}", robot.drive.motor, base::did_you_mean(robot.drive.motor, known_motors))));
   }
   std::ranges::move(implausible_values(robot), std::back_inserter(findings));
-  try {
-    motor::MotorValues any;
-    any.rotor_inertia_kg_m2 = 0.0;
-    make_body(robot, any);
-  } catch (const base::Failure& failure) {
-    if (std::ranges::any_of(robot.parameters, [](const auto& each) { return each.first.starts_with("body."); })) {
-      throw;
-    }
-    for (const base::Diagnostic& each : failure.diagnostics()) {
-      findings.push_back(
-          finding(robot, motor::LintFinding::Level::note, "motion", each.key,
-                  each.message + "; a match needs it (friction is assumed where it is missing), a prescribed duty does not"));
-    }
-  }
+  add_missing_values(robot, findings);
   return findings;
 }
 
 }  // namespace heatsoak::robot
+namespace {
+
+/// Adds notes about the values of these tables that the robot lacks; `why` follows each.
+void add_lacking(const Robot& robot, std::span<const std::string_view> tables, std::string_view why,
+                 std::vector<motor::LintFinding>& findings) {
+  try {
+    require_parameters(robot, tables);
+  } catch (const base::Failure& failure) {
+    for (const base::Diagnostic& each : failure.diagnostics()) {
+      findings.push_back(finding(robot, motor::LintFinding::Level::note, "motion", each.key, fmt::format("{}{}", each.message, why)));
+    }
+  }
+}
+
+/// Adds notes about all values that a match needs. Throws the failure of make_body() if the file gives the body, but no robot results.
+void add_missing_values(const Robot& robot, std::vector<motor::LintFinding>& findings) {
+  constexpr std::array<std::string_view, 4> kMatch{"body", "wheels", "traction", "limits"};
+  constexpr std::array<std::string_view, 2> kClosedLoop{"drive", "battery"};
+  constexpr std::array<std::string_view, 1> kFriction{"friction"};
+  constexpr std::string_view kMatchNeedsIt = "; a match needs it, a prescribed duty does not";
+  if (std::ranges::any_of(robot.parameters, [](const auto& each) { return each.first.starts_with("body."); })) {
+    motor::MotorValues any;
+    any.rotor_inertia_kg_m2 = 0.0;
+    make_body(with_assumed_friction(robot), any);
+  }
+  add_lacking(robot, kMatch, kMatchNeedsIt, findings);
+  if (has_friction(robot)) {
+    add_lacking(robot, kFriction, kMatchNeedsIt, findings);
+  } else {
+    findings.push_back(finding(robot, motor::LintFinding::Level::note, "motion", "friction",
+                               "is missing; a match assumes it. `heatsoak friction` measures it from a log"));
+  }
+  add_lacking(robot, kClosedLoop, kClosedLoopNeedsIt, findings);
+}
+
+}  // namespace
+

@@ -19,6 +19,13 @@ void check_job(const EvaluationJob& job, bool is_match) {
                                     "--closed-loop",
                                     job.duty.id, job.duty.shape));
   }
+  if (job.closed_loop) {
+    // Of all motors of a folder, those without a rotor inertia are listed as not driven.
+    const bool is_any_complete =
+        std::ranges::any_of(job.motors, [](const motor::Motor& each) { return each.nominal.rotor_inertia_kg_m2.has_value(); });
+    firmware::require_drive_values(robot::with_assumed_friction(job.robot),
+                                   job.has_chosen_motors || !is_any_complete ? std::span(job.motors) : std::span<const motor::Motor>());
+  }
   if (const int most = select::most_samples_at_all(job.duty.shape_data->has_unknowns()); job.samples.value_or(0) > most) {
     throw base::Failure(
         base::ExitCode::bad_input,
@@ -26,9 +33,22 @@ void check_job(const EvaluationJob& job, bool is_match) {
   }
 }
 
-std::optional<SuggestedChanges> changes_for(const EvaluationJob& job, const EvaluationAnswer& answer, const base::ProgressFor& progress) {
-  const auto own = std::ranges::find(answer.results, answer.robot.drive.motor, &select::MotorEvaluation::motor_id);
-  const select::MotorEvaluation& subject = own == answer.results.end() ? answer.results.front() : *own;
+const std::string kFirstGame = "playing the nominal game";
+const std::string kChanging = "trying changes";
+
+GameDriveOptions drive_options(const EvaluationJob& job) {
+  const ClosedLoopJob loop = job.closed_loop.value_or(ClosedLoopJob{});
+  return {loop.games, job.seed, job.duty.ambient_C.value, loop.guard, false, job.threads};
+}
+
+/// Returns the result whose motor the changes are for: the robot's own, else the best.
+const select::MotorEvaluation& subject_of(std::span<const select::MotorEvaluation> results, const robot::Robot& robot) {
+  const auto own = std::ranges::find(results, robot.drive.motor, &select::MotorEvaluation::motor_id);
+  return own == results.end() ? results.front() : *own;
+}
+
+std::optional<SuggestedChanges> changes_for(const EvaluationJob& job, const EvaluationAnswer& answer, const base::JobProgress& progress) {
+  const select::MotorEvaluation& subject = subject_of(answer.results, answer.robot);
   if (!job.suggests && subject.verdict == select::Verdict::pass) {
     return std::nullopt;
   }
@@ -39,7 +59,7 @@ std::optional<SuggestedChanges> changes_for(const EvaluationJob& job, const Eval
   // Otherwise only the compared motors may replace it.
   const std::vector<motor::Motor> others = offers_motor ? job.database() : job.motors;
   return SuggestedChanges{subject.motor_id, select::effects_of_changes(answer.robot, job.duty, motor, others, job.seed, job.threads,
-                                                                       base::progress_of(progress, "trying changes"))};
+                                                                       progress.begin(kChanging))};
 }
 
 }  // namespace
@@ -53,7 +73,7 @@ bool EvaluationAnswer::is_undecided() const {
   return ranks.empty() && std::ranges::any_of(results, [](const select::MotorEvaluation& each) { return each.samples_needed.has_value(); });
 }
 
-EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::ProgressFor& progress) {
+EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::JobProgress& progress) {
   const auto match = std::dynamic_pointer_cast<const duty::MatchDuty>(job.duty.shape_data);
   check_job(job, match != nullptr);
   EvaluationAnswer answer{.robot = match ? robot::with_assumed_friction(job.robot) : job.robot,
@@ -74,15 +94,24 @@ EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::ProgressFo
   options.with_curves = true;
   options.with_bands = job.with_bands;
   const int most = job.samples.value_or(select::most_samples(job.duty));
+  const GameDriveOptions drive = drive_options(job);
+  progress.expect({{kFirstGame, kPlayedGame_s}}, true);
+  progress.begin(kFirstGame);
   const std::vector<duty::WheelDemand> wheels = job.duty.demand(answer.robot, job.seed);
   std::vector<duty::WheelDemand> draws;
-  answer.results = select::evaluate_until_decided(answer.robot, job.duty, wheels, job.motors, options, most, draws, progress);
+  const auto later = [&](std::span<const select::MotorEvaluation> results) {
+    std::vector<base::JobPhase> phases = job.closed_loop ? drive_phases(job.motors.size(), drive) : std::vector<base::JobPhase>();
+    constexpr std::size_t kUsualOthers = 30;
+    if (job.suggests || (!results.empty() && subject_of(results, answer.robot).verdict != select::Verdict::pass)) {
+      phases.push_back({kChanging, select::changes_work_s(answer.robot, job.duty, kUsualOthers)});
+    }
+    return phases;
+  };
+  answer.results = select::evaluate_until_decided(answer.robot, job.duty, wheels, job.motors, options, most, draws, {progress, later});
   answer.demand = wheels.front();
   answer.draw_count = draws.size();
   if (job.closed_loop) {
-    const GameDriveOptions drive{job.closed_loop->games, job.seed, job.duty.ambient_C.value, job.closed_loop->guard, false, job.threads};
-    answer.ranks = rank_closed_loop(
-        drive_games(answer.robot, match->inputs(), job.motors, drive, base::progress_of(progress, "driving games")), answer.results);
+    answer.ranks = rank_closed_loop(drive_games(answer.robot, match->inputs(), job.motors, drive, progress), answer.results);
   }
   answer.changes = changes_for(job, answer, progress);
   return answer;
