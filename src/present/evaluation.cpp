@@ -335,7 +335,6 @@ Document ranking_document(const simulate::EvaluationAnswer& answer) {
 
 Document evaluation_document(const simulate::EvaluationAnswer& answer) {
   Document document = ranking_document(answer);
-  add_robot_notes(document, answer.robot);
   add_motor_notes(document, answer.motors);
   add_lines(document.notes, default_spreads_text(answer.motors), Severity::note);
   if (answer.closed_loop) {
@@ -346,6 +345,7 @@ Document evaluation_document(const simulate::EvaluationAnswer& answer) {
         fmt::format("For comparison, without a closed loop and with all tolerances: {}.", counted_verdicts(answer, answer.duty.id)));
     add_closed_loop(document, answer);
   }
+  add_robot_notes(document, answer.robot);
   if (answer.changes) {
     add_changes(document, *answer.changes, answer.duty.shape_data->has_unknowns());
   }

@@ -47,6 +47,13 @@ void check_wheels(const Robot& robot, std::vector<motor::LintFinding>& findings)
                                "two wheels have the same angle; expected a different one for each wheel"));
     return;
   }
+  constexpr double kSmallestShare = 0.25;
+  if (robot.wheels.radius_m < kSmallestShare * robot.wheels.contact_radius_m) {
+    findings.push_back(finding(robot, motor::LintFinding::Level::warning, "wheels", "wheels.contact_radius",
+                               fmt::format("of {} is large for wheels with a radius of {}; expected at most {}. Is {} the diameter?",
+                                           in_mm(robot.wheels.contact_radius_m), in_mm(robot.wheels.radius_m),
+                                           in_mm(robot.wheels.radius_m / kSmallestShare), in_mm(robot.wheels.contact_radius_m))));
+  }
   const bool is_overlap = robot.wheels.radius_m > room_m;
   if (is_overlap || robot.wheels.radius_m > kLargestShare * robot.wheels.contact_radius_m) {
     findings.push_back(
@@ -76,6 +83,18 @@ void check_battery(const Robot& robot, std::vector<motor::LintFinding>& findings
   }
 }
 
+/// The cells' voltages are optional, so the nominal voltage is also compared with those of small robots.
+void check_voltage(const Robot& robot, std::vector<motor::LintFinding>& findings) {
+  // Extra-low voltage ends at 60 V; small robots have 3 to 14 LiPo cells.
+  constexpr double kMost_V = 60.0;
+  if (robot.battery.nominal_V > kMost_V) {
+    findings.push_back(finding(robot, motor::LintFinding::Level::warning, "battery", "battery.nominal_voltage",
+                               fmt::format("{:.4g} V is more than the battery of a small robot has; expected at most {:.0f} V. Six LiPo "
+                                           "cells have 22.2 V",
+                                           robot.battery.nominal_V, kMost_V)));
+  }
+}
+
 void check_drive(const Robot& robot, std::vector<motor::LintFinding>& findings) {
   const auto add = [&](const char* key, std::string message) {
     findings.push_back(finding(robot, motor::LintFinding::Level::warning, "drive", key, std::move(message)));
@@ -85,6 +104,12 @@ void check_drive(const Robot& robot, std::vector<motor::LintFinding>& findings) 
                                            robot.drive.voltage_limit_V, *robot.battery.full_V));
   }
   // Known robots have ratios of 1 to 5.
+  constexpr double kSmallestRatio = 0.5;
+  if (robot.drive.gear_ratio < kSmallestRatio) {
+    add("drive.gear_ratio", fmt::format("{:.4g} motor turns per wheel turn; expected at least {}: a motor that turns 3.6 times as fast as "
+                                        "the wheel has \"3.6\"",
+                                        robot.drive.gear_ratio, kSmallestRatio));
+  }
   constexpr double kLargestRatio = 30.0;
   if (robot.drive.gear_ratio > kLargestRatio) {
     add("drive.gear_ratio", fmt::format("{:.4g} motor turns per wheel turn; expected at most {:.0f}: 3.6 to 1 is \"3.6\"",
@@ -129,6 +154,28 @@ void check_motion(const Robot& robot, std::vector<motor::LintFinding>& findings)
     add("body.center_of_gravity_height", fmt::format("{} is more than three times the contact radius of {}; check the unit, mm or cm",
                                                      in_mm(*robot.body.center_of_gravity_height_m), in_mm(robot.wheels.contact_radius_m)));
   }
+  // Wheels that resist with a fifth of the weight on them would not roll; known robots lose 1 to 3 % of it.
+  constexpr double kLargestFriction_share = 0.2;
+  const double weight_Nm = robot.mass_kg * kGravity_m_per_s2 * robot.wheels.radius_m / static_cast<double>(robot.wheels.axis_rad.size());
+  if (robot.friction.wheel_torque_Nm && *robot.friction.wheel_torque_Nm > kLargestFriction_share * weight_Nm) {
+    add("friction.wheel_torque",
+        fmt::format("{:.3g} mN m is {:.2g} times the weight on a wheel times its radius; expected at most {} "
+                    "times. Check the unit: mN m or N m",
+                    1e3 * *robot.friction.wheel_torque_Nm, *robot.friction.wheel_torque_Nm / weight_Nm, kLargestFriction_share));
+  }
+  constexpr double kFastest_m_per_s = 10.0;
+  if (robot.limits.speed_m_per_s && *robot.limits.speed_m_per_s > kFastest_m_per_s) {
+    add("limits.speed", fmt::format("{:.3g} m/s is more than small robots reach; expected at most {:.0f} m/s", *robot.limits.speed_m_per_s,
+                                    kFastest_m_per_s));
+  }
+  // A planner that needs seconds for its acceleration never reaches it on a field of 12 m.
+  constexpr double kSlowest_s = 2.0;
+  if (robot.limits.jerk_m_per_s3 && robot.limits.acceleration_m_per_s2 &&
+      *robot.limits.acceleration_m_per_s2 > kSlowest_s * *robot.limits.jerk_m_per_s3) {
+    add("limits.jerk", fmt::format("{:.3g} m/s3 reaches the acceleration of {:.3g} m/s2 only after {:.1f} s; expected at most {:.0f} s",
+                                   *robot.limits.jerk_m_per_s3, *robot.limits.acceleration_m_per_s2,
+                                   *robot.limits.acceleration_m_per_s2 / *robot.limits.jerk_m_per_s3, kSlowest_s));
+  }
   // Grip limits wheels on carpet to about 10 m/s2.
   constexpr double kMost_m_per_s2 = 30.0;
   for (const auto& [key, value] :
@@ -145,6 +192,7 @@ std::vector<motor::LintFinding> implausible_values(const Robot& robot) {
   std::vector<motor::LintFinding> findings;
   check_wheels(robot, findings);
   check_battery(robot, findings);
+  check_voltage(robot, findings);
   check_drive(robot, findings);
   check_inertia(robot, findings);
   check_motion(robot, findings);
@@ -167,19 +215,6 @@ Robot read_sound_robot(const std::filesystem::path& path) {
   return robot;
 }
 
-std::vector<motor::LintFinding> lint(const Robot& robot, std::span<const std::string> known_motors) {
-  std::vector<motor::LintFinding> findings;
-  if (robot.drive.motor != "none" && std::ranges::find(known_motors, robot.drive.motor) == known_motors.end()) {
-    findings.push_back(
-        finding(robot, motor::LintFinding::Level::warning, "motor", "drive.motor",
-                fmt::format("there is no motor '{}'{}", robot.drive.motor, base::did_you_mean(robot.drive.motor, known_motors))));
-  }
-  std::ranges::move(implausible_values(robot), std::back_inserter(findings));
-  add_missing_values(robot, findings);
-  return findings;
-}
-
-}  // namespace heatsoak::robot
 namespace {
 
 /// Adds notes about the values of these tables that the robot lacks; `why` follows each.
@@ -217,3 +252,16 @@ void add_missing_values(const Robot& robot, std::vector<motor::LintFinding>& fin
 
 }  // namespace
 
+std::vector<motor::LintFinding> lint(const Robot& robot, std::span<const std::string> known_motors) {
+  std::vector<motor::LintFinding> findings;
+  if (robot.drive.motor != "none" && std::ranges::find(known_motors, robot.drive.motor) == known_motors.end()) {
+    findings.push_back(
+        finding(robot, motor::LintFinding::Level::warning, "motor", "drive.motor",
+                fmt::format("there is no motor '{}'{}", robot.drive.motor, base::did_you_mean(robot.drive.motor, known_motors))));
+  }
+  std::ranges::move(implausible_values(robot), std::back_inserter(findings));
+  add_missing_values(robot, findings);
+  return findings;
+}
+
+}  // namespace heatsoak::robot

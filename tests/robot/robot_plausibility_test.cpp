@@ -80,6 +80,51 @@ TEST(RobotPlausibility, values_in_other_units_get_a_warning) {
   EXPECT_THAT(findings_with("acceleration = \\{ value = \"2 m/s2\"", "acceleration = { value = \"200 m/s2\""), Contains("motion warning"));
 }
 
+// The slips of a team that fills in its first file: a diameter, a missing decimal point, the inverse of a ratio.
+TEST(RobotPlausibility, slips_of_a_first_file_get_a_warning) {
+  EXPECT_THAT(findings_with("contact_radius = \"80.4 mm\"", "contact_radius = \"160.8 mm\""), Contains("wheels warning"));
+  EXPECT_THAT(findings_with("gear_ratio = \"1\"", "gear_ratio = \"0.1\""), Contains("drive warning"));
+  EXPECT_THAT(findings_with("\nspeed = \\{ value = \"2 m/s\", origin = \"third_party\", source = \"([^\"]*)\", range = \\[[^\\]]*\\]",
+                            "\nspeed = { value = \"30 m/s\", origin = \"third_party\", source = \"$1\""),
+              Contains("motion warning"));
+  EXPECT_THAT(findings_with("jerk = \\{ value = \"6 m/s3\"", "jerk = { value = \"0.3 m/s3\""), Contains("motion warning"));
+}
+
+TEST(RobotPlausibility, a_voltage_without_those_of_the_cells_is_compared_too) {
+  Robot robot = parse_robot(content_of_robot("roboteam_twente_v2024.toml"), "robot.toml");
+  robot.battery.full_V = robot.battery.empty_V = {};
+  EXPECT_THAT(implausible_values(robot), IsEmpty());
+  robot.battery.nominal_V = 222.0;
+  EXPECT_EQ(implausible_values(robot).size(), 1U);
+}
+
+TEST(RobotPlausibility, friction_of_a_blocked_wheel_gets_a_warning) {
+  Robot robot = parse_robot(content_of_robot("roboteam_twente_v2024.toml"), "robot.toml");
+  robot.friction.wheel_torque_Nm = 0.3;
+  ASSERT_EQ(implausible_values(robot).size(), 1U);
+  EXPECT_EQ(implausible_values(robot).front().key, "friction.wheel_torque");
+}
+
+TEST(RobotPlausibility, shipped_robots_are_plausible) {
+  for (const char* name : {"roboteam_twente_v2024.toml", "roboteam_twente_v2025.toml", "tigers_v2020.toml"}) {
+    EXPECT_THAT(implausible_values(read_robot(kRobotFiles / name)), IsEmpty()) << name;
+  }
+}
+
+// Nothing that a match needs may be found only by its simulation.
+TEST(RobotPlausibility, lint_lists_what_a_closed_loop_still_needs) {
+  Robot robot = parse_robot(content_of_robot("roboteam_twente_v2024.toml"), "robot.toml");
+  robot.drive.driver_resistance_ohm = {};
+  robot.battery.capacity_A_s = {};
+  robot.limits.jerk_m_per_s3 = {};
+  std::vector<std::string> keys;
+  for (const motor::LintFinding& each : lint(robot, std::vector<std::string>{"maxon_ecx_flat_32l_48v"})) {
+    EXPECT_EQ(each.level, motor::LintFinding::Level::note);
+    keys.push_back(each.key);
+  }
+  EXPECT_THAT(keys, testing::UnorderedElementsAre("limits.jerk", "drive.driver_resistance", "battery.capacity"));
+}
+
 // The computations refuse such a robot like a file with an error, at the same place and in the words of lint.
 TEST(RobotPlausibility, errors_are_refused_with_their_place_and_warnings_are_not) {
   const std::string text = content_of_robot("roboteam_twente_v2024.toml");
