@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "base/quantity.h"
 
@@ -230,10 +232,10 @@ std::optional<base::ParameterValue> Reader::parameter(const base::ParameterSpec&
   if (parsed) {
     parameter.value = *parsed;
     parameter.printed = value->find("value")->text;
-    inner.read_spread(spec, parameter);
   } else {
-    inner.asked_.insert({"tolerance", "range"});
+    parameter.value = std::numeric_limits<double>::quiet_NaN();
   }
+  inner.read_spread(spec, parameter);
   inner.read_confirmations(spec, parameter);
   inner.finish();
   return parsed && origin ? std::optional(parameter) : std::nullopt;
@@ -281,7 +283,9 @@ void Reader::read_spread(const base::ParameterSpec& spec, base::ParameterValue& 
   if (!low || !high) {
     return;
   }
-  if (!(*low <= parameter.value && parameter.value <= *high)) {
+  // Without a value, which has its own problem, only the range itself is checked.
+  const bool is_inside = std::isnan(parameter.value) ? *low <= *high : *low <= parameter.value && parameter.value <= *high;
+  if (!is_inside) {
     problem("range", "does not enclose the value; expected lowest ≤ value ≤ highest");
   } else if (!spec.range.contains(*low) || !spec.range.contains(*high)) {
     problem("range", fmt::format("is outside the possible range; expected {}", base::to_string(spec.range, spec.unit)));

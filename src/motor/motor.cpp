@@ -1,6 +1,7 @@
 #include "motor/motor.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -116,8 +117,11 @@ void scale(base::ParameterValue& parameter, double factor) {
   }
 }
 
+/// Table of the values of a motor file.
+constexpr std::string_view kTable = "figures";
+
 void read_file_parameters(input::Reader& top, Motor& motor, double resistance_factor, double torque_factor) {
-  std::optional<input::Reader> parameters = top.table("figures", input::Need::required);
+  std::optional<input::Reader> parameters = top.table(kTable, input::Need::required);
   if (!parameters) {
     return;
   }
@@ -138,8 +142,19 @@ void read_file_parameters(input::Reader& top, Motor& motor, double resistance_fa
   parameters->finish();
 }
 
-/// Every source id that a value names must be explained in [sources], so that its origin can be checked.
-void check_sources(const Motor& motor, base::Diagnostics& diagnostics) {
+/// Returns the ids of an entry's source as a list "a, b"; empty if it is neither a text nor a list.
+std::string listed_sources(const input::Value& entry) {
+  const input::Value* const source = entry.find("source");
+  std::vector<std::string> ids;
+  for (const input::Value& each : source != nullptr ? source->items : std::vector<input::Value>{}) {
+    ids.push_back(each.text);
+  }
+  return source == nullptr ? "" : ids.empty() ? source->text : fmt::format("{}", fmt::join(ids, ", "));
+}
+
+/// Every source id that a value names must be explained in [sources], so that its origin can be checked. `entries`: kTable of the file, for
+/// entries whose value is invalid; may be null.
+void check_sources(const Motor& motor, const input::Value* entries, base::Diagnostics& diagnostics) {
   std::vector<std::string> known;
   for (const auto& [id, text] : motor.sources) {
     known.push_back(id);
@@ -160,7 +175,15 @@ void check_sources(const Motor& motor, base::Diagnostics& diagnostics) {
     }
   };
   for (const auto& [key, parameter] : motor.parameters) {
-    check(fmt::format("figures.{}", key), parameter);
+    check(fmt::format("{}.{}", kTable, key), parameter);
+  }
+  for (const input::Member& entry : entries != nullptr ? entries->members : std::vector<input::Member>{}) {
+    if (entry.value.kind == input::Value::Kind::table && !motor.parameters.contains(entry.key)) {
+      base::ParameterValue unread;
+      unread.at = entry.value.at;
+      unread.source = listed_sources(entry.value);
+      check(fmt::format("{}.{}", kTable, entry.key), unread);
+    }
   }
   for (const MotorEffect& effect : motor.effects) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
@@ -299,7 +322,7 @@ Motor read_motor(const std::filesystem::path& path, base::Diagnostics& diagnosti
     motor.fit = read_fit(*table, parameter_keys(motor));
   }
   top.finish();
-  check_sources(motor, diagnostics);
+  check_sources(motor, root.find(kTable), diagnostics);
   return motor;
 }
 

@@ -174,16 +174,18 @@ TEST_F(FrontDoor, every_kind_of_error_of_a_motor_file_is_reported_at_once) {
   change("\"0.463 mH\"", "\"0.463 mV\"");  // wrong unit
   change("mass = { value = \"141 g\", origin = \"datasheet\", source = \"maxon_2019\"",
          "mass = { value = \"141 g\", origin = \"datasheet\", source = \"nowhere\"");
-  change("\"259 rpm/V\"", "\"100 rpm/V\"");              // contradiction
-  change("\"1460 mN m\"", "\"14600 mN m\"");             // another contradiction
-  text += "\n[effects.no_such_effect]\nsize = \"1\"\n";  // unknown effect
+  change("\"259 rpm/V\"", "\"100 rpm/V\"");   // contradiction
+  change("\"1460 mN m\"", "\"14600 mN m\"");  // another contradiction
+  change("\"0.234 A\", origin = \"datasheet\", source = \"maxon_2019\"",
+         "\"-0.234 A\", origin = \"datasheet\", source = \"shet\"");  // two mistakes in one entry
+  text += "\n[effects.no_such_effect]\nsize = \"1\"\n";               // unknown effect
   write(folder_.path() / "mine.toml", text);
   for (const char* command :
        {"heatsoak lint mine.toml", "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors mine.toml"}) {
     const ProgramRun result = run_here(command);
     EXPECT_EQ(result.exit_code, 2);
-    for (const char* said :
-         {"nmae", "terminal_inductance", "'nowhere' is not in [sources]", "constants: ", "stall_torque: ", "no_such_effect"}) {
+    for (const char* said : {"nmae", "terminal_inductance", "'nowhere' is not in [sources]", "'shet' is not in [sources]",
+                             "constants: ", "stall_torque: ", "no_such_effect"}) {
       EXPECT_THAT(result.err, HasSubstr(said)) << command;
     }
   }

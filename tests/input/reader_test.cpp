@@ -143,6 +143,18 @@ TEST_F(ReaderTest, an_unknown_origin_is_one_problem_not_three) {
   EXPECT_THAT(places(), ElementsAre("1:42 resistance.origin"));
 }
 
+TEST_F(ReaderTest, an_invalid_value_hides_no_other_problem_of_its_entry) {
+  read("resistance = { value = \"42\", origin = \"measured\", source = \"s\", tolerance = \"150 %\" }")
+      .parameter(kResistance, Need::required);
+  EXPECT_THAT(places(), ElementsAre("1:24 resistance.value", "1:77 resistance.tolerance"));
+}
+
+TEST_F(ReaderTest, a_range_around_an_invalid_value_is_checked_for_its_order_only) {
+  read("resistance = { value = \"42\", origin = \"measured\", source = \"s\", range = [\"1 ohm\", \"2 ohm\"] }")
+      .parameter(kResistance, Need::required);
+  EXPECT_THAT(places(), ElementsAre("1:24 resistance.value"));
+}
+
 TEST_F(ReaderTest, problems_come_sorted_by_place) {
   Reader top = read("a = 1\nb = 2\nresistance = \"1 V\"\n");
   top.quantity(kResistance, Need::required);
