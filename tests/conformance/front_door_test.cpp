@@ -400,3 +400,15 @@ TEST_F(FrontDoor, man_pages_exist_for_every_verb) {
 
 }  // namespace
 }  // namespace heatsoak
+TEST_F(FrontDoor, bash_completes_lists_and_words) {
+  const auto completed = [this](const std::string& words) {
+    return run_here("heatsoak completion bash > b && bash -c 'source b; COMP_WORDS=(" + words +
+                    "); COMP_CWORD=$((${#COMP_WORDS[@]}-1)); _heatsoak; echo \"${COMPREPLY[@]}\"'")
+        .out;
+  };
+  EXPECT_EQ(completed("heatsoak evaluate --motors maxon_ecx_flat_32l_48v,nanotec_df45l024048"),
+            "maxon_ecx_flat_32l_48v,nanotec_df45l024048_a2\n");
+  EXPECT_EQ(completed("heatsoak evaluate --motors al"), "all\n");
+  EXPECT_EQ(completed("heatsoak generate c"), "core\n");
+}
+

@@ -23,6 +23,9 @@ std::string_view kind_of(std::string_view verb, const std::string& option) {
                                                           : "";
 }
 
+/// Returns whether the option takes names separated by commas, or "all".
+bool takes_list(std::string_view option) { return option == "--motors"; }
+
 /// Returns the pages with the output formats of `derate`, which the help leaves to `list formats`.
 std::vector<HelpPage> pages_with_formats(std::vector<HelpPage> pages) {
   for (HelpPage& page : pages) {
@@ -50,7 +53,8 @@ std::string bash_script(const std::vector<HelpPage>& pages) {
       if (!option.choices.empty()) {
         values += fmt::format("    {}:{}) words='{}' ;;\n", page.verb, before, fmt::join(option.choices, " "));
       } else if (!kind.empty()) {
-        values += fmt::format("    {}:{}) words=\"$(heatsoak list {} --quiet 2>/dev/null)\" ;;\n", page.verb, before, kind);
+        values += fmt::format("    {}:{}) words=\"{}$(heatsoak list {} --quiet 2>/dev/null)\"{} ;;\n", page.verb, before,
+                              takes_list(before) ? "all " : "", kind, takes_list(before) ? " list=1" : "");
       }
     }
     std::erase_if(words, [](const std::string& word) { return !word.starts_with("--"); });
@@ -58,13 +62,15 @@ std::string bash_script(const std::vector<HelpPage>& pages) {
   }
   return fmt::format(R"bash(# bash completion of heatsoak: source <(heatsoak completion)
 _heatsoak() {{
-  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}} words='{0}'
+  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}} words='{0}' list= before=
   case ${{COMP_WORDS[1]}} in
 {1}  esac
   if [ "$COMP_CWORD" -eq 1 ]; then words='{0}'; fi
   case ${{COMP_WORDS[1]}}:$previous in
 {2}  esac
-  COMPREPLY=($(compgen -W "$words" -- "$current"))
+  # Of a list such as a,b the last name is completed.
+  if [ -n "$list" ] && [[ $current == *,* ]]; then before=${{current%,*}},; fi
+  COMPREPLY=($(compgen -P "$before" -W "$words" -- "${{current#"$before"}}"))
   if [ ${{#COMPREPLY[@]}} -eq 0 ]; then COMPREPLY=($(compgen -f -- "$current")); fi
 }}
 complete -F _heatsoak heatsoak
@@ -85,9 +91,10 @@ std::string zsh_value(std::string_view verb, const HelpOption& option) {
     return "";
   }
   const std::string_view kind = kind_of(verb, option.names.back());
-  const std::string action = !option.choices.empty() ? fmt::format("({})", fmt::join(option.choices, " "))
-                             : kind.empty()          ? "_files"
-                                                     : fmt::format("{{_values id $(heatsoak list {} --quiet)}}", kind);
+  const std::string action = !option.choices.empty()           ? fmt::format("({})", fmt::join(option.choices, " "))
+                             : kind.empty()                    ? "_files"
+                             : takes_list(option.names.back()) ? fmt::format("{{_values -s , id all $(heatsoak list {} --quiet)}}", kind)
+                                                               : fmt::format("{{_values id $(heatsoak list {} --quiet)}}", kind);
   return fmt::format(":value:{}", action);
 }
 
@@ -137,9 +144,10 @@ std::string fish_script(const std::vector<HelpPage>& pages) {
     text += fmt::format("complete -c heatsoak -n __fish_use_subcommand -f -a {} -d '{}'\n", page.verb, fish_quoted(page.summary));
     for (const HelpOption& option : page.options) {
       const std::string_view kind = kind_of(page.verb, option.names.back());
-      const std::string values = !option.choices.empty() ? fmt::format(" -f -a '{}'", fmt::join(option.choices, " "))
-                                 : kind.empty()          ? ""
-                                                         : fmt::format(" -f -a '(heatsoak list {} --quiet)'", kind);
+      const std::string values =
+          !option.choices.empty() ? fmt::format(" -f -a '{}'", fmt::join(option.choices, " "))
+          : kind.empty()          ? ""
+                         : fmt::format(" -f -a '{}(heatsoak list {} --quiet)'", takes_list(option.names.back()) ? "all " : "", kind);
       if (!option.names.back().starts_with("--")) {
         text += values.empty() ? "" : fmt::format("complete -c heatsoak -n '__fish_seen_subcommand_from {}'{}\n", page.verb, values);
         continue;

@@ -54,9 +54,7 @@ Command generate_command() {
           .example = "heatsoak generate core --robot roboteam_twente_v2024 --motor maxon_ecx_flat_32l_48v --out drive_core",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<GenerateOptions>();
-            app.add_option("what", options->what, "core: the drive core")->required()->check([](const std::string& word) {
-              return word == "core" ? "" : fmt::format("'{}' is not known; expected core", word);
-            });
+            app.add_option("what", options->what, "core: the drive core")->required()->check(CLI::IsMember({"core"}));
             add_motor_options(app, options->guard);
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
             app.add_option("--out", options->out, "folder to write, new or empty")->required()->type_name("DIR");
