@@ -34,6 +34,32 @@ std::vector<Group> groups_of(std::span<const char* const> words) {
   return groups;
 }
 
+/// Returns the option's name, or for a word without option what it stands for: "FILE.toml".
+std::string name_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name().substr(0, option.get_type_name().find(':'));
+  return option.get_positional() && !type.empty() && type != "TEXT" ? type : option.get_name();
+}
+
+/// Returns what is missing and what it is for; empty if the option is given or not needed.
+std::string missing_words(const CLI::Option& option) {
+  return option.get_required() && option.count() == 0 ? fmt::format("{} is required: {}", name_of(option), option.get_description()) : "";
+}
+
+/// Rewrites CLI11's complaint about a word that is none of a set: "kind: duty not in {motor,robot}".
+std::string plain_words(const std::string& complaint) {
+  constexpr std::string_view kNotIn = " not in {";
+  const std::size_t colon = complaint.find(": ");
+  const std::size_t set = complaint.rfind(kNotIn);
+  if (colon == std::string::npos || set == std::string::npos || set < colon || !complaint.ends_with('}')) {
+    return complaint;
+  }
+  const std::string given = complaint.substr(colon + 2, set - colon - 2);
+  const std::size_t first = set + kNotIn.size();
+  const std::vector<std::string> known = CLI::detail::split(complaint.substr(first, complaint.size() - first - 1), ',');
+  return fmt::format("{}: '{}' is not known; expected {}{}", complaint.substr(0, colon), given, fmt::join(known, ", "),
+                     base::did_you_mean(given, known));
+}
+
 /// Returns the error in the values of one group; empty if there is none. Missing options are reported elsewhere.
 std::string complaint(const Command& command, Group group) {
   Session nobody;
@@ -43,7 +69,7 @@ std::string complaint(const Command& command, Group group) {
   try {
     app.parse(std::move(group));
   } catch (const CLI::ValidationError& error) {
-    return error.what();
+    return plain_words(error.what());
   } catch (const CLI::ConversionError& error) {
     return error.what();
   } catch (const CLI::ParseError&) {
@@ -134,13 +160,17 @@ void check_words(const CLI::App& app, std::span<const char* const> words) {
 }
 
 std::string all_mistakes(const CLI::ParseError& error, const CLI::App& app, std::span<const char* const> words) {
-  std::vector<std::string> all{error.what()};
+  const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+  std::vector<std::string> all{plain_words(error.what())};
   const CLI::App* verb = verb_of(app, words);
   // CLI11 checks values and missing options only after it has accepted all words; other errors are reported alone.
-  const bool is_of_an_option = dynamic_cast<const CLI::ValidationError*>(&error) || dynamic_cast<const CLI::ConversionError*>(&error) ||
-                               dynamic_cast<const CLI::RequiredError*>(&error);
+  const bool is_of_an_option =
+      dynamic_cast<const CLI::ValidationError*>(&error) || dynamic_cast<const CLI::ConversionError*>(&error) || is_missing;
   if (!verb || !is_of_an_option) {
     return all.front();
+  }
+  if (is_missing) {
+    all.clear();  // the loop over all options below has better words
   }
   const auto add = [&all](std::string mistake) {
     if (!mistake.empty() && std::ranges::find(all, mistake) == all.end()) {
@@ -153,10 +183,10 @@ std::string all_mistakes(const CLI::ParseError& error, const CLI::App& app, std:
     add(complaint(*command, group));
   }
   for (const CLI::Option* option : verb->get_options()) {
-    add(option->get_required() && option->count() == 0 ? CLI::RequiredError(option->get_name()).what() : "");
+    add(missing_words(*option));
   }
   std::ranges::for_each(unknown_ids(*verb), add);
-  return fmt::format("{}", fmt::join(all, "\n"));
+  return all.empty() ? error.what() : fmt::format("{}", fmt::join(all, "\n"));
 }
 
 }  // namespace heatsoak::cli

@@ -71,7 +71,7 @@ const Value* Reader::get(std::string_view key, Value::Kind kind, Need need) {
 std::optional<std::string> Reader::text(std::string_view key, Need need) {
   const Value* value = get(key, Value::Kind::text, need);
   if (value && value->text == "?") {
-    problem(key, "is the placeholder of a template; expected a value, or no line");
+    problem(key, "is still \"?\", as in the template; expected a value, or no line");
     return std::nullopt;
   }
   return value ? std::optional(value->text) : std::nullopt;

@@ -73,7 +73,7 @@ void lasting_current(const MotorValues& v, Findings& findings) {
   compare(findings, "terminal_resistance", share, kUsualLasting_share, kLasting_share,
           fmt::format("{} heat the motor to its winding limit in the long run, which is {} times the stall current of {} ({} over {}); "
                       "expected 0.015 to 0.5 times; check the units of resistance, voltage and thermal resistances (mohm or ohm?)",
-                      shown(lasting_A, "A"), base::significant(share, 2), shown(stall_A, "A"), shown(v.nominal_voltage_V, "V"),
+                      shown(lasting_A, "A"), base::significant(share, 4), shown(stall_A, "A"), shown(v.nominal_voltage_V, "V"),
                       shown(v.terminal_resistance_ohm, "ohm")));
 }
 

@@ -148,11 +148,12 @@ Document derating_document(const derate::Derating& derating, const motor::Motor&
   Document document{
       .headline = {{fmt::format(
                        "{} in {}: with {:.0f} % certainty at least {:.1f} % of the motors within their tolerances keep the winding below "
-                       "{:.0f} °C{}{} in air of {:.0f} °C in the {} simulated uses, {} thermal data.",
+                       "{:.0f} °C{}{} in air of {:.0f} °C.",
                        derating.motor_id, derating.robot_id, 100.0 * derate::kCertainty_share,
                        std::floor(1000.0 * checked.least_kept_share) / 10.0, derating.rules.limits.winding_C, limit_range_words(derating),
                        derating.rules.limits.stator_C ? fmt::format(", the stator below {:.0f} °C", *derating.rules.limits.stator_C) : "",
-                       derating.rules.hottest_ambient_C, derating.uses.size(), derating.data_quality)},
+                       derating.rules.hottest_ambient_C)},
+                   {fmt::format("The {} hardest uses were simulated, with {} thermal data.", derating.uses.size(), derating.data_quality)},
                    {fmt::format("Safety factor on heat {:.2f}; current {:.1f} A from cold, {:.2f} A lasting.",
                                 derating.observer.heat_safety_factor(),
                                 derating.table.allowed_A(0.0, derating.rules.hottest_ambient_C, derating.rules.hottest_ambient_C),

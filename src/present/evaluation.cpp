@@ -339,10 +339,10 @@ Document evaluation_document(const simulate::EvaluationAnswer& answer) {
   add_lines(document.notes, default_spreads_text(answer.motors), Severity::note);
   if (answer.closed_loop) {
     document.headline.clear();
-    document.tables.front().title = "Without a closed loop, with all tolerances";
-    document.paragraphs.insert(
-        document.paragraphs.begin(),
-        fmt::format("For comparison, without a closed loop and with all tolerances: {}.", counted_verdicts(answer, answer.duty.id)));
+    const std::string_view how = answer.results.front().samples > 0 ? "with all tolerances" : "with nominal values";
+    document.tables.front().title = fmt::format("Without a closed loop, {}", how);
+    document.paragraphs.insert(document.paragraphs.begin(), fmt::format("For comparison, without a closed loop and {}: {}.", how,
+                                                                        counted_verdicts(answer, answer.duty.id)));
     add_closed_loop(document, answer);
   }
   add_robot_notes(document, answer.robot);

@@ -152,6 +152,11 @@ Text sentence(const simulate::MatchSimulation& answer, const simulate::DrivenMat
           tone_of(driven.verdict)};
 }
 
+std::string_view verb_of(select::Verdict verdict) {
+  constexpr std::array<std::string_view, 4> kVerbs{"passes", "is marginal", "fails", "cannot drive this duty"};
+  return kVerbs.at(static_cast<std::size_t>(verdict));
+}
+
 }  // namespace
 
 std::span<const EnergyPart> energy_parts() {
@@ -201,7 +206,7 @@ Document match_document(const simulate::MatchSimulation& answer) {
 Document load_simulation_document(const select::LoadSimulation& simulation) {
   const auto& [robot, motor, duty, duration_s, result, trace] = simulation;
   Document document{
-      .headline = {{fmt::format("{} {}: winding peak {:.1f} °C (limit {:.0f} °C).", motor.id, select::to_string(result.verdict),
+      .headline = {{fmt::format("{} {}: winding peak {:.1f} °C (limit {:.0f} °C).", motor.id, verb_of(result.verdict),
                                 result.winding_peak_C.nominal, result.winding_limit_C),
                     tone_of(result.verdict)}},
       .paragraphs = {fmt::format("{} on {} ({}, {}): stator peak {:.1f} °C, rms current {:.2f} A, {} thermal data. The load is {}.",

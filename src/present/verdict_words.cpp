@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/counted.h"
+
 namespace heatsoak::present {
 
 ShownVerdict shown_verdict(const select::MotorEvaluation& motor) {
@@ -34,8 +36,7 @@ Tone tone_of(select::Verdict verdict) {
 }
 
 std::string passing_text(std::ptrdiff_t passing, std::size_t all, std::string_view what) {
-  const bool is_single = passing == 1 && all == 1;
-  return fmt::format("{} of {} {}{} pass{}", passing, all, what, is_single ? "" : "s", passing == 1 ? "es" : "");
+  return fmt::format("{} of {} pass{}", passing, base::counted(all, what), passing == 1 || all == 1 ? "es" : "");
 }
 
 std::string percent_range(const select::Interval95& range) {

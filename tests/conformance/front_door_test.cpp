@@ -146,7 +146,7 @@ TEST_F(FrontDoor, new_prints_a_hint_that_can_be_pasted) {
 
 TEST_F(FrontDoor, one_motor_is_one_motor_and_few_samples_have_no_range) {
   const std::string line = "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors maxon_ecx_flat_32l_48v";
-  EXPECT_THAT(run_here(line + " --quiet").out, StartsWith("0 of 1 motors pass paper_intermittent"));
+  EXPECT_THAT(run_here(line + " --quiet").out, StartsWith("0 of 1 motor passes paper_intermittent"));
   const std::string single = run_here("COLUMNS=200 " + line + " --samples 1").out;
   EXPECT_THAT(single, AllOf(HasSubstr("1 sample of all"), HasSubstr("  162 "), Not(HasSubstr("162 ["))));
 }

@@ -16,7 +16,9 @@
 namespace heatsoak::present {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 select::MotorEvaluation heating_to(double peak_C) {
   select::MotorEvaluation motor;
@@ -125,7 +127,7 @@ TEST(OpenShare, is_the_share_whose_interval_covers_a_threshold) {
 
 TEST(PassingText, agrees_in_number) {
   EXPECT_EQ(passing_text(1, 1, "motor"), "1 of 1 motor passes");
-  EXPECT_EQ(passing_text(0, 1, "motor"), "0 of 1 motors pass");
+  EXPECT_EQ(passing_text(0, 1, "motor"), "0 of 1 motor passes");
   EXPECT_EQ(passing_text(1, 2, "motor"), "1 of 2 motors passes");
   EXPECT_EQ(passing_text(0, 2, "motor"), "0 of 2 motors pass");
 }
@@ -235,6 +237,34 @@ TEST(EvaluationDocument, lists_the_change_that_saves_most_first) {
   EXPECT_EQ(table.rows.back().front().words, select::name_of(select::ChangedQuantity::gear_ratio));
   EXPECT_THAT(document.headline.back().words, HasSubstr("motor to other, 100 K cooler"));
   EXPECT_EQ(table.columns.size(), 4U) << "one calculation has no standard error";
+}
+
+// The verdict is that of a plan which is followed exactly. Only the closed loop shows whether this robot can.
+TEST(EvaluationDocument, says_first_that_the_plan_needs_more_grip) {
+  simulate::EvaluationAnswer answer = answer_with({sampled(0.0, {0.0, 0.01}, 500)}, "division_a_match");
+  answer.demand.slip_share = 0.15;
+  const Document document = evaluation_document(answer);
+  EXPECT_THAT(document.headline.at(1).words, AllOf(HasSubstr("15 % of the time"), HasSubstr("--closed-loop")));
+  answer.demand.slip_share = 0.001;
+  EXPECT_THAT(evaluation_document(answer).headline.at(1).words, Not(HasSubstr("grip")));
+}
+
+// The short form of an answer shows the headline only.
+TEST(EvaluationDocument, names_implausible_values_of_the_robot_in_the_headline) {
+  simulate::EvaluationAnswer answer = answer_with({sampled(0.0, {0.0, 0.01}, 500)});
+  answer.robot.drive.gear_ratio = 36.0;
+  EXPECT_THAT(evaluation_document(answer).headline.back().words, HasSubstr("drive.gear_ratio"));
+}
+
+TEST(EvaluationDocument, a_closed_loop_without_samples_names_nominal_values) {
+  select::MotorEvaluation motor;
+  simulate::EvaluationAnswer answer = answer_with({motor}, "division_b_match");
+  answer.closed_loop = simulate::ClosedLoopJob{.games = 1};
+  answer.ranks.resize(1);
+  answer.ranks[0].drives.games.resize(1);
+  const Document document = evaluation_document(answer);
+  EXPECT_THAT(document.tables.back().title, HasSubstr("with nominal values"));
+  EXPECT_THAT(document.paragraphs.front(), Not(HasSubstr("with all tolerances")));
 }
 
 TEST(VerdictTopic, states_the_thresholds_that_decide) {
