@@ -17,6 +17,10 @@ Document lint_document(const duty::FilesLint& lint) {
                     .paragraphs = {}};
   Listing listing{.title = {}, .lines = {}, .is_prose = true};
   for (const motor::LintFinding& each : lint.findings) {
+    if (each.level == motor::LintFinding::Level::note) {
+      document.add_note(Severity::note, fmt::format("{}:{}: {}", each.at.file, each.at.line, motor::words_of(each)));
+      continue;
+    }
     listing.lines +=
         fmt::format("{}:{}:{}: {}: {}\n", each.at.file, each.at.line, each.at.column, motor::to_string(each.level), motor::words_of(each));
   }

@@ -130,6 +130,52 @@ TEST_F(FrontDoor, robot_template_passes_lint_with_its_optional_lines_too) {
   EXPECT_THAT(lint.out + lint.err, Not(HasSubstr("warning")));
 }
 
+// A match that starts would take seconds before it finds the next missing value.
+TEST_F(FrontDoor, all_values_that_a_match_lacks_are_found_by_reading) {
+  const auto without = [](std::string text, std::initializer_list<const char*> keys) {
+    for (const char* key : keys) {
+      text = std::regex_replace(text, std::regex(std::string("\n") + key + " = [^\n]*"), "\n", std::regex_constants::format_first_only);
+    }
+    return text;
+  };
+  write(folder_.path() / "motor.toml", without(content_of(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml"), {"rotor_inertia"}));
+  write(folder_.path() / "robot.toml",
+        without(content_of(kSource / "robot_core/robots/tigers_v2020.toml"), {"driver_standby_power", "capacity"}));
+  const std::string files = "--robot robot.toml --duty division_a_match ";
+  for (const std::string& command : {"timeout 5 heatsoak simulate " + files + "--motor motor.toml",
+                                     "timeout 5 heatsoak evaluate " + files + "--motors motor.toml --closed-loop"}) {
+    const ProgramRun result = run_here(command);
+    EXPECT_EQ(result.exit_code, 2) << command << result.err;
+    for (const char* key : {"rotor_inertia", "drive.driver_standby_power", "battery.capacity"}) {
+      EXPECT_THAT(result.err, HasSubstr(key)) << command;
+    }
+  }
+  const ProgramRun lint = run_here("heatsoak lint motor.toml robot.toml");
+  EXPECT_EQ(lint.exit_code, 0) << lint.err;
+  EXPECT_THAT(lint.out, AllOf(HasSubstr("rotor_inertia"), HasSubstr("battery.capacity"), HasSubstr("match in closed loop")));
+}
+
+TEST_F(FrontDoor, templates_say_what_a_closed_loop_needs) {
+  for (const char* kind : {"motor", "robot"}) {
+    ASSERT_EQ(run_here(std::string("heatsoak new ") + kind + " " + kind + ".toml").exit_code, 0);
+  }
+  EXPECT_THAT(file("motor.toml"), testing::ContainsRegex("A match in closed loop needs it[^\n]*\n# rotor_inertia"));
+  EXPECT_THAT(file("robot.toml"), testing::ContainsRegex("A match in closed loop[^\n]*\n# driver_resistance"));
+}
+
+TEST_F(FrontDoor, many_notes_of_lint_need_a_request) {
+  const ProgramRun few = run_here("heatsoak lint " + (kSource / "motor_db").string());
+  EXPECT_LT(std::ranges::count(few.out, '\n'), 20) << few.out;
+  EXPECT_THAT(few.out, HasSubstr("--explain"));
+  EXPECT_GT(run_here("heatsoak lint " + (kSource / "motor_db").string() + " --explain").out.size(), 2 * few.out.size());
+}
+
+TEST_F(FrontDoor, missing_and_unknown_words_are_explained) {
+  EXPECT_THAT(run_here("heatsoak lint").err, HasSubstr("FILE is required: TOML files"));
+  EXPECT_THAT(run_here("heatsoak new duty a.toml").err, HasSubstr("'duty' is not known; expected motor, robot"));
+  EXPECT_THAT(run_here("heatsoak generate cores --robot a --motor b --out c").err, HasSubstr("'cores' is not known; expected core"));
+}
+
 TEST_F(FrontDoor, new_replaces_no_file) {
   write(folder_.path() / "mine.toml", "precious");
   EXPECT_EQ(run_here("heatsoak new motor mine.toml").exit_code, 2);
@@ -390,16 +436,6 @@ TEST_F(FrontDoor, completion_scripts_are_sound_where_their_shell_is_there) {
   }
 }
 
-TEST_F(FrontDoor, man_pages_exist_for_every_verb) {
-  ASSERT_EQ(run_here("heatsoak manual --to man --out man1").exit_code, 0);
-  EXPECT_THAT(file("man1/heatsoak-evaluate.1"), AllOf(StartsWith(".TH \"HEATSOAK\\-EVALUATE\" 1"), HasSubstr(".B \\-\\-robot R\n")));
-  if (run_here("command -v groff").exit_code == 0) {
-    EXPECT_THAT(run_here("groff -K utf8 -man -ww -z man1/*.1").err, IsEmpty());
-  }
-}
-
-}  // namespace
-}  // namespace heatsoak
 TEST_F(FrontDoor, bash_completes_lists_and_words) {
   const auto completed = [this](const std::string& words) {
     return run_here("heatsoak completion bash > b && bash -c 'source b; COMP_WORDS=(" + words +
@@ -412,3 +448,13 @@ TEST_F(FrontDoor, bash_completes_lists_and_words) {
   EXPECT_EQ(completed("heatsoak generate c"), "core\n");
 }
 
+TEST_F(FrontDoor, man_pages_exist_for_every_verb) {
+  ASSERT_EQ(run_here("heatsoak manual --to man --out man1").exit_code, 0);
+  EXPECT_THAT(file("man1/heatsoak-evaluate.1"), AllOf(StartsWith(".TH \"HEATSOAK\\-EVALUATE\" 1"), HasSubstr(".B \\-\\-robot R\n")));
+  if (run_here("command -v groff").exit_code == 0) {
+    EXPECT_THAT(run_here("groff -K utf8 -man -ww -z man1/*.1").err, IsEmpty());
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak
