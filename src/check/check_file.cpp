@@ -43,6 +43,8 @@ class CheckReader {
     compare_with_loosest();
     return std::move(check_);
   }
+  /// Ids that do not exist, with their places; keys of this table.
+  [[nodiscard]] const std::vector<base::Diagnostic>& unknown() const { return unknown_; }
 
  private:
   /// Returns a name that is a path relative to the check file's folder; other names are unchanged.
@@ -79,17 +81,28 @@ class CheckReader {
     }
   }
 
-  /// Reads a file by its id or path. A path at which nothing exists is no mistake in the check file: the thresholds that need it fail.
+  /// Returns the file of an id or path. An id or path at which nothing exists is no mistake in the check file: the thresholds that need it
+  /// fail. `key`: key that names it.
+  std::optional<fs::path> existing(Setting setting, std::string_view key, const fs::path& folder, std::string_view kind,
+                                   const std::string& name) {
+    try {
+      const fs::path file = input::file_of(folder, kind, from_here(name));
+      if (std::error_code error; fs::exists(file, error)) {
+        return file;
+      }
+      check_.unreadable.emplace(setting, fmt::format("{}: cannot be read: No such file or directory", file.string()));
+    } catch (const base::Failure& failure) {
+      check_.unreadable.emplace(setting, failure.message());
+      unknown_.push_back({table_.at(key), std::string(key), failure.message()});
+    }
+    return std::nullopt;
+  }
+
   template <class Read>
   auto thing(Setting setting, const fs::path& folder, std::string_view kind, const std::string& name, const Read& read)
       -> std::optional<decltype(read(fs::path()))> {
     const std::string_view key = all_settings()[static_cast<std::size_t>(setting)].key;
-    const std::optional<fs::path> file = named(key, [&] { return input::file_of(folder, kind, from_here(name)); });
-    std::error_code error;
-    if (file && !fs::exists(*file, error)) {
-      check_.unreadable.emplace(setting, fmt::format("{}: cannot be read: No such file or directory", file->string()));
-      return std::nullopt;
-    }
+    const std::optional<fs::path> file = existing(setting, key, folder, kind, name);
     return file ? named(key, [&] { return read(*file); }) : std::nullopt;
   }
 
@@ -150,8 +163,8 @@ class CheckReader {
   }
 
   std::optional<motor::Motor> robots_motor() {
-    return named("robot",
-                 [&] { return motor::read_motor(input::file_of(folders_.motors, "motor", from_here(check_.robot->drive.motor))); });
+    const std::optional<fs::path> file = existing(Setting::motor, "robot", folders_.motors, "motor", check_.robot->drive.motor);
+    return file ? named("robot", [&] { return motor::read_motor(*file); }) : std::nullopt;
   }
 
   /// Returns an integer, which the file gives as text like every other number. Reports a value with a fraction.
@@ -340,6 +353,7 @@ class CheckReader {
   const input::DataFolders& folders_;
   std::set<std::string>& reported_;
   Check check_;
+  std::vector<base::Diagnostic> unknown_;
 };
 
 }  // namespace
@@ -348,7 +362,7 @@ CheckFile read_check_file(const fs::path& path, const input::DataFolders& folder
   const input::Value root = input::read_toml(path);
   base::Diagnostics diagnostics;
   input::Reader top(root, "", diagnostics);
-  CheckFile file{path, {}};
+  CheckFile file{path, {}, {}};
   std::vector<input::Reader> tables = top.tables("check");
   if (tables.size() > kMostChecks) {
     throw base::bad_input({path.string(), 1, 1}, "check",
@@ -367,7 +381,12 @@ CheckFile read_check_file(const fs::path& path, const input::DataFolders& folder
   std::set<std::string> reported;
   for (std::size_t i = 0; i < tables.size(); ++i) {
     const base::Location at = tables[i].at("name");
-    file.checks.push_back(CheckReader(std::move(tables[i]), *written[i], path.parent_path(), folders, reported).read());
+    CheckReader reader(std::move(tables[i]), *written[i], path.parent_path(), folders, reported);
+    file.checks.push_back(reader.read());
+    for (base::Diagnostic each : reader.unknown()) {
+      each.key = fmt::format("check[{}].{}", i, each.key);
+      file.unknown.push_back(std::move(each));
+    }
     const std::string& name = file.checks.back().name;
     if (!name.empty() && !names.insert(name).second) {
       diagnostics.add(at, fmt::format("check[{}].name", i),
@@ -375,6 +394,9 @@ CheckFile read_check_file(const fs::path& path, const input::DataFolders& folder
     }
   }
   top.finish();
+  if (!diagnostics.empty()) {
+    std::ranges::for_each(file.unknown, [&](const base::Diagnostic& each) { diagnostics.add(each.at, each.key, each.message); });
+  }
   diagnostics.throw_if_any();
   return file;
 }

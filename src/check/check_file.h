@@ -44,18 +44,20 @@ struct Check {
   std::optional<double> air_C = {};  ///< air temperature for logs without one
   derate::DerateOptions derate;
   std::vector<Limit> limits;
-  std::map<Setting, std::string> unreadable;  ///< settings whose file does not exist, with the reason; the thresholds that need them fail
+  /// Settings whose id or file does not exist, with the reason; the thresholds that need them fail.
+  std::map<Setting, std::string> unreadable;
 };
 
 struct CheckFile {
   std::filesystem::path path;
   std::vector<Check> checks;
+  std::vector<base::Diagnostic> unknown;  ///< ids of robots, duties and motors that do not exist
 };
 
 /// Reads the file and the robots, duties and motors that it names. Throws Failure (bad_input) with every problem of all of them: unknown
 /// keys with "did you mean", invalid limits, missing settings that a limit needs, and settings that no limit uses. Committed tables, logs
-/// and linted files are not opened here. If one of them is missing, its threshold fails. The same holds if the file of a robot, duty or
-/// motor does not exist (Check::unreadable).
+/// and linted files are not opened here. If one of them is missing, its threshold fails. The same holds if the id or file of a robot, duty
+/// or motor does not exist (Check::unreadable); an unknown id is a problem only beside another one.
 CheckFile read_check_file(const std::filesystem::path& path, const input::DataFolders& folders);
 
 }  // namespace heatsoak::check

@@ -31,6 +31,9 @@ void read_check_files(const std::vector<std::string>& names, const input::DataFo
     }
   }
   if (!problems.empty() || !message.empty()) {
+    for (const CheckFile& file : answer.files) {
+      problems.insert(problems.end(), file.unknown.begin(), file.unknown.end());
+    }
     answer.invalid.emplace(base::ExitCode::bad_input, std::move(message), std::move(problems));
   }
 }

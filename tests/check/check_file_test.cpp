@@ -401,7 +401,7 @@ TEST_F(CheckFiles, RankOfAMotorAgainstItselfIsRefused) {
   EXPECT_EQ(message("\"all\""), "nothing was wrong");
 }
 
-// A file that does not exist makes its own thresholds fail, like a missing log, so that the others are still evaluated and reported.
+// A file or id that does not exist makes its own thresholds fail, like a missing log, so that the others are still evaluated and reported.
 TEST_F(CheckFiles, MissingFileFailsItsThresholdsOnly) {
   const auto found = [&](const std::string& things, const std::string& limit) {
     return outcomes("[[check]]\nname = \"gone\"\n" + things + "samples = \"80\"\n[check.limits]\n" + limit + "\n" +
@@ -420,6 +420,17 @@ TEST_F(CheckFiles, MissingFileFailsItsThresholdsOnly) {
     EXPECT_FALSE(each[0].passed);
     EXPECT_THAT(each[0].reason, testing::EndsWith("gone.toml: cannot be read: No such file or directory"));
     EXPECT_TRUE(each[1].passed);
+  }
+  const std::vector<std::vector<Outcome>> unknown{found(robot + duty + "motor = \"maxon_ecx_flat_42m_24w\"\n", peak),
+                                                  found("robot = \"roboteam_twente_v2023\"\n" + duty, peak),
+                                                  found(robot + "duty = \"paper_intermitent\"\n", peak),
+                                                  found(robot + duty + "against = [\"nanotec_df45l024048_a3\"]\n", "rank = \"at most 1\"")};
+  const std::vector<std::string> meant{"maxon_ecx_flat_42m_24v", "roboteam_twente_v2024", "paper_intermittent", "nanotec_df45l024048_a2"};
+  for (std::size_t i = 0; i < meant.size(); ++i) {
+    ASSERT_EQ(unknown[i].size(), 2U);
+    EXPECT_FALSE(unknown[i][0].passed);
+    EXPECT_THAT(unknown[i][0].reason, testing::AllOf(HasSubstr("there is no "), HasSubstr(fmt::format("did you mean '{}'?", meant[i]))));
+    EXPECT_TRUE(unknown[i][1].passed);
   }
 }
 

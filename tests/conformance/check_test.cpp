@@ -87,6 +87,18 @@ TEST_F(CheckCommand, ExceededLimitIsExitOneAtItsLine) {
   EXPECT_EQ(check(check_with(120.0, 99.0)).exit_code, 1);
 }
 
+TEST_F(CheckCommand, UnknownMotorIsExitOneAndTheOtherLimitsAreEvaluated) {
+  options_.environment = {"GITHUB_ACTIONS=true", "GITHUB_STEP_SUMMARY=summary.md", "GITHUB_WORKSPACE"};
+  const ProgramRun done = check(
+      check_with(120.0, 1.0) + "[[check]]\nname = \"gone\"\nmotor = \"no_such_motor\"\n[check.limits]\nlint_problems = \"at most 0\"\n",
+      {"--junit", "check.xml"});
+  EXPECT_EQ(done.exit_code, 1) << done.err;
+  EXPECT_THAT(done.out, testing::AllOf(HasSubstr("1 limit of 3 cannot be evaluated"), HasSubstr("there is no motor 'no_such_motor'"),
+                                       HasSubstr("::error file=robot.check.toml,line=15,col=17,title=gone%3A lint_problems::")));
+  EXPECT_THAT(content_of(folder_.path() / "check.xml"), HasSubstr("tests=\"3\" failures=\"0\" errors=\"1\""));
+  EXPECT_THAT(content_of(folder_.path() / "summary.md"), HasSubstr("1 limit of 3 cannot be evaluated"));
+}
+
 TEST_F(CheckCommand, SummaryThatCannotBeWrittenIsNoFailure) {
   options_.environment = {"GITHUB_STEP_SUMMARY=missing/summary.md"};
   const ProgramRun done = check(check_with(120.0, 1.0));
