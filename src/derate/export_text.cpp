@@ -9,6 +9,7 @@
 #include <span>
 
 #include "base/diagnostic.h"
+#include "base/quantity.h"
 #include "motor/datasheet_network.h"
 
 namespace heatsoak::derate {
@@ -140,5 +141,10 @@ void require_three_signals(std::string_view controller, const Derating& derating
 double rounded_to_12_digits(double value) { return std::strtod(fmt::format("{:.12g}", value).c_str(), nullptr); }
 
 double rounded_down_A(double current_A) { return std::floor(1000.0 * current_A) / 1000.0; }
+
+std::string significant_above(double value, int digits) {
+  const double unit = value > 0.0 ? std::pow(10.0, std::floor(std::log10(value)) + 1.0 - digits) : 1.0;
+  return base::significant(std::ceil(value / unit) * unit, digits);
+}
 
 }  // namespace heatsoak::derate

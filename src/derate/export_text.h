@@ -51,4 +51,7 @@ double rounded_to_12_digits(double value);
 /// Returns the current rounded down to 1 mA, so that the limit stays on the safe side.
 double rounded_down_A(double current_A);
 
+/// Returns an upper bound rounded up to significant digits, so that "at most" stays true; as base::significant().
+std::string significant_above(double value, int digits);
+
 }  // namespace heatsoak::derate

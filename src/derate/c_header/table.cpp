@@ -5,6 +5,7 @@
 #include "base/quantity.h"
 #include "derate/c_header/c_text.h"
 #include "derate/c_header/parts.h"
+#include "derate/export_text.h"
 
 namespace heatsoak::derate::c_header {
 namespace {
@@ -30,12 +31,6 @@ static inline float @_allowed_A(float speed_rad_per_s, float stator_C, float win
 
 )";
 
-/// Rounds a bound up to three significant digits.
-std::string significant_above(double bound) {
-  const double unit = bound > 0.0 ? std::pow(10.0, std::floor(std::log10(bound)) - 2.0) : 1.0;
-  return base::significant(std::ceil(bound / unit) * unit, 3);
-}
-
 }  // namespace
 
 std::string table_comment(const CurrentTable& table) {
@@ -48,8 +43,8 @@ std::string table_comment(const CurrentTable& table) {
       "K of\n"
       "   the winding, {} A per K of the stator and {} A per rad/s.{} */\n",
       std::ceil(1000.0 * bound.shortfall_ratio) / 10.0, base::significant(table.straight_below_A, 3),
-      significant_above(bound.winding_slope_A_per_K), significant_above(bound.stator_slope_A_per_K),
-      significant_above(bound.speed_slope_A_s_per_rad),
+      significant_above(bound.winding_slope_A_per_K, 3), significant_above(bound.stator_slope_A_per_K, 3),
+      significant_above(bound.speed_slope_A_s_per_rad, 3),
       table.speed_rad_per_s.size() == 1 || table.stator_C.size() == 1 ? at_one_place : "");
 }
 
