@@ -1,4 +1,4 @@
-// Runs every command in README.md and docs/ and compares its output with the shown output.
+// Runs every command in README.md, docs/ and the report of the checks, and compares its output with the shown output.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -100,7 +100,7 @@ bool shows(const std::string& text, const std::vector<std::string>& expected) {
 }
 
 std::vector<std::string> documents() {
-  std::vector<std::string> all{"README.md"};
+  std::vector<std::string> all{"README.md", "reports/check/README.md"};
   for (const std::string& name : files_of(kSource / "docs", "", ".md")) {
     all.push_back("docs/" + name);
   }
