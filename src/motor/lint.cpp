@@ -86,7 +86,7 @@ constexpr std::array kChecks = {
     NamedCheck{"limits", lint_checks::limits},
     NamedCheck{"sources", lint_checks::sources, false},
     NamedCheck{"confirmations", lint_checks::confirmations, false},
-    NamedCheck{"estimates", lint_checks::estimates, false},
+    NamedCheck{kEstimatesCheck, lint_checks::estimates, false},
     NamedCheck{"spreads", lint_checks::spreads, false},
     NamedCheck{"exact_values", lint_checks::exact_values, false},
     NamedCheck{"narrow_values", lint_checks::narrow_values, false},

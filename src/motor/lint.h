@@ -10,6 +10,9 @@
 
 namespace heatsoak::motor {
 
+/// Name of the check whose notes list estimated values.
+inline constexpr std::string_view kEstimatesCheck = "estimates";
+
 struct LintFinding {
   enum class Level {
     error,    ///< two values contradict each other or physics: one of them is wrong

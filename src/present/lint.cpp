@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace heatsoak::present {
 
 Document lint_document(const duty::FilesLint& lint) {
@@ -16,13 +20,23 @@ Document lint_document(const duty::FilesLint& lint) {
                                   is_sound ? Tone::good : Tone::bad}},
                     .paragraphs = {}};
   Listing listing{.title = {}, .lines = {}, .is_prose = true};
+  std::vector<std::string> on_estimates;
   for (const motor::LintFinding& each : lint.findings) {
-    if (each.level == motor::LintFinding::Level::note) {
-      document.add_note(Severity::note, fmt::format("{}:{}: {}", each.at.file, each.at.line, motor::words_of(each)));
+    if (each.level != motor::LintFinding::Level::note) {
+      listing.lines += fmt::format("{}:{}:{}: {}: {}\n", each.at.file, each.at.line, each.at.column, motor::to_string(each.level),
+                                   motor::words_of(each));
       continue;
     }
-    listing.lines +=
-        fmt::format("{}:{}:{}: {}: {}\n", each.at.file, each.at.line, each.at.column, motor::to_string(each.level), motor::words_of(each));
+    std::string words = fmt::format("{}:{}: {}", each.at.file, each.at.line, motor::words_of(each));
+    if (each.check == motor::kEstimatesCheck) {
+      on_estimates.push_back(std::move(words));
+    } else {
+      document.add_note(Severity::note, std::move(words));
+    }
+  }
+  // Only three notes are shown: missing values prevent an answer, estimates make it less accurate.
+  for (std::string& words : on_estimates) {
+    document.add_note(Severity::note, std::move(words));
   }
   if (!listing.lines.empty()) {
     document.listings.push_back(std::move(listing));

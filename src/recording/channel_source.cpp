@@ -124,7 +124,7 @@ void ChannelSource::append(const input::TableBlock& block, const BadCells& bad, 
     if (keep[row] == 0) {
       continue;
     }
-    double value = mapping_.offset_value + mapping_.scale_factor * raw[row];
+    double value = mapping_.value + mapping_.scale_factor * raw[row];
     if (std::isnan(value)) {
       const std::string* const cell = slot_ ? bad.find(*slot_, row) : nullptr;
       const bool is_blank = cell == nullptr || cell->empty();

@@ -64,7 +64,7 @@ input::TableFormat read_format(input::Reader& file) {
   return format;
 }
 
-/// Reads unit and sign into offset_value and scale_factor. Returns false if the unit is unknown, so that no other value can be read with it.
+/// Reads unit and sign into value and scale_factor. Returns false if the unit is unknown, so that no other value can be read with it.
 bool read_unit(input::Reader& reader, QuantityMapping& mapping) {
   const std::string& wanted = mapping.quantity.unit;
   const std::string unit = reader.text("unit", input::Need::optional).value_or(wanted);
@@ -76,13 +76,13 @@ bool read_unit(input::Reader& reader, QuantityMapping& mapping) {
     std::ranges::for_each(kKeysWithUnit, [&reader](std::string_view key) { reader.pass_over(key); });
     return false;
   }
-  mapping.offset_value = zero.value;
+  mapping.value = zero.value;
   mapping.scale_factor = one.value - zero.value;
   if (reader.choice("sign", kSigns, input::Need::optional).value_or("+") == "-") {
     if (wanted == "degC") {
       reader.problem("sign", "a temperature has no sign; expected no key sign");
     }
-    mapping.offset_value = -mapping.offset_value;
+    mapping.value = -mapping.value;
     mapping.scale_factor = -mapping.scale_factor;
   }
   return true;

@@ -24,9 +24,9 @@ struct QuantityMapping {
   Quantity quantity;
   std::string column;      ///< name in the header; empty if there is an expression
   std::string expression;  ///< expression of columns; empty if there is a column
-  /// Unit and sign: canonical value = offset_value + scale_factor · file value.
+  /// Unit and sign: canonical value = value + scale_factor · file value.
   double scale_factor = 1.0;
-  double offset_value = 0.0;
+  double value = 0.0;                   ///< canonical value of the file value 0, such as -273.15 of kelvins
   double clock_offset_s = 0.0;          ///< time of the sample minus time of the row
   std::string valid;                    ///< expression: samples for which it is 0 are invalid; empty: all are valid
   std::optional<double> saturates_low;  ///< values at or below are saturated, in the quantity's unit

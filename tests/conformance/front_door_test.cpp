@@ -134,7 +134,8 @@ TEST_F(FrontDoor, robot_template_passes_lint_with_its_optional_lines_too) {
 TEST_F(FrontDoor, all_values_that_a_match_lacks_are_found_by_reading) {
   const auto without = [](std::string text, std::initializer_list<const char*> keys) {
     for (const char* key : keys) {
-      text = std::regex_replace(text, std::regex(std::string("\n") + key + " = [^\n]*"), "\n", std::regex_constants::format_first_only);
+      text =
+          std::regex_replace(text, std::regex(std::string("\n") + key + R"( = \{[^}]*\})"), "\n", std::regex_constants::format_first_only);
     }
     return text;
   };

@@ -117,7 +117,7 @@ Command evaluate_command() {
         const auto options = std::make_shared<EvaluateOptions>();
         app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
         app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
-        app.add_option("--motors,--motor", options->motors, "ids or files separated by commas, or all")->type_name("M,M")->default_str("all");
+        app.add_option("--motor,--motors", options->motors, "ids or files separated by commas, or all")->type_name("M,M")->default_str("all");
         app.add_option("--model", options->model,
                        "calibrated motor (`heatsoak calibrate --out FILE`), in place of the motor that it was fitted from")
             ->type_name("FILE.toml");
