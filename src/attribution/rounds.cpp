@@ -87,7 +87,6 @@ Judged Rounds::run_rounds() {
     input_.progress.begin(selection_phases::kFollowing);
     follow(judged);
   }
-  input_.progress.begin(selection_phases::kFollowing);
   own_parameters(judged);
   note_sight();
   return judged;

@@ -31,8 +31,7 @@ class Selector : Rounds {
   }
 
   Selection run() {
-    const Judged judged = run_rounds();
-    decide(judged);
+    decide(run_rounds());
     return std::move(out_);
   }
 
@@ -296,14 +295,6 @@ class Selector : Rounds {
 
 bool Selection::is_material() const {
   return std::ranges::any_of(left_W, [&](const auto& each) { return each.second > material_W; });
-}
-
-std::vector<base::JobPhase> selection_work(double unit_s) {
-  // Usually the second round repeats the set of the first.
-  return {{selection_phases::kFirstFit, 0.05 * unit_s},  {selection_phases::kSearching, 0.9 * unit_s},
-          {selection_phases::kFollowing, 0.1 * unit_s},  {selection_phases::kSearching, 0.9 * unit_s},
-          {selection_phases::kFollowing, 0.15 * unit_s}, {selection_phases::kCurves, 0.4 * unit_s},
-          {selection_phases::kLastFit, 0.15 * unit_s}};
 }
 
 double evidence_without_effects_nats(const SelectionInput& input) {

@@ -30,9 +30,6 @@ inline const std::string kCurves = "searching curves";
 inline const std::string kLastFit = "fitting the extended model";
 }  // namespace selection_phases
 
-/// Returns the phases of select_effects(); rounds may repeat. `unit_s`: usual duration of one fit to the runs.
-std::vector<base::JobPhase> selection_work(double unit_s);
-
 struct SelectionInput {
   estimation::Model model;
   std::vector<estimation::MeasuredRun> runs;  ///< at least one

@@ -71,6 +71,14 @@ void add_lacking_columns(std::span<const std::string> columns, const std::vector
   }
 }
 
+/// Returns the phases of select_effects(); rounds may repeat, and usually the second round repeats the set of the first. `unit_s`: usual
+/// duration of one fit to the runs.
+std::vector<base::JobPhase> selection_work(double unit_s) {
+  using namespace attribution::selection_phases;
+  return {{kFirstFit, 0.05 * unit_s},  {kSearching, 0.9 * unit_s}, {kFollowing, 0.1 * unit_s}, {kSearching, 0.9 * unit_s},
+          {kFollowing, 0.15 * unit_s}, {kCurves, 0.4 * unit_s},    {kLastFit, 0.15 * unit_s}};
+}
+
 void add_fitted_holdouts(const motor::Motor& motor, const std::vector<recording::Recording>& held_out,
                          std::vector<DiagnosisFinding>& findings) {
   for (const recording::Recording& each : held_out) {
@@ -106,7 +114,7 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& 
   input.progress = progress;
   const double unit_s = calibration::usual_s(input.train);
   const std::vector<base::JobPhase> last{{kContradiction, 0.6 * unit_s}, {kScoring, 0.6 * unit_s}};
-  std::vector<base::JobPhase> phases = attribution::selection_work(unit_s);
+  std::vector<base::JobPhase> phases = selection_work(unit_s);
   phases.insert(phases.begin(), {kReading, 0.2 * unit_s});
   phases.insert(phases.end(), last.begin(), last.end());
   progress.expect(std::move(phases), true);

@@ -65,18 +65,18 @@ TEST(Evaluation, reads_the_data_base_only_to_search_changes) {
 }
 
 // Who names candidates wants to know which of them to take. Another motor is suggested only if none of them passes.
-TEST(Evaluation, another_motor_is_suggested_only_if_no_chosen_one_passes) {
-  const auto suggests_motor = [](std::vector<motor::Motor> motors) {
+TEST(Evaluation, a_motor_of_the_database_is_suggested_only_if_no_chosen_one_passes) {
+  const auto suggested_motor = [](std::vector<motor::Motor> motors) {
     EvaluationJob job = nominal_job("paper_intermittent", std::move(motors));
     job.has_chosen_motors = true;
     job.database = [] { return std::vector<motor::Motor>{shipped_motor("maxon_ecx_flat_42m_48v")}; };
     const EvaluationAnswer answer = run_evaluation(job);
-    return answer.changes && std::ranges::find(answer.changes->effects, select::ChangedQuantity::motor, &select::ChangeEffect::quantity) !=
-                                 answer.changes->effects.end();
+    const auto found = std::ranges::find(answer.changes->effects, select::ChangedQuantity::motor, &select::ChangeEffect::quantity);
+    return found == answer.changes->effects.end() ? std::string() : found->other_motor;
   };
   ASSERT_EQ(run_evaluation(nominal_job("paper_intermittent", {ecx_32()})).worst_verdict(), select::Verdict::fail);
-  EXPECT_TRUE(suggests_motor({ecx_32()}));
-  EXPECT_FALSE(suggests_motor({ecx_32(), shipped_motor("maxon_ecx_flat_42m_24v")}));
+  EXPECT_EQ(suggested_motor({ecx_32()}), "maxon_ecx_flat_42m_48v");
+  EXPECT_EQ(suggested_motor({ecx_32(), shipped_motor("maxon_ecx_flat_42m_24v")}), "maxon_ecx_flat_42m_24v");
 }
 
 TEST(Evaluation, is_undecided_while_more_samples_could_change_a_verdict) {
