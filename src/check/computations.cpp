@@ -9,6 +9,7 @@
 #include "base/lanes.h"
 #include "duty/match/match_duty.h"
 #include "motor/default_spread.h"
+#include "select/round_plan.h"
 #include "simulate/core_drive.h"
 #include "simulate/guarded_core.h"
 
@@ -33,12 +34,6 @@ std::string key_of_load(const Check& check) {
 }
 
 // Usual durations in s on two cores.
-
-double evaluation_s(const Check& check) {
-  constexpr double kNominalRun_s = 0.065;
-  constexpr double kBlock_s = 0.006;
-  return kNominalRun_s + kBlock_s * check.samples / base::kLanes;
-}
 
 double derating_s(const Check& check) {
   constexpr double kMotor_s = 0.015;
@@ -72,7 +67,7 @@ double Computations::usual_s(const Check& check) {
   constexpr double kLog_s = 0.5;
   double all_s = kOther_s + kLog_s * static_cast<double>(check.logs.size());
   if (needs(check, Setting::samples)) {
-    all_s += evaluation_s(check) * static_cast<double>(1 + check.against.size());
+    all_s += select::evaluation_work_s(1.0, check.samples) * static_cast<double>(1 + check.against.size());
   }
   if (needs(check, Setting::derate)) {
     all_s += derating_s(check);
@@ -139,7 +134,8 @@ const select::MotorEvaluation& Computations::evaluation(const Check& check, cons
     options.seed = check.seed;
     options.threads = threads_;
     options.draws = draws(check);
-    return select::evaluate(*check.robot, *check.duty, demand(check), std::span(&motor, 1), options, reporting(check, evaluation_s(check)))
+    return select::evaluate(*check.robot, *check.duty, demand(check), std::span(&motor, 1), options,
+                            reporting(check, select::evaluation_work_s(1.0, check.samples)))
         .front();
   });
 }

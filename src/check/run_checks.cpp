@@ -14,6 +14,7 @@
 #include "check/computations.h"
 #include "check/limit.h"
 #include "robot/robot_lint.h"
+#include "select/round_plan.h"
 
 namespace heatsoak::check {
 namespace {
@@ -166,12 +167,11 @@ std::vector<Outcome> run_checks(const CheckFile& file, int threads, const base::
 }
 
 std::vector<base::JobPhase> check_phases(const CheckFile& file) {
-  constexpr double kDraw_s = 0.12;
   std::vector<base::JobPhase> phases;
   double all_s = 0.0;
   for (const Check& check : file.checks) {
     if (needs_samples(check)) {
-      phases.push_back({kPlaying, kDraw_s * select::draw_count(*check.duty, check.samples)});
+      phases.push_back({kPlaying, select::kDraw_s * select::draw_count(*check.duty, check.samples)});
     }
     all_s += Computations::usual_s(check);
   }

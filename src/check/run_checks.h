@@ -24,8 +24,8 @@ struct Outcome {
 };
 
 /// Returns one outcome per limit, in the order of the file. Thresholds that cannot be evaluated fail with a reason; all others are still
-/// evaluated. The results do not depend on `threads`; 0 means all cores. The phases are those
-/// of check_phases().
+/// evaluated. The results do not depend on `threads`; 0 means all cores. `progress` reports the
+/// phases that check_phases() returns.
 std::vector<Outcome> run_checks(const CheckFile& file, int threads, const base::JobProgress& progress = {});
 
 /// Returns the phases of run_checks().

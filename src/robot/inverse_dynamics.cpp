@@ -19,12 +19,12 @@ PerWheel roller_drags_N(const BodyConfig& body, const PerWheel& lateral_m_per_s,
   return drag_N;
 }
 
-/// As rolling_speeds_m_per_s(), for all wheels at once.
+/// Returns the rolling speed of every contact, which rolling_speeds_m_per_s() calculates wheel by wheel.
 Wheels rolling_m_per_s(const WheelArrays& wheels, double x_m_per_s, double y_m_per_s, double yaw_rad_per_s) {
   return wheels.rolling_x_share * x_m_per_s + wheels.rolling_y_share * y_m_per_s + wheels.arm_m * yaw_rad_per_s;
 }
 
-/// As rolling_forces_N(), for all wheels at once.
+/// Returns the rolling force of every wheel for a wrench, which rolling_forces_N() calculates wheel by wheel.
 Wheels rolling_of_wrench_N(const Kinematics& kinematics, const Wrench& local) {
   return as_wheels(kinematics.inverse_x_factor) * local.x_N + as_wheels(kinematics.inverse_y_factor) * local.y_N +
          as_wheels(kinematics.inverse_yaw_per_m) * local.yaw_Nm;

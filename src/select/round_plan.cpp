@@ -17,12 +17,8 @@ namespace {
 const std::string kPlaying = "playing games";
 const std::string kEvaluating = "evaluating";
 
-// Durations on two cores for a match. Only their ratios matter once work has been measured.
-constexpr double kDraw_s = 0.12;
 constexpr double kNominalRun_s = 0.065;
 constexpr double kBlock_s = 0.006;
-
-double evaluation_s(double motors, int samples) { return motors * (kNominalRun_s + kBlock_s * samples / base::kLanes); }
 
 void append(std::vector<base::JobPhase>& all, std::vector<base::JobPhase> more) { std::ranges::move(more, std::back_inserter(all)); }
 
@@ -44,6 +40,8 @@ Interval95 interval_of(double share_ratio, int draws) {
 }
 
 }  // namespace
+
+double evaluation_work_s(double motors_count, int samples) { return motors_count * (kNominalRun_s + kBlock_s * samples / base::kLanes); }
 
 MotorEvaluation foreseen(const MotorEvaluation& few, int samples, double ambient_C) {
   MotorEvaluation result = few;
@@ -140,7 +138,7 @@ std::vector<base::JobPhase> RoundPlan::round(double motors_count, int samples, i
   if (duty_.shape_data->has_unknowns()) {
     phases.push_back({kPlaying, kDraw_s * draws});
   }
-  phases.push_back({kEvaluating, evaluation_s(motors_count, samples)});
+  phases.push_back({kEvaluating, evaluation_work_s(motors_count, samples)});
   return phases;
 }
 

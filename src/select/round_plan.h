@@ -11,6 +11,11 @@
 
 namespace heatsoak::select {
 
+/// Return the usual durations in s on two cores for a match: of one drawn game, and of the evaluation of `motors_count` motors. Only their
+/// ratios matter once work has been measured.
+inline constexpr double kDraw_s = 0.12;
+double evaluation_work_s(double motors_count, int samples);
+
 /// Progress of an evaluation that may be a part of a longer job.
 struct RoundsProgress {
   base::JobProgress job = {};

@@ -20,7 +20,7 @@ void check_job(const EvaluationJob& job, bool is_match) {
                                     job.duty.id, job.duty.shape));
   }
   if (job.closed_loop) {
-    // Of all motors of a folder, those without a rotor inertia are listed as not driven.
+    // If several motors are compared, those without a rotor inertia are listed as not driven.
     const bool is_any_complete =
         std::ranges::any_of(job.motors, [](const motor::Motor& each) { return each.nominal.rotor_inertia_kg_m2.has_value(); });
     firmware::require_drive_values(robot::with_assumed_friction(job.robot),

@@ -27,7 +27,7 @@ const std::map<std::string, std::string> kInstead{
     {"accepted, validated", "believ(e|es|ed)"},
     {"safety factor on heat", "heat reserves?"},
     {"limit exceeded", "pass(es|ed|ing)? (a|the|its|their) limits?"},
-    {"what remains, with a noun", "what is left"},
+    {"remainder, residual heat", "what is left"},
     {"accepted, counted", "taken in"},
     {"steady state", "comes? to rest|has settled"},
     {"estimate", "nobody has measured"},
