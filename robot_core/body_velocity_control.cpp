@@ -122,8 +122,8 @@ void close_loop(const Config& config, State& state, const Validated& validated, 
 
 BodyReference control_body_velocity(const Config& config, State& state, const Input& input, const Validated& validated) {
   BodyReference body;
-  // After a gap or a restart of State the references start anew and are valid for one period.
-  const bool is_anew = validated.robot_fault == Reason::time_jump || validated.robot_fault == Reason::state_corrupted;
+  // After a gap or a start of State the references start anew and are valid for one period.
+  const bool is_anew = validated.robot_fault == Reason::time_jump || state.steps == 0;
   const float since_s = is_anew ? config.period_s : state.held.since_s + validated.elapsed_s;
   state.held.since_s = 0.0F;
   if (is_anew) {

@@ -48,11 +48,14 @@ namespace {
   state.check_sum = check_sum_of(state);
 }
 
-[[gnu::cold]] void open_all(Reason reason, Output& out) {
+/// Opens all bridges. The temperatures are those with which the guards start.
+[[gnu::cold]] void open_all(const State& state, Reason reason, Output& out) {
   out = {};
   out.robot_reason = reason;
-  for (Reason& each : out.reason) {
-    each = reason;
+  out.is_warning = true;
+  for (int i = 0; i < kMostWheels; ++i) {
+    out.reason[i] = reason;
+    out.winding_C[i] = state.guard[i].state_C[0];
   }
 }
 
@@ -113,12 +116,8 @@ void control_wheels(const Config& config, State& state, const Validated& validat
 
 /// The reference of a body velocity changes slowly compared with the wheel loops, so it serves two periods. A change of mode or a fault of
 /// the robot takes effect at once.
-void step_valid(const Config& config, State& state, const Input& input, bool was_corrupted, Output& out) {
-  Validated validated = validate_input(config, state, input);
-  // With an invalid period the bridges stay open as well.
-  if (was_corrupted && validated.robot_fault != Reason::period_invalid) {
-    validated.robot_fault = Reason::state_corrupted;
-  }
+void step_valid(const Config& config, State& state, const Input& input, Output& out) {
+  const Validated validated = validate_input(config, state, input);
   run_guards(config, state, input, validated);
   WheelReferences wheels;
   WheelVoltages voltage;
@@ -159,10 +158,13 @@ void step(const Config& config, State& state, const Input& input, Output& out) {
   if (is_corrupted) {
     restart(config, state);
   }
-  if (state.is_valid == kStarted) {
-    step_valid(config, state, input, is_corrupted, out);
+  if (state.is_valid != kStarted) {
+    open_all(state, Reason::config_invalid, out);
+  } else if (is_corrupted) {
+    // The restart takes as long as a step.
+    open_all(state, Reason::state_corrupted, out);
   } else {
-    open_all(Reason::config_invalid, out);
+    step_valid(config, state, input, out);
   }
 }
 

@@ -9,9 +9,9 @@
 // |--------|-------------------------------------------------------------|---------------------------------------------------|---------------------------------|
 // | 100 R  | start() found that Config fails its check sum or holds an   | all bridges open                                  | start() with a valid Config     |
 // |        | impossible value                                            |                                                   |                                 |
-// | 101 R  | State fails its check sum (bit flip, never started)         | State restarts, keeps known sensor faults; guard  | next step; guard cools down     |
-// |        |                                                             | starts at its limit. If ComparisonState fails:    |                                 |
-// |        |                                                             | current sensors distrusted, limp current for all  | sensors agree again             |
+// | 101 R  | State fails its check sum (bit flip, never started)         | bridges open for this step; State restarts, keeps | next step; guard cools down     |
+// |        |                                                             | known faults, guard at its limit. ComparisonState |                                 |
+// |        |                                                             | fails: currents distrusted, limp current for all  | sensors agree again             |
 // | 102 R  | Input::elapsed_s not finite or below half a period          | all bridges open for this step; the guard counts  | next valid step                 |
 // |        |                                                             | the largest current for kWatchdog_s if the bridge |                                 |
 // |        |                                                             | was not open before                               |                                 |

@@ -150,6 +150,7 @@ TEST(FaultTable, config_invalid) {
 TEST(FaultTable, state_corrupted) {
   const Record record = check(
       {.code = Reason::state_corrupted, .periods = 1, .spoil = [](Input&, State& state, int) { state.wheel[2].integral_V += 1.0F; }}, 0, 0);
+  EXPECT_TRUE(record.was_open_at_end);
   EXPECT_GE(record.hottest_guard_C, kWindingLimit_C - 1.0);
 }
 

@@ -94,6 +94,26 @@ TEST_P(MatchOnTarget, InstructionsStayWithinTheBudget) {
   RecordProperty("most_instructions", std::to_string(*most));
 }
 
+TEST_P(MatchOnTarget, ARestartStaysWithinTheBudget) {
+  SKIP_WITHOUT_EMULATOR();
+  constexpr std::size_t kSteps = 200;
+  MatchStart start;
+  const std::string recorded = content_of(kMatch + GetParam() + "_start.bin");
+  ASSERT_EQ(recorded.size(), sizeof(start));
+  std::memcpy(&start, recorded.data(), sizeof(start));
+  start.state.wheel[2].integral_V += 1.0F;
+  std::vector<Input> inputs = recorded_inputs(GetParam());
+  inputs.resize(kSteps);
+  const Replay target = replay(HEATSOAK_MATCH_IMAGE, bytes_of(inputs), bytes_of(std::vector<MatchStart>{start}));
+  ASSERT_EQ(target.output.size(), kSteps * sizeof(DriveResult));
+  DriveResult first;
+  std::memcpy(&first, target.output.data(), sizeof(first));
+  EXPECT_EQ(first.robot_reason, static_cast<std::uint8_t>(robot_core::Reason::state_corrupted));
+  EXPECT_EQ(std::ranges::count(first.is_open, 1), robot_core::kMostWheels);
+  EXPECT_LE(target.most_instructions(), kMostInstructions);
+  RecordProperty("restart_instructions", std::to_string(target.instructions.front()));
+}
+
 TEST_P(MatchOnTarget, MemoryStaysWithinTheBudget) {
   SKIP_WITHOUT_EMULATOR();
   EXPECT_LE(replayed(GetParam()).summary.memory_bytes, kMostMemory_bytes);
