@@ -136,12 +136,14 @@ bool hold_window(const Config& config, const State& state, const Validated& vali
   return is_within(config, validated, demand, voltage_V) || move_into_window(config, state, validated, demand, i, voltage_V);
 }
 
-/// Limits the voltage of a wheel with unknown speed: at standstill at most the limp current or the guard's limit. False: open the bridge.
-[[gnu::cold, gnu::noinline]] bool limp_blindly(const Config& config, const Validated& validated, const WheelDemand& demand, int i,
-                                               float most_V, float& voltage_V) {
+/// Limits the voltage of a wheel with unknown speed: at standstill at most the limp current or the guard's limit. Its bridge closes only if
+/// the voltage keeps the limit at standstill and for all samples; then the sensed current keeps it. False: open the bridge.
+[[gnu::cold, gnu::noinline]] bool limp_blindly(const Config& config, const State& state, const Validated& validated,
+                                               const WheelDemand& demand, int i, float most_V, float& voltage_V) {
   const float limp_V = smaller(config.lowest_resistance_ohm * demand.most_A, most_V);
   voltage_V = clamped(voltage_V, -limp_V, limp_V);
-  return demand.most_A > 0.0F && validated.wheel[i].is_current_sensed && absolute(validated.wheel[i].current_A) <= demand.most_A;
+  return demand.most_A > 0.0F && validated.wheel[i].is_current_sensed &&
+         (state.wheel[i].is_open == 0 || move_into_window(config, state, validated, demand, i, voltage_V));
 }
 
 /// Keeps the limit by the sensed current. The new current is the sensed one plus the change of voltage over resistance, at any speed. Noise
@@ -268,7 +270,7 @@ Reason strongest(const WheelState& wheel, Reason limit) {
   float voltage_V = asked_V;
   Reason cause = Reason::slip;
   bool is_held = sensed.is_speed_known ? hold_window(config, state, validated, demand, i, voltage_V)
-                                       : limp_blindly(config, validated, demand, i, most_V, voltage_V);
+                                       : limp_blindly(config, state, validated, demand, i, most_V, voltage_V);
   if (sensed.is_current_sensed) {
     const float by_speed_V = voltage_V;
     hold_sensed_current(config, validated, i, wheel, demand.most_A, voltage_V);

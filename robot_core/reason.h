@@ -31,8 +31,8 @@
 // | 113 W  | speed of one wheel follows the current of another           | as 110, both wheels                               | start()                         |
 // |        | (swapped), while the robot is commanded to move; the sensed |                                                   |                                 |
 // |        | currents and four speeds must not contradict the swap       |                                                   |                                 |
-// | 114 W  | speed unknown: too few other wheels to estimate it          | voltage at most limp_current_A times resistance;  | as 110                          |
-// |        |                                                             | bridge open if the current is not sensed          |                                 |
+// | 114 W  | speed unknown: too few other wheels to estimate it          | limp_current_A by the current sensor; bridge open | as 110                          |
+// |        |                                                             | without it, or if no voltage suits all samples    |                                 |
 // | 115 W  | no wheel speed changes for kStanding_s while more than      | every current at most Config::limp_current_A, at  | a wheel speed changes           |
 // |        | limp_current_A would flow through standing motors: all      | its estimated speed and standing: no runaway      |                                 |
 // |        | sensors dead, or the robot is held                          |                                                   |                                 |
@@ -76,9 +76,9 @@
 //   - If the sample of the air temperature falls, the core follows it by at most 0.02 K/s; if it rises, by at most 0.01 K per step. A
 //     stator sample above the guard's temperature raises it by at most 20 K/s.
 //   - Periods of unequal length are rounded up for heat; a guard cools only for the time that has passed.
-//   - After a restart with restore(), the guards continue their periods and count the largest current for the time in which the last voltage
-//     may have acted. With restarts every 1 to 100 periods a winding was at most 0.3 K above its guard. A guard that could not count for two
-//     guard periods gets code 160, and so does a guard whose copy comes from firmware with another layout of the State.
+//   - After restore(), the guards continue their periods and count the largest current for the time in which the last voltage
+//     may have acted. With restarts every 1 to 100 periods a winding was at most 0.3 K above its guard. A guard that could not count for
+//     two guard periods gets code 160, and so does a guard whose copy comes from firmware with another layout of the State.
 //   - Each voltage keeps the current limit for every speed that the wheel may have. These speeds come from its own sensor, from each two
 //     other wheels with the gyro, and from three other wheels. With four wheel sensors and a gyro, any two may be wrong without a higher
 //     current while the wheels roll. With one sensor less (three wheels, or after a fault) one may be wrong. Swapped wheel sensors are then

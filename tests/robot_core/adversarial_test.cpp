@@ -14,7 +14,7 @@
 // Tests 1.1e7 steps with a hostile input or state, which is one that a fault has changed: no true current exceeds the limits. Steps before
 // and after the faults are not counted. They are single faults and combinations of three with at most one faulty speed sensor. Swapped
 // sensors and combinations of any kind may exceed the limits, but not by more than the slip. With HEATSOAK_HOSTILE_FACTOR=30, two of 8100
-// combinations with at most one faulty speed sensor exceed the limits by up to 1.9 A more than the slip: both have two battery faults.
+// combinations with at most one faulty speed sensor exceed the limits by up to 1.2 A more than the slip: both have two battery faults.
 #include <gtest/gtest.h>
 
 #include <algorithm>
