@@ -32,10 +32,13 @@ bool are_finite(const Config& config) {
   return are_all;
 }
 
+// A guard waits for up to two of its periods, which are counted in 16 bits.
+constexpr float kMostGuardPeriods = 3e4F;
+
 /// Returns true if a guard period is a whole number of control periods and the guard has a table.
 [[gnu::cold]] bool is_possible(const GuardModel& guard, float period_s) {
   const float periods = guard.period_s / period_s;
-  const float whole = static_cast<float>(static_cast<int>(clamped(periods, 0.0F, 1e6F) + 0.5F));
+  const float whole = static_cast<float>(static_cast<int>(clamped(periods, 0.0F, kMostGuardPeriods) + 0.5F));
   return guard.node_count >= 2 && guard.node_count <= kMostGuardNodes && is_positive(guard.period_s) && whole >= 1.0F &&
          absolute(periods - whole) < 1e-3F * whole && guard.rates != nullptr && guard.table.square_A2 != nullptr &&
          guard.table.speed_rad_per_s.count >= 1 && guard.table.stator_C.count >= 1 && guard.table.winding_C.count >= 2 &&

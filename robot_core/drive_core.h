@@ -108,7 +108,7 @@ struct Config {
   float battery_full_V = 0.0F;
   float battery_lowest_V = 0.0F;  ///< below this the electronics may reset; the sag limit keeps the battery above it
   float battery_resistance_ohm = 0.0F;
-  float voltage_limit_V = 0.0F;  ///< largest magnitude of the voltage command to one motor
+  float voltage_limit_V = 0.0F;  ///< largest voltage command to one motor; a wheel pushed beyond this voltage's speed gets its back-EMF
   float current_limit_A = 0.0F;  ///< limit of one motor driver
   // Friction.
   float rotation_friction_V = 0.0F;         ///< replaces f(θ) in pure rotation

@@ -132,6 +132,10 @@ TEST(FaultTable, config_invalid) {
                               robot_core::complete(c);
                             }),
                             std::function<void(Config&)>([](Config& c) {
+                              c.period_s = 2e-7F;  // a guard would wait for more periods than 16 bits count
+                              robot_core::complete(c);
+                            }),
+                            std::function<void(Config&)>([](Config& c) {
                               c.wheel_count = 5;
                               c.check_sum = robot_core::config_check_sum(c);
                             })}) {
