@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/copper.h"
 #include "motor/datasheet_network.h"
@@ -30,12 +31,28 @@ double shortest_of_longest_steps_s(const robot::PlantConfig& plant, const therma
   utmost.current_rms_A = thermal::Lanes::Constant(plant.battery.full_V / plant.motor.resistance_25C_ohm);
   utmost.speed_mean_rad_per_s = thermal::Lanes::Constant(plant.battery.full_V / plant.motor.torque_constant_25C_Nm_per_A);
   utmost.speed_rms_rad_per_s = utmost.speed_mean_rad_per_s;
+  utmost.vehicle_speed_m_per_s = utmost.speed_mean_rad_per_s * (plant.body.kinematics.wheel_radius_m / plant.gear_ratio);
   return std::min(thermal::longest_step_s(network, parameters, rest), thermal::longest_step_s(network, parameters, utmost));
 }
 
 }  // namespace
 
 struct SimulatedRobot::Heating {
+  /// Load of the motors: sums over the periods since the network was last advanced.
+  struct Load {
+    robot::Wheels copper_W = robot::Wheels::Zero();
+    robot::Wheels drag_W = robot::Wheels::Zero();
+    robot::Wheels shaft_W = robot::Wheels::Zero();
+    robot::Wheels speed_rad_per_s = robot::Wheels::Zero();
+    robot::Wheels speed_squared_rad2_per_s2 = robot::Wheels::Zero();
+    robot::Wheels velocity_rad_per_s = robot::Wheels::Zero();
+    robot::Wheels change_rad_per_s = robot::Wheels::Zero();  ///< magnitude of the change of speed per period
+    robot::Wheels modulation_ratio = robot::Wheels::Zero();
+    double bus_V = 0.0;
+    double vehicle_m_per_s = 0.0;
+    int periods = 0;
+  };
+
   /// Sums of the plant's powers over all periods. Multiplied by kPeriod_s they are energies.
   struct Sums {
     robot::Wheels copper_W = robot::Wheels::Zero();
@@ -58,6 +75,20 @@ struct SimulatedRobot::Heating {
         longest_step_s(shortest_of_longest_steps_s(plant, network, parameters, ambient_C)) {
     static_assert(robot::kMostWheels <= base::kLanes);
     means.ambient_C = thermal::Lanes::Constant(ambient_C);
+    means.known = thermal::kNeighbour;
+  }
+
+  /// Highest temperature of each motor's neighbours, without their windings, as the guard counts it.
+  void find_neighbours(int wheel_count) {
+    for (int i = 0; i < wheel_count; ++i) {
+      double hottest_C = -std::numeric_limits<double>::infinity();
+      for (std::size_t node = kStator; node < thermal.state_C().size(); ++node) {
+        for (int j = 0; j < wheel_count; ++j) {
+          hottest_C = j == i ? hottest_C : std::max(hottest_C, thermal.state_C()[node][j]);
+        }
+      }
+      means.neighbour_C[i] = hottest_C;
+    }
   }
 
   Sums sums;
@@ -66,11 +97,8 @@ struct SimulatedRobot::Heating {
   thermal::EnsembleRun thermal;  ///< one wheel per lane
   double longest_step_s;
   thermal::OperatingPoint<thermal::Lanes> means;  ///< means over the last kThermalPeriod_s
-  // Sums over the periods since the network was last advanced.
-  robot::Wheels copper_W = robot::Wheels::Zero();
-  robot::Wheels speed_rad_per_s = robot::Wheels::Zero();
-  robot::Wheels speed_squared_rad2_per_s2 = robot::Wheels::Zero();
-  int periods = 0;
+  Load load;
+  robot::Wheels last_rad_per_s = robot::Wheels::Zero();
 };
 
 SimulatedRobot::SimulatedRobot(const robot::Robot& robot, const motor::Motor& motor, double ambient_C, std::optional<double> start_C)
@@ -95,7 +123,7 @@ const robot::PlantOutput& SimulatedRobot::advance(const std::array<robot::MotorC
   input_.external = external;
   robot::step(plant_, state_, input_, output_);
   book();
-  if (++heating_->periods == kPeriodsPerThermal) {
+  if (++heating_->load.periods == kPeriodsPerThermal) {
     warm_up();
   }
   return output_;
@@ -114,29 +142,51 @@ void SimulatedRobot::book() {
   sums.battery_loss_W += output_.battery_loss_W;
   sums.external_W += output_.external_W;
   const robot::Wheels speed_rad_per_s = robot::as_wheels(output_.motor_speed_rad_per_s);
-  heating_->copper_W += robot::as_wheels(output_.copper_W);
-  heating_->speed_rad_per_s += speed_rad_per_s.abs();
-  heating_->speed_squared_rad2_per_s2 += speed_rad_per_s.square();
+  Heating::Load& load = heating_->load;
+  load.copper_W += robot::as_wheels(output_.copper_W);
+  load.drag_W += robot::as_wheels(output_.motor_drag_W);
+  load.shaft_W += robot::as_wheels(output_.motor_torque_Nm) * speed_rad_per_s;
+  load.speed_rad_per_s += speed_rad_per_s.abs();
+  load.speed_squared_rad2_per_s2 += speed_rad_per_s.square();
+  load.velocity_rad_per_s += speed_rad_per_s;
+  load.change_rad_per_s += (speed_rad_per_s - heating_->last_rad_per_s).abs();
+  heating_->last_rad_per_s = speed_rad_per_s;
+  const auto is_driven = [&](int i) { return input_.command[i].kind == robot::MotorCommand::Kind::open ? 0.0 : 1.0; };
+  const robot::Wheels bridge_V = robot::as_wheels(output_.terminal_V) + plant_.driver.resistance_ohm * robot::as_wheels(output_.current_A);
+  load.modulation_ratio +=
+      robot::Wheels(is_driven(0), is_driven(1), is_driven(2), is_driven(3)) * (bridge_V.abs() / std::max(output_.battery_V, 1.0)).min(1.0);
+  load.bus_V += output_.battery_V;
+  const robot::BodyVelocity& velocity = state_.velocity;
+  load.vehicle_m_per_s += std::sqrt(velocity.x_m_per_s * velocity.x_m_per_s + velocity.y_m_per_s * velocity.y_m_per_s);
 }
 
 void SimulatedRobot::warm_up() {
   Heating& heat = *heating_;
+  const Heating::Load& load = heat.load;
+  thermal::OperatingPoint<thermal::Lanes>& means = heat.means;
+  constexpr int kWheels = robot::kMostWheels;
+  const double share = 1.0 / load.periods;
   // The current is calculated from the plant's copper loss, so that the network receives exactly this heat.
   const robot::Wheels resistance_ohm =
       plant_.motor.resistance_25C_ohm * base::resistance_ratio<robot::Wheels>(robot::Wheels::Constant(plant_.motor.resistance_rise_per_K),
                                                                               robot::as_wheels(input_.winding_C));
-  heat.means.current_rms_A.head<robot::kMostWheels>() = (heat.copper_W / heat.periods / resistance_ohm).sqrt();
-  heat.means.speed_mean_rad_per_s.head<robot::kMostWheels>() = heat.speed_rad_per_s / heat.periods;
-  heat.means.speed_rms_rad_per_s.head<robot::kMostWheels>() = (heat.speed_squared_rad2_per_s2 / heat.periods).sqrt();
-  heat.thermal.over(kPeriod_s * heat.periods, heat.means, heat.longest_step_s);
+  means.current_rms_A.head<kWheels>() = (load.copper_W / load.periods / resistance_ohm).sqrt();
+  means.speed_mean_rad_per_s.head<kWheels>() = load.speed_rad_per_s / load.periods;
+  means.speed_rms_rad_per_s.head<kWheels>() = (load.speed_squared_rad2_per_s2 / load.periods).sqrt();
+  means.shaft_power_W.head<kWheels>() = share * load.shaft_W;
+  means.input_power_W.head<kWheels>() = share * (load.copper_W + load.drag_W + load.shaft_W);
+  means.velocity_rad_per_s.head<kWheels>() = share * load.velocity_rad_per_s;
+  means.acceleration_rad_per_s2.head<kWheels>() = (share / kPeriod_s) * load.change_rad_per_s;
+  means.modulation_ratio.head<kWheels>() = share * load.modulation_ratio;
+  means.bus_V = thermal::Lanes::Constant(share * load.bus_V);
+  means.vehicle_speed_m_per_s = thermal::Lanes::Constant(share * load.vehicle_m_per_s);
+  heat.find_neighbours(wheel_count());
+  heat.thermal.over(kPeriod_s * load.periods, means, heat.longest_step_s);
   for (int i = 0; i < wheel_count(); ++i) {
     input_.winding_C[i] = winding_C(i);
     input_.magnet_C[i] = stator_C(i);
   }
-  heat.copper_W.setZero();
-  heat.speed_rad_per_s.setZero();
-  heat.speed_squared_rad2_per_s2.setZero();
-  heat.periods = 0;
+  heat.load = {};
 }
 
 EnergyAccount SimulatedRobot::energy() const {
