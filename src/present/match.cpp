@@ -195,7 +195,8 @@ Document match_document(const simulate::MatchSimulation& answer) {
   if (!answer.is_sensing_ideal) {
     add_missing_sensors(document, answer.robot);
   }
-  add_motor_notes(document, {&answer.motor, 1});
+  constexpr bool kHasNeighbours = true;
+  add_motor_notes(document, {&answer.motor, 1}, kHasNeighbours);
   if (answer.guard_use != simulate::GuardUse::off) {
     add_lines(document.notes, default_spreads_text({&answer.motor, 1}), Severity::note);
   }

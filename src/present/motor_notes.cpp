@@ -49,13 +49,13 @@ std::string effects_under_conditions(std::span<const motor::Motor> motors) {
   return text;
 }
 
-std::string inactive_effects(std::span<const motor::Motor> motors) {
+std::string inactive_effects(std::span<const motor::Motor> motors, bool has_neighbours) {
   std::string text = columns_at_their_hottest(motors) + effects_under_conditions(motors);
   for (const motor::Motor& motor : motors) {
     for (const motor::MotorEffect& effect : motor.effects) {
       const std::vector<thermal::Signal> needed = effect.type->needed_with(effect.values());
       const auto needs = [&](thermal::Signal signal) { return std::ranges::find(needed, signal) != needed.end(); };
-      const bool needs_neighbour = needs(thermal::Signal::neighbour_temperature);
+      const bool needs_neighbour = !has_neighbours && needs(thermal::Signal::neighbour_temperature);
       if (needs_neighbour || needs(thermal::Signal::age)) {
         text += fmt::format("{}: {} is left out, because a duty does not state {}\n", motor.id, effect.name,
                             needs_neighbour ? "the neighbour's temperature" : "the operating hours of the motor");
@@ -65,9 +65,9 @@ std::string inactive_effects(std::span<const motor::Motor> motors) {
   return text;
 }
 
-void add_motor_notes(Document& document, std::span<const motor::Motor> motors) {
+void add_motor_notes(Document& document, std::span<const motor::Motor> motors, bool has_neighbours) {
   add_lines(document.notes, doubtful_fits(motors), Severity::warning);
-  add_lines(document.notes, inactive_effects(motors), Severity::note);
+  add_lines(document.notes, inactive_effects(motors, has_neighbours), Severity::note);
 }
 
 std::string doubtful_fits(std::span<const motor::Motor> motors) {

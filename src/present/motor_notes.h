@@ -10,10 +10,11 @@
 namespace heatsoak::present {
 
 /// Adds the notes that apply to every prediction with these motors: doubtful_fits() as warnings, inactive_effects() as notes.
-void add_motor_notes(Document& document, std::span<const motor::Motor> motors);
+/// `has_neighbours`: the prediction contains all motors of a robot, so each has the temperature of its neighbours.
+void add_motor_notes(Document& document, std::span<const motor::Motor> motors, bool has_neighbours = false);
 
 /// Returns a line for each effect with an unknown input and how it is treated; empty if there is none.
-std::string inactive_effects(std::span<const motor::Motor> motors);
+std::string inactive_effects(std::span<const motor::Motor> motors, bool has_neighbours = false);
 
 /// Returns the lines of effects that depend on a log column; these use the value of the curve that gives the highest temperature.
 std::string columns_at_their_hottest(std::span<const motor::Motor> motors);

@@ -1,9 +1,10 @@
-// Notes about the tolerances of a motor file.
+// Notes about the tolerances of a motor file, and about effects whose inputs a prediction does not know.
 #include "present/motor_notes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "derate/guarded_motor.h"
 #include "motor/read_motor.h"
 #include "support/source_folder.h"
 
@@ -29,6 +30,15 @@ TEST(DefaultSpreadsText, AdviceForAFitAsksForNoChangeOfTheFile) {
   const std::string of_fit = text.substr(text.find('\n') + 1);
   EXPECT_THAT(of_file, AllOf(HasSubstr("terminal_resistance"), HasSubstr("state the real ones"), Not(HasSubstr("stator_ambient"))));
   EXPECT_THAT(of_fit, AllOf(HasSubstr("thermal_resistance_stator_ambient"), HasSubstr("the file needs no change")));
+}
+
+TEST(MotorNotes, TheNeighbourIsKnownOnlyWithAllMotorsOfARobot) {
+  const motor::Motor motor = derate::ecx_32_with(
+      "[effects.plate]\ntype = \"neighbour_coupling\"\n"
+      "conductance = { value = \"0.05 W/K\", origin = \"estimated\", derivation = \"a test\" }\n");
+  EXPECT_THAT(inactive_effects({&motor, 1}), HasSubstr("plate is left out"));
+  constexpr bool kHasNeighbours = true;
+  EXPECT_EQ(inactive_effects({&motor, 1}, kHasNeighbours), "");
 }
 
 }  // namespace
