@@ -108,8 +108,8 @@
 //     body_velocity: a correct wheel can get rejected (117). The robot then spins until its gyro is out of range (140), and even with
 //     correct current sensors a wheel had twice its current limit for 0.3 s, several times.
 //   - Three wheels without current sensors that spin faster than the gyro can measure, with one wrong speed: the gyro stays rejected (140),
-//     and the wheel exceeds the limp current up to fourfold for a minute; the winding is up to 21 K hotter than the guard. If two wheel
-//     sensors report twice their speed, a winding reaches 187 degC at a computed 120 degC.
+//     and the wheel exceeds the limp current up to fourfold for a minute; the winding is up to 21 K hotter than the guard, with four wheels
+//     up to 6 K. If two wheel sensors report twice their speed, a winding reaches 187 degC at a computed 120 degC.
 //   - Three wheels, one of whose speeds drifts: its correct current sensor is distrusted (121), and a current of twice the limp current may
 //     flow for seconds. The guard counts it.
 //   - Three wheels with a dead current sensor, pushed: fault 113 comes more often (13 of 25 robots instead of 3) and with it currents above
