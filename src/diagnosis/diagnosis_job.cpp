@@ -8,6 +8,7 @@
 #include "base/collected_failures.h"
 #include "base/diagnostic.h"
 #include "calibration/forecast/forecast.h"
+#include "diagnosis/left_out_band.h"
 #include "estimation/log_columns.h"
 #include "estimation/open_loop.h"
 
@@ -16,6 +17,7 @@ namespace {
 
 const std::string kReading = "checking the runs";
 const std::string kContradiction = "comparing the runs with each other";
+const std::string kBand = "predicting left-out runs";
 const std::string kScoring = "predicting the runs";
 
 std::vector<estimation::MeasuredRun> runs_of(const std::vector<recording::Recording>& recordings,
@@ -113,7 +115,7 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& 
   input.train = runs_of(fitted, how, findings);
   input.progress = progress;
   const double unit_s = calibration::usual_s(input.train);
-  const std::vector<base::JobPhase> last{{kContradiction, 0.6 * unit_s}, {kScoring, 0.6 * unit_s}};
+  const std::vector<base::JobPhase> last{{kContradiction, 0.6 * unit_s}, {kBand, 0.6 * unit_s}, {kScoring, 0.6 * unit_s}};
   std::vector<base::JobPhase> phases = selection_work(unit_s);
   phases.insert(phases.begin(), {kReading, 0.2 * unit_s});
   phases.insert(phases.end(), last.begin(), last.end());
@@ -134,9 +136,12 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& 
   add_contradiction(answer.diagnosis.selection, input.train, findings);
   refuse_where_nothing_follows(answer.diagnosis, input);
   answer.motor = extended_motor(job.motor, model, answer.diagnosis);
+  const calibration::PredictionOptions predicting{choice.ambient_C, input.turns_within_rows};
+  progress.begin(kBand);
+  answer.motor.fit->band = left_out_band(job.motor, model, answer.diagnosis, fitted);
   progress.begin(kScoring);
   answer.score = score_holdout(input, answer.diagnosis, runs_of(held_out, how, findings));
-  score_files(job.motor, answer.motor, held_out, {choice.ambient_C, input.turns_within_rows}, answer.score);
+  score_files(job.motor, answer.motor, held_out, predicting, answer.score);
   add_lacking_columns(columns, held_out, findings);
   add_fitted_holdouts(job.motor, held_out, findings);
   return answer;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <iterator>
 
 #include "base/unknown.h"
@@ -89,6 +90,27 @@ Runs record(const Case& sealed) {
     runs.earlier.push_back(recorded({}, 100 + r, r == kEarlier - 1));
   }
   return runs;
+}
+
+motor::Motor sheet_of(const MotorMake& make, const std::filesystem::path& file) {
+  std::ofstream out(file);
+  out << "manufacturer = \"none\"\nname = \"made up\"\ntype = \"brushless\"\n[sources]\ns = \"made up\"\n[conventions]\n"
+         "terminal_resistance = \"between_terminals\"\ntorque_constant = \"per_dc_ampere\"\n[figures]\n";
+  const auto figure = [&](const char* key, double value, const char* unit) {
+    out << fmt::format("{} = {{ value = \"{:.6g} {}\", origin = \"datasheet\", source = \"s\" }}\n", key, value, unit);
+  };
+  figure("nominal_voltage", 24.0, "V");
+  figure("terminal_resistance", make.resistance_25C_ohm, "ohm");
+  figure("torque_constant", 0.034, "N m/A");
+  figure("no_load_current", 0.0, "A");
+  figure("temperature_coefficient", make.copper_per_K, "1/K");
+  figure("winding_limit", 155.0, "degC");
+  figure("thermal_resistance_winding_stator", 1.15 * make.copper_to_iron_K_per_W, "K/W");
+  figure("thermal_resistance_stator_ambient", 0.9 * make.iron_to_air_K_per_W, "K/W");
+  figure("thermal_time_constant_winding", make.copper_to_iron_K_per_W * make.copper_capacity_J_per_K, "s");
+  figure("thermal_time_constant_stator", make.iron_to_air_K_per_W * make.iron_capacity_J_per_K, "s");
+  out.close();
+  return motor::read_motor(file);
 }
 
 Calibrated calibrated(const Case& sealed, const MotorMake& make, const std::vector<TrueRun>& runs) {

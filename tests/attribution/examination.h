@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "diagnosis/diagnosis.h"
 #include "estimation/fit.h"
 #include "missing_effects.h"
+#include "motor/motor.h"
 #include "truth_motor.h"
 
 namespace heatsoak::attribution::truth {
@@ -36,6 +38,9 @@ Runs record(const Case& sealed);
 
 /// Model before a calibration: the copper resistance is right, every other parameter is off by up to 25 %.
 estimation::Model model_before(const MotorMake& make, std::uint64_t seed);
+
+/// Writes a data sheet of the motor, whose thermal resistances are off by up to 15 %, to `file` and reads it.
+motor::Motor sheet_of(const MotorMake& make, const std::filesystem::path& file);
 
 struct Calibrated {
   estimation::Model model;

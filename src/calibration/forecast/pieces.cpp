@@ -52,25 +52,32 @@ ForecastFit fitted_without(const ForecastModel& model, std::span<const estimatio
   return fit;
 }
 
+PredictedPiece predicted_from(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance,
+                              const estimation::MeasuredRun& run, std::size_t index, const Eigen::VectorXd& start_C) {
+  return {index, model.along(run, theta, 0.0, {start_C.data(), static_cast<std::size_t>(start_C.size())}), covariance,
+          model.values_in(run, theta, 0.0)};
+}
+
 PredictedPiece predicted(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, const Piece& piece,
                          const ForecastFit& fit) {
   const estimation::MeasuredRun& run = runs[piece.run];
-  PredictedPiece out{piece.run, {}, {}, {}};
-  const bool is_block = !piece.seen.empty();
-  const Eigen::VectorXd start_C =
-      is_block && !fit.starts.empty() ? fit.starts.front().state_C : model.decided_start(run, fit.theta).state_C;
-  out.path = model.along(run, fit.theta, 0.0, {start_C.data(), static_cast<std::size_t>(start_C.size())});
-  out.covariance = fit.covariance;
-  out.values = model.values_in(run, fit.theta, 0.0);
-  for (Eigen::Index row = 0; is_block && row < out.path.residual_K.size(); ++row) {
-    if (piece.scored[static_cast<std::size_t>(row)] == 0) {
-      out.path.residual_K[row] = std::numeric_limits<double>::quiet_NaN();
+  PredictedPiece out = piece.seen.empty() || fit.starts.empty()
+                           ? predicted_run(model, fit.theta, fit.covariance, run, piece.run)
+                           : predicted_from(model, fit.theta, fit.covariance, run, piece.run, fit.starts.front().state_C);
+  for (std::size_t row = 0; row < piece.scored.size(); ++row) {
+    if (piece.scored[row] == 0) {
+      out.path.residual_K[static_cast<Eigen::Index>(row)] = std::numeric_limits<double>::quiet_NaN();
     }
   }
   return out;
 }
 
 }  // namespace
+
+PredictedPiece predicted_run(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance,
+                             const estimation::MeasuredRun& run, std::size_t index) {
+  return predicted_from(model, theta, covariance, run, index, model.decided_start(run, theta).state_C);
+}
 
 std::vector<Piece> pieces_of(const ForecastModel& model, const ForecastFit& base, std::span<const estimation::MeasuredRun> runs) {
   std::vector<Eigen::MatrixXd> sensor_C;

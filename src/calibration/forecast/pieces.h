@@ -31,6 +31,10 @@ struct PredictedPiece {
   std::vector<double> values;      ///< the network's parameters
 };
 
+/// Predicts a run, whose index is `index`, from its first temperatures. `covariance` is that of θ.
+PredictedPiece predicted_run(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance,
+                             const estimation::MeasuredRun& run, std::size_t index);
+
 struct PieceScore {
   double score_nats = 0.0;  ///< mean over pieces and sensors of ½·ln(mean square error + noise²)
   std::vector<PredictedPiece> pieces;

@@ -73,6 +73,26 @@ motor::Motor as_in(const recording::Recording& recording, const motor::Motor& mo
   return of_motor.empty() ? motor : motor::under(motor, of_motor);
 }
 
+struct FileModel {
+  ForecastModel model;
+  Eigen::MatrixXd covariance;  ///< that of θ
+  double unseen_loss_W = 0.0;  ///< largest loss at a speed that the runs do not contain; 0: none
+};
+
+/// Returns the model of a motor file for runs with the heat input of `setup`.
+FileModel model_of_file(ForecastSetup setup, const motor::Motor& motor, std::span<const estimation::MeasuredRun> runs) {
+  double unseen_loss_W = setup.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
+  if (unseen_loss_W > 0.0 && std::ranges::any_of(runs, turns_unseen)) {
+    setup.opens_loss_at_speed = true;
+  } else {
+    unseen_loss_W = 0.0;
+  }
+  ForecastModel model = setup.model();
+  const Eigen::MatrixXd& precision = model.prior().precision;
+  Eigen::MatrixXd covariance = precision.ldlt().solve(Eigen::MatrixXd::Identity(precision.rows(), precision.cols()));
+  return {std::move(model), std::move(covariance), unseen_loss_W};
+}
+
 void predict_one(const motor::Motor& motor, const recording::Recording& recording, const PredictionOptions& options, Prediction& all) {
   const std::span<const recording::Recording> own(&recording, 1);
   ForecastSetup setup = forecast_setup(motor, own);
@@ -82,17 +102,13 @@ void predict_one(const motor::Motor& motor, const recording::Recording& recordin
   if (options.turns_within_rows) {
     std::ranges::transform(runs, runs.begin(), estimation::turning_within_rows);
   }
-  const double most_loss_W = setup.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
-  if (most_loss_W > 0.0 && std::ranges::any_of(runs, turns_unseen)) {
-    setup.opens_loss_at_speed = true;
-    all.notes.emplace_back(BandIncludesLossAtSpeed{recording.name, most_loss_W});
+  const FileModel file = model_of_file(std::move(setup), motor, runs);
+  if (file.unseen_loss_W > 0.0) {
+    all.notes.emplace_back(BandIncludesLossAtSpeed{recording.name, file.unseen_loss_W});
   }
-  const ForecastModel model = setup.model();
-  const Eigen::MatrixXd& precision = model.prior().precision;
-  const Eigen::MatrixXd covariance = precision.ldlt().solve(Eigen::MatrixXd::Identity(precision.rows(), precision.cols()));
   const motor::ForecastBand band = motor.fit && motor.fit->band ? *motor.fit->band : usual_band(longest_s(runs));
   for (const estimation::MeasuredRun& run : runs) {
-    all.runs.push_back(predict(model, model.start(), covariance, band, run));
+    all.runs.push_back(predict(file.model, file.model.start(), file.covariance, band, run));
   }
 }
 
@@ -130,6 +146,22 @@ std::vector<estimation::MeasuredRun> forecast_runs(const ForecastSetup& setup, s
     std::ranges::move(found.notes, std::back_inserter(notes));
   }
   return all;
+}
+
+motor::ForecastBand band_of_left_out(std::span<const LeftOutRecording> left_out) {
+  std::optional<ForecastModel> model;
+  std::vector<estimation::MeasuredRun> runs;
+  std::vector<PredictedPiece> pieces;
+  for (const LeftOutRecording& each : left_out) {
+    const motor::Motor motor = as_in(each.recording, each.without);
+    FileModel file = model_of_file(forecast_setup(motor, {&each.recording, 1}), motor, each.runs);
+    for (const estimation::MeasuredRun& run : each.runs) {
+      pieces.push_back(predicted_run(file.model, file.model.start(), file.covariance, run, runs.size()));
+      runs.push_back(run);
+    }
+    model = std::move(file.model);
+  }
+  return fit_band(model.value(), runs, pieces, left_out.size());
 }
 
 Prediction predict(const motor::Motor& motor, std::span<const recording::Recording> recordings, const PredictionOptions& options) {

@@ -56,4 +56,15 @@ struct PredictionOptions {
 /// numerics_failed if the temperatures diverge.
 Prediction predict(const motor::Motor& motor, std::span<const recording::Recording> recordings, const PredictionOptions& options);
 
+/// A recording, and the motor file that results from a fit without it.
+struct LeftOutRecording {
+  recording::Recording recording;
+  std::vector<estimation::MeasuredRun> runs;  ///< of the recording; wrong samples are NaN
+  motor::Motor without;
+};
+
+/// Fits the band to the errors of predictions of recordings (at least one) that the parameters were not fitted to. All motors must have the
+/// same effects. Throws Failure (numerics_failed) if temperatures diverge.
+motor::ForecastBand band_of_left_out(std::span<const LeftOutRecording> left_out);
+
 }  // namespace heatsoak::calibration
