@@ -51,7 +51,7 @@ void require_all(const robot::Robot& robot, const motor::MotorValues& motor) {
   diagnostics.throw_if_any();
 }
 
-void set_geometry(const robot::BodyConfig& body, robot_core::Config& config) {
+void set_geometry(const robot::Robot& robot, const robot::BodyConfig& body, robot_core::Config& config) {
   const robot::Kinematics& kinematics = body.kinematics;
   config.wheel_count = kinematics.wheel_count;
   config.wheel_radius_m = single(kinematics.wheel_radius_m);
@@ -67,6 +67,7 @@ void set_geometry(const robot::BodyConfig& body, robot_core::Config& config) {
     wheel.inverse_y_factor = single(kinematics.inverse_y_factor[i]);
     wheel.inverse_yaw_per_m = single(kinematics.inverse_yaw_per_m[i]);
     wheel.level_load_share = single(body.weight.level_share[i]);
+    wheel.slip_factor = robot.wheels.slip_factor.empty() ? 1.0F : single(robot.wheels.slip_factor[static_cast<std::size_t>(i)]);
   }
 }
 
@@ -227,7 +228,7 @@ robot_core::Config make_core_config(const robot::Robot& robot, const motor::Moto
   const robot::BodyConfig body = make_body_with_known_friction(robot, motor);
   robot_core::Config config;
   config.period_s = single(options.period_s);
-  set_geometry(body, config);
+  set_geometry(robot, body, config);
   set_drive(robot, motor, body, options, config);
   set_friction(robot, motor, body, config);
   set_gains(wheel_loop_gains(wheel_loop_plant(body, robot::drive_constants(robot, motor)), options.period_s), config);

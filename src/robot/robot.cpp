@@ -255,6 +255,13 @@ void read_wheels(input::Reader& top, Robot& robot) {
   if (robot.wheels.axis_rad.size() < 3) {
     wheels->problem("axis_angles", "names fewer than three wheels; an omni-directional robot has at least three");
   }
+  robot.wheels.slip_factor = wheels->quantities(
+      {"slip_factors", "", base::Range::between(0.5, 2.0), "measured speed of each wheel divided by its speed without slip, wheel 1 first"},
+      input::Need::optional);
+  if (!robot.wheels.slip_factor.empty() && robot.wheels.slip_factor.size() != robot.wheels.axis_rad.size()) {
+    wheels->problem("slip_factors", fmt::format("names {} wheels, axis_angles {}; expected one factor per wheel",
+                                                robot.wheels.slip_factor.size(), robot.wheels.axis_rad.size()));
+  }
   read_file_parameters(*wheels, "wheels", robot);
   wheels->finish();
 }

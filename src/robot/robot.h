@@ -30,6 +30,7 @@ struct RobotWheels {
   double radius_m = 0.0;
   double contact_radius_m = 0.0;             ///< distance from the robot's axis to the wheels' contact points
   std::vector<double> axis_rad;              ///< direction of each wheel's axle from straight ahead, counter-clockwise, wheel 1 first
+  std::vector<double> slip_factor;           ///< per wheel: measured speed divided by the speed without slip; empty: not measured
   std::optional<double> inertia_kg_m2 = {};  ///< one wheel about its axle, without the motor's rotor
 };
 

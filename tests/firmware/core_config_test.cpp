@@ -61,6 +61,17 @@ TEST(CoreConfig, HandCalculationOfTheMotor) {
   EXPECT_FLOAT_EQ(config.speed_limit_m_per_s, 2.0F);
 }
 
+TEST(CoreConfig, SlipFactorsAreThoseOfTheRobotFile) {
+  robot::Robot robot = twente();
+  const auto slip_factor = [&](int wheel) {
+    return make_core_config(robot, ecx_32().nominal, with_tolerance({}, ecx_32())).wheel[wheel].slip_factor;
+  };
+  EXPECT_EQ(slip_factor(3), 1.0F);
+  robot.wheels.slip_factor = {1.01, 1.02, 1.03, 1.04};
+  EXPECT_EQ(slip_factor(0), 1.01F);
+  EXPECT_EQ(slip_factor(3), 1.04F);
+}
+
 TEST(CoreConfig, DriverWithACurrentLimitKeepsIt) {
   const robot::Robot robot = shipped_robot("tigers_v2020");
   const motor::Motor motor = shipped_motor(robot.drive.motor);

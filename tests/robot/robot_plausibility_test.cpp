@@ -6,6 +6,7 @@
 #include <iterator>
 #include <regex>
 
+#include "base/diagnostic.h"
 #include "robot/robot.h"
 #include "robot/robot_lint.h"
 #include "support/source_folder.h"
@@ -43,6 +44,18 @@ TEST(RobotPlausibility, diameter_in_place_of_the_radius_makes_wheels_overlap) {
 // Not their radius, which is right, but their angles are wrong.
 TEST(RobotPlausibility, two_wheels_at_one_angle_are_named) {
   EXPECT_THAT(findings_with("axis_angles = \\[\"-30 deg\", \"30 deg\"", "axis_angles = [\"30 deg\", \"30 deg\""), Contains("axes error"));
+}
+
+TEST(RobotPlausibility, slip_factors_belong_to_wheels) {
+  const std::string text = content_of_robot("roboteam_twente_v2024.toml");
+  const auto with = [&](const std::string& factors) {
+    return parse_robot(std::regex_replace(text, std::regex("\n\\[wheels\\]\n"), "\n[wheels]\nslip_factors = " + factors + "\n"),
+                       "robot.toml");
+  };
+  EXPECT_THAT(with("[\"1.01\", \"1.02\", \"1.03\", \"1.04\"]").wheels.slip_factor, testing::ElementsAre(1.01, 1.02, 1.03, 1.04));
+  EXPECT_THAT([&] { with("[\"1.01\", \"1.02\"]"); },
+              testing::ThrowsMessage<base::Failure>(testing::HasSubstr("names 2 wheels, axis_angles 4")));
+  EXPECT_THAT([&] { with("[\"1\", \"1\", \"1\", \"102\"]"); }, testing::Throws<base::Failure>());
 }
 
 // Two wheels at ±30° on a circle of 80.4 mm touch if their radius is 80.4 mm · tan 30° = 46.4 mm.
