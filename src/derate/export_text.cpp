@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/crc.hpp>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
@@ -87,6 +88,14 @@ std::string ramp_lines(const Derating& derating, RampSignal signal, const Curren
       is_stator ? "winding" : "stator", phase_per_dc_ratio * loss.mean_A(), loss.mean_percent(), phase_per_dc_ratio * loss.bound_mean_A,
       loss.from_C, loss.to_C, phase_per_dc_ratio * loss.most_A, loss.most_at_C, phase_per_dc_ratio * loss.peak_A,
       derating.options.hottest_ambient_C, phase_per_dc_ratio * ramp.most_current_A);
+}
+
+unsigned guard_signature(const Derating& derating, std::string_view form) {
+  const std::string all = fmt::format("{}|{}|{}|{}{}", derating.motor_id, derating.robot_id, derating.options.period_s,
+                                      derating.observer.heat_safety_factor(), form);
+  boost::crc_32_type sum;
+  sum.process_bytes(all.data(), all.size());
+  return sum.checksum();
 }
 
 std::string own_effects_text(const Derating& derating) {

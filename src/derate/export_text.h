@@ -28,6 +28,9 @@ std::string unmodelled_heat_text(const Derating& derating);
 /// the id is empty or begins with a digit.
 std::string identifier(std::string_view id);
 
+/// Returns a checksum that differs between guards; `form`: form of the generated guard, "" for the C header.
+unsigned guard_signature(const Derating& derating, std::string_view form);
+
 /// Returns the losses and the validity of the ramp as lines that begin with `comment`. `phase_per_dc_ratio` is the controller's current per
 /// equivalent DC current.
 std::string ramp_lines(const Derating& derating, RampSignal signal, const CurrentRamp& ramp, double phase_per_dc_ratio,

@@ -80,11 +80,14 @@ int main(int argc, char **argv) {
 }
 )";
 
-/// Runs some thousand steps of the integer form and prints a check sum of its answers.
+/// Runs some thousand steps of the integer form, saves and restores, and prints a check sum of its answers.
 constexpr const char* kSteps = R"(
 #include "q15_guard.h"
 static uint32_t check_sum(void) {
+  static const int32_t elapsed_ms[4] = {-1, 0, 1500, 400000};
+  uint8_t saved[64];
   MOTOR_q15_state state = {0u, {0}};
+  MOTOR_q15_state again = {0u, {0}};
   MOTOR_q15_input in;
   uint32_t seed = 99u, sum = 2166136261u;
   int i;
@@ -99,6 +102,11 @@ static uint32_t check_sum(void) {
     sum = (sum ^ (uint32_t)out.allowed_current_mA) * 16777619u;
     sum = (sum ^ (uint32_t)out.guarded_winding_mC) * 16777619u;
     sum = (sum ^ (uint32_t)out.reason) * 16777619u;
+  }
+  MOTOR_q15_save(&state, saved);
+  for (i = 0; i < 4; ++i) {
+    sum = (sum ^ (uint32_t)MOTOR_q15_restore(&again, saved, elapsed_ms[i], 100 * i, 20000)) * 16777619u;
+    sum = (sum ^ (uint32_t)again.stored[0] ^ (uint32_t)(again.stored[1] >> 20)) * 16777619u;
   }
   return sum;
 }

@@ -1,10 +1,12 @@
 #include "derate/c_header/c_text.h"
 
+#include <embedded/shared_c_text.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 #include <limits>
+#include <span>
 
 namespace heatsoak::derate::c_header {
 
@@ -116,6 +118,16 @@ std::string replaced(std::string_view pattern, const Words& words) {
     }
   }
   return text;
+}
+
+std::string shared_text(std::string_view file) {
+  // The empty line after the include goes with it.
+  constexpr std::string_view kInclude = "#include <stdint.h>\n";
+  const std::span<const embedded::Text> all = embedded::shared_c_text();
+  std::string text(std::ranges::find_if(all, [file](const embedded::Text& each) { return each.path.ends_with(file); })->text);
+  const std::size_t at = text.find(kInclude);
+  const bool is_alone = text.compare(at - 2, 2, "\n\n") == 0 && text[at + kInclude.size()] == '\n';
+  return text.erase(at, kInclude.size() + (is_alone ? 1 : 0));
 }
 
 const LineStyle& line_style() {

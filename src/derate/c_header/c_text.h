@@ -30,6 +30,10 @@ std::string replaced(std::string_view pattern, const Words& words);
 /// the preprocessor stay whole.
 std::string wrapped(std::string_view text);
 
+/// Returns the text of a file of robot_core that the drive core and the exported headers share, without its include of <stdint.h>, which a
+/// header has at its top.
+std::string shared_text(std::string_view file);
+
 /// Syntax of the laws in the C header; an input is a field of `input`.
 const LineStyle& line_style();
 

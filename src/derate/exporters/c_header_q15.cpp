@@ -12,6 +12,7 @@
 #include "derate/export_text.h"
 #include "derate/exporter.h"
 #include "derate/integer_form/integer_lines.h"
+#include "derate/integer_form/integer_memory.h"
 #include "derate/integer_form/quantised_table.h"
 #include "derate/plausible_range.h"
 
@@ -230,6 +231,7 @@ std::string head(const Derating& derating, const std::string& prefix, const Inte
       " * of its table and at most {1:.1f} % below it, for currents of {2:.3g} A and more.\n"
       " * Once, after a long rest: {3}_start(&motor, board_mC);\n"
       " *   a state that was never started counts as hot as its limit.\n"
+      " * After a loss of power instead: {3}_restore(&motor, saved, elapsed_ms, unsaved_ms, board_mC); {3}_save fills `saved`.\n"
       " * Every {4:.9g} s: out = {3}_step(&motor, &in);\n"
       " *   then |current| <= out.allowed_current_mA until the next call.\n"
       " */\n",
@@ -347,18 +349,24 @@ std::string write_c_header_q15(const Derating& derating) {
                               {"@CAP@", capital},
                               {"@", prefix}};
   const auto define = [&](std::string_view name, std::int64_t value) { return fmt::format("#define {}_{} {}\n", capital, name, value); };
+  constexpr int kMostCoolingSteps = 4096;
+  const auto period_us = static_cast<std::int64_t>(std::ceil(1e6 * derating.options.period_s));
   return c_header::wrapped(
       head(derating, prefix, lines, table) +
       fmt::format("#ifndef HEATSOAK_{0}_H\n#define HEATSOAK_{0}_H\n\n#include <stdbool.h>\n#include <stdint.h>\n\n", capital) +
-      std::string(embedded::integer_table_text().front().text) + "\n" +
+      std::string(embedded::integer_table_text().front().text) + "\n" + c_header::shared_text("crc_32.h") + "\n" +
       define("WINDING_LIMIT_MC", static_cast<std::int64_t>(std::floor(1000.0 * derating.rules.limits.winding_C))) +
+      define("HOTTEST_AMBIENT_MC", candidates(derating, observed::ambient).front()) +
       define("COLDEST_AMBIENT_MC", static_cast<std::int64_t>(std::floor(1000.0 * derating.options.coldest_ambient_C))) +
-      fmt::format("#define {}_STORED_PER_K INT64_C({})\n#define {}_STARTED 0x48454154u\n\n", capital, std::int64_t{1} << kStoredBits,
-                  capital) +
+      fmt::format("#define {0}_STORED_PER_K INT64_C({1})\n#define {0}_STARTED 0x48454154u\n#define {0}_PERIOD_US INT64_C({2})\n", capital,
+                  std::int64_t{1} << kStoredBits, period_us) +
+      fmt::format("#define {0}_SIGNATURE 0x{1:08x}u\n#define {0}_SAVED_SIZE {2}\n#define {0}_MOST_COOLING_STEPS {3}\n\n", capital,
+                  guard_signature(derating, "q15"), 8 * (1 + nodes), kMostCoolingSteps) +
       structures(derating, prefix) + table_text(table, prefix) + c_header::replaced(kHelpers, words) +
       (lines.text.find("_quotient(") == std::string::npos ? "" : c_header::replaced(kQuotient, words)) +
       changes_function(derating, prefix, lines) + integers("int32_t", prefix + "_possible_current_mA", currents) +
-      integers("int32_t", prefix + "_possible_speed_mrad_per_s", speeds) + "\n" + c_header::replaced(kStep, words) + "\n#endif\n");
+      integers("int32_t", prefix + "_possible_speed_mrad_per_s", speeds) + "\n" + c_header::replaced(kStep, words) + "\n" +
+      integer_form::integer_memory(words) + "#endif\n");
 }
 
 }  // namespace
