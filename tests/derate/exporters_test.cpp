@@ -239,11 +239,39 @@ TEST(RampExporters, ControllerStaysBelowTheTableAndKeepsTheWindingBelowItsLimit)
   }
 }
 
+/// VESC, datatypes.h, mc_motor_type.
+constexpr float kVescBldc = 0.0F;
+constexpr float kVescDc = 1.0F;
+constexpr float kVescFoc = 2.0F;
+
+// Block commutation measures the DC current, which is 10 % larger than the script takes it to be.
+TEST(VescExporter, OtherMotorTypesGetNoCurrent) {
+  for (const bool is_brushless : {true, false}) {
+    Derating derating = ecx_derating();
+    derating.is_brushless = is_brushless;
+    for (const float type : {kVescBldc, kVescDc, kVescFoc}) {
+      SmallLisp script;
+      script.settings = {{"'si-motor-poles", 14.0F}, {"'motor-type", type}};
+      script.extensions = {{"systime", [](const auto&) { return 0.0F; }}};
+      script.load(exported("vesc", derating));
+      const bool may_drive = type == (is_brushless ? kVescFoc : kVescDc);
+      EXPECT_EQ(script.settings.at("'l-current-max") > 0.0F, may_drive) << is_brushless << " " << type;
+      EXPECT_EQ(script.settings.at("'l-current-min"), -script.settings.at("'l-current-max"));
+    }
+  }
+}
+
+TEST(VescExporter, StatesTheSettingsOutOfItsReach) {
+  EXPECT_THAT(exported("vesc"), testing::AllOf(HasSubstr("motor type FOC"), HasSubstr("cc_min_current: the controller never limits below it"),
+                                               HasSubstr("foc_temp_comp: off")));
+}
+
 // The script integrates a pause of its thread in short steps; one Euler step of 24 s would cool the winding to 0 °C.
 TEST(VescExporter, ScriptThatWasHeldUpIntegratesThePause) {
   SmallLisp script;
   float override_C = NAN;
   script.settings["'si-motor-poles"] = 14.0F;
+  script.settings["'motor-type"] = kVescFoc;
   script.extensions = {
       {"systime", [](const auto&) { return 0.0F; }}, {"secs-since", [](const auto&) { return 24.0F; }},
       {"sleep", [](const auto&) { return 0.0F; }},   {"get-current", [](const auto&) { return 0.0F; }},
@@ -292,6 +320,7 @@ TEST(VescExporter, LosesWhatTheFileStates) {
   const std::string text = exported("vesc");
   SmallLisp script;
   script.settings["'si-motor-poles"] = 14.0F;
+  script.settings["'motor-type"] = kVescFoc;
   script.extensions = {{"systime", [](const auto&) { return 0.0F; }}};
   script.load(text);
   const double bound_A =
@@ -317,6 +346,7 @@ TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
   double speed_rad_per_s = 0.0;
   constexpr float kPolePairs = 7.0F;
   script.settings["'si-motor-poles"] = 2.0F * kPolePairs;
+  script.settings["'motor-type"] = kVescFoc;
   script.extensions = {{"systime", [](const auto&) { return 0.0F; }},
                        {"secs-since", [](const auto&) { return 0.01F; }},
                        {"sleep", [](const auto&) { return 0.0F; }},

@@ -155,6 +155,9 @@ class SmallLisp {
     if (head == "<" || head == ">") {
       return (head == "<" ? a < b : a > b) ? 1.0F : 0.0F;
     }
+    if (head == "=") {
+      return a == b ? 1.0F : 0.0F;
+    }
     switch (head.size() == 1 ? head[0] : ' ') {
       case '+':
         return a + b;

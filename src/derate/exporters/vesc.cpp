@@ -1,5 +1,6 @@
 // LispBM script for VESC controllers. Names and law: vedderb/bldc at b9d287b3b8323f4b02618b02dc55e57d54a84996, lispBM/README.md
-// (override-temp-motor, conf-set, get-current, get-rpm), motor/mc_interface.c (update_override_limits), motor/mcconf_default.h.
+// (override-temp-motor, conf-set, get-current, get-rpm), motor/mc_interface.c (update_override_limits), motor/mcpwm_foc.c (the current
+// limits hold for the vector of i_d and i_q), motor/mcconf_default.h, datatypes.h (mc_motor_type).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -100,17 +101,39 @@ std::string states(const Derating& derating) {
   return text;
 }
 
-std::string limits(const CurrentRamp& ramp, double phase_per_dc_ratio) {
+/// The controller measures another current with another motor type, so the limits hold only for one.
+struct MotorType {
+  std::string_view name;
+  int place = 0;  ///< in mc_motor_type
+};
+constexpr MotorType kDc{"DC", 1};
+constexpr MotorType kFoc{"FOC", 2};
+
+/// VESC never limits below this current (MCCONF_CC_MIN_CURRENT), and scripts cannot set it.
+constexpr double kLeastLimit_A = 0.05;
+
+std::string limits(const CurrentRamp& ramp, double phase_per_dc_ratio, const MotorType& type) {
   const double most_A = rounded_down_A(ramp.most_current_A * phase_per_dc_ratio);
   return fmt::format(
-      "(conf-set 'l-current-max {0:.3f})\n"
-      "(conf-set 'l-current-min -{0:.3f})\n"
+      "(define hs-may-drive (= (conf-get 'motor-type) {3}.0))  ; {4}\n"
+      "(conf-set 'l-current-max (if hs-may-drive {0:.3f} 0.0))\n"
+      "(conf-set 'l-current-min (if hs-may-drive -{0:.3f} 0.0))\n"
       "(conf-set 'l-current-max-scale 1.0)\n"
       "(conf-set 'l-current-min-scale 1.0)\n"
       "(conf-set 'l-temp-motor-start {1:.1f})\n"
       "(conf-set 'l-temp-motor-end {2:.1f})\n"
       "(conf-set 'l-temp-accel-dec 0.0)\n",
-      most_A, ramp.start_C, ramp.end_C);
+      most_A, ramp.start_C, ramp.end_C, type.place, type.name);
+}
+
+/// Comment lines about settings of the controller that change the limit and are not in the script's reach.
+std::string setting_lines(const MotorType& type) {
+  return fmt::format(
+      "; Settings of the controller (VESC Tool): motor type {0}; with another one the script sets the current limits to 0 A.\n"
+      "; cc_min_current: the controller never limits below it; keep it at the default of {1} A or less. foc_temp_comp: off, because\n"
+      "; it would take the pessimistic temperature for the real one. Until the script has started, the stored current limits apply at\n"
+      "; any temperature: send no command before, and store no higher limits than those below.\n",
+      type.name, kLeastLimit_A);
 }
 
 /// Comment lines about the setting l-temp-accel-dec and the cost of its default. The default is safe, but loses more than ramp_lines()
@@ -138,8 +161,9 @@ std::string write_vesc(const Derating& derating) {
   const CurrentRamp ramp = ramp_for("vesc", derating, RampSignal::winding, kFullBeyond_K);
   require_three_signals("vesc", derating);
   const double dc_per_phase_ratio = derating.is_brushless ? kDcPerIq_ratio : 1.0;
+  const MotorType& type = derating.is_brushless ? kFoc : kDc;
   return provenance_lines(derating, ";") + ramp_lines(derating, RampSignal::winding, ramp, 1.0 / dc_per_phase_ratio, ";") +
-         moved_ramp_lines(derating, ramp, 1.0 / dc_per_phase_ratio) +
+         moved_ramp_lines(derating, ramp, 1.0 / dc_per_phase_ratio) + setting_lines(type) +
          fmt::format(
              "; Currents are {}. Set the motor temperature sensor to Disabled, or the override has no effect; set the motor's poles.\n"
              "; The motor temperature that the controller shows is the pessimistic winding temperature. The script samples the current "
@@ -150,7 +174,7 @@ std::string write_vesc(const Derating& derating) {
              "cooled.\n",
              derating.is_brushless ? "peak phase currents (i_q)" : "motor currents", derating.options.period_s) +
          fmt::format("(define hs-start-C {})\n", literal(derating.rules.limits.winding_C)) + states(derating) +
-         limits(ramp, 1.0 / dc_per_phase_ratio) + step_function(derating.observer) +
+         limits(ramp, 1.0 / dc_per_phase_ratio, type) + step_function(derating.observer) +
          fmt::format(
              "(define hs-pole-pairs (/ (conf-get 'si-motor-poles) 2.0))\n"
              "(define hs-last-A 0.0)\n"
