@@ -9,7 +9,9 @@
 #include <set>
 #include <span>
 
+#include "check/command_answers.h"
 #include "check/limit.h"
+#include "check/number_limit.h"
 #include "derate/option_quantities.h"
 #include "input/reader.h"
 #include "motor/conditions.h"
@@ -33,6 +35,8 @@ class CheckReader {
   Check read() {
     check_.name = table_.text("name", input::Need::required).value_or("");
     check_.at = table_.at("name");
+    check_.folder = folder_;
+    read_command();
     read_limits();
     read_things();
     read_numbers();
@@ -262,9 +266,53 @@ class CheckReader {
     table->finish();
   }
 
+  void read_command() {
+    const std::optional<std::string> command = table_.text("command", input::Need::optional);
+    if (!command) {
+      return;
+    }
+    check_.command = *command;
+    if (const std::string problem = command_words(*command).problem; !problem.empty()) {
+      table_.problem("command", problem);
+    }
+  }
+
+  /// A name with dots that is not in quotes is a table of tables in TOML.
+  void read_number_limits(const input::Value& table, const std::string& before) {
+    for (const input::Member& member : table.members) {
+      const std::string name = before + member.key;
+      const auto problem = [&](const std::string& message) {
+        limits_->problem(name.substr(0, before.find('.')), before.empty() ? message : fmt::format("{}: {}", name, message));
+      };
+      if (member.value.kind == input::Value::Kind::table) {
+        read_number_limits(member.value, name + ".");
+        continue;
+      }
+      if (member.value.kind != input::Value::Kind::text) {
+        problem(fmt::format("is {}; expected a limit as text, such as \"at most 5 K\"", input::to_string(member.value.kind)));
+        continue;
+      }
+      Limit limit;
+      if (const std::string wrong = parse_number_limit(name, member.value.text, limit); !wrong.empty()) {
+        problem(wrong);
+        continue;
+      }
+      limit.at = member.value.at;
+      check_.limits.push_back(std::move(limit));
+    }
+  }
+
   void read_limits() {
     limits_ = table_.table("limits", input::Need::required);
     if (!limits_) {
+      return;
+    }
+    if (has("command")) {
+      std::ranges::for_each(limits_->keys(), [this](const std::string& key) { limits_->pass_over(key); });
+      if (limits_->keys().empty()) {
+        table_.problem("limits", "is empty; expected one or more numbers of the command's answer, which `--json -` shows");
+      }
+      read_number_limits(*written_.find("limits"), "");
       return;
     }
     std::vector<std::string> known;
@@ -281,7 +329,9 @@ class CheckReader {
         limits_->problem(
             key, key == "forecast_error"
                      ? "this program was built without support for measured logs; `./bootstrap build` adds it"
-                     : fmt::format("there is no such threshold{} (`heatsoak list thresholds` shows them)", base::did_you_mean(key, known)));
+                     : fmt::format("there is no such threshold{} (`heatsoak list thresholds` shows them; any other number of an answer "
+                                   "needs 'command' in its check)",
+                                   base::did_you_mean(key, known)));
         continue;
       }
       if (const input::Value* value = written_.find("limits")->find(key); value->kind == input::Value::Kind::number) {
@@ -340,7 +390,8 @@ class CheckReader {
     }
     for (std::size_t i = 0; i < all_settings().size(); ++i) {
       const std::string_view key = all_settings()[i].key;
-      if (has(key) && !is_used(static_cast<Setting>(i))) {
+      const bool is_used_here = is_used(static_cast<Setting>(i)) || (static_cast<Setting>(i) == Setting::command && has("command"));
+      if (has(key) && !is_used_here) {
         table_.problem(key, "is not used by any limit of this check; remove it or move it to the check that needs it");
       }
     }

@@ -1,9 +1,11 @@
-// Check files: [[check]] tables with a robot, a duty, a motor … and limits on the results computed from them.
+// Check files: [[check]] tables with a robot, a duty, a motor … and limits on the results computed from them, or with a command of this
+// program and limits on the numbers of its answer.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,12 +20,15 @@
 
 namespace heatsoak::check {
 
+struct NumberType;
+
 struct Limit {
   const ThresholdType* type = nullptr;
   double value = 0.0;  ///< in the type's unit
   std::string unit;    ///< unit as written in the file
   std::string text;    ///< limit as written in the file: "at most 150 degC"
   base::Location at;   ///< place of that text
+  std::shared_ptr<const NumberType> own = {};  ///< keeps `type` alive if it belongs to this limit alone
 };
 
 struct Check {
@@ -43,6 +48,8 @@ struct Check {
   std::filesystem::path mapping;
   std::optional<double> air_C = {};  ///< air temperature for logs without one
   derate::DerateOptions derate;
+  std::filesystem::path folder = {};  ///< folder of the check file
+  std::string command = {};           ///< if not empty, the limits are on numbers of this command's JSON answer
   std::vector<Limit> limits;
   /// Settings whose id or file does not exist, with the reason; the thresholds that need them fail.
   std::map<Setting, std::string> unreadable;
@@ -57,7 +64,7 @@ struct CheckFile {
 /// Reads the file and the robots, duties and motors that it names. Throws Failure (bad_input) with every problem of all of them: unknown
 /// keys with "did you mean", invalid limits, missing settings that a limit needs, and settings that no limit uses. Committed tables, logs
 /// and linted files are not opened here. If one of them is missing, its threshold fails. The same holds if the id or file of a robot, duty
-/// or motor does not exist (Check::unreadable); an unknown id is a problem only beside another one.
+/// or motor does not exist (Check::unreadable); an unknown id is a problem only beside another one. Commands do not run here.
 CheckFile read_check_file(const std::filesystem::path& path, const input::DataFolders& folders);
 
 }  // namespace heatsoak::check

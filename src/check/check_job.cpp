@@ -56,13 +56,17 @@ CheckAnswer run_check_job(const CheckJob& job, const input::DataFolders& folders
   if (answer.invalid && !job.evaluates_beside_invalid) {
     throw base::Failure(*answer.invalid);
   }
+  CommandAnswers commands(job.run_command);
+  for (const CheckFile& file : answer.files) {
+    commands.run(file.checks);  // before the progress of the other checks, because a command shows its own
+  }
   std::vector<base::JobPhase> phases;
   for (const CheckFile& file : answer.files) {
     std::ranges::move(check_phases(file), std::back_inserter(phases));
   }
   progress.expect(std::move(phases));
   for (const CheckFile& file : answer.files) {
-    std::vector<Outcome> of_file = run_checks(file, job.threads, progress);
+    std::vector<Outcome> of_file = run_checks(file, job.threads, commands, progress);
     if (job.updates && !answer.invalid) {
       refuse_shipped(file.path, job);
       const std::string before = base::read_file(file.path, kLargestCheckFile_bytes);

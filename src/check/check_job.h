@@ -8,6 +8,7 @@
 
 #include "base/diagnostic.h"
 #include "check/check_file.h"
+#include "check/command_answers.h"
 #include "check/run_checks.h"
 
 namespace heatsoak::check {
@@ -19,6 +20,7 @@ struct CheckJob {
   int threads = 0;                 ///< 0: all cores; the result does not depend on it
   /// If some files are invalid, evaluate the others all the same, without `updates`, for a report that names every limit.
   bool evaluates_beside_invalid = false;
+  RunCommand run_command = {};  ///< for the checks with a command
 };
 
 struct RewrittenFile {

@@ -57,7 +57,7 @@ std::string suite_begin(std::string_view name, const Counts& counts, std::string
 }
 
 std::string test_case(const Outcome& each) {
-  std::string text = fmt::format(R"(    <testcase name="{}" classname="{}" file="{}" line="{}")", each.limit.type->name,
+  std::string text = fmt::format(R"(    <testcase name="{}" classname="{}" file="{}" line="{}")", base::xml_attribute(each.limit.type->name),
                                  base::xml_attribute(each.check->name), base::xml_attribute(each.limit.at.file), each.limit.at.line);
   const std::string facts = fmt::format("value {}, limit {}, margin {}\n{}", value_text(each), limit_text(each), margin_text(each),
                                         each.measured ? each.measured->detail : "");
@@ -143,6 +143,9 @@ std::string limit_text(const Outcome& outcome) {
 std::string things_of(const Check& check) {
   std::string text;
   const auto add = [&text](const std::string& id) { text += (text.empty() ? "" : ", ") + id; };
+  if (!check.command.empty()) {
+    add(check.command);
+  }
   if (check.motor) {
     add(check.motor->id);
   }
@@ -186,7 +189,8 @@ std::string summary_markdown(std::span<const Outcome> outcomes, std::string_view
   text += "| | check | threshold | value | limit | margin | |\n|---|---|---|--:|--:|--:|---|\n";
   for (const Outcome& each : outcomes) {
     text += fmt::format("| {} | {} | `{}` | {} | {} | {} | {} |\n", each.passed ? "✅" : "❌", in_markdown(each.check->name),
-                        each.limit.type->name, value_text(each), limit_text(each), margin_text(each), in_markdown(explanation(each)));
+                        in_markdown(each.limit.type->name), value_text(each), limit_text(each), margin_text(each),
+                        in_markdown(explanation(each)));
   }
   return text + fmt::format("\nheatsoak {}\n", version);
 }

@@ -22,7 +22,7 @@ std::string margin_text(const Outcome& outcome);
 /// Returns the limit as text: "at most 150 °C".
 std::string limit_text(const Outcome& outcome);
 
-/// Returns robot, duty and motor of a check as text, without those that it lacks.
+/// Returns robot, duty and motor of a check as text, without those that it lacks, or its command.
 std::string things_of(const Check& check);
 
 /// Returns the basis of the value, or the reason why the threshold fails or could not be evaluated.

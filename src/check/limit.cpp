@@ -74,6 +74,12 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
   return {parsed.value, unit_behind(quantity), {}};
 }
 
+std::string unit_of_limit(std::string_view text) {
+  const std::string_view all = trimmed(text);
+  const std::size_t words = to_string(all.starts_with(to_string(Bound::at_least)) ? Bound::at_least : Bound::at_most).size();
+  return unit_behind(all.substr(std::min(all.size(), words)));
+}
+
 std::string bare_limit_problem(std::string_view number, const ThresholdType& type) {
   // A share may be meant in percent or not, so the number cannot be taken over.
   const std::string expected = type.is_share

@@ -17,6 +17,9 @@ struct ParsedLimit {
 /// Parses "at most 150 degC" or "at least 0.5 A". The words must be those of the threshold's direction, the number finite and in its range.
 ParsedLimit parse_limit(std::string_view text, const ThresholdType& type);
 
+/// Returns the unit of a limit's text: "degC" of "at most 150 degC"; empty without a unit.
+std::string unit_of_limit(std::string_view text);
+
 /// Returns the problem of a limit that is written as a number without words, quotes and unit.
 std::string bare_limit_problem(std::string_view number, const ThresholdType& type);
 

@@ -11,8 +11,10 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "check/command_answers.h"
 #include "check/computations.h"
 #include "check/limit.h"
+#include "check/number_limit.h"
 #include "robot/robot_lint.h"
 #include "select/round_plan.h"
 
@@ -47,13 +49,20 @@ bool needs_samples(const Check& check) {
          });
 }
 
-void evaluate_one(Outcome& outcome, Computations& computations) {
+Measured measure(const Check& check, Limit& limit, Computations& computations, const CommandAnswers& answers) {
+  if (!check.command.empty()) {
+    return measure_number(limit, answers.of(check));
+  }
+  require_readable(check, *limit.type);
+  if (check.robot && std::ranges::find(limit.type->needs, Setting::robot) != limit.type->needs.end()) {
+    robot::require_sound(*check.robot);
+  }
+  return limit.type->measure(check, computations);
+}
+
+void evaluate_one(Outcome& outcome, Computations& computations, const CommandAnswers& answers) {
   try {
-    require_readable(*outcome.check, *outcome.limit.type);
-    if (outcome.check->robot && std::ranges::find(outcome.limit.type->needs, Setting::robot) != outcome.limit.type->needs.end()) {
-      robot::require_sound(*outcome.check->robot);
-    }
-    Measured measured = outcome.limit.type->measure(*outcome.check, computations);
+    Measured measured = measure(*outcome.check, outcome.limit, computations, answers);
     if (std::isfinite(measured.value)) {
       outcome.measured = std::move(measured);
     } else {
@@ -138,7 +147,7 @@ void judge(Outcome& outcome) {
                                                 type.direction == Bound::at_most ? "above" : "below", shown(outcome.limit.value, type));
 }
 
-std::vector<Outcome> run_checks(const CheckFile& file, int threads, const base::JobProgress& progress) {
+std::vector<Outcome> run_checks(const CheckFile& file, int threads, const CommandAnswers& answers, const base::JobProgress& progress) {
   std::vector<Outcome> outcomes;
   std::vector<std::pair<std::size_t, std::size_t>> ranges;
   for (const Check& check : file.checks) {
@@ -159,7 +168,7 @@ std::vector<Outcome> run_checks(const CheckFile& file, int threads, const base::
   // Thresholds of one check mostly need the same results, so each check is one job.
   base::in_parallel(ranges.size(), threads, [&](std::size_t job) {
     for (std::size_t i = ranges[job].first; i < ranges[job].second; ++i) {
-      evaluate_one(outcomes[i], computations);
+      evaluate_one(outcomes[i], computations, answers);
     }
     work.finish(file.checks[job]);
   });

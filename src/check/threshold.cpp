@@ -8,7 +8,7 @@
 namespace heatsoak::check {
 
 std::span<const SettingText> all_settings() {
-  static constexpr std::array<SettingText, 14> kSettings{{
+  static constexpr std::array<SettingText, 15> kSettings{{
       {"robot", "id or file"},
       {"duty", "id or file"},
       {"motor", "id or file; the robot's own unless given"},
@@ -25,6 +25,7 @@ std::span<const SettingText> all_settings() {
       {"derate",
        "options of `derate`: ambient, coldest, approach, period, confidence, samples, seed; for a committed C header with a sensor also "
        "thermistor, winding_resistance and their options with \"_\" for \"-\"; its own values unless given"},
+      {"command", "command of this program, \"simulate --motor M --robot R --duty D\"; the limits are on numbers of its JSON answer"},
   }};
   return kSettings;
 }

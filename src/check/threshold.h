@@ -23,7 +23,7 @@ enum class Room {
 };
 
 /// Keys of a [[check]] table other than its name and limits.
-enum class Setting { robot, duty, motor, against, conditions, samples, seed, temperature, table, files, logs, mapping, air, derate };
+enum class Setting { robot, duty, motor, against, conditions, samples, seed, temperature, table, files, logs, mapping, air, derate, command };
 struct SettingText {
   std::string_view key;
   std::string_view meaning;

@@ -62,6 +62,11 @@ class Session {
   /// Reports the failure instead of all other output.
   void answer_failure(const base::Failure& failure);
   void set_json_target(std::string target) { json_target_ = std::move(target); }
+  [[nodiscard]] bool gives_json() const { return !json_target_.empty(); }
+  /// Returns the answer for stdout; null if there is none.
+  [[nodiscard]] nlohmann::ordered_json stdout_json() const;
+  /// Returns the folder of --db; empty without it.
+  [[nodiscard]] const std::string& database() const { return database_; }
 
  private:
   std::string database_;
@@ -96,6 +101,10 @@ struct Command {
   std::function<std::vector<Topic>()> topics{};  ///< for `list` and `describe`
 };
 std::vector<Command> all_commands();
+
+/// Runs a command in a folder and returns its JSON answer; prints nothing and writes no file. `database`: folder for --db unless the words
+/// name one; may be empty. Throws Failure like the command, and if it has no JSON answer. Changes the working directory while it runs.
+nlohmann::ordered_json answer_of(std::vector<std::string> words, const std::filesystem::path& folder, const std::string& database);
 
 /// Runs the whole program and returns the exit code. Never throws.
 int run_program(int argc, const char* const* argv);

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/App.hpp>
@@ -10,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
@@ -30,6 +32,8 @@
 
 namespace heatsoak::cli {
 namespace {
+
+constexpr const char* kSummary = "Predicts whether a motor survives a match, and the current that its firmware may allow.";
 
 constexpr std::string_view kFooter =
     "\nExit codes: 0 done and within limits, 1 a limit is exceeded, 2 bad input or\n"
@@ -182,8 +186,8 @@ void require_drawing_for(const CLI::App& verb) {
   }
 }
 
-int parse_and_run(int argc, const char* const* argv, Session& session) {
-  CLI::App app("Predicts whether a motor survives a match, and the current that its firmware may allow.", "heatsoak");
+/// Declares all commands; the one that is parsed runs and sets `code`.
+void declare_commands(CLI::App& app, Session& session, base::ExitCode& code) {
   app.set_help_flag("-h,--help", "show this help");
   app.set_version_flag("--version", fmt::format("heatsoak {}", base::program_version()), "show the version of the program");
   app.require_subcommand(1);
@@ -192,7 +196,6 @@ int parse_and_run(int argc, const char* const* argv, Session& session) {
   const std::vector<Command> commands = all_commands();
   const bool reads_logs = std::ranges::find(commands, "log", &Command::name) != commands.end();
   app.footer(fmt::format("{}{}", kFooter, reads_logs ? "" : kWithoutMeasured));
-  base::ExitCode code = base::ExitCode::done;
   for (const Command& command : commands) {
     CLI::App* verb = app.add_subcommand(std::string(command.name), std::string(command.summary));
     verb->group("Verbs");
@@ -204,6 +207,21 @@ int parse_and_run(int argc, const char* const* argv, Session& session) {
       code = run();
     });
   }
+}
+
+/// Returns the exit code of a request for help or the version; otherwise throws Failure with all mistakes.
+int code_of(const CLI::ParseError& error, const CLI::App& app, std::span<const char* const> words) {
+  if (error.get_exit_code() == 0) {
+    return app.exit(error);
+  }
+  throw base::Failure(base::ExitCode::bad_input,
+                      fmt::format("{}\n`{} --help` shows the options and an example", all_mistakes(error, app, words), verb_of(app)));
+}
+
+int parse_and_run(int argc, const char* const* argv, Session& session) {
+  CLI::App app(kSummary, "heatsoak");
+  base::ExitCode code = base::ExitCode::done;
+  declare_commands(app, session, code);
   session.set_json_target(json_target(argc, argv));
   const auto words = std::span(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0);
   // CLI11 reports a missing option before a misspelt one, so words are checked first.
@@ -211,15 +229,32 @@ int parse_and_run(int argc, const char* const* argv, Session& session) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) {
-      return app.exit(error);
-    }
-    throw base::Failure(base::ExitCode::bad_input,
-                        fmt::format("{}\n`{} --help` shows the options and an example", all_mistakes(error, app, words), verb_of(app)));
+    return code_of(error, app, words);
   }
   session.finish();
   return static_cast<int>(code);
 }
+
+/// Changes the working directory until the destructor.
+class WorkingFolder {
+ public:
+  explicit WorkingFolder(const std::filesystem::path& folder) {
+    std::error_code problem;
+    std::filesystem::current_path(folder, problem);
+    if (problem) {
+      throw base::Failure(base::ExitCode::bad_input, fmt::format("{}: cannot be entered: {}", folder.string(), problem.message()));
+    }
+  }
+  WorkingFolder(const WorkingFolder&) = delete;
+  WorkingFolder& operator=(const WorkingFolder&) = delete;
+  ~WorkingFolder() {
+    std::error_code gone;
+    std::filesystem::current_path(before_, gone);
+  }
+
+ private:
+  std::filesystem::path before_ = std::filesystem::current_path();
+};
 
 }  // namespace
 
@@ -339,6 +374,41 @@ void Session::answer_failure(const base::Failure& failure) {
       put(stderr, printable(unwritable.what()) + "\n");
     }
   }
+}
+
+nlohmann::ordered_json Session::stdout_json() const {
+  return json_text_.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json::parse(json_text_);
+}
+
+nlohmann::ordered_json answer_of(std::vector<std::string> words, const std::filesystem::path& folder, const std::string& database) {
+  const bool has_database = std::ranges::any_of(words, [](const std::string& word) { return word == "--db" || word.starts_with("--db="); });
+  if (!database.empty() && !has_database) {
+    words.insert(words.end(), {"--db", std::filesystem::absolute(database).string()});
+  }
+  Session session;
+  CLI::App app(kSummary, "heatsoak");
+  base::ExitCode code = base::ExitCode::done;
+  declare_commands(app, session, code);
+  std::vector<const char*> raw{"heatsoak"};
+  std::ranges::transform(words, std::back_inserter(raw), [](const std::string& word) { return word.c_str(); });
+  const std::span<const char* const> after_name = std::span(raw).subspan(1);
+  const WorkingFolder here(folder.empty() ? "." : folder);
+  session.set_json_target("-");
+  check_words(app, after_name);
+  try {
+    app.parse(static_cast<int>(raw.size()), raw.data());
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) {
+      static_cast<void>(code_of(error, app, after_name));
+    }
+  }
+  nlohmann::ordered_json answer = session.stdout_json();
+  if (answer.is_null()) {
+    throw base::Failure(base::ExitCode::bad_input, fmt::format("`heatsoak {}` has no JSON answer on stdout; expected a command with one, "
+                                                               "without --json",
+                                                               fmt::join(words, " ")));
+  }
+  return answer;
 }
 
 std::vector<Command> all_commands() {

@@ -23,7 +23,10 @@ Topic topic_of(const check::ThresholdType& type) {
 }  // namespace
 
 std::vector<Topic> threshold_topics() {
-  std::vector<Topic> topics;
+  std::vector<Topic> topics{{.id = "command",
+                             .summary = "\"at most 1.9\": any number of the JSON answer of a command of this program",
+                             .document = present::command_limits_description,
+                             .json = present::command_limits_json}};
   for (const check::ThresholdType& type : check::all_thresholds()) {
     topics.push_back(topic_of(type));
   }

@@ -55,6 +55,25 @@ Document threshold_description(const check::ThresholdType& type) {
   return document;
 }
 
+Document command_limits_description() {
+  Document document{
+      .headline = {{"command: a check of `heatsoak check` with limits on any number of a command's JSON answer"}},
+      .paragraphs = {"The name of a number is the list of keys to it, joined by \".\"; `heatsoak COMMAND … --json -` shows them. An element "
+                     "of a list has the value of its first key, or its place from 0. \"*\" is every element or key; the worst number "
+                     "counts.",
+                     "The unit is that in which the name ends, or of the \"unit\" beside the number. Of a number with a 95 % interval "
+                     "beside it, the worse end is compared. A number that is missing or null fails its limit. The command runs in the "
+                     "folder of the check file and writes no file."}};
+  document.listings.push_back({"in a check file:",
+                               "[[check]]\n"
+                               "name = \"purpose of this check\"\n"
+                               "command = \"derate --robot roboteam_twente_v2024 --motor maxon_ecx_flat_42m_24v\"\n"
+                               "[check.limits]\n"
+                               "heat_reserve_ratio = \"at most 1.9\"\n"
+                               "\"guarantee.winding_peak_C.*\" = \"at most 150 degC\"\n"});
+  return document;
+}
+
 Document verdict_description() {
   Document document{.headline = {{"verdict: the result of `evaluate` for a motor on a duty, from the best to the worst"}},
                     .paragraphs = {}};

@@ -83,6 +83,13 @@ Json threshold_json(const check::ThresholdType& type) {
           {"takes", keys_of(type.takes)}};
 }
 
+Json command_limits_json() {
+  return {{"kind", "threshold"},
+          {"id", "command"},
+          {"meaning", "any number of the JSON answer of the check's command"},
+          {"needs", keys_of({check::Setting::command})}};
+}
+
 Json verdict_json() {
   Json meanings = Json::array();
   for (const VerdictMeaning& each : verdict_meanings()) {

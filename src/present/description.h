@@ -28,6 +28,8 @@ Document effect_description(const thermal::EffectType& effect);
 Document sensor_description(const motor::SensorEffectType& type);
 
 Document threshold_description(const check::ThresholdType& type);
+/// Describes the checks with a command, whose limits are on numbers of its answer.
+Document command_limits_description();
 Document verdict_description();
 
 /// Describes the blocks of the drive core with the signals that they read and write.

@@ -23,6 +23,7 @@ Json shape_json(const duty::ShapeType& shape, const std::string& file);
 Json network_effect_json(const thermal::EffectType& effect);
 Json sensor_json(const motor::SensorEffectType& type);
 Json threshold_json(const check::ThresholdType& type);
+Json command_limits_json();
 Json verdict_json();
 Json core_json();
 

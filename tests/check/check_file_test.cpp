@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "base/files.h"
+#include "check/command_answers.h"
 #include "check/rewrite.h"
 #include "check/run_checks.h"
 #include "support/source_folder.h"
@@ -43,7 +44,7 @@ class CheckFiles : public testing::Test {
   /// Returns the outcomes of the only check in the text.
   [[nodiscard]] std::vector<Outcome> outcomes(const std::string& text) {
     file_ = read(text);
-    return run_checks(file_, 1);
+    return run_checks(file_, 1, CommandAnswers());
   }
 
   fs::path folder_ = fs::path(testing::TempDir()) / fmt::format("heatsoak_check_{}", static_cast<int>(getpid()));
@@ -289,8 +290,8 @@ TEST_F(CheckFiles, ResultsDoNotDependOnThreads) {
                            "[[check]]\nname = \"b\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nsamples = \"80\"\n"
                            "[check.limits]\nwinding_peak_p95 = \"at most 120 degC\"\n";
   const CheckFile file = read(text);
-  const std::vector<Outcome> one = run_checks(file, 1);
-  const std::vector<Outcome> all = run_checks(file, 0);
+  const std::vector<Outcome> one = run_checks(file, 1, CommandAnswers());
+  const std::vector<Outcome> all = run_checks(file, 0, CommandAnswers());
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(one[i].measured->value, all[i].measured->value);
   }

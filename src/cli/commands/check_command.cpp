@@ -44,6 +44,9 @@ void write_github(const std::vector<check::Outcome>& outcomes, Session& session)
 
 base::ExitCode run(CheckOptions& options, Session& session) {
   options.job.evaluates_beside_invalid = !options.junit.empty();
+  options.job.run_command = [&session](const std::vector<std::string>& words, const std::filesystem::path& folder) {
+    return answer_of(words, folder, session.database());
+  };
   const auto kept = std::make_shared<check::CheckAnswer>();
   if (!options.junit.empty()) {
     session.write_after_failure(

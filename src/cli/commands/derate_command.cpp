@@ -51,8 +51,8 @@ base::ExitCode run(const DerateOptions& options, Session& session) {
     throw base::Failure(base::ExitCode::bad_input,
                         fmt::format("--to {} does not support a sensor: expected --to c_header or json, or no sensor", exporter.name));
   }
-  if (options.out.empty() && options.committed.empty()) {
-    throw base::Failure(base::ExitCode::bad_input, "expected --out FILE to write, or --check FILE to compare with");
+  if (options.out.empty() && options.committed.empty() && !session.gives_json()) {
+    throw base::Failure(base::ExitCode::bad_input, "expected --out FILE to write, --check FILE to compare with, or --json FILE");
   }
   if (options.out == "-") {
     throw base::Failure(base::ExitCode::bad_input, "--out -: expected a file; /dev/stdout stands for the terminal");

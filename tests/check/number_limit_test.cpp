@@ -1,0 +1,228 @@
+// Limits on numbers of a command's JSON answer.
+#include "check/number_limit.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/files.h"
+#include "check/answer_number.h"
+#include "check/check_text.h"
+#include "check/command_answers.h"
+#include "check/rewrite.h"
+#include "check/run_checks.h"
+#include "support/source_folder.h"
+
+namespace heatsoak::check {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const Json kAnswer = Json::parse(R"({
+  "schema": "heatsoak.simulate/1", "verdict": "pass", "runaway": false, "time_to_limit_s": null, "none": [],
+  "planners": [{"planner": "fast", "distance_m": 900.5, "peaks_C": {"p05": 40.0, "p95": 61.5}},
+               {"planner": "slow.2", "distance_m": 700.0, "peaks_C": {"p05": 30.0, "p95": 51.5}}],
+  "probability_over_limit": 0.02, "probability_ci95": [0.005, 0.06], "over_share_ci95": [0.0, 0.01], "over": 2,
+  "parameters": [{"name": "joint.conductance", "value": 0.25, "unit": "W/K", "ci95": [0.2, 0.31], "nats": 4.5}],
+  "wheels": [{"index": 1, "damping_V_s_per_rad": {"value": 0.02, "ci95": [0.01, 0.03]}}],
+  "coverage_90": {"winding_C": 0.93}, "error": {"winding_C": {"rmse_K": 2.5, "samples": 400}},
+  "heat_W": {"mean": 1.5, "max": 4.0}, "knots": [1.0, 2.0]})");
+
+std::string refusal(std::string_view place) {
+  try {
+    static_cast<void>(numbers_at(kAnswer, place));
+  } catch (const base::Failure& failure) {
+    return failure.what();
+  }
+  return "found";
+}
+
+TEST(AnswerNumbers, AreFoundByKeysNamesAndPlaces) {
+  const auto value = [](std::string_view place) { return numbers_at(kAnswer, place).front().value; };
+  EXPECT_EQ(value("planners.fast.distance_m"), 900.5);
+  EXPECT_EQ(value("planners.slow.2.peaks_C.p95"), 51.5) << "a name with a dot";
+  EXPECT_EQ(value("parameters.joint.conductance.value"), 0.25);
+  EXPECT_EQ(value("wheels.1.damping_V_s_per_rad.value"), 0.02) << "an index in front of the element";
+  EXPECT_EQ(value("knots.1"), 2.0);
+  EXPECT_EQ(value("probability_ci95.1"), 0.06);
+  std::vector<std::string> names;
+  for (const AnswerNumber& each : numbers_at(kAnswer, "planners.*.peaks_C.*")) {
+    names.push_back(each.name);
+  }
+  EXPECT_THAT(names, ElementsAre("planners.fast.peaks_C.p05", "planners.fast.peaks_C.p95", "planners.slow.2.peaks_C.p05",
+                                 "planners.slow.2.peaks_C.p95"));
+}
+
+TEST(AnswerNumbers, ThatAreNotThereSayWhatIs) {
+  EXPECT_THAT(refusal("planners.fast.distance"), HasSubstr("there is no 'distance' in 'planners.fast'; expected one of planner, distance_m, "));
+  EXPECT_THAT(refusal("planers.fast"), HasSubstr("there is no 'planers.fast' in the answer; expected one of schema, verdict"));
+  EXPECT_THAT(refusal("planners.fast"), HasSubstr("'planners.fast' is no number; expected one of its members: planner, distance_m"));
+  EXPECT_THAT(refusal("time_to_limit_s"), HasSubstr("'time_to_limit_s' is null"));
+  EXPECT_THAT(refusal("verdict"), HasSubstr("'verdict' is \"pass\"; expected a number"));
+  EXPECT_THAT(refusal("runaway"), HasSubstr("'runaway' is false; expected a number"));
+  EXPECT_THAT(refusal("none"), HasSubstr("'none' is empty"));
+  EXPECT_THAT(refusal("none.*"), HasSubstr("there is no '*' in 'none'"));
+  EXPECT_THAT(refusal("verdict.x"), HasSubstr("there is no 'x' in 'verdict'"));
+  EXPECT_THAT(refusal("planners.fast.distance_m."), HasSubstr("there is no"));
+  EXPECT_THAT(refusal(""), HasSubstr("is no number"));
+  EXPECT_THAT(refusal("*"), HasSubstr("expected a number"));
+}
+
+TEST(AnswerNumbers, HaveTheUnitOfTheirNameOrOfTheUnitBeside) {
+  const auto unit = [](std::string_view place) { return numbers_at(kAnswer, place).front().unit; };
+  EXPECT_EQ(unit("planners.fast.distance_m"), "m");
+  EXPECT_EQ(unit("planners.fast.peaks_C.p95"), "degC");
+  EXPECT_EQ(unit("parameters.joint.conductance.value"), "W/K");
+  EXPECT_EQ(unit("parameters.joint.conductance.ci95.0"), "W/K");
+  EXPECT_EQ(unit("parameters.joint.conductance.nats"), "");
+  EXPECT_EQ(unit("wheels.1.damping_V_s_per_rad.ci95.1"), "V s/rad");
+  EXPECT_EQ(unit("coverage_90.winding_C"), "") << "a share of a signal";
+  EXPECT_EQ(unit("error.winding_C.rmse_K"), "K");
+  EXPECT_EQ(unit("error.winding_C.samples"), "") << "a count of a signal";
+  EXPECT_EQ(unit("heat_W.max"), "W");
+  EXPECT_EQ(unit("probability_over_limit"), "");
+  EXPECT_EQ(unit("knots.0"), "");
+  EXPECT_EQ(unit_of_name("guard_missing_A_s"), "A s");
+  EXPECT_EQ(unit_of_name("temperature_coefficient_per_K"), "1/K");
+  EXPECT_EQ(unit_of_name("slope_A_per_K_s"), "A/(K s)");
+  EXPECT_EQ(unit_of_name("a_V"), "V");
+  EXPECT_EQ(unit_of_name("winding_per_stator_K"), "K");
+  EXPECT_EQ(unit_of_name("current_per_iq"), "");
+}
+
+class CommandChecks : public testing::Test {
+ protected:
+  CommandChecks() { fs::create_directory(folder_); }
+  ~CommandChecks() override { fs::remove_all(folder_); }
+
+  std::vector<Outcome> outcomes(const std::string& limits) {
+    text_ = "[[check]]\nname = \"x\"\ncommand = 'heatsoak simulate --motor \"a b\"'\n[check.limits]\n" + limits;
+    base::write_file(folder_ / "a.check.toml", text_);
+    file_ = read_check_file(folder_ / "a.check.toml", {kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource});
+    CommandAnswers answers([this](const std::vector<std::string>& words, const fs::path& folder) {
+      ++runs_;
+      EXPECT_THAT(words, ElementsAre("simulate", "--motor", "a b"));
+      EXPECT_EQ(folder, folder_);
+      return kAnswer;
+    });
+    answers.run(file_.checks);
+    answers.run(file_.checks);
+    return run_checks(file_, 0, answers);
+  }
+  std::string problem(const std::string& limits) {
+    try {
+      static_cast<void>(outcomes(limits));
+    } catch (const base::Failure& failure) {
+      return failure.what();
+    }
+    return "nothing was wrong";
+  }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / ("heatsoak_numbers_" + std::to_string(getpid()));
+  std::string text_;
+  CheckFile file_;
+  int runs_ = 0;
+};
+
+TEST_F(CommandChecks, CompareEachNumberInItsUnit) {
+  const std::vector<Outcome> all = outcomes(
+      "\"planners.*.distance_m\" = \"at least 0.65 km\"\n"  // the shorter of both
+      "planners.fast.distance_m = \"at most 900 m\"\n"      // a name with dots and without quotes
+      "\"planners.fast.peaks_C.p95\" = \"at most 150 degF\"\n"
+      "coverage_90.winding_C = \"at least 92 %\"\n"
+      "over = \"at most 2\"\n");
+  EXPECT_EQ(runs_, 1);
+  ASSERT_EQ(all.size(), 5U);
+  EXPECT_TRUE(all[0].passed) << all[0].reason;
+  EXPECT_EQ(all[0].measured->value, 700.0);
+  EXPECT_THAT(all[0].measured->detail, HasSubstr("planners.slow.2.distance_m, of 2 numbers"));
+  EXPECT_NEAR(*all[0].margin_value(), 50.0, 1e-9);
+  EXPECT_FALSE(all[1].passed);
+  EXPECT_THAT(all[1].reason, HasSubstr("is above the limit of 900 m"));
+  EXPECT_TRUE(all[2].passed) << all[2].reason;
+  EXPECT_EQ(limit_text(all[2]), "at most 65.6 °C");
+  EXPECT_TRUE(all[3].passed) << all[3].reason;
+  EXPECT_EQ(value_text(all[3]), "93 %");
+  EXPECT_TRUE(all[4].passed) << all[4].reason;
+}
+
+TEST_F(CommandChecks, CompareTheWorseEndOfAnInterval) {
+  const std::vector<Outcome> all = outcomes(
+      "probability_over_limit = \"at most 5 %\"\n"
+      "\"parameters.joint.conductance.value\" = \"at least 0.22 W/K\"\n"
+      "\"wheels.1.damping_V_s_per_rad.value\" = \"at most 0.03 V s/rad\"\n");
+  EXPECT_FALSE(all[0].passed);
+  EXPECT_EQ(all[0].measured->value, 0.06);
+  EXPECT_THAT(all[0].measured->detail, HasSubstr("2 %, its 95 % interval 0.5 % to 6 %"));
+  EXPECT_FALSE(all[1].passed);
+  EXPECT_EQ(all[1].measured->value, 0.2);
+  EXPECT_TRUE(all[2].passed) << all[2].reason;
+}
+
+TEST_F(CommandChecks, LimitThatCannotBeEvaluatedFails) {
+  const std::vector<Outcome> all = outcomes(
+      "time_to_limit_s = \"at least 60 s\"\n"
+      "\"planners.fast.distance_m\" = \"at least 5 s\"\n"
+      "\"planners.fast.peaks_C.p95\" = \"at most 70 K\"\n"
+      "\"error.winding_C.rmse_K\" = \"at most 5 degC\"\n"
+      "distance_m = \"at least 5 m\"\n"
+      "\"planners.fast.peaks_C\" = \"at most 5 degC\"\n"
+      "\"error.winding_C.*\" = \"at most 5 K\"\n");
+  for (const Outcome& each : all) {
+    EXPECT_FALSE(each.passed);
+    EXPECT_FALSE(each.measured) << each.limit.type->name;
+  }
+  EXPECT_THAT(all[0].reason, HasSubstr("is null"));
+  EXPECT_THAT(all[1].reason, HasSubstr("'s' is no unit of this quantity"));
+  EXPECT_THAT(all[2].reason, HasSubstr("out of range"));
+  EXPECT_THAT(all[3].reason, HasSubstr("is a temperature, not a difference"));
+  EXPECT_THAT(all[4].reason, HasSubstr("there is no 'distance_m' in the answer"));
+  EXPECT_THAT(all[5].reason, HasSubstr("is no number"));
+  EXPECT_THAT(all[6].reason, HasSubstr("different units"));
+}
+
+TEST_F(CommandChecks, WrongLimitsAreReportedAtTheirPlace) {
+  const std::string said = problem(
+      "over = 3\n"
+      "\"heat_W.max\" = \"less than 5 W\"\n"
+      "\"heat_W.mean\" = \"at most nan W\"\n"
+      "\"planners.fast.distance_m\" = \"at most 5 parsnips\"\n"
+      "error.winding_C.rmse_K = 3.5\n"
+      "runaway = false\n");
+  EXPECT_THAT(said, HasSubstr(":5:8: error: check[0].limits.over: is a number; expected a limit as text"));
+  EXPECT_THAT(said, HasSubstr(":6:16: error: check[0].limits.heat_W.max: \"less than 5 W\" is not a limit"));
+  EXPECT_THAT(said, HasSubstr("\"nan W\" is not a finite number"));
+  EXPECT_THAT(said, HasSubstr("'parsnips' is not a unit"));
+  EXPECT_THAT(said, HasSubstr("error.winding_C.rmse_K: is a number"));
+  EXPECT_THAT(said, HasSubstr("check[0].limits.runaway: is "));
+  EXPECT_THAT(problem(""), HasSubstr("check[0].limits: is empty"));
+}
+
+TEST_F(CommandChecks, UpdateKeepsDirectionUnitAndQuotes) {
+  std::vector<Outcome> all = outcomes(
+      "\"planners.fast.distance_m\" = 'at least 1 km' # far\n"
+      "over = \"at most 9\"\n"
+      "planners.fast.peaks_C.p95 = \"at most 30 degC\"\n");
+  const std::string after = with_new_limits(text_, all, 0.05);
+  EXPECT_THAT(after, HasSubstr("\"planners.fast.distance_m\" = 'at least 0.855 km' # far\n"));
+  EXPECT_THAT(after, HasSubstr("over = \"at most 2.1\"\n"));
+  EXPECT_THAT(after, HasSubstr("planners.fast.peaks_C.p95 = \"at most 63.4 degC\"\n")) << "5 % of the rise over 25 degC";
+  EXPECT_TRUE(std::ranges::all_of(all, &Outcome::passed));
+}
+
+TEST(CommandWords, AreSplitAtSpacesOutsideQuotes) {
+  EXPECT_THAT(command_words(" heatsoak derate  --ambient \"40 degC\" --out=''x ").words,
+              ElementsAre("derate", "--ambient", "40 degC", "--out=x"));
+  EXPECT_THAT(command_words("evaluate ''").words, ElementsAre("evaluate", ""));
+  for (const char* wrong : {"", " ", "heatsoak", "check other.toml", "--version"}) {
+    EXPECT_THAT(command_words(wrong).problem, HasSubstr("expected a command with a JSON answer")) << wrong;
+  }
+  EXPECT_THAT(command_words("derate \"--x").problem, HasSubstr("not closed"));
+}
+
+}  // namespace
+}  // namespace heatsoak::check
