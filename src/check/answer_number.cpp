@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "base/diagnostic.h"
 
@@ -83,6 +84,17 @@ struct Trail {
   [[nodiscard]] std::string name() const { return fmt::format("{}", fmt::join(keys, ".")); }
 };
 
+/// Last words of keys whose numbers have no unit, also in a group that has one.
+constexpr std::array<std::string_view, 7> kPureNumbers{"count", "nats", "normal", "p", "ratio", "samples", "share"};
+
+/// Returns whether the members of a group with a unit in its name have this unit: "limited_s" with a member for each limit does,
+/// "winding_C" with the members "rmse_K" and "samples" does not.
+bool gives_unit(const Json& members, std::string_view member) {
+  const std::string_view last = member.substr(member.find_last_of('_') + 1);
+  return std::ranges::find(kPureNumbers, last) == kPureNumbers.end() &&
+         std::ranges::all_of(members.items(), [](const auto& each) { return unit_of_name(each.key()).empty(); });
+}
+
 std::string unit_at(const Trail& trail) {
   bool is_element = false;
   for (std::size_t i = trail.keys.size(); i-- > 0;) {
@@ -100,7 +112,9 @@ std::string unit_at(const Trail& trail) {
       return unit;
     }
     if (std::ranges::find(kValueWords, key) == kValueWords.end()) {
-      return {};
+      return i > 0 && i + 1 == trail.keys.size() && trail.groups[i - 1]->is_object() && gives_unit(group, key)
+                 ? unit_of_name(trail.keys[i - 1])
+                 : std::string();
     }
     if (const auto beside = group.find("unit"); beside != group.end() && beside->is_string()) {
       return beside->get<std::string>();
@@ -110,7 +124,7 @@ std::string unit_at(const Trail& trail) {
 }
 
 /// Returns the 95 % interval of the number `key`: "ci95" beside "value", "probability_ci95" beside "probability_over_limit".
-std::optional<std::pair<double, double>> interval_of(const Json& group, std::string_view key) {
+std::optional<AnswerInterval> interval_of(const Json& group, std::string_view key) {
   constexpr std::string_view kEnd = "ci95";
   for (const Child& each : group.is_object() ? children_of(group) : std::vector<Child>()) {
     const std::string_view name = each.name;
@@ -119,7 +133,7 @@ std::optional<std::pair<double, double>> interval_of(const Json& group, std::str
                                               key.starts_with(name.substr(0, name.size() - kEnd.size()));
     const Json& ends = *each.value;
     if (is_of_key && ends.is_array() && ends.size() == 2 && ends[0].is_number() && ends[1].is_number()) {
-      return std::pair(ends[0].get<double>(), ends[1].get<double>());
+      return AnswerInterval{ends[0].get<double>(), ends[1].get<double>()};
     }
   }
   return std::nullopt;

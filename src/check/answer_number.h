@@ -5,16 +5,20 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace heatsoak::check {
 
+struct AnswerInterval {
+  double low = 0.0;
+  double high = 0.0;
+};
+
 struct AnswerNumber {
   std::string name;  ///< place in the answer
   double value = 0.0;
-  std::string unit;                                        ///< UDUNITS text; "" is a pure number
-  std::optional<std::pair<double, double>> interval = {};  ///< 95 % interval that the answer gives beside the number
+  std::string unit;                             ///< UDUNITS text; "" is a pure number
+  std::optional<AnswerInterval> interval = {};  ///< 95 % interval that the answer gives beside the number
 };
 
 /// Returns the numbers at a place: keys joined by ".". An element of a list is named by the value of its first key, its id, name or index,

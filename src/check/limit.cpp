@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <system_error>
 
 #include "base/quantity.h"
 
@@ -20,11 +22,14 @@ std::string expected(const ThresholdType& type) {
   return fmt::format("expected {} and a value, such as \"{}\"", to_string(type.direction), type.example);
 }
 
-/// Returns the unit behind the number; empty without a unit.
+/// Returns the unit behind the number; empty without a unit or a number.
 std::string unit_behind(std::string_view quantity) {
-  const std::size_t end = quantity.find_first_not_of("+-0123456789.eE \t");
-  // An "e" counts as part of the number, because no unit of this program begins with one.
-  return end == std::string_view::npos ? std::string() : std::string(trimmed(quantity.substr(end)));
+  const std::string_view rest = trimmed(quantity);
+  const char* const begin = rest.data() + (rest.starts_with('+') ? 1 : 0);
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(begin, rest.data() + rest.size(), number);
+  return error == std::errc::invalid_argument ? std::string()
+                                              : std::string(trimmed(rest.substr(static_cast<std::size_t>(end - rest.data()))));
 }
 
 /// Converts a value; unchanged if `to` is empty. Callers that need a distance subtract two results, because temperature scales have

@@ -33,7 +33,7 @@ void set_type(Limit& limit, std::string name, std::string unit, Bound direction,
 }
 
 double worse_end(const AnswerNumber& number, Bound direction) {
-  return !number.interval ? number.value : direction == Bound::at_most ? number.interval->second : number.interval->first;
+  return !number.interval ? number.value : direction == Bound::at_most ? number.interval->high : number.interval->low;
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ Measured measure_number(Limit& limit, const nlohmann::ordered_json& answer) {
   std::string detail = numbers.size() > 1 ? fmt::format("{}, of {} numbers", worst.name, numbers.size()) : std::string();
   if (worst.interval) {
     detail += fmt::format("{}{}, its 95 % interval {} to {}", detail.empty() ? "" : "; ", shown(worst.value, *limit.type),
-                          shown(worst.interval->first, *limit.type), shown(worst.interval->second, *limit.type));
+                          shown(worst.interval->low, *limit.type), shown(worst.interval->high, *limit.type));
   }
   const double origin_value = worst.unit == "degC" ? base::kSheetTemperature_C : 0.0;
   return {worse_end(worst, direction), origin_value, detail};

@@ -30,7 +30,8 @@ const Json kAnswer = Json::parse(R"({
   "parameters": [{"name": "joint.conductance", "value": 0.25, "unit": "W/K", "ci95": [0.2, 0.31], "nats": 4.5}],
   "wheels": [{"index": 1, "damping_V_s_per_rad": {"value": 0.02, "ci95": [0.01, 0.03]}}],
   "coverage_90": {"winding_C": 0.93}, "error": {"winding_C": {"rmse_K": 2.5, "samples": 400}},
-  "heat_W": {"mean": 1.5, "max": 4.0}, "knots": [1.0, 2.0]})");
+  "heat_W": {"mean": 1.5, "max": 4.0}, "limited_s": {"voltage": 3.0, "guard": 0.0}, "coefficient_per_K": 0.0039,
+  "tests": {"winding_C": {"variance_ratio": 1.1, "ljung_box_p": 0.4}}, "knots": [1.0, 2.0]})");
 
 std::string refusal(std::string_view place) {
   try {
@@ -84,6 +85,8 @@ TEST(AnswerNumbers, HaveTheUnitOfTheirNameOrOfTheUnitBeside) {
   EXPECT_EQ(unit("error.winding_C.rmse_K"), "K");
   EXPECT_EQ(unit("error.winding_C.samples"), "") << "a count of a signal";
   EXPECT_EQ(unit("heat_W.max"), "W");
+  EXPECT_EQ(unit("limited_s.guard"), "s") << "a group of times";
+  EXPECT_EQ(unit("tests.winding_C.ljung_box_p"), "");
   EXPECT_EQ(unit("probability_over_limit"), "");
   EXPECT_EQ(unit("knots.0"), "");
   EXPECT_EQ(unit_of_name("guard_missing_A_s"), "A s");
@@ -134,9 +137,10 @@ TEST_F(CommandChecks, CompareEachNumberInItsUnit) {
       "planners.fast.distance_m = \"at most 900 m\"\n"      // a name with dots and without quotes
       "\"planners.fast.peaks_C.p95\" = \"at most 150 degF\"\n"
       "coverage_90.winding_C = \"at least 92 %\"\n"
-      "over = \"at most 2\"\n");
+      "over = \"at most 2\"\n"
+      "coefficient_per_K = \"at most 0.004 1/K\"\n");
   EXPECT_EQ(runs_, 1);
-  ASSERT_EQ(all.size(), 5U);
+  ASSERT_EQ(all.size(), 6U);
   EXPECT_TRUE(all[0].passed) << all[0].reason;
   EXPECT_EQ(all[0].measured->value, 700.0);
   EXPECT_THAT(all[0].measured->detail, HasSubstr("planners.slow.2.distance_m, of 2 numbers"));
@@ -148,6 +152,7 @@ TEST_F(CommandChecks, CompareEachNumberInItsUnit) {
   EXPECT_TRUE(all[3].passed) << all[3].reason;
   EXPECT_EQ(value_text(all[3]), "93 %");
   EXPECT_TRUE(all[4].passed) << all[4].reason;
+  EXPECT_TRUE(all[5].passed) << all[5].reason;
 }
 
 TEST_F(CommandChecks, CompareTheWorseEndOfAnInterval) {

@@ -422,7 +422,7 @@ TEST(GenerateCore, LeavesAFolderWithoutWritePermission) {
   EXPECT_EQ(fs::status(core).permissions(), fs::perms::owner_all);
 }
 
-struct WrongLine {
+struct WrongCoreLine {
   Words words;
   int exit_code;
   std::string message;
@@ -430,7 +430,7 @@ struct WrongLine {
 
 TEST(GenerateCore, SaysWhatIsWrongAndLeavesNothing) {
   const Words with_motor{"--motor", kEcx};
-  const std::vector<WrongLine> wrong{
+  const std::vector<WrongCoreLine> wrong{
       {{"--out", "x"}, 2, "the motor is missing"},
       {with_motor, 2, "--out"},
       {with_motor + Words{"--out", "x", "--period", "50ms"}, 2, "period"},
@@ -446,7 +446,7 @@ TEST(GenerateCore, SaysWhatIsWrongAndLeavesNothing) {
       {{"--motor", "maxon_dcx19s_24v", "--out", "x", "--ambient", "110degC"}, 2, "is not above the hottest air"},
       {{"--motor", "maxon_dcx19s_24v", "--out", "x"}, 2, "one full stop from"},
   };
-  for (const WrongLine& each : wrong) {
+  for (const WrongCoreLine& each : wrong) {
     const TemporaryFolder folder;
     fs::create_directories(folder.path() / "taken");
     write(folder.path() / "taken/mine", "mine");

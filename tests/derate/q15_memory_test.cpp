@@ -41,16 +41,16 @@ int q15_restore(void *state, const unsigned char *buffer, int32_t elapsed_ms, in
 /// Integer header of a motor as a shared library.
 class IntegerGuard {
  public:
-  IntegerGuard(const Derating& derating, std::size_t nodes) : nodes_(nodes) {
+  IntegerGuard(const Derating& derating, std::size_t nodes, std::string_view name = "") : nodes_(nodes) {
     const std::filesystem::path folder =
-        std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_q15_memory_{}_{}", nodes, static_cast<int>(getpid()));
+        std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_q15_memory_{}{}_{}", nodes, name, static_cast<int>(getpid()));
     std::filesystem::create_directories(folder);
     std::string text = kIntegerWrapper;
-    const std::string name = identifier(derating.motor_id);
+    const std::string prefix = identifier(derating.motor_id);
     for (std::size_t at = text.find('@'); at != std::string::npos; at = text.find('@', at)) {
-      text.replace(at, 1, name);
+      text.replace(at, 1, prefix);
     }
-    text.replace(text.find("#_Q15"), 1, c_header::in_capitals(name));
+    text.replace(text.find("#_Q15"), 1, c_header::in_capitals(prefix));
     std::ofstream(folder / "guard.h") << exported("c_header_q15", derating);
     std::ofstream(folder / "guard.c") << text;
     const std::string command = fmt::format(
@@ -316,7 +316,7 @@ TEST_F(Q15Memory, OtherBuffersAreRefused) {
   EXPECT_EQ(after.restore(never_started.saved(), 1000, 0, 25'000), CompiledGuard::nothing_restored);
   Derating other = ecx_derating();
   other.robot_id = "another";
-  const IntegerGuard another(other, 2);
+  const IntegerGuard another(other, 2, "another");
   IntegerMotor motor(another);
   motor.start(30'000);
   EXPECT_EQ(after.restore(motor.saved(), 1000, 0, 25'000), CompiledGuard::nothing_restored);
