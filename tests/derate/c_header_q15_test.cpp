@@ -81,7 +81,7 @@ int main(int argc, char **argv) {
 )";
 
 /// Runs some thousand steps of the integer form, saves and restores, and prints a check sum of its answers.
-constexpr const char* kSteps = R"(
+constexpr const char* kIntegerSteps = R"(
 #include "q15_guard.h"
 static uint32_t check_sum(void) {
   static const int32_t elapsed_ms[4] = {-1, 0, 1500, 400000};
@@ -246,8 +246,8 @@ TEST_F(Q15Header, HasTheSameBitsOnACortexM0WithoutAnyFloatingPoint) {
   }
   const Derating& derating = ecx_derating();
   write_headers(derating);
-  write("host.c", std::string(kSteps) + kHostMain, derating);
-  write("bare.c", std::string(kSteps) + kBareMain, derating);
+  write("host.c", std::string(kIntegerSteps) + kHostMain, derating);
+  write("bare.c", std::string(kIntegerSteps) + kBareMain, derating);
   std::ofstream(folder_ / "layout.ld") << kLayout;
   static_cast<void>(output_of(fmt::format("cc -std=c99 {} -o host host.c", kWarnings)));
   static_cast<void>(

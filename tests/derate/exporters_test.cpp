@@ -262,8 +262,8 @@ TEST(VescExporter, OtherMotorTypesGetNoCurrent) {
 }
 
 TEST(VescExporter, StatesTheSettingsOutOfItsReach) {
-  EXPECT_THAT(exported("vesc"), testing::AllOf(HasSubstr("motor type FOC"), HasSubstr("cc_min_current: the controller never limits below it"),
-                                               HasSubstr("foc_temp_comp: off")));
+  EXPECT_THAT(exported("vesc"), testing::AllOf(HasSubstr("motor type FOC"), HasSubstr("the controller never limits below it"),
+                                               HasSubstr("default of 0.05 A or less"), HasSubstr("foc_temp_comp: off")));
 }
 
 // The script integrates a pause of its thread in short steps; one Euler step of 24 s would cool the winding to 0 °C.
@@ -287,9 +287,12 @@ TEST(VescExporter, ScriptThatWasHeldUpIntegratesThePause) {
   EXPECT_NEAR(override_C, observer.state_C()[0], 1.0);
 }
 
+/// MCCONF_CC_MIN_CURRENT: the controller never limits below it.
+constexpr double kVescLeastLimit_A = 0.05;
+
 /// Current limit of a driving VESC in A (i_q): motor/mc_interface.c, update_override_limits(), lo_max_mot and lo_motor_temp_accel, with the
 /// default of motor/mcconf_default.h for a setting that the script does not set.
-Limit vesc_limit(const std::map<std::string, float>& settings) {
+Limit vesc_limit(const std::map<std::string, float>& settings, double least_A = 0.0) {
   const auto value = [settings](const char* key) { return static_cast<double>(settings.at(key)); };
   const double share = settings.contains("'l-temp-accel-dec") ? value("'l-temp-accel-dec") : 0.15;
   return [=](double sensor_C) {
@@ -303,7 +306,8 @@ Limit vesc_limit(const std::map<std::string, float>& settings) {
                                                      : most_A * (end_C - sensor_C) / (end_C - start_C);
       limit_A = std::min(limit_A, ramp_A);
     }
-    return limit_A;
+    // Above the end of the ramp the controller stops with a fault.
+    return sensor_C > value("'l-temp-motor-end") - 0.1 ? 0.0 : std::max(limit_A, least_A);
   };
 }
 
@@ -354,7 +358,7 @@ TEST(VescExporter, ScriptFollowsTheObserverAndTheControllersRampKeepsTheLimit) {
                        {"get-rpm", [&](const auto&) { return static_cast<float>(speed_rad_per_s * 30.0 / std::numbers::pi) * kPolePairs; }},
                        {"override-temp-motor", [&](const auto& with) { return override_C = with.at(0); }}};
   script.load(exported("vesc"));
-  const Limit limit = vesc_limit(script.settings);
+  const Limit limit = vesc_limit(script.settings, kVescLeastLimit_A);
   EXPECT_EQ(script.settings.at("'l-current-min"), -script.settings.at("'l-current-max"));
   for (const char* state : {"hs-state0-C", "hs-state1-C"}) {
     EXPECT_EQ(script.value(state), 155.0F) << "not started: taken as hot as its limit";
