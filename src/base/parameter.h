@@ -44,6 +44,9 @@ struct ParameterSpec {
   std::span<const Choice> choices = {};
   std::optional<std::size_t> unit_of = {};  ///< index of the choice parameter that decides this one's unit; empty: `unit` applies
 
+  /// Returns whether the value is a share of something, for which files usually give a percentage.
+  [[nodiscard]] constexpr bool is_share() const { return unit.empty() && choices.empty() && range.low >= 0.0 && range.high <= 1.0; }
+
   static constexpr ParameterSpec choice(std::string_view key, std::span<const Choice> choices, std::string_view meaning) {
     return {key, "", Range::between(0.0, static_cast<double>(choices.size() - 1)), meaning, choices};
   }

@@ -126,7 +126,10 @@ std::string shown(std::string_view text) {
   return line.size() < text.size() ? line + "…" : line;
 }
 
-std::string example_for(std::string_view wanted_unit) {
+std::string example_for(std::string_view wanted_unit, bool is_share) {
+  if (is_share) {
+    return "expected a share such as \"10 %\"";
+  }
   return wanted_unit.empty() ? "expected a number such as \"8\""
                              : fmt::format("expected a number with a unit such as \"1.5 {}\"", wanted_unit);
 }
@@ -143,7 +146,7 @@ std::optional<double> parse_number(std::string_view text) {
   return value;
 }
 
-ParsedQuantity parse_quantity(std::string_view text, std::string_view wanted_unit) {
+ParsedQuantity parse_quantity(std::string_view text, std::string_view wanted_unit, bool is_share) {
   const std::string_view rest = without_plus(trimmed(text));
   double value = 0.0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
@@ -151,28 +154,28 @@ ParsedQuantity parse_quantity(std::string_view text, std::string_view wanted_uni
     return {0.0, fmt::format("\"{}\" is too large or too small a number", shown(text))};
   }
   if (error != std::errc()) {
-    return {0.0, fmt::format("\"{}\" does not begin with a number; {}", shown(text), example_for(wanted_unit))};
+    return {0.0, fmt::format("\"{}\" does not begin with a number; {}", shown(text), example_for(wanted_unit, is_share))};
   }
   if (!std::isfinite(value)) {
-    return {0.0, fmt::format("\"{}\" is not a finite number; {}", shown(text), example_for(wanted_unit))};
+    return {0.0, fmt::format("\"{}\" is not a finite number; {}", shown(text), example_for(wanted_unit, is_share))};
   }
   const std::string_view unit = trimmed(rest.substr(static_cast<std::size_t>(end - rest.data())));
   if (unit.empty() && !wanted_unit.empty()) {
-    return {0.0, fmt::format("\"{}\" has no unit; {}", shown(text), example_for(wanted_unit))};
+    return {0.0, fmt::format("\"{}\" has no unit; {}", shown(text), example_for(wanted_unit, is_share))};
   }
   if (const std::string wrong = misread_as_unit(unit); !wrong.empty()) {
-    return {0.0, fmt::format("\"{}\" {}; {}", shown(text), wrong, example_for(wanted_unit))};
+    return {0.0, fmt::format("\"{}\" {}; {}", shown(text), wrong, example_for(wanted_unit, is_share))};
   }
   const std::lock_guard lock(parsing());
   const Unit from = parse_unit(unit);
   if (!from) {
-    return {0.0, fmt::format("'{}' is not a unit; {}", shown(unit), example_for(wanted_unit))};
+    return {0.0, fmt::format("'{}' is not a unit; {}", shown(unit), example_for(wanted_unit, is_share))};
   }
   const Unit to = parse_unit(wanted_unit);
   const Converter converter(ut_get_converter(from.get(), to.get()));
   // UDUNITS-2 also converts to the reciprocal ("5 W/K" to 0.2 K/W). Only a reciprocal conversion maps zero to infinity.
   if (!converter || !std::isfinite(cv_convert_double(converter.get(), 0.0))) {
-    return {0.0, fmt::format("'{}' is no unit of this quantity; {}", shown(unit), example_for(wanted_unit))};
+    return {0.0, fmt::format("'{}' is no unit of this quantity; {}", shown(unit), example_for(wanted_unit, is_share))};
   }
   if (wanted_unit == "K" && cv_convert_double(converter.get(), 0.0) != 0.0) {
     return {0.0, fmt::format("\"{}\" is a temperature, not a difference of temperatures; write the difference in K", shown(text))};

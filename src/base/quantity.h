@@ -16,8 +16,8 @@ struct ParsedQuantity {
 
 /// Reads one finite number with a unit and converts it to `wanted_unit` (UDUNITS-2 syntax). With `wanted_unit` "" the text must be a pure
 /// number or a percentage. A rotational speed must name its angle ("rpm", "rad/s"): UDUNITS would read a data sheet's "1/min" as rad/min,
-/// which is wrong by 2π.
-ParsedQuantity parse_quantity(std::string_view text, std::string_view wanted_unit);
+/// which is wrong by 2π. `is_share` selects a percentage as the example in messages.
+ParsedQuantity parse_quantity(std::string_view text, std::string_view wanted_unit, bool is_share = false);
 
 /// Reads a number without unit. The whole text must be the number, except for spaces around it; otherwise returns nothing.
 std::optional<double> parse_number(std::string_view text);

@@ -64,7 +64,7 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
     return {0.0, {}, fmt::format("\"{}\" is not a limit; {}", all, expected(type))};
   }
   const std::string_view quantity = trimmed(all.substr(words.size()));
-  const base::ParsedQuantity parsed = base::parse_quantity(quantity, type.unit);
+  const base::ParsedQuantity parsed = base::parse_quantity(quantity, type.unit, type.is_share);
   if (!parsed.ok()) {
     return {0.0, {}, fmt::format("{} (\"{}\")", parsed.problem, type.example)};
   }

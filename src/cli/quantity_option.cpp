@@ -25,7 +25,7 @@ CLI::Option* add_quantity_to(CLI::App& app, const std::string& flag, Value& valu
   const auto parse = [flag, spec, &value](const std::string& text) {
     const std::optional<double> bare = base::parse_number(text);
     const base::ParsedQuantity parsed =
-        bare && std::isfinite(*bare) ? base::ParsedQuantity{*bare, {}} : base::parse_quantity(text, spec.unit);
+        bare && std::isfinite(*bare) ? base::ParsedQuantity{*bare, {}} : base::parse_quantity(text, spec.unit, spec.is_share());
     if (!parsed.ok()) {
       throw CLI::ValidationError(flag, parsed.problem);
     }

@@ -105,7 +105,8 @@ std::optional<std::string> Reader::choice(std::string_view key, std::span<const 
   return given;
 }
 
-std::optional<double> Reader::parse(const Value& value, std::string_view key, std::string_view unit) {
+std::optional<double> Reader::parse(const Value& value, std::string_view key, const base::ParameterSpec& spec) {
+  const std::string_view unit = spec.unit;
   if (value.kind != Value::Kind::text) {
     diagnostics_->add(value.at, full(key),
                       value.kind == Value::Kind::number && is_no_quantity(value.text)
@@ -116,7 +117,7 @@ std::optional<double> Reader::parse(const Value& value, std::string_view key, st
                                                           : fmt::format("is {}, expected a quantity as text", to_string(value.kind)));
     return std::nullopt;
   }
-  const base::ParsedQuantity parsed = base::parse_quantity(value.text, unit);
+  const base::ParsedQuantity parsed = base::parse_quantity(value.text, unit, spec.is_share());
   if (!parsed.ok()) {
     diagnostics_->add(value.at, full(key), parsed.problem);
     return std::nullopt;
@@ -138,7 +139,7 @@ std::optional<double> Reader::quantity(const base::ParameterSpec& spec, Need nee
   if (!value) {
     return std::nullopt;
   }
-  const std::optional<double> parsed = parse(*value, spec.key, spec.unit);
+  const std::optional<double> parsed = parse(*value, spec.key, spec);
   if (parsed && !spec.range.contains(*parsed)) {
     problem(spec.key, out_of_range(value->text, spec));
     return std::nullopt;
@@ -152,7 +153,7 @@ std::vector<double> Reader::quantities(const base::ParameterSpec& spec, Need nee
   for (std::size_t i = 0; list && i < list->items.size(); ++i) {
     const Value& item = list->items[i];
     const std::string key = fmt::format("{}[{}]", spec.key, i);
-    const std::optional<double> parsed = parse(item, key, spec.unit);
+    const std::optional<double> parsed = parse(item, key, spec);
     const bool is_good = parsed && spec.range.contains(*parsed);
     if (parsed && !is_good) {
       diagnostics_->add(item.at, full(key), out_of_range(item.text, spec));
@@ -278,8 +279,8 @@ void Reader::read_spread(const base::ParameterSpec& spec, base::ParameterValue& 
     problem("range", fmt::format(R"(expected ["lowest {}", "highest {}"])", spec.unit, spec.unit));
     return;
   }
-  const std::optional<double> low = parse(range->items[0], "range", spec.unit);
-  const std::optional<double> high = parse(range->items[1], "range", spec.unit);
+  const std::optional<double> low = parse(range->items[0], "range", spec);
+  const std::optional<double> high = parse(range->items[1], "range", spec);
   if (!low || !high) {
     return;
   }

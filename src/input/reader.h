@@ -55,7 +55,7 @@ class Reader {
   const Value* get(std::string_view key, Value::Kind kind, Need need);
   const Value* find(const base::ParameterSpec& spec, Need need);
   [[nodiscard]] std::string full(std::string_view key) const;
-  std::optional<double> parse(const Value& value, std::string_view key, std::string_view unit);
+  std::optional<double> parse(const Value& value, std::string_view key, const base::ParameterSpec& spec);
   void read_spread(const base::ParameterSpec& spec, base::ParameterValue& parameter);
   void read_confirmations(const base::ParameterSpec& spec, base::ParameterValue& parameter);
 

@@ -219,5 +219,11 @@ TEST(Significant, says_what_is_no_number) {
   EXPECT_EQ(significant(std::nan(""), 3), "nan");
 }
 
+TEST(Quantity, an_error_names_an_example_that_fits) {
+  EXPECT_TRUE(parse_quantity("3 ohm", "", true).problem.ends_with("expected a share such as \"10 %\""));
+  EXPECT_TRUE(parse_quantity("3 ohm", "").problem.ends_with("expected a number such as \"8\""));
+  EXPECT_TRUE(parse_quantity("3 ohm", "A").problem.ends_with("expected a number with a unit such as \"1.5 A\""));
+}
+
 }  // namespace
 }  // namespace heatsoak::base
