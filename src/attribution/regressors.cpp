@@ -114,7 +114,7 @@ class Collector {
 void add_operating_points(Collector& all) {
   using Point = thermal::OperatingPoint<double>;
   for (const thermal::OperatingQuantity<double>& each : thermal::kQuantities<double>) {
-    if (each.is_driver) {
+    if (each.is_input_signal) {
       all.add_where({each.signal.value()}, std::string(each.name), std::string(each.unit), [&](const Point& at) { return at.*each.value; });
     }
     // The later of two signals that are nearly copies is left out.

@@ -76,7 +76,7 @@ LogRows::LogRows(const recording::Recording& recording, const MeasuredRunOptions
       speed_rad_per_s_(values("speed_rad_per_s", recording)),
       torque_Nm_(values("torque_Nm", recording)),
       bus_V_(values("bus_V", recording)),
-      modulation_(values("duty_ratio", recording)),
+      modulation_(values(column_of(thermal::Signal::modulation), recording)),
       neighbour_C_(values("neighbour_C", recording)),
       surroundings_C_(bridged(values(has_values(recording.find("coolant_C")) ? "coolant_C" : "ambient_C", recording), recording.time_s)),
       is_signed_(has_negative(current_A_) && has_negative(speed_rad_per_s_)),

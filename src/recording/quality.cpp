@@ -1,13 +1,13 @@
 #include "recording/quality.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
 
 #include "recording/clock_offset.h"
 #include "recording/noise.h"
+#include "recording/quantities.h"
 #include "recording/row_order.h"
 #include "recording/suspicions.h"
 
@@ -15,9 +15,6 @@ namespace heatsoak::recording {
 namespace {
 
 constexpr std::size_t kFewestRows = 20;
-/// In descending order of how directly they heat a winding.
-constexpr std::array<std::string_view, 9> kHeatInputs{"current_A", "current_q_A", "power_in_W", "bus_A",          "torque_Nm",
-                                                      "motor_V",   "duty_ratio",  "bus_V",      "speed_rad_per_s"};
 
 const ChannelQuality* find(const DataQuality& quality, std::string_view key) {
   const auto found = std::ranges::find_if(quality.channels, [key](const ChannelQuality& each) { return each.quantity.key == key; });

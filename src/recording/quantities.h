@@ -1,6 +1,7 @@
 // Quantities of a log: the table of known ones, and how the unit follows from the name of any other column.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,6 +30,11 @@ struct QuantityType {
   std::string_view meaning;
 };
 std::span<const QuantityType> quantity_types();
+
+/// Keys of heat inputs in descending order of how directly they heat a winding: the first five heat the winding first, the last two imply
+/// no heat by themselves.
+inline constexpr std::array<std::string_view, 9> kHeatInputs{"current_A", "current_q_A", "power_in_W", "bus_A",          "torque_Nm",
+                                                             "motor_V",   "duty_ratio",  "bus_V",      "speed_rad_per_s"};
 
 /// Quantity of a channel, derived from its name.
 struct Quantity {

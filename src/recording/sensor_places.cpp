@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 
+#include "recording/quantities.h"
 #include "recording/row_order.h"
 #include "recording/spread.h"
 
@@ -13,9 +15,9 @@ namespace {
 
 constexpr std::size_t kEnoughBlocks = 10;
 /// Signals that heat the winding first. Voltage and speed are not among them: without load they heat the iron.
-constexpr std::array<std::string_view, 5> kWindingHeats{"current_A", "current_q_A", "power_in_W", "bus_A", "torque_Nm"};
+constexpr std::span kWindingHeats = std::span(kHeatInputs).first<5>();
 /// Signals that imply no heat if they are zero.
-constexpr std::array<std::string_view, 7> kHeats{"current_A", "current_q_A", "power_in_W", "bus_A", "torque_Nm", "motor_V", "duty_ratio"};
+constexpr std::span kHeats = std::span(kHeatInputs).first<7>();
 
 /// Returns the first of these channels that the log has, even if it is constant; nullptr if there is none.
 const Channel* first_of(const Recording& recording, std::span<const std::string_view> keys) {

@@ -50,7 +50,7 @@ TEST(SignalTable, NamesAreUniqueAndInputSignalsComplete) {
     names.insert(each.name);
     ++rows;
     EXPECT_EQ(thermal::quantity_row(each.name), rows - 1);
-    if (each.is_driver) {
+    if (each.is_input_signal) {
       EXPECT_TRUE(each.signal) << each.name;
       EXPECT_FALSE(each.meaning.empty()) << each.name;
     }

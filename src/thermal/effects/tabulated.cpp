@@ -10,15 +10,15 @@ enum Node { hot, cold, watched, reference };
 enum Parameter { driver, form, first_knot, last_knot, first_value };
 constexpr int kKnots = 7;
 
-constexpr auto kIsDriver = [](const OperatingQuantity<double>& each) { return each.is_driver; };
-constexpr std::size_t kSignalDrivers = std::ranges::count_if(kQuantities<double>, kIsDriver);
+constexpr auto kIsInputSignal = [](const OperatingQuantity<double>& each) { return each.is_input_signal; };
+constexpr std::size_t kSignalDrivers = std::ranges::count_if(kQuantities<double>, kIsInputSignal);
 
 /// Rows of the table of quantities that can be the input signal.
 constexpr std::array<std::size_t, kSignalDrivers> kRows = [] {
   std::array<std::size_t, kSignalDrivers> rows{};
   std::size_t count = 0;
   for (std::size_t row = 0; row < kQuantityCount; ++row) {
-    if (kIsDriver(kQuantities<double>[row])) {
+    if (kIsInputSignal(kQuantities<double>[row])) {
       rows[count++] = row;
     }
   }
