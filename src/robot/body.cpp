@@ -92,8 +92,4 @@ double kinetic_energy_J(const BodyConfig& body, const BodyVelocity& local, const
   return energy_J;
 }
 
-double transmission_loss_Nm(double efficiency, double output_Nm, double speed_rad_per_s, double smoothing_rad_per_s) {
-  return loss_torque_Nm(1.0 / efficiency - 1.0, 1.0 - efficiency, output_Nm, smooth_sign(speed_rad_per_s, smoothing_rad_per_s));
-}
-
 }  // namespace heatsoak::robot

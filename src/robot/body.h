@@ -51,8 +51,4 @@ S loss_torque_Nm(double driving_ratio, double braking_ratio, const S& torque_Nm,
   return 0.5 * (driving_ratio + braking_ratio) * abs(torque_Nm) * sign + 0.5 * (driving_ratio - braking_ratio) * torque_Nm * abs(sign);
 }
 
-/// Returns the loss torque of a transmission in N m, with the sign of the speed. `output` is the torque after the losses: the input is
-/// output/η when driving and η·output when braking. The sign of the speed is smoothed over `smoothing`.
-double transmission_loss_Nm(double efficiency, double output_Nm, double speed_rad_per_s, double smoothing_rad_per_s);
-
 }  // namespace heatsoak::robot

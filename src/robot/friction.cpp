@@ -48,13 +48,6 @@ Wheels dry_friction_Nm(const FrictionConfig& friction, const WheelArrays& wheels
   return friction.by_heading ? heading_magnitudes_Nm(friction.heading, wheels, local) : Wheels::Constant(friction.wheel_torque_Nm);
 }
 
-PerWheel friction_torques_Nm(const FrictionConfig& friction, const Kinematics& kinematics, const BodyVelocity& local,
-                             const PerWheel& wheel_speed_rad_per_s) {
-  const Wheels speed_rad_per_s = as_wheels(wheel_speed_rad_per_s);
-  return per_wheel(dry_friction_Nm(friction, wheel_arrays(kinematics), local) * smooth_sign(speed_rad_per_s, friction.smoothing_rad_per_s) +
-                   friction.wheel_damping_Nm_s_per_rad * speed_rad_per_s);
-}
-
 double rolling_phase_rad(const WheelDirections& wheel) { return std::atan2(wheel.rolling_x_share, wheel.rolling_y_share); }
 
 DriveConstants drive_constants(const Robot& robot, const motor::MotorValues& motor) {

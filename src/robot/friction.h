@@ -59,10 +59,6 @@ S smooth_sign(const S& x, double width) {
   return x / sqrt(x * x + width * width);
 }
 
-/// Returns the friction torque of each wheel, with the sign of its speed: subtract it from the driving torque.
-PerWheel friction_torques_Nm(const FrictionConfig& friction, const Kinematics& kinematics, const BodyVelocity& local,
-                             const PerWheel& wheel_speed_rad_per_s);
-
 /// Constants that relate the driver's voltage to the torque at the wheel.
 struct DriveConstants {
   double resistance_ohm = 1.0;  ///< resistance of the circuit: winding at 25 °C (with heating factor) and driver

@@ -180,8 +180,7 @@ WheelDemands inverse_dynamics(const BodyConfig& body, const BodyMotion& motion) 
   const Wheels rim_m_per_s2 = rolling_m_per_s(wheels, rates.x_m_per_s2, rates.y_m_per_s2, rates.yaw_rad_per_s2);
   const Wheels sign = smooth_sign(speed_rad_per_s, body.friction.smoothing_rad_per_s);
   const Wheels loss_Nm = loss_torque_Nm(1.0 / body.rolling_efficiency - 1.0, 1.0 - body.rolling_efficiency, ground_Nm, sign);
-  const Wheels friction_Nm =
-      dry_friction_Nm(body.friction, wheels, velocity) * sign + body.friction.wheel_damping_Nm_s_per_rad * speed_rad_per_s;
+  const Wheels friction_Nm = friction_torque_Nm(body.friction, dry_friction_Nm(body.friction, wheels, velocity), sign, speed_rad_per_s);
   as_wheels(out.torque_Nm) = ground_Nm + loss_Nm + friction_Nm + body.wheel_inertia_kg_m2 * rim_m_per_s2 / radius_m;
   return out;
 }

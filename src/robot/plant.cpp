@@ -283,7 +283,7 @@ Wheels accelerate_wheels(const Held& held, const Wheels& speed_rad_per_s, const 
   const Wheels ground_Nm = contacts.rolling_N * plant.body.kinematics.wheel_radius_m;
   const double efficiency = plant.body.rolling_efficiency;
   const Wheels rolling_loss_Nm = loss_torque_Nm(1.0 / efficiency - 1.0, 1.0 - efficiency, ground_Nm, sign);
-  const Wheels friction_Nm = dry_Nm * sign + friction.wheel_damping_Nm_s_per_rad * speed_rad_per_s;
+  const Wheels friction_Nm = friction_torque_Nm(friction, dry_Nm, sign, speed_rad_per_s);
   const Wheels motor_rad_per_s = speed_rad_per_s * plant.gear_ratio;
   book<kHalf>(out.motor_speed_rad_per_s, motor_rad_per_s);
   book<kHalf>(out.motor_torque_Nm, motor_Nm);

@@ -21,6 +21,12 @@ inline Wheels plane_loads_N(const WeightConfig& weight, const LoadMoment& moment
 /// Returns the magnitude of each wheel's dry friction torque in N m: wheel_torque_Nm, or the curve over the direction of travel.
 Wheels dry_friction_Nm(const FrictionConfig& friction, const WheelArrays& wheels, const BodyVelocity& local);
 
+/// Returns the friction torque of each wheel in N m, with the sign of its speed: subtract it from the driving torque. `dry_Nm` is
+/// dry_friction_Nm(), `sign` is smooth_sign() of the speed.
+inline Wheels friction_torque_Nm(const FrictionConfig& friction, const Wheels& dry_Nm, const Wheels& sign, const Wheels& speed_rad_per_s) {
+  return dry_Nm * sign + friction.wheel_damping_Nm_s_per_rad * speed_rad_per_s;
+}
+
 /// Electrical constants of the motors of all wheels at their temperatures.
 struct MotorCircuits {
   Wheels torque_constant_Nm_per_A;

@@ -10,6 +10,7 @@
 #include "base/files.h"
 #include "robot/body.h"
 #include "support/source_folder.h"
+#include "support/wheel_friction.h"
 
 namespace heatsoak::friction {
 namespace {

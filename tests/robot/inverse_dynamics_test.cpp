@@ -9,6 +9,7 @@
 #include "motor/datasheet_network.h"
 #include "robot/plant.h"
 #include "robots_for_tests.h"
+#include "support/wheel_friction.h"
 
 namespace heatsoak::robot {
 namespace {
@@ -73,8 +74,8 @@ TEST(InverseDynamics, power_of_the_wheels_is_accounted_for) {
       wheels_W += out.torque_Nm[i] * out.speed_rad_per_s[i];
       losses_W += friction_Nm[i] * out.speed_rad_per_s[i] -
                   contact_ratios(body.traction, 0.0, lateral_m_per_s[i]).lateral_ratio * out.normal_force_N[i] * lateral_m_per_s[i] +
-                  transmission_loss_Nm(body.rolling_efficiency, out.rolling_force_N[i] * 0.03, out.speed_rad_per_s[i],
-                                       body.friction.smoothing_rad_per_s) *
+                  loss_torque_Nm(1.0 / body.rolling_efficiency - 1.0, 1.0 - body.rolling_efficiency, out.rolling_force_N[i] * 0.03,
+                                 smooth_sign(out.speed_rad_per_s[i], body.friction.smoothing_rad_per_s)) *
                       out.speed_rad_per_s[i];
     }
     const double h_s = 1e-5;

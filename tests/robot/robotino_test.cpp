@@ -12,6 +12,7 @@
 #include "robot/inverse_dynamics.h"
 #include "robotino_recordings.h"
 #include "robots_for_tests.h"
+#include "support/wheel_friction.h"
 
 namespace heatsoak::robot {
 namespace {
