@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -35,13 +36,20 @@ class DutyShape {
   }
 };
 
+/// File that a recorded duty repeats.
+struct RecordedFile {
+  std::filesystem::path path;
+  int repeats = 1;
+};
+
 struct Duty {
   std::string id;  ///< stem of the file name
   std::filesystem::path file;
-  std::string shape;    ///< "intermittent", "recorded", …
-  std::string summary;  ///< one line
-  std::string origin;   ///< origin of the demand: "calibrated", "synthetic" or "measured"; printed with every answer
-  std::vector<std::string> notes;
+  std::string shape;               ///< "intermittent", "recorded", …
+  std::string summary;             ///< one line
+  std::string origin;              ///< origin of the demand: "calibrated", "synthetic" or "measured"; printed with every answer
+  std::vector<std::string> notes;  ///< notes of the file
+  std::optional<RecordedFile> recording;
   DutyKind kind = DutyKind::torque;
   base::ParameterValue ambient_C;
   base::ParameterValue load;  ///< factor on torque or current: 1 with the spread of the file

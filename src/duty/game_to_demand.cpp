@@ -13,21 +13,13 @@ namespace heatsoak::duty {
 namespace {
 
 constexpr double kRate_Hz = 1000.0;
-/// Longer gaps count as a jump of the recording's clock, because no break of a game is as long.
-constexpr double kLongestAbsence_s = 3600.0;
-
-/// Smallest detection rate that resolves the accelerations of a robot of this league.
-constexpr double kFewestSights_Hz = 10.0;
-
-/// Returns a warning if the robot is seen too seldom, otherwise an empty text.
-std::string sparse(const ImportReport& report, const RobotName& name) {
+/// Returns the detection rate of the robot if it is too low, otherwise nothing.
+std::optional<double> low_sight_rate_Hz(const ImportReport& report, const RobotName& name) {
   const auto robot = std::ranges::find(report.robots, name, &RobotSummary::robot);
   if (robot == report.robots.end() || !(static_cast<double>(robot->points) < kFewestSights_Hz * robot->seen_s)) {
-    return "";
+    return std::nullopt;
   }
-  return fmt::format(
-      "{}: torques are uncertain and accelerations smoothed, because the robot is seen only {:.1f} times a second; expected {:.0f} or more",
-      to_string(name), static_cast<double>(robot->points) / robot->seen_s, kFewestSights_Hz);
+  return static_cast<double>(robot->points) / robot->seen_s;
 }
 
 /// Returns the requested robot or, if `player` is empty, the one with the largest ∫a²; nothing if the log has no robots.
@@ -40,9 +32,10 @@ std::optional<RobotName> choose(const ImportReport& survey, const std::string& p
     }
   }
   if (!player.empty() && !known.empty()) {
-    throw base::Failure(base::ExitCode::bad_input,
-                        fmt::format("{}: there is no robot '{}'{}; the log has {}\n{}", log.string(), player,
-                                    base::did_you_mean(player, known), fmt::join(known, ", "), fmt::join(sentences(survey), "\n")));
+    throw GameNotUsable(base::ExitCode::bad_input,
+                        fmt::format("{}: there is no robot '{}'{}; the log has {}", log.string(), player, base::did_you_mean(player, known),
+                                    fmt::join(known, ", ")),
+                        {.log = survey});
   }
   const auto busiest = std::ranges::max_element(survey.robots, {}, &RobotSummary::effort_m2_per_s3);
   return busiest == survey.robots.end() ? std::nullopt : std::optional(busiest->robot);
@@ -123,7 +116,7 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
   survey.progress = reading(progress);
   const RecordedGame first = import_game(log, survey);
   GameDemand result;
-  result.sentences = sentences(first.report);
+  result.log = first.report;
   const std::optional<RobotName> name = choose(first.report, player, log);
   if (!name) {
     return result;
@@ -137,25 +130,15 @@ GameDemand demand_of_game(const std::filesystem::path& log, const std::string& p
     return result;
   }
   // The second pass knows up to when points of this robot were kept.
-  ImportReport report = first.report;
-  report.full_at_s = game.report.full_at_s;
-  result.sentences = sentences(report);
+  result.log.full_at_s = game.report.full_at_s;
   progress.begin(kLoads);
   const MotionTrack motion = smooth(game.tracks.front());
-  result.sentences.push_back(fmt::format("{}: {}", result.player, to_string(motion.report())));
-  if (const std::string warning = sparse(game.report, *name); !warning.empty()) {
-    result.sentences.push_back(warning);
-  }
+  result.smoothing = motion.report();
+  result.low_sight_rate_Hz = low_sight_rate_Hz(game.report, *name);
   WheelLoads loads = loads_of(motion, robot, bin_s, observer);
   result.wheels = std::move(loads.wheels);
-  if (loads.jumps > 0) {
-    result.sentences.push_back(fmt::format("{}: the time jumps ahead by more than {:.0f} s {} times; these gaps are left out",
-                                           result.player, kLongestAbsence_s, loads.jumps));
-  }
-  const double all_s = result.wheels.front().duration_s();
-  result.sentences.push_back(fmt::format(
-      "{}: {:.0f} s, {:.0f} s of them not seen (taken as standstill); the motion needed more grip than available in {:.1f} % of the time",
-      result.player, all_s, loads.unseen_s, 100.0 * result.wheels.front().slip_share));
+  result.clock_jumps = loads.jumps;
+  result.unseen_s = loads.unseen_s;
   return result;
 }
 

@@ -37,7 +37,7 @@ class LogEvents {
   /// Cuts all tracks: later detections are not continuous with earlier ones.
   virtual void cut() = 0;
   /// Reports a part of the file that could not be used, see LogProblem.
-  virtual void problem(std::uint64_t at, std::string what) = 0;
+  virtual void problem(std::uint64_t at, const LogFault& fault) = 0;
   /// Returns true if later events are not needed.
   [[nodiscard]] virtual bool done() const = 0;
   virtual ImportReport& report() = 0;

@@ -1,9 +1,9 @@
 #include "duty/make_duty.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostic.h"
@@ -68,8 +68,8 @@ GameDemand imported_game(const DutyJob& job, const base::JobProgress& progress) 
   }
   GameDemand game = demand_of_game(job.log, job.player, job.robot, kBin_s, observer, progress);
   if (game.wheels.empty()) {
-    throw base::Failure(base::ExitCode::cannot_answer,
-                        fmt::format("{}: no robot is seen long enough to follow its motion\n{}", job.log, fmt::join(game.sentences, "\n")));
+    throw GameNotUsable(base::ExitCode::cannot_answer, fmt::format("{}: no robot is seen long enough to follow its motion", job.log),
+                        std::move(game));
   }
   if (rows) {
     rows->finish();

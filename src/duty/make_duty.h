@@ -45,8 +45,8 @@ struct DutyAnswer {
   std::variant<PrescribedLoad, GeneratedMatch, GameDemand> content;
 };
 
-/// Computes the demand. Throws Failure: bad_input if seed or planner is given for a duty that is not a match, cannot_answer if no robot of
-/// a recorded game is seen long enough.
+/// Computes the demand. Throws Failure: bad_input if seed or planner is given for a duty that is not a match; GameNotUsable if the player
+/// is unknown or no robot of a recorded game is seen long enough.
 DutyAnswer make_duty(const DutyJob& job, const base::JobProgress& progress = {});
 
 /// Returns the duty file that describes the table `csv` beside it, so that `evaluate --duty FILE.toml` can read it.

@@ -1,7 +1,5 @@
 #include "duty/motion.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,8 +14,6 @@ constexpr double kHuber = 2.5;            // in robust standard deviations: beyo
 constexpr double kOutlier = 6.0;          // in robust standard deviations: beyond it a point has weight 0
 constexpr int kReweightings = 3;
 constexpr double kNormal = 1.4826;  // ratio of standard deviation to median absolute deviation of a normal distribution
-// With a larger share of noise the acceleration describes the camera rather than the robot.
-constexpr double kMostlyNoise_share = 0.5;
 // Lower bounds of the noise that scales residuals. Without noise the smoother's own error at a hard start would count as an outlier.
 constexpr double kNoSuspicion_m = 2e-3;
 constexpr double kNoSuspicion_rad = 1e-2;
@@ -352,22 +348,6 @@ void MotionTrack::for_each(double rate_Hz, const std::function<void(const Motion
       }
     }
   }
-}
-
-std::string to_string(const SmoothingReport& r) {
-  const auto channel = [](const ChannelReport& c, std::string_view name, std::string_view unit) {
-    // With almost only noise its share is meaningless, so the bound of the acceleration is printed instead.
-    const std::string trust = c.noise_share < kMostlyNoise_share
-                                  ? fmt::format("about {:.1f} % of the squared acceleration is noise", 100.0 * c.noise_share)
-                                  : fmt::format("the acceleration is below the noise, which is at most {:.2g} {}/s² rms",
-                                                c.acceleration_noise_m_or_rad_per_s2, unit);
-    return fmt::format(
-        "{}: bandwidth {:.1f} Hz (-3 dB; {:.1f} Hz during the {:.0f} % of the time that shows only noise), noise {:.1f} m{}, "
-        "{}, {} outliers ignored",
-        name, c.bandwidth_Hz, c.quiet_bandwidth_Hz, 100.0 * c.quiet_share, 1e3 * c.noise_m_or_rad, unit, trust, c.outliers);
-  };
-  return fmt::format("{} points at {:.1f} Hz; {}; {}", r.points, r.frame_rate_Hz, channel(r.place, "place", "m"),
-                     channel(r.turn, "turn", "rad"));
 }
 
 }  // namespace heatsoak::duty

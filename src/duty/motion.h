@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "duty/recorded_game.h"
@@ -40,7 +39,9 @@ struct ChannelReport {
   double noise_m_or_rad = 0.0;      ///< RMS noise of one coordinate around the smoothed track
   /// RMS acceleration of one coordinate that this noise causes at bandwidth_Hz.
   double acceleration_noise_m_or_rad_per_s2 = 0.0;
-  double noise_share = 0.0;    ///< expected share of the noise in ∫a²
+  double noise_share = 0.0;  ///< expected share of the noise in ∫a²
+  /// With so much noise the acceleration describes the camera rather than the robot.
+  [[nodiscard]] bool is_mostly_noise() const { return noise_share >= 0.5; }
   std::uint64_t outliers = 0;  ///< number of points with weight 0
 };
 
@@ -51,7 +52,6 @@ struct SmoothingReport {
   ChannelReport place;
   ChannelReport turn;
 };
-std::string to_string(const SmoothingReport& report);
 
 /// Smoothed motion of a robot. Between points it is a polynomial of fifth degree with continuous position, velocity and acceleration, which
 /// is the smoother's estimate between two samples.

@@ -85,8 +85,6 @@ const LogType& log_type(const std::filesystem::path& file, const std::string& fo
   throw not_a_game(file, head);
 }
 
-std::string counted(std::uint64_t count, std::string_view what) { return count == 0 ? "" : fmt::format("{} {}", count, what); }
-
 }  // namespace
 
 std::string_view to_string(Team team) { return team == Team::yellow ? "yellow" : "blue"; }
@@ -116,43 +114,6 @@ RecordedGame import_game(const std::filesystem::path& file, const ImportOptions&
   builder.report().format = type.name;
   type.read(file, options, builder);
   return builder.finish();
-}
-
-std::vector<std::string> sentences(const ImportReport& r) {
-  std::vector<std::string> lines;
-  const auto add = [&lines](const std::string& line) {
-    if (!line.empty()) {
-      lines.push_back(line);
-    }
-  };
-  add(fmt::format("{}: {} messages in {} bytes, {} frames of {} over {:.1f} s, {} detections of {} robots", r.format, r.messages, r.bytes,
-                  r.frames, r.source.empty() ? "no source" : r.source, r.span_s, r.detections, r.robots.size()));
-  add(counted(r.frames_of_other_sources, "frames of other sources not used"));
-  add(counted(r.merged, "detections joined with those of another camera"));
-  add(counted(r.doubled, "detections of a robot that one frame holds twice left out"));
-  add(counted(r.outliers, "detections left out: too far from where the robot can be"));
-  add(counted(r.implausible, "detections left out: not a number, no such robot, outside any field, or not in sight"));
-  add(counted(r.out_of_order, "detections left out: not after the one before"));
-  add(counted(r.bridged_gaps, fmt::format("gaps up to {} s bridged", kLongestBridge_s)));
-  add(counted(r.cuts, fmt::format("gaps longer than {} s: tracks cut there", kLongestBridge_s)));
-  add(counted(r.teleports, "times a robot reappeared elsewhere: tracks cut there"));
-  add(counted(r.short_segments, "track segments left out because they are too short"));
-  add(counted(r.clock_jumps, "jumps of the clock: all tracks cut there"));
-  add(counted(r.frames_out_of_time, "frames left out: no other frame confirms their time of capture"));
-  if (r.full_at_s) {
-    add(fmt::format("points from {:.0f} s on are not used, because they do not fit into memory; split the log", *r.full_at_s));
-  }
-  if (r.truncated_at) {
-    add(fmt::format("the log ends inside a message that begins at byte {}; what came before is used", *r.truncated_at));
-  }
-  for (const std::string& note : r.notes) {
-    add(note);
-  }
-  for (const LogProblem& each : r.problems) {
-    add(fmt::format("{} {}: {}", r.format == "csv" ? "line" : "byte", each.at, each.what));
-  }
-  add(counted(r.problems_in_all - r.problems.size(), "more problems of this kind"));
-  return lines;
 }
 
 RobotTrack only_in(const RobotTrack& track, std::span<const PhaseSpan> phases, std::span<const GamePhase> wanted) {

@@ -101,7 +101,7 @@ bool SslLogStream::find_header() {
       }
       if (candidate == Candidate::yes) {
         bytes_.skip(at);
-        events_.problem(begin, fmt::format("no valid message here; {} bytes skipped", bytes_.offset() - begin));
+        events_.problem(begin, BytesSkipped{bytes_.offset() - begin});
         return true;
       }
     }
@@ -111,8 +111,7 @@ bool SslLogStream::find_header() {
     bytes_.skip(at);
     at = 0;
     if (bytes_.offset() - begin > kLongestDamage) {
-      events_.problem(begin,
-                      fmt::format("no message in the {} bytes from here on; the rest of the log is not read", bytes_.offset() - begin));
+      events_.problem(begin, RestNotRead{.bytes = bytes_.offset() - begin});
       return false;
     }
   }
@@ -134,7 +133,7 @@ bool SslLogStream::pass_over_damage() {
   }
   const std::size_t rest = bytes_.peek(LogBytes::kWindow).size();
   if (rest < LogBytes::kWindow) {
-    events_.problem(bytes_.offset(), fmt::format("no message begins here, nor in the {} bytes that follow", rest));
+    events_.problem(bytes_.offset(), EndsWithoutMessage{rest});
   }
   return false;
 }
@@ -149,7 +148,7 @@ std::optional<SslRecord> SslLogStream::next() {
       return std::nullopt;
     }
     if (idle > kLongestDamage) {
-      events_.problem(last_given_, fmt::format("no usable message in the {} bytes from here on; the rest of the log is not read", idle));
+      events_.problem(last_given_, RestNotRead{.bytes = idle, .has_empty_messages = true});
       return std::nullopt;
     }
     if (head.size() < kHeader) {
@@ -185,8 +184,8 @@ std::optional<SslRecord> SslLogStream::next() {
   }
 }
 
-void SslLogStream::reject(std::string_view why) {
-  events_.problem(bytes_.offset(), std::string(why));
+void SslLogStream::reject(MessageKind kind) {
+  events_.problem(bytes_.offset(), MessageUndecodable{kind});
   if (!next_is_header_) {
     to_skip_ = find_header() ? 0 : bytes_.peek(LogBytes::kWindow).size();
   }

@@ -37,7 +37,7 @@ class SslLogStream {
   /// Returns the next record; nothing at the end of the log, at a truncation, or after a long damaged part.
   std::optional<SslRecord> next();
   /// Reports that the last record cannot be decoded. Its size may be wrong, too, so next() may search for a new record.
-  void reject(std::string_view why);
+  void reject(MessageKind kind);
 
  private:
   bool find_header();

@@ -355,10 +355,10 @@ void TrackBuilder::phase(GamePhase phase) {
   }
 }
 
-void TrackBuilder::problem(std::uint64_t at, std::string what) {
+void TrackBuilder::problem(std::uint64_t at, const LogFault& fault) {
   ++report().problems_in_all;
   if (report().problems.size() < kMostProblems) {
-    report().problems.push_back({at, std::move(what)});
+    report().problems.push_back({at, fault});
   }
 }
 

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "duty/log_type.h"
@@ -19,7 +18,7 @@ class TrackBuilder final : public LogEvents {
   void see(const Detection& detection) override;
   void phase(GamePhase phase) override;
   void cut() override;
-  void problem(std::uint64_t at, std::string what) override;
+  void problem(std::uint64_t at, const LogFault& fault) override;
   [[nodiscard]] bool done() const override { return latest_s_ > options_.until_s; }
   ImportReport& report() override { return game_.report; }
 

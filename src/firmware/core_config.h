@@ -23,7 +23,7 @@ struct CoreOptions {
 CoreOptions with_tolerance(CoreOptions options, const motor::Motor& motor);
 
 /// Without guard. Needs the tables body, wheels, drive, battery, traction and limits of the robot's file and the rotor inertia of the
-/// motor; [friction] may be missing as a whole (friction_note() tells the user). Throws Failure (bad_input) that names all parameters that
+/// motor; [friction] may be missing as a whole (notes_on() reports it). Throws Failure (bad_input) that names all parameters that
 /// are missing, or the longest possible period where it is too long for the wheel-speed loop (wheel_loop.h).
 ///
 ///   resistance          R25·k + R_driver, k = 0.75·1.1² for a sinusoidal current, as the plant has it (make_electrics())

@@ -80,7 +80,7 @@ void add_places(Words& words, const std::string& c, const std::string& cpp) {
   }
 }
 
-std::string limitations(const robot::Robot& robot, const derate::Derating& derating, const std::vector<std::string>& notes) {
+std::string limitations(const robot::Robot& robot, const derate::Derating& derating, const std::vector<CoreNote>& notes) {
   std::string text = fmt::format(
       "- The thermal guard is computed from the files, not measured on this robot: {} thermal data of the motor. Air up to {:.0f} °C.\n"
       "- The example has not been run on a board. Its default board functions have no sensors, so the core keeps all bridges open.\n",
@@ -88,13 +88,13 @@ std::string limitations(const robot::Robot& robot, const derate::Derating& derat
   text += std::isfinite(robot.drive.current_limit_A)
               ? ""
               : "- The robot file has no current limit of the driver: only the battery bounds the current until the guard does.\n";
-  for (const std::string& note : notes) {
-    text += fmt::format("- {}\n", note);
+  for (const CoreNote& note : notes) {
+    text += fmt::format("- {}\n", to_string(note));
   }
   return text;
 }
 
-Words words_for(const CoreSource& source, const std::vector<std::string>& notes) {
+Words words_for(const CoreSource& source, const std::vector<CoreNote>& notes) {
   Words words{{"ROBOT", in_one_line(source.robot.id)},
               {"MOTOR", in_one_line(source.motor.id)},
               {"VERSION", source.version},
@@ -123,54 +123,6 @@ std::string options_text(const motor::Motor& motor, const CoreOptions& options, 
     text += fmt::format(" --condition {}={}", key, value);
   }
   return text;
-}
-
-/// Effects of the motor that need a signal, "vehicle_airflow, fan".
-std::string effects_with(const motor::Motor& motor, thermal::Signal signal) {
-  std::string names;
-  for (const motor::MotorEffect& effect : motor.effects) {
-    const std::vector<thermal::Signal> needed = effect.type->needed_with(effect.values());
-    if (std::ranges::find(needed, signal) != needed.end()) {
-      names += fmt::format("{}{}", names.empty() ? "" : ", ", effect.name);
-    }
-  }
-  return names.empty() ? "the motor's thermal law" : names;
-}
-
-std::vector<std::string> notes_on(const robot::Robot& robot, const motor::Motor& motor, const derate::Derating& derating) {
-  std::vector<std::string> notes;
-  if (const std::string friction = friction_note(robot); !friction.empty()) {
-    notes.push_back(friction);
-  }
-  const derate::Observer& observer = derating.observer;
-  if (observer.uses(derate::observed::vehicle_speed)) {
-    notes.push_back(
-        fmt::format("{} depends on the robot's speed through the air, which the core does not know: it uses the speed with the most "
-                    "heating, still air if wind cools",
-                    effects_with(motor, thermal::Signal::vehicle_speed)));
-  }
-  if (observer.uses(derate::observed::neighbour)) {
-    notes.push_back(fmt::format("{} depends on the motors beside it: the core uses the hottest of the other wheels' guards",
-                                effects_with(motor, thermal::Signal::neighbour_temperature)));
-  }
-  if (observer.uses(derate::observed::age)) {
-    notes.push_back(fmt::format("{} depends on operating hours, which the core does not know: it uses the age with the most heating",
-                                effects_with(motor, thermal::Signal::age)));
-  }
-  for (const motor::MotorEffect& effect : motor.effects) {
-    if (!effect.column.empty()) {
-      notes.push_back(fmt::format("{} depends on {} of the logs, which the core does not know: it uses the value with the most heating",
-                                  effect.name, effect.column));
-    }
-  }
-  if (!derating.default_spreads.empty()) {
-    notes.push_back(fmt::format("the motor's file gives no tolerance for these values, defaults by origin are assumed: {}",
-                                motor::to_string(derating.default_spreads)));
-  }
-  for (const auto& [key, value] : motor.assumed) {
-    notes.push_back(fmt::format("the guard is valid only if {} is {}, as stated with --condition", key, value));
-  }
-  return notes;
 }
 
 bool is_for_firmware(std::string_view path) { return path != "robot_core/block_diagram.h"; }
@@ -204,22 +156,6 @@ std::string in_one_line(std::string text) {
   return text;
 }
 
-namespace {
-
-/// Adds a note if the reserve for a full stop takes much of the driving current.
-void add_stop_note(const derate::Derating& derating, CoreFolder& folder) {
-  constexpr double kLarge_share = 0.25;
-  const double room_K = derating.rules.limits.winding_C - derating.rules.hottest_ambient_C;
-  if (folder.braking_reserve_K > kLarge_share * room_K) {
-    folder.notes.push_back(
-        fmt::format("the robot drives with less current than the motor could carry, because one full stop heats the winding by {:.0f} K of "
-                    "the {:.0f} K between air of {:.0f} °C and its limit; a lower limits.speed or limits.braking in the robot file helps",
-                    folder.braking_reserve_K, room_K, derating.rules.hottest_ambient_C));
-  }
-}
-
-}  // namespace
-
 CoreFolder core_files(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options, const derate::Derating& derating,
                       std::string_view version) {
   const HostGuard guard(derating);
@@ -240,8 +176,7 @@ CoreFolder core_files(const robot::Robot& robot, const motor::Motor& motor, cons
                     .config_check_sum = source.config.check_sum,
                     .limp_current_A = source.config.limp_current_A,
                     .braking_reserve_K = source.config.braking_reserve_K,
-                    .notes = notes_on(robot, motor, derating)};
-  add_stop_note(derating, folder);
+                    .notes = notes_on(robot, motor, derating, source.config.braking_reserve_K)};
   folder.files.push_back({"core_config.h", core_config_header(source)});
   folder.files.push_back({"motor_guard.h", motor_guard_header(source)});
   folder.files.push_back({"motor_guard.cpp", motor_guard_source(source)});

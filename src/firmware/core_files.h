@@ -9,6 +9,7 @@
 
 #include "derate/provenance.h"
 #include "firmware/core_config.h"
+#include "firmware/core_notes.h"
 #include "firmware/host_guard.h"
 
 namespace heatsoak::firmware {
@@ -27,7 +28,7 @@ struct CoreFolder {
   std::uint32_t config_check_sum = 0;  ///< robot_core::config_check_sum()
   double limp_current_A = 0.0;
   double braking_reserve_K = 0.0;
-  std::vector<std::string> notes;  ///< for the user: what the core does not know, and what it assumes instead
+  std::vector<CoreNote> notes;
 };
 
 /// Inputs common to all file generators.

@@ -1,7 +1,5 @@
 #include "firmware/friction_voltage.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -147,17 +145,6 @@ FrictionVoltage friction_voltage(const robot::Robot& robot, const motor::MotorVa
     made.residual_rms_V[i] = residual_rms_V(points, made.sine_V[i], made.sign_V[i]);
   }
   return made;
-}
-
-std::string friction_note(const robot::Robot& robot) {
-  if (robot::has_friction(robot)) {
-    return {};
-  }
-  return fmt::format(
-      "feed-forward of friction is off, so the wheels lag until their integrators have compensated it: {} has no [friction]; measure it "
-      "with "
-      "`heatsoak friction`",
-      robot.file.filename().string());
 }
 
 }  // namespace heatsoak::firmware

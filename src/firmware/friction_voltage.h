@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <string>
 
 #include "robot/body.h"
 
@@ -33,8 +32,5 @@ FrictionVoltage friction_voltage(const robot::Robot& robot, const motor::MotorVa
 
 /// Returns the body with the friction of the file; without friction if the file has none.
 robot::BodyConfig make_body_with_known_friction(const robot::Robot& robot, const motor::MotorValues& motor);
-
-/// Returns a note for the user if the robot's file has no friction; else an empty text.
-std::string friction_note(const robot::Robot& robot);
 
 }  // namespace heatsoak::firmware

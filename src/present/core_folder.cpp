@@ -30,8 +30,8 @@ Document core_folder_document(const firmware::CoreFolder& folder, const derate::
   add_labelled(table, "inputs", fmt::format("{} {}", derate::kInputHash, folder.hash));
   add_labelled(table, "configuration", fmt::format("check sum {:08x}", folder.config_check_sum));
   document.tables.push_back(std::move(table));
-  for (const std::string& note : folder.notes) {
-    document.add_note(Severity::note, note);
+  for (const firmware::CoreNote& note : folder.notes) {
+    document.add_note(Severity::note, to_string(note));
   }
   return document;
 }

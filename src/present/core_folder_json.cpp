@@ -11,6 +11,10 @@ Json core_folder_json(const firmware::CoreFolder& folder, const derate::Derating
                       const firmware::CoreOptions& options, const std::string& out) {
   const derate::Guarantee& checked = derating.guarantee;
   Json files = Json::array();
+  Json notes = Json::array();
+  for (const firmware::CoreNote& note : folder.notes) {
+    notes.push_back(to_string(note));
+  }
   for (const firmware::CoreFile& file : folder.files) {
     files.push_back({{"path", file.path}, {"bytes", file.content.size()}});
   }
@@ -36,7 +40,7 @@ Json core_folder_json(const firmware::CoreFolder& folder, const derate::Derating
             {"braking_reserve_K", rounded(folder.braking_reserve_K, 3)},
             {"nodes", derating.observer.state_names()}}},
           {"default_spreads", default_spreads_json({&motor, 1})},
-          {"notes", folder.notes}};
+          {"notes", notes}};
 }
 
 }  // namespace heatsoak::present

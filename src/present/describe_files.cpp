@@ -126,11 +126,20 @@ Document robot_description(const robot::Robot& robot) {
   return document;
 }
 
+std::vector<std::string> duty_notes(const duty::Duty& duty) {
+  std::vector<std::string> notes = duty.notes;
+  if (duty.recording) {
+    notes.push_back(fmt::format("{} of {}, run {} time{}", duty.kind == duty::DutyKind::torque ? "torque" : "current",
+                                duty.recording->path.string(), duty.recording->repeats, duty.recording->repeats == 1 ? "" : "s"));
+  }
+  return notes;
+}
+
 Document duty_description(const duty::Duty& duty) {
   Document document{
       .headline = {{fmt::format("{}: {}", duty.id, duty.summary)}},
       .paragraphs = {fmt::format("Shape {}, ambient {:.0f} °C. The load is {}.", duty.shape, duty.ambient_C.value, duty.origin)}};
-  for (const std::string& note : duty.notes) {
+  for (const std::string& note : duty_notes(duty)) {
     document.add_note(Severity::note, note);
   }
   if (!duty.parameters.empty()) {

@@ -99,9 +99,9 @@ Json robot_json(const robot::Robot& robot) {
 }
 
 Json duty_file_json(const duty::Duty& duty) {
-  Json result{{"kind", "duty"},        {"id", duty.id},       {"summary", duty.summary},
-              {"origin", duty.origin}, {"shape", duty.shape}, {"ambient_C", duty.ambient_C.value},
-              {"notes", duty.notes}};
+  Json result{{"kind", "duty"},           {"id", duty.id},       {"summary", duty.summary},
+              {"origin", duty.origin},    {"shape", duty.shape}, {"ambient_C", duty.ambient_C.value},
+              {"notes", duty_notes(duty)}};
   for (const auto& [spec, parameter] : duty.parameters) {
     result["figures"].push_back(parameter.printed.empty() ? Json{{"key", spec.key}, {"value", parameter.value}, {"unit", spec.unit}}
                                                           : parameter_json(spec.key, spec.unit, parameter));

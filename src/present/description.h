@@ -19,6 +19,8 @@ namespace heatsoak::present {
 Document motor_description(const motor::Motor& motor);
 Document robot_description(const robot::Robot& robot);
 Document duty_description(const duty::Duty& duty);
+/// Returns the notes of the file and, for a recorded duty, a line about its recording.
+std::vector<std::string> duty_notes(const duty::Duty& duty);
 
 /// Describes a duty shape. `file` is a complete duty file of this shape.
 Document shape_description(const duty::ShapeType& shape, const std::string& file);

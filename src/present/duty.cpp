@@ -7,6 +7,7 @@
 
 #include "base/quantity.h"
 #include "present/evaluation.h"
+#include "present/game_words.h"
 #include "present/verdict_words.h"
 
 namespace heatsoak::present {
@@ -79,9 +80,7 @@ Document document_of(const duty::DutyAnswer& answer, const duty::GameDemand& gam
       .headline = {{fmt::format("{} of {}, driven by {}: {}.", game.player, std::filesystem::path(answer.log).filename().string(),
                                 answer.robot.id, duration_text(game.wheels.front().duration_s()))}},
       .paragraphs = {}};
-  for (const std::string& sentence : game.sentences) {
-    document.paragraphs.push_back(sentence);
-  }
+  document.paragraphs = words_of(game);
   return document;
 }
 

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "present/duty.h"
+#include "present/game_words.h"
 #include "present/match_roles_json.h"
 
 namespace heatsoak::present {
@@ -43,7 +44,7 @@ Json json_of(const duty::DutyAnswer& answer, const duty::GameDemand& game) {
           {"player", game.player},
           {"robot", answer.robot.id},
           {"duration_s", rounded(game.wheels.front().duration_s(), 3)},
-          {"report", game.sentences}};
+          {"report", words_of(game)}};
 }
 
 }  // namespace

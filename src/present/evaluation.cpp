@@ -12,7 +12,6 @@
 #include "present/motor_notes.h"
 #include "present/robot_notes.h"
 #include "present/verdict_words.h"
-#include "robot/assumed_friction.h"
 #include "select/decision.h"
 
 namespace heatsoak::present {
@@ -349,7 +348,7 @@ Document evaluation_document(const simulate::EvaluationAnswer& answer) {
   if (answer.changes) {
     add_changes(document, *answer.changes, answer.duty.shape_data->has_unknowns());
   }
-  add_lines(document.notes, robot::assumed_friction_text(answer.robot), Severity::warning);
+  add_assumed_friction(document, answer.robot);
   // This note is the same for most motors, so it follows those that are about this answer.
   if (std::ranges::any_of(answer.results, [](const select::MotorEvaluation& each) { return each.data_quality == "estimated"; })) {
     document.add_note(Severity::note,

@@ -10,7 +10,6 @@
 #include "present/motor_notes.h"
 #include "present/robot_notes.h"
 #include "present/verdict_words.h"
-#include "robot/assumed_friction.h"
 
 namespace heatsoak::present {
 namespace {
@@ -200,7 +199,7 @@ Document match_document(const simulate::MatchSimulation& answer) {
   if (answer.guard_use != simulate::GuardUse::off) {
     add_lines(document.notes, default_spreads_text({&answer.motor, 1}), Severity::note);
   }
-  add_lines(document.notes, robot::assumed_friction_text(answer.robot), Severity::warning);
+  add_assumed_friction(document, answer.robot);
   return document;
 }
 

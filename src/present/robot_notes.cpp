@@ -26,4 +26,16 @@ void add_robot_notes(Document& document, const robot::Robot& robot) {
   }
 }
 
+void add_assumed_friction(Document& document, const robot::Robot& robot) {
+  if (robot.friction.is_assumed) {
+    document.add_note(
+        Severity::warning,
+        fmt::format("{} has no [friction]: the feed-forward of friction is off, and the simulated robot has the friction of other teams' "
+                    "robots (estimate: wheel torque {:.1f} mN m, roller drag {:.2f}, rolling efficiency {:.2f}); measure yours with "
+                    "`heatsoak friction`",
+                    robot.file.filename().string(), 1e3 * robot.friction.wheel_torque_Nm.value(), robot.friction.roller_drag_ratio.value(),
+                    robot.friction.rolling_efficiency.value()));
+  }
+}
+
 }  // namespace heatsoak::present

@@ -59,15 +59,4 @@ Robot with_assumed_friction(Robot robot) {
   return robot;
 }
 
-std::string assumed_friction_text(const Robot& robot) {
-  if (!robot.friction.is_assumed) {
-    return {};
-  }
-  return fmt::format(
-      "{} has no [friction]: the feed-forward of friction is off, and the simulated robot has the friction of other teams' robots "
-      "(estimate: wheel torque {:.1f} mN m, roller drag {:.2f}, rolling efficiency {:.2f}); measure yours with `heatsoak friction`\n",
-      robot.file.filename().string(), 1e3 * robot.friction.wheel_torque_Nm.value(), robot.friction.roller_drag_ratio.value(),
-      robot.friction.rolling_efficiency.value());
-}
-
 }  // namespace heatsoak::robot

@@ -1,8 +1,6 @@
 // Assumed friction for a robot whose file states none, so that a match can be simulated before any measurement.
 #pragma once
 
-#include <string>
-
 #include "robot/robot.h"
 
 namespace heatsoak::robot {
@@ -15,8 +13,5 @@ bool has_friction(const Robot& robot);
 /// measured on their robots, scaled by weight and wheel radius; the ranges include both. The friction feed-forward of the drive core stays
 /// off.
 Robot with_assumed_friction(Robot robot);
-
-/// Returns a line for the user with the assumed values; empty if nothing was assumed.
-std::string assumed_friction_text(const Robot& robot);
 
 }  // namespace heatsoak::robot

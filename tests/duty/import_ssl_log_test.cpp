@@ -11,8 +11,6 @@ namespace heatsoak::duty {
 namespace {
 
 using namespace testing_logs;
-using testing::Contains;
-using testing::HasSubstr;
 
 SeenRobot on_a_line(double time_s) { return {true, 3, 0.5 * time_s - 1.0, 0.25, 0.1}; }
 
@@ -76,7 +74,8 @@ TEST(ImportSslLog, ReadsATrackerWhereThereIsNoVision) {
   }
   const RecordedGame game = import_bytes(log.bytes());
   expect_line(game);
-  EXPECT_THAT(game.report.source, HasSubstr("TIGERs"));
+  EXPECT_EQ(game.report.source.kind, PositionSource::Kind::tracker);
+  EXPECT_EQ(game.report.source.tracker, "TIGERs");
   EXPECT_EQ(game.report.frames_of_other_sources, 100U);
 }
 
@@ -129,7 +128,6 @@ TEST(ImportSslLog, KeepsOneRobotOrASpanOfTimeOnDemandButSummarisesAll) {
   const RecordedGame full = import_game(file.path(), {.most_points = 400});
   ASSERT_TRUE(full.report.full_at_s);
   EXPECT_NEAR(*full.report.full_at_s, 200 * kFrame_s, 0.1);
-  EXPECT_THAT(sentences(full.report), Contains(HasSubstr("split the log")));
 }
 
 TEST(ImportSslLog, FollowsThePhasesOfTheReferee) {

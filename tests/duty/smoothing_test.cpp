@@ -129,7 +129,7 @@ TEST(Smoothing, NeitherLosesNorInventsMoreThanFivePercentOfTheHeat) {
         const SmoothingReport& r = motion.report();
         SCOPED_TRACE(testing::Message() << "play " << play_share << ", " << acceleration << " m/s2, " << jerk << " m/s3, " << rate_Hz
                                         << " Hz: v " << e.velocity_rms_m_per_s << " a " << e.acceleration_rms_m_per_s2 << " place "
-                                        << e.place_share << " turn " << e.turn_share << "; " << to_string(r));
+                                        << e.place_share << " turn " << e.turn_share);
         EXPECT_LT(std::abs(e.place_share), 0.05);
         EXPECT_LT(std::abs(e.turn_share), 0.05);
         EXPECT_LT(e.velocity_rms_m_per_s, 0.02);
@@ -189,7 +189,6 @@ TEST(Smoothing, SaysWhenTheFrameRateLimitsTheBandwidth) {
   }
   const MotionTrack motion = smooth(track, {.bandwidth_Hz = 5.0});
   EXPECT_NEAR(motion.report().place.bandwidth_Hz, 10.0 / 6.0, 1e-9);
-  EXPECT_THAT(to_string(motion.report()), testing::HasSubstr("bandwidth 1.7 Hz"));
 }
 
 TEST(Smoothing, SeesNoAccelerationOfARobotThatStands) {
@@ -206,9 +205,8 @@ TEST(Smoothing, SeesNoAccelerationOfARobotThatStands) {
     ++count;
   });
   EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.1);
-  // A large share of a negligible quantity must not be reported.
-  EXPECT_EQ(to_string(motion.report()).find("100.0 %"), std::string::npos);
-  EXPECT_NE(to_string(motion.report()).find("is below the noise"), std::string::npos);
+  EXPECT_TRUE(motion.report().place.is_mostly_noise());
+  EXPECT_TRUE(motion.report().turn.is_mostly_noise());
 }
 
 TEST(Smoothing, GivesTheSameInOnePieceAsInBlocks) {

@@ -171,7 +171,6 @@ TEST(FrictionVoltage, RobotWithoutFrictionHasItsBackEmfAlone) {
     EXPECT_EQ(friction.sine_V[i], 0.0);
     EXPECT_EQ(friction.sign_V[i], 0.0);
   }
-  EXPECT_TRUE(friction_note(robot).starts_with("feed-forward of friction is off"));
   // Friction that is assumed for the simulated robot must not reach the core.
   const robot::Robot assumed = robot::with_assumed_friction(robot);
   EXPECT_GT(assumed.friction.roller_drag_ratio.value(), 0.0);
@@ -179,7 +178,6 @@ TEST(FrictionVoltage, RobotWithoutFrictionHasItsBackEmfAlone) {
   EXPECT_FALSE(unknown.is_known);
   EXPECT_EQ(unknown.damping_V_s_per_rad, friction.damping_V_s_per_rad);
   EXPECT_EQ(unknown.rotation_V, 0.0);
-  EXPECT_EQ(friction_note(twente()), "");
 }
 
 TEST(FrictionVoltage, NamesWhatHalfAFrictionTableLacks) {

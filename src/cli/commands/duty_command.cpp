@@ -16,6 +16,7 @@
 #include "duty/make_duty.h"
 #include "duty/named_files.h"
 #include "present/duty.h"
+#include "present/game_words.h"
 #include "present/robot_notes.h"
 
 namespace heatsoak::cli::commands {
@@ -43,6 +44,14 @@ void refuse(const DutyOptions& options, std::initializer_list<std::string_view> 
     if (is_given(options, option)) {
       throw base::Failure(base::ExitCode::bad_input, fmt::format("{} {}", option, why));
     }
+  }
+}
+
+duty::DutyAnswer answer_of(const duty::DutyJob& job) {
+  try {
+    return with_progress([&](const base::JobProgress& progress) { return duty::make_duty(job, progress); });
+  } catch (const duty::GameNotUsable& failure) {
+    throw present::in_words(failure);
   }
 }
 
@@ -76,7 +85,7 @@ base::ExitCode run(const DutyOptions& options, Session& session) {
       table->write(text);
     };
   }
-  const duty::DutyAnswer answer = with_progress([&](const base::JobProgress& progress) { return duty::make_duty(job, progress); });
+  const duty::DutyAnswer answer = answer_of(job);
   present::Document document = present::duty_document(answer);
   present::add_robot_notes(document, *robot);
   if (!options.out.empty()) {

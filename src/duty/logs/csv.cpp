@@ -76,10 +76,10 @@ class Units {
   void say_steps(ImportReport& report) const {
     const double step_s = steps_ > 0 ? std::exp(log_steps_ / static_cast<double>(steps_)) : 0.0;
     if (step_s > kLongestBridge_s) {
-      const char* unit = step_s < 1e3 ? "milliseconds" : step_s < 1e6 ? "microseconds" : "nanoseconds";
-      report.notes.push_back(
-          fmt::format("t_s advances by {:.3g} s from row to row of a robot, expected at most {} s: is it in {}, or are rows missing?",
-                      step_s, kLongestBridge_s, unit));
+      const RowTimeUnit unit = step_s < 1e3   ? RowTimeUnit::milliseconds
+                               : step_s < 1e6 ? RowTimeUnit::microseconds
+                                              : RowTimeUnit::nanoseconds;
+      report.notes.emplace_back(RowsFarApart{step_s, unit});
     }
   }
 
@@ -233,7 +233,7 @@ class Rows {
       robot.clock.leave_out(listener_);
     }
     if (blank_ > 0) {
-      events_.report().notes.push_back(fmt::format("{} rows without a position left out: the robot was lost", blank_));
+      events_.report().notes.emplace_back(RowsWithoutPosition{blank_});
     }
     units_.say(file_);
     say_times();
@@ -245,10 +245,7 @@ class Rows {
     RobotClock clock;
   };
 
-  void problem(const RobotClock::Row& row, double after_s, const std::string& what) {
-    events_.problem(static_cast<std::uint64_t>(row.line),
-                    fmt::format("{} at {} s, after {} s{}", to_string(row.sight.robot), row.written_s, after_s, what));
-  }
+  void problem(const RobotClock::Row& row, const LogFault& fault) { events_.problem(static_cast<std::uint64_t>(row.line), fault); }
 
   /// Adds the probable reason why robots could not be tracked: the unit, rounding or order of the times.
   void say_times() const {
@@ -256,10 +253,9 @@ class Rows {
     if (2 * report.out_of_order <= report.messages) {
       units_.say_steps(report);
     } else if (2 * repeated_ > report.out_of_order) {
-      report.notes.emplace_back(
-          "most times repeat, as if t_s was rounded; expected increasing times for each robot: write t_s to the millisecond");
+      report.notes.emplace_back(TimesRepeat{});
     } else {
-      report.notes.emplace_back("most rows go back in time: expected the rows of each robot sorted by t_s");
+      report.notes.emplace_back(RowsNotSorted{});
     }
   }
 
@@ -271,22 +267,21 @@ class Rows {
   Units units_;
   const input::CsvRow* row_ = nullptr;
   Robot* robot_ = nullptr;  ///< robot of the present row
-  RobotClock::Listener listener_{
-      .see =
-          [this](const Detection& in_time) {
-            units_.take(robot_->before, in_time, *row_);
-            events_.see(in_time);
-          },
-      .left_out =
-          [this](const RobotClock::Row& row, double after_s) {
-            ++events_.report().out_of_order;
-            repeated_ += row.written_s == after_s ? 1 : 0;
-            problem(row, after_s, "; time must increase for each robot; left out");
-          },
-      .restarted =
-          [this](const RobotClock::Row& row, double after_s) {
-            problem(row, after_s, fmt::format(": its clock restarts; the following rows are taken as {} s later", RobotClock::kPause_s));
-          }};
+  RobotClock::Listener listener_{.see =
+                                     [this](const Detection& in_time) {
+                                       units_.take(robot_->before, in_time, *row_);
+                                       events_.see(in_time);
+                                     },
+                                 .left_out =
+                                     [this](const RobotClock::Row& row, double after_s) {
+                                       ++events_.report().out_of_order;
+                                       repeated_ += row.written_s == after_s ? 1 : 0;
+                                       problem(row, TimeNotIncreasing{row.sight.robot, row.written_s, after_s});
+                                     },
+                                 .restarted =
+                                     [this](const RobotClock::Row& row, double after_s) {
+                                       problem(row, ClockRestarts{row.sight.robot, row.written_s, after_s, RobotClock::kPause_s});
+                                     }};
 };
 
 void read(const std::filesystem::path& file, const ImportOptions& /*options*/, LogEvents& events) {
@@ -296,14 +291,11 @@ void read(const std::filesystem::path& file, const ImportOptions& /*options*/, L
   const std::array<input::CsvWords, 1> words{input::CsvWords{"team", {"yellow", "blue"}}};
   input::CsvColumns columns{{kColumns.begin(), kColumns.end()}, {}, {kColumns[x], kColumns[y], kColumns[yaw]}};
   ImportReport& report = events.report();
-  report.source = "positions in a table";
+  report.source.kind = PositionSource::Kind::table;
   Rows rows(file, events);
   input::read_csv(
       file, [&columns](std::span<const std::string> /*header*/) { return columns; }, words,
-      [&rows](const input::CsvRow& row) { rows.take(row); },
-      [&report](int line) {
-        report.notes.push_back(fmt::format("line {}, the last, has no line break at its end and may be truncated: left out", line));
-      });
+      [&rows](const input::CsvRow& row) { rows.take(row); }, [&report](int line) { report.notes.emplace_back(LastRowOmitted{line}); });
   rows.finish();
   std::error_code error;
   report.bytes = std::filesystem::file_size(file, error);

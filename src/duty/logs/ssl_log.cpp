@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <ssl_messages.pb.h>
 
 #include <array>
@@ -55,7 +54,7 @@ class NoEvents final : public LogEvents {
   void see(const Detection& /*detection*/) override {}
   void phase(GamePhase /*phase*/) override {}
   void cut() override {}
-  void problem(std::uint64_t /*at*/, std::string /*what*/) override {}
+  void problem(std::uint64_t /*at*/, const LogFault& /*fault*/) override {}
   [[nodiscard]] bool done() const override { return false; }
   ImportReport& report() override { return report_; }
 
@@ -81,14 +80,14 @@ Sources probe(const std::filesystem::path& file) {
     bool has_robots = false;
     if (is_vision(record->type)) {
       if (!decode(vision, record->message)) {
-        stream.reject("");
+        stream.reject(MessageKind::vision);
         continue;
       }
       has_robots = vision.detection().robots_yellow_size() + vision.detection().robots_blue_size() > 0;
       sources.vision_frames += has_robots ? 1 : 0;
     } else if (record->type == SslMessageType::tracker_2020) {
       if (!decode(tracked, record->message)) {
-        stream.reject("");
+        stream.reject(MessageKind::tracker);
         continue;
       }
       has_robots = tracked.tracked_frame().robots_size() > 0;
@@ -144,12 +143,13 @@ class Import {
     ImportReport& report = events_.report();
     report.bytes = bytes_.offset();
     report.start_unix_s = clock_.start_unix_s();
-    report.source = source_.tracked ? fmt::format("tracker '{}'", source_.name) : fmt::format("vision, {} cameras", cameras_.size());
+    report.source = source_.tracked ? PositionSource{.kind = PositionSource::Kind::tracker, .tracker = source_.name}
+                                    : PositionSource{.kind = PositionSource::Kind::vision, .cameras = cameras_.size()};
     if (!bytes_.broken().empty()) {
-      report.notes.push_back(bytes_.broken() + "; what came before is used");
+      report.notes.emplace_back(BytesEndEarly{bytes_.broken()});
     }
     if (report.frames == 0) {
-      report.notes.push_back(fmt::format("the log holds no frame of {} with robots", source_.tracked ? "a tracker" : "vision"));
+      report.notes.emplace_back(NoFrameWithRobots{report.source.kind});
     }
   }
 
@@ -157,7 +157,7 @@ class Import {
   void take(const SslRecord& record) {
     if (is_vision(record.type)) {
       if (!decode(vision_, record.message)) {
-        stream_.reject("vision message that cannot be decoded; left out");
+        stream_.reject(MessageKind::vision);
       } else {
         learn_cameras(vision_.geometry());
         if (vision_.has_detection()) {
@@ -166,7 +166,7 @@ class Import {
       }
     } else if (record.type == SslMessageType::tracker_2020) {
       if (!decode(tracked_, record.message)) {
-        stream_.reject("tracker message that cannot be decoded; left out");
+        stream_.reject(MessageKind::tracker);
       } else if (source_.tracked && tracked_.uuid() == source_.uuid) {
         take(tracked_.tracked_frame(), record);
       } else {
@@ -253,12 +253,11 @@ class Import {
 
   void take_referee(const SslRecord& record) {
     if (!decode(referee_, record.message)) {
-      stream_.reject("referee message that cannot be decoded; left out");
+      stream_.reject(MessageKind::referee);
       return;
     }
     if (!referee_.has_command() || !referee_.has_stage() || referee_.command() >= kPhaseOfCommand.size() || referee_.stage() > kLastStage) {
-      events_.problem(record.offset,
-                      fmt::format("referee message with stage {} and command {}; left out", referee_.stage(), referee_.command()));
+      events_.problem(record.offset, RefereeUndefined{referee_.stage(), referee_.command()});
       return;
     }
     const GamePhase of_stage = phase_of_stage(referee_.stage());

@@ -221,7 +221,7 @@ void read_recorded(input::Reader& table, const std::filesystem::path& folder, Du
     table.problem("repeats", fmt::format("makes more than {:.0f} rows; expected about the length of a match", kMostPieces));
     return;
   }
-  duty.notes.push_back(fmt::format("{} of {}, run {} time{}", *quantity, (folder / *file).string(), repeats, repeats == 1.0 ? "" : "s"));
+  duty.recording = RecordedFile{folder / *file, static_cast<int>(repeats)};
   duty.shape_data = std::make_shared<Recorded>(std::move(wheels), static_cast<int>(repeats));
 }
 

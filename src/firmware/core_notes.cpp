@@ -1,0 +1,115 @@
+#include "firmware/core_notes.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "derate/observer.h"
+#include "robot/assumed_friction.h"
+
+namespace heatsoak::firmware {
+namespace {
+
+/// Returns the names of the motor's effects that need a signal.
+std::vector<std::string> effects_with(const motor::Motor& motor, thermal::Signal signal) {
+  std::vector<std::string> names;
+  for (const motor::MotorEffect& effect : motor.effects) {
+    const std::vector<thermal::Signal> needed = effect.type->needed_with(effect.values());
+    if (std::ranges::find(needed, signal) != needed.end()) {
+      names.push_back(effect.name);
+    }
+  }
+  return names;
+}
+
+std::string names_of(const std::vector<std::string>& effects) {
+  return effects.empty() ? "the motor's thermal law" : fmt::format("{}", fmt::join(effects, ", "));
+}
+
+std::string say(const FrictionUnknown& of) {
+  return fmt::format(
+      "feed-forward of friction is off, so the wheels lag until their integrators have compensated it: {} has no [friction]; measure it "
+      "with `heatsoak friction`",
+      of.robot_file);
+}
+
+std::string say(const AirSpeedUnknown& of) {
+  return fmt::format(
+      "{} depends on the robot's speed through the air, which the core does not know: it uses the speed with the most heating, still air "
+      "if wind cools",
+      names_of(of.effects));
+}
+
+std::string say(const NeighboursFromGuards& of) {
+  return fmt::format("{} depends on the motors beside it: the core uses the hottest of the other wheels' guards", names_of(of.effects));
+}
+
+std::string say(const AgeUnknown& of) {
+  return fmt::format("{} depends on operating hours, which the core does not know: it uses the age with the most heating",
+                     names_of(of.effects));
+}
+
+std::string say(const ColumnUnknown& of) {
+  return fmt::format("{} depends on {} of the logs, which the core does not know: it uses the value with the most heating", of.effect,
+                     of.column);
+}
+
+std::string say(const SpreadsAssumed& of) {
+  return fmt::format("the motor's file gives no tolerance for these values, defaults by origin are assumed: {}",
+                     motor::to_string(of.spreads));
+}
+
+std::string say(const ConditionStated& of) {
+  return fmt::format("the guard is valid only if {} is {}, as stated with --condition", of.key, of.value);
+}
+
+std::string say(const StopTakesCurrent& of) {
+  return fmt::format(
+      "the robot drives with less current than the motor could carry, because one full stop heats the winding by {:.0f} K of the {:.0f} K "
+      "between air of {:.0f} °C and its limit; a lower limits.speed or limits.braking in the robot file helps",
+      of.stop_K, of.room_K, of.hottest_ambient_C);
+}
+
+}  // namespace
+
+std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& motor, const derate::Derating& derating,
+                               double braking_reserve_K) {
+  std::vector<CoreNote> notes;
+  if (!robot::has_friction(robot)) {
+    notes.emplace_back(FrictionUnknown{robot.file.filename().string()});
+  }
+  const derate::Observer& observer = derating.observer;
+  if (observer.uses(derate::observed::vehicle_speed)) {
+    notes.emplace_back(AirSpeedUnknown{effects_with(motor, thermal::Signal::vehicle_speed)});
+  }
+  if (observer.uses(derate::observed::neighbour)) {
+    notes.emplace_back(NeighboursFromGuards{effects_with(motor, thermal::Signal::neighbour_temperature)});
+  }
+  if (observer.uses(derate::observed::age)) {
+    notes.emplace_back(AgeUnknown{effects_with(motor, thermal::Signal::age)});
+  }
+  for (const motor::MotorEffect& effect : motor.effects) {
+    if (!effect.column.empty()) {
+      notes.emplace_back(ColumnUnknown{effect.name, effect.column});
+    }
+  }
+  if (!derating.default_spreads.empty()) {
+    notes.emplace_back(SpreadsAssumed{derating.default_spreads});
+  }
+  for (const auto& [key, value] : motor.assumed) {
+    notes.emplace_back(ConditionStated{key, value});
+  }
+  constexpr double kLarge_share = 0.25;
+  const double room_K = derating.rules.limits.winding_C - derating.rules.hottest_ambient_C;
+  if (braking_reserve_K > kLarge_share * room_K) {
+    notes.emplace_back(StopTakesCurrent{braking_reserve_K, room_K, derating.rules.hottest_ambient_C});
+  }
+  return notes;
+}
+
+std::string to_string(const CoreNote& note) {
+  return std::visit([](const auto& each) { return say(each); }, note);
+}
+
+}  // namespace heatsoak::firmware

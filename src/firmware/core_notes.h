@@ -1,0 +1,60 @@
+// Findings about a drive core as data: what it does not know, what it assumes instead, and what limits it.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "derate/derating.h"
+#include "motor/default_spread.h"
+#include "motor/motor.h"
+#include "robot/robot.h"
+
+namespace heatsoak::firmware {
+
+/// The robot's file has no friction, so its feed-forward is off.
+struct FrictionUnknown {
+  std::string robot_file;
+};
+/// Effects depend on the robot's speed through the air: the core uses the speed with the most heating.
+struct AirSpeedUnknown {
+  std::vector<std::string> effects;  ///< names; empty for a law of every motor
+};
+/// Effects depend on the motors beside this one: the core uses the hottest of the other wheels' guards.
+struct NeighboursFromGuards {
+  std::vector<std::string> effects;  ///< as above
+};
+/// Effects depend on operating hours: the core uses the age with the most heating.
+struct AgeUnknown {
+  std::vector<std::string> effects;  ///< as above
+};
+/// An effect depends on a log column: the core uses the value with the most heating.
+struct ColumnUnknown {
+  std::string effect;
+  std::string column;
+};
+/// The motor's file gives no tolerance for these values.
+struct SpreadsAssumed {
+  std::vector<motor::DefaultSpread> spreads;
+};
+/// The guard is valid only under a condition that the user stated.
+struct ConditionStated {
+  std::string key;
+  std::string value;
+};
+/// The reserve for one full stop takes much of the driving current.
+struct StopTakesCurrent {
+  double stop_K = 0.0;  ///< winding's temperature rise of one full stop
+  double room_K = 0.0;  ///< from the hottest air to the winding limit
+  double hottest_ambient_C = 0.0;
+};
+using CoreNote = std::variant<FrictionUnknown, AirSpeedUnknown, NeighboursFromGuards, AgeUnknown, ColumnUnknown, SpreadsAssumed,
+                              ConditionStated, StopTakesCurrent>;
+
+std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& motor, const derate::Derating& derating,
+                               double braking_reserve_K);
+
+/// Returns the sentence for the generated README, which is below `present`; the answer of the verb uses the same.
+std::string to_string(const CoreNote& note);
+
+}  // namespace heatsoak::firmware
